@@ -1,0 +1,245 @@
+"""Channels and their vocabulary, read from `data_schema/channels.csv`."""
+
+from __future__ import annotations
+
+import csv
+import difflib
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+
+from gaitdisc.errors import ChannelError, UnitError
+from gaitdisc.units import known_units
+
+QUANTITIES = (
+    "angle",
+    "translation",
+    "marker",
+    "moment",
+    "force",
+    "vertical_force",
+    "pressure_centre",
+    "power",
+    "emg",
+    "signal",
+)
+SIDES = ("r", "l", "")
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One measured or simulated quantity.
+
+    Parameters
+    ----------
+    name : str
+        OpenSim's name (`ankle_angle_r`), `emg_<muscle>_<side>` for EMG, `<marker>.x` for a marker coordinate.
+    quantity : str
+        One of `QUANTITIES`; `signal` is anything that no other word fits (a voltage, a synchronisation pulse).
+    unit : str
+        One of `gaitdisc.units.known_units()`, or a rate of one of them.
+    side : str
+        `r`, `l`, or empty where the quantity has no side.
+
+    Raises
+    ------
+    ChannelError
+        If the name is empty, or the quantity or side is none of the agreed words.
+    UnitError
+        If the unit is not in the closed list.
+
+    Examples
+    --------
+    >>> Channel("ankle_angle_r", "angle", "deg", "r").unit
+    'deg'
+    """
+
+    name: str
+    quantity: str
+    unit: str
+    side: str = ""
+
+    def __post_init__(self) -> None:
+        """Refuse words outside the vocabulary."""
+        if not self.name:
+            raise ChannelError("a channel needs a name", "the name is empty", "Name the column.")
+        if self.quantity not in QUANTITIES:
+            raise ChannelError(
+                f"channel {self.name!r} needs a quantity of the vocabulary",
+                f"found {self.quantity!r}",
+                f"Use one of: {', '.join(QUANTITIES)}.",
+            )
+        if self.side not in SIDES:
+            raise ChannelError(
+                f"channel {self.name!r} needs side 'r', 'l' or ''",
+                f"found {self.side!r}",
+                "Correct the side in channels.csv or in the study's [channels].",
+            )
+        base = re.sub(r"/s\d?$", "", self.unit)
+        if base not in known_units():
+            raise UnitError(
+                f"channel {self.name!r} needs a unit of the closed list",
+                f"found {self.unit!r}",
+                f"Use one of: {', '.join(known_units())}.",
+            )
+
+    def renamed(self, name: str) -> Channel:
+        """Return the same channel under another name.
+
+        Parameters
+        ----------
+        name : str
+            New name.
+        """
+        return replace(self, name=name)
+
+
+@dataclass(frozen=True)
+class Vocabulary:
+    """The channels that the package knows, with the other names they go by.
+
+    Parameters
+    ----------
+    channels : tuple of Channel
+        Known channels, in the file's order.
+    positive : dict of str to str
+        Channel name -> what a positive value means.
+    aliases : dict of str to str
+        Folded label -> channel name.
+    """
+
+    channels: tuple[Channel, ...]
+    positive: dict[str, str]
+    aliases: dict[str, str]
+
+    def named(self, label: str) -> Channel | None:
+        """Channel that a label means, or None.
+
+        Parameters
+        ----------
+        label : str
+            As written in a file. Case, blanks and punctuation do not count, nor does the path and the trailing
+            `/value` of OpenSim's full-path labels.
+
+        Examples
+        --------
+        >>> vocabulary().named("/jointset/hip_r/hip_flexion_r/value").name
+        'hip_flexion_r'
+        >>> vocabulary().named("R Tib Ant").name
+        'emg_ta_r'
+        """
+        name = self.aliases.get(folded_label(label)) or self.aliases.get(folded_label(path_label(label)))
+        return next((c for c in self.channels if c.name == name), None) if name else None
+
+    def nearest(self, label: str, among: Iterable[str] | None = None) -> str | None:
+        """Known name most like a label, or None where none is near.
+
+        Parameters
+        ----------
+        label : str
+            A name that was not found.
+        among : iterable of str, optional
+            Names to choose from; the whole vocabulary by default.
+
+        Examples
+        --------
+        >>> vocabulary().nearest("ankle_ange_r")
+        'ankle_angle_r'
+        """
+        return nearest_word(label, [c.name for c in self.channels] if among is None else among)
+
+
+def nearest_word(word: str, among: Iterable[str]) -> str | None:
+    """Word of a list most like another, or None where none is near.
+
+    Parameters
+    ----------
+    word : str
+        What was written.
+    among : iterable of str
+        What could have been meant.
+
+    Examples
+    --------
+    >>> nearest_word("particpants", ["participants", "filters"])
+    'participants'
+    """
+    by_fold = {candidate.lower(): candidate for candidate in among}
+    close = difflib.get_close_matches(word.lower(), by_fold, n=1, cutoff=0.6)
+    return by_fold[close[0]] if close else None
+
+
+def folded_label(label: str) -> str:
+    """Fold a label to lower case without blanks and punctuation.
+
+    Parameters
+    ----------
+    label : str
+        As written in a file.
+
+    Examples
+    --------
+    >>> folded_label("R Tib-Ant")
+    'rtibant'
+    """
+    return re.sub(r"[^a-z0-9]", "", label.lower())
+
+
+def path_label(label: str) -> str:
+    """Last part of an OpenSim full-path label that names the coordinate.
+
+    Parameters
+    ----------
+    label : str
+        `/jointset/hip_r/hip_flexion_r/value`, or a plain label, which is returned as it is.
+
+    Examples
+    --------
+    >>> path_label("/jointset/hip_r/hip_flexion_r/value")
+    'hip_flexion_r'
+    """
+    if not label.startswith("/"):
+        return label
+    parts = [part for part in label.split("/") if part]
+    if len(parts) > 1 and parts[-1] in ("value", "speed", "accel"):
+        return parts[-2] if parts[-1] == "value" else f"{parts[-2]}/{parts[-1]}"
+    return parts[-1] if parts else label
+
+
+def schema_folder() -> Path:
+    """Folder of the vocabulary and the JSON Schemas, in a checkout or in an installed wheel."""
+    installed = Path(__file__).parent / "data_schema"
+    return installed if installed.is_dir() else Path(__file__).parents[1] / "data_schema"
+
+
+@cache
+def vocabulary() -> Vocabulary:
+    """Vocabulary of `data_schema/channels.csv`.
+
+    Raises
+    ------
+    ChannelError
+        If two channels of the file claim the same alias.
+
+    Examples
+    --------
+    >>> vocabulary().named("hip_flexion_r").unit
+    'deg'
+    """
+    path = schema_folder() / "channels.csv"
+    with path.open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    aliases: dict[str, str] = {}
+    for row in rows:
+        for label in [row["name"], *filter(None, row["aliases"].split("|"))]:
+            owner = aliases.setdefault(folded_label(label), row["name"])
+            if owner != row["name"]:
+                raise ChannelError(
+                    "an alias in channels.csv may mean one channel only",
+                    f"{label!r} stands at {owner!r} and at {row['name']!r}",
+                    "Remove it from one of them.",
+                )
+    channels = tuple(Channel(r["name"], r["quantity"], r["unit"], r["side"]) for r in rows)
+    return Vocabulary(channels, {r["name"]: r["positive"] for r in rows}, aliases)

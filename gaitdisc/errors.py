@@ -1,0 +1,67 @@
+"""The error tree: every refusal says what was needed, what was found and what to do.
+
+An error is raised where data enter (constructors, ingest, `train`) and never re-checked below. The command line prints
+the sentence and no traceback; anything that is not a `GaitdiscError` is a defect of this package.
+"""
+
+from __future__ import annotations
+
+
+class GaitdiscError(ValueError):
+    """A refusal that a user can act on.
+
+    Parameters
+    ----------
+    needed : str
+        What the operation needs, in the field's words, with the unit.
+    found : str
+        What was met instead: file, channel, frame, number, unit.
+    remedy : str
+        What the user can do now, one sentence.
+
+    Examples
+    --------
+    >>> str(ChannelError("strides need a vertical force", "walk.mot has none", "Name it in [channels]."))
+    'strides need a vertical force; walk.mot has none. Name it in [channels].'
+    """
+
+    def __init__(self, needed: str, found: str, remedy: str) -> None:
+        super().__init__(needed, found, remedy)
+        self.needed = needed
+        self.found = found
+        self.remedy = remedy
+
+    def __str__(self) -> str:
+        return f"{self.needed}; {self.found}. {self.remedy}"
+
+
+class ReadError(GaitdiscError):
+    """A file cannot be read as the recording that it claims to be."""
+
+
+class SchemaError(GaitdiscError):
+    """A study file, a results folder or a table does not have the agreed form."""
+
+
+class ChannelError(GaitdiscError):
+    """A channel is missing, doubled or unknown."""
+
+
+class UnitError(GaitdiscError):
+    """A unit is absent, unknown, or contradicted by the magnitude of the numbers."""
+
+
+class ShapeError(GaitdiscError):
+    """Arrays that belong together differ in shape."""
+
+
+class SamplingError(GaitdiscError):
+    """Time does not advance evenly, or a recording is too short for what is asked."""
+
+
+class StrideError(GaitdiscError):
+    """Strides cannot be cut: no contacts, wrong order, not walking."""
+
+
+class TrainingError(GaitdiscError):
+    """A model cannot be fitted to the samples it was given."""

@@ -1,0 +1,93 @@
+"""A model is anything with named inputs and outputs; models add."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.errors import ShapeError
+
+
+@runtime_checkable
+class Model(Protocol):
+    """Named inputs to named outputs: a system, a regression or a network."""
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of the inputs, in order."""
+        ...
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of the outputs, in order."""
+        ...
+
+    def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Outputs (sample, output) for inputs (sample, input)."""
+        ...
+
+
+@dataclass(frozen=True)
+class Augmented:
+    """A known model plus what it misses (Eq. 4.5).
+
+    Parameters
+    ----------
+    known : Model
+        The Nominal model, or a simulation.
+    missing : Model
+        The Discrepancy model; same inputs and outputs.
+
+    Raises
+    ------
+    ShapeError
+        If the two differ in inputs or outputs.
+
+    Examples
+    --------
+    >>> augment(known, missing)(x)  # doctest: +SKIP
+    array(...)  # known(x) + missing(x)
+    """
+
+    known: Model
+    missing: Model
+
+    def __post_init__(self) -> None:
+        """Refuse models that cannot be added."""
+        for what in ("inputs", "outputs"):
+            one, other = getattr(self.known, what), getattr(self.missing, what)
+            if one != other:
+                apart = sorted(set(one) ^ set(other)) or ["their order"]
+                raise ShapeError(
+                    f"models that are added need the same {what}",
+                    f"they have {len(one)} and {len(other)}, apart in {', '.join(apart[:3])}",
+                    "Fit both on the same channels.",
+                )
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of the inputs of both."""
+        return self.known.inputs
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of the outputs of both."""
+        return self.known.outputs
+
+    def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Sum of both models, (sample, output)."""
+        return self.known(x) + self.missing(x)
+
+
+def augment(known: Model, missing: Model) -> Augmented:
+    """Add what a model misses to it.
+
+    Parameters
+    ----------
+    known, missing : Model
+        Same inputs and outputs.
+    """
+    return Augmented(known, missing)

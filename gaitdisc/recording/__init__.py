@@ -1,0 +1,21 @@
+"""The nouns that everything else speaks of: recordings, trials, strides, trajectories, samples, findings."""
+
+from gaitdisc.recording.finding import Finding
+from gaitdisc.recording.recording import Recording, Source
+from gaitdisc.recording.samples import Samples
+from gaitdisc.recording.strides import PERCENT, DroppedStride, Strides
+from gaitdisc.recording.trajectory import Trajectory
+from gaitdisc.recording.trial import Event, Trial
+
+__all__ = [
+    "PERCENT",
+    "DroppedStride",
+    "Event",
+    "Finding",
+    "Recording",
+    "Samples",
+    "Source",
+    "Strides",
+    "Trajectory",
+    "Trial",
+]

@@ -1,0 +1,54 @@
+"""What is wrong with a recording, said so that a person can act on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+SEVERITIES = ("note", "warning", "refused")
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One observation about a file or a channel.
+
+    Parameters
+    ----------
+    severity : str
+        `note` (nothing is spoiled), `warning` (some samples or channels are), `refused` (the trial is not used).
+    kind : str
+        One word or two: `gap`, `dead`, `flat`, `clipped`, `plateau`, `late change`, ...
+    file : str
+        Name of the file, or of the trial where there is no file.
+    what : str
+        What was seen, with number and unit.
+    spoils : str
+        What it makes worthless, and what to do.
+    channel : str
+        Name of the channel, empty where the whole file is meant.
+    spans : tuple of (float, float)
+        Start and end of each affected part [s].
+
+    Examples
+    --------
+    >>> Finding("warning", "gap", "walk.mot", "0.12 s missing", "accelerations within 0.15 s", "knee_angle_r").line()
+    'warning: walk.mot, knee_angle_r: gap: 0.12 s missing; spoils accelerations within 0.15 s'
+    """
+
+    severity: str
+    kind: str
+    file: str
+    what: str
+    spoils: str
+    channel: str = ""
+    spans: tuple[tuple[float, float], ...] = ()
+
+    def __post_init__(self) -> None:
+        """Refuse a severity that the traffic light does not know."""
+        if self.severity not in SEVERITIES:
+            raise ValueError(f"severity is one of {SEVERITIES}, not {self.severity!r}")
+
+    def line(self) -> str:
+        """Return the finding as one line of text."""
+        where = ", ".join(part for part in (self.file, self.channel) if part)
+        spoils = f"; spoils {self.spoils}" if self.spoils else ""
+        return f"{self.severity}: {where}: {self.kind}: {self.what}{spoils}"

@@ -1,0 +1,251 @@
+"""A measured or a simulated recording: channels on one even time base."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel, vocabulary
+from gaitdisc.errors import ChannelError, SamplingError, ShapeError
+from gaitdisc.recording.arrays import read_only
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+STEP_TOLERANCE = 1e-3  # of the mean step; ingest evens out what a file's printed digits round
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where a recording comes from.
+
+    Parameters
+    ----------
+    file : str
+        Name of the file without its folder; empty for what the package made itself.
+    sha256 : str
+        Hash of the file's bytes, 64 hexadecimal digits, or empty.
+    reader : str
+        What read it: `ezc3d 1.7.2`, `mot`, `simulation`.
+    """
+
+    file: str = ""
+    sha256: str = ""
+    reader: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """Channels on one even time base; arrays are read-only, time is the first axis.
+
+    Parameters
+    ----------
+    time : ndarray (time,) [s]
+        Evenly spaced, increasing.
+    values : ndarray (time, channel) [each channel's unit]
+        NaN where nothing was measured; never 0 in place of it.
+    channels : sequence of Channel
+        One for each column; names differ.
+    subject, condition : str
+        Pseudonym of the person; `nominal`, `exo` or the study's own word.
+    source : Source
+        File, hash and reader.
+    suspect : ndarray of bool (time, channel), optional
+        True where a value stands but is not to be trusted (a filled gap, a filter's edge, a plateau).
+
+    Raises
+    ------
+    ShapeError
+        If times, values, channels and marks do not fit together.
+    SamplingError
+        If time does not advance evenly (a step differs from the mean by more than 0.1 %).
+    ChannelError
+        If two channels have one name.
+
+    Examples
+    --------
+    >>> knee = Channel("knee_angle_r", "angle", "deg", "r")
+    >>> walk = Recording(np.arange(5) / 100, np.zeros((5, 1)), (knee,))
+    >>> walk.rate_hz, walk.names
+    (100.0, ('knee_angle_r',))
+    """
+
+    time: NDArray[np.float64]
+    values: NDArray[np.float64]
+    channels: tuple[Channel, ...]
+    subject: str = ""
+    condition: str = ""
+    source: Source = field(default_factory=Source)
+    suspect: NDArray[np.bool_] | None = None
+
+    def __post_init__(self) -> None:
+        """Check shapes and the time base once; nothing below checks them again."""
+        time, values = read_only(self.time), read_only(self.values)
+        channels = tuple(self.channels)
+        if time.ndim != 1 or values.shape != (len(time), len(channels)):
+            raise ShapeError(
+                "a recording needs values of shape (time, channel)",
+                f"found {values.shape} with {len(time)} times and {len(channels)} channels",
+                "Put time first, one column a channel.",
+            )
+        suspect = np.zeros(values.shape, bool) if self.suspect is None else self.suspect
+        if np.shape(suspect) != values.shape:
+            raise ShapeError(
+                "marks of suspect samples need the shape of the values",
+                f"found {np.shape(suspect)}, values {values.shape}",
+                "Give one mark a sample and channel.",
+            )
+        _check_names(channels, self.source.file)
+        _check_steps(time, self.source.file)
+        for name, value in (("time", time), ("values", values), ("channels", channels)):
+            object.__setattr__(self, name, value)
+        object.__setattr__(self, "suspect", read_only(suspect, bool))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the channels, in order."""
+        return tuple(channel.name for channel in self.channels)
+
+    @property
+    def rate_hz(self) -> float:
+        """Samples a second; NaN for fewer than two samples."""
+        if len(self.time) < 2:
+            return float("nan")
+        rate = (len(self.time) - 1) / (self.time[-1] - self.time[0])
+        return float(round(rate, 6))
+
+    @property
+    def duration_s(self) -> float:
+        """Length in seconds, counting the last sample's own step."""
+        return len(self.time) / self.rate_hz if len(self.time) > 1 else 0.0
+
+    def index(self, name: str) -> int:
+        """Return the column of a channel.
+
+        Parameters
+        ----------
+        name : str
+            Name of the channel.
+
+        Raises
+        ------
+        ChannelError
+            If there is none of that name; the nearest one is named.
+        """
+        if name not in self.names:
+            nearest = vocabulary().nearest(name, among=self.names)
+            hint = f", the nearest is {nearest!r}" if nearest else ""
+            raise ChannelError(
+                f"channel {name!r} is needed",
+                f"{self.source.file or 'the recording'} has {len(self.names)} channels{hint}",
+                "Map it in the study's [channels], or add an alias to channels.csv.",
+            )
+        return self.names.index(name)
+
+    def __getitem__(self, name: str) -> NDArray[np.float64]:
+        return self.values[:, self.index(name)]
+
+    def selected(self, names: Sequence[str]) -> Recording:
+        """Recording of some channels, in the order asked for.
+
+        Parameters
+        ----------
+        names : sequence of str
+            Names of the channels.
+        """
+        columns = [self.index(name) for name in names]
+        return replace(
+            self,
+            values=self.values[:, columns],
+            channels=tuple(self.channels[column] for column in columns),
+            suspect=self._suspect()[:, columns],
+        )
+
+    def selected_by(self, wanted: Callable[[Channel], bool]) -> Recording:
+        """Recording of the channels for which a condition holds.
+
+        Parameters
+        ----------
+        wanted : callable
+            Takes a Channel, answers True or False.
+        """
+        return self.selected([channel.name for channel in self.channels if wanted(channel)])
+
+    def between(self, start_s: float, end_s: float) -> Recording:
+        """Recording of the samples with start_s <= time < end_s.
+
+        Parameters
+        ----------
+        start_s, end_s : float
+            On the recording's own clock [s].
+        """
+        first, last = np.searchsorted(self.time, [start_s - 1e-9, end_s - 1e-9])
+        rows = slice(int(first), int(last))
+        return replace(self, time=self.time[rows], values=self.values[rows], suspect=self._suspect()[rows])
+
+    def with_values(self, values: NDArray[np.float64], suspect: NDArray[np.bool_] | None = None) -> Recording:
+        """Recording with other values on the same time base and channels.
+
+        Parameters
+        ----------
+        values : ndarray (time, channel)
+            New values.
+        suspect : ndarray of bool (time, channel), optional
+            Marks to add to those there are.
+        """
+        marks = self._suspect() if suspect is None else self._suspect() | suspect
+        return replace(self, values=values, suspect=marks)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Table with one column a channel, indexed by time [s]."""
+        import pandas as pd
+
+        return pd.DataFrame(self.values, pd.Index(self.time, name="time"), list(self.names))
+
+    def to_xarray(self) -> xr.DataArray:
+        """Labelled array (time, channel) with the units as a coordinate; needs xarray installed."""
+        import xarray as xr
+
+        units = ("channel", [channel.unit for channel in self.channels])
+        coordinates: dict[str, Any] = {"time": self.time, "channel": list(self.names)}
+        return xr.DataArray(
+            np.array(self.values),
+            coords={**coordinates, "unit": units},
+            dims=("time", "channel"),
+            attrs={"subject": self.subject, "condition": self.condition},
+        )
+
+    def _suspect(self) -> NDArray[np.bool_]:
+        assert self.suspect is not None  # set in __post_init__
+        return self.suspect
+
+
+def _check_names(channels: Sequence[Channel], file: str) -> None:
+    names = [channel.name for channel in channels]
+    doubled = sorted({name for name in names if names.count(name) > 1})
+    if doubled:
+        raise ChannelError(
+            "each channel needs a name of its own",
+            f"{file or 'the recording'} has {doubled[0]!r} {names.count(doubled[0])} times",
+            "Tell them apart in the study's [channels].",
+        )
+
+
+def _check_steps(time: NDArray[np.float64], file: str) -> None:
+    if len(time) < 2:
+        return
+    steps = np.diff(time)
+    mean = (time[-1] - time[0]) / (len(time) - 1)
+    worst = int(np.argmax(np.abs(steps - mean)))
+    if not np.isfinite(mean) or mean <= 0 or abs(steps[worst] - mean) > STEP_TOLERANCE * mean:
+        raise SamplingError(
+            "a recording needs a constant rate",
+            f"{file or 'the recording'} has a step of {steps[worst]:.6g} s after sample {worst} "
+            f"(t = {time[worst]:.6g} s) where the mean step is {mean:.6g} s",
+            "Export it at one rate, or resample it onto one before reading.",
+        )

@@ -1,0 +1,168 @@
+"""Strides of one leg: from one initial contact to the next of the same foot."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.errors import ShapeError, StrideError
+from gaitdisc.recording.arrays import read_only
+from gaitdisc.recording.recording import Recording
+
+PERCENT = read_only(np.arange(101.0))  # 0 to 100 % inclusive
+
+
+@dataclass(frozen=True)
+class DroppedStride:
+    """A stride that is not used, and why.
+
+    Parameters
+    ----------
+    start, end : float
+        Initial contacts [s].
+    reason : str
+        In words, with the number that decided.
+    """
+
+    start: float
+    end: float
+    reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class Strides:
+    """Strides [start, end) in seconds, so that they serve every recording of the trial at its own rate.
+
+    Parameters
+    ----------
+    start, end : ndarray (stride,) [s]
+        Initial contact, and the next of the same foot; in order, not overlapping.
+    side : str
+        `r` or `l`.
+    detector : str
+        What found the contacts: `force`, `markers`, `angles`, `events`, `oscillator`.
+    dropped : tuple of DroppedStride
+        Strides that are not among the above, each with its reason.
+
+    Raises
+    ------
+    ShapeError
+        If start and end differ in length.
+    StrideError
+        If a stride ends before it starts or overlaps the next.
+
+    Examples
+    --------
+    >>> strides = Strides(np.array([0.0, 1.0]), np.array([1.0, 2.0]), "r", "force")
+    >>> strides.phi(np.array([0.25, 1.5, 2.5]))
+    array([25., 50., nan])
+    """
+
+    start: NDArray[np.float64]
+    end: NDArray[np.float64]
+    side: str
+    detector: str
+    dropped: tuple[DroppedStride, ...] = field(default_factory=tuple)
+
+    def __post_init__(self) -> None:
+        """Check order once."""
+        start, end = read_only(self.start), read_only(self.end)
+        if start.ndim != 1 or start.shape != end.shape:
+            raise ShapeError(
+                "strides need as many ends as starts",
+                f"found {start.shape} starts and {end.shape} ends",
+                "Give one end a start.",
+            )
+        if np.any(end <= start) or np.any(start[1:] < end[:-1] - 1e-9):
+            raise StrideError(
+                "strides need initial contacts in order",
+                f"one of the {len(start)} strides of side {self.side!r} ends before it starts or overlaps the next",
+                "Check the events, or choose another detector.",
+            )
+        object.__setattr__(self, "start", start)
+        object.__setattr__(self, "end", end)
+
+    def __len__(self) -> int:
+        return len(self.start)
+
+    @property
+    def duration_s(self) -> NDArray[np.float64]:
+        """Duration of every stride, (stride,) [s]."""
+        return self.end - self.start
+
+    def phi(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Percent stride, 0 <= phi < 100, NaN outside of the strides.
+
+        Parameters
+        ----------
+        time : ndarray (time,) [s]
+            Times on the trial's clock.
+        """
+        if not len(self):
+            return np.full(len(time), np.nan)
+        which = np.searchsorted(self.start, time, side="right") - 1
+        inside = which >= 0
+        which = np.maximum(which, 0)
+        inside &= time < self.end[which]
+        phi = 100.0 * (time - self.start[which]) / self.duration_s[which]
+        return np.where(inside, np.minimum(phi, np.nextafter(100.0, 0.0)), np.nan)
+
+    def normalised(self, recording: Recording) -> NDArray[np.float64]:
+        """Every stride of a recording on 0 to 100 % in 101 points, (stride, phase, channel) [channel's unit].
+
+        Linear between samples; NaN where a sample beside the point is missing or the recording does not reach.
+
+        Parameters
+        ----------
+        recording : Recording
+            On the trial's clock, at any rate.
+        """
+        points = self.start[:, None] + self.duration_s[:, None] * PERCENT / 100.0
+        return interpolated(recording.time, recording.values, points)
+
+    def between(self, start_s: float, end_s: float) -> Strides:
+        """Strides that lie wholly between two times.
+
+        Parameters
+        ----------
+        start_s, end_s : float
+            On the trial's clock [s].
+        """
+        inside = (self.start >= start_s) & (self.end <= end_s)
+        return Strides(self.start[inside], self.end[inside], self.side, self.detector, self.dropped)
+
+
+def interpolated(
+    time: NDArray[np.float64], values: NDArray[np.float64], points: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Linear interpolation on an even time base that lets NaN through and does not extrapolate.
+
+    Parameters
+    ----------
+    time : ndarray (time,) [s]
+        Even.
+    values : ndarray (time, channel)
+        NaN allowed.
+    points : ndarray, any shape [s]
+        Where to read the values.
+
+    Returns
+    -------
+    ndarray (*points.shape, channel)
+
+    Examples
+    --------
+    >>> interpolated(np.arange(3.0), np.arange(3.0)[:, None] ** 2, np.array([0.5, 2.0, 3.0])).ravel()
+    array([0.5, 4. , nan])
+    """
+    step = (time[-1] - time[0]) / (len(time) - 1)
+    place = (points - time[0]) / step
+    left = np.clip(np.floor(place + 1e-9).astype(int), 0, len(time) - 1)
+    right = np.minimum(left + 1, len(time) - 1)
+    share = np.clip(place - left, 0.0, 1.0)[..., None]
+    inside = (place >= -1e-6) & (place <= len(time) - 1 + 1e-6)
+    low, high = values[left], values[right]
+    mixed = np.where(share < 1e-6, low, (1 - share) * low + share * high)
+    return np.where(inside[..., None], mixed, np.nan)

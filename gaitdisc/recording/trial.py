@@ -1,0 +1,150 @@
+"""A trial: everything recorded of one person during one walk, each stream on its own time base."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+
+from gaitdisc.errors import ChannelError, SamplingError
+from gaitdisc.recording.finding import Finding
+from gaitdisc.recording.recording import Recording
+from gaitdisc.recording.strides import interpolated
+
+STREAMS = ("kinematics", "markers", "emg", "forces", "moments", "signals")
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that the file itself says happened.
+
+    Parameters
+    ----------
+    label : str
+        `initial contact` or `foot off`; other events keep their own label.
+    side : str
+        `r`, `l` or empty.
+    time : float
+        On the trial's clock, the clock of the recordings [s].
+    """
+
+    label: str
+    side: str
+    time: float
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """The streams of one walk, on one clock.
+
+    Parameters
+    ----------
+    name : str
+        Name of the file without its ending, or what the study calls it.
+    streams : mapping of str to Recording
+        Keys among `STREAMS`: `kinematics` (joint angles, pelvis translations), `markers`, `emg`, `forces` (ground
+        reactions), `moments` (joint moments and powers), `signals` (everything else that was digitised).
+    events : tuple of Event
+        Events of the file, in order of time.
+    findings : tuple of Finding
+        What the reader saw that a user must know.
+    subject, condition : str
+        Pseudonym and condition.
+
+    Raises
+    ------
+    ChannelError
+        If a stream has a key that is not among `STREAMS`.
+
+    Examples
+    --------
+    >>> Trial("walk", {}).name
+    'walk'
+    """
+
+    name: str
+    streams: Mapping[str, Recording]
+    events: tuple[Event, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    subject: str = ""
+    condition: str = ""
+
+    def __post_init__(self) -> None:
+        """Freeze the mapping and refuse unknown streams."""
+        unknown = set(self.streams) - set(STREAMS)
+        if unknown:
+            raise ChannelError(
+                f"a trial has streams among {', '.join(STREAMS)}",
+                f"{self.name} has {sorted(unknown)[0]!r}",
+                "Put the channels into one of these streams.",
+            )
+        object.__setattr__(self, "streams", MappingProxyType(dict(self.streams)))
+
+    def stream(self, key: str) -> Recording:
+        """Return one stream.
+
+        Parameters
+        ----------
+        key : str
+            One of `STREAMS`.
+
+        Raises
+        ------
+        ChannelError
+            If the trial has none of that kind.
+        """
+        if key not in self.streams:
+            raise ChannelError(
+                f"trial {self.name} is asked for its {key}",
+                f"it has {', '.join(self.streams) or 'no stream at all'}",
+                "Give the file that holds them in the study's [[trials]].",
+            )
+        return self.streams[key]
+
+    def on_one_base(self, rate_hz: float, keys: tuple[str, ...] | None = None) -> Recording:
+        """Bring streams to one time base, the span that all of them cover.
+
+        Linear between samples: streams that are slower than `rate_hz` gain no information, and streams that are faster
+        must have been low-passed before (an EMG envelope at 10 Hz, kinematics at 6 Hz), or they alias.
+
+        Parameters
+        ----------
+        rate_hz : float
+            Rate of the result.
+        keys : tuple of str, optional
+            Streams to bring together, in this order; all of them by default.
+
+        Returns
+        -------
+        Recording
+            Channels of all streams; samples that rest on a suspect one are suspect.
+
+        Raises
+        ------
+        SamplingError
+            If the streams have no time in common.
+        """
+        streams = [self.stream(key) for key in (keys or tuple(self.streams))]
+        start = max(recording.time[0] for recording in streams)
+        end = min(recording.time[-1] for recording in streams)
+        count = int(np.floor((end - start) * rate_hz + 1e-6)) + 1
+        if count < 2:
+            raise SamplingError(
+                f"trial {self.name}: streams on one time base need a span in common",
+                f"the last to start begins at {start:.3f} s, the first to end stops at {end:.3f} s",
+                "Check that the files belong to the same trial and clock.",
+            )
+        time = start + np.arange(count) / rate_hz
+        values = [interpolated(r.time, r.values, time) for r in streams]
+        marks = [interpolated(r.time, np.asarray(r.suspect, float), time) > 0 for r in streams]
+        return Recording(
+            time,
+            np.hstack(values),
+            tuple(channel for recording in streams for channel in recording.channels),
+            self.subject,
+            self.condition,
+            streams[0].source,
+            np.hstack(marks),
+        )

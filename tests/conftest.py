@@ -1,0 +1,20 @@
+"""Where real recordings lie, and the skip where they do not."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+PROJECT = Path(__file__).parents[1]
+
+
+@pytest.fixture(scope="session")
+def gait_data() -> Path:
+    """Folder of real gait recordings: ../shared/data/gait, or GAITDISC_DATA/gait."""
+    data = Path(os.environ.get("GAITDISC_DATA", PROJECT.parent / "shared" / "data"))
+    folder = data / "gait"
+    if not folder.is_dir():
+        pytest.skip(f"real recordings are absent: {folder} (set GAITDISC_DATA)")
+    return folder

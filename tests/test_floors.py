@@ -1,0 +1,64 @@
+"""Imports go downwards only; rooms on one floor do not import each other (docs/design.md)."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import gaitdisc
+
+PACKAGE = Path(gaitdisc.__file__).parent
+FLOORS = (
+    ("errors", "units", "channel"),
+    ("recording", "model"),
+    ("ingest", "signals", "simulation", "cohort", "regression", "networks", "statistics", "results"),
+    ("processing", "discrepancy", "discovery", "sensing", "response"),
+    ("batch", "report"),
+    ("cli",),
+)
+FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
+SOLE_HOME = {"torch": {"networks"}, "matplotlib": {"report"}, "pingouin": {"statistics"}, "ezc3d": {"ingest"}}
+
+
+def _modules():
+    for path in sorted(PACKAGE.rglob("*.py")):
+        parts = path.relative_to(PACKAGE).with_suffix("").parts
+        if parts != ("__init__",):
+            yield path, parts[0]
+
+
+def _imported(path: Path):
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: relative import"
+            yield node.module or ""
+
+
+def test_every_room_has_a_floor():
+    rooms = {room for _, room in _modules()} - {"__main__"}
+    assert rooms <= set(FLOOR), f"rooms without a floor: {sorted(rooms - set(FLOOR))}"
+
+
+def test_imports_go_downwards():
+    upwards = []
+    for path, room in _modules():
+        for name in _imported(path):
+            parts = name.split(".")
+            if parts[0] != "gaitdisc" or len(parts) < 2 or parts[1] == room:
+                continue
+            same_floor_of_nouns = FLOOR[room] == 0 and FLOOR[parts[1]] == 0
+            if FLOOR[parts[1]] >= FLOOR[room] and not same_floor_of_nouns:
+                upwards.append(f"{path.relative_to(PACKAGE)} imports {name}")
+    assert not upwards, "\n".join(upwards)
+
+
+def test_heavy_libraries_have_one_home():
+    strays = [
+        f"{path.relative_to(PACKAGE)} imports {name}"
+        for path, room in _modules()
+        for name in _imported(path)
+        if room not in SOLE_HOME.get(name.split(".")[0], {room})
+    ]
+    assert not strays, "\n".join(strays)
