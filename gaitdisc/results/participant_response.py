@@ -1,0 +1,125 @@
+"""The response of one participant to the device: how much of the device walk each model explains."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from gaitdisc.errors import ShapeError
+from gaitdisc.recording import PERCENT
+
+MODELS = ("nominal", "augmented", "exo")
+KINDS = ("network", "ridge", "null")
+R2_COLUMNS = ("variable", "model", "kind", "walk", "r2", "n")
+FIT_COLUMNS = ("model", "kind", "decay", "epochs", "n_training", "n_inner", "seconds")
+
+
+@dataclass(frozen=True, eq=False)
+class HeldOut:
+    """The held-out part of the device walk, measured and predicted.
+
+    Parameters
+    ----------
+    time : ndarray (sample,) [s]
+        On the trial's clock.
+    phi : ndarray (sample,) [% stride]
+        Percent stride.
+    measured : ndarray (sample, output) [unit/s2]
+        Second derivatives of the measured variables.
+    predicted : mapping of str to ndarray (sample, output) [unit/s2]
+        Keys among `MODELS`: the networks' predictions.
+    """
+
+    time: NDArray[np.float64]
+    phi: NDArray[np.float64]
+    measured: NDArray[np.float64]
+    predicted: Mapping[str, NDArray[np.float64]]
+
+
+@dataclass(frozen=True, eq=False)
+class ParticipantResponse:
+    """Nominal, Exo, Discrepancy and Augmented for one participant (Eqs. 4.2-4.5), judged on held-out walking.
+
+    Parameters
+    ----------
+    participant : str
+        Pseudonym.
+    inputs, outputs : tuple of str
+        Names of what goes in and what is predicted.
+    units : tuple of str
+        Unit of each output, a second derivative.
+    r2 : DataFrame
+        variable, model (of `MODELS`), kind (`network`, `ridge`, `null`), walk (`nominal` or `exo`: the held-out walking
+        that is predicted), r2, n (samples).
+    fits : DataFrame
+        model (`nominal`, `exo`, `discrepancy`), kind, decay, epochs, n_training, n_inner, seconds.
+    held_out : HeldOut
+        Held-out device walking with the networks' predictions.
+    residuals : mapping of str to ndarray (stride, phase, output) [unit/s2]
+        Measured minus predicted, every held-out stride of the device walk on 101 points; keys among `MODELS`.
+    held_out_s : float
+        Length of the held-out part [s].
+
+    Raises
+    ------
+    ShapeError
+        If arrays, names and units do not fit together.
+    """
+
+    participant: str
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    units: tuple[str, ...]
+    r2: pd.DataFrame
+    fits: pd.DataFrame
+    held_out: HeldOut
+    residuals: Mapping[str, NDArray[np.float64]]
+    held_out_s: float
+
+    def __post_init__(self) -> None:
+        """Check shapes once."""
+        count = len(self.outputs)
+        columns = {
+            "units": len(self.units),
+            "held_out.measured": self.held_out.measured.shape[1],
+            **{f"held_out.predicted[{k}]": v.shape[1] for k, v in self.held_out.predicted.items()},
+            **{f"residuals[{k}]": v.shape[2] for k, v in self.residuals.items()},
+        }
+        for name, found in columns.items():
+            if found != count:
+                raise ShapeError(
+                    f"a response of {count} outputs needs as many columns in {name}",
+                    f"found {found} for {self.participant}",
+                    "Give one column an output.",
+                )
+        for name, curves in self.residuals.items():
+            if curves.shape[1] != len(PERCENT):
+                raise ShapeError(
+                    f"residuals need {len(PERCENT)} points a stride",
+                    f"residuals[{name}] of {self.participant} has {curves.shape[1]}",
+                    "Normalise the strides to 0-100 %.",
+                )
+
+    def r2_of(self, variable: str, model: str, kind: str = "network", walk: str = "exo") -> float:
+        """Coefficient of determination of one variable, one model, one held-out walk; NaN where it was not computed.
+
+        Parameters
+        ----------
+        variable : str
+            Name of an output.
+        model : str
+            One of `MODELS`.
+        kind : str
+            `network`, `ridge` or `null`.
+        walk : str
+            `nominal` or `exo`.
+        """
+        wanted = {"variable": variable, "model": model, "kind": kind, "walk": walk}
+        chosen = self.r2
+        for column, value in wanted.items():
+            chosen = chosen[chosen[column] == value]
+        return float(chosen["r2"].iloc[0]) if len(chosen) else float("nan")

@@ -1,0 +1,57 @@
+"""What a result rests on: settings, seed, files by hash, versions."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
+from typing import Any
+
+import gaitdisc
+
+DISTRIBUTIONS = ("numpy", "scipy", "torch", "pandas", "scikit-learn", "ezc3d")
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Settings and circumstances of a result.
+
+    Parameters
+    ----------
+    settings : mapping
+        Every setting that could change a number, as written in the study with all defaults.
+    seed : int
+        Seed of every random act.
+    files : mapping of str to str
+        File name -> SHA-256.
+    versions : mapping of str to str
+        Distribution -> version.
+    section : str
+        Part of the dissertation that the result follows.
+    created : str
+        Date and time, ISO 8601 with zone.
+
+    Examples
+    --------
+    >>> Provenance({}, 0, {}, installed_versions(), "4.2", "2026-01-01T00:00:00+00:00").seed
+    0
+    """
+
+    settings: Mapping[str, Any]
+    seed: int
+    files: Mapping[str, str]
+    versions: Mapping[str, str]
+    section: str
+    created: str
+
+
+def installed_versions() -> dict[str, str]:
+    """Versions of this package, of Python and of the libraries that compute the numbers."""
+    versions = {"gaitdisc": gaitdisc.__version__, "python": platform.python_version()}
+    for name in DISTRIBUTIONS:
+        try:
+            versions[name] = version(name)
+        except PackageNotFoundError:
+            versions[name] = "absent"
+    return versions

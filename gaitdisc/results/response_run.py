@@ -1,0 +1,87 @@
+"""The result of a study of responses: every participant, every refusal, and what it rests on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import pandas as pd
+
+from gaitdisc.results.participant_response import ParticipantResponse
+from gaitdisc.results.provenance import Provenance
+from gaitdisc.results.walk_summary import WalkSummary
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """A participant or a trial that is not in the tables, and why.
+
+    Parameters
+    ----------
+    participant : str
+        Pseudonym.
+    condition : str
+        Condition of the trial, or empty where the participant as a whole is refused.
+    reason : str
+        The error's sentence: needed, found, remedy.
+    """
+
+    participant: str
+    condition: str
+    reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class ResponseRun:
+    """All that a report needs; nothing is fitted again to draw it.
+
+    Parameters
+    ----------
+    title : str
+        Title of the study.
+    nominal, exo : str
+        The study's words for the two conditions.
+    walks : tuple of WalkSummary
+        Every walk that could be processed.
+    responses : tuple of ParticipantResponse
+        Every participant whose models could be fitted.
+    refusals : tuple of Refusal
+        Everybody and everything left out.
+    provenance : Provenance
+        Settings, seed, files, versions.
+    """
+
+    title: str
+    nominal: str
+    exo: str
+    walks: tuple[WalkSummary, ...]
+    responses: tuple[ParticipantResponse, ...]
+    refusals: tuple[Refusal, ...]
+    provenance: Provenance
+
+    def r2_table(self) -> pd.DataFrame:
+        """R2 of every participant, variable, model, kind and walk, one row each."""
+        tables = [r.r2.assign(participant=r.participant) for r in self.responses]
+        columns = ["participant", "variable", "model", "kind", "walk", "r2", "n"]
+        return pd.concat(tables, ignore_index=True)[columns] if tables else pd.DataFrame(columns=pd.Index(columns))
+
+    def findings_table(self) -> pd.DataFrame:
+        """Every finding of every walk, one row each, the severest first."""
+        order = {"refused": 0, "warning": 1, "note": 2}
+        rows = [
+            {
+                "participant": walk.subject,
+                "condition": walk.condition,
+                "severity": finding.severity,
+                "kind": finding.kind,
+                "file": finding.file,
+                "channel": finding.channel,
+                "what": finding.what,
+                "spoils": finding.spoils,
+                "spans_s": "; ".join(f"{start:.2f}-{end:.2f}" for start, end in finding.spans),
+            }
+            for walk in self.walks
+            for finding in walk.findings
+        ]
+        rows.sort(key=lambda row: order[row["severity"]])
+        columns = ["participant", "condition", "severity", "kind", "file", "channel", "what", "spoils", "spans_s"]
+        return pd.DataFrame(rows, columns=pd.Index(columns))

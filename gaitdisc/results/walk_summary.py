@@ -1,0 +1,86 @@
+"""What is kept of one walk after processing: strides, mean curves, findings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel
+from gaitdisc.errors import ShapeError
+from gaitdisc.recording import PERCENT, Finding
+from gaitdisc.recording.arrays import read_only
+
+STRIDE_COLUMNS = ("side", "start_s", "end_s", "kept", "reason")
+
+
+@dataclass(frozen=True, eq=False)
+class WalkSummary:
+    """One walk of one person, small enough to keep.
+
+    Parameters
+    ----------
+    subject, condition : str
+        Pseudonym; the study's word for the condition.
+    duration_s, rate_hz : float
+        Length and rate of the processed recording.
+    detector : str
+        What found the initial contacts.
+    channels : tuple of Channel
+        Channels of `curves`.
+    curves : ndarray (stride, phase, channel) [channel's unit]
+        Every kept stride on 101 points.
+    strides : DataFrame
+        One row a stride, kept or dropped: side, start_s, end_s, kept, reason.
+    findings : tuple of Finding
+        Everything the reader and the quality checks saw.
+    files : mapping of str to str
+        File name -> SHA-256.
+
+    Raises
+    ------
+    ShapeError
+        If the curves do not have 101 points or one column a channel.
+    """
+
+    subject: str
+    condition: str
+    duration_s: float
+    rate_hz: float
+    detector: str
+    channels: tuple[Channel, ...]
+    curves: NDArray[np.float64]
+    strides: pd.DataFrame
+    findings: tuple[Finding, ...]
+    files: Mapping[str, str]
+
+    def __post_init__(self) -> None:
+        """Check shapes once."""
+        wanted = (len(PERCENT), len(self.channels))
+        if np.ndim(self.curves) != 3 or self.curves.shape[1:] != wanted:
+            raise ShapeError(
+                f"curves of a walk need the shape (stride, {wanted[0]}, {wanted[1]})",
+                f"found {np.shape(self.curves)} for {self.subject} {self.condition}",
+                "Normalise the strides with Strides.normalised.",
+            )
+        object.__setattr__(self, "curves", read_only(self.curves))
+
+    @property
+    def worst(self) -> str:
+        """Return the severest finding: `refused`, `warning`, `note`, or `clean` where there is none."""
+        seen = {finding.severity for finding in self.findings}
+        return next((severity for severity in ("refused", "warning", "note") if severity in seen), "clean")
+
+    def counted(self, kept: bool = True) -> dict[str, int]:
+        """Number of strides of each side.
+
+        Parameters
+        ----------
+        kept : bool
+            Count the kept strides, or the dropped ones.
+        """
+        chosen = self.strides[self.strides["kept"] == kept]
+        return {str(side): int(count) for side, count in chosen["side"].value_counts().sort_index().items()}

@@ -1,0 +1,70 @@
+"""Whole files only: written beside their place, flushed to disk, then renamed into it."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from gaitdisc.errors import GaitdiscError
+
+
+class WriteError(GaitdiscError):
+    """A file could not be written; what stood there before still stands."""
+
+
+@contextmanager
+def whole_file(path: Path) -> Iterator[Path]:
+    """Path to write to; it takes the place of `path` when the block ends well, and vanishes when it does not.
+
+    Parameters
+    ----------
+    path : Path
+        Where the file shall stand. Missing folders are made.
+
+    Yields
+    ------
+    Path
+        A file of the same ending in the same folder.
+
+    Raises
+    ------
+    WriteError
+        If the disk is full or the folder cannot be written; an older file at `path` is left as it was.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> folder = Path(tempfile.mkdtemp())
+    >>> with whole_file(folder / "r2.csv") as part:
+    ...     _ = part.write_text("r2")
+    >>> [file.name for file in folder.iterdir()]
+    ['r2.csv']
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
+        os.close(handle)
+    except OSError as error:
+        raise _refusal(path, error) from error
+    part = Path(name)
+    try:
+        yield part
+        with part.open("rb+") as file:
+            os.fsync(file.fileno())
+        part.chmod(0o644)
+        part.replace(path)
+    except OSError as error:
+        raise _refusal(path, error) from error
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def _refusal(path: Path, error: OSError) -> WriteError:
+    return WriteError(
+        f"{path.name} is to be written whole into {path.parent}",
+        f"the system says: {error.strerror or error}",
+        "Make room or choose another folder; what stood there before is unchanged.",
+    )
