@@ -251,11 +251,7 @@ def _load_unit(
         path = folder / file
         if not path.is_file() or _sha256(path) != wanted:
             raise _damaged(path, "missing" if not path.is_file() else "changed since it was saved (SHA-256 differs)")
-    tables = {
-        file: pd.read_csv(folder / file, float_precision="round_trip", keep_default_na=True)
-        for file in data["sha256"]
-        if file.endswith(".csv")
-    }
+    tables = {file: pd.read_csv(folder / file, engine="python") for file in data["sha256"] if file.endswith(".csv")}
     with np.load(folder / "arrays.npz") as stored:
         arrays = {key: stored[key] for key in stored.files}
     return data, tables, arrays

@@ -1,0 +1,14 @@
+import pytest
+
+from gaitdisc.recording import Finding
+
+
+def test_line_without_channel():
+    assert (
+        Finding("note", "second reader", "a.c3d", "read by c3d", "").line() == "note: a.c3d: second reader: read by c3d"
+    )
+
+
+def test_unknown_severity():
+    with pytest.raises(ValueError, match="severity is one of"):
+        Finding("fatal", "gap", "a", "b", "c")

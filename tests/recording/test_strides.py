@@ -1,0 +1,70 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gaitdisc.channel import Channel
+from gaitdisc.errors import ShapeError, StrideError
+from gaitdisc.recording import PERCENT, Recording, Strides
+
+KNEE = Channel("knee_angle_r", "angle", "deg", "r")
+
+
+def strides(*contacts):
+    return Strides(np.array(contacts[:-1]), np.array(contacts[1:]), "r", "force")
+
+
+def test_phi_runs_from_0_to_below_100_and_is_nan_outside():
+    phi = strides(1.0, 2.0, 4.0).phi(np.array([0.99, 1.0, 1.5, 1.9999999, 2.0, 3.0, 4.0]))
+    np.testing.assert_allclose(phi, [np.nan, 0.0, 50.0, 99.99999, 0.0, 50.0, np.nan], rtol=1e-7)
+
+
+@given(st.lists(st.floats(0.3, 2.0), min_size=1, max_size=20), st.integers(0, 2**31))
+def test_phi_is_always_in_its_interval(durations, seed):
+    contacts = np.concatenate([[0.0], np.cumsum(durations)])
+    time = np.random.default_rng(seed).uniform(-1, contacts[-1] + 1, 200)
+    phi = strides(*contacts).phi(time)
+    inside = (time >= 0) & (time < contacts[-1])
+    assert np.all(np.isfinite(phi) == inside)
+    assert np.all((phi[inside] >= 0) & (phi[inside] < 100))
+
+
+def test_a_dropped_stride_leaves_a_hole():
+    cut = Strides(np.array([0.0, 2.0]), np.array([1.0, 3.0]), "r", "force")
+    assert np.isnan(cut.phi(np.array([1.5])))[0]
+
+
+def test_no_strides_at_all():
+    none = Strides(np.empty(0), np.empty(0), "r", "force")
+    assert len(none) == 0
+    assert np.isnan(none.phi(np.arange(3.0))).all()
+
+
+def test_normalised_ramp_is_percent_itself():
+    time = np.arange(301) / 100
+    ramp = Recording(time, (time % 1.0 * 100)[:, None], (KNEE,))
+    curves = strides(0.0, 1.0).normalised(ramp)
+    assert curves.shape == (1, 101, 1)
+    np.testing.assert_allclose(curves[0, :100, 0], PERCENT[:100], atol=1e-9)
+
+
+def test_normalised_passes_gaps_and_ends_through():
+    time = np.arange(151) / 100
+    values = np.ones((151, 1))
+    values[50] = np.nan
+    curves = strides(0.0, 1.0, 2.0).normalised(Recording(time, values, (KNEE,)))
+    assert np.isnan(curves[0, 50, 0])
+    assert np.isfinite(curves[0, [48, 52], 0]).all()
+    assert np.isfinite(curves[1, :51, 0]).all()
+    assert np.isnan(curves[1, 52:, 0]).all()
+
+
+def test_between_takes_whole_strides():
+    assert strides(0.0, 1.0, 2.0, 3.0).between(0.5, 3.0).start.tolist() == [1.0, 2.0]
+
+
+def test_order_and_shape():
+    with pytest.raises(StrideError, match="ends before it starts or overlaps"):
+        Strides(np.array([0.0, 0.5]), np.array([1.0, 1.5]), "r", "force")
+    with pytest.raises(ShapeError, match="as many ends as starts"):
+        Strides(np.array([0.0, 0.5]), np.array([1.0]), "r", "force")

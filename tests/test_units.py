@@ -1,0 +1,48 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gaitdisc.errors import UnitError
+from gaitdisc.units import convert, inner_unit, known_units, parsed_unit, rate_unit
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "to", "expected"),
+    [(180.0, "deg", "rad", np.pi), (1500.0, "N mm", "N m", 1.5), (2.0, "mV", "uV", 2000.0), (25.4, "mm", "m", 0.0254)],
+)
+def test_known_conversions(value, unit, to, expected):
+    assert convert(np.array(value), unit, to) == pytest.approx(expected, rel=1e-15)
+
+
+@given(st.sampled_from(known_units()), st.floats(-1e6, 1e6))
+def test_there_and_back(unit, value):
+    there = convert(np.array(value), unit, inner_unit(unit))
+    assert convert(there, inner_unit(unit), unit) == pytest.approx(value, rel=1e-12, abs=1e-12)
+
+
+@given(st.sampled_from(known_units()))
+def test_the_inner_unit_is_its_own(unit):
+    assert inner_unit(inner_unit(unit)) == inner_unit(unit)
+    assert parsed_unit(unit) == unit
+
+
+@pytest.mark.parametrize(
+    ("text", "unit"), [("Nmm", "N mm"), ("Degrees", "deg"), ("µV", "uV"), (" mm ", "mm"), ("", None), ("ell", None)]
+)
+def test_spellings(text, unit):
+    assert parsed_unit(text) == unit
+
+
+def test_a_length_is_no_angle():
+    with pytest.raises(UnitError, match=r"'mm' is measured in 'm', 'deg' in 'deg'"):
+        convert(np.zeros(1), "mm", "deg")
+
+
+def test_unknown_unit_lists_the_known():
+    with pytest.raises(UnitError, match=r"'ell' is not in it\. Use one of: deg, rad, m,"):
+        inner_unit("ell")
+
+
+def test_rates():
+    assert [rate_unit("deg", order) for order in (0, 1, 2)] == ["deg", "deg/s", "deg/s2"]

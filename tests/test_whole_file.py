@@ -1,0 +1,38 @@
+import errno
+
+import pytest
+
+from gaitdisc.whole_file import WriteError, whole_file
+
+
+def test_an_interrupted_write_leaves_the_old_file(tmp_path):
+    path = tmp_path / "table.csv"
+    path.write_text("old")
+    with pytest.raises(KeyboardInterrupt), whole_file(path) as part:
+        part.write_text("half")
+        raise KeyboardInterrupt
+    assert path.read_text() == "old"
+    assert [file.name for file in tmp_path.iterdir()] == ["table.csv"]
+
+
+def test_a_full_disk_is_told_and_loses_nothing(tmp_path):
+    path = tmp_path / "table.csv"
+    path.write_text("old")
+    with (
+        pytest.raises(WriteError, match=r"table.csv is to be written whole.*No space left.*unchanged"),
+        whole_file(path),
+    ):
+        raise OSError(errno.ENOSPC, "No space left on device")
+    assert path.read_text() == "old"
+
+
+def test_missing_folders_are_made(tmp_path):
+    with whole_file(tmp_path / "a" / "b" / "c.txt") as part:
+        part.write_text("new")
+    assert (tmp_path / "a" / "b" / "c.txt").read_text() == "new"
+
+
+def test_a_folder_that_is_a_file_is_told(tmp_path):
+    (tmp_path / "a").write_text("")
+    with pytest.raises(WriteError, match="choose another folder"), whole_file(tmp_path / "a" / "c.txt"):
+        pass
