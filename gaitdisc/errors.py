@@ -39,6 +39,10 @@ class ReadError(GaitdiscError):
     """A file cannot be read as the recording that it claims to be."""
 
 
+class WriteError(GaitdiscError):
+    """A file cannot be written; what stood there before is untouched."""
+
+
 class SchemaError(GaitdiscError):
     """A study file, a results folder or a table does not have the agreed form."""
 

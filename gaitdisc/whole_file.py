@@ -8,11 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from gaitdisc.errors import GaitdiscError
-
-
-class WriteError(GaitdiscError):
-    """A file could not be written; what stood there before still stands."""
+from gaitdisc.errors import WriteError
 
 
 @contextmanager

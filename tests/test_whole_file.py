@@ -2,7 +2,8 @@ import errno
 
 import pytest
 
-from gaitdisc.whole_file import WriteError, whole_file
+from gaitdisc.errors import WriteError
+from gaitdisc.whole_file import whole_file
 
 
 def test_an_interrupted_write_leaves_the_old_file(tmp_path):
