@@ -1,0 +1,1 @@
+"""Many participants: progress, resume, one run at a time in a folder."""

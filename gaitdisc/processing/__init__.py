@@ -1,0 +1,1 @@
+"""From the files of a trial to a filtered, stride-cut walk."""
