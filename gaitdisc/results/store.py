@@ -16,14 +16,16 @@ import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import asdict
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
+from jsonschema import Draft202012Validator
 from numpy.typing import NDArray
 
-from gaitdisc.channel import Channel
+from gaitdisc.channel import Channel, schema_folder
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Finding
 from gaitdisc.results.participant_response import HeldOut, ParticipantResponse
@@ -266,7 +268,16 @@ def _read_json(path: Path) -> dict[str, Any]:
         raise _damaged(path, f"not readable as JSON ({error})") from error
     if not isinstance(data, dict) or data.get("format") != FORMAT:
         raise _damaged(path, f"of format {data.get('format') if isinstance(data, dict) else None!r}, not {FORMAT}")
+    wrong = next(iter(_validator(path.stem).iter_errors(data)), None)
+    if wrong is not None:
+        raise _damaged(path, f"not of the agreed form at {wrong.json_path}: {wrong.message[:200]}")
     return data
+
+
+@cache
+def _validator(part: str) -> Draft202012Validator:
+    schema = json.loads((schema_folder() / "results.schema.json").read_text(encoding="utf-8"))
+    return Draft202012Validator({"$ref": f"#/$defs/{part}", "$defs": schema["$defs"]})
 
 
 def _damaged(path: Path, what: str) -> SchemaError:

@@ -73,3 +73,11 @@ def test_a_missing_file_and_another_format(response, tmp_path):
     (tmp_path / "response.json").write_text("{")
     with pytest.raises(SchemaError, match="not readable as JSON"):
         load_response(tmp_path)
+
+
+def test_a_field_that_does_not_fit_the_schema_is_named(response, tmp_path):
+    save_response(response, tmp_path, "key")
+    data = json.loads((tmp_path / "response.json").read_text())
+    (tmp_path / "response.json").write_text(json.dumps({**data, "held_out_s": -1}))
+    with pytest.raises(SchemaError, match=r"at \$.held_out_s: -1"):
+        load_response(tmp_path)
