@@ -80,7 +80,7 @@ class DrivenWalker:
         """
         rng = np.random.default_rng([self.seed, int(self.spring_per_s2 * 1000)])
         count = round(duration_s / STEP_S)
-        time = np.arange(count) * STEP_S
+        time: NDArray[np.float64] = np.arange(float(count)) * STEP_S
         phase = self._phase(rng, count)
         angles = np.hstack([self._joints(rng, phase + shift) for shift in (0.0, 0.5)])
         every = round(1 / KINEMATICS_HZ / STEP_S)
@@ -157,7 +157,8 @@ class DrivenWalker:
 def _habit(joint: str, phase: NDArray[np.float64]) -> NDArray[np.float64]:
     mean, pairs = HABIT[joint]
     turn = 2 * np.pi * phase
-    return mean + sum(c * np.cos(k * turn) + s * np.sin(k * turn) for k, (c, s) in enumerate(pairs, start=1))
+    waves = [c * np.cos(k * turn) + s * np.sin(k * turn) for k, (c, s) in enumerate(pairs, start=1)]
+    return mean + np.sum(waves, axis=0)
 
 
 def _wandering(rng: np.random.Generator, count: int, time_s: float, spread: float) -> NDArray[np.float64]:

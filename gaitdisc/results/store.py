@@ -12,29 +12,21 @@ of the others. A damaged unit is told by its hash and computed again.
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections.abc import Mapping
 from dataclasses import asdict
-from functools import cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-import pandas as pd
-from jsonschema import Draft202012Validator
 from numpy.typing import NDArray
 
-from gaitdisc.channel import Channel, schema_folder
-from gaitdisc.errors import SchemaError
+from gaitdisc.channel import Channel
 from gaitdisc.recording import Finding
 from gaitdisc.results.participant_response import HeldOut, ParticipantResponse
 from gaitdisc.results.provenance import Provenance
 from gaitdisc.results.response_run import Refusal, ResponseRun
+from gaitdisc.results.unit_folder import FORMAT, json_text, load_unit, read_json, save_unit
 from gaitdisc.results.walk_summary import WalkSummary
 from gaitdisc.whole_file import whole_file
-
-FORMAT = 1
 
 
 def save_walk(walk: WalkSummary, folder: Path, key: str) -> None:
@@ -49,7 +41,7 @@ def save_walk(walk: WalkSummary, folder: Path, key: str) -> None:
     key : str
         What the walk was computed from: a hash of files and settings.
     """
-    _save_unit(
+    save_unit(
         folder,
         "walk.json",
         {
@@ -81,7 +73,7 @@ def load_walk(folder: Path) -> tuple[WalkSummary, str]:
     SchemaError
         If a file is missing, damaged or of another format.
     """
-    data, tables, arrays = _load_unit(folder, "walk.json")
+    data, tables, arrays = load_unit(folder, "walk.json")
     strides = tables["strides.csv"]
     strides["reason"] = strides["reason"].fillna("").astype(str)
     findings = tuple(Finding(**{**f, "spans": tuple(tuple(span) for span in f["spans"])}) for f in data["findings"])
@@ -113,7 +105,7 @@ def save_response(response: ParticipantResponse, folder: Path, key: str) -> None
         What it was computed from: a hash of files and settings.
     """
     held = response.held_out
-    _save_unit(
+    save_unit(
         folder,
         "response.json",
         {
@@ -148,7 +140,7 @@ def load_response(folder: Path) -> tuple[ParticipantResponse, str]:
     SchemaError
         If a file is missing, damaged or of another format.
     """
-    data, tables, arrays = _load_unit(folder, "response.json")
+    data, tables, arrays = load_unit(folder, "response.json")
     response = ParticipantResponse(
         data["participant"],
         tuple(data["inputs"]),
@@ -183,7 +175,7 @@ def save_run(run: ResponseRun, folder: Path) -> None:
         "provenance": asdict(run.provenance),
     }
     with whole_file(folder / "run.json") as part:
-        part.write_text(_json(data), encoding="utf-8")
+        part.write_text(json_text(data), encoding="utf-8")
 
 
 def load_run(folder: Path) -> ResponseRun:
@@ -199,7 +191,7 @@ def load_run(folder: Path) -> ResponseRun:
     SchemaError
         If the folder holds no finished run, or a unit of it is missing or damaged.
     """
-    data = _read_json(folder / "run.json")
+    data = read_json(folder / "run.json")
     return ResponseRun(
         data["title"],
         data["conditions"]["nominal"],
@@ -228,73 +220,5 @@ def unit_name(subject: str, condition: str) -> str:
     return "".join(letter if letter.isalnum() or letter in "-_" else "_" for letter in text)
 
 
-def _save_unit(
-    folder: Path,
-    name: str,
-    data: Mapping[str, Any],
-    tables: Mapping[str, pd.DataFrame],
-    arrays: Mapping[str, NDArray[np.float64]],
-) -> None:
-    for file, table in tables.items():
-        with whole_file(folder / file) as part:
-            table.to_csv(part, index=False, lineterminator="\n")
-    with whole_file(folder / "arrays.npz") as part, part.open("wb") as stream:
-        np.savez_compressed(stream, **arrays)  # type: ignore[arg-type]
-    hashes = {file: _sha256(folder / file) for file in (*tables, "arrays.npz")}
-    with whole_file(folder / name) as part:
-        part.write_text(_json({"format": FORMAT, **data, "sha256": hashes}), encoding="utf-8")
-
-
-def _load_unit(
-    folder: Path, name: str
-) -> tuple[dict[str, Any], dict[str, pd.DataFrame], dict[str, NDArray[np.float64]]]:
-    data = _read_json(folder / name)
-    for file, wanted in data["sha256"].items():
-        path = folder / file
-        if not path.is_file() or _sha256(path) != wanted:
-            raise _damaged(path, "missing" if not path.is_file() else "changed since it was saved (SHA-256 differs)")
-    tables = {file: pd.read_csv(folder / file, engine="python") for file in data["sha256"] if file.endswith(".csv")}
-    with np.load(folder / "arrays.npz") as stored:
-        arrays = {key: stored[key] for key in stored.files}
-    return data, tables, arrays
-
-
-def _read_json(path: Path) -> dict[str, Any]:
-    try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise _damaged(path, "missing") from None
-    except (OSError, ValueError) as error:
-        raise _damaged(path, f"not readable as JSON ({error})") from error
-    if not isinstance(data, dict) or data.get("format") != FORMAT:
-        raise _damaged(path, f"of format {data.get('format') if isinstance(data, dict) else None!r}, not {FORMAT}")
-    wrong = next(iter(_validator(path.stem).iter_errors(data)), None)
-    if wrong is not None:
-        raise _damaged(path, f"not of the agreed form at {wrong.json_path}: {wrong.message[:200]}")
-    return data
-
-
-@cache
-def _validator(part: str) -> Draft202012Validator:
-    schema = json.loads((schema_folder() / "results.schema.json").read_text(encoding="utf-8"))
-    return Draft202012Validator({"$ref": f"#/$defs/{part}", "$defs": schema["$defs"]})
-
-
-def _damaged(path: Path, what: str) -> SchemaError:
-    return SchemaError(
-        "results need every file of their folder as it was saved",
-        f"{path.parent.name}/{path.name} is {what}",
-        "Run `gaitdisc run` on the study again: what is whole is kept, the rest is computed anew.",
-    )
-
-
 def _keyed(arrays: Mapping[str, NDArray[np.float64]], prefix: str) -> dict[str, NDArray[np.float64]]:
     return {key.removeprefix(prefix): values for key, values in arrays.items() if key.startswith(prefix)}
-
-
-def _json(data: Mapping[str, Any]) -> str:
-    return json.dumps(data, indent=1, ensure_ascii=False, sort_keys=True) + "\n"
-
-
-def _sha256(path: Path) -> str:
-    return hashlib.sha256(path.read_bytes()).hexdigest()

@@ -1,0 +1,141 @@
+"""One unit of a run on disk: a JSON file, written last, that holds the hashes of the tables and arrays beside it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from jsonschema import Draft202012Validator
+from numpy.typing import NDArray
+
+from gaitdisc.channel import schema_folder
+from gaitdisc.errors import SchemaError
+from gaitdisc.whole_file import whole_file
+
+FORMAT = 1
+Unit = tuple[dict[str, Any], dict[str, pd.DataFrame], dict[str, NDArray[np.float64]]]
+
+
+def save_unit(
+    folder: Path,
+    name: str,
+    data: Mapping[str, Any],
+    tables: Mapping[str, pd.DataFrame],
+    arrays: Mapping[str, NDArray[np.float64]],
+) -> None:
+    """Write tables and arrays, then the JSON file with their hashes: only then does the unit stand.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of this unit alone.
+    name : str
+        Name of the JSON file, which is also its place in `results.schema.json`.
+    data : mapping
+        What is named.
+    tables : mapping of str to DataFrame
+        File name -> table, written as CSV.
+    arrays : mapping of str to ndarray
+        Written as `arrays.npz`.
+
+    Raises
+    ------
+    WriteError
+        If a file cannot be written; an older unit of that place is then told as damaged by its hashes.
+    """
+    for file, table in tables.items():
+        with whole_file(folder / file) as part:
+            table.to_csv(part, index=False, lineterminator="\n")
+    with whole_file(folder / "arrays.npz") as part, part.open("wb") as stream:
+        np.savez_compressed(stream, **arrays)  # type: ignore[arg-type]
+    hashes = {file: _sha256(folder / file) for file in (*tables, "arrays.npz")}
+    with whole_file(folder / name) as part:
+        part.write_text(json_text({"format": FORMAT, **data, "sha256": hashes}), encoding="utf-8")
+
+
+def load_unit(folder: Path, name: str) -> Unit:
+    """Read a unit, after its hashes were compared.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder that `save_unit` wrote.
+    name : str
+        Name of the JSON file.
+
+    Raises
+    ------
+    SchemaError
+        If a file is missing, damaged or of another form.
+    """
+    data = read_json(folder / name)
+    for file, wanted in data["sha256"].items():
+        path = folder / file
+        if not path.is_file() or _sha256(path) != wanted:
+            raise _damaged(path, "missing" if not path.is_file() else "changed since it was saved (SHA-256 differs)")
+    tables = {file: pd.read_csv(folder / file, engine="python") for file in data["sha256"] if file.endswith(".csv")}
+    with np.load(folder / "arrays.npz") as stored:
+        arrays = {key: stored[key] for key in stored.files}
+    return data, tables, arrays
+
+
+def read_json(path: Path) -> dict[str, Any]:
+    """Read a JSON file of a run and hold it against the schema.
+
+    Parameters
+    ----------
+    path : Path
+        `run.json`, `walk.json` or `response.json`.
+
+    Raises
+    ------
+    SchemaError
+        If the file is missing, no JSON, or not of the agreed form.
+    """
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise _damaged(path, "missing") from None
+    except (OSError, ValueError) as error:
+        raise _damaged(path, f"not readable as JSON ({error})") from error
+    if not isinstance(data, dict) or data.get("format") != FORMAT:
+        raise _damaged(path, f"of format {data.get('format') if isinstance(data, dict) else None!r}, not {FORMAT}")
+    wrong = next(iter(_validator(path.stem).iter_errors(data)), None)
+    if wrong is not None:
+        raise _damaged(path, f"not of the agreed form at {wrong.json_path}: {wrong.message[:200]}")
+    return data
+
+
+@cache
+def _validator(part: str) -> Draft202012Validator:
+    schema = json.loads((schema_folder() / "results.schema.json").read_text(encoding="utf-8"))
+    return Draft202012Validator({"$ref": f"#/$defs/{part}", "$defs": schema["$defs"]})
+
+
+def _damaged(path: Path, what: str) -> SchemaError:
+    return SchemaError(
+        "results need every file of their folder as it was saved",
+        f"{path.parent.name}/{path.name} is {what}",
+        "Run `gaitdisc run` on the study again: what is whole is kept, the rest is computed anew.",
+    )
+
+
+def json_text(data: Mapping[str, Any]) -> str:
+    """Write JSON the same way each time.
+
+    Parameters
+    ----------
+    data : mapping
+        What is named.
+    """
+    return json.dumps(data, indent=1, ensure_ascii=False, sort_keys=True) + "\n"
+
+
+def _sha256(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()
