@@ -1,0 +1,112 @@
+"""A file as it lies on the disk: its name, its bytes, its hash."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from pathlib import Path
+
+from gaitdisc.channel import nearest_word
+from gaitdisc.errors import ReadError
+from gaitdisc.recording import Source
+
+
+@dataclass(frozen=True)
+class RawFile:
+    """Bytes of one file, read once.
+
+    Parameters
+    ----------
+    name : str
+        Name without the folder; the folder may tell who the person is and goes no further.
+    content : bytes
+        The whole file.
+
+    Examples
+    --------
+    >>> RawFile("walk.mot", b"abc").source("mot").sha256[:8]
+    'ba7816bf'
+    """
+
+    name: str
+    content: bytes
+
+    @property
+    def stem(self) -> str:
+        """Name without its ending."""
+        return Path(self.name).stem
+
+    def source(self, reader: str) -> Source:
+        """Return where a recording comes from.
+
+        Parameters
+        ----------
+        reader : str
+            What reads the file.
+        """
+        return Source(self.name, hashlib.sha256(self.content).hexdigest(), reader)
+
+    def lines(self) -> list[str]:
+        """Return the lines of a text file, without their ends.
+
+        Raises
+        ------
+        ReadError
+            If the bytes are not text.
+        """
+        if b"\0" in self.content:
+            raise ReadError(
+                f"{self.name} should be a plain text file",
+                f"it holds binary data (a zero byte at offset {self.content.index(0)})",
+                "Export it again as plain text (UTF-8, not UTF-16), or give the file its true ending.",
+            )
+        try:
+            text = self.content.decode("utf-8-sig")
+        except UnicodeDecodeError:
+            text = self.content.decode("latin-1")  # old Windows exports; the numbers are plain ASCII either way
+        return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+
+
+def read_raw(path: Path | str) -> RawFile:
+    """Read a file's bytes.
+
+    Parameters
+    ----------
+    path : Path or str
+        File to read.
+
+    Raises
+    ------
+    ReadError
+        If there is no such file, it is a folder, empty, or must not be read.
+
+    Examples
+    --------
+    >>> read_raw("walk.mot")
+    Traceback (most recent call last):
+    ...
+    gaitdisc.errors.ReadError: walk.mot is to be read; there is no such file. Check the name and the folder.
+    """
+    path = Path(path)
+    needed = f"{path.name or path} is to be read"
+    try:
+        content = path.read_bytes()
+    except FileNotFoundError as error:
+        raise ReadError(needed, "there is no such file" + _near(path), "Check the name and the folder.") from error
+    except IsADirectoryError as error:
+        raise ReadError(needed, "it is a folder", "Name the file inside of it.") from error
+    except (OSError, ValueError) as error:
+        words = error.strerror if isinstance(error, OSError) else str(error)
+        raise ReadError(needed, f"the system says: {words}", "Check the name and the right to read it.") from error
+    if not content.strip():
+        raise ReadError(needed, f"it is empty ({len(content)} bytes)", "Export or copy it again.")
+    return RawFile(path.name, content)
+
+
+def _near(path: Path) -> str:
+    try:
+        names = [entry.name for entry in path.parent.iterdir()]
+    except OSError:
+        return ", nor its folder"
+    nearest = nearest_word(path.name, names)
+    return f", the nearest is {nearest!r}" if nearest else ""

@@ -1,0 +1,176 @@
+"""Read a trial, whatever files hold it: one reader for each ending, several files of one walk in one trial."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaitdisc.channel import nearest_word
+from gaitdisc.errors import ChannelError, ReadError, SamplingError
+from gaitdisc.ingest.columns import split_unit
+from gaitdisc.ingest.storage import read_storage
+from gaitdisc.ingest.table import read_table
+from gaitdisc.ingest.trc import read_trc
+from gaitdisc.recording import Finding, Recording, Source, Trial
+
+if TYPE_CHECKING:
+    from gaitdisc.ingest.c3d import C3DReader
+
+READERS = {
+    ".mot": read_storage,
+    ".sto": read_storage,
+    ".trc": read_trc,
+    ".csv": read_table,
+    ".tsv": read_table,
+    ".parquet": read_table,
+}
+ENDINGS = (".c3d", *READERS)
+
+
+def read_trial(  # the crop belongs here: a trial is what lies inside of it
+    paths: Path | str | Sequence[Path | str],
+    channels: Mapping[str, str] | None = None,
+    subject: str = "",
+    condition: str = "",
+    crop_s: tuple[float, float] | None = None,
+    reader: C3DReader | None = None,
+) -> Trial:
+    """Trial of one walk, from one file or from several that were recorded at once.
+
+    Parameters
+    ----------
+    paths : path, or sequence of paths
+        Files of the walk: its inverse kinematics, ground forces and EMG, say. Clocks are taken as they are.
+    channels : mapping of str to str, optional
+        The study's `[channels]`: label -> `name` or `name [unit]`.
+    subject, condition : str
+        Pseudonym and condition, written into the trial and its streams.
+    crop_s : (float, float), optional
+        Start and end of the part to keep, on the files' clock [s].
+    reader : C3DReader, optional
+        A running reader process to use again; without it one is started for each C3D file.
+
+    Returns
+    -------
+    Trial
+        Streams on their own time bases, events in order of time, findings of all files.
+
+    Raises
+    ------
+    ReadError
+        If a file cannot be read, or its ending is none that is known.
+    ChannelError
+        If two files give the same channel.
+    SamplingError
+        If two files give one stream on different time bases, or nothing lies inside of the crop.
+    UnitError
+        If a unit is absent, unknown or contradicted.
+
+    Examples
+    --------
+    >>> read_trial(["ik.mot", "grf.mot", "emg.sto"], subject="P01", condition="natural")  # doctest: +SKIP
+    Trial(...)
+    """
+    files = [paths] if isinstance(paths, str | Path) else list(paths)
+    if not files:
+        raise ReadError("a trial needs a file", "none is named", "Name its files in the study.")
+    parts = [_read(Path(file), channels, reader) for file in files]
+    streams: dict[str, Recording] = {}
+    findings = [finding for part in parts for finding in part.findings]
+    for part in parts:
+        for key, recording in part.streams.items():
+            if key not in streams:
+                streams[key] = recording
+            elif key == "signals" and not _one_base(streams[key], recording):
+                what = f"{', '.join(recording.names[:4])} left out: their time base differs"
+                findings.append(Finding("note", "left out", recording.source.file, what, "these signals"))
+            else:
+                streams[key] = _joined(streams[key], recording, key)
+    named = {key: replace(r, subject=subject, condition=condition) for key, r in streams.items()}
+    events = tuple(sorted((event for part in parts for event in part.events), key=lambda event: event.time))
+    findings += _unused(channels, named, parts[0].name)
+    trial = Trial(parts[0].name, named, events, tuple(findings), subject, condition)
+    return trial if crop_s is None else _cropped(trial, *crop_s)
+
+
+def _read(path: Path, channels: Mapping[str, str] | None, reader: C3DReader | None) -> Trial:
+    ending = path.suffix.lower()
+    if ending == ".c3d":
+        from gaitdisc.ingest.c3d import read_c3d
+
+        # a C3D states its units itself; those of the study's map are for files that do not
+        names = {label: split_unit(said)[0] for label, said in channels.items()} if channels else None
+        return reader.read(path, names) if reader else read_c3d(path, names)
+    if ending not in READERS:
+        nearest = nearest_word(ending, ENDINGS) if ending else None
+        raise ReadError(
+            f"{path.name} is to be read; known endings are {', '.join(ENDINGS)}",
+            f"its ending is {ending!r}" + (f", the nearest is {nearest!r}" if nearest else ""),
+            "Export it as one of these.",
+        )
+    return READERS[ending](path, channels)
+
+
+def _one_base(one: Recording, other: Recording) -> bool:
+    if len(one.time) != len(other.time):
+        return False
+    return bool(np.abs(one.time - other.time).max() <= 1e-3 / one.rate_hz)
+
+
+def _joined(one: Recording, other: Recording, key: str) -> Recording:
+    files = f"{one.source.file} and {other.source.file}"
+    if not _one_base(one, other):
+        raise SamplingError(
+            f"two files that give {key} must share one time base",
+            f"{files} have {len(one.time)} samples from {one.time[0]:.4g} s at {one.rate_hz:g} Hz and "
+            f"{len(other.time)} from {other.time[0]:.4g} s at {other.rate_hz:g} Hz",
+            f"Give one file with all {key}, or list them as two trials.",
+        )
+    doubled = sorted(set(one.names) & set(other.names))
+    if doubled:
+        raise ChannelError(
+            f"two files of one trial may give each channel of {key} once",
+            f"{files} both have {doubled[0]!r} ({len(doubled)} in all)",
+            "Leave one file out, or list them as two trials.",
+        )
+    source = Source(
+        f"{one.source.file} + {other.source.file}",
+        f"{one.source.sha256}+{other.source.sha256}",
+        f"{one.source.reader} + {other.source.reader}",
+    )
+    assert one.suspect is not None and other.suspect is not None  # set by Recording
+    return Recording(
+        one.time,
+        np.hstack([one.values, other.values]),
+        one.channels + other.channels,
+        source=source,
+        suspect=np.hstack([one.suspect, other.suspect]),
+    )
+
+
+def _unused(channels: Mapping[str, str] | None, streams: Mapping[str, Recording], name: str) -> list[Finding]:
+    there = {channel.rpartition(".")[0] or channel for r in streams.values() for channel in r.names}
+    there |= {channel for r in streams.values() for channel in r.names}
+    absent = [label for label, said in (channels or {}).items() if split_unit(said)[0] not in there]
+    if not absent:
+        return []
+    what = f"[channels] names {', '.join(map(repr, absent[:4]))}, which no file of this trial has"
+    return [Finding("note", "not found", name, what, "")]
+
+
+def _cropped(trial: Trial, start_s: float, end_s: float) -> Trial:
+    streams = {key: recording.between(start_s, end_s) for key, recording in trial.streams.items()}
+    for key, recording in streams.items():
+        if len(recording.time) < 2:
+            whole = trial.streams[key]
+            raise SamplingError(
+                f"{trial.name}: the crop from {start_s:g} to {end_s:g} s must lie inside of the {key}",
+                f"they last from {whole.time[0]:.4g} to {whole.time[-1]:.4g} s on the file's clock",
+                "Correct crop_s in the study.",
+            )
+    events = tuple(event for event in trial.events if start_s <= event.time < end_s)
+    return replace(trial, streams=streams, events=events)

@@ -1,0 +1,141 @@
+"""Columns of one file, sorted into the streams of a trial; a missing force is refused, other gaps are told."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel
+from gaitdisc.errors import ChannelError, ReadError
+from gaitdisc.recording import Finding, Recording, Source, Trial
+
+_STREAM = {
+    "angle": "kinematics",
+    "translation": "kinematics",
+    "marker": "markers",
+    "emg": "emg",
+    "force": "forces",
+    "vertical_force": "forces",
+    "pressure_centre": "forces",
+    "moment": "moments",
+    "power": "moments",
+    "signal": "signals",
+}
+
+
+def stream_of(channel: Channel) -> str:
+    """Stream that a channel belongs to.
+
+    Parameters
+    ----------
+    channel : Channel
+        A free moment of the ground goes with the ground forces, the generalised force of a pelvis translation with the
+        joint moments.
+
+    Examples
+    --------
+    >>> stream_of(Channel("ground_torque_r_y", "moment", "N m", "r"))
+    'forces'
+    >>> stream_of(Channel("pelvis_tx_force", "force", "N"))
+    'moments'
+    """
+    if channel.quantity == "moment" and "ground" in channel.name:
+        return "forces"
+    if channel.quantity == "force" and channel.name.endswith("_force"):
+        return "moments"
+    return _STREAM[channel.quantity]
+
+
+def sorted_trial(
+    source: Source,
+    time: NDArray[np.float64],
+    values: NDArray[np.float64],
+    channels: Sequence[Channel],
+    findings: Sequence[Finding] = (),
+) -> Trial:
+    """Trial of one file whose columns share one time base.
+
+    Parameters
+    ----------
+    source : Source
+        The file.
+    time : ndarray (time,) [s]
+        Even.
+    values : ndarray (time, channel) [each channel's unit]
+        Converted already.
+    channels : sequence of Channel
+        One a column.
+    findings : sequence of Finding
+        What was seen while reading.
+
+    Raises
+    ------
+    ReadError
+        If a ground force is missing somewhere: contacts and joint moments would be wrong without a word.
+    ChannelError
+        If two columns mean one channel.
+
+    Examples
+    --------
+    >>> knee = Channel("knee_angle_r", "angle", "deg", "r")
+    >>> list(sorted_trial(Source("a.mot"), np.arange(3.0), np.zeros((3, 1)), [knee]).streams)
+    ['kinematics']
+    """
+    _check_names(channels, source.file)
+    gaps = _gaps(time, values, channels, source.file)
+    columns: dict[str, list[int]] = {}
+    for i, channel in enumerate(channels):
+        columns.setdefault(stream_of(channel), []).append(i)
+    streams = {
+        key: Recording(time, values[:, chosen], tuple(channels[i] for i in chosen), source=source)
+        for key, chosen in columns.items()
+    }
+    name = source.file.rpartition(".")[0] or source.file
+    return Trial(name, streams, findings=(*findings, *gaps))
+
+
+def _check_names(channels: Sequence[Channel], file: str) -> None:
+    names = [channel.name for channel in channels]
+    doubled = next((name for name in names if names.count(name) > 1), None)
+    if doubled:
+        first, second = [i + 2 for i, name in enumerate(names) if name == doubled][:2]
+        raise ChannelError(
+            "each channel needs a column of its own",
+            f"{file} has {doubled!r} in columns {first} and {second}",
+            "Remove one of them, or tell them apart in the study's [channels].",
+        )
+
+
+def _gaps(
+    time: NDArray[np.float64], values: NDArray[np.float64], channels: Sequence[Channel], file: str
+) -> list[Finding]:
+    """One finding a channel, and one a marker for its three coordinates."""
+    missing: dict[str, tuple[Channel, NDArray[np.bool_]]] = {}
+    for i, channel in enumerate(channels):
+        mask = np.isnan(values[:, i])
+        if mask.any():
+            name = channel.name[:-2] if channel.quantity == "marker" else channel.name
+            missing[name] = (channel, mask | missing[name][1] if name in missing else mask)
+    return [_gap(time, mask, (name, channel.quantity), file) for name, (channel, mask) in missing.items()]
+
+
+def _gap(time: NDArray[np.float64], missing: NDArray[np.bool_], what: tuple[str, str], file: str) -> Finding:
+    name, quantity = what
+    count, first = int(missing.sum()), int(np.argmax(missing))
+    if quantity in ("force", "vertical_force"):
+        raise ReadError(
+            f"{file}: {name} needs a number in every sample",
+            f"{count} of {len(time)} are missing, the first in sample {first + 1} at t = {time[first]:.6g} s",
+            "Export the force again without gaps (0 where the foot is in the air).",
+        )
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], missing.astype(np.int8), [0]))))
+    starts, ends = edges[::2], edges[1::2]
+    spans = tuple((float(time[a]), float(time[b - 1])) for a, b in zip(starts, ends, strict=True))
+    longest = int((ends - starts).max())
+    seen = f"{count} of {len(time)} samples missing, the longest gap {longest} samples"
+    if quantity == "pressure_centre":
+        return Finding("note", "gap", file, seen, "", name, spans)
+    spoils = "the whole channel" if count == len(time) else "what is computed across the gaps"
+    return Finding("warning", "gap", file, seen, spoils, name, spans)

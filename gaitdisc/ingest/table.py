@@ -1,0 +1,232 @@
+"""Plain tables (`.csv`, `.tsv`, `.parquet`): a column `time [s]`, then one column a channel, `name [unit]`."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.channel import vocabulary
+from gaitdisc.errors import ReadError, UnitError
+from gaitdisc.ingest.angle_unit import judged_unit
+from gaitdisc.ingest.cells import Form, parsed_cells
+from gaitdisc.ingest.clock import even_time, printed_digit
+from gaitdisc.ingest.columns import (
+    Column,
+    check_written_names,
+    column_in_unit,
+    mapped_label,
+    named_channel,
+    split_unit,
+)
+from gaitdisc.ingest.raw_file import RawFile, read_raw
+from gaitdisc.ingest.streams import sorted_trial
+from gaitdisc.ingest.whole_file import write_whole
+from gaitdisc.recording import Finding, Recording, Trial
+from gaitdisc.units import convert
+
+_TIME_UNIT = {"time": "s", "time_s": "s", "time_ms": "ms"}
+
+
+def read_table(path: Path | str, channels: Mapping[str, str] | None = None) -> Trial:
+    """Trial of one plain table.
+
+    Commas, semicolons or tabs separate; with the latter two a comma may be the decimal sign. Lines at the top that
+    begin with `#` are passed over. Names of the vocabulary have their unit by definition; every other name
+    must state one.
+
+    Parameters
+    ----------
+    path : Path or str
+        `.csv`, `.tsv` or `.parquet` file.
+    channels : mapping of str to str, optional
+        The study's `[channels]`: label -> `name` or `name [unit]`.
+
+    Returns
+    -------
+    Trial
+        Streams as far as the file has them.
+
+    Raises
+    ------
+    ReadError
+        If the file is absent, damaged, has no time, or holds a cell that is no number, or a force that is missing.
+    UnitError
+        If a column has no unit, an unknown one, or one that its numbers contradict.
+    SamplingError
+        If time does not advance evenly.
+    ChannelError
+        If two columns mean one channel.
+
+    Examples
+    --------
+    >>> read_table("walk.csv").streams["kinematics"]["knee_angle_r"]  # doctest: +SKIP
+    array([...])
+    """
+    raw = read_raw(path)
+    of_parquet = raw.name.lower().endswith(".parquet")
+    labels, values, digit, lines = _parquet(raw) if of_parquet else _text(raw)
+    at = next(i for i, label in enumerate(labels) if _time_unit(label))
+    unit = _time_unit(labels[at]) or "s"
+    clock, digit = np.asarray(convert(values[:, at], unit, "s"), float), digit * (1e-3 if unit == "ms" else 1.0)
+    time = even_time(clock, digit, raw.name, lines)
+    others = [i for i in range(len(labels)) if i != at]
+    columns = [_column(labels[i], raw.name, channels) for i in others]
+    findings = _check_angles(columns, time, values[:, others], raw.name)
+    inside = np.column_stack([column.converted(values[:, i]) for i, column in zip(others, columns, strict=True)])
+    reader = "parquet" if of_parquet else "csv"
+    return sorted_trial(raw.source(reader), time, inside, [column.channel for column in columns], findings)
+
+
+def write_table(recording: Recording, path: Path | str) -> Path:
+    """Write a recording as a plain table, whole or not at all; every column states its unit.
+
+    Parameters
+    ----------
+    recording : Recording
+        Any channels; marks of suspect samples, subject and condition are not written.
+    path : Path or str
+        `.csv` or `.parquet` file to write.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    ChannelError
+        If a name holds a tab, a line break or a blank at its ends.
+    WriteError
+        If the file cannot be written.
+
+    Examples
+    --------
+    >>> write_table(recording, "walk.csv")  # doctest: +SKIP
+    PosixPath('walk.csv')
+    """
+    path = Path(path)
+    check_written_names(recording.names, path.name)
+    labels = ["time [s]", *(f"{channel.name} [{channel.unit}]" for channel in recording.channels)]
+    table = np.column_stack([recording.time, recording.values])
+    if path.suffix.lower() == ".parquet":
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+
+        buffer = io.BytesIO()
+        pq.write_table(pa.table({label: table[:, i] for i, label in enumerate(labels)}), buffer)
+        return write_whole(path, buffer.getvalue())
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(labels)
+    writer.writerows([["" if math.isnan(cell) else repr(cell) for cell in row] for row in table.tolist()])
+    return write_whole(path, text.getvalue())
+
+
+def _time_unit(label: str) -> str | None:
+    name, unit = split_unit(label)
+    if name.lower() not in _TIME_UNIT:
+        return None
+    return _TIME_UNIT[name.lower()] if unit is None else unit if unit in ("s", "ms") else None
+
+
+def _text(raw: RawFile) -> tuple[list[str], NDArray[np.float64], float, NDArray[np.intp] | None]:
+    lines = raw.lines()
+    top = next(i for i, line in enumerate(lines) if line.strip() and not line.startswith("#"))
+    separator, labels = _labels(lines[top], raw.name, top + 1)
+    comma = separator != "," and any("," in line for line in lines[top + 1 : top + 50])
+    cells = parsed_cells(lines[top + 1 :], labels, top + 2, Form(raw.name, separator, "," if comma else "."))
+    at = next(i for i, label in enumerate(labels) if _time_unit(label))
+    digit = printed_digit(lines[number - 1].split(separator)[at] for number in cells.lines.tolist())
+    return labels, cells.values, digit, cells.lines
+
+
+def _labels(line: str, file: str, number: int) -> tuple[str, list[str]]:
+    for separator in ",;\t":
+        labels = [label.strip() for label in next(csv.reader([line], delimiter=separator))]
+        if any(map(_time_unit, labels)):
+            _check_labels(labels, f"{file}, line {number}")
+            return separator, labels
+    raise _no_time(file, f"line {number} is {line[:60]!r}")
+
+
+def _check_labels(labels: Sequence[str], where: str) -> None:
+    if "" in labels:
+        raise ReadError(
+            f"{where}: every column needs a name", f"column {labels.index('') + 1} has none", "Name it in the header."
+        )
+    if len(labels) < 2:
+        raise ReadError(f"{where}: a table needs channels beside time", "there is time alone", "Export the channels.")
+
+
+def _no_time(file: str, found: str) -> ReadError:
+    return ReadError(
+        f"{file} needs a column 'time [s]' (or time, time_s, time [ms])", found, "Name the column of times so."
+    )
+
+
+def _parquet(raw: RawFile) -> tuple[list[str], NDArray[np.float64], float, NDArray[np.intp] | None]:
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    try:
+        table = pq.read_table(io.BytesIO(raw.content))
+        names = [str(name) for name in table.column_names]
+        columns = [(name, table.column(i)) for i, name in enumerate(names)]
+        words = next(
+            (name for name, c in columns if not (pa.types.is_integer(c.type) or pa.types.is_floating(c.type))), None
+        )
+        arrays = [] if words else [np.asarray(c.to_numpy(zero_copy_only=False), float) for _, c in columns]
+    except (pa.ArrowException, OSError, ValueError, TypeError, KeyError) as error:
+        raise ReadError(
+            f"{raw.name} should be a Parquet table",
+            f"it cannot be read as one: {str(error).splitlines()[0][:120] if str(error) else type(error).__name__}",
+            "Write it again, or give it its true ending.",
+        ) from error
+    if words is not None:
+        raise ReadError(f"{raw.name}: columns need numbers", f"column {words!r} holds others", "Leave that column out.")
+    if not any(map(_time_unit, names)):
+        raise _no_time(raw.name, f"its columns are {', '.join(names[:6])}")
+    _check_labels(names, raw.name)
+    values = np.column_stack(arrays)
+    if not len(values) or np.isinf(values).any():
+        where = (
+            f"column {names[int(np.argmax(np.isinf(values).any(axis=0)))]!r} is infinite" if len(values) else "no row"
+        )
+        raise ReadError(f"{raw.name} needs rows of finite numbers", f"found {where}", "Write it again.")
+    return names, values, 0.0, None
+
+
+def _column(label: str, file: str, channels: Mapping[str, str] | None) -> Column:
+    plain, unit = split_unit(label)
+    said = mapped_label(label, channels) or mapped_label(plain, channels)
+    alias = None if said else vocabulary().named(plain)
+    name, said_unit = split_unit(said) if said else (plain, None)
+    channel, unit = named_channel(name), said_unit or unit
+    own = any(name == known.name for known in vocabulary().channels)
+    if unit is None and not own:
+        seems = f"; it seems to be {alias.name}" if alias else ""
+        raise UnitError(
+            f"{file}: column {label!r} needs a unit",
+            f"neither its header nor the study states one{seems}",
+            f'Write \'{plain} [unit]\' in the header, or "{plain}" = "{alias.name if alias else "name"} [unit]" '
+            "in the study's [channels].",
+        )
+    return column_in_unit(label, alias or channel, unit or channel.unit, file)
+
+
+def _check_angles(
+    columns: Sequence[Column], time: NDArray[np.float64], values: NDArray[np.float64], file: str
+) -> list[Finding]:
+    findings = []
+    for unit in ("deg", "rad"):
+        which = [i for i, c in enumerate(columns) if c.channel.quantity == "angle" and c.unit == unit]
+        if which:
+            names = [columns[i].channel.name for i in which]
+            findings.append(judged_unit(time, values[:, which], names, unit, file)[1])
+    return [finding for finding in findings if finding]

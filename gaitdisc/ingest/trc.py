@@ -1,0 +1,210 @@
+"""Marker files of OpenSim (`.trc`): positions in m, blank cells and exact zeros are gaps."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel
+from gaitdisc.errors import ReadError, SamplingError, UnitError
+from gaitdisc.ingest.cells import Cells, Form, parsed_cells
+from gaitdisc.ingest.clock import even_time, printed_digit
+from gaitdisc.ingest.columns import mapped_label, split_unit
+from gaitdisc.ingest.raw_file import read_raw
+from gaitdisc.ingest.streams import sorted_trial
+from gaitdisc.recording import Finding, Trial
+from gaitdisc.units import convert, inner_unit, parsed_unit
+
+_KEYS = ("DataRate", "NumFrames", "NumMarkers", "Units")
+RATE_TOLERANCE = 2e-3  # between the header's rate and the time column; 59.94 Hz may be called 60
+
+
+@dataclass(frozen=True)
+class TrcHeader:
+    """What stands above the positions.
+
+    Parameters
+    ----------
+    rate_hz : float
+        Frames a second.
+    frames, markers : int
+        Counts that the header claims.
+    unit : str
+        Unit of the positions.
+    labels : tuple of str
+        Names of the markers as written.
+    body_line : int
+        Line in which the frames start, counted from 1.
+    """
+
+    rate_hz: float
+    frames: int
+    markers: int
+    unit: str
+    labels: tuple[str, ...]
+    body_line: int
+
+
+def read_trc(path: Path | str, channels: Mapping[str, str] | None = None) -> Trial:
+    """Trial of one marker file.
+
+    Labels are taken in their order, whatever column they stand over, since exporters shift that line by one tab. What
+    stands before a colon in a label is the subject's name and is dropped. A marker at exactly (0, 0, 0) was not seen.
+
+    Parameters
+    ----------
+    path : Path or str
+        `.trc` file.
+    channels : mapping of str to str, optional
+        The study's `[channels]`: label -> name of the marker.
+
+    Returns
+    -------
+    Trial
+        One stream, `markers`: `<marker>.x`, `.y`, `.z` [m], NaN in gaps.
+
+    Raises
+    ------
+    ReadError
+        If the file is absent, no marker file, cut, or holds a cell that is no number.
+    UnitError
+        If the unit of the header is no length.
+    SamplingError
+        If time does not advance evenly, or not at the rate of the header.
+    ChannelError
+        If two markers have one name.
+
+    Examples
+    --------
+    >>> read_trc("markers.trc").streams["markers"]["RHEE.y"]  # doctest: +SKIP
+    array([...])
+    """
+    raw = read_raw(path)
+    lines = raw.lines()
+    header = parsed_trc_header(lines, raw.name)
+    coordinates = [f"{label}.{axis}" for label in header.labels for axis in "xyz"]
+    cells = parsed_cells(
+        lines[header.body_line - 1 :], ["Frame#", "Time", *coordinates], header.body_line, Form(raw.name)
+    )
+    findings = _check_counts(header, cells, raw.name)
+    digit = printed_digit(lines[number - 1].split("\t")[1] for number in cells.lines.tolist())
+    time = even_time(cells.values[:, 1], digit, raw.name, cells.lines)
+    _check_rate(header, time, digit, raw.name)
+    positions = np.asarray(convert(cells.values[:, 2:], header.unit, inner_unit(header.unit)), float)
+    names, dropped = _marker_names(header.labels, channels)
+    if dropped:
+        findings.append(Finding("note", "identifier", raw.name, "the part of labels before ':' was dropped", ""))
+    made = [Channel(f"{name}.{axis}", "marker", "m") for name in names for axis in "xyz"]
+    return sorted_trial(raw.source("trc"), time, _without_zeros(positions), made, findings)
+
+
+def parsed_trc_header(lines: Sequence[str], file: str) -> TrcHeader:
+    r"""Header of a marker file.
+
+    Parameters
+    ----------
+    lines : sequence of str
+        Lines of the whole file.
+    file : str
+        Its name, for messages.
+
+    Raises
+    ------
+    ReadError
+        If it is no header of a marker file, or a count or rate in it is no number.
+    UnitError
+        If the unit is no length.
+
+    Examples
+    --------
+    >>> keys = "DataRate\tNumFrames\tNumMarkers\tUnits"
+    >>> parsed_trc_header(["PathFileType\t4", keys, "100\t1\t1\tmm", "Frame#\tTime\tRHEE"], "a.trc").labels
+    ('RHEE',)
+    """
+    if len(lines) < 4 or not lines[0].lstrip().startswith("PathFileType"):
+        raise ReadError(
+            f"{file} should be a marker file, whose first line begins with 'PathFileType'",
+            f"it begins with {lines[0][:40]!r}",
+            "Export it again as TRC, or give it its true ending.",
+        )
+    fields = dict(zip(lines[1].split(), lines[2].split(), strict=False))
+    absent = [key for key in _KEYS if key not in fields]
+    if absent:
+        raise ReadError(
+            f"{file} needs {', '.join(_KEYS)} in line 2 with their values in line 3",
+            f"{absent[0]} is absent or has no value",
+            "Export the file again.",
+        )
+    rate, frames, markers = (_number(fields, key, file) for key in _KEYS[:3])
+    unit = parsed_unit(fields["Units"])
+    if unit is None or inner_unit(unit) != "m":
+        raise UnitError(
+            f"{file}: markers need a unit of length in line 3",
+            f"found Units {fields['Units']!r}",
+            "Write m, cm or mm there.",
+        )
+    labels = tuple(label.strip() for label in lines[3].split("\t")[2:] if label.strip())
+    if not labels:
+        raise ReadError(f"{file} needs the names of its markers in line 4", "there are none", "Export it again.")
+    body = 4
+    while body < len(lines) and (not lines[body].strip() or re.match(r"\s*X\d", lines[body], re.IGNORECASE)):
+        body += 1
+    return TrcHeader(rate, int(frames), int(markers), unit, labels, body + 1)
+
+
+def _number(fields: Mapping[str, str], key: str, file: str) -> float:
+    try:
+        number = float(fields[key])
+    except ValueError:
+        number = 0.0
+    if not 0 < number < 1e9:
+        raise ReadError(f"{file}: {key} in line 3 needs a number above 0", f"found {fields[key]!r}", "Export it again.")
+    return number
+
+
+def _check_counts(header: TrcHeader, cells: Cells, file: str) -> list[Finding]:
+    rows = len(cells.values)
+    if rows < header.frames:
+        raise ReadError(
+            f"{file} should have {header.frames} frames, as its header says",
+            f"it ends after {rows}, at line {cells.lines[-1]}",
+            "The file was cut: copy or export it again.",
+        )
+    findings = []
+    for kind, claimed, there in (("frames", header.frames, rows), ("markers", header.markers, len(header.labels))):
+        if claimed != there:
+            what = f"the header claims {claimed} {kind}, {there} are there"
+            findings.append(Finding("warning", "wrong count", file, what, "nothing here; other programs may refuse it"))
+    return findings
+
+
+def _check_rate(header: TrcHeader, time: NDArray[np.float64], digit_s: float, file: str) -> None:
+    step = (time[-1] - time[0]) / (len(time) - 1)
+    allowed = RATE_TOLERANCE / header.rate_hz + digit_s / (len(time) - 1)
+    if abs(step - 1 / header.rate_hz) > allowed:
+        raise SamplingError(
+            f"{file}: the header's DataRate and the time column must agree",
+            f"DataRate says {header.rate_hz:g} Hz, the times step by {step:.6g} s, which is {1 / step:.6g} Hz",
+            "Find out which is right and export the file again.",
+        )
+
+
+def _marker_names(labels: Sequence[str], channels: Mapping[str, str] | None) -> tuple[list[str], bool]:
+    plain = [label.rpartition(":")[2].strip() or label for label in labels]
+    said = [
+        mapped_label(label, channels) or mapped_label(short, channels)
+        for label, short in zip(labels, plain, strict=True)
+    ]
+    names = [split_unit(name)[0] if name else short for name, short in zip(said, plain, strict=True)]
+    return names, plain != list(labels)
+
+
+def _without_zeros(positions: NDArray[np.float64]) -> NDArray[np.float64]:
+    triples = positions.reshape(len(positions), -1, 3).copy()
+    triples[(triples == 0).all(axis=2)] = np.nan
+    return triples.reshape(len(positions), -1)
