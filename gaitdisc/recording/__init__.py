@@ -3,6 +3,7 @@
 from gaitdisc.recording.finding import Finding
 from gaitdisc.recording.recording import Recording, Source
 from gaitdisc.recording.samples import Samples
+from gaitdisc.recording.scale import Scale, scale_of
 from gaitdisc.recording.strides import PERCENT, DroppedStride, Strides
 from gaitdisc.recording.trajectory import Trajectory
 from gaitdisc.recording.trial import Event, Trial
@@ -14,8 +15,10 @@ __all__ = [
     "Finding",
     "Recording",
     "Samples",
+    "Scale",
     "Source",
     "Strides",
     "Trajectory",
     "Trial",
+    "scale_of",
 ]

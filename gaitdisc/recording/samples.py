@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.errors import ShapeError
+from gaitdisc.errors import ShapeError, TrainingError
 from gaitdisc.recording.arrays import read_only
+from gaitdisc.recording.scale import scale_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,17 +98,62 @@ class Samples:
         """
         return replace(self, y=y)
 
-    def last_block(self, share: float) -> tuple[Samples, Samples]:
+    def last_block(self, share: float, seam_s: float = 0.0) -> tuple[Samples, Samples]:
         """Split off the last part, contiguous in time.
 
         Parameters
         ----------
         share : float
             Share of the samples in the last part, between 0 and 1.
+        seam_s : float
+            Length left away before the last part [s], over which zero-lag filters carry what they saw ahead.
 
         Returns
         -------
         before, last : Samples
         """
         cut = len(self) - round(share * len(self))
-        return self.rows(slice(0, cut)), self.rows(slice(cut, None))
+        before, last = self.rows(slice(0, cut)), self.rows(slice(cut, None))
+        if seam_s > 0 and len(last):
+            before = before.rows(before.time < last.time[0] - seam_s)
+        return before, last
+
+    def trainable(self, least: int) -> Samples:
+        """Return the same samples, or refuse to fit anything to them.
+
+        Parameters
+        ----------
+        least : int
+            Samples that the fit needs.
+
+        Raises
+        ------
+        TrainingError
+            If there are too few samples, if a number is missing or infinite, or if an output does not vary.
+        """
+        who = self.subject or "the recording"
+        if len(self) < least:
+            raise TrainingError(
+                f"a fit of {len(self.inputs)} inputs to {len(self.outputs)} outputs needs {least} samples",
+                f"{who} has {len(self)} usable samples",
+                "Record longer, or use fewer channels; the findings say which samples were left away.",
+            )
+        for names, values in ((self.inputs, self.x), (self.outputs, self.y)):
+            bad = ~np.isfinite(values)
+            if bad.any():
+                row, column = (int(k) for k in np.argwhere(bad)[0])
+                raise TrainingError(
+                    "a fit needs finite numbers",
+                    f"{who}: {names[column]} has {int(bad[:, column].sum())} missing or infinite samples of "
+                    f"{len(self)}, the first at {self.time[row]:.3f} s",
+                    "Mark them as not usable, so that they are left away.",
+                )
+        still = scale_of(self.y).constant
+        if still.any():
+            column = int(np.argmax(still))
+            raise TrainingError(
+                "a fit needs outputs that vary",
+                f"{who}: {self.outputs[column]} is {self.y[0, column]:.6g} in all {len(self)} samples",
+                "Leave this output away, or check whether its sensor was connected.",
+            )
+        return self

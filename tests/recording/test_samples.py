@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gaitdisc.errors import ShapeError
+from gaitdisc.errors import ShapeError, TrainingError
 from gaitdisc.recording import Samples
 
 
@@ -28,3 +28,25 @@ def test_rows_and_other_outputs():
 def test_shapes():
     with pytest.raises(ShapeError, match=r"samples need y of shape \(10, 1\); found \(9, 1\)"):
         samples().with_outputs(np.zeros((9, 1)))
+
+
+def test_the_seam_before_the_last_block_is_left_away():
+    before, last = samples(100).last_block(0.2, seam_s=0.1)
+    assert (before.time[-1], last.time[0]) == (0.69, 0.8)
+
+
+def test_too_few_samples_to_fit():
+    with pytest.raises(TrainingError, match=r"2 inputs to 1 outputs needs 50 samples; the recording has 10 usable"):
+        samples().trainable(50)
+
+
+def test_missing_numbers_are_not_fitted():
+    hole = samples().with_outputs(np.where(np.arange(10) == 3, np.nan, np.arange(10.0))[:, None])
+    with pytest.raises(TrainingError, match=r"c has 1 missing or infinite samples of 10, the first at 0\.030 s"):
+        hole.trainable(5)
+
+
+def test_constant_outputs_are_not_fitted():
+    with pytest.raises(TrainingError, match=r"c is 2\.5 in all 10 samples"):
+        samples().with_outputs(np.full((10, 1), 2.5)).trainable(5)
+    assert len(samples().trainable(10)) == 10

@@ -1,0 +1,79 @@
+"""The scale of a set of columns: what a fit subtracts and divides by."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.recording.arrays import read_only
+
+RELATIVE_FLOOR = 1e-9  # a column that varies by less than this of its size is constant
+ABSOLUTE_FLOOR = 1e-12  # deg, m, V and their rates: rounding, never a signal
+
+
+@dataclass(frozen=True, eq=False)
+class Scale:
+    """Mean and standard deviation of every column, as the training part has them.
+
+    Parameters
+    ----------
+    mean : ndarray (column,) [each column's unit]
+        What is subtracted.
+    sd : ndarray (column,) [each column's unit]
+        What is divided by; infinite for a constant column, which thereby becomes 0 wherever it is used, also where it
+        is not constant any more.
+    """
+
+    mean: NDArray[np.float64]
+    sd: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        """Freeze the numbers."""
+        object.__setattr__(self, "mean", read_only(self.mean))
+        object.__setattr__(self, "sd", read_only(self.sd))
+
+    @property
+    def constant(self) -> NDArray[np.bool_]:
+        """True for each column that did not vary, (column,)."""
+        return ~np.isfinite(self.sd)
+
+    def scaled(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Without unit: zero mean and unit standard deviation where the scale comes from.
+
+        Parameters
+        ----------
+        values : ndarray (sample, column) [each column's unit]
+            In the order of the scale.
+        """
+        return (values - self.mean) / self.sd
+
+    def unscaled(self, scaled: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Back in the columns' units; a constant column gets its constant.
+
+        Parameters
+        ----------
+        scaled : ndarray (sample, column)
+            Without unit.
+        """
+        return scaled * np.where(self.constant, 0.0, self.sd) + self.mean
+
+
+def scale_of(values: NDArray[np.float64]) -> Scale:
+    """Scale of the columns of a training part.
+
+    Parameters
+    ----------
+    values : ndarray (sample, column) [each column's unit]
+        Finite.
+
+    Examples
+    --------
+    >>> scale = scale_of(np.array([[0.0, 7.0], [2.0, 7.0]]))
+    >>> scale.mean, scale.sd, scale.constant
+    (array([1., 7.]), array([ 1., inf]), array([False,  True]))
+    """
+    sd = values.std(axis=0)
+    still = sd <= ABSOLUTE_FLOOR + RELATIVE_FLOOR * np.abs(values).max(axis=0, initial=0.0)
+    return Scale(values.mean(axis=0), np.where(still, np.inf, sd))
