@@ -31,7 +31,7 @@ def test_shapes():
 
 
 def test_the_seam_before_the_last_block_is_left_away():
-    before, last = samples(100).last_block(0.2, seam_s=0.1)
+    before, last = samples(100).last_block(0.2, seam_s=0.105)
     assert (before.time[-1], last.time[0]) == (0.69, 0.8)
 
 

@@ -1,0 +1,86 @@
+"""The last, linear layer of a network, solved instead of descended."""
+
+from __future__ import annotations
+
+from typing import Protocol, cast
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor, nn
+
+PENALTIES = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1)
+
+
+class WithReadout(Protocol):
+    """A torch module whose last layer is linear and called `readout`."""
+
+    readout: nn.Linear
+
+    def features(self, x: Tensor) -> Tensor:
+        """Return what the readout reads, (sample, node)."""
+        ...
+
+
+def solve_readout(network: nn.Module, part: tuple[Tensor, Tensor], penalty: float) -> None:
+    """Replace the last layer by its ridge least squares solution for the features as they are.
+
+    Minimises sum (y - W h - b)^2 / samples + penalty sum W^2, in double precision; b is not penalised.
+
+    Parameters
+    ----------
+    network : torch module
+        With `features` and a linear layer `readout`; its readout is changed in place.
+    part : pair of Tensor ((sample, input), (sample, output))
+        Scaled samples.
+    penalty : float
+        Per sample; features are of the size of 1.
+    """
+    parts = cast(WithReadout, network)
+    network.eval()
+    with torch.no_grad():
+        weights, offset = _ridge(_features(network, part[0]), part[1].cpu().double().numpy(), penalty)
+        parts.readout.weight.copy_(torch.from_numpy(weights))
+        parts.readout.bias.copy_(torch.from_numpy(offset))
+
+
+def choose_penalty(
+    network: nn.Module, part: tuple[Tensor, Tensor], check: tuple[Tensor, Tensor]
+) -> tuple[float, float]:
+    """Penalty of the readout that does best on a check part, and the mean squared error it reaches there.
+
+    Parameters
+    ----------
+    network : torch module
+        With `features` and a linear layer `readout`; not changed.
+    part, check : pair of Tensor ((sample, input), (sample, output))
+        Scaled samples to solve on, and to judge by.
+
+    Returns
+    -------
+    penalty, loss : float
+        One of `PENALTIES`; mean squared error of the scaled outputs.
+    """
+    network.eval()
+    h, h_check = _features(network, part[0]), _features(network, check[0])
+    y, y_check = (t.cpu().double().numpy() for t in (part[1], check[1]))
+    losses = []
+    for penalty in PENALTIES:
+        weights, offset = _ridge(h, y, penalty)
+        losses.append(float(np.mean((y_check - h_check @ weights.T - offset) ** 2)))
+    best = int(np.argmin(losses))
+    return PENALTIES[best], losses[best]
+
+
+def _features(network: nn.Module, x: Tensor) -> NDArray[np.float64]:
+    with torch.no_grad():
+        return cast(WithReadout, network).features(x).cpu().double().numpy()
+
+
+def _ridge(
+    h: NDArray[np.float64], y: NDArray[np.float64], penalty: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    h_mean, y_mean = np.asarray(h.mean(axis=0), float), np.asarray(y.mean(axis=0), float)
+    h, y = h - h_mean, y - y_mean
+    weights = np.asarray(np.linalg.solve(h.T @ h / len(h) + penalty * np.eye(h.shape[1]), h.T @ y / len(h)).T, float)
+    return weights, y_mean - weights @ h_mean

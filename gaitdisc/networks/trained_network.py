@@ -1,0 +1,130 @@
+"""A trained network: a model with its names, its scales and its weights."""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import nn
+
+from gaitdisc.errors import SchemaError
+from gaitdisc.networks.threads import torch_threads
+from gaitdisc.recording import Scale
+from gaitdisc.whole_file import whole_file
+
+FORMAT = 1
+WEIGHT = "weight:"
+
+
+@dataclass(frozen=True, eq=False)
+class TrainedNetwork:
+    """Named inputs to named outputs, in their units; a `gaitdisc.model.Model`.
+
+    Parameters
+    ----------
+    inputs, outputs : tuple of str
+        Names, in order.
+    x_scale, y_scale : Scale
+        Scales of the training part.
+    network : torch module
+        Takes and gives scaled numbers; on the CPU.
+    """
+
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    x_scale: Scale
+    y_scale: Scale
+    network: nn.Module
+
+    @property
+    def ignored(self) -> tuple[str, ...]:
+        """Inputs that did not vary in training and therefore weigh nothing."""
+        return tuple(name for name, still in zip(self.inputs, self.x_scale.constant, strict=True) if still)
+
+    def weights(self) -> dict[str, NDArray[Any]]:
+        """Copy of every weight, by the name it has in the torch module."""
+        return {name: tensor.detach().cpu().numpy().copy() for name, tensor in self.network.state_dict().items()}
+
+    def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Outputs (sample, output) for inputs (sample, input); NaN where an input is NaN."""
+        scaled = torch.from_numpy(self.x_scale.scaled(np.asarray(x, float)).astype(np.float32))
+        self.network.eval()
+        with torch.no_grad(), torch_threads(1):
+            y = self.network(scaled)
+        return self.y_scale.unscaled(y.double().numpy())
+
+
+def save_network(network: TrainedNetwork, path: Path) -> None:
+    """Save a trained network; what is loaded again equals it to the last bit.
+
+    Parameters
+    ----------
+    network : TrainedNetwork
+        What to keep.
+    path : Path
+        Of an `.npz` file; written whole or not at all.
+    """
+    names = {"format": FORMAT, "inputs": network.inputs, "outputs": network.outputs}
+    arrays = {
+        "names": np.array(json.dumps(names)),
+        "x_mean": network.x_scale.mean,
+        "x_sd": network.x_scale.sd,
+        "y_mean": network.y_scale.mean,
+        "y_sd": network.y_scale.sd,
+        **{WEIGHT + name: values for name, values in network.weights().items()},
+    }
+    with whole_file(path) as part, part.open("wb") as file:
+        np.savez(file, **arrays)
+
+
+def load_network(path: Path, build: Callable[[int, int], nn.Module]) -> TrainedNetwork:
+    """Load a network that `save_network` wrote.
+
+    Parameters
+    ----------
+    path : Path
+        Of the `.npz` file.
+    build : callable
+        Takes the number of inputs and of outputs and makes the torch module, as in training: `FeedForward`.
+
+    Returns
+    -------
+    TrainedNetwork
+
+    Raises
+    ------
+    SchemaError
+        If the file is missing or damaged, of another format, or of another kind of network.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            arrays = {name: file[name] for name in file.files}
+        names = json.loads(str(arrays["names"]))
+        scales = Scale(arrays["x_mean"], arrays["x_sd"]), Scale(arrays["y_mean"], arrays["y_sd"])
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+        raise _refusal(path, str(error)) from error
+    if names["format"] != FORMAT:
+        raise _refusal(path, f"it has format {names['format']}, this version reads {FORMAT}")
+    network = build(len(names["inputs"]), len(names["outputs"]))
+    weights = {key[len(WEIGHT) :]: torch.from_numpy(v) for key, v in arrays.items() if key.startswith(WEIGHT)}
+    try:
+        network.load_state_dict(weights)
+    except RuntimeError as error:
+        raise _refusal(path, f"its weights do not fit a {type(network).__name__}") from error
+    network.eval()
+    return TrainedNetwork(tuple(names["inputs"]), tuple(names["outputs"]), *scales, network)
+
+
+def _refusal(path: Path, found: str) -> SchemaError:
+    return SchemaError(
+        f"{path.name} is to be read as a trained network of gaitdisc",
+        found,
+        "Name the kind of network it was saved from, or train it again.",
+    )

@@ -1,0 +1,66 @@
+"""What decides how a network is trained."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from gaitdisc.errors import TrainingError
+
+
+@dataclass(frozen=True)
+class TrainingSettings:
+    """Settings of the trainer, the same for every kind of network.
+
+    Parameters
+    ----------
+    epochs : int
+        Passes over the training part; more where 1,000 steps need more.
+    batch : int
+        Samples a step.
+    learning_rate : float
+        Of the first step; it falls to 0 along a cosine.
+    decays : tuple of float
+        Candidates of the decoupled weight decay, weak to strong; they are tried in this order until the inner block
+        does worse, and the best is used.
+    inner_share : float
+        Share of the training part in the inner block, its last samples.
+    seed : int
+        Of the first weights and of the order of the samples.
+    device : str
+        `cpu`, `cuda`, or `auto`: the GPU where there is one.
+    threads : int
+        Threads of one training on the CPU. Networks of this size train slower on two threads than on one; participants
+        are what to run beside each other.
+
+    Raises
+    ------
+    TrainingError
+        If a number is out of range.
+
+    Examples
+    --------
+    >>> TrainingSettings(seed=3).batch
+    256
+    """
+
+    epochs: int = 20
+    batch: int = 256
+    learning_rate: float = 1e-2
+    decays: tuple[float, ...] = (0.1, 0.3, 1.0)
+    inner_share: float = 0.15
+    seed: int = 0
+    device: str = "cpu"
+    threads: int = 1
+
+    def __post_init__(self) -> None:
+        """Refuse settings that train nothing."""
+        for name in ("epochs", "batch", "learning_rate", "threads"):
+            _refuse_unless(getattr(self, name) > 0, f"{name} above 0", f"{name} is {getattr(self, name)}")
+        _refuse_unless(bool(self.decays), "at least one weight decay", "decays is empty")
+        _refuse_unless(min(self.decays) >= 0, "weight decays of 0 or more", f"decays holds {min(self.decays)}")
+        _refuse_unless(0 < self.inner_share < 1, "an inner_share between 0 and 1", f"it is {self.inner_share}")
+
+
+def _refuse_unless(holds: bool, needed: str, found: str) -> None:
+    if not holds:
+        raise TrainingError(f"training needs {needed}", found, "Correct the training settings.")

@@ -1,0 +1,122 @@
+"""Ridge regression with phase harmonics: the rival that a network has to beat."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.errors import TrainingError
+from gaitdisc.recording import Samples, Scale, scale_of
+
+PENALTIES = tuple(10.0**power for power in range(-7, 2))
+PHASE = "phi"
+LEAST_SAMPLES = 50
+LEAST_BEFORE_INNER = 20
+SEAM_S = 0.3  # as Trajectory.split: zero-lag filters look ahead over the seam
+
+
+@dataclass(frozen=True, eq=False)
+class Ridge:
+    """Linear in the inputs and in harmonics of percent stride; a `gaitdisc.model.Model`.
+
+    Parameters
+    ----------
+    inputs, outputs : tuple of str
+        Names, in order.
+    harmonics : int
+        Sines and cosines of 1 to so many cycles a stride, beside the inputs; 0 where `phi` is not among them.
+    scale : Scale
+        Of inputs and harmonics in the training part.
+    weights : ndarray (column, output) [each output's unit]
+        For scaled columns.
+    offset : ndarray (output,) [each output's unit]
+        Mean of each output in the training part.
+    penalty : float
+        Per sample, as chosen on the inner block.
+    n_training, n_inner : int
+        Samples of the whole training part, and of its inner block.
+    """
+
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    harmonics: int
+    scale: Scale
+    weights: NDArray[np.float64]
+    offset: NDArray[np.float64]
+    penalty: float
+    n_training: int
+    n_inner: int
+
+    def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Outputs (sample, output) for inputs (sample, input)."""
+        return self.scale.scaled(_columns(x, self.inputs, self.harmonics)) @ self.weights + self.offset
+
+
+def fit_ridge(samples: Samples, harmonics: int = 8, inner_share: float = 0.15) -> Ridge:
+    """Fit a ridge regression.
+
+    Minimises sum (y - W x - b)^2 / samples + penalty sum W^2 on scaled columns. The penalty is the one of `PENALTIES`
+    that does best on the last `inner_share` of the samples (contiguous, 0.3 s apart, all outputs weighed by their
+    variance); then everything is fitted again on all samples.
+
+    Parameters
+    ----------
+    samples : Samples
+        Training part only, in order of time.
+    harmonics : int
+        Harmonics of percent stride beside the inputs, where `phi` is among them; 0 for none.
+    inner_share : float
+        Share of the samples in the inner block.
+
+    Returns
+    -------
+    Ridge
+
+    Raises
+    ------
+    TrainingError
+        If there are too few samples, missing numbers, constant outputs, or no inner block.
+
+    Examples
+    --------
+    >>> t = np.arange(400) / 100
+    >>> s = Samples(np.sin(t)[:, None], 3 * np.sin(t)[:, None] + 1, ("a",), ("b",), t, t)
+    >>> fit_ridge(s)(np.array([[0.5]])).round(3)
+    array([[2.5]])
+    """
+    if not 0 < inner_share < 1:
+        raise TrainingError(
+            "ridge needs an inner_share between 0 and 1",
+            f"it is {inner_share}",
+            "Give the share of the training part on which the penalty is chosen.",
+        )
+    samples.trainable(LEAST_SAMPLES)
+    harmonics = harmonics if PHASE in samples.inputs else 0
+    before, inner = samples.last_block(inner_share, SEAM_S)
+    before.trainable(LEAST_BEFORE_INNER)
+    spread = before.y.std(axis=0)
+    losses = []
+    for penalty in PENALTIES:
+        scale, weights, offset = _solved(before, harmonics, penalty)
+        predicted = scale.scaled(_columns(inner.x, inner.inputs, harmonics)) @ weights + offset
+        losses.append(float(np.mean(((inner.y - predicted) / spread) ** 2)))
+    penalty = PENALTIES[int(np.argmin(losses))]
+    scale, weights, offset = _solved(samples, harmonics, penalty)
+    return Ridge(samples.inputs, samples.outputs, harmonics, scale, weights, offset, penalty, len(samples), len(inner))
+
+
+def _solved(samples: Samples, harmonics: int, penalty: float) -> tuple[Scale, NDArray[np.float64], NDArray[np.float64]]:
+    columns = _columns(samples.x, samples.inputs, harmonics)
+    scale = scale_of(columns)
+    scaled, offset = scale.scaled(columns), samples.y.mean(axis=0)
+    normal = scaled.T @ scaled / len(scaled) + penalty * np.eye(scaled.shape[1])
+    return scale, np.linalg.solve(normal, scaled.T @ (samples.y - offset) / len(scaled)), offset
+
+
+def _columns(x: NDArray[np.float64], inputs: tuple[str, ...], harmonics: int) -> NDArray[np.float64]:
+    if not harmonics:
+        return x
+    turns = np.deg2rad(3.6 * x[:, inputs.index(PHASE), None]) * np.arange(1, harmonics + 1)
+    return np.hstack([x, np.sin(turns), np.cos(turns)])

@@ -1,0 +1,248 @@
+"""The response of one participant: fit on the first part of both walks, judge on the last."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from gaitdisc.errors import ChannelError, TrainingError
+from gaitdisc.networks.training_settings import TrainingSettings
+from gaitdisc.recording import Samples, Trajectory
+from gaitdisc.response.models import ResponseModels, fit_linear, fit_models, fit_network
+from gaitdisc.response.samples import gait_samples
+from gaitdisc.results import HeldOut, ParticipantResponse
+from gaitdisc.results.participant_response import FIT_COLUMNS, R2_COLUMNS
+from gaitdisc.statistics.r2 import r2
+from gaitdisc.statistics.stride_residuals import stride_curves, strides_of_phase
+from gaitdisc.units import rate_unit
+
+LEAST_HELD_OUT = 50
+
+
+@dataclass(frozen=True)
+class ResponseSettings:
+    """What is predicted, on what it is judged, and how the models are fitted.
+
+    Parameters
+    ----------
+    outputs : tuple of str
+        Channels whose second derivatives are predicted.
+    held_out_s : float, optional
+        Length held out at the end of both walks [s]; without it, `held_out_share` of each.
+    held_out_share : float
+        Share held out; the dissertation has 12.5 %, 30 s of 240 s.
+    training : TrainingSettings
+        Of the networks; holds the seed.
+    harmonics : int
+        Harmonics of percent stride in the ridge regression.
+
+    Examples
+    --------
+    >>> ResponseSettings(("ankle_angle_r",)).training.seed
+    0
+    """
+
+    outputs: tuple[str, ...]
+    held_out_s: float | None = None
+    held_out_share: float = 0.125
+    training: TrainingSettings = field(default_factory=TrainingSettings)
+    harmonics: int = 8
+
+
+@dataclass(frozen=True, eq=False)
+class FittedResponse:
+    """The models of one participant, both kinds.
+
+    Parameters
+    ----------
+    network, ridge : ResponseModels
+        Networks, and the ridge regressions beside them.
+    """
+
+    network: ResponseModels
+    ridge: ResponseModels
+
+
+def fit_response(
+    nominal: Trajectory,
+    exo: Trajectory,
+    settings: ResponseSettings,
+    null_r2: Mapping[str, float] | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> ParticipantResponse:
+    """Fit all models to the first part of both walks and judge them on the held-out last part.
+
+    Parameters
+    ----------
+    nominal, exo : Trajectory
+        Whole walks of one participant without and with the device, with the same channels.
+    settings : ResponseSettings
+        Outputs, held-out part, training.
+    null_r2 : mapping of str to float, optional
+        R2 that noise reaches through the same filters, for each output (`gaitdisc.statistics.band_limit_null`).
+    progress : callable, optional
+        Called with the fraction done.
+
+    Returns
+    -------
+    ParticipantResponse
+
+    Raises
+    ------
+    ChannelError
+        If the walks differ in channels or an output is not among them.
+    SamplingError
+        If a walk is too short to hold a part out.
+    TrainingError
+        If a model cannot be fitted.
+
+    References
+    ----------
+    Ebers 2023, Eqs. 4.1-4.5 and section 4.2.3. Beside the source: a ridge regression with phase harmonics and the
+    null of the filters stand beside every network, and the Nominal model is judged on held-out nominal walking, too.
+    """
+    fitted = fit_both(nominal, exo, settings, progress)
+    held_nominal, held_exo = (held_out_part(walk, settings)[1] for walk in (nominal, exo))
+    on_nominal, on_exo = (_held_out_samples(held, settings) for held in (held_nominal, held_exo))
+    kinds = {"network": fitted.network, "ridge": fitted.ridge}
+    judged = [_judged(kind, models, on_nominal, on_exo, settings) for kind, models in kinds.items()]
+    predicted = {name: model(on_exo.x) for name, model in fitted.network.on_exo().items()}
+    return ParticipantResponse(
+        participant=exo.subject or nominal.subject,
+        inputs=on_exo.inputs,
+        outputs=settings.outputs,
+        units=tuple(rate_unit(exo.channels[column].unit, 2) for column in exo.columns(settings.outputs)),
+        r2=pd.concat([*judged, _null_rows(null_r2 or {}, settings, len(on_exo))], ignore_index=True),
+        fits=pd.concat([_fit_rows(kind, models) for kind, models in kinds.items()], ignore_index=True),
+        held_out=HeldOut(on_exo.time, on_exo.phi, on_exo.y, predicted),
+        residuals={name: residual_strides(held_exo, on_exo, values) for name, values in predicted.items()},
+        held_out_s=len(held_exo.time) / held_exo.rate_hz,
+    )
+
+
+def fit_both(
+    nominal: Trajectory,
+    exo: Trajectory,
+    settings: ResponseSettings,
+    progress: Callable[[float], None] | None = None,
+) -> FittedResponse:
+    """Fit networks and ridge regressions to the training parts; the held-out parts are not looked at.
+
+    Parameters
+    ----------
+    nominal, exo : Trajectory
+        Whole walks of one participant.
+    settings : ResponseSettings
+        Outputs, held-out part, training.
+    progress : callable, optional
+        Called with the fraction done.
+
+    Returns
+    -------
+    FittedResponse
+    """
+    _check_pair(nominal, exo)
+    samples = [gait_samples(held_out_part(walk, settings)[0], settings.outputs)[0] for walk in (nominal, exo)]
+    ridge = fit_models(*samples, fit=lambda part, _: fit_linear(part, settings.harmonics))
+    networks = fit_models(
+        *samples, fit=lambda part, told: fit_network(part, settings.training, told), progress=progress
+    )
+    return FittedResponse(networks, ridge)
+
+
+def held_out_part(walk: Trajectory, settings: ResponseSettings) -> tuple[Trajectory, Trajectory]:
+    """Training part and held-out part of a walk.
+
+    Parameters
+    ----------
+    walk : Trajectory
+        Whole walk.
+    settings : ResponseSettings
+        Length or share that is held out.
+
+    Returns
+    -------
+    training, held_out : Trajectory
+    """
+    length = settings.held_out_s or settings.held_out_share * len(walk.time) / walk.rate_hz
+    return walk.split(length)
+
+
+def residual_strides(held_out: Trajectory, samples: Samples, predicted: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Measured minus predicted over every stride that lies wholly in the held-out part.
+
+    Parameters
+    ----------
+    held_out : Trajectory
+        Held-out part, on an even time base.
+    samples : Samples
+        Its usable samples.
+    predicted : ndarray (sample, output) [unit/s2]
+        For these samples.
+
+    Returns
+    -------
+    ndarray (stride, phase, output) [unit/s2]
+        NaN where samples are missing.
+    """
+    residual = np.full((len(held_out.time), len(samples.outputs)), np.nan)
+    residual[np.searchsorted(held_out.time, samples.time)] = samples.y - predicted
+    return stride_curves(held_out.time, residual, strides_of_phase(held_out.time, held_out.phi))
+
+
+def _held_out_samples(held_out: Trajectory, settings: ResponseSettings) -> Samples:
+    samples, dropped = gait_samples(held_out, settings.outputs)
+    if len(samples) < LEAST_HELD_OUT:
+        raise TrainingError(
+            f"a model is judged on {LEAST_HELD_OUT} held-out samples at least",
+            f"the last {len(held_out.time) / held_out.rate_hz:.2f} s: {dropped.finding().line()}",
+            "Hold out a longer part, or mend or leave away the channels named.",
+        )
+    return samples
+
+
+def _judged(
+    kind: str, models: ResponseModels, on_nominal: Samples, on_exo: Samples, settings: ResponseSettings
+) -> pd.DataFrame:
+    trials = [("nominal", models.nominal.model, "nominal", on_nominal)]
+    trials += [(name, model, "exo", on_exo) for name, model in models.on_exo().items()]
+    rows = [
+        (variable, name, kind, walk, value, len(held))
+        for name, model, walk, held in trials
+        for variable, value in zip(settings.outputs, r2(held.y, model(held.x)), strict=True)
+    ]
+    return pd.DataFrame(rows, columns=pd.Index(R2_COLUMNS))
+
+
+def _null_rows(null_r2: Mapping[str, float], settings: ResponseSettings, samples: int) -> pd.DataFrame:
+    known = [variable for variable in settings.outputs if variable in null_r2]
+    rows = [(variable, "nominal", "null", "exo", float(null_r2[variable]), samples) for variable in known]
+    return pd.DataFrame(rows, columns=pd.Index(R2_COLUMNS))
+
+
+def _fit_rows(kind: str, models: ResponseModels) -> pd.DataFrame:
+    fits = {"nominal": models.nominal, "exo": models.exo, "discrepancy": models.discrepancy}
+    rows = [(name, kind, fit.decay, fit.epochs, fit.n_training, fit.n_inner, fit.seconds) for name, fit in fits.items()]
+    return pd.DataFrame(rows, columns=pd.Index(FIT_COLUMNS))
+
+
+def _check_pair(nominal: Trajectory, exo: Trajectory) -> None:
+    if nominal.subject and exo.subject and nominal.subject != exo.subject:
+        raise ChannelError(
+            "a response needs two walks of one participant",
+            f"found {nominal.subject} and {exo.subject}",
+            "Pair the trials by participant in the study.",
+        )
+    if nominal.channels != exo.channels:
+        apart = sorted(set(nominal.names) ^ set(exo.names))
+        found = f"apart in {', '.join(apart[:5])}" if apart else "they differ in order or unit"
+        raise ChannelError(
+            "a response needs the same channels in both walks",
+            f"{nominal.subject}: {len(nominal.names)} channels in {nominal.condition or 'nominal'}, "
+            f"{len(exo.names)} in {exo.condition or 'exo'}, {found}",
+            "Leave away what one walk lacks.",
+        )

@@ -1,0 +1,135 @@
+"""Nominal, Exo, Discrepancy and Augmented: four models of one participant (Eqs. 4.2-4.5)."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+from gaitdisc.model import Augmented, Model, augment
+from gaitdisc.networks.feedforward import FeedForward
+from gaitdisc.networks.trainer import train
+from gaitdisc.networks.training_settings import TrainingSettings
+from gaitdisc.recording import Samples
+from gaitdisc.regression.ridge import fit_ridge
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A model fitted to samples, and how.
+
+    Parameters
+    ----------
+    model : Model
+        What was fitted.
+    decay : float
+        Weight decay of a network, penalty of a ridge regression.
+    epochs : int
+        Epochs trained; 0 where nothing is descended.
+    n_training, n_inner : int
+        Samples of the whole training part, and of the inner block that chose the decay.
+    seconds : float
+        Wall-clock time [s].
+    """
+
+    model: Model
+    decay: float
+    epochs: int
+    n_training: int
+    n_inner: int
+    seconds: float
+
+
+@dataclass(frozen=True, eq=False)
+class ResponseModels:
+    """The models of one participant.
+
+    Parameters
+    ----------
+    nominal, exo, discrepancy : Fit
+        Eqs. 4.2, 4.3 and 4.4; same inputs and outputs.
+    """
+
+    nominal: Fit
+    exo: Fit
+    discrepancy: Fit
+
+    @property
+    def augmented(self) -> Augmented:
+        """Nominal plus Discrepancy (Eq. 4.5)."""
+        return augment(self.nominal.model, self.discrepancy.model)
+
+    def on_exo(self) -> dict[str, Model]:
+        """Return the models that predict device walking, by the names of `gaitdisc.results`."""
+        return {"nominal": self.nominal.model, "augmented": self.augmented, "exo": self.exo.model}
+
+
+def fit_models(
+    nominal: Samples,
+    exo: Samples,
+    fit: Callable[[Samples, Callable[[float], None]], Fit],
+    progress: Callable[[float], None] | None = None,
+) -> ResponseModels:
+    """Fit the Nominal, the Exo and the Discrepancy model, all in the same way.
+
+    The Discrepancy model learns what the Nominal model misses of device walking,
+    xddot_exo - f(x_exo, xdot_exo, phi_exo) (Eq. 4.4).
+
+    Parameters
+    ----------
+    nominal, exo : Samples
+        Training parts of the walks without and with the device; same inputs and outputs.
+    fit : callable
+        Takes samples and a progress callback, gives a Fit.
+    progress : callable, optional
+        Called with the fraction done.
+
+    Returns
+    -------
+    ResponseModels
+    """
+    parts = [partial(_third, progress or (lambda _: None), done) for done in range(3)]
+    f = fit(nominal, parts[0])
+    y = fit(exo, parts[1])
+    g = fit(exo.with_outputs(exo.y - f.model(exo.x)), parts[2])
+    return ResponseModels(nominal=f, exo=y, discrepancy=g)
+
+
+def _third(progress: Callable[[float], None], done: int, fraction: float) -> None:
+    progress((done + fraction) / 3)
+
+
+def fit_network(
+    samples: Samples,
+    settings: TrainingSettings | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Fit:
+    """Fit the dissertation's feed-forward network.
+
+    Parameters
+    ----------
+    samples : Samples
+        Training part.
+    settings : TrainingSettings, optional
+        The defaults without.
+    progress : callable, optional
+        Called with the fraction done.
+    """
+    done = train(samples, FeedForward, settings, progress)
+    return Fit(done.network, done.decay, len(done.losses), done.n_training, done.n_inner, done.seconds)
+
+
+def fit_linear(samples: Samples, harmonics: int = 8) -> Fit:
+    """Fit the ridge regression that stands beside the network.
+
+    Parameters
+    ----------
+    samples : Samples
+        Training part.
+    harmonics : int
+        Of percent stride, beside the inputs.
+    """
+    begun = time.perf_counter()
+    ridge = fit_ridge(samples, harmonics)
+    return Fit(ridge, ridge.penalty, 0, ridge.n_training, ridge.n_inner, time.perf_counter() - begun)

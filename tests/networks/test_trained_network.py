@@ -1,0 +1,72 @@
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+import pytest
+import torch
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gaitdisc.errors import SchemaError
+from gaitdisc.model import Model, augment
+from gaitdisc.networks.feedforward import FeedForward
+from gaitdisc.networks.trained_network import TrainedNetwork, load_network, save_network
+from gaitdisc.recording import scale_of
+
+
+def network(inputs=3, outputs=2, seed=0):
+    torch.manual_seed(seed)
+    rng = np.random.default_rng(seed)
+    x = rng.normal(3, 2, (50, inputs))
+    x[:, 0] = 4.0
+    names = tuple(f"x{k}" for k in range(inputs)), tuple(f"y{k}" for k in range(outputs))
+    return TrainedNetwork(
+        *names, scale_of(x), scale_of(rng.normal(100, 9, (50, outputs))), FeedForward(inputs, outputs)
+    )
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.integers(1, 9), st.integers(1, 4), st.integers(0, 99))
+def test_loaded_equals_saved_to_the_last_bit(tmp_path_factory, inputs, outputs, seed):
+    path = tmp_path_factory.mktemp("network") / "nominal.npz"
+    saved = network(inputs, outputs, seed)
+    save_network(saved, path)
+    loaded = load_network(path, FeedForward)
+    assert (loaded.inputs, loaded.outputs) == (saved.inputs, saved.outputs)
+    for name, values in saved.weights().items():
+        assert values.tobytes() == loaded.weights()[name].tobytes()
+    x = np.random.default_rng(seed).normal(size=(20, inputs))
+    assert saved(x).tobytes() == loaded(x).tobytes()
+
+
+def test_it_is_a_model_and_adds():
+    one, other = network(seed=0), network(seed=1)
+    x = np.ones((4, 3))
+    assert isinstance(one, Model)
+    np.testing.assert_array_equal(augment(one, other)(x), one(x) + other(x))
+
+
+def test_outputs_are_in_their_units_and_missing_inputs_stay_missing():
+    y = network()(np.array([[4.0, 3.0, 3.0], [4.0, np.nan, 3.0]]))
+    assert np.all(np.abs(y[0] - 100) < 50)
+    assert np.isnan(y[1]).all()
+
+
+def test_inputs_that_did_not_vary_weigh_nothing_and_are_named():
+    still = network()
+    assert still.ignored == ("x0",)
+    np.testing.assert_array_equal(still(np.array([[4.0, 1.0, 2.0]])), still(np.array([[-50.0, 1.0, 2.0]])))
+
+
+def test_a_damaged_file_and_another_kind_of_network_are_refused(tmp_path):
+    path = tmp_path / "nominal.npz"
+    save_network(network(), path)
+    with pytest.raises(SchemaError, match=r"nominal\.npz .* its weights do not fit a FeedForward"):
+        load_network(path, partial(FeedForward, nodes=32))
+    whole = path.read_bytes()
+    path.write_bytes(whole[: len(whole) // 2])
+    with pytest.raises(SchemaError, match=r"nominal\.npz is to be read as a trained network"):
+        load_network(path, FeedForward)
+    with pytest.raises(SchemaError, match=r"absent\.npz"):
+        load_network(tmp_path / "absent.npz", FeedForward)

@@ -1,0 +1,109 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import torch
+
+from gaitdisc.errors import TrainingError
+from gaitdisc.networks.feedforward import FeedForward
+from gaitdisc.networks.trainer import chosen_device, train
+from gaitdisc.networks.training_settings import TrainingSettings
+from gaitdisc.recording import scale_of
+
+
+def same_weights(one, other):
+    pairs = zip(one.network.weights().values(), other.network.weights().values(), strict=True)
+    return all(a.tobytes() == b.tobytes() for a, b in pairs)
+
+
+def test_it_learns_a_pendulum(swing):
+    done = train(swing.rows(slice(0, 1500)), FeedForward)
+    later = swing.rows(slice(1500, None))
+    missed = later.y - done.network(later.x)
+    assert np.all(1 - missed.var(axis=0) / later.y.var(axis=0) > 0.995)
+
+
+def test_same_seed_same_weights_and_another_seed_others(swing, quick):
+    first = train(swing, FeedForward, quick)
+    torch.rand(10)  # the global generator is neither used nor moved
+    assert same_weights(first, train(swing, FeedForward, quick))
+    assert not same_weights(first, train(swing, FeedForward, replace(quick, seed=1)))
+
+
+def test_training_leaves_the_global_generator_alone(swing, quick):
+    torch.manual_seed(5)
+    expected = torch.rand(3)
+    torch.manual_seed(5)
+    train(swing, FeedForward, quick)
+    assert torch.equal(torch.rand(3), expected)
+
+
+def test_the_scale_never_sees_the_inner_block(swing, quick):
+    before = swing.time < swing.last_block(quick.inner_share)[1].time[0] - 0.3
+    shifted = replace(swing, x=swing.x + 100.0 * ~before[:, None], y=swing.y - 50.0 * ~before[:, None])
+    network = train(shifted, FeedForward, quick).network
+    for found, wanted in ((network.x_scale, scale_of(swing.x[before])), (network.y_scale, scale_of(swing.y[before]))):
+        np.testing.assert_array_equal(found.mean, wanted.mean)
+        np.testing.assert_array_equal(found.sd, wanted.sd)
+
+
+def test_numbers_of_the_training_are_told(swing, quick):
+    told = []
+    done = train(swing, FeedForward, replace(quick, decays=(0.1, 3.0)), told.append)
+    assert (done.n_training, done.n_inner) == (2000, 300)
+    assert len(done.losses) == 250  # 4 batches of 500: 1,000 steps
+    assert done.losses[done.best_epoch - 1] == min(done.losses)
+    assert told == sorted(told)
+    assert told[-1] == 1.0
+    assert done.decay == 0.1
+    assert done.seconds > 0
+
+
+def test_decays_are_tried_until_the_inner_block_does_worse(swing, quick):
+    built = []
+
+    def build(inputs, outputs):
+        built.append(inputs)
+        return FeedForward(inputs, outputs)
+
+    train(swing, build, replace(quick, decays=(0.1, 10.0, 0.2, 0.3)))
+    assert len(built) == 2
+
+
+def test_a_constant_input_weighs_nothing(swing, quick):
+    network = train(swing, FeedForward, quick).network
+    assert network.ignored == ("still",)
+    assert np.isfinite(network(swing.x)).all()
+
+
+def test_too_few_samples(swing, quick):
+    with pytest.raises(TrainingError, match=r"3 inputs to 2 outputs needs 50 samples; the recording has 49 usable"):
+        train(swing.rows(slice(0, 49)), FeedForward, quick)
+    sparse = replace(swing.rows(slice(0, 50)), time=np.full(50, 0.1))
+    with pytest.raises(TrainingError, match=r"needs 20 samples; the recording has 0 usable"):
+        train(sparse, FeedForward, quick)
+
+
+def test_constant_outputs_and_missing_numbers(swing, quick):
+    with pytest.raises(TrainingError, match="b is 3 in all 2000 samples"):
+        train(swing.with_outputs(np.column_stack([swing.y[:, 0], np.full(2000, 3.0)])), FeedForward, quick)
+    hole = swing.x.copy()
+    hole[70, 1] = np.nan
+    with pytest.raises(TrainingError, match=r"v has 1 missing or infinite samples of 2000, the first at 0\.700 s"):
+        train(replace(swing, x=hole), FeedForward, quick)
+
+
+@pytest.mark.skipif(torch.cuda.is_available(), reason="a GPU is there")
+def test_a_gpu_that_is_not_there(swing, quick):
+    with pytest.raises(TrainingError, match="run on 'cuda'; torch sees no GPU, only the CPU"):
+        train(swing, FeedForward, replace(quick, device="cuda"))
+    assert chosen_device("auto").type == "cpu"
+
+
+@pytest.mark.skipif(not torch.cuda.is_available(), reason="no GPU")
+def test_the_gpu_learns_the_same(swing):
+    network = train(swing, FeedForward, TrainingSettings(device="cuda")).network
+    missed = swing.y - network(swing.x)
+    assert np.all(1 - missed.var(axis=0) / swing.y.var(axis=0) > 0.995)
