@@ -18,7 +18,13 @@ class WithReadout(Protocol):
     readout: nn.Linear
 
     def features(self, x: Tensor) -> Tensor:
-        """Return what the readout reads, (sample, node)."""
+        """Return what the readout reads, (sample, node).
+
+        Parameters
+        ----------
+        x : Tensor (sample, input)
+            Scaled inputs.
+        """
         ...
 
 

@@ -105,9 +105,10 @@ def fit_response(
     Ebers 2023, Eqs. 4.1-4.5 and section 4.2.3. Beside the source: a ridge regression with phase harmonics and the
     null of the filters stand beside every network, and the Nominal model is judged on held-out nominal walking, too.
     """
-    fitted = fit_both(nominal, exo, settings, progress)
+    _check_pair(nominal, exo)
     held_nominal, held_exo = (held_out_part(walk, settings)[1] for walk in (nominal, exo))
     on_nominal, on_exo = (_held_out_samples(held, settings) for held in (held_nominal, held_exo))
+    fitted = fit_both(nominal, exo, settings, progress)
     kinds = {"network": fitted.network, "ridge": fitted.ridge}
     judged = [_judged(kind, models, on_nominal, on_exo, settings) for kind, models in kinds.items()]
     predicted = {name: model(on_exo.x) for name, model in fitted.network.on_exo().items()}
@@ -145,7 +146,6 @@ def fit_both(
     -------
     FittedResponse
     """
-    _check_pair(nominal, exo)
     samples = [gait_samples(held_out_part(walk, settings)[0], settings.outputs)[0] for walk in (nominal, exo)]
     ridge = fit_models(*samples, fit=lambda part, _: fit_linear(part, settings.harmonics))
     networks = fit_models(

@@ -1,0 +1,145 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gaitdisc.errors import ChannelError, SamplingError, TrainingError
+from gaitdisc.recording import PERCENT
+from gaitdisc.response.fit_response import ResponseSettings, fit_both, fit_response, held_out_part, residual_strides
+from gaitdisc.response.models import fit_linear, fit_models
+from gaitdisc.response.samples import gait_samples
+from gaitdisc.statistics.r2 import r2
+
+KNEE, ANKLE = "knee_angle_r", "ankle_angle_r"
+SPRING = 40.0
+
+
+@pytest.fixture(scope="module")
+def fitted(nominal, exo, settings):
+    return fit_both(nominal, exo, settings)
+
+
+@pytest.fixture(scope="module")
+def response(nominal, exo, settings):
+    told = []
+    found = fit_response(nominal, exo, settings, {ANKLE: 0.507}, told.append)
+    assert told == sorted(told)
+    assert told[-1] == pytest.approx(1.0)
+    return found
+
+
+def test_the_discrepancy_model_is_the_spring(fitted, exo, settings):
+    held = gait_samples(held_out_part(exo, settings)[1], settings.outputs)[0]
+    found = fitted.network.discrepancy.model(held.x)
+    spring = -SPRING * np.maximum(held.x[:, 1], 0.0)
+    assert r2(spring[:, None], found[:, 1:])[0] > 0.94
+    assert np.sqrt(np.mean((found[:, 1] - spring) ** 2)) < 0.06 * np.std(held.y[:, 1])
+    assert np.sqrt(np.mean(found[:, 0] ** 2)) < 0.06 * np.std(held.y[:, 0])  # nothing at the knee
+
+
+def test_a_linear_spring_is_found_exactly_by_the_linear_rival(nominal, linear_exo, settings):
+    samples = [gait_samples(held_out_part(walk, settings)[0], settings.outputs)[0] for walk in (nominal, linear_exo)]
+    models = fit_models(*samples, fit=lambda part, _: fit_linear(part))
+    held = gait_samples(held_out_part(linear_exo, settings)[1], settings.outputs)[0]
+    spring = np.column_stack([np.zeros(len(held)), -SPRING * held.x[:, 1]])
+    np.testing.assert_allclose(models.discrepancy.model(held.x), spring, atol=0.01)  # of some 1,000 deg/s2
+
+
+def test_the_augmented_model_explains_what_the_nominal_one_misses(response):
+    assert response.r2_of(ANKLE, "nominal") < response.r2_of(ANKLE, "augmented") - 0.1
+    for variable in (KNEE, ANKLE):
+        assert response.r2_of(variable, "augmented") >= response.r2_of(variable, "nominal") - 0.001
+        assert response.r2_of(variable, "augmented") == pytest.approx(response.r2_of(variable, "exo"), abs=0.005)
+        assert response.r2_of(variable, "nominal", walk="nominal") > 0.99
+
+
+def test_without_a_spring_there_is_no_discrepancy(nominal, no_spring, settings):
+    found = fit_response(nominal, no_spring, settings)
+    for kind in ("network", "ridge"):
+        for variable in (KNEE, ANKLE):
+            here, there = (found.r2_of(variable, "nominal", kind, walk) for walk in ("exo", "nominal"))
+            assert here == pytest.approx(there, abs=0.01)
+            assert found.r2_of(variable, "augmented", kind) == pytest.approx(here, abs=0.01)
+
+
+def test_the_held_out_part_is_never_seen(nominal, exo, settings, fitted):
+    held = round(0.125 * len(exo.time))
+    seen = np.arange(len(exo.time)) < len(exo.time) - held
+    changed = [
+        replace(walk, x=walk.x + 50.0 * ~seen[:, None], xddot=np.where(seen[:, None], walk.xddot, -7e3))
+        for walk in (nominal, exo)
+    ]
+    again = fit_both(*changed, settings)
+    for name in ("nominal", "exo", "discrepancy"):
+        one, other = (getattr(found.network, name).model for found in (fitted, again))
+        for key, weights in one.weights().items():
+            assert weights.tobytes() == other.weights()[key].tobytes()
+        assert one.x_scale.mean.tobytes() == other.x_scale.mean.tobytes()
+        ridges = [getattr(found.ridge, name).model.weights.tobytes() for found in (fitted, again)]
+        assert ridges[0] == ridges[1]
+
+
+def test_tables_name_what_is_in_them(response):
+    assert response.outputs == (KNEE, ANKLE)
+    assert response.units == ("deg/s2", "deg/s2")
+    assert len(response.inputs) == 5
+    assert response.held_out_s == 7.5
+    assert len(response.r2) == 2 * 2 * 4 + 1
+    assert (response.r2["n"] == 750).all()
+    assert response.r2_of(ANKLE, "nominal", "null") == 0.507
+    assert np.isnan(response.r2_of(KNEE, "nominal", "null"))
+    assert response.fits["model"].tolist() == ["nominal", "exo", "discrepancy"] * 2
+    assert (response.fits["n_training"] == 6000 - 750 - 30).all()
+    assert response.r2_of(ANKLE, "exo", "ridge") < response.r2_of(ANKLE, "exo")  # a slack spring is not linear
+
+
+def test_r2_is_that_of_the_held_out_predictions_kept(response):
+    held = response.held_out
+    for model in ("nominal", "augmented", "exo"):
+        found = r2(held.measured, held.predicted[model])
+        np.testing.assert_allclose(found, [response.r2_of(v, model) for v in (KNEE, ANKLE)], rtol=1e-9)
+
+
+def test_residuals_are_measured_minus_predicted_on_whole_strides(exo, settings):
+    held = held_out_part(exo, settings)[1]
+    samples = gait_samples(held, settings.outputs)[0]
+    by_phase = np.column_stack([np.sin(2 * np.pi * samples.phi / 100), samples.phi / 100])
+    curves = residual_strides(held, samples, samples.y - by_phase)
+    contacts = int(np.sum(np.diff(held.phi) < 0))
+    assert curves.shape == (contacts - 1, 101, 2)  # the first and the last stride are not whole
+    np.testing.assert_allclose(curves[..., 0] - np.sin(2 * np.pi * PERCENT / 100), 0.0, atol=2e-3)
+    np.testing.assert_allclose(curves[:, 3:97, 1] - PERCENT[3:97] / 100, 0.0, atol=1e-9)
+
+
+def test_missing_samples_are_missing_in_the_residual(exo, settings):
+    held = held_out_part(exo, settings)[1]
+    usable = held.usable.copy()
+    usable[300:305] = False
+    holed = replace(held, usable=usable)
+    samples = gait_samples(holed, settings.outputs)[0]
+    curves = residual_strides(holed, samples, samples.y)
+    assert len(curves) == np.sum(np.diff(held.phi) < 0) - 1
+    assert 4 <= np.isnan(curves[:, :, 0]).sum() <= 9
+    assert np.nanmax(np.abs(curves)) == 0.0
+
+
+def test_walks_that_do_not_belong_together(nominal, exo, settings):
+    with pytest.raises(ChannelError, match="two walks of one participant; found P01 and P02"):
+        fit_response(nominal, replace(exo, subject="P02"), settings)
+    renamed = replace(exo, channels=(exo.channels[0], exo.channels[1].renamed("subtalar_angle_r")))
+    with pytest.raises(ChannelError, match="apart in ankle_angle_r, subtalar_angle_r"):
+        fit_response(nominal, renamed, settings)
+
+
+def test_walks_that_are_too_short_or_unusable_at_the_end(nominal, exo, settings):
+    with pytest.raises(SamplingError, match=r"holding out the last 60 s"):
+        fit_response(nominal, exo, replace(settings, held_out_s=60.0))
+    usable = exo.usable.copy()
+    usable[-800:, 1] = False
+    short = ResponseSettings(settings.outputs, training=settings.training)
+    with pytest.raises(
+        TrainingError, match=r"judged on 50 held-out samples at least; .*750 of ankle_angle_r not usable"
+    ):
+        fit_response(nominal, replace(exo, usable=usable), short)
