@@ -14,7 +14,7 @@ from gaitdisc.recording import Finding
 
 FULL_TURN = 2 * math.pi  # a joint angle beyond this cannot be in radians
 WALKING_RAD = (0.35, 2.5)  # range of hip flexion or of the knee in a moving trial, in radians (20 to 143 deg)
-SHORTEST_S = 0.5  # a shorter piece may hold no movement
+SHORTEST_S, FEWEST = 0.5, 20  # a shorter piece, or one of fewer samples, may hold no movement
 _COPIED = re.compile(r"(knee_angle_[rl])_beta")
 
 
@@ -62,7 +62,7 @@ def judged_unit(
     most = _largest(values[:, joints])
     moving = [i for i in joints if re.match(r"hip_flexion|knee_angle", names[i])]
     reach = _largest_range(values[:, moving or joints])
-    long_enough = time[-1] - time[0] >= SHORTEST_S
+    long_enough = time[-1] - time[0] >= SHORTEST_S and len(time) >= FEWEST
     beyond = most > FULL_TURN
     like_rad = not beyond and long_enough and WALKING_RAD[0] <= reach <= WALKING_RAD[1]
     if stated == "rad" and beyond:

@@ -19,6 +19,7 @@ from gaitdisc.recording import Finding, Recording, Source, Trial
 
 if TYPE_CHECKING:
     from gaitdisc.ingest.c3d import C3DReader
+    from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 
 READERS = {
     ".mot": read_storage,
@@ -31,7 +32,7 @@ READERS = {
 ENDINGS = (".c3d", *READERS)
 
 
-def read_trial(  # the crop belongs here: a trial is what lies inside of it
+def read_trial(
     paths: Path | str | Sequence[Path | str],
     channels: Mapping[str, str] | None = None,
     subject: str = "",
@@ -92,9 +93,48 @@ def read_trial(  # the crop belongs here: a trial is what lies inside of it
                 streams[key] = _joined(streams[key], recording, key)
     named = {key: replace(r, subject=subject, condition=condition) for key, r in streams.items()}
     events = tuple(sorted((event for part in parts for event in part.events), key=lambda event: event.time))
-    findings += _unused(channels, named, parts[0].name)
+    if not any(Path(file).suffix.lower() == ".c3d" for file in files):  # that reader tells unused labels itself
+        findings += _unused(channels, named, parts[0].name)
     trial = Trial(parts[0].name, named, events, tuple(findings), subject, condition)
     return trial if crop_s is None else _cropped(trial, *crop_s)
+
+
+def read_planned_trial(
+    study: Study, participant: Participant, planned: PlannedTrial, reader: C3DReader | None = None
+) -> Trial:
+    """Trial as a study plans it: its files, channel map, crop, pseudonym and condition.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    participant : Participant
+        Whose trial.
+    planned : PlannedTrial
+        One of the participant's.
+    reader : C3DReader, optional
+        A running reader process to use again.
+
+    Returns
+    -------
+    Trial
+        Named by pseudonym and condition, and a number where there are several.
+
+    Raises
+    ------
+    GaitdiscError
+        As `read_trial`.
+
+    Examples
+    --------
+    >>> read_planned_trial(study, study.participants[0], study.participants[0].trials[0]).name  # doctest: +SKIP
+    'P01 natural'
+    """
+    paths = [study.path_of(file) for file in planned.files]
+    trial = read_trial(paths, study.channels, participant.id, planned.condition, planned.crop_s, reader)
+    alike = participant.trials_of(planned.condition)
+    number = f" {alike.index(planned) + 1}" if len(alike) > 1 else ""
+    return replace(trial, name=f"{participant.id} {planned.condition}{number}")
 
 
 def _read(path: Path, channels: Mapping[str, str] | None, reader: C3DReader | None) -> Trial:
@@ -102,9 +142,7 @@ def _read(path: Path, channels: Mapping[str, str] | None, reader: C3DReader | No
     if ending == ".c3d":
         from gaitdisc.ingest.c3d import read_c3d
 
-        # a C3D states its units itself; those of the study's map are for files that do not
-        names = {label: split_unit(said)[0] for label, said in channels.items()} if channels else None
-        return reader.read(path, names) if reader else read_c3d(path, names)
+        return reader.read(path, channels) if reader else read_c3d(path, channels)
     if ending not in READERS:
         nearest = nearest_word(ending, ENDINGS) if ending else None
         raise ReadError(

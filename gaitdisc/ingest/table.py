@@ -137,7 +137,9 @@ def _time_unit(label: str) -> str | None:
 
 def _text(raw: RawFile) -> tuple[list[str], NDArray[np.float64], float, NDArray[np.intp] | None]:
     lines = raw.lines()
-    top = next(i for i, line in enumerate(lines) if line.strip() and not line.startswith("#"))
+    top = next((i for i, line in enumerate(lines) if line.strip() and not line.startswith("#")), None)
+    if top is None:
+        raise _no_time(raw.name, "it holds comments only")
     separator, labels = _labels(lines[top], raw.name, top + 1)
     comma = separator != "," and any("," in line for line in lines[top + 1 : top + 50])
     cells = parsed_cells(lines[top + 1 :], labels, top + 2, Form(raw.name, separator, "," if comma else "."))

@@ -1,0 +1,265 @@
+"""The study: who walked, under which two conditions, in which files, and every setting of the analysis."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, model_validator
+
+from gaitdisc.errors import SchemaError
+from gaitdisc.ingest.study_rules import check_channels, check_participants, check_variables, refuse
+
+UNKNOWN = "unknown"  # condition of a trial that is listed but not used
+ANGLES = tuple(
+    f"{angle}_{side}"
+    for side in "rl"
+    for angle in ("hip_flexion", "hip_adduction", "hip_rotation", "knee_angle", "ankle_angle")
+)
+OUTPUTS = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r")
+
+Positive = Annotated[float, Field(gt=0)]
+Word = Annotated[str, Field(min_length=1, max_length=40)]
+FileName = Annotated[str, Field(min_length=1)]
+Pseudonym = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,16}$")]
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class Conditions(_Part):
+    """The two conditions, in the laboratory's own words."""
+
+    nominal: Word = Field(description="the reference condition, without the device or with it passive")
+    device: Word = Field(description="the condition with the device")
+
+
+class PlannedTrial(_Part):
+    """One walk: the files that hold it, and what the files do not say."""
+
+    condition: Word = Field(description="a word of [conditions], or 'unknown' for a trial that is not used")
+    files: tuple[FileName, ...] = Field(min_length=1, description="files of this one walk, relative to the study file")
+    speed_m_per_s: Positive | None = Field(default=None, description="walking speed of this trial [m/s]")
+    crop_s: tuple[float, float] | None = Field(
+        default=None, description="start and end of the part to use, file's clock [s]"
+    )
+
+    @model_validator(mode="after")
+    def _check(self) -> PlannedTrial:
+        if self.crop_s and self.crop_s[0] >= self.crop_s[1]:
+            refuse(
+                ("crop_s",), "a start before its end", f"found {list(self.crop_s)}", "Write [start, end] in seconds."
+            )
+        return self
+
+
+class Participant(_Part):
+    """A person, known by a pseudonym only."""
+
+    id: Pseudonym = Field(description="pseudonym: letters, digits, _ and -, at most 16")
+    excluded: str = Field(default="", description="why this person is left out of the statistics; empty if not")
+    trials: tuple[PlannedTrial, ...] = Field(default=(), description="the walks of this person")
+
+    def trials_of(self, condition: str) -> tuple[PlannedTrial, ...]:
+        """Return the trials of one condition.
+
+        Parameters
+        ----------
+        condition : str
+            A word of the study's `[conditions]`.
+        """
+        return tuple(trial for trial in self.trials if trial.condition == condition)
+
+
+class Treadmill(_Part):
+    """The belt, where strides are found from markers."""
+
+    speed_m_per_s: Annotated[float, Field(ge=0)] = Field(description="belt speed [m/s]")
+    direction: Literal["+x", "-x", "+y", "-y", "+z", "-z"] = Field(
+        default="+x", description="the direction in which the person walks, in the laboratory's axes"
+    )
+
+
+class Filters(_Part):
+    """Filters; the defaults are those of section 4.2.1."""
+
+    kinematics_hz: Positive = Field(default=6.0, description="low-pass of the joint angles [Hz]")
+    emg_highpass_hz: Positive = Field(default=40.0, description="high-pass of the EMG before it is rectified [Hz]")
+    emg_lowpass_hz: Positive = Field(default=10.0, description="low-pass of the rectified EMG [Hz]")
+    order: Literal[2, 4, 6, 8] = Field(default=4, description="order of the Butterworth filters, both passes together")
+    gap_s: Annotated[float, Field(ge=0)] = Field(default=0.1, description="longest gap that is filled [s]")
+
+
+class StrideRules(_Part):
+    """How strides are cut."""
+
+    detector: Literal["auto", "force", "markers", "angles", "events"] = Field(
+        default="auto", description="what finds initial contact: auto, force, markers, angles or events"
+    )
+    side: Literal["r", "l"] = Field(default="r", description="the foot whose contacts begin the strides")
+    min_s: Positive = Field(default=0.4, description="shortest stride [s]")
+    max_s: Positive = Field(default=2.5, description="longest stride [s]")
+
+    @model_validator(mode="after")
+    def _check(self) -> StrideRules:
+        if self.min_s >= self.max_s:
+            found = f"min_s is {self.min_s:g}, max_s {self.max_s:g}"
+            refuse(("min_s",), "a shortest stride below the longest", found, "Exchange or widen them.")
+        return self
+
+
+class Models(_Part):
+    """What the models see and predict; the defaults are those of section 4.2.2."""
+
+    angles: tuple[Word, ...] = Field(default=ANGLES, min_length=1, description="joint angles among the inputs")
+    emg: tuple[Word, ...] = Field(default=(), description="EMG among the inputs")
+    outputs: tuple[Word, ...] = Field(
+        default=OUTPUTS, min_length=1, description="variables whose second derivative is predicted"
+    )
+    hidden: Annotated[int, Field(ge=1, le=4096)] = Field(default=64, description="nodes of each hidden layer")
+    seed: Annotated[int, Field(ge=0, lt=2**32)] = Field(default=0, description="seed of every random act")
+
+
+class HeldOut(_Part):
+    """The last part of each trial, which no model sees: 30 of 240 s in section 4.2.2."""
+
+    share: Annotated[float, Field(gt=0, lt=1)] | None = Field(
+        default=0.125, description="share of the trial, the last part"
+    )
+    seconds: Positive | None = Field(default=None, description="or its length [s]; write one of the two")
+
+    @model_validator(mode="after")
+    def _check(self) -> HeldOut:
+        both = self.seconds is not None and self.share is not None and "share" in self.model_fields_set
+        if both or (self.seconds is None and self.share is None):
+            refuse(("seconds",), "either 'seconds' or 'share'", "both are there" if both else "none is", "Write one.")
+        return self
+
+    def length_s(self, duration_s: float) -> float:
+        """Return the length of the held-out part [s].
+
+        Parameters
+        ----------
+        duration_s : float
+            Length of the trial [s].
+        """
+        return self.seconds if self.seconds is not None else (self.share or 0.0) * duration_s
+
+
+class Quality(_Part):
+    """What a trial must have to be used."""
+
+    min_strides: Annotated[int, Field(ge=1)] = Field(default=10, description="fewest whole strides of a trial")
+    late_change: Literal["refuse", "report"] = Field(
+        default="refuse", description="what to do with a trial whose gait changes late: refuse or report"
+    )
+
+
+class Study(_Part):
+    """A study; frozen, with every default of the dissertation.
+
+    Examples
+    --------
+    >>> study = Study(conditions=Conditions(nominal="natural", device="exo"), participants=(Participant(id="P01"),))
+    >>> study.filters.kinematics_hz, study.models.hidden, study.one_condition_only()
+    (6.0, 64, ('P01',))
+    """
+
+    title: str = Field(default="", description="what the study is called in reports")
+    conditions: Conditions
+    treadmill: Treadmill | None = None
+    channels: dict[str, str] = Field(
+        default_factory=dict, description='label in a file = "channel name" or "channel name [unit]"'
+    )
+    filters: Filters = Filters()
+    strides: StrideRules = StrideRules()
+    models: Models = Models()
+    held_out: HeldOut = HeldOut()
+    quality: Quality = Quality()
+    participants: tuple[Participant, ...] = Field(min_length=1)
+    _folder: Path = PrivateAttr(default=Path())
+
+    @model_validator(mode="after")
+    def _check(self) -> Study:
+        check_participants(self, UNKNOWN)
+        check_channels(self.channels)
+        check_variables(self.models, self.channels)
+        return self
+
+    @property
+    def folder(self) -> Path:
+        """Folder of the study file, to which its paths are relative."""
+        return self._folder
+
+    def placed(self, folder: Path | str) -> Study:
+        """Return the same study with its file in another folder; its paths are taken from there.
+
+        Parameters
+        ----------
+        folder : Path or str
+            Folder of the study file.
+        """
+        study = self.model_copy()
+        study._folder = Path(folder)
+        return study
+
+    def path_of(self, file: str) -> Path:
+        """Return where a file of the study lies.
+
+        Parameters
+        ----------
+        file : str
+            As written in the study.
+        """
+        return self._folder / file
+
+    def participant(self, subject: str) -> Participant:
+        """Return a participant.
+
+        Parameters
+        ----------
+        subject : str
+            Pseudonym.
+
+        Raises
+        ------
+        SchemaError
+            If the study has none of that pseudonym.
+        """
+        found = next((each for each in self.participants if each.id == subject), None)
+        if found is None:
+            ids = ", ".join(each.id for each in self.participants)
+            raise SchemaError("a participant of the study is needed", f"{subject!r} is none", f"Use one of: {ids}.")
+        return found
+
+    def complete(self) -> tuple[Participant, ...]:
+        """Participants with trials of both conditions who are not excluded."""
+        lacking = set(self.one_condition_only())
+        return tuple(each for each in self.participants if each.id not in lacking and not each.excluded)
+
+    def one_condition_only(self) -> tuple[str, ...]:
+        """Pseudonyms of those who lack a trial of one of the two conditions."""
+        both = (self.conditions.nominal, self.conditions.device)
+        return tuple(each.id for each in self.participants if not all(each.trials_of(word) for word in both))
+
+    def missing_files(self) -> tuple[str, ...]:
+        """Files that the study names and that are not there, as written in it."""
+        named = (file for each in self.participants for trial in each.trials for file in trial.files)
+        return tuple(file for file in dict.fromkeys(named) if not self.path_of(file).is_file())
+
+    def check_files(self) -> None:
+        """Refuse a study whose files are not all there.
+
+        Raises
+        ------
+        SchemaError
+            If files are missing; all of them are named.
+        """
+        missing = self.missing_files()
+        if missing:
+            raise SchemaError(
+                "all files of the study must be there, relative to the study file",
+                f"{len(missing)} missing: {', '.join(missing)}",
+                "Correct the names in [[participants.trials]], or copy the files there.",
+            )

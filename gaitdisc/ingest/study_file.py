@@ -1,0 +1,188 @@
+"""The study file `study.toml`: loaded with every slip named, written with every default and what it means."""
+
+from __future__ import annotations
+
+import json
+import os
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from gaitdisc.errors import SchemaError
+from gaitdisc.ingest.raw_file import read_raw
+from gaitdisc.ingest.study import Study
+from gaitdisc.ingest.study_errors import schema_error
+from gaitdisc.ingest.whole_file import write_whole
+
+_TOP = """\
+# A study of gaitdisc. Every setting stands here with its default; paths are relative to this file.
+# Participants have pseudonyms only; whoever keeps the key keeps it elsewhere.
+"""
+
+
+def load_study(path: Path | str) -> Study:
+    """Study of a file, or of the `study.toml` in a folder.
+
+    Parameters
+    ----------
+    path : Path or str
+        The study file, or its folder.
+
+    Returns
+    -------
+    Study
+        Frozen; the files it names are not opened.
+
+    Raises
+    ------
+    ReadError
+        If there is no such file.
+    SchemaError
+        If the file is no TOML, or a key, a word, a number or a name in it is wrong.
+
+    Examples
+    --------
+    >>> load_study("study.toml").conditions.device  # doctest: +SKIP
+    'exotendon'
+    """
+    path = Path(path)
+    if path.is_dir():
+        path = path / "study.toml"
+    raw = read_raw(path)
+    text = "\n".join(raw.lines())
+    try:
+        content = tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise SchemaError(
+            f"{raw.name} must be a TOML file",
+            f"it says: {str(error)[:200]}",
+            "Correct that line: text in quotes, numbers without, lists in brackets.",
+        ) from error
+    try:
+        as_json = json.dumps(content, default=str)  # JSON, since strict validation takes its lists for tuples
+        return Study.model_validate_json(as_json).placed(path.parent)
+    except ValidationError as error:
+        raise schema_error(error, Study, text, raw.name) from error
+
+
+def write_study(study: Study, path: Path | str) -> Path:
+    """Write a study file with every default and a word on each key, whole or not at all.
+
+    Parameters
+    ----------
+    study : Study
+        What to write; its paths are made relative to the new file where they were relative to another one.
+    path : Path or str
+        The study file, or its folder.
+
+    Returns
+    -------
+    Path
+        The study file.
+
+    Raises
+    ------
+    WriteError
+        If the file cannot be written.
+
+    Examples
+    --------
+    >>> write_study(study, "study.toml")  # doctest: +SKIP
+    PosixPath('study.toml')
+    """
+    path = Path(path)
+    if path.is_dir():
+        path = path / "study.toml"
+    return write_whole(path, study_text(study, path.parent))
+
+
+def study_text(study: Study, folder: Path | None = None) -> str:
+    """Text of a study file.
+
+    Parameters
+    ----------
+    study : Study
+        What to write.
+    folder : Path, optional
+        Folder of the new file; that of the study by default.
+
+    Examples
+    --------
+    >>> print(study_text(study))  # doctest: +SKIP
+    """
+    parts = [_TOP + _pair(study, "title")]
+    for key in ("conditions", "treadmill", "channels", "filters", "strides", "models", "held_out", "quality"):
+        value = getattr(study, key)
+        about = (type(value).__doc__ or "").split("\n")[0] if isinstance(value, BaseModel) else ""
+        if value is None:
+            parts.append(f"# [{key}]\n# speed_m_per_s = 1.3  # belt speed [m/s], for strides found from markers\n")
+        elif isinstance(value, BaseModel):
+            pairs = "".join(_pair(value, name) for name in type(value).model_fields)
+            parts.append(f"# {about}\n[{key}]\n{pairs}")
+        else:
+            about = type(study).model_fields[key].description
+            pairs = "".join(f"{_string(label)} = {_string(name)}\n" for label, name in value.items())
+            parts.append(f"# {about}\n[{key}]\n{pairs}")
+    told = False  # each key is explained where it stands first
+    for participant in study.participants:
+        text = f"[[participants]]\n{_pairs(participant, ('id', 'excluded'), told)}"
+        for trial in participant.trials:
+            files = tuple(_moved(file, study.folder, folder) for file in trial.files)
+            moved = trial.model_copy(update={"files": files})
+            text += f"\n[[participants.trials]]\n{_pairs(moved, tuple(type(moved).model_fields), told)}"
+            told = True
+        parts.append(text)
+    return "\n".join(parts)
+
+
+def _pairs(part: BaseModel, names: tuple[str, ...], told: bool) -> str:
+    if not told:
+        return "".join(_pair(part, name) for name in names)
+    values = {name: getattr(part, name) for name in names}
+    return "".join(f"{name} = {_value(value)}\n" for name, value in values.items() if value not in (None, ""))
+
+
+def _pair(part: BaseModel, name: str) -> str:
+    value = getattr(part, name)
+    about = type(part).model_fields[name].description
+    unused = value is None or (name == "share" and getattr(part, "seconds", None) is not None)
+    example = {"speed_m_per_s": 1.3, "crop_s": (10.0, 250.0), "seconds": 30.0, "share": 0.125}.get(name)
+    text = f"{name} = {_value(example if unused else value)}"
+    if "\n" in text:
+        return f"# {about}\n{text}\n"
+    return f"{'# ' if unused else ''}{text}  # {about}\n"
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, str):
+        return _string(value)
+    if isinstance(value, tuple):
+        items = [_value(item) for item in value]
+        one_line = f"[{', '.join(items)}]"
+        return one_line if len(one_line) <= 90 else "[\n" + "".join(f"    {item},\n" for item in items) + "]"
+    return repr(value)
+
+
+def _string(text: str) -> str:
+    """Basic string of TOML; JSON's escapes are among TOML's."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _moved(file: str, old: Path, new: Path | None) -> str:
+    if new is None or Path(file).is_absolute() or old.resolve() == new.resolve():
+        return file
+    return Path(os.path.relpath((old / file).resolve(), new.resolve())).as_posix()
+
+
+def study_schema() -> Mapping[str, Any]:
+    """JSON Schema of the study file, as it stands in `data_schema/study.schema.json`.
+
+    Examples
+    --------
+    >>> study_schema()["title"]
+    'Study'
+    """
+    return Study.model_json_schema()

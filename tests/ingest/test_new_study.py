@@ -1,0 +1,98 @@
+"""A draft of a study from real folders and from made ones."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from gaitdisc.channel import Channel, vocabulary
+from gaitdisc.errors import ReadError
+from gaitdisc.ingest.new_study import found_study
+from gaitdisc.ingest.reading import read_planned_trial
+from gaitdisc.ingest.storage import write_storage
+from gaitdisc.ingest.study import ANGLES
+from gaitdisc.ingest.study_file import load_study, write_study
+from gaitdisc.recording import Recording
+
+TIME = np.arange(300) / 100
+CHANNELS = tuple(c for c in vocabulary().channels if c.name in (*ANGLES, "mtp_angle_r", "lumbar_bending"))
+
+
+def _walk(path, emg=False, channels=CHANNELS):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    values = np.column_stack([30 * np.sin(6 * TIME + i) * (c.name != "mtp_angle_r") for i, c in enumerate(channels)])
+    write_storage(Recording(TIME, values, channels), path)
+    if emg:
+        muscle = Channel("emg_sol_r", "emg", "1", "r")
+        write_storage(Recording(TIME, values[:, :1] / 30, (muscle,)), path.with_name(path.stem + "_emg.sto"))
+
+
+def test_the_draft_of_a_real_folder_can_be_used_as_it_is(gait_data, tmp_path):
+    study, notes = found_study(gait_data / "exotendon_run", tmp_path)
+    study = load_study(write_study(study, tmp_path))
+    assert (study.conditions.nominal, study.conditions.device) == ("natural", "exotendon")
+    assert [each.id for each in study.participants] == ["P01", "welk002"]
+    assert [each.id for each in study.complete()] == ["P01"]
+    assert study.one_condition_only() == ("welk002",)
+    assert study.models.angles == ANGLES
+    assert study.missing_files() == ()
+    text = "\n".join(notes)
+    assert "condition unknown, listed but not used: welk002/manual_ik.mot" in text
+    assert "knee_angle_l_beta" in text and "mtp_angle_r" in text and "one condition only" in text
+    trial = read_planned_trial(study, study.participants[0], study.participants[0].trials[1])
+    assert trial.name == "P01 exotendon" and len(trial.streams["kinematics"].time) == 5992
+
+
+def test_files_of_one_walk_are_found_together(gait_data):
+    study, notes = found_study(gait_data / "opensim_walks" / "mrs_emg_walking")
+    (trial,) = study.participants[0].trials
+    assert len(trial.files) == 5
+    assert len(study.models.emg) == 24
+    assert {"emg_sol_r", "emg_rf_r"} < set(study.models.outputs)
+    assert any("no file or folder name tells" in note for note in notes)
+
+
+def test_folders_become_people_and_names_pseudonyms(tmp_path):
+    for person in ("Anna", "S02"):
+        for condition in ("noexo", "exo"):
+            _walk(tmp_path / "raw" / person / f"{condition}.mot", emg=True)
+    (tmp_path / "raw" / "S02" / "broken_exo.mot").write_text("nothing")
+    study, notes = found_study(tmp_path / "raw", tmp_path / "study")
+    assert {each.id for each in study.participants} == {"P01", "S02"}
+    assert study.one_condition_only() == ()
+    assert study.participant("S02").trials[0].files == ("../raw/S02/noexo.mot", "../raw/S02/noexo_emg.sto")
+    assert study.models.emg == ("emg_sol_r",)
+    assert "emg_sol_r" in study.models.outputs
+    text = "\n".join(notes)
+    assert "no pseudonyms became P01" in text
+    assert "left out: S02/broken_exo.mot: broken_exo.mot should be an OpenSim storage file" in text
+    assert "mtp_angle_r" in text and "lumbar_bending" in text
+
+
+def test_angles_that_not_all_have_and_several_words_are_told(tmp_path):
+    _walk(tmp_path / "S1_baseline.mot")
+    _walk(tmp_path / "S1_nominal.mot", channels=CHANNELS[:6])
+    _walk(tmp_path / "S1_exo.mot", emg=True)
+    study, notes = found_study(tmp_path)
+    assert study.models.emg == ()
+    assert set(study.models.angles) == {channel.name for channel in CHANNELS[:6]} & set(ANGLES)
+    text = "\n".join(notes)
+    assert "baseline, nominal are all taken as 'baseline'" in text
+    assert "EMG in 1 of 3 trials only" in text
+    assert "left out because not every trial has them" in text
+
+
+def test_files_that_do_not_go_together_are_told(tmp_path):
+    _walk(tmp_path / "S1" / "exo_ik.mot")
+    _walk(tmp_path / "S1" / "exo_coordinates.mot")
+    study, notes = found_study(tmp_path)
+    assert len(study.participants[0].trials[0].files) == 1
+    assert any("both have" in note for note in notes)
+
+
+def test_folders_without_recordings_are_refused(tmp_path):
+    with pytest.raises(ReadError, match="a folder of recordings is needed, none is none"):
+        found_study(tmp_path / "none")
+    (tmp_path / "a.mot").write_text("x")
+    with pytest.raises(ReadError, match=r"none there can be read; left out: a\.mot"):
+        found_study(tmp_path)

@@ -1,0 +1,99 @@
+"""Several files of one walk become one trial."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from gaitdisc.errors import ChannelError, ReadError, SamplingError
+from gaitdisc.ingest.reading import read_planned_trial, read_trial
+from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
+
+
+def _csv(folder, name, header, rate=100.0, count=50, start=0.0):
+    rows = "".join(
+        ",".join([repr(start + i / rate), *["1"] * header.count(",")]) + "\n" for i in range(count)
+    )  # fmt: skip
+    (folder / name).write_text(header + "\n" + rows)
+    return folder / name
+
+
+def test_real_files_of_one_walk(gait_data):
+    folder = gait_data / "opensim_walks" / "mrs_emg_walking"
+    names = ["IK_gait.mot", "GRF_gait.mot", "EMG_gait.mot", "ID_gait.sto", "TRC_gait.trc"]
+    trial = read_trial([folder / name for name in names], subject="P01", condition="natural", crop_s=(1.06, 3.2))
+    assert {key: r.rate_hz for key, r in trial.streams.items()} == {
+        "kinematics": 100,
+        "forces": 1000,
+        "emg": 1000,
+        "moments": 100,
+        "markers": 100,
+    }
+    assert all(r.subject == "P01" and r.condition == "natural" for r in trial.streams.values())
+    assert trial.streams["emg"].time[0] == pytest.approx(1.06)
+    together = trial.on_one_base(100.0, ("kinematics", "emg"))
+    assert together.values.shape == (214, 37 + 24)
+
+
+def test_a_real_c3d_goes_with_the_others(gait_data):
+    trial = read_trial(gait_data / "opensim_walks" / "c3d_walk_noemg" / "walking2.c3d", subject="P01")
+    assert trial.streams["markers"].rate_hz == 250
+    assert trial.subject == "P01"
+
+
+def test_columns_on_one_base_are_joined_and_the_sources_named(tmp_path):
+    paths = [_csv(tmp_path, "l.csv", "time,emg_sol_l"), _csv(tmp_path, "r.csv", "time,emg_sol_r,knee_angle_r")]
+    trial = read_trial(paths)
+    assert trial.streams["emg"].names == ("emg_sol_l", "emg_sol_r")
+    assert trial.streams["emg"].source.file == "l.csv + r.csv"
+    assert len(trial.streams["emg"].source.sha256) == 129
+    assert trial.streams["kinematics"].source.file == "r.csv"
+
+
+def test_what_cannot_be_joined_is_refused(tmp_path):
+    one = _csv(tmp_path, "a.csv", "time,emg_sol_l")
+    with pytest.raises(
+        SamplingError, match=r"a\.csv and b\.csv have 50 samples from 0 s at 100 Hz and 50 from 0 s at 200"
+    ):
+        read_trial([one, _csv(tmp_path, "b.csv", "time,emg_sol_r", 200.0)])
+    with pytest.raises(ChannelError, match=r"a\.csv and b\.csv both have 'emg_sol_l' \(1 in all\)"):
+        read_trial([one, _csv(tmp_path, "b.csv", "time,emg_sol_l")])
+    trial = read_trial([_csv(tmp_path, "a.csv", "time,x [V]"), _csv(tmp_path, "b.csv", "time,y [V]", 200.0)])
+    assert trial.streams["signals"].names == ("x",)
+    assert "y left out: their time base differs" in trial.findings[0].what
+
+
+def test_unknown_endings_are_refused_with_the_list(tmp_path):
+    with pytest.raises(
+        ReadError, match=r"known endings are \.c3d, \.mot, .*; its ending is '\.cvs', the nearest is '\.csv'"
+    ):
+        read_trial(tmp_path / "walk.cvs")
+    with pytest.raises(ReadError, match=r"walk is to be read; .* its ending is ''"):
+        read_trial(tmp_path / "walk")
+    with pytest.raises(ReadError, match="a trial needs a file"):
+        read_trial([])
+
+
+def test_the_crop_keeps_its_part_and_must_lie_inside(tmp_path):
+    path = _csv(tmp_path, "a.csv", "time,knee_angle_r")
+    walk = read_trial(path, crop_s=(0.1, 0.2)).streams["kinematics"]
+    np.testing.assert_allclose(walk.time, np.arange(10, 20) / 100)
+    with pytest.raises(SamplingError, match=r"crop from 5 to 6 s must lie inside .*; they last from 0 to 0\.49 s"):
+        read_trial(path, crop_s=(5, 6))
+
+
+def test_labels_of_the_study_that_no_file_has_are_told(tmp_path):
+    path = _csv(tmp_path, "a.csv", "time,ch 1")
+    trial = read_trial(path, {"ch 1": "emg_sol_r", "ch 2": "emg_sol_l"})
+    assert [f.what for f in trial.findings] == ["[channels] names 'ch 2', which no file of this trial has"]
+
+
+def test_a_planned_trial_has_the_name_of_the_plan(tmp_path):
+    _csv(tmp_path, "a.csv", "time,ch 1")
+    trials = tuple(PlannedTrial(condition="natural", files=("a.csv",), crop_s=(0.1 * i, 0.4)) for i in range(2))
+    person = Participant(id="P07", trials=trials)
+    conditions = Conditions(nominal="natural", device="exo")
+    study = Study(conditions=conditions, channels={"ch 1": "emg_sol_r"}, participants=(person,)).placed(tmp_path)
+    trial = read_planned_trial(study, person, person.trials[1])
+    assert (trial.name, trial.subject, trial.condition) == ("P07 natural 2", "P07", "natural")
+    assert trial.streams["emg"].time[0] == pytest.approx(0.1)

@@ -1,0 +1,205 @@
+"""OpenSim storage files: real ones of every dialect, and the round trip of ours."""
+
+from __future__ import annotations
+
+import hashlib
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from gaitdisc.channel import Channel, vocabulary
+from gaitdisc.errors import ChannelError, ReadError, SamplingError, UnitError
+from gaitdisc.ingest.storage import read_storage, write_storage
+from gaitdisc.recording import Recording
+
+BODY = "time\tknee_angle_r\tpelvis_tx\n" + "".join(f"{i / 100}\t{30 + 30 * np.sin(i)}\t{i}\n" for i in range(60))
+HEAD = "Coordinates\nversion=1\nnRows=60\nnColumns=3\ninDegrees=yes\nendheader\n"
+
+
+def _written(tmp_path, text, name="walk.mot"):
+    path = tmp_path / name
+    path.write_text(text)
+    return path
+
+
+def test_degrees_of_a_real_ik_file(gait_data):
+    path = gait_data / "exotendon_run" / "c3d_Trimmed_running_natural2_manual_scaling_ik.mot"
+    trial = read_storage(path)
+    walk = trial.streams["kinematics"]
+    assert walk.values.shape == (6047, 39)
+    assert walk.rate_hz == 100.0
+    assert walk["hip_flexion_r"][0] == 32.63556900
+    assert walk["pelvis_tx"][-1] == 1.12326431
+    assert walk.channels[walk.index("mtp_angle_l")].unit == "deg"
+    # the copied coordinate stands in radians in this file of degrees
+    np.testing.assert_allclose(walk["knee_angle_r_beta"], walk["knee_angle_r"], atol=0.01)
+    assert walk.source.sha256 == hashlib.sha256(path.read_bytes()).hexdigest()
+    assert [finding.kind for finding in trial.findings] == ["mixed units"]
+
+
+def test_radians_paths_and_a_wrong_count_of_a_moco_file(gait_data):
+    trial = read_storage(gait_data / "opensim_walks" / "moco_3dwalking" / "coordinates.sto")
+    walk = trial.streams["kinematics"]
+    assert walk.values.shape == (1350, 31)
+    assert walk["hip_flexion_r"][0] == pytest.approx(np.degrees(0.3965801380677928))
+    assert walk["pelvis_tx"][0] == 0.00987536
+    np.testing.assert_allclose(walk["knee_angle_r_beta"], walk["knee_angle_r"], atol=0.01)  # in degrees in this one
+    assert any("claims 40 columns, 32 are there" in finding.what for finding in trial.findings)
+
+
+def test_simm_header_trailing_tabs_and_capital_time_of_an_emg_file(gait_data):
+    trial = read_storage(gait_data / "opensim_walks" / "mrs_emg_walking" / "EMG_gait.mot")
+    emg = trial.streams["emg"]
+    assert emg.values.shape == (4610, 24)
+    assert emg["emg_hamlat_r"][0] == -0.3956014228  # not shifted by the tab at the end of its line
+    assert emg["emg_rf_r"][0] == -0.0420625351
+    assert {channel.unit for channel in emg.channels} == {"1"}
+    assert (emg.rate_hz, emg.time[0], emg.time[-1]) == (1000.0, 0.001, 4.61)
+
+
+def test_emg_without_sides(gait_data):
+    trial = read_storage(
+        gait_data / "opensim_walks" / "moco_3dwalking" / "electromyography.sto", {"soleus": "emg_sol_r"}
+    )
+    emg = trial.streams["emg"]
+    assert emg.names[:2] == ("emg_sol_r", "emg_gas")
+    assert emg["emg_sol_r"][0] == 9.669363727051634438e-03
+    assert emg.rate_hz == 2000.0
+    assert any("the label tells no side" in finding.what for finding in trial.findings)
+
+
+def test_ground_forces_of_both_naming_habits(gait_data):
+    folder = gait_data / "opensim_walks"
+    one = read_storage(folder / "moco_3dwalking" / "grf_walk.mot").streams["forces"]
+    assert one["ground_force_r_px"][0] == 331.7057913303967
+    assert one["ground_force_r_vy"].max() == pytest.approx(942.327988, abs=1e-6)
+    trial = read_storage(folder / "mrs_emg_walking" / "GRF_gait.mot")
+    other = trial.streams["forces"]
+    assert other["ground_force_l_vy"].max() == pytest.approx(671.671639, abs=1e-6)  # called 1_ground_force_vy
+    assert [c.unit for c in other.channels if c.name.endswith(("_py", "_x"))] == ["m", "m", "N m", "N m"]
+    assert any("as the right foot" in finding.what for finding in trial.findings)
+
+
+def test_joint_moments(gait_data):
+    trial = read_storage(gait_data / "opensim_walks" / "moco_3dwalking" / "id_walk.sto")
+    moments = trial.streams["moments"]
+    assert moments["knee_angle_r_moment"][0] == -64.24946116
+    units = {channel.name: channel.unit for channel in moments.channels}
+    assert (units["pelvis_tx_force"], units["pelvis_tilt_moment"]) == ("N", "N m")
+
+
+def test_treadmill_files_have_their_published_length(gait_data):
+    walk = read_storage(gait_data / "treadmill_walk_ik" / "S01DE504_ik.mot").streams["kinematics"]
+    assert len(walk.time) == 2100
+    assert walk["pelvis_tilt"][0] == -3.26085957
+
+
+KNOWN = [channel for channel in vocabulary().channels if channel.quantity != "emg"]
+EMG = [Channel(c.name, "emg", unit, c.side) for c in vocabulary().channels[-60:] for unit in ("V", "1")]
+OWN = [
+    Channel("sync pulse", "signal", "V"),
+    Channel("RHEE.x", "marker", "m"),
+    Channel("strain", "signal", "deg/s"),
+    Channel("device_angle_r", "angle", "deg", "r"),
+    Channel("m=1 [x]", "signal", "1"),
+    Channel("ground_force_r_vx_", "force", "N/kg", "r"),
+]
+
+
+@st.composite
+def recordings(draw):
+    names = st.lists(st.sampled_from([*KNOWN, *EMG, *OWN]), min_size=1, max_size=6, unique_by=lambda c: c.name)
+    channels = draw(names)
+    count = draw(st.integers(2, 8))
+    rate = draw(st.sampled_from([60.0, 100.0, 148.148, 2000.0]))
+    values = draw(arrays(float, (count, len(channels)), elements=st.floats(-1e6, 1e6)))
+    if draw(st.booleans()):
+        column = draw(st.integers(0, len(channels) - 1))
+        if "force" not in channels[column].quantity:
+            values[draw(st.integers(0, count - 1)), column] = np.nan
+    return Recording(draw(st.sampled_from([0.0, 0.45, 12.3])) + np.arange(count) / rate, values, tuple(channels))
+
+
+@given(recordings())
+def test_round_trip(tmp_path_factory, recording):
+    path = write_storage(recording, tmp_path_factory.mktemp("rt") / "walk.sto")
+    streams = read_storage(path).streams.values()
+    back = {c.name: (c, stream[c.name], stream.time) for stream in streams for c in stream.channels}
+    assert set(back) == set(recording.names)
+    for channel in recording.channels:
+        found, values, time = back[channel.name]
+        assert found == channel
+        np.testing.assert_array_equal(values, recording[channel.name])
+        np.testing.assert_array_equal(time, recording.time)
+
+
+def test_the_writer_states_degrees_and_refuses_names_with_tabs(tmp_path):
+    recording = Recording(np.arange(3.0), np.zeros((3, 1)), (Channel("a\tb", "signal", "1"),))
+    with pytest.raises(ChannelError, match="without tabs"):
+        write_storage(recording, tmp_path / "a.mot")
+    path = write_storage(Recording(np.arange(3.0), np.zeros((3, 1)), (KNOWN[6],)), tmp_path / "a.mot")
+    assert "inDegrees=yes\nendheader\ntime\thip_flexion_r\n0.0\t0.0" in path.read_text()
+
+
+def test_translations_are_never_scaled(tmp_path):
+    radians = BODY.replace("knee_angle_r", "mtp_angle_r")
+    text = HEAD.replace("yes", "no") + "\n".join(
+        line if i == 0 or not line else "\t".join([line.split("\t")[0], "0.5", line.split("\t")[2]])
+        for i, line in enumerate(radians.split("\n"))
+    )
+    walk = read_storage(_written(tmp_path, text)).streams["kinematics"]
+    assert walk["mtp_angle_r"][0] == pytest.approx(np.degrees(0.5))
+    assert walk["pelvis_tx"][-1] == 59.0
+
+
+def test_a_silent_header_is_judged_or_refused(tmp_path):
+    silent = HEAD.replace("inDegrees=yes\n", "")
+    trial = read_storage(_written(tmp_path, silent + BODY))
+    assert any(finding.kind == "unit judged" and "taken as deg" in finding.what for finding in trial.findings)
+    still = "time\tknee_angle_r\tpelvis_tx\n" + "".join(f"{i / 100}\t0.5\t0\n" for i in range(60))
+    with pytest.raises(UnitError, match=r"walk\.mot must state degrees or radians"):
+        read_storage(_written(tmp_path, silent + still))
+
+
+@pytest.mark.parametrize(
+    ("change", "kind", "words"),
+    [
+        (lambda t: t.replace("inDegrees=yes", "inDegrees=no"), UnitError, "knee_angle_r reaches"),
+        (
+            lambda t: t[: t.index("0.3\t")],
+            ReadError,
+            r"should have 60 rows .*; it ends after 30, at line 37\. The file was",
+        ),
+        (lambda t: t[: t.index("0.3\t") + 12], ReadError, "needs 3 cells, one a column; line 38, the last line has 2"),
+        (
+            lambda t: t.replace("0.3\t", "0.305\t"),
+            SamplingError,
+            "between line 37 and line 38|between line 38 and line 39",
+        ),
+        (lambda t: t.replace("0.3\t", "abc\t"), ReadError, "line 38, column 'time'; found 'abc'"),
+        (lambda t: t.replace("pelvis_tx", "knee_angle_r"), ChannelError, "'knee_angle_r' in columns 2 and 3"),
+        (lambda t: "\x00" + t, ReadError, "binary data"),
+        (lambda t: t.split("time")[0], ReadError, "needs a line of labels"),
+        (lambda t: t.split("0.0\t")[0], ReadError, "none follow line 7"),
+    ],
+)
+def test_bad_files_are_refused_with_the_place(tmp_path, change, kind, words):
+    with pytest.raises(kind, match=words) as refusal:
+        read_storage(_written(tmp_path, change(HEAD + BODY)))
+    assert "walk.mot" in str(refusal.value)
+
+
+def test_a_last_number_that_was_cut_is_refused_where_all_lines_are_of_one_width(tmp_path):
+    rows = "".join(f"{i / 100:12.8f}\t{40 * np.sin(i):14.8f}\n" for i in range(60))
+    text = "Coordinates\ninDegrees=yes\nendheader\ntime\tknee_angle_r\n" + rows
+    read_storage(_written(tmp_path, text[:-1]))
+    with pytest.raises(ReadError, match=r"every line has 27 characters; the last one, line 64, stops after 24"):
+        read_storage(_written(tmp_path, text[:-4]))
+
+
+def test_more_rows_than_the_header_claims_are_told(tmp_path):
+    trial = read_storage(_written(tmp_path, (HEAD + BODY).replace("nRows=60", "nRows=50")))
+    assert [finding.what for finding in trial.findings] == ["the header claims 50 rows, 60 are there"]

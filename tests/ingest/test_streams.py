@@ -1,0 +1,65 @@
+"""Columns into streams; missing forces are refused, other gaps are told."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from gaitdisc.channel import Channel, vocabulary
+from gaitdisc.errors import ChannelError, ReadError
+from gaitdisc.ingest.columns import named_channel
+from gaitdisc.ingest.streams import sorted_trial, stream_of
+from gaitdisc.recording import Source
+
+TIME = np.arange(5) / 100
+SOURCE = Source("walk.mot", "0" * 64, "mot")
+
+
+def _trial(*names, values=None):
+    table = np.ones((5, len(names))) if values is None else values
+    return sorted_trial(SOURCE, TIME, table, [named_channel(name) for name in names])
+
+
+def test_every_channel_of_the_vocabulary_has_its_stream():
+    streams = {channel.name: stream_of(channel) for channel in vocabulary().channels}
+    assert streams["knee_angle_r"] == streams["pelvis_tx"] == "kinematics"
+    assert streams["ground_force_r_vy"] == streams["ground_force_r_px"] == streams["ground_torque_r_y"] == "forces"
+    assert streams["knee_angle_r_moment"] == "moments"
+    assert streams["emg_sol_r"] == "emg"
+
+
+def test_one_file_gives_several_streams_on_one_base():
+    trial = _trial("knee_angle_r", "emg_sol_r", "RHEE.x", "sync")
+    assert set(trial.streams) == {"kinematics", "emg", "markers", "signals"}
+    assert trial.name == "walk"
+    assert trial.streams["emg"].source == SOURCE
+
+
+@pytest.mark.parametrize("name", ["ground_force_r_vx", "ground_force_r_vy", "pelvis_tx_force"])
+def test_nan_in_a_force_is_refused_with_sample_and_time(name):
+    values = np.ones((5, 1))
+    values[2:4] = np.nan
+    with pytest.raises(
+        ReadError, match=rf"{name} needs a number .*; 2 of 5 are missing, .* sample 3 at t = 0\.02 s\. Exp"
+    ):
+        _trial(name, values=values)
+
+
+def test_gaps_elsewhere_are_told_with_their_spans():
+    values = np.ones((5, 5))
+    values[1, 0] = values[3:, 0] = np.nan
+    values[0, 1] = np.nan
+    values[2, 2] = values[3, 3] = np.nan
+    values[:, 4] = np.nan
+    trial = _trial("knee_angle_r", "ground_force_r_px", "RHEE.x", "RHEE.y", "emg_sol_r", values=values)
+    knee, pressure, heel, emg = trial.findings
+    assert knee.spans == ((0.01, 0.01), (0.03, 0.04))
+    assert "3 of 5 samples missing, the longest gap 2 samples" in knee.what
+    assert (pressure.severity, knee.severity) == ("note", "warning")
+    assert heel.channel == "RHEE" and "2 of 5" in heel.what
+    assert emg.spoils == "the whole channel"
+
+
+def test_two_columns_of_one_channel_are_refused():
+    with pytest.raises(ChannelError, match=r"walk\.mot has 'sync' in columns 2 and 4"):
+        sorted_trial(SOURCE, TIME, np.ones((5, 3)), [Channel(n, "signal", "1") for n in ("sync", "a", "sync")])

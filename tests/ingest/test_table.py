@@ -1,0 +1,133 @@
+"""CSV and Parquet: units stated or known, and the round trip."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from gaitdisc.channel import Channel, vocabulary
+from gaitdisc.errors import ReadError, SamplingError, UnitError
+from gaitdisc.ingest.table import read_table, write_table
+from gaitdisc.recording import Recording
+
+CHANNELS = [
+    *vocabulary().channels,
+    Channel("emg_sol_x", "emg", "1"),
+    Channel("sync, pulse", "signal", "V"),
+    Channel('say "x" [y]', "signal", "N"),
+    Channel("RHEE.x", "marker", "m"),
+    Channel("exo_r", "angle", "deg", "r"),
+    Channel("pelvis_tx_force", "force", "N"),
+]
+
+
+def _read(tmp_path, text, channels=None, name="walk.csv"):
+    path = tmp_path / name
+    path.write_text(text, encoding="utf-8")
+    return read_table(path, channels)
+
+
+@st.composite
+def recordings(draw):
+    channels = draw(st.lists(st.sampled_from(CHANNELS), min_size=1, max_size=6, unique_by=lambda c: c.name))
+    count, rate = draw(st.integers(2, 8)), draw(st.sampled_from([60.0, 100.0, 148.148]))
+    values = draw(arrays(float, (count, len(channels)), elements=st.floats(-1e6, 1e6)))
+    if "force" not in channels[0].quantity and draw(st.booleans()):
+        values[0, 0] = np.nan
+    return Recording(draw(st.sampled_from([0.0, 3.3])) + np.arange(count) / rate, values, tuple(channels))
+
+
+@pytest.mark.parametrize("ending", ["csv", "parquet"])
+@given(recordings())
+def test_round_trip(tmp_path_factory, ending, recording):
+    path = write_table(recording, tmp_path_factory.mktemp("rt") / f"walk.{ending}")
+    streams = read_table(path).streams.values()
+    back = {c.name: (c, stream[c.name], stream.time) for stream in streams for c in stream.channels}
+    assert set(back) == set(recording.names)
+    for channel in recording.channels:
+        found, values, time = back[channel.name]
+        assert found == channel
+        np.testing.assert_array_equal(values, recording[channel.name])
+        np.testing.assert_array_equal(time, recording.time)
+
+
+def test_units_are_converted_and_known_names_need_none(tmp_path):
+    text = "Time,ankle_angle_r,Sol_r [mV],pelvis_tx [mm],load [kN]\n0,10,1,1000,2\n0.01,12,2,1001,3\n0.02,13,2,1002,4\n"
+    trial = _read(tmp_path, text)
+    np.testing.assert_allclose(trial.streams["kinematics"]["pelvis_tx"], [1.0, 1.001, 1.002], rtol=1e-15)
+    assert trial.streams["emg"]["emg_sol_r"].tolist() == [0.001, 0.002, 0.002]
+    assert trial.streams["signals"]["load"].tolist() == [2000, 3000, 4000]
+    assert trial.streams["kinematics"].channels[0].unit == "deg"
+
+
+def test_semicolons_decimal_commas_milliseconds_and_comments(tmp_path):
+    trial = _read(tmp_path, "# from the lab\n#\ntime [ms];knee_angle_r\n0;1,5\n10;2,5\n20;3\n")
+    assert trial.streams["kinematics"]["knee_angle_r"].tolist() == [1.5, 2.5, 3.0]
+    np.testing.assert_allclose(trial.streams["kinematics"].time, [0, 0.01, 0.02])
+
+
+def test_the_study_names_and_units(tmp_path):
+    text = "time_s\tch1\tch2\n0\t1\t2\n1\t3\t4\n"
+    trial = _read(tmp_path, text, {"ch1": "emg_sol_r [mV]", "ch2": "knee_angle_r"}, "a.tsv")
+    assert trial.streams["emg"]["emg_sol_r"].tolist() == [0.001, 0.003]
+    assert trial.streams["kinematics"]["knee_angle_r"].tolist() == [2, 4]
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "words"),
+    [
+        (
+            "time,foo\n0,1\n1,2\n",
+            UnitError,
+            r"column 'foo' needs a unit; neither .*\. Write 'foo \[unit\]' in the header",
+        ),
+        ("time,Sol_r\n0,1\n1,2\n", UnitError, 'it seems to be emg_sol_r.*"Sol_r" = "emg_sol_r \\[unit\\]"'),
+        ("time,foo [furlong]\n0,1\n1,2\n", UnitError, "column 'foo \\[furlong\\]' needs a unit of the closed list"),
+        ("knee_angle_r,hip\n0,1\n", ReadError, r"needs a column 'time \[s\]' .*; line 1 is 'knee_angle_r,hip'"),
+        ("time [h],knee_angle_r\n0,1\n", ReadError, r"needs a column 'time \[s\]'"),
+        ("time,,a\n0,1,2\n", ReadError, "column 2 has none"),
+        ("time,\n0,1\n", ReadError, "column 2 has none"),
+        ("time,knee_angle_r\n0,1\n1,x\n", ReadError, "line 3, column 'knee_angle_r'; found 'x'"),
+        ("time,knee_angle_r\n0,1\n1,2\n3,2\n", SamplingError, "needs a constant rate; between line"),
+        ("time,ground_force_r_vy\n0,1\n1,\n", ReadError, "ground_force_r_vy needs a number in every sample"),
+        ("time,knee_angle_r\n", ReadError, "none follow line 1"),
+        ("# nothing\n", ReadError, "walk.csv"),
+    ],
+)
+def test_bad_tables_are_refused_in_words(tmp_path, text, kind, words):
+    with pytest.raises(kind, match=words) as refusal:
+        _read(tmp_path, text)
+    assert "walk.csv" in str(refusal.value)
+
+
+def test_radians_called_degrees_are_refused(tmp_path):
+    rows = "".join(f"{i / 100},{0.5 * np.sin(i / 10)}\n" for i in range(100))
+    with pytest.raises(UnitError, match="looks like radians"):
+        _read(tmp_path, "time,hip_flexion_r\n" + rows)
+    assert _read(tmp_path, "time,hip_flexion_r [rad]\n" + rows).streams["kinematics"].values.max() > 28
+
+
+def test_bad_parquet_is_refused(tmp_path):
+    path = tmp_path / "walk.parquet"
+    for frame, words in [
+        (pd.DataFrame({"time": [0.0, 1.0], "knee_angle_r": ["a", "b"]}), "column 'knee_angle_r' holds others"),
+        (pd.DataFrame({"knee_angle_r": [0.0, 1.0]}), r"needs a column 'time \[s\]'.*its columns are knee_angle_r"),
+        (pd.DataFrame({"time": [0.0, 1.0], "knee_angle_r": [1, np.inf]}), "'knee_angle_r' is infinite"),
+        (pd.DataFrame({"time": [], "knee_angle_r": []}, dtype=float), "found no row"),
+    ]:
+        frame.to_parquet(path)
+        with pytest.raises(ReadError, match=words):
+            read_table(path)
+    path.write_bytes(b"PAR1 something else PAR1")
+    with pytest.raises(ReadError, match=r"walk\.parquet should be a Parquet table"):
+        read_table(path)
+
+
+def test_parquet_with_time_as_pandas_index_is_read(tmp_path):
+    frame = pd.DataFrame({"knee_angle_r": [1, None, 3]}, index=pd.Index([0.0, 0.5, 1.0], name="time"))
+    frame.to_parquet(tmp_path / "a.parquet")
+    np.testing.assert_array_equal(read_table(tmp_path / "a.parquet").streams["kinematics"].values[:, 0], [1, np.nan, 3])

@@ -1,0 +1,93 @@
+"""Marker files, real and broken."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from gaitdisc.errors import ChannelError, ReadError, SamplingError, UnitError
+from gaitdisc.ingest.trc import parsed_trc_header, read_trc
+
+ROWS = "".join(f"{i + 1}\t{i / 100:.3f}\t{i}\t2\t3\t{10 * i + 1}\t\t30\n" for i in range(10))
+TEXT = (
+    "PathFileType\t4\t(X/Y/Z)\ta.trc\nDataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\n100\t100\t10\t2\tmm\n"
+    "Frame#\tTime\tRHEE\t\t\tLHEE\n\t\tX1\tY1\tZ1\tX2\tY2\tZ2\n\n" + ROWS
+)
+
+
+def _read(tmp_path, text, channels=None):
+    path = tmp_path / "a.trc"
+    path.write_text(text)
+    return read_trc(path, channels)
+
+
+def test_millimetres_of_a_real_file(gait_data):
+    trial = read_trc(gait_data / "opensim_walks" / "moco_3dwalking" / "markers_walk.trc")
+    markers = trial.streams["markers"]
+    assert markers.values.shape == (238, 123)
+    assert markers["R.Shoulder.x"][0] == pytest.approx(-0.652630)
+    assert markers["L.Toe.x"][-1] == pytest.approx(2.461683)
+    assert (markers.rate_hz, markers.channels[0].unit) == (100.0, "m")
+    assert trial.findings == ()
+
+
+def test_shifted_labels_and_zeros_of_a_real_file(gait_data):
+    trial = read_trc(gait_data / "opensim_walks" / "mrs_emg_walking" / "TRC_gait.trc")
+    markers = trial.streams["markers"]
+    assert markers.values.shape == (461, 3 * 59)
+    assert markers["LASI.x"][0] == -2.4085  # its label stands one column further right
+    assert markers["RASI.z"][0] == -0.12681
+    assert np.isnan(markers["LASI.x"][-1])  # 0 0 0 in the file
+    assert any(f.channel == "LASI" and "106 of 461 samples missing" in f.what for f in trial.findings)
+
+
+def test_units_blanks_and_clock(tmp_path):
+    markers = _read(tmp_path, TEXT).streams["markers"]
+    assert markers.names == ("RHEE.x", "RHEE.y", "RHEE.z", "LHEE.x", "LHEE.y", "LHEE.z")
+    np.testing.assert_allclose(markers["LHEE.x"], (10 * np.arange(10) + 1) / 1000)
+    assert np.isnan(markers["LHEE.y"]).all()
+    metres = _read(tmp_path, TEXT.replace("\tmm\n", "\tm\n")).streams["markers"]
+    np.testing.assert_allclose(metres["RHEE.y"], 2.0)
+
+
+def test_names_of_subjects_are_dropped_and_labels_mapped(tmp_path):
+    text = TEXT.replace("RHEE", "Anna:RHEE").replace("LHEE", "Anna:LHEE")
+    trial = _read(tmp_path, text, {"LHEE": "heel_l"})
+    assert trial.streams["markers"].names[::3] == ("RHEE.x", "heel_l.x")
+    assert trial.findings[0].kind == "identifier"
+    assert "Anna" not in repr(trial.findings) + repr(trial.streams["markers"].channels)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "kind", "words"),
+    [
+        ("PathFileType", "PathType", ReadError, "first line begins with 'PathFileType'"),
+        ("\tUnits", "", ReadError, "Units is absent"),
+        ("\tmm\n", "\tkg\n", UnitError, "found Units 'kg'"),
+        ("\t10\t2\t", "\tten\t2\t", ReadError, "NumFrames in line 3 needs a number above 0; found 'ten'"),
+        ("\t10\t2\t", "\t12\t2\t", ReadError, "should have 12 frames, .* ends after 10, at line 16"),
+        ("\n100\t", "\n50\t", SamplingError, "DataRate says 50 Hz, the times step by 0.01 s, which is 100 Hz"),
+        ("LHEE", "RHEE", ChannelError, "'RHEE.x' in columns"),
+        ("\t41\t\t30\n", "\t41\n", ReadError, "needs 8 cells, one a column; line 11 has 6"),
+        ("\t41\t", "\tx\t", ReadError, "line 11, column 'LHEE.x'; found 'x'"),
+        ("5\t0.040", "5\t0.035", SamplingError, "constant rate"),
+    ],
+)
+def test_bad_files_are_refused_in_words(tmp_path, old, new, kind, words):
+    assert old in TEXT
+    with pytest.raises(kind, match=words) as refusal:
+        _read(tmp_path, TEXT.replace(old, new))
+    assert "a.trc" in str(refusal.value)
+
+
+def test_wrong_counts_that_do_no_harm_are_told(tmp_path):
+    trial = _read(tmp_path, TEXT.replace("\t10\t2\t", "\t9\t3\t"))
+    assert [f.what for f in trial.findings if f.kind == "wrong count"] == [
+        "the header claims 9 frames, 10 are there",
+        "the header claims 3 markers, 2 are there",
+    ]
+
+
+def test_a_header_without_markers_is_refused():
+    with pytest.raises(ReadError, match="names of its markers in line 4; there are none"):
+        parsed_trc_header([*TEXT.split("\n")[:3], "Frame#\tTime\t\t"], "a.trc")
