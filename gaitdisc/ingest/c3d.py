@@ -1,0 +1,240 @@
+"""C3D files: one file becomes one trial, read in a process of its own, checked against its header."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from pathlib import Path
+from types import TracebackType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.errors import ReadError, SamplingError
+from gaitdisc.ingest.c3d_analog import analog_labels, analog_streams
+from gaitdisc.ingest.c3d_events import file_events
+from gaitdisc.ingest.c3d_header import C3DHeader, read_c3d_header
+from gaitdisc.ingest.c3d_labels import LabelMap
+from gaitdisc.ingest.c3d_layout import C3DLayout, expected_layout
+from gaitdisc.ingest.c3d_parameters import C3DParameters, read_c3d_parameters
+from gaitdisc.ingest.c3d_points import Streams, point_names, point_streams
+from gaitdisc.ingest.force_plates import force_plates, plate_streams
+from gaitdisc.ingest.reader_process import RawTrial, ReaderProcess, ReadRequest
+from gaitdisc.recording import Finding, Recording, Source, Trial
+
+ANALOG_STREAMS = ("emg", "forces", "signals")
+
+
+class C3DReader:
+    """Reads C3D files one after the other in one isolated process.
+
+    The process is started at the first file, started anew when a file kills it and after 100 files, and ends with the
+    `with` block. The reader may be used again after that.
+
+    Examples
+    --------
+    >>> with C3DReader() as reader:
+    ...     reader.read("missing.c3d")
+    Traceback (most recent call last):
+    ...
+    gaitdisc.errors.ReadError: a C3D file is needed; missing.c3d is not there. Check the path.
+    """
+
+    def __init__(self) -> None:
+        self._process = ReaderProcess()
+
+    def __enter__(self) -> C3DReader:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End the isolated process."""
+        self._process.close()
+
+    def read(self, path: str | Path, channels: Mapping[str, str] | None = None) -> Trial:
+        """Trial of one C3D file.
+
+        Streams: `markers` [m] as `<marker>.x`; `kinematics` [deg], the model's angles under the names of the
+        vocabulary where it knows them, `<label>.x` otherwise; `moments` [N m, N, W], the model's; `emg` [V]; `forces`
+        [N, N m, m], ground on foot (see `force_plates`); `signals`, every other analog channel. The first frame is at
+        0 s. Nothing passes that names a person: neither label prefixes nor the groups SUBJECTS, TRIAL, MANUFACTURER.
+
+        Parameters
+        ----------
+        path : str or Path
+            File to read.
+        channels : mapping of str to str, optional
+            The study's own names, see `LabelMap`: label, description, `#<n>` for the n-th analog channel or
+            `<label>.x` -> name, or `name [unit]`.
+
+        Returns
+        -------
+        Trial
+            With findings for everything that had to be judged.
+
+        Raises
+        ------
+        ReadError
+            If the file is missing, no C3D file, truncated, or if no reader can read all of what its header promises.
+        UnitError
+            If lengths have no unit and the numbers do not tell it, or if the numbers contradict it.
+        SamplingError
+            If the file states no rate.
+        ChannelError
+            If a key of `channels` means several channels.
+        """
+        path = Path(path)
+        header = read_c3d_header(path)
+        parameters = read_c3d_parameters(path, header)
+        layout, findings = expected_layout(header, parameters)
+        rate_hz, doubts = _rate(header, parameters, layout)
+        raw, more = self._raw(path, header, layout)
+        findings += [*doubts, *more]
+        labels = LabelMap(channels)
+        streams, seen = _streams(raw, layout, parameters, labels, header.file)
+        first = parameters.field("ACTUAL_START_FIELD") or max(header.first_frame, 1)
+        events, more = file_events(parameters, layout.frames, rate_hz, first, header.file)
+        findings += [*seen, *more, *labels.unused(_all_labels(parameters, layout), header.file)]
+        source = Source(header.file, _sha256(path), raw.reader)
+        times = {
+            "points": np.arange(layout.frames) / rate_hz,
+            "analog": np.arange(layout.frames * layout.samples_per_frame)
+            / (rate_hz * max(layout.samples_per_frame, 1)),
+        }
+        recordings = {
+            key: Recording(times["analog" if key in ANALOG_STREAMS else "points"], values, columns, source=source)
+            for key, (values, columns) in streams.items()
+        }
+        return Trial(path.stem, recordings, events, tuple(findings))
+
+    def _raw(self, path: Path, header: C3DHeader, layout: C3DLayout) -> tuple[RawTrial, list[Finding]]:
+        """What ezc3d reads or, where it cannot, the second reader; both are held to the counts of the header."""
+        counts = (layout.frames, layout.points, layout.channels, layout.frames * layout.samples_per_frame)
+        said = {}
+        for reader in ("ezc3d", "c3d"):
+            raw = self._process.ask(ReadRequest.of_size(str(path), reader, counts, header.size))
+            if not raw.said:
+                break
+            said[reader] = _in_words(raw.said, path)
+        else:
+            raise ReadError(
+                f"{header.file} promises {layout.frames} frames, {layout.points} points and "
+                f"{layout.channels} analog channels, and a reader that finds them",
+                "; ".join(f"{reader}: {words}" for reader, words in said.items()),
+                "Export the trial again, or repair it in the software that wrote it.",
+            )
+        if not said:
+            return raw, []
+        what = f"read by {raw.reader}, as ezc3d could not: {said['ezc3d']}"
+        return raw, [Finding("note", "second reader", header.file, what, "nothing; the counts are those of the header")]
+
+
+def read_c3d(path: str | Path, channels: Mapping[str, str] | None = None) -> Trial:
+    """Trial of one C3D file; `C3DReader` is faster for many.
+
+    Parameters
+    ----------
+    path : str or Path
+        File to read.
+    channels : mapping of str to str, optional
+        The study's own names, as `C3DReader.read` takes them.
+
+    Raises
+    ------
+    ReadError, UnitError, SamplingError, ChannelError
+        As `C3DReader.read`.
+
+    Examples
+    --------
+    >>> read_c3d("missing.c3d")
+    Traceback (most recent call last):
+    ...
+    gaitdisc.errors.ReadError: a C3D file is needed; missing.c3d is not there. Check the path.
+    """
+    with C3DReader() as reader:
+        return reader.read(path, channels)
+
+
+def _streams(
+    raw: RawTrial, layout: C3DLayout, parameters: C3DParameters, labels: LabelMap, file: str
+) -> tuple[Streams, list[Finding]]:
+    findings = [
+        *_made_finite(raw.points, "coordinates of points", file),
+        *_made_finite(raw.analog, "analog values", file),
+    ]
+    streams, unit, doubts = point_streams(raw.points, parameters, labels, file)
+    plates, described = force_plates(parameters, layout.channels, unit, file)
+    forces, columns, told = plate_streams(raw.analog, plates, parameters, unit, file)
+    analog, asked = analog_streams(raw.analog, parameters, columns, labels, file)
+    for part in (forces, analog):
+        for key, (values, channels) in part.items():
+            if key in streams:
+                before, earlier = streams[key]
+                streams[key] = (np.hstack([before, values]), (*earlier, *channels))
+            else:
+                streams[key] = (values, channels)
+    return streams, [*findings, *doubts, *described, *told, *asked]
+
+
+def _rate(header: C3DHeader, parameters: C3DParameters, layout: C3DLayout) -> tuple[float, list[Finding]]:
+    """Frames a second, and what does not fit: analog samples run on the frames' clock, so many in each frame."""
+    stated = parameters.number("POINT", "RATE")
+    analog = parameters.number("ANALOG", "RATE")
+    of_analog = analog / layout.samples_per_frame if analog and layout.samples_per_frame else None
+    rates = [rate for rate in (stated, header.rate_hz, of_analog) if rate is not None and 0.01 < rate < 1e6]
+    if not rates:
+        raise SamplingError(
+            "a trial needs a rate",
+            f"{header.file} gives POINT:RATE {stated} Hz, header {header.rate_hz:g} Hz, ANALOG:RATE {analog} Hz",
+            "Set POINT:RATE in the file.",
+        )
+    rate = rates[0]
+    findings = []
+    if stated is not None and abs(header.rate_hz - rate) > 1e-3 * rate:
+        what = f"POINT:RATE is {stated:g} Hz, the header says {header.rate_hz:g} Hz; read at {rate:g} Hz"
+        findings.append(Finding("warning", "contradictory rate", header.file, what, "every time if this is wrong"))
+    if analog is not None and of_analog is not None and abs(of_analog - rate) > 1e-9 * rate:
+        what = (
+            f"ANALOG:RATE {analog:g} Hz is {analog / rate:.6g} times POINT:RATE {rate:g} Hz, the file holds "
+            f"{layout.samples_per_frame} samples a frame; read at {layout.samples_per_frame * rate:g} Hz"
+        )
+        severity = "note" if abs(of_analog - rate) < 1e-3 * rate else "warning"
+        findings.append(
+            Finding(severity, "analog rate", header.file, what, "times of analog channels if this is wrong")
+        )
+    return rate, findings
+
+
+def _made_finite(values: NDArray[np.float64], what: str, file: str) -> list[Finding]:
+    infinite = np.isinf(values)
+    if not infinite.any():
+        return []
+    values[infinite] = np.nan
+    return [
+        Finding(
+            "warning", "infinite values", file, f"{int(infinite.sum())} {what} are infinite; taken as missing", what
+        )
+    ]
+
+
+def _all_labels(parameters: C3DParameters, layout: C3DLayout) -> list[str]:
+    analog = analog_labels(parameters, layout.channels)
+    return [
+        *(one.label for one in analog),
+        *(one.description for one in analog),
+        *point_names(parameters, layout.points),
+    ]
+
+
+def _in_words(said: str, path: Path) -> str:
+    """Show what a reader said on one line, without the folder, which may name a person."""
+    return " ".join(said.replace(str(path), path.name).split())[:200].rstrip(".")
+
+
+def _sha256(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

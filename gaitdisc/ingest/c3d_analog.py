@@ -1,0 +1,250 @@
+"""Analog channels of a C3D file: EMG told apart and named, everything else kept as signals."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel, vocabulary
+from gaitdisc.errors import UnitError
+from gaitdisc.ingest.c3d_labels import LabelMap, named_people, told_apart, without_people
+from gaitdisc.ingest.c3d_parameters import C3DParameters
+from gaitdisc.ingest.c3d_points import Streams
+from gaitdisc.ingest.columns import named_channel, split_unit
+from gaitdisc.ingest.streams import stream_of
+from gaitdisc.recording import Finding
+from gaitdisc.units import convert, inner_unit, parsed_unit
+
+# What devices put before the name that the laboratory typed: `Voltage.L Rect`, `EMG: R TA`.
+_DEVICE = re.compile(r"^(?:(?:voltage|analog|raw|emg|signal|electric potential)[\s.:_-]+)+(?=\S)", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class AnalogLabel:
+    """What the file calls one analog channel.
+
+    Parameters
+    ----------
+    number : int
+        Place among the analog channels, from 1.
+    label, description : str
+        Without the names of people.
+    unit : str
+        As written.
+
+    Examples
+    --------
+    >>> AnalogLabel(5, "Voltage.L Rect", "", "V").muscle.name
+    'emg_rf_l'
+    """
+
+    number: int
+    label: str
+    description: str
+    unit: str
+
+    @property
+    def plain(self) -> str:
+        """Label without the words of the device."""
+        return _DEVICE.sub("", self.label)
+
+    @property
+    def muscle(self) -> Channel | None:
+        """EMG channel of the vocabulary that label or description mean, or None."""
+        for text in (self.label, self.plain, self.description, _DEVICE.sub("", self.description)):
+            known = vocabulary().named(text)
+            if known is not None and known.quantity == "emg":
+                return known
+        return None
+
+    @property
+    def is_emg(self) -> bool:
+        """Whether the channel is EMG: by its muscle or the word, where its unit is a voltage or none that is known."""
+        unit = parsed_unit(self.unit)
+        if unit is not None and inner_unit(unit) != "V":
+            return False
+        return self.muscle is not None or "emg" in f"{self.label} {self.description}".lower()
+
+
+def analog_labels(parameters: C3DParameters, count: int) -> list[AnalogLabel]:
+    """Return what the file calls its analog channels.
+
+    Parameters
+    ----------
+    parameters : C3DParameters
+        Parameter section.
+    count : int
+        Analog channels; a file may list more labels or fewer.
+    """
+    people = named_people(parameters)
+    texts = [[*parameters.texts("ANALOG", name)[:count], *[""] * count] for name in ("LABELS", "DESCRIPTIONS", "UNITS")]
+    return [
+        AnalogLabel(place + 1, without_people(label, people), without_people(description, people), unit.strip())
+        for place, (label, description, unit) in enumerate(zip(*(text[:count] for text in texts), strict=True))
+    ]
+
+
+def emg_names(channels: list[AnalogLabel]) -> list[str]:
+    """Names of EMG channels, all different.
+
+    A muscle of the vocabulary gives its name. Otherwise the label does if no other channel has it; labels that are
+    alike or cut give way to the numbers in the description (`Voltage [5,1]`: `emg_5_1`), and those to the place among
+    the analog channels.
+
+    Parameters
+    ----------
+    channels : list of AnalogLabel
+        The EMG channels only.
+
+    Examples
+    --------
+    >>> cut = [AnalogLabel(n, "Voltage.Voltage.", f"Analog EMG::Voltage [5,{n}]", "V") for n in (1, 2)]
+    >>> emg_names(cut), emg_names([AnalogLabel(3, "EMG3", "", "V")])
+    (['emg_5_1', 'emg_5_2'], ['emg_3'])
+    """
+    labels = [_slug(channel.plain) for channel in channels]
+    brackets = [_bracket(channel.description) for channel in channels]
+    names = []
+    for channel, label, bracket in zip(channels, labels, brackets, strict=True):
+        if channel.muscle is not None:
+            names.append(channel.muscle.name)
+        elif label and labels.count(label) == 1:
+            names.append(f"emg_{label}")
+        elif bracket and brackets.count(bracket) == 1:
+            names.append(f"emg_{bracket}")
+        else:
+            names.append(f"emg_{channel.number}")
+    return told_apart(names, "emg")
+
+
+def analog_streams(
+    rows: NDArray[np.float64], parameters: C3DParameters, plate_channels: set[int], labels: LabelMap, file: str
+) -> tuple[Streams, list[Finding]]:
+    """Streams `emg` and `signals` of the analog channels, and `forces` where the study maps channels to forces.
+
+    Parameters
+    ----------
+    rows : ndarray (sample, channel)
+        In the file's units.
+    parameters : C3DParameters
+        Parameter section.
+    plate_channels : set of int
+        Columns that belong to force plates and are read there.
+    labels : LabelMap
+        The study's own names.
+    file : str
+        Name of the file.
+
+    Returns
+    -------
+    streams : dict of str to (values, channels)
+    findings : list of Finding
+
+    Raises
+    ------
+    UnitError
+        If a channel that the study maps has no unit, or one that measures something else.
+    ChannelError
+        If a key of the study's map means several channels.
+    """
+    analog = analog_labels(parameters, rows.shape[1])
+    mapped = {one.number: labels.name(f"#{one.number}", one.label, one.plain, one.description) for one in analog}
+    free = [one for one in analog if mapped[one.number] is None and one.number - 1 not in plate_channels]
+    emg = [one for one in free if one.is_emg]
+    others = [one for one in free if not one.is_emg]
+    chosen: list[tuple[str, AnalogLabel, Channel, str]] = []
+    for one in analog:
+        name = mapped[one.number]
+        if name is not None:
+            channel, unit = _mapped_channel(name, one, file)
+            stream = stream_of(channel)
+            chosen.append((stream if stream in ("emg", "forces") else "signals", one, channel, unit))
+    for one, name in zip(emg, emg_names(emg), strict=True):
+        unit = parsed_unit(one.unit) or "1"
+        side = one.muscle.side if one.muscle is not None else ""
+        chosen.append(("emg", one, Channel(name, "emg", inner_unit(unit), side), unit))
+    for one, name in zip(others, told_apart([one.label for one in others], "analog"), strict=True):
+        unit = parsed_unit(one.unit) or "1"
+        chosen.append(("signals", one, Channel(name, "signal", inner_unit(unit)), unit))
+    streams: Streams = {}
+    for stream in ("emg", "signals", "forces"):
+        group = [entry for entry in chosen if entry[0] == stream]
+        if group:
+            values = rows[:, [one.number - 1 for _, one, _, _ in group]]
+            for column, (_, _, channel, unit) in enumerate(group):
+                if unit != channel.unit:
+                    values[:, column] = convert(values[:, column], unit, channel.unit)
+            streams[stream] = (values, tuple(channel for _, _, channel, _ in group))
+    return streams, _doubts(emg, others, file)
+
+
+def _mapped_channel(text: str, one: AnalogLabel, file: str) -> tuple[Channel, str]:
+    name, stated = split_unit(text)
+    known = vocabulary().named(name)
+    channel = known if known is not None else named_channel(name)
+    unit = parsed_unit(stated if stated is not None else one.unit)
+    if unit is None and channel.quantity == "signal":
+        return channel, channel.unit
+    if unit is None:
+        raise UnitError(
+            f"analog channel #{one.number} is mapped to {name!r} and needs a unit",
+            f"{file} says {(stated if stated is not None else one.unit)!r}",
+            f"Write the unit in the study's [channels]: '{name} [{channel.unit}]'.",
+        )
+    if channel.quantity == "signal" or (channel.quantity == "emg" and unit == "1"):
+        channel = replace(channel, unit=inner_unit(unit))
+    if inner_unit(unit) != channel.unit:
+        raise UnitError(
+            f"analog channel #{one.number} is mapped to {channel.name!r}, which is measured in {channel.unit}",
+            f"{file} gives it in {unit}",
+            "Map another channel, or write the true unit in the study's [channels]: 'name [unit]'.",
+        )
+    return channel, unit
+
+
+def _doubts(emg: list[AnalogLabel], others: list[AnalogLabel], file: str) -> list[Finding]:
+    findings = []
+    unknown = [one for one in (*emg, *others) if parsed_unit(one.unit) is None]
+    if unknown:
+        what = f"{len(unknown)} analog channels have no known unit ({_listed(unknown)}); kept as they are"
+        findings.append(Finding("note", "unit", file, what, "amplitudes of these channels; correct ANALOG:UNITS"))
+    muscles = [one.muscle.name for one in emg if one.muscle is not None]
+    doubled = sorted({name for name in muscles if muscles.count(name) > 1})
+    if doubled:
+        what = f"several channels mean {', '.join(doubled)}; they are numbered"
+        findings.append(
+            Finding("warning", "equal muscles", file, what, "this muscle; name it in the study's [channels]")
+        )
+    nameless = [one for one in emg if one.muscle is None]
+    if nameless:
+        what = f"{len(nameless)} EMG channels name no known muscle ({_listed(nameless)})"
+        findings.append(
+            Finding("note", "nameless EMG", file, what, "nothing; name them in the study's [channels] as '#<n>'")
+        )
+    voltages = [one for one in others if (parsed_unit(one.unit) or "") in ("V", "mV", "uV")]
+    if voltages:
+        what = f"{len(voltages)} voltages are not known as EMG and stay signals ({_listed(voltages)})"
+        findings.append(
+            Finding("note", "voltages", file, what, "nothing unless they are EMG; then map them in [channels]")
+        )
+    return findings
+
+
+def _listed(channels: list[AnalogLabel]) -> str:
+    shown = ", ".join(f"#{one.number} {one.label}".strip() for one in channels[:4])
+    return shown + (", ..." if len(channels) > 4 else "")
+
+
+def _slug(label: str) -> str:
+    slug = re.sub(r"[^a-z0-9]+", "_", label.lower()).strip("_")
+    if slug in ("voltage", "analog", "raw", "signal", "emg"):
+        return ""
+    return re.sub(r"^emg_?", "", slug)
+
+
+def _bracket(description: str) -> str:
+    found = re.search(r"\[([\d\s,]+)\]", description)
+    return "_".join(re.findall(r"\d+", found[1])) if found else ""

@@ -1,0 +1,174 @@
+"""Labels of a C3D file: people's names removed, each one unlike the others, and the study's own map of them."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+
+from gaitdisc.channel import folded_label, nearest_word
+from gaitdisc.errors import ChannelError
+from gaitdisc.ingest.c3d_parameters import C3DParameters
+from gaitdisc.recording import Finding
+
+
+def without_people(label: str, people: Iterable[str]) -> str:
+    """Label without the names of people, as the prefix `Name:` or as a word in it.
+
+    Parameters
+    ----------
+    label : str
+        As written in the file.
+    people : iterable of str
+        Names that the file gives its subjects.
+
+    Examples
+    --------
+    >>> without_people("Ann:LASI", ["Ann"]), without_people("EMG Ann soleus", ["Ann"])
+    ('LASI', 'EMG soleus')
+    """
+    plain = label
+    for person in people:
+        plain = re.sub(rf"(?<![A-Za-z0-9]){re.escape(person)}(?![A-Za-z0-9])", "", plain, flags=re.IGNORECASE)
+    return re.sub(r"\s+", " ", plain).strip(" :" if plain != label else None)
+
+
+def without_prefix(label: str) -> str:
+    """Label of a point without the prefix that tells whose it is.
+
+    Parameters
+    ----------
+    label : str
+        As written in the file.
+
+    Examples
+    --------
+    >>> without_prefix("Ann:LASI")
+    'LASI'
+    """
+    return label.rpartition(":")[2].strip()
+
+
+def named_people(parameters: C3DParameters) -> tuple[str, ...]:
+    """Names that the file gives its subjects, so that they can be removed wherever they stand.
+
+    Parameters
+    ----------
+    parameters : C3DParameters
+        Parameter section.
+    """
+    found: dict[str, None] = {}
+    for group, name in (
+        ("SUBJECTS", "NAMES"),
+        ("SUBJECTS", "LABEL_PREFIXES"),
+        ("SUBJECT", "NAME"),
+        ("EVENT", "SUBJECTS"),
+    ):
+        found |= dict.fromkeys(text.strip(" :") for text in parameters.texts(group, name))
+    found |= dict.fromkeys(label.rpartition(":")[0] for label in parameters.texts("POINT", "LABELS"))
+    return tuple(sorted((name for name in found if len(name) > 1), key=len, reverse=True))
+
+
+def told_apart(labels: Sequence[str], word: str) -> list[str]:
+    """Labels of which no two are equal: those that are get their number, those that are empty a word and theirs.
+
+    Parameters
+    ----------
+    labels : sequence of str
+        In the file's order.
+    word : str
+        What a nameless one is called.
+
+    Examples
+    --------
+    >>> told_apart(["a", "", "b", "a"], "point")
+    ['a_1', 'point_2', 'b', 'a_4']
+    """
+    counts = Counter(labels)
+    names = [
+        f"{label or word}_{number}" if counts[label] > 1 or not label else label
+        for number, label in enumerate(labels, 1)
+    ]
+    taken: set[str] = set()
+    for place in range(len(names)):
+        while names[place] in taken:  # `a_1` may stand in the file beside two `a`
+            names[place] += "_"
+        taken.add(names[place])
+    return names
+
+
+class LabelMap:
+    """The study's map from labels of the file to names of channels.
+
+    A key is a label or a description as the file writes it (case, blanks and punctuation do not count), `#5` for the
+    fifth analog channel, `RKneeAngles.x` for one component of a model output, `LCAL` for a marker. A value is the name
+    of a channel, or `name [unit]` where the file does not tell the unit.
+
+    Parameters
+    ----------
+    channels : mapping of str to str, optional
+        Label -> name.
+
+    Examples
+    --------
+    >>> LabelMap({"#5": "emg_sol_r", "Sensor 1": "emg_ta_r"}).name("#1", "sensor 1")
+    'emg_ta_r'
+    """
+
+    def __init__(self, channels: Mapping[str, str] | None = None) -> None:
+        self._names = dict(channels or {})
+        self._used: Counter[str] = Counter()
+
+    def name(self, *labels: str) -> str | None:
+        """Name that the study gives a channel of these labels, None where it gives none.
+
+        Parameters
+        ----------
+        *labels : str
+            All that the channel goes by, the most particular first.
+
+        Raises
+        ------
+        ChannelError
+            If a key has been used for another channel before.
+        """
+        for label in labels:
+            for key, name in self._names.items():
+                same = (
+                    key == label
+                    if "#" in (key[:1], label[:1])
+                    else bool(label) and folded_label(key) == folded_label(label)
+                )
+                if same:
+                    self._use(key)
+                    return name
+        return None
+
+    def unused(self, labels: Iterable[str], file: str) -> list[Finding]:
+        """Findings for the keys that no channel of the file goes by.
+
+        Parameters
+        ----------
+        labels : iterable of str
+            Labels of the file, to name the nearest.
+        file : str
+            Name of the file.
+        """
+        labels = tuple(labels)
+        found = []
+        for key in self._names:
+            if not self._used[key]:
+                nearest = nearest_word(key, labels)
+                hint = f", the nearest is {nearest!r}" if nearest else ""
+                what = f"the study maps {key!r} to {self._names[key]!r}; the file has no such label{hint}"
+                found.append(Finding("warning", "label not found", file, what, "whatever needs this channel"))
+        return found
+
+    def _use(self, key: str) -> None:
+        self._used[key] += 1
+        if self._used[key] > 1:
+            raise ChannelError(
+                f"{key!r} of the study's [channels] must mean one channel",
+                f"{self._used[key]} channels of the file go by it",
+                "Use '#<number>' instead, the place of the channel among the analog channels, counted from 1.",
+            )

@@ -1,0 +1,207 @@
+"""How many frames, points and analog values a C3D file must hold, and whether it is long enough to hold them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+
+from gaitdisc.errors import ReadError
+from gaitdisc.ingest.c3d_header import BLOCK, C3DHeader
+from gaitdisc.ingest.c3d_parameters import C3DParameters
+from gaitdisc.recording import Finding
+
+_SATURATED = 65535  # a 16-bit frame number that stands for "more than that"
+
+
+@dataclass(frozen=True)
+class C3DLayout:
+    """Shape of the data section.
+
+    Parameters
+    ----------
+    frames, points, channels, samples_per_frame : int
+        Frames, points a frame, analog channels, samples of each channel a frame.
+    word_bytes : int
+        4 where values are floats, 2 where they are integers.
+    data_block : int
+        Where the data begin [blocks of 512 bytes, from 1].
+
+    Examples
+    --------
+    >>> C3DLayout(100, 10, 2, 20, 4, 3).end
+    33024
+    """
+
+    frames: int
+    points: int
+    channels: int
+    samples_per_frame: int
+    word_bytes: int
+    data_block: int
+
+    @property
+    def frame_bytes(self) -> int:
+        """Bytes of one frame."""
+        return (4 * self.points + self.channels * self.samples_per_frame) * self.word_bytes
+
+    @property
+    def end(self) -> int:
+        """Bytes that the file has at least."""
+        return (self.data_block - 1) * BLOCK + self.frames * self.frame_bytes
+
+    def fits(self, size: int) -> bool:
+        """Whether a file of that size can hold the data.
+
+        Parameters
+        ----------
+        size : int
+            Length of the file [bytes].
+        """
+        return self.end <= size
+
+    def fills(self, size: int) -> bool:
+        """Whether a file of that size holds the data and nothing after them but the padding of the last block.
+
+        Parameters
+        ----------
+        size : int
+            Length of the file [bytes].
+        """
+        return self.end <= size < self.end + BLOCK
+
+
+def expected_layout(header: C3DHeader, parameters: C3DParameters) -> tuple[C3DLayout, list[Finding]]:
+    """Layout that the file's own counts and its length agree on.
+
+    Header and parameters usually say the same; a file that is shorter than that is truncated. Where they contradict
+    each other, the counts that fill the file to its last block are believed, and the contradiction is a finding.
+
+    Parameters
+    ----------
+    header : C3DHeader
+        Header block.
+    parameters : C3DParameters
+        Parameter section.
+
+    Returns
+    -------
+    layout : C3DLayout
+    findings : list of Finding
+
+    Raises
+    ------
+    ReadError
+        If the file is truncated, says nothing of frames, points and analog channels, or has more than 65535 frames
+        and does not say how many.
+    """
+    said = {
+        "frames": _frames(header, parameters),
+        "points": _distinct(parameters.count("POINT", "USED"), header.points),
+        "analog channels and samples a frame": _analog(header, parameters),
+        "bytes a value": _distinct(
+            *(_word_bytes(scale) for scale in (parameters.number("POINT", "SCALE"), header.scale))
+        ),
+        "first block of the data": _distinct(header.data_block, parameters.count("POINT", "DATA_START") or None),
+    }
+    layouts = [C3DLayout(frames, points, *analog, *rest) for frames, points, analog, *rest in product(*said.values())]
+    filling = [layout for layout in layouts if layout.fills(header.size)]
+    layout = (filling or layouts)[0]
+    if not layout.fits(header.size):
+        _refuse_truncated(layout, header)
+    if layout.frames < 1 or layout.frame_bytes < 1 or layout.data_block <= header.parameter_block:
+        raise ReadError(
+            "a trial needs at least one frame of points or analog channels",
+            f"{header.file} names {layout.frames} frames, {layout.points} points, {layout.channels} analog channels",
+            "Export the trial again with markers or analog channels.",
+        )
+    if layout.frames == _SATURATED and header.size - layout.end >= layout.frame_bytes + BLOCK:
+        room = layout.frames + (header.size - layout.end) // layout.frame_bytes
+        raise ReadError(
+            "a C3D file of more than 65535 frames names their number in TRIAL:ACTUAL_END_FIELD",
+            f"{header.file} has room for {room}, says 65535",
+            "Export the trial in parts, or with software that writes the group TRIAL.",
+        )
+    return layout, [*_contradictions(said, layout, header), *_leftover(layout, header)]
+
+
+def _frames(header: C3DHeader, parameters: C3DParameters) -> tuple[int, ...]:
+    """Counts of frames, the most trustworthy first: 16 bits are too few for more than 65535."""
+    start, end = parameters.field("ACTUAL_START_FIELD"), parameters.field("ACTUAL_END_FIELD")
+    trial = end - start + 1 if start is not None and end is not None and end >= start > 0 else None
+    wide = [trial, parameters.count("POINT", "LONG_FRAMES")]
+    narrow = [parameters.count("POINT", "FRAMES"), header.frames]
+    if header.last_frame == _SATURATED or _SATURATED in narrow:
+        narrow = [count for count in narrow if count and not any(w and w > count for w in wide)]
+    return _distinct(*(count for count in (*wide, *narrow) if count)) or (0,)
+
+
+def _analog(header: C3DHeader, parameters: C3DParameters) -> tuple[tuple[int, int], ...]:
+    """(channels, samples a frame) as the header and as the parameters say."""
+    found = []
+    samples = header.samples_per_frame
+    if header.analog_values and samples and header.analog_values % samples == 0:
+        found.append((header.analog_values // samples, samples))
+    used = parameters.count("ANALOG", "USED")
+    rate, frame_rate = parameters.number("ANALOG", "RATE"), parameters.number("POINT", "RATE") or header.rate_hz
+    if used and rate and frame_rate and 0 < rate / frame_rate < _SATURATED:
+        found.append((used, samples if abs(rate / frame_rate - samples) < 1 and samples else round(rate / frame_rate)))
+    elif used and samples:
+        found.append((used, samples))
+    if not header.analog_values or used == 0 or not found:
+        found.append((0, 0))
+    return _distinct(*found)
+
+
+def _word_bytes(scale: float | None) -> int | None:
+    return None if scale is None else 4 if scale < 0 else 2
+
+
+def _distinct(*values):
+    return tuple(dict.fromkeys(value for value in values if value is not None))
+
+
+def _refuse_truncated(layout: C3DLayout, header: C3DHeader) -> None:
+    whole = max((header.size - (layout.data_block - 1) * BLOCK) // max(layout.frame_bytes, 1), 0)
+    raise ReadError(
+        f"a C3D file of {layout.frames} frames, {layout.points} points and {layout.channels} analog channels "
+        f"needs {layout.end} bytes",
+        f"{header.file} has {header.size} and ends within frame {whole + 1}: it is truncated",
+        "Copy it again from where it was recorded; do not use the part.",
+    )
+
+
+def _contradictions(said: dict[str, tuple], layout: C3DLayout, header: C3DHeader) -> list[Finding]:
+    taken = {
+        "frames": layout.frames,
+        "points": layout.points,
+        "analog channels and samples a frame": (layout.channels, layout.samples_per_frame),
+        "bytes a value": layout.word_bytes,
+        "first block of the data": layout.data_block,
+    }
+    how = "which fill the file to its last block" if layout.fills(header.size) else "which the file is long enough for"
+    return [
+        Finding(
+            "warning",
+            "contradictory header",
+            header.file,
+            f"header and parameters give {what} as {' and '.join(map(str, values))}; read as {taken[what]}, {how}",
+            "the whole trial if this is wrong; compare its length with your notes",
+        )
+        for what, values in said.items()
+        if len(values) > 1
+    ]
+
+
+def _leftover(layout: C3DLayout, header: C3DHeader) -> list[Finding]:
+    rest = header.size - layout.end
+    if rest < layout.frame_bytes + BLOCK:
+        return []
+    return [
+        Finding(
+            "warning",
+            "bytes left over",
+            header.file,
+            f"{rest} bytes follow the last of {layout.frames} frames, room for {rest // layout.frame_bytes} more",
+            "nothing if they are not frames; compare the trial's length with your notes",
+        )
+    ]

@@ -1,0 +1,268 @@
+"""Points of a C3D file: markers in metres, and what a model put among them: angles, forces, moments, powers."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel, vocabulary
+from gaitdisc.errors import UnitError
+from gaitdisc.ingest.c3d_labels import LabelMap, told_apart, without_prefix
+from gaitdisc.ingest.c3d_parameters import C3DParameters
+from gaitdisc.ingest.columns import named_channel
+from gaitdisc.recording import Finding
+from gaitdisc.units import convert, inner_unit, parsed_unit
+
+Streams = dict[str, tuple[NDArray[np.float64], tuple[Channel, ...]]]
+AXES = "xyz"
+_METRES_AT_MOST = 15.0  # no laboratory's markers are farther from its origin, and no body is smaller than 10 cm
+_MILLIMETRES_AT_LEAST = 100.0
+
+
+@dataclass(frozen=True)
+class ModelOutput:
+    """A kind of point that is not a place.
+
+    Parameters
+    ----------
+    group : str
+        List of the group POINT that names them.
+    quantity, stream : str
+        What they measure and where they go.
+    units : str
+        Parameter of the group POINT with their unit.
+    usual : str
+        Unit where the file does not tell.
+
+    Examples
+    --------
+    >>> [kind.group for kind in MODEL_OUTPUTS]
+    ['ANGLES', 'FORCES', 'MOMENTS', 'POWERS', 'SCALARS']
+    """
+
+    group: str
+    quantity: str
+    stream: str
+    units: str
+    usual: str
+
+
+MODEL_OUTPUTS = (
+    ModelOutput("ANGLES", "angle", "kinematics", "ANGLE_UNITS", "deg"),
+    ModelOutput("FORCES", "force", "moments", "FORCE_UNITS", "N"),
+    ModelOutput("MOMENTS", "moment", "moments", "MOMENT_UNITS", "N mm"),
+    ModelOutput("POWERS", "power", "moments", "POWER_UNITS", "W"),
+    ModelOutput("SCALARS", "signal", "kinematics", "SCALAR_UNITS", "mm"),
+)
+_INNER = {"angle": "deg", "force": "N", "moment": "N m", "power": "W"}
+
+
+def point_names(parameters: C3DParameters, count: int) -> list[str]:
+    """Names of the points, all different, without the names of people.
+
+    Parameters
+    ----------
+    parameters : C3DParameters
+        Parameter section.
+    count : int
+        Points a frame; a file may list more labels or fewer.
+    """
+    labels = [without_prefix(label) for label in parameters.texts("POINT", "LABELS")[:count]]
+    return told_apart([*labels, *[""] * (count - len(labels))], "point")
+
+
+def length_unit(parameters: C3DParameters, places: NDArray[np.float64], file: str) -> tuple[str, list[Finding]]:
+    """Unit of the markers: as the file says, or judged by their distance from the origin where it says nothing.
+
+    Parameters
+    ----------
+    parameters : C3DParameters
+        Parameter section.
+    places : ndarray (frame, coordinate)
+        Of markers, in the file's unit, NaN allowed; some thousand frames are looked at.
+    file : str
+        Name of the file.
+
+    Returns
+    -------
+    unit : str
+        `m`, `cm` or `mm`.
+    findings : list of Finding
+
+    Raises
+    ------
+    UnitError
+        If the unit is absent and the numbers do not tell, if it is no length, or if the numbers contradict it.
+    """
+    some = places[:: max(len(places) // 1000, 1)]
+    finite = np.abs(some[np.isfinite(some)])
+    far = float(np.quantile(finite, 0.99)) if finite.size else float("nan")
+    text = parameters.text("POINT", "UNITS")
+    if text:
+        unit = parsed_unit(text)
+        if unit is None or inner_unit(unit) != "m":
+            raise UnitError(
+                "POINT:UNITS of a C3D file is a length", f"{file} says {text!r}", "Correct the parameter: mm or m."
+            )
+        if (unit == "m" and far >= _MILLIMETRES_AT_LEAST) or (unit == "mm" and 0 < far <= _METRES_AT_MOST / 5):
+            raise UnitError(
+                f"markers in {unit} are {'less than 15' if unit == 'm' else 'more than 3'} {unit} from the origin",
+                f"those of {file} are {far:.4g} away, which looks like {'mm' if unit == 'm' else 'm'}",
+                "Correct POINT:UNITS in the file.",
+            )
+        return unit, []
+    if not finite.size or far == 0:
+        return "m", []
+    if _METRES_AT_MOST < far < _MILLIMETRES_AT_LEAST:
+        raise UnitError(
+            "markers need a unit",
+            f"{file} states none, and {far:.4g} from the origin can be neither m nor mm",
+            "Set POINT:UNITS in the file.",
+        )
+    unit = "m" if far <= _METRES_AT_MOST else "mm"
+    what = f"POINT:UNITS is empty; markers lie up to {far:.4g} from the origin, so they are read as {unit}"
+    return unit, [Finding("warning", "unit", file, what, "every length if this is wrong; set POINT:UNITS")]
+
+
+def point_streams(
+    rows: NDArray[np.float64], parameters: C3DParameters, labels: LabelMap, file: str
+) -> tuple[Streams, str, list[Finding]]:
+    """Streams `markers`, `kinematics` and `moments` of the points.
+
+    Parameters
+    ----------
+    rows : ndarray (frame, 3 * point)
+        In the file's units, NaN where a point was not seen.
+    parameters : C3DParameters
+        Parameter section.
+    labels : LabelMap
+        The study's own names.
+    file : str
+        Name of the file.
+
+    Returns
+    -------
+    streams : dict of str to (values, channels)
+        In m, deg, N, N m and W; only those that the file has.
+    unit : str
+        Unit of the file's lengths.
+    findings : list of Finding
+
+    Raises
+    ------
+    UnitError
+        If the unit of the markers is unknown or contradicted by their magnitude.
+    """
+    names = point_names(parameters, rows.shape[1] // 3)
+    kinds = _kinds(names, parameters)
+    findings = _doubled(names, parameters, file)
+    places = [point for point, name in enumerate(names) if name not in kinds]
+    markers = rows[:, _columns(places)]
+    findings += _without_zeros(markers, file)
+    unit, doubts = length_unit(parameters, markers, file)
+    streams: Streams = {}
+    if places:
+        renamed = [(labels.name(names[point]) or names[point]) for point in places]
+        channels = tuple(Channel(f"{name}.{axis}", "marker", "m") for name in renamed for axis in AXES)
+        streams["markers"] = (np.asarray(convert(markers, unit, "m"), float), channels)
+    parts: dict[str, list[tuple[NDArray[np.float64], tuple[Channel, ...]]]] = {}
+    for kind in MODEL_OUTPUTS:
+        points = [point for point, name in enumerate(names) if kinds.get(name) is kind]
+        if points:
+            part, more = _model_part(rows, points, names, (kind, parameters, labels, file))
+            parts.setdefault(kind.stream, []).append(part)
+            findings += more
+    for stream, several in parts.items():
+        streams[stream] = (
+            np.hstack([values for values, _ in several]),
+            tuple(channel for _, channels in several for channel in channels),
+        )
+    return streams, unit, findings + doubts
+
+
+def _kinds(names: list[str], parameters: C3DParameters) -> dict[str, ModelOutput]:
+    kinds: dict[str, ModelOutput] = {}
+    for kind in MODEL_OUTPUTS:
+        for label in parameters.texts("POINT", kind.group):
+            kinds.setdefault(without_prefix(label), kind)
+    by_quantity = {kind.quantity: kind for kind in MODEL_OUTPUTS}
+    for name in names:
+        # Files that lost their lists still call a knee angle by its name; as a marker it would be scaled to metres.
+        known = vocabulary().named(f"{name}.x")
+        if name not in kinds and known is not None and known.quantity in by_quantity:
+            kinds[name] = by_quantity[known.quantity]
+    return kinds
+
+
+def _model_part(rows, points, names, about) -> tuple[tuple[NDArray[np.float64], tuple[Channel, ...]], list[Finding]]:
+    kind, parameters, labels, file = about
+    text = parameters.text("POINT", kind.units)
+    unit = parsed_unit(text) if text else kind.usual
+    findings = []
+    inner = inner_unit(unit) if unit else "1"
+    if unit is None or (kind.quantity in _INNER and inner.removesuffix("/kg") != _INNER[kind.quantity]):
+        what = (
+            f"POINT:{kind.units} is {text!r}, which is no unit of {kind.group.lower()}; kept as numbers without a unit"
+        )
+        findings.append(Finding("warning", "unit", file, what, f"the {kind.group.lower()}; correct the parameter"))
+        unit, inner = "1", "1"
+    values = np.asarray(convert(rows[:, _columns(points)], unit, inner), float)
+    quantity = kind.quantity if inner != "1" else "signal"
+    channels = []
+    for point in points:
+        for axis in AXES:
+            label = f"{names[point]}.{axis}"
+            mapped = labels.name(label)
+            known = named_channel(mapped) if mapped else vocabulary().named(label)
+            name = known.name if known is not None else label
+            side = known.side if known is not None else _side(names[point])
+            channels.append(Channel(name, quantity, inner, side))
+    findings += _magnitude(values, kind, unit, file)
+    return (values, tuple(channels)), findings
+
+
+def _magnitude(values: NDArray[np.float64], kind: ModelOutput, unit: str, file: str) -> list[Finding]:
+    finite = np.abs(values[np.isfinite(values)])
+    most = float(finite.max()) if finite.size else 0.0
+    if kind.group == "ANGLES" and unit == "deg" and 0 < most < 3.2:
+        what = f"no angle is beyond {most:.3g} deg; they look like radians"
+        return [Finding("warning", "unit", file, what, "every angle if so; correct POINT:ANGLE_UNITS")]
+    if kind.group == "MOMENTS" and unit in ("N mm", "N m") and 0 < most < 10:
+        what = f"no joint moment is beyond {most:.3g} N m; Plug-in Gait writes moments per kg of body mass as {unit}"
+        return [
+            Finding("warning", "unit", file, what, "joint moments: multiply by body mass, or say N mm/kg in the file")
+        ]
+    return []
+
+
+def _doubled(names: list[str], parameters: C3DParameters, file: str) -> list[Finding]:
+    plain = [without_prefix(label) for label in parameters.texts("POINT", "LABELS")[: len(names)]]
+    doubled = sorted({label for label in plain if label and plain.count(label) > 1})
+    if not doubled:
+        return []
+    what = f"{len(doubled)} point labels stand more than once ({', '.join(doubled[:3])}); told apart by their number"
+    return [Finding("warning", "equal labels", file, what, "these points; give them names of their own")]
+
+
+def _without_zeros(markers: NDArray[np.float64], file: str) -> list[Finding]:
+    """Some software writes (0, 0, 0) for a marker that it did not see; make it NaN, in place."""
+    triples = markers.reshape(len(markers), markers.shape[1] // 3, 3)
+    origin = np.all(triples == 0, axis=2)
+    count = int(origin.sum())
+    if not count:
+        return []
+    triples[origin] = np.nan
+    what = f"{count} places of markers were exactly (0, 0, 0) and are taken as not seen"
+    return [Finding("note", "zero places", file, what, "")]
+
+
+def _columns(points: list[int]) -> NDArray[np.intp]:
+    return (3 * np.array(points, dtype=np.intp)[:, None] + np.arange(3)).ravel()
+
+
+def _side(name: str) -> str:
+    found = re.match(r"([LR])[A-Z]", name)
+    return found[1].lower() if found else ""

@@ -1,0 +1,239 @@
+"""Force plates of a C3D file: forces, moments and centres of pressure in the laboratory's axes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel
+from gaitdisc.ingest.c3d_parameters import C3DParameters
+from gaitdisc.ingest.c3d_points import AXES, Streams
+from gaitdisc.ingest.force_plate import ForcePlate, centre_of_pressure
+from gaitdisc.recording import Finding
+from gaitdisc.units import convert, inner_unit, parsed_unit
+
+CLEAR_LOAD_N = 100.0  # what a drifting plate does not show, and a foot does
+BESIDE_M = 0.05  # a centre of pressure farther outside of the plate than this is wrong
+_CHANNELS_OF_TYPE = {1: 6, 2: 6, 3: 8, 4: 6}
+
+
+def force_plates(
+    parameters: C3DParameters, channels: int, length_unit: str, file: str
+) -> tuple[list[ForcePlate], list[Finding]]:
+    """Plates that the group FORCE_PLATFORM describes, and why others cannot be used.
+
+    Parameters
+    ----------
+    parameters : C3DParameters
+        Parameter section.
+    channels : int
+        Analog channels of the file.
+    length_unit : str
+        Unit of CORNERS and ORIGIN, that of the points.
+    file : str
+        Name of the file.
+
+    References
+    ----------
+    The C3D file format, c3d.org, FORCE_PLATFORM. Laboratories write ORIGIN with either sign for types 2 to 4; as the
+    surface lies on the side that feet come from, which is the plate's -z, a positive third coordinate is turned around.
+    """
+    used = parameters.count("FORCE_PLATFORM", "USED") or 0
+    kinds = parameters.numbers("FORCE_PLATFORM", "TYPE").ravel()
+    columns = _last_axis(parameters.numbers("FORCE_PLATFORM", "CHANNEL"), 1)
+    corners = _last_axis(parameters.numbers("FORCE_PLATFORM", "CORNERS"), 2)
+    origins = _last_axis(parameters.numbers("FORCE_PLATFORM", "ORIGIN"), 1)
+    matrices = _last_axis(parameters.numbers("FORCE_PLATFORM", "CAL_MATRIX"), 2)
+    plates, findings = [], []
+    for place in range(min(used, 64)):
+        kind = int(kinds[place]) if place < len(kinds) else 0
+        wanted = _CHANNELS_OF_TYPE.get(kind, 0)
+        own = columns[place][:wanted] if place < len(columns) else np.empty(0)
+        why = ""
+        if not wanted:
+            why = f"is of type {kind}; types 1 to 4 are known"
+        elif len(own) < wanted or not np.all((own >= 1) & (own <= channels)):
+            why = f"names channels {own.astype(int).tolist()} of {channels}"
+        elif (
+            place >= len(corners) or corners[place].shape != (3, 4) or place >= len(origins) or origins[place].size != 3
+        ):
+            why = "has no corners or no origin"
+        elif kind == 4 and (place >= len(matrices) or matrices[place].shape != (6, 6)):
+            why = "is of type 4 and has no calibration matrix"
+        if not why:
+            origin = np.asarray(convert(origins[place], length_unit, "m"), float)
+            if kind != 1 and origin[2] > 0:
+                origin = -origin
+            matrix = matrices[place] if kind == 4 else np.empty((0, 0))
+            at = np.asarray(convert(corners[place].T, length_unit, "m"), float)
+            plate = ForcePlate(place + 1, kind, tuple(int(one) - 1 for one in own), at, origin, matrix)
+            why = "" if np.all(np.isfinite(plate.axes)) else "has corners that span no surface"
+            if not why:
+                plates.append(plate)
+        if why:
+            what = f"force plate {place + 1} {why}; its channels stay signals"
+            findings.append(Finding("warning", "force plate", file, what, "its ground forces; correct FORCE_PLATFORM"))
+    return plates, findings
+
+
+def plate_streams(
+    rows: NDArray[np.float64],
+    plates: list[ForcePlate],
+    parameters: C3DParameters,
+    length_unit: str,
+    file: str,
+) -> tuple[Streams, set[int], list[Finding]]:
+    """Stream `forces` of the plates: ground on foot, vertical positive up.
+
+    `plate_<n>_fx`, `_fy`, `_fz` [N] are the force of the ground on the foot along the laboratory's axes; the one along
+    the axis nearest to the plate's normal is the vertical force, positive upwards. `plate_<n>_mx`, `_my`, `_mz` [N m]
+    are its moment about the centre of the plate's surface, `plate_<n>_px`, `_py`, `_pz` [m] the centre of pressure on
+    the surface, NaN below 20 N. A foot cannot pull at a plate: where a loaded plate says it does, the file gives the
+    force of the foot on the ground and is turned around; a plate that nobody stepped on follows the others.
+
+    Parameters
+    ----------
+    rows : ndarray (sample, channel)
+        Analog channels in the file's units.
+    plates : list of ForcePlate
+        Plates of the file.
+    parameters : C3DParameters
+        Parameter section.
+    length_unit : str
+        Unit of the file's lengths.
+    file : str
+        Name of the file.
+
+    Returns
+    -------
+    streams : dict of str to (values, channels)
+    columns : set of int
+        Analog channels that the plates used.
+    findings : list of Finding
+    """
+    findings: list[Finding] = []
+    wrenches = []
+    for plate in plates:
+        units, doubts = _units(plate, parameters, length_unit, file)
+        findings += doubts
+        if not units:
+            continue
+        values, doubts = _zeroed(rows[:, list(plate.columns)], units, plate, parameters, file)
+        findings += doubts
+        placed, doubts = _with_origin(plate, values, units, file)
+        findings += doubts
+        wrenches.append((placed, *placed.wrench(values, units)))
+    up = [_upward(plate, force) for plate, force, _ in wrenches]
+    most = float(np.sign(sum(up)))
+    parts, channels = [], []
+    for (plate, force, moment), sense in zip(wrenches, up, strict=True):
+        sign = sense or most or 1.0
+        pressure = centre_of_pressure(force, moment)
+        axes = plate.axes.T
+        parts.append(np.hstack([sign * force @ axes, sign * moment @ axes, plate.centre + pressure @ axes]))
+        channels += _channels(plate)
+    turned = [plate.number for (plate, _, _), sense in zip(wrenches, up, strict=True) if (sense or most) < 0]
+    if turned:
+        what = f"plates {', '.join(map(str, turned))} give the force of the foot on the ground; turned around"
+        findings.append(Finding("note", "force sign", file, what, ""))
+    if up and not any(up):
+        what = f"no plate carried {CLEAR_LOAD_N:g} N; the sign of the forces could not be checked"
+        findings.append(Finding("note", "force sign", file, what, "nothing, as nobody stepped on it"))
+    streams: Streams = {"forces": (np.hstack(parts), tuple(channels))} if parts else {}
+    return streams, {column for plate, _, _ in wrenches for column in plate.columns}, findings
+
+
+def _last_axis(numbers: NDArray[np.float64], inner: int) -> list[NDArray[np.float64]]:
+    """One array a plate; a file with one plate may leave the last dimension out."""
+    if numbers.ndim == inner:
+        return [numbers] if numbers.size else []
+    return [numbers[..., place] for place in range(numbers.shape[-1])] if numbers.ndim == inner + 1 else []
+
+
+def _units(
+    plate: ForcePlate, parameters: C3DParameters, length_unit: str, file: str
+) -> tuple[tuple[str, ...], list[Finding]]:
+    moment = {"m": "N m", "cm": "N cm", "mm": "N mm"}[length_unit]
+    usual = {1: ("N",) * 3 + (length_unit,) * 2 + (moment,), 3: ("N",) * 8}.get(plate.kind, ("N",) * 3 + (moment,) * 3)
+    if plate.kind == 4:
+        return usual, []
+    texts = [*parameters.texts("ANALOG", "UNITS"), *[""] * (max(plate.columns) + 1)]
+    found = []
+    for column, expected in zip(plate.columns, usual, strict=True):
+        text = texts[column].strip()
+        unit = parsed_unit(text) if text else expected
+        if unit is None or inner_unit(unit) != inner_unit(expected):
+            what = (
+                f"force plate {plate.number} has channel #{column + 1} in {text!r} where {expected} is meant; not used"
+            )
+            return (), [Finding("warning", "force plate", file, what, "its ground forces; correct ANALOG:UNITS")]
+        found.append(unit)
+    if not any(texts[column].strip() for column in plate.columns):
+        what = f"force plate {plate.number} states no units; read as {usual[0]} and {usual[-1]}"
+        return tuple(found), [Finding("warning", "unit", file, what, "its forces if this is wrong; set ANALOG:UNITS")]
+    return tuple(found), []
+
+
+def _zeroed(
+    values: NDArray[np.float64], units: tuple[str, ...], plate: ForcePlate, parameters: C3DParameters, file: str
+) -> tuple[NDArray[np.float64], list[Finding]]:
+    """Channels of a plate without their mean over FORCE_PLATFORM:ZERO, unless the plate was loaded then."""
+    span = parameters.numbers("FORCE_PLATFORM", "ZERO").ravel()[:2]
+    if len(span) < 2 or not 1 <= span[0] < span[1] <= len(values):
+        return values, []
+    first, last = int(span[0]) - 1, int(span[1])
+    offset = values[first:last].mean(axis=0)
+    load = float(np.abs(plate.wrench(offset[None], units)[0][0, 2]))
+    if load > CLEAR_LOAD_N:
+        what = f"force plate {plate.number} carries {load:.0f} N in samples {first + 1} to {last}, its zero"
+        return values, [Finding("note", "plate zero", file, what, "the plate's offset is not removed")]
+    return values - offset, []
+
+
+def _upward(plate: ForcePlate, force: NDArray[np.float64]) -> float:
+    """+1 where a loaded plate pushes up along the laboratory's vertical, -1 where it would pull, 0 if not loaded."""
+    vertical = force @ plate.axes[plate.vertical]
+    clear = vertical[np.abs(vertical) > CLEAR_LOAD_N]
+    return float(np.sign(np.sum(clear * np.abs(clear))))
+
+
+def _with_origin(
+    plate: ForcePlate, values: NDArray[np.float64], units: tuple[str, ...], file: str
+) -> tuple[ForcePlate, list[Finding]]:
+    """Plate with its origin turned around if only then the centre of pressure lies on it."""
+    beside = _beside(plate, values, units)
+    if beside < 0.05:
+        return plate, []
+    turned = replace(plate, origin=-plate.origin)
+    if plate.kind in (2, 4) and _beside(turned, values, units) < 0.05:
+        what = f"force plate {plate.number}: ORIGIN points from the surface to the sensors; turned around"
+        return turned, [
+            Finding("note", "plate origin", file, what, "nothing; the centre of pressure lies on the plate")
+        ]
+    what = f"force plate {plate.number}: in {beside:.0%} of the loaded samples the centre of pressure lies beside it"
+    return plate, [
+        Finding("warning", "centre of pressure", file, what, "joint moments; check offset, ORIGIN and units")
+    ]
+
+
+def _beside(plate: ForcePlate, values: NDArray[np.float64], units: tuple[str, ...]) -> float:
+    """Share of the loaded samples whose centre of pressure lies beside the plate."""
+    pressure = centre_of_pressure(*plate.wrench(values, units))
+    half = np.abs((plate.corners - plate.centre) @ plate.axes)[:, :2].max(axis=0)
+    loaded = np.isfinite(pressure[:, 0])
+    outside = np.any(np.abs(pressure[loaded, :2]) > half + BESIDE_M, axis=1)
+    return float(outside.mean()) if outside.size else 0.0
+
+
+def _channels(plate: ForcePlate) -> list[Channel]:
+    vertical = plate.vertical
+    return [
+        *(
+            Channel(f"plate_{plate.number}_f{axis}", "vertical_force" if place == vertical else "force", "N")
+            for place, axis in enumerate(AXES)
+        ),
+        *(Channel(f"plate_{plate.number}_m{axis}", "moment", "N m") for axis in AXES),
+        *(Channel(f"plate_{plate.number}_p{axis}", "pressure_centre", "m") for axis in AXES),
+    ]

@@ -1,0 +1,61 @@
+"""C3D files written for the tests with ezc3d."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from gaitdisc.ingest.c3d import C3DReader
+
+
+def _written(path: Path, points=None, analog=None, parameters=None, first_frame: int = 1) -> Path:
+    """Points (3, point, frame), analog (channel, sample), parameters {(group, name): value}; 100 and 1000 Hz, mm, V."""
+    import ezc3d
+
+    file = ezc3d.c3d()
+    count = 0 if points is None else points.shape[1]
+    channels = 0 if analog is None else len(analog)
+    settings = {
+        ("POINT", "UNITS"): ["mm"],
+        ("POINT", "RATE"): [100.0],
+        ("POINT", "LABELS"): [f"M{number}" for number in range(1, count + 1)],
+    }
+    if channels:
+        settings[("ANALOG", "RATE")] = [1000.0]
+        settings[("ANALOG", "LABELS")] = [f"A{number}" for number in range(1, channels + 1)]
+        settings[("ANALOG", "UNITS")] = ["V"] * channels
+    for (group, name), value in (settings | (parameters or {})).items():
+        file.add_parameter(group, name, value)
+    if points is not None:
+        file["data"]["points"] = np.concatenate([points, np.ones((1, *points.shape[1:]))])
+    if analog is not None:
+        file["data"]["analogs"] = analog[None]
+    if first_frame != 1:
+        file["header"]["points"]["first_frame"] = first_frame - 1
+    file.write(str(path))
+    return path
+
+
+@pytest.fixture(scope="session")
+def write_c3d():
+    return _written
+
+
+@pytest.fixture(scope="session")
+def reader():
+    with C3DReader() as one:
+        yield one
+
+
+@pytest.fixture
+def some_points():
+    """Three markers within a laboratory, (3, 3, 50) [mm]."""
+    return np.random.default_rng(1).normal(900, 300, (3, 3, 50))
+
+
+@pytest.fixture
+def some_analog():
+    """Four channels, (4, 500) [V]."""
+    return np.random.default_rng(2).normal(0, 1e-3, (4, 500))

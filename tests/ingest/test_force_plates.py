@@ -1,0 +1,146 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from gaitdisc.ingest.c3d_parameters import C3DParameters
+from gaitdisc.ingest.force_plates import force_plates, plate_streams
+
+CORNERS = np.array([[0.6, 0, 0], [0, 0, 0], [0, 0.4, 0], [0.6, 0.4, 0]]) * 1000  # [mm], z of the plate down
+FOOT = np.array([0.1, -0.05, 0])  # where the foot stands, in the plate's axes [m]
+FORCE = np.array([20.0, -30, -600])  # ground on foot, in the plate's axes
+
+
+def _file(kind=2, origin=(0.0, 0, -40), units=("N", "N", "N", "Nmm", "Nmm", "Nmm"), **more):
+    values = {
+        "USED": np.array([1]),
+        "TYPE": np.array([kind]),
+        "CHANNEL": np.arange(1, 7)[:, None],
+        "CORNERS": CORNERS.T[..., None],
+        "ORIGIN": np.array(origin, float)[:, None],
+    } | more
+    return C3DParameters({("FORCE_PLATFORM", k): v for k, v in values.items()} | {("ANALOG", "UNITS"): tuple(units)})
+
+
+def _rows(sensors=(0, 0, -0.04), sign=1.0, count=200):
+    moment = 1000 * np.cross(FOOT + np.array(sensors), FORCE)
+    rows = np.tile(sign * np.array([*FORCE, *moment]), (count, 1))
+    rows[: count // 2] = 0
+    return rows
+
+
+def _read(rows, parameters):
+    plates, described = force_plates(parameters, rows.shape[1], "mm", "a.c3d")
+    streams, columns, findings = plate_streams(rows, plates, parameters, "mm", "a.c3d")
+    return streams, columns, described + findings
+
+
+def _check(streams):
+    values, channels = streams["forces"]
+    last = dict(zip((channel.name for channel in channels), values[-1], strict=True))
+    np.testing.assert_allclose([last[f"plate_1_f{axis}"] for axis in "xyz"], [20, 30, 600], atol=1e-9)
+    np.testing.assert_allclose([last[f"plate_1_p{axis}"] for axis in "xyz"], [0.4, 0.25, 0], atol=1e-9)
+    return values, channels
+
+
+def test_ground_on_foot_in_the_axes_of_the_laboratory():
+    streams, columns, findings = _read(_rows(), _file())
+    values, channels = _check(streams)
+    assert [channel.quantity for channel in channels] == [
+        "force", "force", "vertical_force", "moment", "moment", "moment", *["pressure_centre"] * 3,
+    ]  # fmt: skip
+    assert np.isnan(values[0, 6:]).all()
+    assert columns == set(range(6))
+    assert not findings
+
+
+def test_moments_are_about_the_centre_of_the_surface():
+    values, _ = _check(_read(_rows(), _file())[0])
+    np.testing.assert_allclose(values[-1, 3:6], np.diag([1, -1, -1]) @ np.cross(FOOT, FORCE), atol=1e-9)
+
+
+@pytest.mark.parametrize("origin", [(0.0, 0, 40), (0.0, 0, -40)])
+def test_both_signs_of_the_origin(origin):
+    _check(_read(_rows(), _file(origin=origin))[0])
+
+
+def test_an_origin_without_depth_is_judged_by_where_the_foot_stands():
+    sensors = np.array([0.25, 0.8, 0])  # at a corner of a treadmill; the file points from the surface to them
+    streams, _, findings = _read(_rows(sensors), _file(origin=tuple(-1000 * sensors)))
+    _check(streams)
+    assert "ORIGIN points from the surface to the sensors" in findings[0].what
+
+
+def test_force_of_the_foot_on_the_ground_is_turned_around_and_told():
+    streams, _, findings = _read(_rows(sign=-1.0), _file())
+    _check(streams)
+    assert "plates 1 give the force of the foot on the ground; turned around" in findings[0].what
+
+
+def test_type_4_through_its_matrix():
+    matrix = np.diag([2.0, 3, 4, 500, 600, 700]) + 0.01
+    volts = _rows() @ np.linalg.inv(matrix).T
+    parameters = _file(kind=4, units=["V"] * 6, CAL_MATRIX=matrix[..., None])
+    _check(_read(volts, parameters)[0])
+
+
+def test_a_last_dimension_of_one_may_be_left_out():
+    parameters = _file(CHANNEL=np.arange(1, 7), CORNERS=CORNERS.T, ORIGIN=np.array([0.0, 0, -40]))
+    _check(_read(_rows(), parameters)[0])
+
+
+def test_the_zero_span_is_removed_unless_the_plate_is_loaded_then():
+    offset = np.array([3.0, -4, 5, 100, 200, 300])
+    _check(_read(_rows() + offset, _file(ZERO=np.array([1, 10])))[0])
+    loaded = _rows()[::-1].copy()
+    streams, _, findings = _read(np.vstack([loaded, loaded[-1:].repeat(400, axis=0)]), _file(ZERO=np.array([1, 10])))
+    assert streams["forces"][0][0, 2] == pytest.approx(600)
+    assert "carries 600 N in samples 1 to 10" in findings[0].what
+
+
+def test_a_plate_far_from_its_foot_is_told():
+    _, _, findings = _read(_rows((0.9, 0, -0.04)), _file())
+    assert "in 100% of the loaded samples the centre of pressure lies beside it" in findings[0].what
+
+
+def test_a_plate_that_nobody_stepped_on():
+    _, _, findings = _read(_rows() * 0.05, _file())
+    assert "no plate carried 100 N; the sign of the forces could not be checked" in findings[0].what
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"kind": 7}, "is of type 7; types 1 to 4 are known"),
+        ({"kind": 4}, "is of type 4 and has no calibration matrix"),
+        ({"CHANNEL": np.array([[1], [2], [3], [4], [5], [60]])}, "names channels [1, 2, 3, 4, 5, 60] of 6"),
+        ({"CORNERS": np.zeros((3, 4, 1))}, "has corners that span no surface"),
+        ({"CORNERS": np.zeros((3, 2, 1))}, "has no corners or no origin"),
+        ({"units": ["ADC"] * 6}, "has channel #1 in 'ADC' where N is meant; not used"),
+        ({"units": [""] * 6}, "states no units; read as N and N mm"),
+    ],
+)
+def test_what_cannot_be_used_is_told(changes, words):
+    assert words in _read(_rows(), _file(**changes))[2][0].what
+
+
+def test_type_2_and_type_4_of_one_trial_agree(gait_data, reader):
+    folder = gait_data / "c3d_reader_samples/c3d_org_other"
+    two, four = (reader.read(folder / f"type-{kind}.c3d").stream("forces") for kind in ("2a", "4a"))
+    for plate in (1, 2):
+        for axis in "xyz":  # type 2 leaves the cross-talk in that the matrix of type 4 takes out
+            np.testing.assert_allclose(two[f"plate_{plate}_f{axis}"], four[f"plate_{plate}_f{axis}"], atol=2.5)
+        heavy = (two[f"plate_{plate}_fz"] > 300) & (four[f"plate_{plate}_fz"] > 300)
+        assert heavy.sum() > 300
+        for axis in "xy":
+            found = (one[f"plate_{plate}_p{axis}"][heavy] for one in (two, four))
+            np.testing.assert_allclose(*found, atol=0.002)
+
+
+def test_feet_stand_where_the_pressure_is(gait_data, reader):
+    trial = reader.read(gait_data / "treadmill_c3d_emg/walking_1.c3d")
+    forces, markers = trial.stream("forces"), trial.stream("markers")
+    for plate, heel in ((1, "LCAL"), (2, "RCAL")):
+        loaded = forces[f"plate_{plate}_fz"] > 300
+        low, high = np.nanpercentile(forces[f"plate_{plate}_px"][loaded], [5, 95])
+        assert markers[f"{heel}.x"].min() - 0.05 < low < high < markers[f"{heel}.x"].max() + 0.05

@@ -1,0 +1,97 @@
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import textwrap
+
+import numpy as np
+import pytest
+
+from gaitdisc.ingest import reader_process
+from gaitdisc.ingest.reader_process import ReaderProcess, ReadRequest
+
+
+@pytest.fixture
+def process():
+    one = ReaderProcess()
+    yield one
+    one.close()
+
+
+def _request(path, limit_s=60.0, **changes):
+    counts = {"frames": 50, "points": 3, "channels": 4, "samples": 500}
+    return ReadRequest(str(path), "ezc3d", **(counts | changes), limit_s=limit_s, cap_bytes=2**40)
+
+
+@pytest.fixture
+def playing(monkeypatch, tmp_path):
+    def play(script: str) -> None:
+        worker = tmp_path / "worker.py"
+        worker.write_text("import sys, time, os, signal\nline = sys.stdin.readline()\n" + textwrap.dedent(script))
+        monkeypatch.setattr(reader_process, "WORKER", worker)
+
+    return play
+
+
+def test_limits_grow_with_the_file():
+    request = ReadRequest.of_size("a.c3d", "ezc3d", (1, 2, 3, 4), 100 * 2**20)
+    assert request.limit_s == 30.0
+    assert request.cap_bytes == (512 + 1200) * 2**20
+    assert (request.frames, request.points, request.channels, request.samples) == (1, 2, 3, 4)
+
+
+def test_numbers_come_back_and_the_process_is_used_again(tmp_path, write_c3d, some_points, some_analog, process):
+    path = write_c3d(tmp_path / "a.c3d", some_points, some_analog)
+    first = process.ask(_request(path))
+    pid = process._process.pid
+    again = process.ask(_request(path))
+    assert process._process.pid == pid
+    np.testing.assert_array_equal(first.points, again.points)
+    np.testing.assert_allclose(again.analog, some_analog.T, rtol=1e-6)
+
+
+def test_a_dead_process_is_started_anew(tmp_path, write_c3d, some_points, some_analog, process):
+    path = write_c3d(tmp_path / "a.c3d", some_points, some_analog)
+    process.ask(_request(path))
+    os.kill(process._process.pid, signal.SIGKILL)
+    process._process.wait()
+    assert process.ask(_request(path)).points.shape == (50, 9)
+
+
+def test_a_process_is_recycled(tmp_path, write_c3d, some_points, some_analog, process, monkeypatch):
+    monkeypatch.setattr(reader_process, "FILES_A_PROCESS", 2)
+    path = write_c3d(tmp_path / "a.c3d", some_points, some_analog)
+    pids = []
+    for _ in range(4):
+        process.ask(_request(path))
+        pids.append(process._process.pid)
+    assert pids[0] == pids[1] != pids[2] == pids[3]
+
+
+def test_a_crash_is_said(playing, process):
+    playing("os.kill(os.getpid(), signal.SIGSEGV)")
+    assert process.ask(_request("a.c3d")).said == "it crashed (exit code -11)"
+
+
+def test_a_hang_is_ended(playing, process):
+    playing("time.sleep(100)")
+    assert process.ask(_request("a.c3d", limit_s=0.5)).said == "it had not finished after 0.5 s"
+
+
+def test_an_answer_that_breaks_off_is_a_crash(playing, process):
+    playing("print('{\"reader\": \"x\"}'); sys.stdout.write('abc')")
+    assert process.ask(_request("a.c3d")).said.startswith("it crashed")
+
+
+def test_babble_is_a_crash(playing, process):
+    playing("print('hello')")
+    assert process.ask(_request("a.c3d")).said.startswith("it crashed")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="address space is capped on Linux")
+def test_the_memory_cap_holds(tmp_path, write_c3d, process):
+    path = write_c3d(tmp_path / "a.c3d", np.ones((3, 100, 5000)))
+    request = ReadRequest(str(path), "ezc3d", 5000, 100, 0, 0, limit_s=60, cap_bytes=150 * 2**20)
+    assert process.ask(request).said  # out of memory, or dead of it
+    assert process.ask(ReadRequest(str(path), "ezc3d", 5000, 100, 0, 0, 60, 2**34)).points.shape == (5000, 300)
