@@ -1,0 +1,5 @@
+"""`python -m gaitdisc` is `gaitdisc`."""
+
+from gaitdisc.cli import main
+
+main()

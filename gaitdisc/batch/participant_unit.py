@@ -1,0 +1,182 @@
+"""One participant: both walks processed, the models fitted, everything kept on disk as soon as it is whole."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import gaitdisc
+from gaitdisc.errors import GaitdiscError, SchemaError
+from gaitdisc.ingest.reading import read_trial
+from gaitdisc.ingest.study import Participant, PlannedTrial, Study
+from gaitdisc.networks.training_settings import TrainingSettings
+from gaitdisc.processing.filter_null import filter_null
+from gaitdisc.processing.process import is_raw, processed
+from gaitdisc.processing.walk import Walk
+from gaitdisc.response.fit_response import ResponseSettings, fit_response
+from gaitdisc.response.samples import gait_samples
+from gaitdisc.results import ParticipantResponse, Refusal, WalkSummary
+from gaitdisc.results.store import load_response, load_walk, save_response, save_walk, unit_name
+
+Progress = Callable[[float], None]
+SHARE_OF_PROCESSING = 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class ParticipantUnit:
+    """What a run has of one participant.
+
+    Parameters
+    ----------
+    walks : tuple of WalkSummary
+        Walks that could be processed.
+    response : ParticipantResponse, optional
+        None where a walk or the fit was refused.
+    refusals : tuple of Refusal
+        Why, in the words of the error.
+    """
+
+    walks: tuple[WalkSummary, ...] = ()
+    response: ParticipantResponse | None = None
+    refusals: tuple[Refusal, ...] = ()
+
+
+def computed_unit(study: Study, participant: Participant, folder: Path, progress: Progress) -> ParticipantUnit:
+    """Compute one participant, or load what an earlier run computed from the same files and settings.
+
+    Parameters
+    ----------
+    study : Study
+        Settings.
+    participant : Participant
+        Who.
+    folder : Path
+        Folder of the run.
+    progress : callable
+        Called with the fraction done.
+
+    Returns
+    -------
+    ParticipantUnit
+        A refusal is part of the result; it stops this participant and nobody else.
+    """
+    not_complete = _incomplete(study, participant)
+    if not_complete:
+        return ParticipantUnit(refusals=(Refusal(participant.id, "", not_complete),))
+    planned = {word: participant.trials_of(word)[0] for word in (study.conditions.nominal, study.conditions.device)}
+    keys = {word: unit_key(study, trial) for word, trial in planned.items()}
+    stored = _stored(participant, keys, folder)
+    if stored is not None:
+        return stored
+    walks, refusals = _processed_walks(study, participant, planned)
+    summaries = {word: walk.summary() for word, walk in walks.items()}
+    for word, summary in summaries.items():
+        save_walk(summary, _walk_folder(folder, participant, word), keys[word])
+    kept = tuple(summaries.values())
+    if refusals:
+        return ParticipantUnit(kept, None, refusals)
+    progress(SHARE_OF_PROCESSING)
+    try:
+        response = _fitted(
+            study,
+            participant,
+            walks,
+            lambda share: progress(SHARE_OF_PROCESSING + (1 - SHARE_OF_PROCESSING) * share),
+        )
+    except GaitdiscError as error:
+        return ParticipantUnit(kept, None, (Refusal(participant.id, "", str(error)),))
+    save_response(response, folder / "responses" / participant.id, _response_key(keys))
+    return ParticipantUnit(kept, response)
+
+
+def unit_key(study: Study, trial: PlannedTrial) -> str:
+    """Hash of all that decides a walk's numbers: bytes of its files, settings, and the package's version.
+
+    Parameters
+    ----------
+    study : Study
+        Settings.
+    trial : PlannedTrial
+        Files and crop.
+    """
+    settings = study.model_dump(mode="json", exclude={"participants", "title"})
+    parts = [gaitdisc.__version__, json.dumps(settings, sort_keys=True), trial.model_dump_json(exclude={"files"})]
+    for file in trial.files:
+        path = study.path_of(file)
+        parts.append(hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else f"missing {file}")
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+
+
+def _incomplete(study: Study, participant: Participant) -> str:
+    """Why a participant cannot be compared; empty where one can."""
+    if participant.excluded:
+        return f"excluded in the study: {participant.excluded}"
+    both = (study.conditions.nominal, study.conditions.device)
+    counts = {word: len(participant.trials_of(word)) for word in both}
+    if set(counts.values()) == {1}:
+        return ""
+    found = ", ".join(f"{count or 'none'} of {word!r}" for word, count in counts.items())
+    others = [trial.files[0] for trial in participant.trials if trial.condition not in both]
+    unused = f"; of another condition: {', '.join(others)}" if others else ""
+    needed = f"a comparison needs one trial of {both[0]!r} and one of {both[1]!r}"
+    return f"{needed}; {participant.id} has {found}{unused}. Correct the conditions in [[participants.trials]]."
+
+
+def _processed_walks(
+    study: Study, participant: Participant, planned: Mapping[str, PlannedTrial]
+) -> tuple[dict[str, Walk], tuple[Refusal, ...]]:
+    walks, refusals = {}, []
+    for word, trial in planned.items():
+        try:
+            walks[word] = _walk(study, participant, trial)
+        except GaitdiscError as error:
+            refusals.append(Refusal(participant.id, word, str(error)))
+    return walks, tuple(refusals)
+
+
+def _walk(study: Study, participant: Participant, planned: PlannedTrial) -> Walk:
+    files = [study.path_of(file) for file in planned.files]
+    trial = read_trial(files, study.channels or None, participant.id, planned.condition, planned.crop_s)
+    walk = processed(trial, study)
+    left_away = gait_samples(walk.trajectory, study.models.outputs)[1].finding()
+    return replace(walk, findings=(*walk.findings, left_away))
+
+
+def _fitted(
+    study: Study, participant: Participant, walks: Mapping[str, Walk], progress: Progress
+) -> ParticipantResponse:
+    nominal, exo = walks[study.conditions.nominal], walks[study.conditions.device]
+    settings = ResponseSettings(
+        study.models.outputs,
+        study.held_out.seconds,
+        study.held_out.share or 0.0,
+        TrainingSettings(seed=study.models.seed),
+    )
+    emg = exo.trial.streams.get("emg")
+    emg_hz = emg.rate_hz if emg is not None and is_raw(emg) else None
+    null = filter_null(exo.state.channels, study.filters, exo.state.rate_hz, emg_hz)
+    response = fit_response(nominal.trajectory, exo.trajectory, settings, null, progress)
+    return replace(response, participant=participant.id)
+
+
+def _stored(participant: Participant, keys: Mapping[str, str], folder: Path) -> ParticipantUnit | None:
+    """Whole unit of an earlier run, if all of it rests on the same files and settings."""
+    try:
+        walks = [(load_walk(_walk_folder(folder, participant, word)), key) for word, key in keys.items()]
+        response, stored_key = load_response(folder / "responses" / participant.id)
+    except SchemaError:
+        return None
+    if stored_key != _response_key(keys) or any(stored != key for (_, stored), key in walks):
+        return None
+    return ParticipantUnit(tuple(walk for (walk, _), _ in walks), response)
+
+
+def _walk_folder(folder: Path, participant: Participant, word: str) -> Path:
+    return folder / "walks" / unit_name(participant.id, word)
+
+
+def _response_key(keys: Mapping[str, str]) -> str:
+    return hashlib.sha256("".join(keys.values()).encode()).hexdigest()

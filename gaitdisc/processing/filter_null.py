@@ -1,0 +1,90 @@
+"""R2 that noise without any gait reaches through a study's own filters: the floor under every R2 of the table."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel
+from gaitdisc.ingest.study import Filters
+from gaitdisc.recording import Recording
+from gaitdisc.recording.strides import interpolated
+from gaitdisc.signals.butterworth import lowpassed
+from gaitdisc.signals.derivatives import differentiated
+from gaitdisc.signals.envelope import enveloped
+from gaitdisc.statistics.band_limit_null import simulate_null
+
+Differentiated = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
+NOISE_S = 30.0
+WALKS = 20
+
+
+def filter_null(
+    channels: Sequence[Channel], filters: Filters, kinematics_hz: float, emg_hz: float | None = None
+) -> dict[str, float]:
+    """R2 of x'' regressed on x and x' in noise that passed through the same filters as each channel.
+
+    Parameters
+    ----------
+    channels : sequence of Channel
+        Channels of a processed walk.
+    filters : Filters
+        Of the study.
+    kinematics_hz : float
+        Rate at which angles were measured and everything is differentiated.
+    emg_hz : float, optional
+        Rate of the raw EMG; None where the recording holds envelopes, which are low-passed only.
+
+    Returns
+    -------
+    dict of str to float
+        Channel name to R2, about 0.5 for every low-pass.
+
+    References
+    ----------
+    A flat band has m2^2 / (m0 m4) = 5/9; see `gaitdisc.statistics.band_limit_null`.
+
+    Examples
+    --------
+    >>> knee = Channel("knee_angle_r", "angle", "deg", "r")
+    >>> round(filter_null([knee], Filters(), 100.0)["knee_angle_r"], 1)
+    0.5
+    """
+    of_angles = partial(_angles, filters=filters, rate_hz=kinematics_hz)
+    reached = {"angle": simulate_null(of_angles, round(NOISE_S * kinematics_hz), WALKS).r2}
+    if any(channel.quantity == "emg" for channel in channels):
+        rate_hz = emg_hz or kinematics_hz
+        of_emg = partial(_emg, filters=filters, rate_hz=rate_hz, base_hz=kinematics_hz, raw=emg_hz is not None)
+        reached["emg"] = simulate_null(of_emg, round(NOISE_S * rate_hz), WALKS).r2
+    return {channel.name: reached["emg" if channel.quantity == "emg" else "angle"] for channel in channels}
+
+
+def _angles(noise: NDArray[np.float64], filters: Filters, rate_hz: float) -> Differentiated:
+    smooth = lowpassed(_recording(noise, rate_hz, "deg"), filters.kinematics_hz, filters.order)
+    return _differentiated(smooth.values, rate_hz)
+
+
+def _emg(noise: NDArray[np.float64], filters: Filters, rate_hz: float, base_hz: float, raw: bool) -> Differentiated:
+    recording = _recording(noise, rate_hz, "V")
+    if raw:
+        smooth = enveloped(recording, filters.emg_highpass_hz, filters.emg_lowpass_hz, filters.order)
+    else:
+        smooth = lowpassed(recording, filters.emg_lowpass_hz, filters.order)
+    time = np.arange(round(len(noise) / rate_hz * base_hz)) / base_hz
+    return _differentiated(interpolated(smooth.time, smooth.values, time[:-1]), base_hz)
+
+
+def _differentiated(values: NDArray[np.float64], rate_hz: float) -> Differentiated:
+    parts = (values, differentiated(values, rate_hz, 1), differentiated(values, rate_hz, 2))
+    whole = np.isfinite(np.hstack(parts)).all(axis=1)
+    x, xdot, xddot = (part[whole] for part in parts)
+    return x, xdot, xddot
+
+
+def _recording(noise: NDArray[np.float64], rate_hz: float, unit: str) -> Recording:
+    quantity = "emg" if unit == "V" else "angle"
+    channels = tuple(Channel(f"noise_{k}", quantity, unit) for k in range(noise.shape[1]))
+    return Recording(np.arange(len(noise)) / rate_hz, noise, channels)

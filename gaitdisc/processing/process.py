@@ -1,0 +1,205 @@
+"""Process a trial: check it, filter it, cut it into strides, differentiate it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from gaitdisc.channel import vocabulary
+from gaitdisc.errors import ChannelError, SamplingError, StrideError
+from gaitdisc.ingest.study import Study
+from gaitdisc.processing.contact_choice import chosen_contacts
+from gaitdisc.processing.walk import Walk
+from gaitdisc.recording import Finding, Recording, Strides, Trial
+from gaitdisc.recording.strides import interpolated
+from gaitdisc.signals.butterworth import lowpassed, short_run_findings
+from gaitdisc.signals.channel_quality import channel_findings
+from gaitdisc.signals.contacts import order_findings
+from gaitdisc.signals.derivatives import trajectory
+from gaitdisc.signals.emg_quality import emg_findings
+from gaitdisc.signals.envelope import enveloped
+from gaitdisc.signals.force_drift import drift_findings
+from gaitdisc.signals.late_change import late_change_findings
+from gaitdisc.signals.plateaus import plateau_findings, plateau_marked
+from gaitdisc.signals.sides import verify_sides
+from gaitdisc.signals.stride_quality import stride_findings as outlier_findings
+from gaitdisc.signals.strides import cut_strides
+from gaitdisc.signals.walking import verify_walking
+
+
+def processed(trial: Trial, study: Study) -> Walk:
+    """Process one trial of a study.
+
+    Parameters
+    ----------
+    trial : Trial
+        With kinematics, and whatever else helps to find contacts.
+    study : Study
+        Filters, detector, angles and EMG that the models need.
+
+    Returns
+    -------
+    Walk
+
+    Raises
+    ------
+    ChannelError
+        If an angle or a muscle that the study names is missing or dead.
+    StrideError
+        If the trial is not walking, its sides are swapped, or its gait changes late and the study refuses that.
+    SamplingError
+        If the recording is too short or too slow for the filters.
+    """
+    raw = plateau_marked(_needed(trial, "kinematics", study.models.angles))
+    choice = chosen_contacts(trial, study.strides.detector, study.treadmill.direction if study.treadmill else "")
+    limits = (study.strides.min_s, study.strides.max_s)
+    strides = {side: cut_strides(found, raw, *limits) for side, found in sorted(choice.contacts.items())}
+    side = study.strides.side
+    if side not in strides:
+        raise StrideError(
+            f"percent stride follows side {side!r}",
+            f"{trial.name}: {choice.detector} finds strides of side {', '.join(strides) or 'none'} only",
+            "Change side in [strides].",
+        )
+    findings = [*trial.findings, *quality_findings(trial, study.models.angles, study.models.emg), *choice.findings]
+    if set(choice.contacts) == {"r", "l"}:
+        findings += order_findings(choice.contacts["r"], choice.contacts["l"], trial.name)
+    verify_walking(_knees_and_hips(trial), strides[side], study.quality.min_strides)
+    verify_sides(_knees_and_hips(trial), strides[side])
+    state = _state(trial, raw, study)
+    findings += short_run_findings(raw, study.filters.kinematics_hz, study.filters.order, study.filters.gap_s)
+    findings += stride_findings(state, strides[side])
+    _refuse_late_change(findings, trial, study)
+    return Walk(trial, state, strides, trajectory(state, strides[side]), tuple(findings), side)
+
+
+def quality_findings(trial: Trial, angles: Sequence[str] = (), emg: Sequence[str] = ()) -> list[Finding]:
+    """What the quality checks see in the raw streams of a trial.
+
+    Parameters
+    ----------
+    trial : Trial
+        As it was read.
+    angles, emg : sequence of str
+        Channels to look at; by default all.
+    """
+    findings: list[Finding] = []
+    if "kinematics" in trial.streams:
+        kinematics = trial.stream("kinematics")
+        looked_at = kinematics.selected([name for name in kinematics.names if not angles or name in angles])
+        findings += channel_findings(looked_at) + plateau_findings(looked_at)
+    if "emg" in trial.streams:
+        recorded = trial.stream("emg")
+        looked_at = recorded.selected([name for name in recorded.names if not emg or name in emg])
+        findings += channel_findings(looked_at)
+        findings += emg_findings(looked_at) if is_raw(recorded) else []
+    if "forces" in trial.streams:
+        forces = trial.stream("forces").selected_by(lambda channel: channel.quantity == "vertical_force")
+        findings += channel_findings(forces) + drift_findings(forces)
+    if "markers" in trial.streams and not angles:
+        findings += channel_findings(trial.stream("markers"))
+    return findings
+
+
+def stride_findings(state: Recording, strides: Strides) -> list[Finding]:
+    """What the strides say: outliers against the person's own mean, a change late in the trial, and those dropped.
+
+    Parameters
+    ----------
+    state : Recording
+        Filtered angles.
+    strides : Strides
+        Of one side.
+    """
+    angles = state.selected_by(lambda channel: channel.quantity == "angle")
+    findings = outlier_findings(angles, strides) + late_change_findings(angles, strides)
+    for dropped in strides.dropped:
+        what = f"stride of side {strides.side}: {dropped.reason}"
+        span = ((dropped.start, dropped.end),)
+        findings.append(Finding("note", "stride dropped", state.source.file, what, "this stride", spans=span))
+    return findings
+
+
+def _needed(trial: Trial, key: str, names: Sequence[str]) -> Recording:
+    recording = trial.stream(key)
+    missing = [name for name in names if name not in recording.names]
+    if missing:
+        nearest = vocabulary().nearest(missing[0], among=recording.names)
+        raise ChannelError(
+            f"the models need {', '.join(missing)}",
+            f"{recording.source.file or trial.name} has {len(recording.names)} channels without "
+            f"{'it' if len(missing) == 1 else 'them'}" + (f"; the nearest is {nearest!r}" if nearest else ""),
+            "Map the file's own label in [channels], or take the name out of [models].",
+        )
+    return recording.selected(names)
+
+
+def _knees_and_hips(trial: Trial) -> Recording:
+    wanted = {f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle") for side in "rl"}
+    return trial.stream("kinematics").selected_by(lambda channel: channel.name in wanted)
+
+
+def _state(trial: Trial, raw: Recording, study: Study) -> Recording:
+    """Filtered angles and envelopes on the time base of the kinematics."""
+    filters = study.filters
+    angles = lowpassed(raw, filters.kinematics_hz, filters.order, filters.gap_s)
+    if not study.models.emg:
+        return replace(angles, subject=trial.subject, condition=trial.condition)
+    emg = _needed(trial, "emg", study.models.emg)
+    _refuse_dead(emg, trial)
+    if is_raw(emg):
+        envelope = enveloped(emg, filters.emg_highpass_hz, filters.emg_lowpass_hz, filters.order)
+    else:
+        envelope = lowpassed(emg, filters.emg_lowpass_hz, filters.order, filters.gap_s)
+    values = interpolated(envelope.time, envelope.values, angles.time)
+    marks = interpolated(envelope.time, np.asarray(envelope.suspect, float), angles.time) > 0
+    if not np.isfinite(values).any():
+        raise SamplingError(
+            f"trial {trial.name}: EMG and kinematics need a span of time in common",
+            f"kinematics last from {angles.time[0]:.2f} to {angles.time[-1]:.2f} s, "
+            f"EMG from {emg.time[0]:.2f} to {emg.time[-1]:.2f} s",
+            "Check that the files belong to the same trial and clock.",
+        )
+    return Recording(
+        angles.time,
+        np.hstack([angles.values, values]),
+        (*angles.channels, *envelope.channels),
+        trial.subject,
+        trial.condition,
+        angles.source,
+        np.hstack([np.asarray(angles.suspect), marks | ~np.isfinite(values)]),
+    )
+
+
+def is_raw(emg: Recording) -> bool:
+    """Tell raw EMG, which swings about zero, from an envelope, which does not fall below it.
+
+    Parameters
+    ----------
+    emg : Recording
+        Channels of quantity `emg`.
+    """
+    known = emg.values[np.isfinite(emg.values)]
+    return len(known) > 0 and bool(np.min(known) < 0)
+
+
+def _refuse_dead(emg: Recording, trial: Trial) -> None:
+    dead = [finding for finding in emg_findings(emg) if finding.severity == "refused"] if is_raw(emg) else []
+    if dead:
+        raise ChannelError(
+            f"the models need live EMG in {', '.join(f.channel for f in dead)}",
+            f"{emg.source.file or trial.name}: " + "; ".join(f"{f.channel} is {f.kind}: {f.what}" for f in dead),
+            "Take the muscle out of [models], or leave the trial out.",
+        )
+
+
+def _refuse_late_change(findings: Sequence[Finding], trial: Trial, study: Study) -> None:
+    late = next((f for f in findings if f.kind == "late change" and f.severity == "warning"), None)
+    if late is not None and study.quality.late_change == "refuse":
+        raise StrideError(
+            f"trial {trial.name}: the gait must stay the same to the end, or the held-out part is another gait",
+            late.what,
+            'Look at the strides; set late_change = "report" in [quality] to use the trial nevertheless, or crop it.',
+        )

@@ -1,0 +1,56 @@
+import numpy as np
+import pytest
+
+from gaitdisc.ingest.storage import write_storage
+from gaitdisc.ingest.study_file import load_study, write_study
+from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
+from gaitdisc.processing.inspection import inspected_file, inspected_study
+
+
+@pytest.fixture
+def folder(trial, tmp_path):
+    write_storage(trial.stream("kinematics"), tmp_path / "good.mot")
+    broken = np.array(trial.stream("kinematics").values)
+    broken[500:560, 3] = np.nan
+    write_storage(trial.stream("kinematics").with_values(broken), tmp_path / "gappy.mot")
+    (tmp_path / "empty.mot").write_text("")
+    return tmp_path
+
+
+def test_the_three_lights(folder):
+    assert inspected_file(folder / "good.mot").refusal == ""
+    assert inspected_file(folder / "good.mot").strides["r"][0] > 30
+    gappy = inspected_file(folder / "gappy.mot")
+    assert gappy.light == "amber"
+    assert any(line.startswith("warning: gappy.mot, knee_angle_r: gap") for line in gappy.grouped())
+    empty = inspected_file(folder / "empty.mot")
+    assert empty.light == "red"
+    assert "empty.mot" in empty.refusal
+
+
+def test_a_study_is_looked_at_whole_though_one_file_is_broken(folder):
+    trials = (PlannedTrial(condition="a", files=("good.mot",)), PlannedTrial(condition="b", files=("empty.mot",)))
+    lone = (PlannedTrial(condition="a", files=("gappy.mot",)), PlannedTrial(condition="unknown", files=("good.mot",)))
+    study = Study(
+        conditions=Conditions(nominal="a", device="b"),
+        participants=(Participant(id="P01", trials=trials), Participant(id="P02", trials=lone)),
+    )
+    write_study(study, folder / "study.toml")
+    seen = list(inspected_study(load_study(folder)))
+    assert [one.light for one in seen[1:]] == ["red", "amber", seen[3].light, "red"]
+    assert "trials of both conditions, 'a' and 'b', are needed; P02 lacks one" in seen[-1].refusal
+
+
+def test_findings_of_one_kind_share_a_line(trial, tmp_path):
+    broken = np.array(trial.stream("kinematics").values)
+    broken[500:560] = np.nan
+    write_storage(trial.stream("kinematics").with_values(broken), tmp_path / "gappy.mot")
+    lines = [line for line in inspected_file(tmp_path / "gappy.mot").grouped() if ": gap" in line]
+    assert len(lines) == 1
+    assert "and 6 more: gap, 10 times" in lines[0]
+
+
+def test_calibration_trials_are_refused_as_walking(gait_data):
+    seen = inspected_file(gait_data / "treadmill_walk_ik" / "S01DN603_ik.mot")
+    assert seen.light == "red"
+    assert "not used as walking" in seen.refusal
