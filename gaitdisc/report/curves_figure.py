@@ -1,0 +1,211 @@
+"""Walking curves: mean and spread over the stride of both walks, channel by channel."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from gaitdisc.recording import PERCENT
+from gaitdisc.report.figure import Figure, Room, in_style, legend, panels, sheets
+from gaitdisc.report.palette import SIDES, WITHOUT_DEVICE
+from gaitdisc.report.wording import counted, label, side_of, sideless, unit_text, upwards
+from gaitdisc.results import ResponseRun, WalkSummary
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+
+WALKS = ("nominal", "exo")
+
+
+@in_style
+def curves_figures(run: ResponseRun, participant: str, name: str) -> list[Figure]:
+    """Mean and standard deviation over strides of the walks without and with the device, one panel a channel.
+
+    Parameters
+    ----------
+    run : ResponseRun
+        The whole result.
+    participant : str
+        Whose walks.
+    name : str
+        Participant's part of the file names.
+    """
+    numbers = curve_numbers(run, participant)
+    if not len(numbers):
+        return []
+    parts = sheets(sides_together(list(dict.fromkeys(numbers["channel"]))), 16)
+    return [
+        _figure(run, participant, numbers[numbers["channel"].isin(part)].set_index("channel").loc[part].reset_index(),
+                f"curves-{name}-{i + 1}" if len(parts) > 1 else f"curves-{name}")
+        for i, part in enumerate(parts)
+    ]  # fmt: skip
+
+
+def curve_numbers(run: ResponseRun, participant: str) -> pd.DataFrame:
+    """Mean and standard deviation over strides of every channel and walk on 101 points.
+
+    Parameters
+    ----------
+    run : ResponseRun
+        The whole result.
+    participant : str
+        Whose walks.
+
+    Returns
+    -------
+    DataFrame
+        channel, unit, walk (`nominal` or `exo`), percent, n (strides with a value there), mean, sd.
+    """
+    tables = []
+    for walk in WALKS:
+        summary = walk_of(run, participant, walk)
+        if summary is None or not len(summary.curves):
+            continue
+        present = np.isfinite(summary.curves)
+        count = present.sum(axis=0)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            mean = np.where(present, summary.curves, 0.0).sum(axis=0) / count
+            square = np.where(present, (summary.curves - mean) ** 2, 0.0).sum(axis=0)
+            spread = np.where(count > 1, np.sqrt(square / (count - 1)), np.nan)
+        for column, channel in enumerate(summary.channels):
+            tables.append(
+                pd.DataFrame(
+                    {
+                        "channel": channel.name,
+                        "unit": channel.unit,
+                        "walk": walk,
+                        "percent": PERCENT,
+                        "n": count[:, column],
+                        "mean": mean[:, column],
+                        "sd": spread[:, column],
+                    }
+                )
+            )
+    columns = pd.Index(["channel", "unit", "walk", "percent", "n", "mean", "sd"])
+    return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=columns)
+
+
+def walk_of(run: ResponseRun, participant: str, walk: str) -> WalkSummary | None:
+    """Return the walk of one participant, or None where it could not be processed.
+
+    Parameters
+    ----------
+    run : ResponseRun
+        The whole result.
+    participant : str
+        Whose walk.
+    walk : str
+        `nominal` or `exo`.
+    """
+    condition = run.nominal if walk == "nominal" else run.exo
+    return next((w for w in run.walks if w.subject == participant and w.condition == condition), None)
+
+
+def sides_together(names: list[str]) -> list[str]:
+    """Channels with left and right of one joint side by side, left first; what has no other side comes last.
+
+    Parameters
+    ----------
+    names : list of str
+        Channel names in the order of the recording.
+
+    Examples
+    --------
+    >>> sides_together(["pelvis_tilt", "hip_flexion_r", "ankle_angle_r", "hip_flexion_l", "ankle_angle_l"])
+    ['hip_flexion_l', 'hip_flexion_r', 'ankle_angle_l', 'ankle_angle_r', 'pelvis_tilt']
+    """
+    joints: dict[str, list[str]] = {}
+    for name in names:
+        joints.setdefault(sideless(name), []).append(name)
+    pairs = [sorted(pair, key=lambda n: "lr".find(side_of(n))) for pair in joints.values() if len(pair) > 1]
+    singles = [pair for pair in joints.values() if len(pair) == 1]
+    return [name for group in (*pairs, *singles) for name in group]
+
+
+def _figure(run: ResponseRun, participant: str, numbers: pd.DataFrame, name: str) -> Figure:
+    groups = list(numbers.groupby("channel", sort=False))
+    columns = min(4, len(groups))
+    drawn, grid = panels(-(-len(groups) // columns), columns, 1.15, Room(left=0.6, across=0.64, down=0.46))
+    cells = [axes for row in grid for axes in row]
+    ranges = _ranges(numbers)
+    for axes, (channel, curves) in zip(cells, groups, strict=False):
+        _draw(axes, curves, SIDES[side_of(str(channel))].colour)
+        axes.set_title(_title(str(channel)), color=SIDES[side_of(str(channel))].colour, fontsize=7.4)
+        up = upwards(str(channel))
+        unit = unit_text(str(curves["unit"].iloc[0]))
+        axes.set_ylabel(f"[{unit}]" + (f" ↑ {up}" if up and len(up) < 18 else ""), fontsize=6.8, labelpad=1)
+        axes.set_ylim(*ranges[sideless(str(channel))])
+        axes.set_xlim(0, 100)
+        axes.set_xticks([0, 50, 100])
+    for axes in cells[len(groups) :]:
+        axes.set_visible(False)
+    for axes in cells[max(0, len(groups) - columns) : len(groups)]:
+        axes.set_xlabel("stride [%]", labelpad=1)
+    legend(drawn, _key(run))
+    return Figure(name, _caption(run, participant, numbers), _alt(run, participant, numbers), numbers, drawn)
+
+
+def _draw(axes: Axes, curves: pd.DataFrame, colour: str) -> None:
+    axes.axhline(0.0, color="#cccccc", linewidth=0.6, zorder=0)
+    for walk, rows in curves.groupby("walk", sort=False):
+        without = walk == "nominal"
+        shade = WITHOUT_DEVICE.colour if without else colour
+        low, high = rows["mean"] - rows["sd"], rows["mean"] + rows["sd"]
+        axes.fill_between(rows["percent"], low, high, color=shade, alpha=0.22, linewidth=0, zorder=1)
+        line = WITHOUT_DEVICE.line if without else "-"
+        axes.plot(rows["percent"], rows["mean"], color=shade, linestyle=line, linewidth=1.2, zorder=2)
+
+
+def _ranges(numbers: pd.DataFrame) -> dict[str, tuple[float, float]]:
+    spread = numbers["sd"].fillna(0.0)
+    joint = numbers["channel"].map(sideless)
+    low, high = (numbers["mean"] - spread).groupby(joint).min(), (numbers["mean"] + spread).groupby(joint).max()
+    room = 0.06 * (high - low).clip(lower=1e-9)
+    return {
+        str(key): (float(low[key] - room[key]), float(high[key] + room[key])) if np.isfinite(low[key]) else (0.0, 1.0)
+        for key in low.index
+    }
+
+
+def _title(channel: str) -> str:
+    return label(channel).replace("EMG ", "")
+
+
+def _key(run: ResponseRun) -> list[Line2D]:
+    from matplotlib.lines import Line2D
+
+    without = {"color": WITHOUT_DEVICE.colour, "linestyle": WITHOUT_DEVICE.line}
+    return [
+        Line2D([], [], **without, label=run.nominal),
+        Line2D([], [], color=SIDES["l"].colour, label=f"{run.exo}, left"),
+        Line2D([], [], color=SIDES["r"].colour, label=f"{run.exo}, right"),
+    ]
+
+
+def _caption(run: ResponseRun, participant: str, numbers: pd.DataFrame) -> str:
+    counts = []
+    for walk, rows in numbers.groupby("walk", sort=False):
+        low, high = int(rows["n"].min()), int(rows["n"].max())
+        word = run.nominal if walk == "nominal" else run.exo
+        counts.append(f"{low if low == high else f'{low}-{high}'} strides ({word})")
+    return (
+        f"{participant}: walking curves of every channel over the stride, mean ± standard deviation over strides, "
+        f"n = {', '.join(counts)}; whole walks, no split. Grey, dashed: {run.nominal}; solid: {run.exo}, in red "
+        f"for the left side, blue for the right, black where there is no side. 0 %: initial contact of the channel's "
+        f"own foot. The arrow says what upwards means; left and right of one joint share a scale."
+    )
+
+
+def _alt(run: ResponseRun, participant: str, numbers: pd.DataFrame) -> str:
+    ranges = []
+    for (channel, walk), rows in numbers.groupby(["channel", "walk"], sort=False):
+        if walk == "exo" and len(ranges) < 6:
+            unit = unit_text(str(rows["unit"].iloc[0]))
+            ranges.append(f"{label(str(channel))} {rows['mean'].min():.3g} to {rows['mean'].max():.3g} {unit}")
+    return (
+        f"Mean walking curves of {participant}, {counted(numbers['channel'].nunique(), 'channel')}, {run.nominal} "
+        f"and {run.exo}. With the device: {'; '.join(ranges)}."
+    )

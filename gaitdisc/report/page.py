@@ -1,0 +1,174 @@
+"""The report: one self-contained page, with every figure and table beside it as files."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import gaitdisc
+from gaitdisc.report.curves_figure import curves_figures
+from gaitdisc.report.figure import LARGEST_INLINE_SVG, Figure, SavedFigure, file_names, save_figure, save_table
+from gaitdisc.report.held_out_figure import held_out_figures
+from gaitdisc.report.method import flattened, method_sentences, provenance_rows
+from gaitdisc.report.r2_figure import r2_figures
+from gaitdisc.report.residual_figure import residual_figures
+from gaitdisc.report.sentences import participant_sentences, study_sentences
+from gaitdisc.report.strides_figure import strides_figure
+from gaitdisc.report.tables import (
+    Table,
+    dropped_table,
+    findings_table,
+    fits_table,
+    not_computed,
+    pairs_table,
+    participants_table,
+    r2_table,
+    refusals_table,
+    study_r2_table,
+    walks_table,
+)
+from gaitdisc.results import ParticipantResponse, ResponseRun
+from gaitdisc.whole_file import whole_file
+
+if TYPE_CHECKING:
+    import jinja2
+
+INLINE_BYTES = 3_000_000  # of all figures together, about; beyond it they are shown as pictures
+FIGURES_A_PERSON = 5
+MOST_OPEN = 2  # with more participants than this, the first screen is brief and their sections are folded
+
+
+@dataclass(frozen=True, eq=False)
+class Section:
+    """What the page shows of one participant.
+
+    Parameters
+    ----------
+    participant : str
+        Pseudonym.
+    anchor : str
+        Where the page links to.
+    sentences : list of str
+        The answer for this participant; empty where there is no response.
+    r2 : Table or None
+        R2 by variable.
+    reasons : list of str
+        Why some numbers were not computed.
+    dropped : Table or None
+        Dropped strides by reason.
+    figures : dict of str to list of SavedFigure
+        By subject: `held_out`, `residual`, `curves`, `strides`.
+    """
+
+    participant: str
+    anchor: str
+    sentences: list[str]
+    r2: Table | None
+    reasons: list[str]
+    dropped: Table | None
+    figures: dict[str, list[SavedFigure]]
+
+
+def write_report(run: ResponseRun, folder: Path) -> Path:
+    """Write the report of a run: `report.html`, `figures/` and `tables/`.
+
+    The page needs nothing but itself: figures are inside it, no script, nothing from a network. Beside every figure
+    lies a CSV with the numbers drawn. Writing the same run again gives the same bytes.
+
+    Parameters
+    ----------
+    run : ResponseRun
+        The whole result; nothing is fitted again.
+    folder : Path
+        Where the report goes; made if missing.
+
+    Returns
+    -------
+    Path
+        The page.
+
+    Raises
+    ------
+    WriteError
+        If a file cannot be written; what stood there before still stands.
+    """
+    people = list(dict.fromkeys([*(r.participant for r in run.responses), *(w.subject for w in run.walks)]))
+    names = file_names(people)
+    responses = {response.participant: response for response in run.responses}
+    sections = [_section(run, person, responses.get(person), names[person], folder) for person in people]
+    overview = [save_figure(figure, folder / "figures") for figure in (r2_figures(run) if run.responses else [])]
+    tables = {
+        "refusals": refusals_table(run),
+        "walks": walks_table(run),
+        "findings": findings_table(run),
+        "fits": fits_table(run),
+        **({"people": participants_table(run), "study": study_r2_table(run)} if len(run.responses) > 1 else {}),
+        **_provenance_tables(run),
+    }
+    for table in tables.values():
+        save_table(table.numbers, folder / "tables" / f"{table.name}.csv")
+    save_table(run.r2_table(), folder / "tables" / "r2.csv")
+    text = _templates().get_template("report.html.j2").render(
+        run=run,
+        study=study_sentences(run),
+        sections=sections,
+        overview=overview,
+        tables=tables,
+        method=method_sentences(run),
+        headline=1 if not run.responses else 0 if len(run.responses) == 1 else 2,
+        briefly=len(sections) > MOST_OPEN,
+        version=gaitdisc.__version__,
+    )  # fmt: skip
+    page = folder / "report.html"
+    with whole_file(page) as part:
+        part.write_text(text, encoding="utf-8", newline="\n")
+    return page
+
+
+def _section(run: ResponseRun, person: str, response: ParticipantResponse | None, name: str, folder: Path) -> Section:
+    strides = strides_figure(run, person, name)
+    drawn: dict[str, list[Figure]] = {
+        "held_out": held_out_figures(response, name) if response else [],
+        "residual": residual_figures(response, name) if response else [],
+        "curves": curves_figures(run, person, name),
+        "strides": [strides] if strides else [],
+    }
+    limit = min(LARGEST_INLINE_SVG, INLINE_BYTES // (FIGURES_A_PERSON * max(1, len(run.responses))))
+    r2, dropped = (r2_table(response, name) if response else None), dropped_table(run, person, name)
+    for table in (r2, dropped):
+        if table is not None:
+            save_table(table.numbers, folder / "tables" / f"{table.name}.csv")
+    return Section(
+        person,
+        f"participant-{name}",
+        participant_sentences(response) if response else [],
+        r2,
+        not_computed(run, response) if response else [],
+        dropped,
+        {subject: [save_figure(f, folder / "figures", limit) for f in figures] for subject, figures in drawn.items()},
+    )
+
+
+def _provenance_tables(run: ResponseRun) -> dict[str, Table]:
+    made = run.provenance
+    files = sorted(made.files.items())
+    return {
+        "settings": pairs_table(
+            "settings", "Settings, with all defaults.", ("setting", "value"), flattened(made.settings)
+        ),
+        "versions": pairs_table("versions", "Circumstances of the run.", ("what", "value"), provenance_rows(made)),
+        "files": pairs_table("files", f"Files read, n = {len(files)}, with their SHA-256.", ("file", "SHA-256"), files),
+    }
+
+
+def _templates() -> jinja2.Environment:
+    import jinja2
+
+    return jinja2.Environment(
+        loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )

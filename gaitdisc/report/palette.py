@@ -1,0 +1,46 @@
+"""Colours and line styles: the same thing looks the same in every figure, also in grey print.
+
+Left red, right blue; Nominal orange, Augmented green, Exo grey. Every colour has a line style or a mark of its own, so
+that grey print and colour-blind readers lose nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Look:
+    """How one thing is drawn.
+
+    Parameters
+    ----------
+    colour : str
+        Six hexadecimal digits.
+    line : Any
+        Matplotlib's line style: a word, or lengths of dashes.
+    mark : str
+        Matplotlib's marker.
+    """
+
+    colour: str
+    line: Any
+    mark: str
+
+
+MODELS = {
+    "nominal": Look("#d97700", (0, (4.0, 1.6)), "o"),
+    "augmented": Look("#00875a", "-", "s"),
+    "exo": Look("#7a7a7a", (0, (1.2, 1.2)), "^"),
+}
+SIDES = {
+    "l": Look("#c8102e", "-", "v"),
+    "r": Look("#1f4fc8", "-", "o"),
+    "": Look("#222222", "-", "s"),
+}
+MEASURED = Look("#111111", "-", "")
+WITHOUT_DEVICE = Look("#555555", (0, (4.0, 1.6)), "")
+NULL = Look("#444444", (0, (2.0, 2.0)), "")
+KEPT = Look("#8fa1b8", "-", "")
+DROPPED = Look("#111111", "-", "x")

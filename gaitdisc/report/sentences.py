@@ -1,0 +1,183 @@
+"""The answer in sentences, computed from the table and worded as honestly when the device model does not help."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+
+from gaitdisc.report.r2_summary import medians, participant_medians, r2_by_variable, sample_counts
+from gaitdisc.report.wording import MODEL_WORDS, counted, listed, number
+from gaitdisc.results import ParticipantResponse, ResponseRun
+
+MARGIN = 0.005  # a difference in R2 that two printed digits cannot show is called none
+_ON_EXO = {model: f"{model}_on_exo" for model in ("nominal", "augmented", "exo")}
+
+
+def study_sentences(run: ResponseRun) -> list[str]:
+    """What the study as a whole says: who was analysed, and what the models explain over participants.
+
+    Parameters
+    ----------
+    run : ResponseRun
+        The whole result.
+    """
+    refused = sorted({refusal.participant for refusal in run.refusals})
+    left_out = f"; left out in whole or in part: {listed(refused)} (see “Left out”)" if refused else ""
+    if not run.responses:
+        if refused:
+            return [f"No participant could be analysed{left_out}. There is no result to show."]
+        return ["No participant could be analysed: the study holds none. There is no result to show."]
+    analysed = len(run.responses)
+    who = f"{counted(analysed, 'participant')} {'was' if analysed == 1 else 'were'} analysed{left_out}."
+    if analysed == 1:
+        return [f"{who} One participant carries no test: what follows describes this participant only."]
+    table = participant_medians(run)
+    parts = [f"{MODEL_WORDS[model]} {_median_iqr(table[column])}" for model, column in _ON_EXO.items()]
+    sentences = [
+        who,
+        f"Of the variance of held-out device walking ({run.exo}) the models explain, as median [quartiles] over "
+        f"participants of each participant's median over variables: {', '.join(parts)}.",
+        _study_verdict(table["augmented_on_exo"] - table["nominal_on_exo"]),
+    ]
+    ridge = (table["ridge_augmented_on_exo"] - table["augmented_on_exo"]).dropna()
+    if len(ridge):
+        wins = int((ridge >= MARGIN).sum())
+        sentences.append(
+            f"Ridge regression in place of the networks gives Augmented {_median_iqr(table['ridge_augmented_on_exo'])} "
+            f"and beats the network in {wins} of {counted(len(ridge), 'participant')}."
+        )
+    if table["null_on_exo"].notna().any():
+        sentences.append(f"Band-limited noise alone would reach {_median_iqr(table['null_on_exo'])}.")
+    return sentences
+
+
+def participant_sentences(response: ParticipantResponse) -> list[str]:
+    """What one participant shows: what the models explain, whether the device model helps, ridge, and the null.
+
+    Parameters
+    ----------
+    response : ParticipantResponse
+        Whose result.
+    """
+    table = r2_by_variable(response)
+    middle = medians(table)
+    sentences = [_headline(response, table, middle)]
+    if np.isfinite(middle["nominal_on_nominal"]):
+        sentences.append(
+            f"On held-out walking without the device effect, which it was trained for, "
+            f"the Nominal model reaches {number(middle['nominal_on_nominal'])}."
+        )
+    sentences.append(_verdict(table, middle))
+    for sentence in (_ridge(middle), _null(middle)):
+        if sentence:
+            sentences.append(sentence)
+    return sentences
+
+
+def _headline(response: ParticipantResponse, table: pd.DataFrame, middle: pd.Series) -> str:
+    computed = int(table[_ON_EXO["nominal"]].notna().sum())
+    whole = len(table)
+    over = f"{whole} variables" if computed == whole else f"{computed} of {whole} variables, the others not computed"
+    if whole == 1:
+        over = "the only variable"
+    nominal, augmented, exo = (middle[column] for column in _ON_EXO.values())
+    return (
+        f"In {response.participant}, the Nominal model {_explains(nominal)} of the device walk's variance "
+        f"(R², median over {over}, held-out last {response.held_out_s:.4g} s, n = {sample_counts(response)} samples), "
+        f"the Augmented model {number(augmented)}, the Exo model {number(exo)}."
+    )
+
+
+def _explains(r2: float) -> str:
+    if not np.isfinite(r2):
+        return "explains an amount that was not computed"
+    if r2 < 0:
+        return f"does worse than the mean would and explains nothing (R² {number(r2)})"
+    return f"explains {number(r2)}"
+
+
+def _verdict(table: pd.DataFrame, middle: pd.Series) -> str:
+    gain = (table["augmented_on_exo"] - table["nominal_on_exo"]).dropna()
+    if not len(gain):
+        return "Whether the Discrepancy model helps was not computed."
+    median = float(gain.median())
+    better = f"better in {int((gain > 0).sum())} of {counted(len(gain), 'variable')}"
+    if median >= MARGIN:
+        return (
+            f"Adding the Discrepancy model helps: R² rises by {number(median)} (median of the differences; "
+            f"{better}){_closed(middle)}."
+        )
+    if median <= -MARGIN:
+        return (
+            f"Adding the Discrepancy model makes it worse: R² falls by {number(-median)} "
+            f"(median of the differences; {better})."
+        )
+    return (
+        f"Adding the Discrepancy model does not help: the Augmented model is no better than the Nominal model "
+        f"(median of the differences {number(median, 3)}; {better})."
+    )
+
+
+def _closed(middle: pd.Series) -> str:
+    nominal, augmented, exo = (float(middle[column]) for column in _ON_EXO.values())
+    if not np.isfinite(exo) or exo - nominal < 0.01:
+        return ""
+    share = (augmented - nominal) / (exo - nominal)
+    if share >= 1:
+        return ", up to or above what the Exo model reaches"
+    if share <= 0:
+        return ""
+    return f", {100 * share:.0f}\u00a0% of the way from the Nominal to the Exo model"
+
+
+def _ridge(middle: pd.Series) -> str:
+    ridge = {model: float(middle[f"ridge_{column}"]) for model, column in _ON_EXO.items()}
+    ridge = {model: value for model, value in ridge.items() if np.isfinite(value)}
+    if not ridge:
+        return ""
+    said = listed([f"{MODEL_WORDS[model]} {number(value)}" for model, value in ridge.items()])
+    start = f"Ridge regression on the same samples, without any network, reaches {said}"
+    wins = [model for model, value in ridge.items() if value - middle[_ON_EXO[model]] >= MARGIN]
+    if wins:
+        beaten = listed([f"{MODEL_WORDS[m]} ({number(ridge[m])} against {number(middle[_ON_EXO[m]])})" for m in wins])
+        return f"{start}: ridge beats the network for {beaten}, where the network earns nothing."
+    if "augmented" not in ridge or not np.isfinite(middle["augmented_on_exo"]):
+        return f"{start}."
+    gain = float(middle["augmented_on_exo"]) - ridge["augmented"]
+    if gain < MARGIN:
+        return f"{start}: the networks are no better."
+    return f"{start}: the networks add {number(gain)} to the Augmented model."
+
+
+def _null(middle: pd.Series) -> str:
+    null = float(middle["null_on_exo"])
+    if not np.isfinite(null):
+        return ""
+    below = [MODEL_WORDS[m] for m, column in _ON_EXO.items() if middle[column] <= null + MARGIN]
+    start = f"Band-limited noise alone would reach {number(null)}"
+    return f"{start}; the {listed(below)} model does not rise above that." if below else f"{start}."
+
+
+def _study_verdict(gains: pd.Series) -> str:
+    gains = gains.dropna()
+    if not len(gains):
+        return "Whether the Discrepancy model helps was not computed."
+    median = float(gains.median())
+    better = f"better in {int((gains >= MARGIN).sum())} of {counted(len(gains), 'participant')}"
+    if median >= MARGIN:
+        return f"Adding the Discrepancy model raises R² by {number(median)} (median over participants; {better})."
+    if median <= -MARGIN:
+        return f"Adding the Discrepancy model lowers R² by {number(-median)} (median over participants; {better})."
+    return (
+        f"Adding the Discrepancy model does not help: the Augmented model is no better than the Nominal model "
+        f"(median difference {number(median, 3)}; {better})."
+    )
+
+
+def _median_iqr(values: pd.Series) -> str:
+    known = int(values.notna().sum())
+    if not known:
+        return "not computed"
+    q1, middle, q3 = np.quantile(values.dropna(), [0.25, 0.5, 0.75])
+    some = f" (n = {known})" if known < len(values) else ""
+    return f"{number(middle)} [{number(q1)}, {number(q3)}]{some}"

@@ -1,0 +1,173 @@
+"""Quality strip: every stride of every walk, kept or dropped, and how long it lasted."""
+
+from __future__ import annotations
+
+import re
+import string
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from gaitdisc.report.curves_figure import WALKS, walk_of
+from gaitdisc.report.figure import Figure, Room, in_style, legend, panels
+from gaitdisc.report.palette import DROPPED, KEPT, SIDES
+from gaitdisc.report.wording import SIDE_WORDS, counted, listed
+from gaitdisc.results import ResponseRun
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+
+COLUMNS = ("participant", "condition", "side", "start_s", "end_s", "duration_s", "kept", "code", "reason")
+_HEIGHTS = {"r": 1.0, "l": 0.0, "": 0.5}
+
+
+def stride_numbers(run: ResponseRun, participant: str) -> pd.DataFrame:
+    """Every stride of a participant with its duration, and a letter for the kind of reason that dropped it.
+
+    Parameters
+    ----------
+    run : ResponseRun
+        The whole result.
+    participant : str
+        Whose strides.
+
+    Returns
+    -------
+    DataFrame
+        Columns of `COLUMNS`, in order of time within each walk.
+    """
+    walks = [walk_of(run, participant, walk) for walk in WALKS]
+    tables = [
+        walk.strides.assign(participant=walk.subject, condition=walk.condition) for walk in walks if walk is not None
+    ]
+    if not tables:
+        return pd.DataFrame(columns=pd.Index(COLUMNS))
+    table = pd.concat(tables, ignore_index=True)
+    table["duration_s"] = table["end_s"] - table["start_s"]
+    table["kept"] = table["kept"].astype(bool)
+    table["reason"] = table["reason"].fillna("").astype(str).where(~table["kept"], "")
+    kinds = list(dict.fromkeys(table.loc[~table["kept"], "reason"].map(reason_kind)))
+    codes = {kind: _letters(i) for i, kind in enumerate(kinds)}
+    table["code"] = [("" if kept else codes[reason_kind(r)]) for kept, r in zip(table["kept"], table["reason"])]  # noqa: B905
+    return table[list(COLUMNS)]
+
+
+def reason_kind(reason: str) -> str:
+    """Kind of a reason: its words without its numbers, so that like reasons are counted together.
+
+    Parameters
+    ----------
+    reason : str
+        As the stride carries it.
+
+    Examples
+    --------
+    >>> reason_kind("lasts 1.62 s, the median is 1.08 s")
+    'lasts … s, the median is … s'
+    """
+    return re.sub(r"[-−+]?\d+(?:\.\d+)?", "…", reason) or "no reason was given"
+
+
+@in_style
+def strides_figure(run: ResponseRun, participant: str, name: str) -> Figure | None:
+    """Every stride as a bar, and stride durations over time, for each walk; None where there is no stride.
+
+    Parameters
+    ----------
+    run : ResponseRun
+        The whole result.
+    participant : str
+        Whose strides.
+    name : str
+        Participant's part of the file name.
+    """
+    numbers = stride_numbers(run, participant)
+    if not len(numbers):
+        return None
+    groups = list(numbers.groupby("condition", sort=False))
+    drawn, grid = panels(2 * len(groups), 1, 0.62, Room(down=0.42))
+    for index, (condition, strides) in enumerate(groups):
+        strip, durations = grid[2 * index][0], grid[2 * index + 1][0]
+        walk = next(w for w in run.walks if (w.subject, w.condition) == (participant, condition))
+        _draw_strip(strip, strides)
+        strip.set_title(f"{condition}: every stride (contacts by {walk.detector})", loc="left")
+        _draw_durations(durations, strides)
+        for axes in (strip, durations):
+            axes.set_xlim(0, max(walk.duration_s, float(strides["end_s"].max())))
+        strip.tick_params(labelbottom=False)
+    grid[-1][0].set_xlabel("time in the trial [s]")
+    legend(drawn, _key())
+    return Figure(f"strides-{name}", _caption(participant, numbers), _alt(participant, numbers), numbers, drawn)
+
+
+def _draw_strip(axes: Axes, strides: pd.DataFrame) -> None:
+    for side, rows in strides.groupby("side"):
+        middle = _HEIGHTS.get(str(side), 0.5)
+        kept, dropped = rows[rows["kept"]], rows[~rows["kept"]]
+        for chosen, look, half in ((kept, KEPT, 0.26), (dropped, DROPPED, 0.40)):
+            spans = list(zip(chosen["start_s"], chosen["duration_s"], strict=True))
+            axes.broken_barh(spans, (middle - half, 2 * half), facecolor=look.colour, edgecolor="white", linewidth=0.5)
+        for start, length, code in zip(dropped["start_s"], dropped["duration_s"], dropped["code"], strict=True):
+            axes.text(
+                start + length / 2, middle, code, color="white", ha="center", va="center", fontsize=6, clip_on=True
+            )
+    present = [side for side in _HEIGHTS if side in set(strides["side"])]
+    axes.set_yticks([_HEIGHTS[side] for side in present], [SIDE_WORDS[side] or "stride" for side in present])
+    for tick, side in zip(axes.get_yticklabels(), present, strict=True):
+        tick.set_color(SIDES[side].colour)
+    axes.set_ylim(-0.55, 1.55)
+
+
+def _draw_durations(axes: Axes, strides: pd.DataFrame) -> None:
+    kept, dropped = strides[strides["kept"]], strides[~strides["kept"]]
+    for side, rows in kept.groupby("side"):
+        look = SIDES[str(side)]
+        axes.plot(rows["start_s"], rows["duration_s"], look.mark, color=look.colour, ms=3.4, mew=0, alpha=0.8)
+    axes.plot(dropped["start_s"], dropped["duration_s"], DROPPED.mark, color=DROPPED.colour, ms=4, mew=1.0)
+    axes.set_ylabel("duration [s]")
+    middle = float(strides["duration_s"].median())
+    reach = max(1.15 * float(np.abs(strides["duration_s"] - middle).max()), 0.05 * middle)
+    axes.set_ylim(max(0.0, middle - reach), middle + reach)
+
+
+def _key() -> list[Artist]:
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    marks = [(look.mark, look.colour, word) for look, word in ((SIDES["l"], "left"), (SIDES["r"], "right"))]
+    marks.append((DROPPED.mark, DROPPED.colour, "dropped"))
+    return [
+        Patch(facecolor=KEPT.colour, label="kept"),
+        Patch(facecolor=DROPPED.colour, label="dropped, with the letter of its reason"),
+        *(Line2D([], [], marker=mark, color=colour, linestyle="", ms=4, label=word) for mark, colour, word in marks),
+    ]
+
+
+def _caption(participant: str, numbers: pd.DataFrame) -> str:
+    parts = [
+        f"{counted(len(rows), 'stride')} ({condition}: {int(rows['kept'].sum())} kept, "
+        f"{int((~rows['kept']).sum())} dropped)"
+        for condition, rows in numbers.groupby("condition", sort=False)
+    ]
+    return (
+        f"{participant}: every stride of each walk, from initial contact to the next of the same foot, n = "
+        f"{' and '.join(parts)}; whole walks, no split. Light: kept; black, taller: dropped, with the letter of its "
+        f"reason in the table below. Under each strip: duration of every stride [s] over time; left red triangles, "
+        f"right blue discs, dropped crosses."
+    )
+
+
+def _alt(participant: str, numbers: pd.DataFrame) -> str:
+    parts = [
+        f"{condition}: {int(rows['kept'].sum())} of {len(rows)} strides kept, median duration "
+        f"{rows['duration_s'].median():.2f} s"
+        for condition, rows in numbers.groupby("condition", sort=False)
+    ]
+    return f"Strides of {participant}. {listed(parts)}."
+
+
+def _letters(index: int) -> str:
+    first = index // 26
+    return (string.ascii_uppercase[first - 1] if first else "") + string.ascii_uppercase[index % 26]

@@ -1,0 +1,167 @@
+"""Words of the report: names, signs and units as a clinician reads them."""
+
+from __future__ import annotations
+
+import math
+import re
+
+from gaitdisc.channel import vocabulary
+
+SIDE_WORDS = {"r": "right", "l": "left", "": ""}
+MODEL_WORDS = {"nominal": "Nominal", "augmented": "Augmented", "exo": "Exo", "discrepancy": "Discrepancy"}
+LIGHTS = {
+    "clean": ("green", "clean"),
+    "note": ("green", "notes only"),
+    "warning": ("amber", "warnings"),
+    "refused": ("red", "refused"),
+}
+_TRANSLATIONS = {"pelvis_tx": "pelvis fore-aft", "pelvis_ty": "pelvis vertical", "pelvis_tz": "pelvis sideways"}
+
+
+def side_of(name: str) -> str:
+    """Side of a channel: `r`, `l` or empty.
+
+    Parameters
+    ----------
+    name : str
+        Name of a channel.
+
+    Examples
+    --------
+    >>> side_of("emg_sol_l"), side_of("pelvis_tilt")
+    ('l', '')
+    """
+    channel = vocabulary().named(name)
+    if channel is not None:
+        return channel.side
+    return name[-1] if name.endswith(("_r", "_l")) else ""
+
+
+def sideless(name: str) -> str:
+    """Name of a channel without its side: what the two sides have in common.
+
+    Parameters
+    ----------
+    name : str
+        Name of a channel.
+
+    Examples
+    --------
+    >>> sideless("ankle_angle_r"), sideless("hip_flexion_l_moment")
+    ('ankle_angle', 'hip_flexion_moment')
+    """
+    return re.sub(r"_[rl](?=_|$)", "", name, count=1) if side_of(name) else name
+
+
+def label(name: str) -> str:
+    """Name of a channel as it is read in a title.
+
+    Parameters
+    ----------
+    name : str
+        Name of a channel; one that the vocabulary lacks is left as it is, but for its underscores.
+
+    Examples
+    --------
+    >>> label("ankle_angle_r"), label("emg_sol_l"), label("pelvis_tilt")
+    ('ankle angle, right', 'EMG soleus, left', 'pelvis tilt')
+    """
+    stem = sideless(name)
+    if stem.startswith("emg_"):
+        words = f"EMG {_meaning(name) or stem.removeprefix('emg_').upper()}"
+    else:
+        words = _TRANSLATIONS.get(stem, stem.replace("_", " "))
+    side = SIDE_WORDS[side_of(name)]
+    return f"{words}, {side}" if side else words
+
+
+def upwards(name: str) -> str:
+    """What upwards means in a figure of a channel, or empty where the vocabulary does not say.
+
+    Parameters
+    ----------
+    name : str
+        Name of a channel.
+
+    Examples
+    --------
+    >>> upwards("knee_angle_r"), upwards("emg_sol_r")
+    ('flexion', '')
+    """
+    return "" if name.startswith("emg_") else _meaning(name)
+
+
+def unit_text(unit: str) -> str:
+    """Unit as it is printed.
+
+    Parameters
+    ----------
+    unit : str
+        As the package writes it.
+
+    Examples
+    --------
+    >>> unit_text("deg/s2")
+    'deg/s²'
+    """
+    return unit.replace("/s2", "/s²")
+
+
+def number(value: float, digits: int = 2) -> str:
+    """Write a number with a proper minus sign, or `not computed`.
+
+    Parameters
+    ----------
+    value : float
+        Any number; NaN is what could not be computed.
+    digits : int
+        Digits after the point.
+
+    Examples
+    --------
+    >>> number(0.8712), number(-0.004), number(float("nan"))
+    ('0.87', '0.00', 'not computed')
+    """
+    if not math.isfinite(value):
+        return "not computed"
+    text = f"{value:.{digits}f}"
+    return text.lstrip("-") if float(text) == 0 else text.replace("-", "−")
+
+
+def counted(count: int, noun: str) -> str:
+    """Count with its noun in the right number.
+
+    Parameters
+    ----------
+    count : int
+        How many.
+    noun : str
+        In the singular.
+
+    Examples
+    --------
+    >>> counted(1, "stride"), counted(2, "stride")
+    ('1 stride', '2 strides')
+    """
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+def listed(words: list[str]) -> str:
+    """Words as they stand in a sentence.
+
+    Parameters
+    ----------
+    words : list of str
+        One or more.
+
+    Examples
+    --------
+    >>> listed(["a", "b", "c"])
+    'a, b and c'
+    """
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+
+
+def _meaning(name: str) -> str:
+    meaning = vocabulary().positive.get(name, "")
+    return re.split(r" \(|,", meaning)[0].strip()

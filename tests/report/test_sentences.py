@@ -1,0 +1,112 @@
+import numpy as np
+import pytest
+
+from gaitdisc.report.sentences import participant_sentences, study_sentences
+
+OUTPUTS = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r")
+
+
+def set_r2(response, model, kind, values, walk="exo"):
+    rows = (response.r2["model"] == model) & (response.r2["kind"] == kind) & (response.r2["walk"] == walk)
+    response.r2.loc[rows, "r2"] = values
+    return response
+
+
+@pytest.fixture
+def response(response_maker):
+    """Nominal 0.87, Augmented 0.94, Exo 0.97; ridge 0.10 below each; null 0.51."""
+    made = response_maker("P01", outputs=OUTPUTS)
+    for model, value in (("nominal", 0.87), ("augmented", 0.94), ("exo", 0.97)):
+        set_r2(made, model, "network", value)
+        set_r2(made, model, "ridge", value - 0.10)
+    return set_r2(made, "nominal", "network", 0.96, walk="nominal")
+
+
+def test_the_device_model_helps(response):
+    headline, without, verdict, ridge, null = participant_sentences(response)
+    assert headline == (
+        "In P01, the Nominal model explains 0.87 of the device walk's variance (R², median over 3 variables, held-out "
+        "last 7.5 s, n = 749 samples), the Augmented model 0.94, the Exo model 0.97."
+    )
+    assert "the Nominal model reaches 0.96" in without
+    assert "helps: R² rises by 0.07" in verdict
+    assert "better in 3 of 3 variables), 70\u00a0% of the way" in verdict
+    assert "Nominal 0.77, Augmented 0.84 and Exo 0.87: the networks add 0.10 to the Augmented model" in ridge
+    assert null == "Band-limited noise alone would reach 0.51."
+
+
+def test_the_device_model_does_not_help(response):
+    set_r2(response, "augmented", "network", [0.87, 0.874, 0.866])
+    verdict = participant_sentences(response)[2]
+    assert verdict == (
+        "Adding the Discrepancy model does not help: the Augmented model is no better than the Nominal model "
+        "(median of the differences 0.000; better in 1 of 3 variables)."
+    )
+
+
+def test_the_device_model_makes_it_worse(response):
+    set_r2(response, "augmented", "network", 0.80)
+    assert "makes it worse: R² falls by 0.07" in participant_sentences(response)[2]
+
+
+def test_ridge_wins(response):
+    set_r2(response, "augmented", "ridge", 0.96)
+    assert (
+        "ridge beats the network for Augmented (0.96 against 0.94), where the network earns nothing"
+        in (participant_sentences(response)[3])
+    )
+    set_r2(response, "augmented", "ridge", 0.94)
+    assert participant_sentences(response)[3].endswith("the networks are no better.")
+
+
+def test_no_better_than_noise(response):
+    set_r2(response, "nominal", "network", 0.49)
+    assert participant_sentences(response)[4].endswith("the Nominal model does not rise above that.")
+
+
+def test_worse_than_the_mean(response):
+    set_r2(response, "nominal", "network", -0.3)
+    assert "does worse than the mean would and explains nothing (R² −0.30)" in participant_sentences(response)[0]
+
+
+def test_what_was_not_computed_is_said(response):
+    response.r2.loc[response.r2["variable"] == "knee_angle_r", "r2"] = np.nan
+    assert "median over 2 of 3 variables, the others not computed" in participant_sentences(response)[0]
+    response.r2["r2"] = np.nan
+    headline, verdict = participant_sentences(response)
+    assert "explains an amount that was not computed" in headline
+    assert verdict == "Whether the Discrepancy model helps was not computed."
+
+
+def test_the_study_over_participants(run_maker, refusal):
+    run = run_maker(3, outputs=OUTPUTS, refusals=(refusal,))
+    for response, gain in zip(run.responses, (0.02, 0.04, -0.01), strict=True):
+        set_r2(response, "nominal", "network", 0.8)
+        set_r2(response, "augmented", "network", 0.8 + gain)
+        set_r2(response, "augmented", "ridge", 0.83)
+    who, models, verdict, ridge, null = study_sentences(run)
+    assert who == "3 participants were analysed; left out in whole or in part: P13 (see “Left out”)."
+    assert "Nominal 0.80 [0.80, 0.80], Augmented 0.82 [0.81, 0.83]" in models
+    assert verdict == (
+        "Adding the Discrepancy model raises R² by 0.02 (median over participants; better in 2 of 3 participants)."
+    )
+    assert "Augmented 0.83 [0.83, 0.83] and beats the network in 2 of 3 participants" in ridge
+    assert "0.51" in null
+
+
+def test_a_study_where_it_does_not_help(run_maker):
+    assert "no better than the Nominal model" in study_sentences(run_maker(2, outputs=OUTPUTS, gain=0.0))[2]
+
+
+def test_one_participant_carries_no_test(run_maker):
+    assert "One participant carries no test" in study_sentences(run_maker(1, outputs=OUTPUTS))[0]
+
+
+def test_nobody(run_maker, refusal):
+    assert study_sentences(run_maker(0, refusals=(refusal,))) == [
+        "No participant could be analysed; left out in whole or in part: P13 (see “Left out”). There is no result to "
+        "show."
+    ]
+    assert study_sentences(run_maker(0)) == [
+        "No participant could be analysed: the study holds none. There is no result to show."
+    ]

@@ -1,0 +1,34 @@
+import pytest
+
+from gaitdisc.report.wording import counted, label, listed, number, side_of, sideless, unit_text, upwards
+
+
+def test_sides_of_known_and_unknown_channels():
+    assert [side_of(name) for name in ("knee_angle_l", "emg_ta_r", "pelvis_tilt", "wand_l")] == ["l", "r", "", "l"]
+    assert sideless("hip_flexion_r_moment") == "hip_flexion_moment"
+    assert sideless("pelvis_list") == "pelvis_list"
+
+
+def test_labels_read_like_words():
+    assert label("hip_rotation_l") == "hip rotation, left"
+    assert label("emg_gasmed_r") == "EMG gastrocnemius, right"
+    assert label("my_signal") == "my signal"
+
+
+def test_upwards_is_the_sign_word_without_its_footnote():
+    assert upwards("ankle_angle_r") == "dorsiflexion"
+    assert upwards("pelvis_tilt") == "pelvis rotates backwards"
+    assert upwards("unknown") == ""
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(0.955, "0.95"), (-0.3, "−0.30"), (-0.001, "0.00"), (float("nan"), "not computed")]
+)
+def test_numbers(value, text):
+    assert number(value) == text
+
+
+def test_counts_lists_and_units():
+    assert (counted(0, "stride"), counted(1, "stride")) == ("0 strides", "1 stride")
+    assert (listed(["a"]), listed(["a", "b"])) == ("a", "a and b")
+    assert unit_text("V/s2") == "V/s²"
