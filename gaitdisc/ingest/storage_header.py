@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 from gaitdisc.channel import nearest_word
 from gaitdisc.errors import ReadError
+from gaitdisc.ingest.columns import split_unit
 
 _YES_NO = {"yes": True, "y": True, "true": True, "1": True, "no": False, "n": False, "false": False, "0": False}
 _ROWS, _COLUMNS = ("nrows", "datarows"), ("ncolumns", "datacolumns")
@@ -86,8 +87,9 @@ def parsed_header(lines: Sequence[str], file: str) -> StorageHeader:
             f"line {(at or end) + 1} begins with {(labels[0][:40] if labels else '')!r}",
             "Export it again, or write the labels there.",
         )
-    if len(labels) < 2 or not all(labels):
-        blank = f"label {labels.index('') + 1} is blank" if "" in labels else "there is time alone"
+    names = [split_unit(label)[0] for label in labels]
+    if len(labels) < 2 or not all(names):
+        blank = f"label {names.index('') + 1} is blank" if "" in names else "there is time alone"
         raise ReadError(f"{file} needs a label for every column", f"line {at + 1}: {blank}", "Name the column.")
     return StorageHeader(
         title=next((line.strip() for line in lines[:end] if line.strip()), ""),

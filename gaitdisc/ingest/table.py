@@ -158,9 +158,10 @@ def _labels(line: str, file: str, number: int) -> tuple[str, list[str]]:
 
 
 def _check_labels(labels: Sequence[str], where: str) -> None:
-    if "" in labels:
+    names = [split_unit(label)[0] for label in labels]
+    if "" in names:
         raise ReadError(
-            f"{where}: every column needs a name", f"column {labels.index('') + 1} has none", "Name it in the header."
+            f"{where}: every column needs a name", f"column {names.index('') + 1} has none", "Name it in the header."
         )
     if len(labels) < 2:
         raise ReadError(f"{where}: a table needs channels beside time", "there is time alone", "Export the channels.")

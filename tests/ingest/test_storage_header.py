@@ -43,6 +43,7 @@ def test_columns_that_we_wrote_ourselves_describe_themselves():
         (["endheader", "knee\thip"], "line 2 begins with 'knee'"),
         (["endheader", "time"], "line 2: there is time alone"),
         (["endheader", "time\ta\t\tb"], "line 2: label 3 is blank"),
+        (["endheader", "time\t[deg]"], "line 2: label 2 is blank"),
         (["nRows=many", "endheader", "time\ta"], "line 1 needs a whole number after 'nrows'; found 'many'"),
         (["inDegrees=maybe", "endheader", "time\ta"], "line 1 needs inDegrees=yes or inDegrees=no; found 'maybe'"),
     ],

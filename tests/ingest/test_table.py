@@ -91,6 +91,7 @@ def test_the_study_names_and_units(tmp_path):
         ("time [h],knee_angle_r\n0,1\n", ReadError, r"needs a column 'time \[s\]'"),
         ("time,,a\n0,1,2\n", ReadError, "column 2 has none"),
         ("time,\n0,1\n", ReadError, "column 2 has none"),
+        ("time,[deg]\n0,1\n", ReadError, "column 2 has none"),
         ("time,knee_angle_r\n0,1\n1,x\n", ReadError, "line 3, column 'knee_angle_r'; found 'x'"),
         ("time,knee_angle_r\n0,1\n1,2\n3,2\n", SamplingError, "needs a constant rate; between line"),
         ("time,ground_force_r_vy\n0,1\n1,\n", ReadError, "ground_force_r_vy needs a number in every sample"),
