@@ -6,11 +6,17 @@ import numpy as np
 import pytest
 
 from gaitdisc.errors import ChannelError, SamplingError, TrainingError
+from gaitdisc.ingest.reading import read_trial
 from gaitdisc.recording import PERCENT
 from gaitdisc.response.fit_response import ResponseSettings, fit_both, fit_response, held_out_part, residual_strides
 from gaitdisc.response.models import fit_linear, fit_models
 from gaitdisc.response.samples import gait_samples
+from gaitdisc.signals.butterworth import lowpassed
+from gaitdisc.signals.contact_angles import angle_contacts
+from gaitdisc.signals.derivatives import trajectory
+from gaitdisc.signals.strides import cut_strides
 from gaitdisc.statistics.r2 import r2
+from gaitdisc.statistics.stride_residuals import mean_over_strides
 
 KNEE, ANKLE = "knee_angle_r", "ankle_angle_r"
 SPRING = 40.0
@@ -143,3 +149,21 @@ def test_walks_that_are_too_short_or_unusable_at_the_end(nominal, exo, settings)
         TrainingError, match=r"judged on 50 held-out samples at least; .*750 of ankle_angle_r not usable"
     ):
         fit_response(nominal, replace(exo, usable=usable), short)
+
+
+def test_running_with_an_exotendon(gait_data, settings):
+    """Real angles of one person: the device changes what the Nominal model explains, and Augmented catches up."""
+    angles = [f"{joint}_{side}" for side in "rl" for joint in ("hip_flexion", "knee_angle", "ankle_angle")]
+    runs = []
+    for pattern in ("*natural2*", "*exotendon3*"):
+        (file,) = (gait_data / "exotendon_run").glob(pattern)
+        recording = read_trial(file, subject="welk007", condition=pattern).stream("kinematics").selected(angles)
+        runs.append(trajectory(lowpassed(recording), cut_strides(angle_contacts(recording)["r"], recording)))
+    found = fit_response(*runs, replace(settings, outputs=(KNEE, ANKLE)), {KNEE: 0.507, ANKLE: 0.507})
+    for variable in (KNEE, ANKLE):
+        nominal, augmented, exo = (found.r2_of(variable, model) for model in ("nominal", "augmented", "exo"))
+        assert 0.507 < nominal < augmented - 0.05
+        assert augmented == pytest.approx(exo, abs=0.02)
+        assert found.r2_of(variable, "nominal", walk="nominal") > 0.97
+    before, after = (mean_over_strides(found.residuals[model]).rms for model in ("nominal", "augmented"))
+    assert np.all(after < 0.3 * before)
