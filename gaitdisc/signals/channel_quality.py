@@ -1,0 +1,169 @@
+"""Channels that say nothing, or not what was measured: empty, flat, frozen, clipped, jumping."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.recording import Finding, Recording
+from gaitdisc.signals.gaps import gap_findings, runs, spans_s
+
+FROZEN_S = 0.1
+CLIPPED_SHARE = 1e-3
+FEWEST_CLIPPED = 5
+JUMP_TIMES = 10.0
+REST_QUANTITIES = ("force", "vertical_force", "moment", "pressure_centre", "power")  # zero when the foot is off
+
+
+def channel_findings(recording: Recording) -> list[Finding]:
+    """Say which channels are empty, flat, frozen, clipped or jumping, and where the gaps are.
+
+    - flat: one value throughout, as a locked coordinate has; a note, since it is often meant.
+    - frozen: the very same value for 0.1 s or longer in a channel that otherwise moves; not for forces and what is
+      derived from them, which rest at zero.
+    - clipped: the largest or smallest value is met, exactly, in five samples and one in a thousand or more.
+    - jump: a second difference ten times as large as its 95th percentile (in clean trials the largest is two to seven
+      times): swapped markers, or inverse kinematics that lost its way for a frame.
+
+    Parameters
+    ----------
+    recording : Recording
+        As read, not filtered. EMG has rules of its own (`emg_findings`); its channels are looked at for gaps only.
+
+    Returns
+    -------
+    list of Finding
+    """
+    findings = gap_findings(recording)
+    for column, channel in enumerate(recording.channels):
+        x = recording.values[:, column]
+        if not np.isfinite(x).any() or channel.quantity == "emg":
+            continue
+        if np.nanmax(x) == np.nanmin(x):
+            findings.append(
+                Finding(
+                    "note",
+                    "flat",
+                    recording.source.file,
+                    f"{np.nanmax(x):.4g} {channel.unit} throughout",
+                    "the channel as something to predict: a locked coordinate, or nothing was measured",
+                    channel.name,
+                )
+            )
+            continue
+        rests = channel.quantity in REST_QUANTITIES
+        for kind, marks in (
+            ("frozen", np.zeros(len(x), bool) if rests else frozen(x, recording.rate_hz)),
+            ("clipped", clipped(x, rests)),
+            ("jump", np.zeros(len(x), bool) if rests else jumping(x)),
+        ):
+            if marks.any():
+                findings.append(_finding(recording, column, kind, marks))
+    return findings
+
+
+def frozen(x: NDArray[np.float64], rate_hz: float) -> NDArray[np.bool_]:
+    """Mark where the same value is repeated for 0.1 s or longer.
+
+    Parameters
+    ----------
+    x : ndarray (time,)
+        One channel.
+    rate_hz : float
+        Samples a second.
+
+    Examples
+    --------
+    >>> int(frozen(np.r_[np.arange(10.0), np.full(15, 9.0), np.arange(9.0)], 100.0).sum())
+    16
+    """
+    same = np.zeros(len(x), bool)
+    for start, end in runs(np.diff(x) == 0):
+        if (end - start) / rate_hz >= FROZEN_S:
+            same[start : end + 1] = True
+    return same
+
+
+def clipped(x: NDArray[np.float64], rests_at_zero: bool = False) -> NDArray[np.bool_]:
+    """Mark where the largest or the smallest value is met, if it is met too often to be chance.
+
+    Parameters
+    ----------
+    x : ndarray (time,)
+        One channel.
+    rests_at_zero : bool
+        Zero does not count, as with forces.
+
+    Examples
+    --------
+    >>> t = np.arange(1000) / 100
+    >>> bool(clipped(np.sin(6 * t)).any()), bool(clipped(np.minimum(np.sin(6 * t), 0.9)).any())
+    (False, True)
+    """
+    marks = np.zeros(len(x), bool)
+    for extreme in (np.nanmin(x), np.nanmax(x)):
+        if rests_at_zero and extreme == 0:
+            continue
+        at = x == extreme
+        together = sum(int(end - start) for start, end in runs(at) if end - start > 1)
+        if together >= max(FEWEST_CLIPPED, CLIPPED_SHARE * len(x)):
+            marks |= at
+    return marks
+
+
+def jumping(x: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Mark the samples beside an implausible second difference.
+
+    Parameters
+    ----------
+    x : ndarray (time,)
+        One channel, not filtered.
+
+    Examples
+    --------
+    >>> x = np.sin(np.arange(1000) / 15)
+    >>> x[500] += 1
+    >>> np.flatnonzero(jumping(x)).tolist()
+    [498, 499, 500, 501, 502]
+    """
+    bend = np.abs(np.diff(x, 2))
+    known = bend[np.isfinite(bend)]
+    marks = np.zeros(len(x), bool)
+    if len(known) < 100:
+        return marks
+    for at in np.flatnonzero(bend > JUMP_TIMES * np.percentile(known, 95)):
+        marks[max(0, at) : at + 3] = True
+    return marks
+
+
+def _finding(recording: Recording, column: int, kind: str, marks: NDArray[np.bool_]) -> Finding:
+    channel, x = recording.channels[column], recording.values[:, column]
+    places = len(runs(marks))
+    seconds = marks.sum() / recording.rate_hz
+    words = {
+        "frozen": (
+            f"the same value for up to {_longest_s(marks, recording.rate_hz):.2f} s",
+            "accelerations, false there",
+        ),
+        "clipped": (f"stops at {_stops(x, marks)} {channel.unit}", "the peaks, which are lost"),
+        "jump": ("leaps from one sample to the next", "velocity and acceleration there"),
+    }
+    what, spoils = words[kind]
+    where = f"in {places} place{'s' if places > 1 else ''}, {seconds:.2f} s in all"
+    return Finding(
+        "warning",
+        kind,
+        recording.source.file,
+        f"{what}, {where}",
+        spoils,
+        channel.name,
+        spans_s(recording.time, marks),
+    )
+
+
+def _longest_s(marks: NDArray[np.bool_], rate_hz: float) -> float:
+    return max(int(end - start) for start, end in runs(marks)) / rate_hz
+
+
+def _stops(x: NDArray[np.float64], marks: NDArray[np.bool_]) -> str:
+    return " and ".join(f"{value:.4g}" for value in np.unique(x[marks]))

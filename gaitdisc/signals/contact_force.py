@@ -1,0 +1,183 @@
+"""Initial contact from the vertical ground force, with hysteresis."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.errors import ChannelError, StrideError
+from gaitdisc.recording import Recording
+from gaitdisc.signals.contacts import Contacts
+from gaitdisc.signals.direction import Direction, marker_position
+from gaitdisc.signals.gaps import runs
+
+RISE_N = 50.0
+RISE_OF_BODY_WEIGHT = 0.05
+REST_OF_RISE = 0.4  # 20 N of 50 N
+SHORTEST_S = 0.1  # neither stance nor swing is shorter; what is, is chatter
+
+
+def loaded(force_n: NDArray[np.float64], rate_hz: float, rise_n: float = RISE_N) -> NDArray[np.intp]:
+    """First and last sample of each loading of a plate or belt.
+
+    A loading begins above `rise_n` and ends below 0.4 `rise_n`. What is loaded for less than 0.1 s is chatter and
+    counts as unloaded; what is then unloaded for less than 0.1 s counts as loaded.
+
+    Parameters
+    ----------
+    force_n : ndarray (time,) [N]
+        Positive upwards on the foot; NaN counts as unloaded.
+    rate_hz : float
+        Samples a second.
+    rise_n : float
+        Force above which a foot is on the ground [N].
+
+    Returns
+    -------
+    ndarray (loading, 2) [sample]
+        First sample above `rise_n`, and the one after the last above 0.4 `rise_n`.
+
+    Examples
+    --------
+    >>> f = np.r_[np.zeros(30), 40, 0, np.full(60, 700.0), np.zeros(30)]
+    >>> loaded(f, 100.0).tolist()
+    [[32, 92]]
+    """
+    on, high = force_n > REST_OF_RISE * rise_n, force_n > rise_n
+    spans = [(start + int(np.argmax(high[start:end])), end) for start, end in runs(on) if high[start:end].any()]
+    shortest = SHORTEST_S * rate_hz
+    last = len(force_n)
+    kept = [(a, b) for a, b in spans if b - a >= shortest or a == 0 or b == last]
+    joined: list[tuple[int, int]] = []
+    for start, end in kept:
+        if joined and start - joined[-1][1] < shortest:
+            joined[-1] = (joined[-1][0], end)
+        else:
+            joined.append((start, end))
+    return np.array(joined, dtype=np.intp).reshape(-1, 2)
+
+
+def force_contacts(
+    forces: Recording, sides: Mapping[str, str] | None = None, body_weight_n: float | None = None
+) -> dict[str, Contacts]:
+    """Contacts of both feet from one vertical force a foot: a split belt, or force assigned to a foot.
+
+    Contact is where the force rises above 5 % of body weight (50 N where the weight is unknown), to a fraction of a
+    sample, after the foot has been off (`loaded`). A loading that the recording begins with gives no contact.
+
+    Parameters
+    ----------
+    forces : Recording
+        Channels of quantity `vertical_force` [N].
+    sides : mapping of str to str, optional
+        Channel to `r` or `l`; by default the channels' own sides.
+    body_weight_n : float, optional
+        Mass x 9.81.
+
+    Returns
+    -------
+    dict of str to Contacts
+        For each side with a channel, with foot off.
+
+    Raises
+    ------
+    ChannelError
+        If there is no vertical force that belongs to a side.
+    """
+    if sides is None:
+        sides = {c.name: c.side for c in forces.channels if c.quantity == "vertical_force" and c.side}
+    if not sides:
+        raise ChannelError(
+            "contacts from force need a vertical force for a foot",
+            f"{forces.source.file or 'the recording'} has {', '.join(forces.names) or 'no channel'}",
+            "Say which plate or belt is which foot in [strides], or give markers so that it can be found.",
+        )
+    found = {}
+    for side in sorted(set(sides.values())):
+        parts = [_contacts(forces, name, body_weight_n) for name, owner in sides.items() if owner == side]
+        found[side] = Contacts(
+            np.sort(np.concatenate([p[0] for p in parts])),
+            side,
+            "force",
+            np.sort(np.concatenate([p[1] for p in parts])),
+            "; ".join(p[2] for p in parts),
+        )
+    return found
+
+
+def plate_contacts(
+    forces: Recording,
+    markers: Recording,
+    heels: Mapping[str, str],
+    direction: Direction,
+    body_weight_n: float | None = None,
+) -> dict[str, Contacts]:
+    """Contacts from plates that either foot may hit: the foot that lands is the one whose heel is in front.
+
+    Parameters
+    ----------
+    forces : Recording
+        Channels of quantity `vertical_force` [N], one a plate.
+    markers : Recording
+        Of the same trial, on the same clock.
+    heels : mapping of str to str
+        Side (`r`, `l`) to the name of its heel marker.
+    direction : Direction
+        From `walking_direction` or `given_direction`.
+    body_weight_n : float, optional
+        Mass x 9.81.
+
+    Returns
+    -------
+    dict of str to Contacts
+        Both sides; empty where no plate was hit by that foot.
+
+    Raises
+    ------
+    StrideError
+        If at a contact a heel marker is missing, so that the foot cannot be told.
+    """
+    times: dict[str, list[float]] = {"r": [], "l": []}
+    offs: dict[str, list[float]] = {"r": [], "l": []}
+    along = {side: marker_position(markers, name) @ direction.forward for side, name in heels.items()}
+    for channel in forces.channels:
+        if channel.quantity != "vertical_force":
+            continue
+        on, off, _ = _contacts(forces, channel.name, body_weight_n)
+        for time in on:
+            place = {side: float(np.interp(time, markers.time, heel)) for side, heel in along.items()}
+            if not np.isfinite(list(place.values())).all() or len(place) < 2:
+                raise StrideError(
+                    "telling the foot on a plate needs both heel markers at contact",
+                    f"{forces.source.file}, {channel.name}: contact at {time:.3f} s, heel missing there",
+                    "Fill the marker, or say which plate is which foot.",
+                )
+            side = max(place, key=lambda key: place[key])
+            times[side].append(float(time))
+            offs[side] += [float(t) for t in off[off > time][:1]]
+    note = f"foot told by the leading heel, {direction.how}"
+    return {s: Contacts(np.unique(times[s]), s, "force", np.unique(offs[s]), note) for s in ("r", "l")}
+
+
+def _contacts(
+    forces: Recording, name: str, body_weight_n: float | None
+) -> tuple[NDArray[np.float64], NDArray[np.float64], str]:
+    force, time = forces[name], forces.time
+    known = force[np.isfinite(force)]
+    downwards = len(known) > 0 and -known.min() > known.max()
+    upward = -force if downwards else force
+    rise = RISE_N if body_weight_n is None else RISE_OF_BODY_WEIGHT * body_weight_n
+    spans = loaded(upward, forces.rate_hz, rise)
+    on = np.array([_crossing(time, upward, start, rise) for start, _ in spans if start > 0])
+    off = np.array([time[end - 1] for _, end in spans if end < len(time)])
+    sign = ", negative when loaded, taken as force on the plate" if downwards else ""
+    return on, off, f"{name} above {rise:.0f} N{sign}"
+
+
+def _crossing(time: NDArray[np.float64], force: NDArray[np.float64], sample: int, rise_n: float) -> float:
+    """Time at which the force passes `rise_n` on its way to `sample`, the first above it."""
+    before = force[sample - 1] if np.isfinite(force[sample - 1]) else 0.0
+    share = (rise_n - before) / (force[sample] - before)
+    return float(time[sample - 1] + np.clip(share, 0.0, 1.0) * (time[sample] - time[sample - 1]))

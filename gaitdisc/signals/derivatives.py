@@ -1,0 +1,129 @@
+"""First and second derivatives of filtered signals, and the trajectory made of them (Eqs. 4.1-4.4).
+
+The operator is the smallest part of the error: with the same 6 Hz filter every central difference and the spectral
+derivative agree to 1-2 %, while the cut-off decides what is lost (docs/derivatives.md, made by
+benchmarks/derivatives.py). So the operator is the narrowest that is accurate to fourth order, five points wide, and the
+cut-off is a setting of the filter.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.errors import SamplingError
+from gaitdisc.recording import Recording, Strides, Trajectory
+from gaitdisc.units import rate_unit
+
+FIRST = (1 / 12, -8 / 12, 0.0, 8 / 12, -1 / 12)  # times 1 / step
+SECOND = (-1 / 12, 16 / 12, -30 / 12, 16 / 12, -1 / 12)  # times 1 / step^2
+REACH = len(FIRST) // 2
+
+
+def differentiated(values: NDArray[np.float64], rate_hz: float, order: int = 1) -> NDArray[np.float64]:
+    """First or second time derivative by five-point central differences.
+
+    Parameters
+    ----------
+    values : ndarray (time, channel) [unit]
+        Filtered; the difference quotient passes on what noise is left.
+    rate_hz : float
+        Samples a second.
+    order : int
+        1 or 2.
+
+    Returns
+    -------
+    ndarray (time, channel) [unit/s or unit/s2]
+        NaN at the first and last two samples and within two samples of a missing one: no one-sided guess.
+
+    Raises
+    ------
+    SamplingError
+        If there are fewer than five samples.
+
+    References
+    ----------
+    Fornberg (1988), Math. Comp. 51, 699-706: weights of fourth order on five points. Errors: (w/rate)^4 / 30 and
+    (w/rate)^4 / 90 of a sine of angular frequency w.
+
+    Examples
+    --------
+    >>> t = np.arange(7) / 10
+    >>> differentiated(t[:, None] ** 2, 10.0, order=2).round(6).ravel()
+    array([nan, nan,  2.,  2.,  2., nan, nan])
+    """
+    if len(values) < len(FIRST):
+        raise SamplingError(
+            f"a derivative needs {len(FIRST)} samples", f"found {len(values)}", "Record longer, or select more time."
+        )
+    weights = FIRST if order == 1 else SECOND
+    count = len(values) - 2 * REACH
+    inner = np.sum([w * values[k : k + count] for k, w in enumerate(weights) if w], axis=0)
+    derivative = np.full(np.shape(values), np.nan)
+    derivative[REACH:-REACH] = inner * rate_hz**order
+    return np.where(np.isfinite(values), derivative, np.nan)
+
+
+def differentiated_recording(recording: Recording, order: int = 1) -> Recording:
+    """Recording of the time derivative of every channel, in the unit per second.
+
+    Parameters
+    ----------
+    recording : Recording
+        Filtered.
+    order : int
+        1 or 2.
+
+    Returns
+    -------
+    Recording
+        Same names, unit `deg/s` or `deg/s2`; suspect where one of the five samples is.
+    """
+    channels = tuple(replace(c, unit=rate_unit(c.unit, order)) for c in recording.channels)
+    values = differentiated(recording.values, recording.rate_hz, order)
+    return replace(recording, values=values, channels=channels, suspect=_widened(np.asarray(recording.suspect)))
+
+
+def trajectory(filtered: Recording, strides: Strides) -> Trajectory:
+    """State, velocity, acceleration and percent stride of a filtered recording.
+
+    Parameters
+    ----------
+    filtered : Recording
+        From `lowpassed` or `enveloped`, with its marks.
+    strides : Strides
+        Strides of the leg that percent stride is counted by.
+
+    Returns
+    -------
+    Trajectory
+        `usable` where x, xdot and xddot are there and none of the five samples they rest on is suspect: not in filled
+        gaps, not at the filter's edges, not on plateaus. phi is NaN outside of the strides.
+
+    Raises
+    ------
+    SamplingError
+        If there are fewer than five samples.
+
+    References
+    ----------
+    Ebers (2023), Eqs. 4.1-4.4. Differs: the operator, which the text does not state, and the marks.
+    """
+    x, rate = filtered.values, filtered.rate_hz
+    xdot, xddot = differentiated(x, rate, 1), differentiated(x, rate, 2)
+    usable = np.isfinite(x) & np.isfinite(xdot) & np.isfinite(xddot) & ~_widened(np.asarray(filtered.suspect))
+    phi = strides.phi(filtered.time)
+    return Trajectory(
+        filtered.time, x, xdot, xddot, phi, filtered.channels, usable, filtered.subject, filtered.condition
+    )
+
+
+def _widened(marks: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    wide = marks.copy()
+    for shift in range(1, REACH + 1):
+        wide[shift:] |= marks[:-shift]
+        wide[:-shift] |= marks[shift:]
+    return wide

@@ -1,0 +1,192 @@
+"""Dead, unplugged and clipped EMG, judged against the range of the amplifier."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel
+from gaitdisc.recording import Finding, Recording
+from gaitdisc.signals.butterworth import highpassed, lowpassed
+from gaitdisc.signals.envelope import ENVELOPE_HZ, HIGHPASS_HZ
+from gaitdisc.signals.gaps import spans_s
+
+DEAD_SHARE = 0.001  # standard deviation, of the range: 1.25 mV of 1.25 V
+WEAK_SHARE = 0.004  # 5 mV of 1.25 V
+BURST = 3.4  # 99th percentile of the envelope over its median; Gaussian noise has 1.3 to 2.3
+UNPLUGGED_SHARE = 0.5
+AT_RAIL_SHARE = 0.98
+CLIPPED_SHARE = 1e-3
+USUAL_RANGES_V = (1.25, 2.5, 5.0, 10.0)
+STEPS = 2**15  # either side of zero, of a 16-bit converter
+FEWEST_AT_RAIL = 3
+
+
+@dataclass(frozen=True)
+class AmplifierRange:
+    """Largest voltage that an amplifier can give.
+
+    Parameters
+    ----------
+    volts : float
+        Either side of zero.
+    how : str
+        `given`, or what it was inferred from.
+    """
+
+    volts: float
+    how: str
+
+
+def amplifier_range(emg: Recording, given_v: float | None = None) -> AmplifierRange:
+    """Range of the amplifier: given, or inferred from the recording.
+
+    In this order: the voltage at which channels stop (the largest value of the recording, met three times or more by
+    one channel, exactly); 32768 times the quantisation step, which quiet channels show; the smallest usual range
+    (1.25, 2.5, 5, 10 V) that holds the largest value.
+
+    Parameters
+    ----------
+    emg : Recording
+        Raw EMG, as digitised [V].
+    given_v : float, optional
+        Range that the laboratory states [V].
+
+    Examples
+    --------
+    >>> from gaitdisc.channel import Channel
+    >>> clipped = np.clip(np.random.default_rng(0).normal(size=(999, 1)), -1.25, 1.25)
+    >>> amplifier_range(Recording(np.arange(999) / 1000, clipped, (Channel("emg_sol_r", "emg", "V", "r"),))).how
+    'the largest value, met 199 times'
+    """
+    if given_v is not None:
+        return AmplifierRange(given_v, "given")
+    values = np.abs(emg.values[np.isfinite(emg.values).all(axis=1)])
+    if not values.size or values.max() == 0:
+        return AmplifierRange(USUAL_RANGES_V[0], "assumed: the recording is empty")
+    top = float(values.max())
+    met = int((values > top * (1 - 1e-6)).sum(axis=0).max())
+    below = int(((values > 0.95 * top) & (values <= top * (1 - 1e-6))).sum(axis=0).max())
+    if met >= FEWEST_AT_RAIL and met > below / 10:  # a rail piles up; the largest value of noise does not
+        return AmplifierRange(top, f"the largest value, met {met} times")
+    steps = [step for column in emg.values.T if (step := _quantisation_step(column)) is not None]
+    if steps and STEPS * (step := float(np.median(steps))) >= top:
+        return AmplifierRange(STEPS * step, f"the quantisation step of {step:.3g} V")
+    usual = next((v for v in USUAL_RANGES_V if v >= top), top)
+    return AmplifierRange(usual, f"the smallest usual range that holds the largest value, {top:.3g} V")
+
+
+def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
+    """Say which EMG channels are dead, unplugged or clipped.
+
+    - dead: the standard deviation is below 0.1 % of the range, or below 0.4 % in a channel whose envelope has no bursts
+      (its 99th percentile stays below 3.4 times its median): nothing but the amplifier's noise, or a muscle that rests.
+    - unplugged: the standard deviation is above half of the range. Even a Gaussian signal cut off at its own standard
+      deviation stays below that after clipping at two; an input without electrodes swings from rail to rail.
+    - clipped: one sample in a thousand or more lies within 2 % of the range. The channel lives; its peaks are lost.
+
+    The limits were set on the 14 files of young_straight_and_turn, whose manifest lists the live channels; dead ones
+    have bursts of at most 3.3, live ones of that size at least 3.5.
+
+    Parameters
+    ----------
+    emg : Recording
+        Raw EMG, as digitised [V].
+    range_v : float, optional
+        Range of the amplifier; inferred (`amplifier_range`) and said where it is not given.
+
+    Returns
+    -------
+    list of Finding
+        `refused` for dead and unplugged channels: leave them out. `warning` for clipped ones.
+    """
+    limit = amplifier_range(emg, range_v)
+    findings = []
+    for column, channel in enumerate(emg.channels):
+        x = emg.values[:, column]
+        known = x[np.isfinite(x)]
+        if not len(known):
+            continue  # an empty channel is a gap from end to end
+        share = float(known.std()) / limit.volts
+        at_rail = np.abs(x) >= AT_RAIL_SHARE * limit.volts
+        rail = f"range {limit.volts:.3g} V, from {limit.how}"
+        size = f"standard deviation {1e3 * known.std():.3g} mV, {100 * share:.2g} % of the amplifier's"
+        if share < WEAK_SHARE and (share < DEAD_SHARE or burst_ratio(x, emg.rate_hz) < BURST):
+            limit_share = DEAD_SHARE if share < DEAD_SHARE else WEAK_SHARE
+            bursts = "" if share < DEAD_SHARE else " or bursts"
+            kind, severity = "dead", "refused"
+            what = f"{size} {rail}; a live channel has {100 * limit_share:g} % or more{bursts}"
+        elif share > UNPLUGGED_SHARE:
+            kind, severity, what = "unplugged", "refused", f"{size} {rail}; no muscle gives more than 50 %"
+        elif at_rail.mean() >= CLIPPED_SHARE:
+            kind, severity = "clipped", "warning"
+            what = f"{100 * at_rail.mean():.2g} % of the samples at the amplifier's {rail}"
+        else:
+            continue
+        spoils = "the peaks of the envelope there" if kind == "clipped" else "the channel: it is left out"
+        spans = spans_s(emg.time, at_rail) if kind == "clipped" else ()
+        findings.append(Finding(severity, kind, emg.source.file, what, spoils, channel.name, spans))
+    return findings
+
+
+def burst_ratio(x: NDArray[np.float64], rate_hz: float) -> float:
+    """How far bursts rise above the rest: 99th percentile of the envelope over its median.
+
+    Parameters
+    ----------
+    x : ndarray (time,) [V]
+        Raw EMG of one channel.
+    rate_hz : float
+        Samples a second.
+
+    Returns
+    -------
+    float
+        0 where less than a second was recorded, which shows no burst; infinite where the rate (80 Hz or below) allows
+        no envelope, so that nothing is refused for it.
+
+    Examples
+    --------
+    >>> noise = np.random.default_rng(0).normal(size=4000)
+    >>> bursts = noise * np.where(np.arange(4000) % 1000 < 250, 10, 1)
+    >>> round(burst_ratio(noise, 1000.0), 1), round(burst_ratio(bursts, 1000.0), 1)
+    (1.2, 11.4)
+    """
+    if rate_hz <= 2 * HIGHPASS_HZ:
+        return float("inf")
+    if np.isfinite(x).sum() < rate_hz:
+        return 0.0
+    raw = Recording(np.arange(len(x)) / rate_hz, x[:, None], (Channel("emg", "emg", "V"),))
+    fast = highpassed(raw)
+    envelope = lowpassed(fast.with_values(np.abs(fast.values)), ENVELOPE_HZ)
+    trusted = envelope.values[~np.asarray(envelope.suspect)]
+    return float(np.percentile(trusted, 99) / np.median(trusted)) if len(trusted) else 0.0
+
+
+def live_channels(emg: Recording, range_v: float | None = None) -> tuple[str, ...]:
+    """Names of the channels that carry a muscle's signal, in order.
+
+    Parameters
+    ----------
+    emg : Recording
+        Raw EMG, as digitised [V].
+    range_v : float, optional
+        Range of the amplifier [V].
+    """
+    lost = {finding.channel for finding in emg_findings(emg, range_v) if finding.severity == "refused"}
+    empty = {name for name in emg.names if not np.isfinite(emg[name]).any()}
+    return tuple(name for name in emg.names if name not in lost | empty)
+
+
+def _quantisation_step(x: NDArray[np.float64]) -> float | None:
+    """Step between neighbouring values of a channel that uses few of them; None for a filtered one."""
+    known = x[np.isfinite(x)]
+    levels = np.unique(np.round(known, 7))
+    if len(levels) < 10 or len(levels) > len(known) / 4:
+        return None
+    steps = np.diff(levels)
+    step = float(np.median(steps))
+    even = np.abs(steps / step - np.round(steps / step)) < 0.1
+    return step if step > 0 and even.mean() > 0.8 else None

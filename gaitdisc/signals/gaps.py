@@ -1,0 +1,201 @@
+"""Gaps: where they are, and what may honestly be put into them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from gaitdisc.recording import PERCENT, Finding, Recording, Strides
+
+MAX_SPLINE_S = 0.1
+MAX_TEMPLATE_S = 0.2
+BESIDE_GAP_S = 0.15  # docs/derivatives.md: how far beside a gap that stays open an acceleration is spoiled
+SUPPORT_S = 0.2  # what a spline sees on either side of a gap
+FEWEST_TEMPLATE_STRIDES = 5
+
+
+def runs(mask: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """First sample of each run of True, and the one after its last.
+
+    Parameters
+    ----------
+    mask : ndarray of bool (time,)
+        Any condition on the samples.
+
+    Returns
+    -------
+    ndarray (run, 2) [sample]
+
+    Examples
+    --------
+    >>> runs(np.array([False, True, True, False, True])).tolist()
+    [[1, 3], [4, 5]]
+    """
+    steps = np.flatnonzero(np.diff(np.concatenate(([False], mask, [False])).astype(np.int8)))
+    return steps.reshape(-1, 2)
+
+
+def spans_s(time: NDArray[np.float64], mask: NDArray[np.bool_]) -> tuple[tuple[float, float], ...]:
+    """Spans of the runs of True, from the first sample of each to one step after its last.
+
+    Parameters
+    ----------
+    time : ndarray (time,) [s]
+        Even.
+    mask : ndarray of bool (time,)
+        Any condition on the samples.
+
+    Examples
+    --------
+    >>> spans_s(np.arange(4.0), np.array([False, True, True, False]))
+    ((1.0, 3.0),)
+    """
+    step = (time[-1] - time[0]) / (len(time) - 1) if len(time) > 1 else 0.0
+    return tuple((round(float(time[a]), 6), round(float(time[b - 1] + step), 6)) for a, b in runs(mask))
+
+
+def gap_spans(recording: Recording, name: str) -> tuple[tuple[float, float], ...]:
+    """Spans without a value in one channel.
+
+    Parameters
+    ----------
+    recording : Recording
+        NaN where nothing was measured.
+    name : str
+        Name of the channel.
+
+    Returns
+    -------
+    tuple of (float, float) [s]
+
+    Examples
+    --------
+    >>> from gaitdisc.channel import Channel
+    >>> x = np.array([[0.0], [np.nan], [np.nan], [1.0]])
+    >>> gap_spans(Recording(np.arange(4) / 100, x, (Channel("knee_angle_r", "angle", "deg", "r"),)), "knee_angle_r")
+    ((0.01, 0.03),)
+    """
+    return spans_s(recording.time, ~np.isfinite(recording[name]))
+
+
+def filled(
+    recording: Recording,
+    strides: Strides | None = None,
+    max_spline_s: float = MAX_SPLINE_S,
+    max_template_s: float = MAX_TEMPLATE_S,
+) -> Recording:
+    """Short gaps filled, longer ones left open; whatever was filled is marked.
+
+    Up to `max_spline_s` a cubic spline through 0.2 s of samples on either side; up to `max_template_s`, where strides
+    are given, the person's own mean stride plus a straight line through the residuals at both ends of the gap; beyond
+    that nothing, and the samples within 0.15 s of the gap are marked suspect. Never a straight line alone. The limits
+    come from measured errors of the acceleration (docs/derivatives.md). Gaps at either end stay open.
+
+    Parameters
+    ----------
+    recording : Recording
+        NaN where nothing was measured.
+    strides : Strides, optional
+        Strides of one leg, for the template; at least 5 of them must be without a gap in the channel.
+    max_spline_s, max_template_s : float
+        Longest gap for the spline and for the template [s].
+
+    Returns
+    -------
+    Recording
+        Filled samples suspect.
+    """
+    values, marks = np.array(recording.values), np.zeros(recording.values.shape, bool)
+    rate = recording.rate_hz
+    phi = None if strides is None else strides.phi(recording.time)
+    for column in range(values.shape[1]):
+        missing = ~np.isfinite(values[:, column])
+        if not missing.any() or missing.all():
+            continue
+        template = None if strides is None else _template(recording, strides, column)
+        for start, end in runs(missing):
+            length_s = (end - start) / rate
+            put = None
+            if start > 0 and end < len(missing):
+                if length_s <= max_spline_s + 1e-9:
+                    put = _spline(recording.values[:, column], start, end, round(SUPPORT_S * rate))
+                elif template is not None and phi is not None and length_s <= max_template_s + 1e-9:
+                    put = _on_template(recording.values[:, column], start, end, phi, template)
+            if put is None:
+                beside = round(BESIDE_GAP_S * rate)
+                marks[max(0, start - beside) : end + beside, column] = True
+            else:
+                values[start:end, column] = put
+                marks[start:end, column] = True
+    return recording.with_values(values, marks)
+
+
+def gap_findings(recording: Recording, max_gap_s: float = MAX_SPLINE_S) -> list[Finding]:
+    """Say which channels have gaps, and which of these can be filled.
+
+    Parameters
+    ----------
+    recording : Recording
+        NaN where nothing was measured.
+    max_gap_s : float
+        Longest gap that is filled [s].
+
+    Returns
+    -------
+    list of Finding
+        A note where all gaps are short, a warning where some are not or the channel is empty.
+    """
+    findings = []
+    for channel in recording.channels:
+        spans = gap_spans(recording, channel.name)
+        if not spans:
+            continue
+        longest = max(end - start for start, end in spans)
+        missing = sum(end - start for start, end in spans)
+        inner = [s for s in spans if s[0] > recording.time[0] and s[1] <= recording.time[-1]]
+        fits = len(inner) == len(spans) and longest <= max_gap_s + 1e-9
+        spoils = f"accelerations within {BESIDE_GAP_S:g} s of each gap above {max_gap_s:g} s; these are left out"
+        findings.append(
+            Finding(
+                "note" if fits else "warning",
+                "gap",
+                recording.source.file,
+                f"{len(spans)} gap{'s' if len(spans) > 1 else ''}, {missing:.3f} s of {recording.duration_s:.2f} s, "
+                f"the longest {longest:.3f} s",
+                "nothing: filled by a cubic spline and marked" if fits else spoils,
+                channel.name,
+                spans,
+            )
+        )
+    return findings
+
+
+def _spline(x: NDArray[np.float64], start: int, end: int, support: int) -> NDArray[np.float64] | None:
+    around = np.r_[max(0, start - support) : start, end : min(len(x), end + support)]
+    around = around[np.isfinite(x[around])]
+    if np.sum(around < start) < 2 or np.sum(around >= end) < 2:
+        return None
+    return CubicSpline(around, x[around])(np.arange(start, end))
+
+
+def _template(recording: Recording, strides: Strides, column: int) -> NDArray[np.float64] | None:
+    curves = strides.normalised(recording.selected([recording.names[column]]))[:, :, 0]
+    whole = curves[np.isfinite(curves).all(axis=1)]
+    return whole.mean(axis=0) if len(whole) >= FEWEST_TEMPLATE_STRIDES else None
+
+
+def _on_template(
+    x: NDArray[np.float64], start: int, end: int, phi: NDArray[np.float64], template: NDArray[np.float64]
+) -> NDArray[np.float64] | None:
+    """Template plus the line through the residuals of three samples at either end."""
+    before, after = np.arange(max(0, start - 3), start), np.arange(end, min(len(x), end + 3))
+    rows = np.r_[before, start:end, after]
+    if np.isnan(phi[rows]).any() or np.isnan(x[before]).any() or np.isnan(x[after]).any() or not len(after):
+        return None
+    curve = np.interp(phi[rows], PERCENT, template)
+    known = np.r_[0 : len(before), len(rows) - len(after) : len(rows)]
+    residual = x[rows[known]] - curve[known]
+    inside = slice(len(before), len(rows) - len(after))
+    near, far = residual[: len(before)].mean(), residual[len(before) :].mean()
+    return curve[inside] + np.interp(rows[inside], [before.mean(), after.mean()], [near, far])

@@ -1,0 +1,87 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from gaitdisc.channel import Channel
+from gaitdisc.recording import Recording, Source
+from gaitdisc.signals.channel_quality import channel_findings, clipped, frozen, jumping
+
+FORCE = Channel("ground_force_r_vy", "vertical_force", "N", "r")
+
+
+def one(x, channel, rate=100.0):
+    return Recording(np.arange(len(x)) / rate, np.asarray(x, float)[:, None], (channel,), source=Source("walk.mot"))
+
+
+def test_a_clean_walk_has_no_findings(made):
+    for seed in range(10):
+        assert channel_findings(made.walk(20, seed=seed)[0]) == []
+
+
+def planted(made, fault):
+    walk, _ = made.walk(20)
+    x = walk.values[:, 1].copy()
+    if fault == "gap":
+        x[400:440] = np.nan
+    elif fault == "flat":
+        x[:] = 3.0
+    elif fault == "frozen":
+        x[400:430] = x[400]
+    elif fault == "clipped":
+        x = np.minimum(x, 50.0)
+    elif fault == "jump":
+        x[400] += 15.0
+    return one(x, walk.channels[1])
+
+
+@pytest.mark.parametrize(
+    ("fault", "words"),
+    [
+        ("gap", "1 gap, 0.400 s"),
+        ("flat", "3 deg throughout"),
+        ("frozen", "the same value for up to 0.30 s, in 1 place"),
+        ("clipped", "stops at 50 deg, in 2"),
+        ("jump", "leaps from one sample to the next, in 1 place, 0.05 s in all"),
+    ],
+)
+def test_each_planted_fault_is_found_and_no_other(made, fault, words):
+    findings = channel_findings(planted(made, fault))
+    assert words in next(finding.what for finding in findings if finding.kind == fault)
+    # what is cut off stands still at the top, and what stood still leaps when it moves again
+    also = {"clipped": {"frozen"}, "frozen": {"jump"}}.get(fault, set())
+    assert {finding.kind for finding in findings} <= {fault} | also
+
+
+def test_spans_say_where(made):
+    finding = next(f for f in channel_findings(planted(made, "frozen")) if f.kind == "frozen")
+    assert finding.spans == ((4.0, 4.3),)
+
+
+def test_a_force_that_rests_at_zero_is_well():
+    t = np.arange(2000) / 1000
+    f = np.where(np.sin(2 * np.pi * t) > 0, 700 * np.sin(2 * np.pi * t), 0.0)
+    assert channel_findings(one(f, FORCE, 1000.0)) == []
+
+
+def test_a_force_that_is_cut_off_is_clipped():
+    t = np.arange(2000) / 1000
+    f = np.clip(900 * np.sin(2 * np.pi * t), 0.0, 700.0)
+    assert [finding.kind for finding in channel_findings(one(f, FORCE, 1000.0))] == ["clipped"]
+
+
+def test_marks_lie_on_the_fault():
+    x = np.sin(np.arange(1000) / 30)
+    x[500:520] = x[500]
+    assert np.flatnonzero(frozen(x, 100.0)).tolist() == list(range(500, 520))
+    assert not clipped(x).any()
+    x = np.sin(np.arange(1000) / 30)
+    x[700] += 0.5
+    assert np.flatnonzero(jumping(x)).tolist() == list(range(698, 703))
+
+
+def test_a_real_ankle_that_jumps(gait_data, real):
+    walk = real.treadmill_walks(gait_data)["S01DE507"].selected(["ankle_angle_r", "hip_flexion_r", "knee_angle_r"])
+    jumps = [finding for finding in channel_findings(walk) if finding.kind == "jump"]
+    assert [finding.channel for finding in jumps] == ["ankle_angle_r"]
+    assert jumps[0].spans[0][0] == pytest.approx(13.98, abs=0.03)

@@ -1,0 +1,54 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from gaitdisc.channel import Channel
+from gaitdisc.errors import StrideError
+from gaitdisc.recording import Recording
+from gaitdisc.signals.contact_markers import marker_contacts
+from gaitdisc.signals.direction import given_direction
+
+CONTACTS = np.array([0.731, 1.802, 2.93, 4.01, 5.12, 6.2])
+
+
+def walker(speed=0.0, noise=0.0):
+    """One heel that is farthest in front of the pelvis at each contact, whose stance is longer than its swing."""
+    t = np.arange(700) / 100
+    ends = np.r_[CONTACTS[0] - 1.1, CONTACTS, CONTACTS[-1] + 1.1]
+    phase = np.interp(t, ends, np.arange(-1, len(CONTACTS) + 1))
+    # slower on the way back: a phase that lingers in stance, zero slope of it at contact
+    ahead = 0.3 * np.cos(2 * np.pi * phase - 0.4 * (1 - np.cos(2 * np.pi * phase)))
+    rng = np.random.default_rng(0)
+    heel = np.stack([speed * t + ahead + noise * rng.normal(size=len(t)), 0 * t, 0 * t + 0.05], axis=1)
+    pelvis = np.stack([speed * t, 0 * t, 0 * t + 0.95], axis=1)
+    channels = tuple(Channel(f"{n}.{a}", "marker", "m") for n in ("RHEE", "SACR") for a in "xyz")
+    return Recording(t, np.hstack([heel, pelvis]), channels)
+
+
+@pytest.mark.parametrize("speed", [0.0, 1.3])
+def test_contacts_are_where_the_heel_is_farthest_in_front(speed):
+    found = marker_contacts(walker(speed), {"r": "RHEE"}, ["SACR"], given_direction((1, 0, 0)))["r"]
+    assert len(found) == len(CONTACTS)
+    assert np.abs(found.time - CONTACTS).max() < 0.006
+    assert found.note == "RHEE farthest in front of SACR; given"
+
+
+def test_noise_makes_no_contacts():
+    found = marker_contacts(walker(noise=0.003), {"r": "RHEE"}, ["SACR"], given_direction((1, 0, 0)))["r"]
+    assert len(found) == len(CONTACTS)
+    assert np.abs(found.time - CONTACTS).max() < 0.03
+
+
+def test_a_gap_at_contact_gives_none():
+    walk = walker()
+    values = walk.values.copy()
+    values[290:305, 0] = np.nan
+    found = marker_contacts(walk.with_values(values), {"r": "RHEE"}, ["SACR"], given_direction((1, 0, 0)))["r"]
+    assert len(found) == len(CONTACTS) - 1
+
+
+def test_a_heel_that_does_not_swing_is_refused():
+    walk = walker()
+    with pytest.raises(StrideError, match=r"heel RHEE to swing 0\.1 m .*: 0\.000 m along the direction"):
+        marker_contacts(walk, {"r": "RHEE"}, ["SACR"], given_direction((0, 1, 0)))

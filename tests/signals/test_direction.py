@@ -1,0 +1,64 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from gaitdisc.channel import Channel
+from gaitdisc.errors import ChannelError, StrideError
+from gaitdisc.recording import Recording
+from gaitdisc.signals.direction import given_direction, marker_position, pelvis_position, walking_direction
+
+HEELS, PELVIS = {"r": "RHEE", "l": "LHEE"}, ("SACR",)
+
+
+def walker(forward, up=(0.0, 0.0, 1.0), speed=0.0):
+    """Heels go back for 62 % of the stride and forward for 38 %; speed 0 is a treadmill."""
+    t = np.arange(1000) / 100
+    forward, up = np.asarray(forward, float), np.asarray(up, float)
+    parts = {"SACR": speed * t[:, None] * forward + 0.9 * up}
+    for side, late in (("R", 0.0), ("L", 0.5)):
+        phase = (t + late) % 1.0
+        ahead = np.where(phase < 0.62, 0.3 - 0.6 * phase / 0.62, -0.3 + 0.6 * (phase - 0.62) / 0.38)
+        parts[f"{side}HEE"] = (speed * t + ahead)[:, None] * forward + 0.05 * up
+    channels = tuple(Channel(f"{name}.{axis}", "marker", "m") for name in parts for axis in "xyz")
+    return Recording(t, np.hstack(list(parts.values())), channels)
+
+
+@pytest.mark.parametrize("speed", [0.0, 1.2])
+@pytest.mark.parametrize("forward", [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0.6, 0.8, 0)])
+def test_the_direction_is_found_on_a_treadmill_and_over_ground(forward, speed):
+    found = walking_direction(walker(forward, speed=speed), HEELS, PELVIS)
+    assert found.forward @ np.array(forward) > 0.999
+    assert found.up.tolist() == [0, 0, 1]
+    assert "inferred: heels move faster that way" in found.how
+
+
+def test_the_vertical_need_not_be_z():
+    found = walking_direction(walker((1, 0, 0), (0, 1, 0)), HEELS, PELVIS)
+    assert found.up.tolist() == [0, 1, 0]
+
+
+def test_a_swing_without_a_direction_is_refused():
+    t = np.arange(1000) / 100
+    still = walker((1, 0, 0))
+    values = still.values.copy()
+    values[:, still.index("RHEE.x")] = 0.3 * np.sin(2 * np.pi * t)
+    values[:, still.index("LHEE.x")] = -0.3 * np.sin(2 * np.pi * t)
+    with pytest.raises(StrideError, match=r"a skewness of 0\.2 or more; the recording has [+-]0\.0"):
+        walking_direction(still.with_values(values), HEELS, PELVIS)
+
+
+def test_a_given_direction_is_made_a_unit_vector():
+    assert given_direction((0, -3, 0)).forward.tolist() == [0, -1, 0]
+    with pytest.raises(StrideError, match="at right angles and not zero"):
+        given_direction((0, 0, 1))
+
+
+def test_positions_and_names():
+    walk = walker((1, 0, 0))
+    assert marker_position(walk, "SACR").shape == (1000, 3)
+    assert pelvis_position(walk, ["SACR", "SACR"])[0].tolist() == [0, 0, 0.9]
+    with pytest.raises(ChannelError, match=r"nearest is 'RHEE\.x'"):
+        marker_position(walk, "RHEEL")
+    with pytest.raises(ChannelError, match="a pelvis marker is needed"):
+        pelvis_position(walk, [])
