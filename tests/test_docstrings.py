@@ -25,7 +25,8 @@ def _public():
             elif inspect.isclass(thing):
                 yield f"{info.name}.{name}", thing
                 for method, function in vars(thing).items():
-                    if inspect.isfunction(function) and not method.startswith("_"):
+                    written_here = inspect.isfunction(function) and function.__module__ == info.name  # not by pydantic
+                    if written_here and not method.startswith("_"):
                         yield f"{info.name}.{name}.{method}", function
 
 
