@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from types import TracebackType
 
@@ -88,18 +89,30 @@ class C3DReader:
             If a key of `channels` means several channels.
         """
         path = Path(path)
+        try:
+            return self._trial(path, channels)
+        except OSError as error:
+            raise ReadError(
+                "a C3D file is needed that stays while it is read",
+                f"{path.name}: the system says: {error.strerror}",
+                "Check that the disk is there and the file is not being replaced, and try again.",
+            ) from error
+
+    def _trial(self, path: Path, channels: Mapping[str, str] | None) -> Trial:
         header = read_c3d_header(path)
         parameters = read_c3d_parameters(path, header)
         layout, findings = expected_layout(header, parameters)
         rate_hz, doubts = _rate(header, parameters, layout)
-        raw, more = self._raw(path, header, layout)
+        with ThreadPoolExecutor(1) as beside:  # the hash is done while the other process reads
+            sha256 = beside.submit(_sha256, path)
+            raw, more = self._raw(path, header, layout)
         findings += [*doubts, *more]
         labels = LabelMap(channels)
         streams, seen = _streams(raw, layout, parameters, labels, header.file)
         first = parameters.field("ACTUAL_START_FIELD") or max(header.first_frame, 1)
         events, more = file_events(parameters, layout.frames, rate_hz, first, header.file)
         findings += [*seen, *more, *labels.unused(_all_labels(parameters, layout), header.file)]
-        source = Source(header.file, _sha256(path), raw.reader)
+        source = Source(header.file, sha256.result(), raw.reader)
         times = {
             "points": np.arange(layout.frames) / rate_hz,
             "analog": np.arange(layout.frames * layout.samples_per_frame)

@@ -94,20 +94,32 @@ def expected_layout(header: C3DHeader, parameters: C3DParameters) -> tuple[C3DLa
         If the file is truncated, says nothing of frames, points and analog channels, or has more than 65535 frames
         and does not say how many.
     """
+    word_bytes = _word_bytes(header, parameters)
+    frames = _frames(header, parameters)
+    points = _distinct(parameters.count("POINT", "USED"), header.points)
+    analog = _analog(header, parameters)
+    blocks = _distinct(header.data_block, parameters.count("POINT", "DATA_START") or None)
+    layouts = [
+        C3DLayout(count, used, channels, samples, word_bytes, block)
+        for count, used, (channels, samples), block in product(frames, points, analog, blocks)
+    ]
     said = {
-        "frames": _frames(header, parameters),
-        "points": _distinct(parameters.count("POINT", "USED"), header.points),
-        "analog channels and samples a frame": _analog(header, parameters),
-        "bytes a value": _distinct(
-            *(_word_bytes(scale) for scale in (parameters.number("POINT", "SCALE"), header.scale))
-        ),
-        "first block of the data": _distinct(header.data_block, parameters.count("POINT", "DATA_START") or None),
+        "frames": frames,
+        "points": points,
+        "analog channels and samples a frame": analog,
+        "first block of the data": blocks,
     }
-    layouts = [C3DLayout(frames, points, *analog, *rest) for frames, points, analog, *rest in product(*said.values())]
     filling = [layout for layout in layouts if layout.fills(header.size)]
     layout = (filling or layouts)[0]
     if not layout.fits(header.size):
         _refuse_truncated(layout, header)
+    if layout.data_block != header.data_block:
+        raise ReadError(
+            "a C3D file needs a header that tells where the data begin",
+            f"{header.file} says block {header.data_block}, POINT:DATA_START and the length of the file say "
+            f"{layout.data_block}",
+            "Export the trial again; this copy is damaged.",
+        )
     if layout.frames < 1 or layout.frame_bytes < 1 or layout.data_block <= header.parameter_block:
         raise ReadError(
             "a trial needs at least one frame of points or analog channels",
@@ -152,8 +164,18 @@ def _analog(header: C3DHeader, parameters: C3DParameters) -> tuple[tuple[int, in
     return _distinct(*found)
 
 
-def _word_bytes(scale: float | None) -> int | None:
-    return None if scale is None else 4 if scale < 0 else 2
+def _word_bytes(header: C3DHeader, parameters: C3DParameters) -> int:
+    """4 for floats, 2 for integers; readers differ in whom they believe, so header and POINT:SCALE must agree."""
+    stated = parameters.number("POINT", "SCALE")
+    scale = header.scale if stated is None else stated
+    same = (scale < 0) == (header.scale < 0) and (scale < 0 or abs(scale - header.scale) <= 1e-3 * abs(scale))
+    if not same:
+        raise ReadError(
+            "header and POINT:SCALE of a C3D file need the same scale (negative where points are floats)",
+            f"{header.file} has {header.scale:g} and {scale:g}",
+            "Export the trial again; with the wrong one every length would be wrong.",
+        )
+    return 4 if scale < 0 else 2
 
 
 def _distinct(*values):
@@ -175,7 +197,6 @@ def _contradictions(said: dict[str, tuple], layout: C3DLayout, header: C3DHeader
         "frames": layout.frames,
         "points": layout.points,
         "analog channels and samples a frame": (layout.channels, layout.samples_per_frame),
-        "bytes a value": layout.word_bytes,
         "first block of the data": layout.data_block,
     }
     how = "which fill the file to its last block" if layout.fills(header.size) else "which the file is long enough for"

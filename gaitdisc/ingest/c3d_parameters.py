@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +15,7 @@ from gaitdisc.errors import ReadError
 from gaitdisc.ingest.c3d_header import BLOCK, C3DHeader, decoded
 
 Value = tuple[str, ...] | NDArray[np.generic]
+_DIMENSIONS_AT_MOST = 7
 _WIDTHS = {-1: 1, 1: 1, 2: 2, 4: 4}
 
 
@@ -71,7 +73,10 @@ class C3DParameters:
             `FORCE_PLATFORM`, `CORNERS`.
         """
         value = self.values.get((group, name))
-        return np.empty(0) if value is None or isinstance(value, tuple) else np.asarray(value, float)
+        if value is None or isinstance(value, tuple):
+            return np.empty(0)
+        with np.errstate(invalid="ignore"):  # damaged bytes may be a signalling NaN
+            return np.asarray(value, float)
 
     def number(self, group: str, name: str) -> float | None:
         """First number of a parameter, None where there is none that is finite.
@@ -172,7 +177,7 @@ def _entries(section: bytes, header: C3DHeader) -> Iterator[tuple[str, int, byte
 
 def _value(name: str, body: bytes, header: C3DHeader) -> Value:
     width = _WIDTHS.get(int.from_bytes(body[:1], "little", signed=True))
-    if len(body) < 2 or width is None or len(body) < 2 + body[1]:
+    if len(body) < 2 or width is None or body[1] > _DIMENSIONS_AT_MOST or len(body) < 2 + body[1]:
         raise _broken(header, f"the parameter {_shown(name)} is of no known type")
     is_text = body[0] == 255
     dimensions = tuple(body[2 : 2 + body[1]])
@@ -184,9 +189,16 @@ def _value(name: str, body: bytes, header: C3DHeader) -> Value:
         )
     if is_text:
         length = dimensions[0] if dimensions else 1
-        texts = raw.decode("latin-1")
-        return tuple(texts[at : at + length].rstrip(" \0") for at in range(0, len(texts), length)) if length else ()
+        return tuple(_text(raw[at : at + length]) for at in range(0, len(raw), length)) if length else ()
     return decoded(raw, width, header.processor).reshape(dimensions or (1,), order="F")
+
+
+def _text(raw: bytes) -> str:
+    try:
+        text = raw.decode("utf-8")
+    except UnicodeDecodeError:
+        text = raw.decode("latin-1")
+    return re.sub(r"[\x00-\x1f\x7f-\x9f]", " ", text).rstrip()
 
 
 def _shown(name: str) -> str:

@@ -48,14 +48,14 @@ def force_plates(
     matrices = _last_axis(parameters.numbers("FORCE_PLATFORM", "CAL_MATRIX"), 2)
     plates, findings = [], []
     for place in range(min(used, 64)):
-        kind = int(kinds[place]) if place < len(kinds) else 0
+        kind = int(kinds[place]) if place < len(kinds) and np.isfinite(kinds[place]) else 0
         wanted = _CHANNELS_OF_TYPE.get(kind, 0)
         own = columns[place][:wanted] if place < len(columns) else np.empty(0)
         why = ""
         if not wanted:
             why = f"is of type {kind}; types 1 to 4 are known"
         elif len(own) < wanted or not np.all((own >= 1) & (own <= channels)):
-            why = f"names channels {own.astype(int).tolist()} of {channels}"
+            why = f"names channels {', '.join(format(one, 'g') for one in own)} of {channels}"
         elif (
             place >= len(corners) or corners[place].shape != (3, 4) or place >= len(origins) or origins[place].size != 3
         ):
@@ -69,7 +69,8 @@ def force_plates(
             matrix = matrices[place] if kind == 4 else np.empty((0, 0))
             at = np.asarray(convert(corners[place].T, length_unit, "m"), float)
             plate = ForcePlate(place + 1, kind, tuple(int(one) - 1 for one in own), at, origin, matrix)
-            why = "" if np.all(np.isfinite(plate.axes)) else "has corners that span no surface"
+            sound = np.all(np.isfinite(plate.axes)) and np.all(np.isfinite(origin))
+            why = "" if sound else "has corners that span no surface"
             if not why:
                 plates.append(plate)
         if why:

@@ -180,6 +180,17 @@ def test_both_refusals_are_said(tmp_path, write_c3d, some_points, reader, monkey
         reader.read(write_c3d(tmp_path / "a.c3d", some_points))
 
 
+def test_a_file_that_vanishes_is_refused_in_words(tmp_path, write_c3d, some_points, reader, monkeypatch):
+    path = write_c3d(tmp_path / "a.c3d", some_points)
+
+    def vanishing(path, header):
+        raise FileNotFoundError(2, "No such file or directory", str(path))
+
+    monkeypatch.setattr("gaitdisc.ingest.c3d.read_c3d_parameters", vanishing)
+    with pytest.raises(ReadError, match=r"a\.c3d: the system says: No such file or directory"):
+        reader.read(path)
+
+
 # --- real files
 
 
@@ -282,8 +293,18 @@ def test_corrupted_files_harm_nobody(tmp_path, write_c3d, some_points, some_anal
         ("EVENT", "CONTEXTS"): ["Left"],
         ("EVENT", "TIMES"): np.array([[0.0], [0.1]]),
     }
+    plates = {
+        ("FORCE_PLATFORM", "USED"): [1],
+        ("FORCE_PLATFORM", "TYPE"): [2],
+        ("FORCE_PLATFORM", "ZERO"): [1, 10],
+        ("FORCE_PLATFORM", "CHANNEL"): np.arange(1.0, 7)[:, None],
+        ("FORCE_PLATFORM", "CORNERS"): np.array([[[600, 0, 0], [0, 0, 0], [0, 400, 0], [600, 400, 0.0]]]).T,
+        ("FORCE_PLATFORM", "ORIGIN"): np.array([[0, 0, -40.0]]).T,
+        ("ANALOG", "UNITS"): ["N", "N", "N", "Nmm", "Nmm", "Nmm", "V", "V"],
+    }
     plain = write_c3d(tmp_path / "plain.c3d", some_points, some_analog).read_bytes()
-    rich = write_c3d(tmp_path / "rich.c3d", some_points, some_analog, parameters).read_bytes()
+    forces = 300 * np.vstack([some_analog, some_analog])
+    rich = write_c3d(tmp_path / "rich.c3d", some_points, forces, parameters | plates).read_bytes()
     rng = np.random.default_rng(20)
     path = tmp_path / "broken.c3d"
     read, refused, before = 0, 0, None

@@ -70,3 +70,11 @@ def test_a_mapped_channel_needs_the_right_unit():
         _streams(["CH1"], ["d.u."], {"CH1": "emg_sol_r"})
     with pytest.raises(UnitError, match=r"'emg_sol_r', which is measured in V; a.c3d gives it in N"):
         _streams(["CH1"], ["N"], {"CH1": "emg_sol_r"})
+
+
+def test_names_that_laboratories_use(gait_data, reader):
+    trial = reader.read(gait_data / "c3d_reader_samples/gait/1123x01EMG.c3d")
+    muscles = ("rf", "hamlat", "ta", "gaslat")
+    assert trial.stream("emg").names == tuple(f"emg_{muscle}_{side}" for side in "rl" for muscle in muscles)
+    assert np.abs(trial.stream("emg").values).max() < 0.02  # the file is in mV
+    assert AnalogLabel(1, "R.Med.Hams", "", "mV").muscle.name == "emg_hammed_r"

@@ -57,6 +57,17 @@ def test_more_frames_than_16_bits_hold(file):
         expected_layout(replace(header, size=3 * 512 + 70_000 * 208), parameters)
 
 
+def test_a_header_that_misses_the_data_is_refused(file):
+    with pytest.raises(ReadError, match=r"says block 3, POINT:DATA_START and the length of the file say 4"):
+        expected_layout(replace(file[0], data_block=3), file[1])
+
+
+@pytest.mark.parametrize(("header", "parameter"), [(-0.1, 0.1), (0.1, -0.1), (0.1, 0.2)])
+def test_contradicting_scales_are_refused(file, header, parameter):
+    with pytest.raises(ReadError, match=rf"a\.c3d has {header} and {parameter}\. .* every length would be wrong"):
+        expected_layout(replace(file[0], scale=header), _with(file[1], POINT__SCALE=parameter))
+
+
 def test_frames_that_no_count_covers_are_told(file):
     _, findings = expected_layout(replace(file[0], size=file[0].size + 3000), file[1])
     assert "bytes follow the last of 50 frames, room for 1" in findings[0].what

@@ -26,7 +26,7 @@ def test_coordinates_come_with_time_first_and_gaps_are_nan():
 @pytest.mark.parametrize("reader", list(READERS))
 def test_both_readers_hand_back_what_was_written(tmp_path, write_c3d, some_points, some_analog, reader):
     path = write_c3d(tmp_path / "a.c3d", some_points, some_analog)
-    head, (points, analog) = answer(_request(path, reader=reader))
+    head, (points, analog, _) = answer(_request(path, reader=reader))
     assert head["reader"].startswith(reader)
     np.testing.assert_allclose(points, some_points.transpose(2, 1, 0).reshape(50, 9), rtol=1e-6)
     np.testing.assert_allclose(analog, some_analog, rtol=1e-6)

@@ -113,7 +113,7 @@ def test_a_plate_that_nobody_stepped_on():
     [
         ({"kind": 7}, "is of type 7; types 1 to 4 are known"),
         ({"kind": 4}, "is of type 4 and has no calibration matrix"),
-        ({"CHANNEL": np.array([[1], [2], [3], [4], [5], [60]])}, "names channels [1, 2, 3, 4, 5, 60] of 6"),
+        ({"CHANNEL": np.array([[1], [2], [3], [4], [5], [60]])}, "names channels 1, 2, 3, 4, 5, 60 of 6"),
         ({"CORNERS": np.zeros((3, 4, 1))}, "has corners that span no surface"),
         ({"CORNERS": np.zeros((3, 2, 1))}, "has no corners or no origin"),
         ({"units": ["ADC"] * 6}, "has channel #1 in 'ADC' where N is meant; not used"),
