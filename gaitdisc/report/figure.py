@@ -286,8 +286,14 @@ def _png(drawn: matplotlib.figure.Figure) -> bytes:
     from PIL import Image
 
     stream = io.BytesIO()
-    drawn.savefig(stream, format="png", dpi=PNG_DOTS_PER_INCH)
-    few = Image.open(stream).convert("RGB").quantize(PNG_COLOURS, dither=Image.Dither.NONE)
+    drawn.savefig(stream, format="rgba", dpi=PNG_DOTS_PER_INCH)
+    width = round(drawn.get_figwidth() * PNG_DOTS_PER_INCH)
+    pixels = stream.getvalue()
+    few = (
+        Image.frombytes("RGBA", (width, len(pixels) // (4 * width)), pixels)
+        .convert("RGB")
+        .quantize(PNG_COLOURS, dither=Image.Dither.NONE)
+    )
     small = io.BytesIO()
     few.save(small, format="png", optimize=True, dpi=(PNG_DOTS_PER_INCH, PNG_DOTS_PER_INCH))
     return small.getvalue()

@@ -99,7 +99,7 @@ def _figure(response: ParticipantResponse, numbers: pd.DataFrame, name: str) -> 
 def _draw(axes: Axes, rows: pd.DataFrame) -> None:
     rows = _broken(rows)
     time, measured = rows["time_s"], rows["measured"]
-    axes.plot(time, measured, color=MEASURED.colour, linewidth=1.6, label="measured")
+    axes.plot(time, measured, color=MEASURED.colour, linewidth=1.4, label="measured")
     for model in _DRAWN:
         if model not in rows:
             continue

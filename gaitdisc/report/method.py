@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -37,7 +38,7 @@ def method_sentences(run: ResponseRun) -> list[str]:
 
 
 def flattened(settings: Mapping[str, Any], prefix: str = "") -> list[tuple[str, str]]:
-    """Settings as rows of dotted name and value.
+    """Settings as rows of dotted name and value; of files the name alone, without the folders of this machine.
 
     Parameters
     ----------
@@ -59,7 +60,8 @@ def flattened(settings: Mapping[str, Any], prefix: str = "") -> list[tuple[str, 
         elif isinstance(value, list | tuple) and any(isinstance(item, Mapping) for item in value):
             rows.extend(flattened({str(number + 1): item for number, item in enumerate(value)}, f"{name}."))
         elif isinstance(value, list | tuple):
-            rows.append((name, ", ".join(str(item) for item in value)))
+            items = [re.split(r"[\\/]", str(item))[-1] if key == "files" else str(item) for item in value]
+            rows.append((name, ", ".join(items)))
         else:
             rows.append((name, str(value)))
     return rows

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,6 +13,7 @@ from gaitdisc.report.figure import LARGEST_INLINE_SVG, Figure, SavedFigure, file
 from gaitdisc.report.held_out_figure import held_out_figures
 from gaitdisc.report.method import flattened, method_sentences, provenance_rows
 from gaitdisc.report.r2_figure import r2_figures
+from gaitdisc.report.r2_tables import not_computed, participants_table, r2_table, study_r2_table
 from gaitdisc.report.residual_figure import residual_figures
 from gaitdisc.report.sentences import participant_sentences, study_sentences
 from gaitdisc.report.strides_figure import strides_figure
@@ -20,12 +22,8 @@ from gaitdisc.report.tables import (
     dropped_table,
     findings_table,
     fits_table,
-    not_computed,
     pairs_table,
-    participants_table,
-    r2_table,
     refusals_table,
-    study_r2_table,
     walks_table,
 )
 from gaitdisc.results import ParticipantResponse, ResponseRun
@@ -165,10 +163,17 @@ def _provenance_tables(run: ResponseRun) -> dict[str, Table]:
 def _templates() -> jinja2.Environment:
     import jinja2
 
-    return jinja2.Environment(
+    templates = jinja2.Environment(
         loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    templates.filters["bound"] = _bound
+    return templates
+
+
+def _bound(text: str) -> str:
+    """Bind numbers to their units, so that no line breaks between them."""
+    return re.sub(r"(?<=\d) (?=(?:s|%|Hz)(?!\w))", "\u00a0", text)

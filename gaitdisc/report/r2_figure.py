@@ -87,7 +87,7 @@ def _figure(run: ResponseRun, numbers: pd.DataFrame, name: str) -> Figure:
         axes.axhline(edge, color="#e4e4e4", linewidth=0.6, zorder=0)
     if low < 0:
         axes.axvline(0.0, color="#bbbbbb", linewidth=0.8, zorder=0)
-    legend(drawn, _key(people))
+    legend(drawn, _key(people, bool(numbers.loc[numbers["kind"] == "null", "r2"].notna().any())))
     return Figure(name, _caption(run, low), _alt(run, numbers), numbers, drawn)
 
 
@@ -129,7 +129,7 @@ def _draw_box(axes: Axes, values: np.ndarray, y: float, colour: str) -> None:
     )
 
 
-def _key(people: int) -> list[Line2D]:
+def _key(people: int, null: bool) -> list[Line2D]:
     from matplotlib.lines import Line2D
 
     models = [
@@ -140,7 +140,7 @@ def _key(people: int) -> list[Line2D]:
     return [
         *models,
         Line2D([], [], marker="o", mfc="none", mec="#333333", linestyle="", ms=6.5, label=hollow),
-        Line2D([], [], color=NULL.colour, linestyle=NULL.line, label="band-limited noise"),
+        *([Line2D([], [], color=NULL.colour, linestyle=NULL.line, label="band-limited noise")] if null else []),
     ]
 
 

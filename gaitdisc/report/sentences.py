@@ -64,8 +64,8 @@ def participant_sentences(response: ParticipantResponse) -> list[str]:
     sentences = [_headline(response, table, middle)]
     if np.isfinite(middle["nominal_on_nominal"]):
         sentences.append(
-            f"On held-out walking without the device effect, which it was trained for, "
-            f"the Nominal model reaches {number(middle['nominal_on_nominal'])}."
+            f"On held-out walking without the device, for which it was trained, the Nominal model "
+            f"reaches {number(middle['nominal_on_nominal'])}."
         )
     sentences.append(_verdict(table, middle))
     for sentence in (_ridge(middle), _null(middle)):
@@ -124,7 +124,7 @@ def _closed(middle: pd.Series) -> str:
         return ""
     share = (augmented - nominal) / (exo - nominal)
     if share >= 1:
-        return ", up to or above what the Exo model reaches"
+        return ", level with the Exo model or above it"
     if share <= 0:
         return ""
     return f", {100 * share:.0f}\u00a0% of the way from the Nominal to the Exo model"

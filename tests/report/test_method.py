@@ -32,6 +32,8 @@ def test_other_settings_are_said_as_they_are(run):
 
 def test_settings_become_rows():
     settings = {"a": {"b": [1, 2], "c": None}, "d": [{"e": 1}, {"e": 2}]}
+    files = ["/home/someone/a.mot", "C:\\Users\\someone\\b.mot"]
+    assert flattened({"files": files}) == [("files", "a.mot, b.mot")]
     assert flattened(settings) == [("a.b", "1, 2"), ("a.c", "None"), ("d.1.e", "1"), ("d.2.e", "2")]
 
 

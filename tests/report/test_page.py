@@ -98,7 +98,7 @@ def test_walks_without_a_response_are_still_shown(run_maker, refusal, tmp_path):
 
 def test_several_participants_are_folded_and_none_is_lost(run_maker, tmp_path):
     text = write_report(run_maker(3, outputs=("hip_flexion_r",)), tmp_path).read_text(encoding="utf-8")
-    assert text.count("<details>") == 3
+    assert text.count("<summary>Tables and figures of P0") == 3
     assert "3 participants were analysed" in text
     assert all(f"In P0{i}, the Nominal model" in text for i in (1, 2, 3))
     assert (tmp_path / "tables" / "r2-study.csv").is_file()
