@@ -2,8 +2,8 @@
 
     python benchmarks/study.py [FOLDER] [--repeats 3] [--threads 2]
 
-FOLDER holds recordings of people in two conditions; by default the exotendon set of ../shared/data. There is no peer to set
-beside this figure: no other tool does the whole job. The goal is 60 s on two cores.
+FOLDER holds recordings of people in two conditions; by default the exotendon set of ../shared/data. There is no peer to
+set beside this figure: no other tool does the whole job. The goal is 60 s on two cores.
 """
 
 from __future__ import annotations
@@ -32,7 +32,8 @@ def main() -> None:
     options = arguments.parse_args()
     if not options.folder.is_dir():
         sys.exit(f"no recordings at {options.folder}; name a folder")
-    print(f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}, {options.threads} threads")
+    machine = f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}"
+    print(f"{machine}, {options.threads} threads")
     walls = [timed_study(options.folder, options.threads) for _ in range(options.repeats)]
     peak_mb = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
     print(f"files to report: median {statistics.median(walls):.1f} s of {[round(wall, 1) for wall in walls]}")

@@ -50,12 +50,51 @@ def whole_file(path: Path) -> Iterator[Path]:
         yield part
         with part.open("rb+") as file:
             os.fsync(file.fileno())
-        part.chmod(0o644)
+        part.chmod(_ordinary_mode())
         part.replace(path)
     except OSError as error:
         raise _refusal(path, error) from error
     finally:
         part.unlink(missing_ok=True)
+
+
+def write_whole(path: Path | str, content: bytes | str) -> Path:
+    """Write a file of known content, whole or not at all.
+
+    Parameters
+    ----------
+    path : Path or str
+        File to write.
+    content : bytes or str
+        Everything that the file shall hold; text is written as UTF-8.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    WriteError
+        As `whole_file`.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> write_whole(Path(tempfile.mkdtemp()) / "note.txt", "done").read_text()
+    'done'
+    """
+    path = Path(path)
+    with whole_file(path) as part:
+        part.write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
+    return path
+
+
+def _ordinary_mode() -> int:
+    """Permissions of a file that any program would make; a temporary file's own are for its owner alone."""
+    mask = os.umask(0)
+    os.umask(mask)
+    return 0o666 & ~mask
 
 
 def _refusal(path: Path, error: OSError) -> WriteError:

@@ -1,9 +1,10 @@
 import errno
+import os
 
 import pytest
 
 from gaitdisc.errors import WriteError
-from gaitdisc.whole_file import whole_file
+from gaitdisc.whole_file import whole_file, write_whole
 
 
 def test_an_interrupted_write_leaves_the_old_file(tmp_path):
@@ -37,3 +38,27 @@ def test_a_folder_that_is_a_file_is_told(tmp_path):
     (tmp_path / "a").write_text("")
     with pytest.raises(WriteError, match="choose another folder"), whole_file(tmp_path / "a" / "c.txt"):
         pass
+
+
+@pytest.mark.parametrize("fails", ["os.fsync", "Path.replace"])
+def test_a_disk_that_fills_at_the_last_moment(tmp_path, monkeypatch, fails):
+    path = tmp_path / "a.txt"
+    path.write_text("old")
+
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(f"gaitdisc.whole_file.{fails}", full)
+    with pytest.raises(WriteError, match=r"a\.txt is to be written whole.*No space left"):
+        write_whole(path, "new")
+    monkeypatch.undo()
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_others_may_read_the_file_as_any_other(tmp_path):
+    mask = os.umask(0o022)
+    try:
+        assert write_whole(tmp_path / "a.txt", "x").stat().st_mode & 0o777 == 0o644
+    finally:
+        os.umask(mask)

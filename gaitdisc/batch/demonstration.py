@@ -54,7 +54,7 @@ def write_demonstration(folder: Path, duration_s: float = WALK_S) -> Study:
         ),
         held_out=HeldOut(share=0.125),
         participants=tuple(participants),
-    )
+    ).placed(folder)
     write_study(study, folder / "study.toml")
     return study
 
@@ -63,5 +63,6 @@ def _write_trial(trial: Trial, folder: Path, stem: str) -> tuple[str, ...]:
     names = []
     for key, ending in FILES.items():
         names.append(f"{stem}_{ending}")
+        (folder / names[-1]).parent.mkdir(parents=True, exist_ok=True)
         write_storage(trial.stream(key), folder / names[-1])
     return tuple(names)

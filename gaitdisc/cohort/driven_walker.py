@@ -1,8 +1,8 @@
 """A small walker for the demonstration: ten joint angles driven towards a habit, with and without an ankle spring.
 
 It is no model of a body. Each angle is a damped oscillator that is driven towards its habitual curve by a phase that
-speeds up and slows down from stride to stride; a device adds the acceleration of a one-sided spring at the ankles. So the
-missing effect is known to the last digit, which is what a demonstration and a test need. The embedded cohort, with
+speeds up and slows down from stride to stride; a device adds the acceleration of a one-sided spring at the ankles. So
+the missing effect is known to the last digit, which is what a demonstration and a test need. The embedded cohort, with
 muscles, ground and load, will take its place behind `gaitdisc demo`.
 
 The habitual curves are smooth curves of ordinary size (hip 40 deg, knee 60 deg, ankle 27 deg of range), not norm data.
@@ -23,7 +23,7 @@ KINEMATICS_HZ = 100.0
 JOINTS = ("hip_flexion", "hip_adduction", "hip_rotation", "knee_angle", "ankle_angle")
 MUSCLES = ("sol", "ta")
 
-# Fourier coefficients of the habitual curve over one stride from initial contact: mean, (cosine, sine) of 1, 2, ... [deg]
+# Fourier coefficients of the habitual curve over one stride from contact: mean, (cosine, sine) of 1, 2, ... [deg]
 HABIT: dict[str, tuple[float, tuple[tuple[float, float], ...]]] = {
     "hip_flexion": (9.0, ((20.0, -3.5), (-1.5, -4.0), (0.3, 0.8))),
     "hip_adduction": (0.5, ((-1.0, 5.0), (-1.5, 1.5), (0.5, 0.2))),

@@ -19,8 +19,8 @@ from gaitdisc.ingest.raw_file import read_raw
 from gaitdisc.ingest.storage_columns import naming_findings, storage_columns
 from gaitdisc.ingest.storage_header import StorageHeader, parsed_header
 from gaitdisc.ingest.streams import sorted_trial
-from gaitdisc.ingest.whole_file import write_whole
 from gaitdisc.recording import Finding, Recording, Trial
+from gaitdisc.whole_file import write_whole
 
 
 def read_storage(path: Path | str, channels: Mapping[str, str] | None = None) -> Trial:

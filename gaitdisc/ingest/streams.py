@@ -84,7 +84,7 @@ def sorted_trial(
     ['kinematics']
     """
     _check_names(channels, source.file)
-    gaps = _gaps(time, values, channels, source.file)
+    _refuse_missing_force(time, values, channels, source.file)
     columns: dict[str, list[int]] = {}
     for i, channel in enumerate(channels):
         columns.setdefault(stream_of(channel), []).append(i)
@@ -93,7 +93,7 @@ def sorted_trial(
         for key, chosen in columns.items()
     }
     name = source.file.rpartition(".")[0] or source.file
-    return Trial(name, streams, findings=(*findings, *gaps))
+    return Trial(name, streams, findings=tuple(findings))
 
 
 def _check_names(channels: Sequence[Channel], file: str) -> None:
@@ -108,34 +108,15 @@ def _check_names(channels: Sequence[Channel], file: str) -> None:
         )
 
 
-def _gaps(
+def _refuse_missing_force(
     time: NDArray[np.float64], values: NDArray[np.float64], channels: Sequence[Channel], file: str
-) -> list[Finding]:
-    """One finding a channel, and one a marker for its three coordinates."""
-    missing: dict[str, tuple[Channel, NDArray[np.bool_]]] = {}
+) -> None:
     for i, channel in enumerate(channels):
-        mask = np.isnan(values[:, i])
-        if mask.any():
-            name = channel.name[:-2] if channel.quantity == "marker" else channel.name
-            missing[name] = (channel, mask | missing[name][1] if name in missing else mask)
-    return [_gap(time, mask, (name, channel.quantity), file) for name, (channel, mask) in missing.items()]
-
-
-def _gap(time: NDArray[np.float64], missing: NDArray[np.bool_], what: tuple[str, str], file: str) -> Finding:
-    name, quantity = what
-    count, first = int(missing.sum()), int(np.argmax(missing))
-    if quantity in ("force", "vertical_force"):
-        raise ReadError(
-            f"{file}: {name} needs a number in every sample",
-            f"{count} of {len(time)} are missing, the first in sample {first + 1} at t = {time[first]:.6g} s",
-            "Export the force again without gaps (0 where the foot is in the air).",
-        )
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], missing.astype(np.int8), [0]))))
-    starts, ends = edges[::2], edges[1::2]
-    spans = tuple((float(time[a]), float(time[b - 1])) for a, b in zip(starts, ends, strict=True))
-    longest = int((ends - starts).max())
-    seen = f"{count} of {len(time)} samples missing, the longest gap {longest} samples"
-    if quantity == "pressure_centre":
-        return Finding("note", "gap", file, seen, "", name, spans)
-    spoils = "the whole channel" if count == len(time) else "what is computed across the gaps"
-    return Finding("warning", "gap", file, seen, spoils, name, spans)
+        missing = np.isnan(values[:, i])
+        if channel.quantity in ("force", "vertical_force") and missing.any():
+            first = int(np.argmax(missing))
+            raise ReadError(
+                f"{file}: {channel.name} needs a number in every sample",
+                f"{missing.sum()} of {len(time)} are missing, first in sample {first + 1} at t = {time[first]:.6g} s",
+                "Export the force again without gaps (0 where the foot is in the air).",
+            )

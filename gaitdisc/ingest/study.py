@@ -87,7 +87,9 @@ class Filters(_Part):
     kinematics_hz: Positive = Field(default=6.0, description="low-pass of the joint angles [Hz]")
     emg_highpass_hz: Positive = Field(default=40.0, description="high-pass of the EMG before it is rectified [Hz]")
     emg_lowpass_hz: Positive = Field(default=10.0, description="low-pass of the rectified EMG [Hz]")
-    order: Literal[2, 4, 6, 8] = Field(default=4, description="order of the Butterworth filters, both passes together")
+    order: Literal[2, 4, 6, 8] = Field(
+        default=4, description="order of one pass of the Butterworth filters, which run forwards and backwards"
+    )
     gap_s: Annotated[float, Field(ge=0)] = Field(default=0.1, description="longest gap that is filled [s]")
 
 
@@ -117,7 +119,6 @@ class Models(_Part):
     outputs: tuple[Word, ...] = Field(
         default=OUTPUTS, min_length=1, description="variables whose second derivative is predicted"
     )
-    hidden: Annotated[int, Field(ge=1, le=4096)] = Field(default=64, description="nodes of each hidden layer")
     seed: Annotated[int, Field(ge=0, lt=2**32)] = Field(default=0, description="seed of every random act")
 
 
@@ -162,9 +163,11 @@ class Study(_Part):
     Examples
     --------
     >>> study = Study(conditions=Conditions(nominal="natural", device="exo"), participants=(Participant(id="P01"),))
-    >>> study.filters.kinematics_hz, study.models.hidden, study.one_condition_only()
-    (6.0, 64, ('P01',))
+    >>> study.filters.kinematics_hz, study.models.seed, study.one_condition_only()
+    (6.0, 0, ('P01',))
     """
+
+    model_config = ConfigDict(json_schema_extra={"description": "A study file of gaitdisc."})
 
     title: str = Field(default="", description="what the study is called in reports")
     conditions: Conditions

@@ -15,7 +15,7 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.raw_file import read_raw
 from gaitdisc.ingest.study import Study
 from gaitdisc.ingest.study_errors import schema_error
-from gaitdisc.ingest.whole_file import write_whole
+from gaitdisc.whole_file import write_whole
 
 _TOP = """\
 # A study of gaitdisc. Every setting stands here with its default; paths are relative to this file.

@@ -26,9 +26,9 @@ from gaitdisc.ingest.columns import (
 )
 from gaitdisc.ingest.raw_file import RawFile, read_raw
 from gaitdisc.ingest.streams import sorted_trial
-from gaitdisc.ingest.whole_file import write_whole
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.units import convert
+from gaitdisc.whole_file import write_whole
 
 _TIME_UNIT = {"time": "s", "time_s": "s", "time_ms": "ms"}
 

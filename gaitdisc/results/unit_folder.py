@@ -79,7 +79,11 @@ def load_unit(folder: Path, name: str) -> Unit:
         path = folder / file
         if not path.is_file() or _sha256(path) != wanted:
             raise _damaged(path, "missing" if not path.is_file() else "changed since it was saved (SHA-256 differs)")
-    tables = {file: pd.read_csv(folder / file, engine="python") for file in data["sha256"] if file.endswith(".csv")}
+    tables = {
+        file: pd.read_csv(folder / file, engine="python", keep_default_na=False, na_values=[""])
+        for file in data["sha256"]
+        if file.endswith(".csv")
+    }
     with np.load(folder / "arrays.npz") as stored:
         arrays = {key: stored[key] for key in stored.files}
     return data, tables, arrays
@@ -134,7 +138,7 @@ def json_text(data: Mapping[str, Any]) -> str:
     data : mapping
         What is named.
     """
-    return json.dumps(data, indent=1, ensure_ascii=False, sort_keys=True) + "\n"
+    return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
 
 
 def _sha256(path: Path) -> str:

@@ -144,10 +144,13 @@ def gap_findings(recording: Recording, max_gap_s: float = MAX_SPLINE_S) -> list[
     Returns
     -------
     list of Finding
-        A note where all gaps are short, a warning where some are not or the channel is empty.
+        A note where all gaps are short, a warning where some are not or the channel is empty; one for the three
+        coordinates of a marker.
     """
     findings = []
     for channel in recording.channels:
+        if channel.quantity == "marker" and not channel.name.endswith(".x"):
+            continue
         spans = gap_spans(recording, channel.name)
         if not spans:
             continue
@@ -164,7 +167,7 @@ def gap_findings(recording: Recording, max_gap_s: float = MAX_SPLINE_S) -> list[
                 f"{len(spans)} gap{'s' if len(spans) > 1 else ''}, {missing:.3f} s of {recording.duration_s:.2f} s, "
                 f"the longest {longest:.3f} s",
                 "nothing: filled by a cubic spline and marked" if fits else spoils,
-                channel.name,
+                channel.name.removesuffix(".x") if channel.quantity == "marker" else channel.name,
                 spans,
             )
         )

@@ -8,9 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.recording import DroppedStride, Finding, Recording, Strides
+from gaitdisc.signals.gaps import runs
 
 OUTLYING = 3.5  # robust standard deviations of the logarithm of a stride's distance
 FEWEST_STRIDES = 8
+LONGEST_ACCIDENT = 3  # strides in a row
 FEWEST_TIMES = 2.0  # times the usual distance: steady walkers' strides are all alike
 
 
@@ -115,6 +117,9 @@ def stride_findings(recording: Recording, strides: Strides) -> list[Finding]:
 def without_outlying(recording: Recording, strides: Strides, fewest_channels: int = 1) -> Strides:
     """Strides without those that are unlike the others; each goes to `dropped` with its reason.
 
+    An accident, a stumble say, spoils one to three strides. Four or more in a row are another way of walking: they
+    stay, and `late_change` judges them.
+
     Parameters
     ----------
     recording : Recording
@@ -130,11 +135,15 @@ def without_outlying(recording: Recording, strides: Strides, fewest_channels: in
     """
     far, distance = outlying(recording, strides), stride_distances(recording, strides)
     out = far.sum(axis=1) >= fewest_channels
+    for start, end in runs(out):
+        out[start:end] = end - start <= LONGEST_ACCIDENT
     if not out.any():
         return strides
+    usual = np.nanmedian(distance, axis=0)
+    usual[usual == 0] = np.nan  # a locked coordinate has no usual distance
     dropped = []
     for k in np.flatnonzero(out):
-        times = distance[k] / np.nanmedian(distance, axis=0)
+        times = distance[k] / usual
         column = int(np.argmax(np.where(far[k], times, 0.0)))
         more = f" and {far[k].sum() - 1} more channels" if far[k].sum() > 1 else ""
         reason = f"unlike the others: {recording.names[column]}{more} {times[column]:.1f} times the usual distance away"

@@ -26,7 +26,7 @@ def test_the_defaults_are_those_of_the_dissertation():
     study = _study(BOTH)
     assert (study.filters.kinematics_hz, study.filters.emg_highpass_hz, study.filters.emg_lowpass_hz) == (6, 40, 10)
     assert study.filters.order == 4
-    assert study.models.hidden == 64
+    assert study.models.seed == 0
     assert len(study.models.angles) == 10
     assert study.held_out.length_s(240.0) == 30.0
 
@@ -63,6 +63,6 @@ def test_a_study_is_frozen_and_strict():
     with pytest.raises(ValidationError, match="frozen"):
         _study(BOTH).title = "new"  # pyright: ignore[reportAttributeAccessIssue]
     with pytest.raises(ValidationError):
-        Models(hidden="64")  # pyright: ignore[reportArgumentType]
+        Models(seed="64")  # pyright: ignore[reportArgumentType]
     with pytest.raises(ValidationError):
         Participant(id="Anna Muster")

@@ -50,7 +50,7 @@ crop_s = [1.0, 2.0]
         ('"t"', "3", r"line 1: title must be text; found 3\. Write it in quotes"),
         ("[strides]\ndetector =", "strides =", r"must be a table; found 'auto'|kinematics_hz"),
         ("6.0", "true", r"kinematics_hz must be a number; found True"),
-        ("[strides]", '[models]\nhidden = 0\n[strides]', r"line 8: \[models\] hidden must be at least 1; found 0"),
+        ("[strides]", "[quality]\nmin_strides = 0\n[strides]", r"\[quality\] min_strides must be at least 1; found 0"),
         ("[strides]", "[held_out]\nshare = 1\n[strides]", r"line 8: \[held_out\] share must be below 1; found 1"),
         ("[strides]", "[quality]\nmin_strides = 2.5\n[strides]", r"min_strides must be a whole number; found 2\.5"),
     ],

@@ -32,7 +32,9 @@ def test_a_detector_that_cannot_work_says_why(trial):
 
 
 def test_two_events_do_not_outvote_a_whole_walk(trial):
-    events = tuple(Event("initial contact", side, time) for side, time in (("r", 1.1), ("l", 1.6), ("r", 2.2), ("l", 2.7)))
+    events = tuple(
+        Event("initial contact", side, time) for side, time in (("r", 1.1), ("l", 1.6), ("r", 2.2), ("l", 2.7))
+    )
     choice = chosen_contacts(replace(only(trial, "kinematics"), events=events))
     assert choice.detector == "angles"
 

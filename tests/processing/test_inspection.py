@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from gaitdisc.ingest.storage import write_storage
-from gaitdisc.ingest.study_file import load_study, write_study
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
+from gaitdisc.ingest.study_file import load_study, write_study
 from gaitdisc.processing.inspection import inspected_file, inspected_study
 
 
@@ -34,7 +34,7 @@ def test_a_study_is_looked_at_whole_though_one_file_is_broken(folder):
     study = Study(
         conditions=Conditions(nominal="a", device="b"),
         participants=(Participant(id="P01", trials=trials), Participant(id="P02", trials=lone)),
-    )
+    ).placed(folder)
     write_study(study, folder / "study.toml")
     seen = list(inspected_study(load_study(folder)))
     assert [one.light for one in seen[1:]] == ["red", "amber", seen[3].light, "red"]
@@ -45,7 +45,7 @@ def test_findings_of_one_kind_share_a_line(trial, tmp_path):
     broken = np.array(trial.stream("kinematics").values)
     broken[500:560] = np.nan
     write_storage(trial.stream("kinematics").with_values(broken), tmp_path / "gappy.mot")
-    lines = [line for line in inspected_file(tmp_path / "gappy.mot").grouped() if ": gap" in line]
+    lines = [line for line in inspected_file(tmp_path / "gappy.mot").grouped() if ": gap," in line]
     assert len(lines) == 1
     assert "and 6 more: gap, 10 times" in lines[0]
 

@@ -106,6 +106,4 @@ def test_clocks_that_do_not_meet(trial, study):
     later = Recording(emg.time + 1000.0, emg.values, emg.channels)
     models = Models(emg=("emg_sol_r",), outputs=("ankle_angle_r",))
     with pytest.raises(ValueError, match="span of time in common"):
-        processed(
-            replace(trial, streams={**trial.streams, "emg": later}), study.model_copy(update={"models": models})
-        )
+        processed(replace(trial, streams={**trial.streams, "emg": later}), study.model_copy(update={"models": models}))

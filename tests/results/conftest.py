@@ -36,7 +36,7 @@ def response() -> ParticipantResponse:
         {
             "variable": ["hip_flexion_r", "hip_flexion_r"],
             "model": ["nominal", "exo"],
-            "kind": ["network", "ridge"],
+            "kind": ["network", "null"],
             "walk": ["exo", "exo"],
             "r2": [0.1 + 0.2, np.nan],
             "n": [30, 30],

@@ -1,0 +1,64 @@
+import shutil
+
+import pytest
+
+from gaitdisc.batch.participant_unit import computed_unit, unit_key
+from gaitdisc.ingest.study import Filters, PlannedTrial
+
+
+def alone(study, **changes):
+    person = study.participants[0].model_copy(update=changes)
+    return study.model_copy(update={"participants": (person,)}), person
+
+
+def test_the_device_is_what_the_augmented_model_adds(study, tmp_path):
+    told = []
+    unit = computed_unit(study, study.participants[0], tmp_path, told.append)
+    response = unit.response
+    assert response is not None
+    nominal, augmented, exo = (response.r2_of("ankle_angle_r", model) for model in ("nominal", "augmented", "exo"))
+    assert nominal < augmented - 0.02
+    assert augmented == pytest.approx(exo, abs=0.05)
+    assert response.r2_of("knee_angle_r", "nominal") == pytest.approx(
+        response.r2_of("knee_angle_r", "augmented"), abs=0.05
+    )
+    assert told == sorted(told)
+    assert told[-1] <= 1.0
+
+
+def test_one_condition_only_is_refused_by_name(study, tmp_path):
+    lonely, person = alone(study, trials=study.participants[0].trials[:1])
+    unit = computed_unit(lonely, person, tmp_path, lambda _: None)
+    assert unit.response is None
+    assert "P01 has 1 of 'nominal', none of 'exo'" in unit.refusals[0].reason
+
+
+def test_two_trials_of_one_condition_are_not_chosen_between(study, tmp_path):
+    twice, person = alone(study, trials=(*study.participants[0].trials, study.participants[0].trials[0]))
+    unit = computed_unit(twice, person, tmp_path, lambda _: None)
+    assert "P01 has 2 of 'nominal', 1 of 'exo'" in unit.refusals[0].reason
+
+
+def test_an_excluded_person_is_left_out_with_the_reason(study, tmp_path):
+    without, person = alone(study, excluded="changed shoes")
+    assert computed_unit(without, person, tmp_path, lambda _: None).refusals[0].reason.endswith("changed shoes")
+
+
+def test_a_held_out_part_longer_than_the_trial_is_refused(study, tmp_path):
+    held = study.held_out.model_copy(update={"seconds": 60.0, "share": None})
+    unit = computed_unit(study.model_copy(update={"held_out": held}), study.participants[0], tmp_path, lambda _: None)
+    assert "holding out the last 60 s" in unit.refusals[0].reason
+    assert len(unit.walks) == 2
+
+
+def test_the_key_follows_bytes_and_settings_not_names(study, tmp_path):
+    planned = study.participants[0].trials[0]
+    key = unit_key(study, planned)
+    assert unit_key(study.model_copy(update={"title": "another"}), planned) == key
+    assert unit_key(study.model_copy(update={"filters": Filters(kinematics_hz=8.0)}), planned) != key
+    shutil.copy(study.path_of(planned.files[0]), tmp_path / "copy.mot")
+    copied = PlannedTrial(condition="nominal", files=(str(tmp_path / "copy.mot"),))
+    assert unit_key(study, copied) == key
+    with (tmp_path / "copy.mot").open("a") as file:
+        file.write(" ")
+    assert unit_key(study, copied) != key

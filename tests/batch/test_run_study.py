@@ -1,0 +1,82 @@
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+import pandas as pd
+import pytest
+
+from gaitdisc.batch.run_study import run_study
+from gaitdisc.ingest.study_file import write_study
+from gaitdisc.results.store import load_run
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    return tmp_path_factory.mktemp("run")
+
+
+@pytest.fixture
+def run(study, finished):
+    return run_study(study, finished)
+
+
+def files_of(folder):
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for part in ("walks", "responses")
+        for path in sorted((folder / part).rglob("*"))
+        if path.is_file()
+    }
+
+
+def test_a_run_is_saved_whole(run, finished):
+    loaded = load_run(finished)
+    pd.testing.assert_frame_equal(loaded.r2_table(), run.r2_table(), check_dtype=False)
+    assert [response.participant for response in run.responses] == ["P01", "P02"]
+    assert set(run.provenance.files) == {f"P0{k}_{word}.mot" for k in (1, 2) for word in ("nominal", "exo")}
+    assert all(len(sha) == 64 for sha in run.provenance.files.values())
+
+
+def test_a_second_run_computes_nothing(run, study, finished):
+    before = {name: (finished / name).stat().st_mtime_ns for name in files_of(finished)}
+    again = run_study(study, finished)
+    assert {name: (finished / name).stat().st_mtime_ns for name in files_of(finished)} == before
+    pd.testing.assert_frame_equal(again.r2_table(), run.r2_table(), check_dtype=False)
+
+
+def test_a_damaged_unit_is_computed_again_to_the_same_tables(run, study, finished, tmp_path):
+    copy = shutil.copytree(finished, tmp_path / "copy")
+    arrays = copy / "responses" / "P02" / "arrays.npz"
+    content = bytearray(arrays.read_bytes())
+    content[len(content) // 2] ^= 1
+    arrays.write_bytes(bytes(content))
+    run_study(study, copy)
+    repaired, whole = files_of(copy), files_of(finished)
+    assert repaired.keys() == whole.keys()
+    for name, content in whole.items():
+        if not name.endswith(("fits.csv", "response.json")):  # these hold the seconds that a fit took
+            assert repaired[name] == content, name
+
+
+def test_side_by_side_gives_the_same_tables(run, study, tmp_path):
+    parallel = run_study(study, tmp_path / "parallel", jobs=2)
+    pd.testing.assert_frame_equal(parallel.r2_table(), run.r2_table(), check_dtype=False)
+
+
+def test_a_run_that_was_killed_goes_on(run, study, finished, tmp_path):
+    write_study(study, tmp_path / "study.toml")
+    command = [sys.executable, "-m", "gaitdisc", "run", str(tmp_path), "--quiet"]
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    first = tmp_path / "run" / "responses" / "P01" / "response.json"
+    deadline = time.monotonic() + 120
+    while not first.exists() and process.poll() is None and time.monotonic() < deadline:
+        time.sleep(0.05)
+    os.kill(process.pid, signal.SIGKILL)
+    process.wait()
+    kept = first.stat().st_mtime_ns
+    resumed = run_study(study, tmp_path / "run")
+    assert first.stat().st_mtime_ns == kept
+    pd.testing.assert_frame_equal(resumed.r2_table(), run.r2_table(), check_dtype=False)
