@@ -87,8 +87,9 @@ def _figure(run: ResponseRun, numbers: pd.DataFrame, name: str) -> Figure:
         axes.axhline(edge, color="#e4e4e4", linewidth=0.6, zorder=0)
     if low < 0:
         axes.axvline(0.0, color="#bbbbbb", linewidth=0.8, zorder=0)
-    legend(drawn, _key(people, bool(numbers.loc[numbers["kind"] == "null", "r2"].notna().any())))
-    return Figure(name, _caption(run, low), _alt(run, numbers), numbers, drawn)
+    null = bool(numbers.loc[numbers["kind"] == "null", "r2"].notna().any())
+    legend(drawn, _key(people, null))
+    return Figure(name, _caption(run, low, null), _alt(run, numbers), numbers, drawn)
 
 
 def _draw_variable(axes: Axes, rows: pd.DataFrame, row: int, low: float) -> None:
@@ -151,7 +152,7 @@ def _limit(numbers: pd.DataFrame) -> float:
     return max(LOWEST, float(np.floor(10 * (lowest - 0.02)) / 10))
 
 
-def _caption(run: ResponseRun, low: float) -> str:
+def _caption(run: ResponseRun, low: float, null: bool) -> str:
     people = len(run.responses)
     marks = (
         "Filled marks: networks; hollow marks of the same shape: ridge regression"
@@ -160,12 +161,13 @@ def _caption(run: ResponseRun, low: float) -> str:
         "participants on (thick line: median, whiskers: all); hollow marks: median of ridge regression"
     )
     samples = _samples(run)
+    noise = "dashed: what band-limited noise alone would reach" if null else "what noise would reach was not computed"
     edge = f" R² below {number(low)} stands at the left edge with its value." if low == LOWEST else ""
     start = f" The axis starts at {number(low, 1)}." if low > 0 else ""
     return (
         f"R² [1] of the second derivative of each variable on the held-out device walk ({run.exo}), "
         f"n = {counted(people, 'participant')}{samples}; split: last {held_out_text(run)} s of the walk held "
-        f"out. {marks}; dashed: what band-limited noise alone would reach.{start}{edge}"
+        f"out. {marks}; {noise}.{start}{edge}"
     )
 
 

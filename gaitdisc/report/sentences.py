@@ -155,7 +155,9 @@ def _null(middle: pd.Series) -> str:
         return ""
     below = [MODEL_WORDS[m] for m, column in _ON_EXO.items() if middle[column] <= null + MARGIN]
     start = f"Band-limited noise alone would reach {number(null)}"
-    return f"{start}; the {listed(below)} model does not rise above that." if below else f"{start}."
+    if not below:
+        return f"{start}."
+    return f"{start}; the {listed(below)} {'model does' if len(below) == 1 else 'models do'} not rise above that."
 
 
 def _study_verdict(gains: pd.Series) -> str:

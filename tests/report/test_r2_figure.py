@@ -55,5 +55,13 @@ def test_many_variables_wrap_and_nan_is_left_out(run_maker):
     assert [figure.numbers["variable"].nunique() for figure in figures] == [12, 12]
 
 
+def test_a_null_that_is_missing_is_not_in_the_key(run_maker):
+    run = run_maker(outputs=OUTPUTS)
+    run.responses[0].r2.loc[run.responses[0].r2["kind"] == "null", "r2"] = np.nan
+    [figure] = r2_figures(run)
+    assert "band-limited noise" not in [text.get_text() for text in figure.drawn.legends[0].get_texts()]
+    assert "what noise would reach was not computed" in figure.caption
+
+
 def test_nobody_has_no_numbers(run_maker):
     assert list(r2_numbers(run_maker(0)).columns) == ["participant", "variable", "model", "kind", "r2"]

@@ -62,6 +62,8 @@ def test_ridge_wins(response):
 def test_no_better_than_noise(response):
     set_r2(response, "nominal", "network", 0.49)
     assert participant_sentences(response)[4].endswith("the Nominal model does not rise above that.")
+    set_r2(response, "exo", "network", 0.4)
+    assert participant_sentences(response)[4].endswith("the Nominal and Exo models do not rise above that.")
 
 
 def test_worse_than_the_mean(response):
