@@ -32,7 +32,7 @@ from gaitdisc.whole_file import whole_file
 if TYPE_CHECKING:
     import jinja2
 
-INLINE_BYTES = 3_000_000  # of all figures together, about; beyond it they are shown as pictures
+INLINE_BYTES = 4_000_000  # of all figures together, about; beyond it they are shown as pictures
 FIGURES_A_PERSON = 5
 MOST_OPEN = 2  # with more participants than this, the first screen is brief and their sections are folded
 

@@ -6,10 +6,11 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.report.r2_summary import medians, participant_medians, r2_by_variable, sample_counts
-from gaitdisc.report.wording import MODEL_WORDS, counted, listed, number
+from gaitdisc.report.wording import MODEL_WORDS, counted, label, listed, number
 from gaitdisc.results import ParticipantResponse, ResponseRun
 
 MARGIN = 0.005  # a difference in R2 that two printed digits cannot show is called none
+MOST_NAMED = 6  # variables in one sentence
 _ON_EXO = {model: f"{model}_on_exo" for model in ("nominal", "augmented", "exo")}
 
 
@@ -68,7 +69,7 @@ def participant_sentences(response: ParticipantResponse) -> list[str]:
             f"reaches {number(middle['nominal_on_nominal'])}."
         )
     sentences.append(_verdict(table, middle))
-    for sentence in (_ridge(middle), _null(middle)):
+    for sentence in (_ridge(middle), _null(table, middle)):
         if sentence:
             sentences.append(sentence)
     return sentences
@@ -149,15 +150,19 @@ def _ridge(middle: pd.Series) -> str:
     return f"{start}: the networks add {number(gain)} to the Augmented model."
 
 
-def _null(middle: pd.Series) -> str:
+def _null(table: pd.DataFrame, middle: pd.Series) -> str:
     null = float(middle["null_on_exo"])
     if not np.isfinite(null):
         return ""
-    below = [MODEL_WORDS[m] for m, column in _ON_EXO.items() if middle[column] <= null + MARGIN]
     start = f"Band-limited noise alone would reach {number(null)}"
-    if not below:
+    below = [MODEL_WORDS[m] for m, column in _ON_EXO.items() if middle[column] <= null + MARGIN]
+    if below:
+        return f"{start}; the {listed(below)} {'model does' if len(below) == 1 else 'models do'} not rise above that."
+    lost = [str(v) for v in table.index[table["augmented_on_exo"] <= table["null_on_exo"] + MARGIN]]
+    if not lost:
         return f"{start}."
-    return f"{start}; the {listed(below)} {'model does' if len(below) == 1 else 'models do'} not rise above that."
+    named = f" ({'; '.join(label(variable) for variable in lost)})" if len(lost) <= MOST_NAMED else ""
+    return f"{start}, and in {len(lost)} of {counted(len(table), 'variable')} the Augmented model is no better{named}."
 
 
 def _study_verdict(gains: pd.Series) -> str:

@@ -66,6 +66,14 @@ def test_no_better_than_noise(response):
     assert participant_sentences(response)[4].endswith("the Nominal and Exo models do not rise above that.")
 
 
+def test_one_variable_no_better_than_noise_is_named_though_the_median_is_fine(response):
+    set_r2(response, "augmented", "network", [0.94, 0.94, 0.5])
+    assert participant_sentences(response)[4] == (
+        "Band-limited noise alone would reach 0.51, and in 1 of 3 variables the Augmented model is no better (ankle "
+        "angle, right)."
+    )
+
+
 def test_worse_than_the_mean(response):
     set_r2(response, "nominal", "network", -0.3)
     assert "does worse than the mean would and explains nothing (R² −0.30)" in participant_sentences(response)[0]
