@@ -99,7 +99,8 @@ def _column(
         return replace(_guessed(label, name, header.title), guessed="its name is in [channels], its unit is not")
     if number in header.own:
         quantity, own_unit, side = header.own[number]
-        channel = Channel(plain, quantity, own_unit, side) if quantity in QUANTITIES else named_channel(plain)
+        # the label is the name to the letter here, brackets and all: the header states the unit
+        channel = Channel(label, quantity, own_unit, side) if quantity in QUANTITIES else named_channel(label)
         return column_in_unit(label, channel, own_unit, file)
     column = _known(label, plain, header.title, of_emg)
     return column_in_unit(label, column.channel, unit, file) if unit else column

@@ -75,7 +75,7 @@ def load_walk(folder: Path) -> tuple[WalkSummary, str]:
     """
     data, tables, arrays = load_unit(folder, "walk.json")
     strides = tables["strides.csv"]
-    strides["reason"] = strides["reason"].fillna("").astype(str)
+    strides["reason"] = strides["reason"].astype(object).fillna("").astype(str)
     findings = tuple(Finding(**{**f, "spans": tuple(tuple(span) for span in f["spans"])}) for f in data["findings"])
     walk = WalkSummary(
         data["subject"],
