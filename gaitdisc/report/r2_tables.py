@@ -34,10 +34,10 @@ def r2_table(response: ParticipantResponse, name: str) -> Table:
     table = r2_by_variable(response)
     units = dict(zip(response.outputs, response.units, strict=True))
     rows = [
-        (f"{label(str(v))} [{unit_text(units[str(v)])}]", *(number(x) for x in values.to_numpy()))
+        (f"{label(str(v))} [{unit_text(units[str(v)])}]", *(number(x, 3) for x in values.to_numpy()))
         for v, values in table.iterrows()
     ]
-    rows.append(("median", *(number(x) for x in medians(table).to_numpy())))
+    rows.append(("median", *(number(x, 3) for x in medians(table).to_numpy())))
     samples, without = sample_counts(response), sample_counts(response, "nominal")
     caption = (
         f"{response.participant}: R² [1] of the second derivative of each variable (its unit in brackets) on held-out "
@@ -91,10 +91,10 @@ def participants_table(run: ResponseRun) -> Table:
     people = participant_medians(run)
     counts = [sample_counts(response) for response in run.responses]
     rows = [
-        (str(person), n, *(number(x) for x in values.to_numpy()))
+        (str(person), n, *(number(x, 3) for x in values.to_numpy()))
         for n, (person, values) in zip(counts, people.iterrows(), strict=True)
     ]
-    rows.append(("median", "", *(number(x) for x in medians(people).to_numpy())))
+    rows.append(("median", "", *(number(x, 3) for x in medians(people).to_numpy())))
     numbers = people.reset_index()
     numbers.insert(1, "samples", counts)
     caption = (
@@ -133,5 +133,5 @@ def not_computed(run: ResponseRun, response: ParticipantResponse) -> list[str]:
 
 def _quartiles(middle: float, q1: float, q3: float) -> str:
     if pd.isna(middle):
-        return number(middle)
-    return f"{number(middle)}\n[{number(q1)}, {number(q3)}]"
+        return number(middle, 3)
+    return f"{number(middle, 3)}\n[{number(q1, 3)}, {number(q3, 3)}]"

@@ -12,8 +12,8 @@ def test_r2_of_one_participant(run_maker):
     [response] = run_maker(outputs=OUTPUTS).responses
     table = r2_table(response, "P01")
     assert [row[0] for row in table.rows] == ["hip flexion, right [deg/s²]", "ankle angle, left [deg/s²]", "median"]
-    assert table.rows[1][3] == f"{response.r2_of('ankle_angle_l', 'augmented'):.2f}"
-    assert table.rows[-1][-1] == "0.51"
+    assert table.rows[1][3] == f"{response.r2_of('ankle_angle_l', 'augmented'):.3f}"
+    assert table.rows[-1][-1] == "0.510"
     assert sum(span for _, span in table.groups) == len(table.columns) == len(table.rows[0])
     assert "n = 749 samples of the device walk and 749" in table.caption
     assert "split: last 7.5 s" in table.caption
@@ -44,6 +44,6 @@ def test_several_participants(run_maker):
     study = study_r2_table(run)
     values = [r.r2_of("hip_flexion_r", "exo") for r in run.responses]
     q1, middle, q3 = np.quantile(values, [0.25, 0.5, 0.75])
-    assert study.rows[0][5] == f"{middle:.2f}\n[{q1:.2f}, {q3:.2f}]"
+    assert study.rows[0][5] == f"{middle:.3f}\n[{q1:.3f}, {q3:.3f}]"
     assert study.rows[0][1] == "3"
     assert "n = 3 participants" in study.caption

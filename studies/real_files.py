@@ -1,0 +1,142 @@
+"""File dialects, events against plates, and dead EMG channels in real recordings.
+
+    python studies/real_files.py [DATA]
+
+DATA holds the folders young_straight_and_turn, opensim_walks and c3d_reader_samples; by default ../shared/data/gait, or
+GAITDISC_DATA/gait. Each row is a promise and what was found.
+"""
+
+from __future__ import annotations
+
+import csv
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from gaitdisc.errors import GaitdiscError, StrideError
+from gaitdisc.ingest.c3d import C3DReader
+from gaitdisc.ingest.reading import read_trial
+from gaitdisc.processing.contact_choice import named_markers
+from gaitdisc.processing.one_base import on_one_base
+from gaitdisc.recording import Trial
+from gaitdisc.signals.contact_events import event_contacts
+from gaitdisc.signals.contact_force import plate_contacts
+from gaitdisc.signals.contacts import compared
+from gaitdisc.signals.direction import walking_direction
+from gaitdisc.signals.emg_quality import live_channels
+
+Row = tuple[str, str, str]
+MUSCLES = {"Rect": "rf", "Hams": "ham", "Gast": "gas", "Tib Ant": "ta"}  # the manifest's words
+
+
+def run(data: Path) -> list[Row]:
+    """Every row."""
+    return [
+        *young_people(data / "young_straight_and_turn"),
+        *opensim_dialects(data / "opensim_walks"),
+        *encodings(data / "c3d_reader_samples"),
+    ]
+
+
+def young_people(folder: Path) -> list[Row]:
+    """Plates against events in ms; live EMG channels as the manifest has them."""
+    with (folder / "manifest.csv").open(encoding="utf-8") as file:
+        manifest = {row["file"]: row["live_emg"] for row in csv.DictReader(file)}
+    differences: list[float] = []
+    agree, files = 0, sorted(folder.rglob("*.c3d"))
+    walks = [file for file in files if file.parent.name != "static"]
+    with C3DReader() as reader:
+        for file in files:
+            trial = read_trial(file, reader=reader)
+            wanted = {f"emg_{MUSCLES[n[2:]]}_{n[0].lower()}" for n in manifest[file.name].split("|") if n}
+            live = {name for name in live_channels(trial.stream("emg")) if name.split("_")[1] in MUSCLES.values()}
+            agree += live == wanted
+            differences += plates_against_events(trial) if file in walks else []
+    low, middle, high = np.percentile(differences, [25, 50, 75])
+    quartiles = f"quartiles {low:+.0f} and {high:+.0f}, n = {len(differences)} contacts"
+    found = f"plate minus event {middle:+.0f} ms (median; {quartiles})"
+    return [
+        (f"young_straight_and_turn, {len(walks)} walks", "events and plates compared", found),
+        (f"young_straight_and_turn, {len(files)} files", "dead EMG as in manifest.csv", f"{agree} files agree exactly"),
+    ]
+
+
+def plates_against_events(trial: Trial) -> list[float]:
+    """Plate minus event at every contact that both have [ms]; none where the trial has no events or no whole plate."""
+    markers = trial.stream("markers")
+    heels, pelvis = named_markers(markers)
+    try:
+        events = event_contacts(trial)
+        plates = plate_contacts(trial.stream("forces"), markers, heels, walking_direction(markers, heels, pelvis))
+    except StrideError:
+        return []
+    both = set(events) & set(plates)
+    return [float(1e3 * d) for side in both for d in compared(events[side], plates[side]).difference_s]
+
+
+def opensim_dialects(folder: Path) -> list[Row]:
+    """Every text dialect is read; EMG, force and kinematics of one walk on one time base."""
+    files = sorted(file for file in folder.rglob("*") if file.suffix in (".mot", ".sto", ".trc", ".c3d"))
+    read, refused = 0, []
+    for file in files:
+        try:
+            read_trial(file)
+            read += 1
+        except GaitdiscError as error:
+            refused.append(str(error))
+    walk = [folder / "mrs_emg_walking" / name for name in ("IK_gait.mot", "GRF_gait.mot", "EMG_gait.mot")]
+    both = on_one_base(read_trial(walk), 100.0)
+    span = f"{both.time[0]:.2f} to {both.time[-1]:.2f} s"
+    return [
+        (f"opensim_walks, {len(files)} files", "every dialect read", f"{read} read" + "".join(refused)),
+        (
+            "opensim_walks/mrs_emg_walking",
+            "one time base",
+            f"{len(both.names)} channels at {both.rate_hz:g} Hz, {span}",
+        ),
+    ]
+
+
+def encodings(folder: Path) -> list[Row]:
+    """The encodings of one trial are equal; what cannot be read is refused in words."""
+    points, read, refused = {}, 0, []
+    files = sorted(folder.rglob("*.c3d"))
+    with C3DReader() as reader:
+        for file in files:
+            try:
+                trial = read_trial(file, reader=reader)
+            except GaitdiscError:
+                refused.append(file.name)
+                continue
+            read += 1
+            if file.parent.name == "c3d_org_sample01":
+                points[file.name] = trial.stream("markers").values
+    first = next(iter(points.values()))
+    apart = max(float(np.nanmax(np.abs(values - first))) for values in points.values())
+    return [
+        (
+            "c3d_reader_samples/sample01",
+            "encodings equal",
+            f"{len(points)} encodings, {1e3 * apart:.2f} mm apart at most",
+        ),
+        (
+            f"c3d_reader_samples, {len(files)} files",
+            "read, or refused in words",
+            f"{read} read; refused: {', '.join(refused)}",
+        ),
+    ]
+
+
+def main() -> None:
+    """Print the rows."""
+    given = Path(sys.argv[1]) if len(sys.argv) > 1 else None
+    shared = Path(os.environ.get("GAITDISC_DATA", Path(__file__).parents[2] / "shared" / "data"))
+    print("| recordings | promise | found |\n|---|---|---|")
+    for row in run(given or shared / "gait"):
+        print(f"| {' | '.join(row)} |")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,129 @@
+"""Strides, plateaus and EMG channels found in real treadmill recordings.
+
+    python studies/real_strides.py [DATA]
+
+DATA holds the folders exotendon_run, treadmill_walk_ik and treadmill_c3d_emg; by default ../shared/data/gait, or
+GAITDISC_DATA/gait. Each row is a promise and what was found.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel, vocabulary
+from gaitdisc.errors import StrideError
+from gaitdisc.ingest.reading import read_trial
+from gaitdisc.processing.contact_choice import named_markers
+from gaitdisc.recording import Recording, Source
+from gaitdisc.signals.contact_angles import angle_contacts
+from gaitdisc.signals.contact_force import plate_contacts
+from gaitdisc.signals.direction import walking_direction
+from gaitdisc.signals.envelope import enveloped
+from gaitdisc.signals.plateaus import plateaus
+from gaitdisc.signals.strides import cut_strides
+from gaitdisc.signals.walking import verify_walking
+
+Row = tuple[str, str, str]
+RUNNING_STRIDES = {"natural2": 83, "exotendon3": 88, "manual_ik": 90}
+WALKING_STRIDES, HIP_LIMIT_DEG = 221, -29.9
+
+
+def run(data: Path) -> list[Row]:
+    """Every row."""
+    return [
+        *exotendon(data / "exotendon_run"),
+        *treadmill_angles(data / "treadmill_walk_ik"),
+        *treadmill_c3d(data / "treadmill_c3d_emg"),
+    ]
+
+
+def exotendon(folder: Path) -> list[Row]:
+    """Strides of the running trials, from joint angles alone, right side."""
+    rows = []
+    for word, count in RUNNING_STRIDES.items():
+        [file] = [path for path in folder.rglob("*.mot") if word in path.name]
+        kinematics = read_trial(file).stream("kinematics")
+        strides = cut_strides(angle_contacts(kinematics)["r"], kinematics)
+        rows.append(
+            (f"exotendon_run/{word}", f"{count} strides, +-1", f"{len(strides)}, {len(strides.dropped)} dropped")
+        )
+    return rows
+
+
+def treadmill_angles(folder: Path) -> list[Row]:
+    """Strides and hip plateaus of twelve walks; two range-of-motion trials are no walks."""
+    stored = np.load(folder / "addbio_expert3_ik.npz")
+    names = [str(name) for name in stored["columns"]]
+    kept = dropped = with_plateau = 0
+    limits, refused = [], []
+    for trial in sorted(key for key in stored.files if key.startswith("S01DE")):
+        kinematics = _angles(names, stored[trial], trial)
+        try:
+            strides = cut_strides(angle_contacts(kinematics)["r"], kinematics)
+            verify_walking(kinematics, strides)
+        except StrideError as error:
+            refused.append(f"{trial}: {error.found.split(': ', 1)[-1]}")
+            continue
+        kept, dropped = kept + len(strides), dropped + len(strides.dropped)
+        found = [p for p in plateaus(kinematics) if p.channel in ("hip_flexion_r", "hip_flexion_l")]
+        with_plateau += len(found) > 0
+        limits += [p.limit for p in found]
+    try:
+        kinematics = read_trial(folder / "S01DN603_ik.mot").stream("kinematics")
+        verify_walking(kinematics, cut_strides(angle_contacts(kinematics)["r"], kinematics))
+    except StrideError as error:
+        refused.append(f"S01DN603: {error.found.split(': ', 1)[-1]}")
+    return [
+        (
+            "treadmill_walk_ik, 12 walks",
+            f"{WALKING_STRIDES} strides, +-1 %",
+            f"{kept} kept + {dropped} dropped = {kept + dropped}",
+        ),
+        (
+            "treadmill_walk_ik, 12 walks",
+            f"hip plateau at {HIP_LIMIT_DEG} deg",
+            f"in {with_plateau} walks, at {min(limits):.1f} to {max(limits):.1f} deg",
+        ),
+        ("treadmill_walk_ik, 2 calibrations", "refused as walking", "; ".join(refused)),
+    ]
+
+
+def treadmill_c3d(folder: Path) -> list[Row]:
+    """EMG channels kept apart; strides from belts whose force chatters."""
+    trial = read_trial(folder / "walking_1.c3d")
+    emg, markers = trial.stream("emg"), trial.stream("markers")
+    heels, pelvis = named_markers(markers)
+    contacts = plate_contacts(trial.stream("forces"), markers, heels, walking_direction(markers, heels, pelvis))
+    strides = {side: len(cut_strides(found)) for side, found in contacts.items()}
+    envelopes = enveloped(emg)
+    peaks = 1e3 * np.nanmax(envelopes.values, axis=0)
+    return [
+        ("treadmill_c3d_emg", "16 EMG channels apart", f"{len(set(emg.names))}: {emg.names[0]} to {emg.names[-1]}"),
+        ("treadmill_c3d_emg", "envelopes", f"{len(peaks)}, peaks from {peaks.min():.1f} to {peaks.max():.1f} mV"),
+        ("treadmill_c3d_emg", "6-7 strides a leg", f"right {strides['r']}, left {strides['l']}"),
+    ]
+
+
+def _angles(names: list[str], values: NDArray[np.float32], trial: str) -> Recording:
+    kept = [i for i, name in enumerate(names) if name != "time"]
+    channels = tuple(vocabulary().named(names[i]) or Channel(names[i], "angle", "deg") for i in kept)
+    angles = np.asarray(values[:, kept], float)
+    return Recording(np.arange(len(angles)) / 100.0, angles, channels, source=Source(f"{trial}.npz"))
+
+
+def main() -> None:
+    """Print the rows."""
+    given = Path(sys.argv[1]) if len(sys.argv) > 1 else None
+    shared = Path(os.environ.get("GAITDISC_DATA", Path(__file__).parents[2] / "shared" / "data"))
+    print("| recordings | promise | found |\n|---|---|---|")
+    for row in run(given or shared / "gait"):
+        print(f"| {' | '.join(row)} |")
+
+
+if __name__ == "__main__":
+    main()

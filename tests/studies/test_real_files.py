@@ -1,0 +1,44 @@
+import importlib.util
+import re
+from pathlib import Path
+
+import pytest
+
+STUDIES = Path(__file__).parents[2] / "studies"
+
+
+@pytest.fixture(scope="module")
+def rows(gait_data):
+    spec = importlib.util.spec_from_file_location("real_files", STUDIES / "real_files.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return {promise: (recordings, words) for recordings, promise, words in module.run(gait_data)}
+
+
+def test_plates_and_events_agree_within_two_frames(rows):
+    recordings, words = rows["events and plates compared"]
+    assert recordings.endswith("12 walks")
+    middle, low, high, count = (float(n) for n in re.findall(r"[-+]?\d+", words))
+    assert abs(middle) <= 20 and high - low <= 20 and count >= 15
+
+
+def test_dead_emg_is_named_exactly_as_the_manifest_has_it(rows):
+    assert rows["dead EMG as in manifest.csv"] == ("young_straight_and_turn, 14 files", "14 files agree exactly")
+
+
+def test_every_dialect_is_read(rows):
+    assert rows["every dialect read"] == ("opensim_walks, 12 files", "12 read")
+
+
+def test_streams_come_to_one_time_base(rows):
+    assert rows["one time base"][1].endswith("at 100 Hz, 0.01 to 4.61 s")
+
+
+def test_the_encodings_are_one_trial(rows):
+    assert rows["encodings equal"][1] == "6 encodings, 0.00 mm apart at most"
+
+
+def test_what_cannot_be_read_is_refused(rows):
+    assert rows["read, or refused in words"][1] == (
+        "25 read; refused: bad_parameter_section.c3d, sgi_int.c3d, sgi_real.c3d"
+    )

@@ -1,0 +1,205 @@
+"""Bad inputs that a laboratory meets: one refusal each, in words; the rest of the batch goes on; the exit code tells."""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from gaitdisc.cli import REFUSED, SOME_REFUSED, app, main
+from gaitdisc.cohort.driven_walker import DrivenWalker
+from gaitdisc.ingest.storage import write_storage
+from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial, Study
+from gaitdisc.ingest.study_file import write_study
+from gaitdisc.ingest.table import write_table
+
+ANGLES = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", "hip_flexion_l", "knee_angle_l")
+
+
+@pytest.fixture(scope="module")
+def walk():
+    return DrivenWalker("P01", seed=3).walked(30.0, "nominal")
+
+
+@pytest.fixture
+def folder(walk, tmp_path):
+    kinematics = walk.stream("kinematics").selected(ANGLES)
+    for name in ("nominal", "exo"):
+        write_storage(kinematics, tmp_path / f"{name}.mot")
+    return tmp_path
+
+
+def checked(folder, files, **settings):
+    """Exit code, and what `gaitdisc check` says of a sound person P01 and of P02, whose device walk is `files`."""
+    sound = tuple(PlannedTrial(condition=word, files=(f"{word}.mot",)) for word in ("nominal", "exo"))
+    people = (
+        Participant(id="P02", trials=(sound[0], PlannedTrial(condition="exo", files=tuple(files)))),
+        Participant(id="P01", trials=sound),
+    )
+    models = Models(angles=ANGLES, outputs=("knee_angle_r",))
+    study = Study(
+        conditions=Conditions(nominal="nominal", device="exo"), participants=people, models=models, **settings
+    )
+    write_study(study.placed(folder), folder / "study.toml")
+    done = CliRunner().invoke(app, ["check", str(folder), "--json"])
+    seen = {(one["participant"], one["condition"]): one for one in json.loads(done.stdout)}
+    return done.exit_code, seen
+
+
+def refusal(folder, files, **settings):
+    code, seen = checked(folder, files, **settings)
+    assert code == SOME_REFUSED
+    assert seen["P01", "exo"]["light"] != "red", "the rest of the batch goes on"
+    assert seen["P02", "nominal"]["light"] != "red"
+    assert seen["P02", "exo"]["light"] == "red"
+    return seen["P02", "exo"]["refusal"]
+
+
+def altered(walk, folder, change):
+    kinematics = walk.stream("kinematics").selected(ANGLES)
+    values = np.array(kinematics.values)
+    write_storage(kinematics.with_values(change(values)), folder / "bad.mot")
+    return ["bad.mot"]
+
+
+def test_a_missing_file(folder):
+    said = refusal(folder, ["nowhere.mot"])
+    assert said == "nowhere.mot is to be read; there is no such file. Check the name and the folder."
+
+
+def test_an_empty_file(folder):
+    (folder / "empty.mot").write_text("")
+    assert "empty.mot" in refusal(folder, ["empty.mot"])
+
+
+def test_an_empty_c3d(folder):
+    (folder / "empty.c3d").write_bytes(b"")
+    said = refusal(folder, ["empty.c3d"])
+    assert "empty.c3d" in said and "empty" in said
+
+
+def test_a_zip_named_c3d(folder):
+    with zipfile.ZipFile(folder / "packed.c3d", "w") as file:
+        file.writestr("walk.c3d", "x" * 2000)
+    said = refusal(folder, ["packed.c3d"])
+    assert "packed.c3d" in said and "ZIP" in said
+
+
+def test_a_column_missing(walk, folder):
+    write_storage(walk.stream("kinematics").selected(ANGLES[:4]), folder / "bad.mot")
+    said = refusal(folder, ["bad.mot"])
+    assert said.startswith("the models need knee_angle_l; bad.mot has 4 channels without it")
+
+
+def test_units_absent(walk, folder):
+    kinematics = walk.stream("kinematics").selected(ANGLES)
+    names = [f"my_{name}" for name in ANGLES]
+    rows = [",".join(["time", *names])]
+    rows += [",".join(map(str, row)) for row in np.column_stack([kinematics.time, kinematics.values])]
+    (folder / "bad.csv").write_text("\n".join(rows))
+    said = refusal(folder, ["bad.csv"])
+    assert "unit" in said and "bad.csv" in said and "my_hip_flexion_r" in said
+
+
+def test_a_rate_that_is_not_constant(walk, folder):
+    kinematics = walk.stream("kinematics").selected(ANGLES)
+    write_table(kinematics, folder / "bad.csv")
+    lines = (folder / "bad.csv").read_text().splitlines()
+    (folder / "bad.csv").write_text("\n".join(lines[:500] + lines[530:]))
+    said = refusal(folder, ["bad.csv"])
+    assert "bad.csv" in said and "0.31 s" in said
+
+
+def test_nan_in_force(walk, folder):
+    forces = walk.stream("forces")
+    values = np.array(forces.values)
+    values[5000:5010, 0] = np.nan
+    write_storage(forces.with_values(values), folder / "forces.mot")
+    said = refusal(folder, ["exo.mot", "forces.mot"])
+    assert "forces.mot: ground_force_r_vy needs a number in every sample; 10 of 30000 are missing" in said
+    assert "t = 5 s" in said
+
+
+def test_left_and_right_swapped(walk, folder):
+    kinematics = walk.stream("kinematics")
+    swap = str.maketrans("rl", "lr")
+    columns = [kinematics.index(name[:-1] + name[-1].translate(swap)) for name in ANGLES[:2]]
+    values = np.array(kinematics.selected(ANGLES).values)
+    values[:, :2] = kinematics.values[:, columns]
+    values[:, 3:] = kinematics.selected(ANGLES).values[:, :2]
+    write_storage(kinematics.selected(ANGLES).with_values(values), folder / "bad.mot")
+    write_storage(walk.stream("forces"), folder / "forces.mot")
+    said = refusal(folder, ["bad.mot", "forces.mot"])
+    assert "swapped" in said
+
+
+def test_radians_in_a_file_that_says_degrees(walk, folder):
+    said = refusal(folder, altered(walk, folder, np.deg2rad))
+    assert "bad.mot" in said and "rad" in said
+
+
+def test_somebody_who_stands(walk, folder):
+    said = refusal(folder, altered(walk, folder, lambda values: values[:1] + 0.01 * np.sin(values)))
+    assert "bad.mot" in said
+
+
+def test_a_participant_with_one_condition_only(folder):
+    person = Participant(id="P02", trials=(PlannedTrial(condition="nominal", files=("nominal.mot",)),))
+    study = Study(conditions=Conditions(nominal="nominal", device="exo"), participants=(person,))
+    write_study(study.placed(folder), folder / "study.toml")
+    done = CliRunner().invoke(app, ["run", str(folder), "--quiet"])
+    assert done.exit_code == REFUSED
+    assert (
+        "a comparison needs one trial of 'nominal' and one of 'exo'; P02 has 1 of 'nominal', none of 'exo'"
+        in done.output
+    )
+
+
+def test_a_held_out_part_longer_than_the_trial(folder, walk):
+    sound = tuple(PlannedTrial(condition=word, files=(f"{word}.mot",)) for word in ("nominal", "exo"))
+    study = Study(
+        conditions=Conditions(nominal="nominal", device="exo"),
+        participants=(Participant(id="P01", trials=sound),),
+        models=Models(angles=ANGLES, outputs=("knee_angle_r",)),
+        held_out={"seconds": 90.0},
+    )
+    write_study(study.placed(folder), folder / "study.toml")
+    done = CliRunner().invoke(app, ["run", str(folder), "--quiet"])
+    assert done.exit_code == REFUSED
+    assert "holding out the last 90 s" in done.output and "lasts 30.00 s" in done.output
+
+
+def test_a_typo_in_the_study(folder, monkeypatch, capsys):
+    checked(folder, ["exo.mot"])
+    text = (folder / "study.toml").read_text()
+    (folder / "study.toml").write_text(text.replace("kinematics_hz", "kinematic_hz"))
+    monkeypatch.setattr("sys.argv", ["gaitdisc", "check", str(folder)])
+    with pytest.raises(SystemExit) as stopped:
+        main()
+    said = capsys.readouterr().err
+    assert stopped.value.code == REFUSED
+    assert "kinematics_hz" in said and "study.toml" in said and "line" in said
+
+
+def test_a_trial_of_a_person_who_changed_is_refused(walk, folder):
+    def changed(values):
+        values[2250:] += np.array([8.0, -8.0, 6.0, 8.0, -8.0])
+        return values
+
+    said = refusal(folder, altered(walk, folder, changed))
+    assert "same to the end" in said
+
+
+def test_dropping_nothing_silently(walk, folder):
+    trial = replace(walk, streams={"kinematics": walk.stream("kinematics").selected(ANGLES)})
+    values = np.array(trial.stream("kinematics").values)
+    values[1000:1040, 1] = np.nan
+    write_storage(trial.stream("kinematics").with_values(values), folder / "bad.mot")
+    code, seen = checked(folder, ["bad.mot"])
+    assert code == 0
+    kinds = {(finding["kind"], finding["channel"]) for finding in seen["P02", "exo"]["findings"]}
+    assert ("gap", "knee_angle_r") in kinds
