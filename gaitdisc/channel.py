@@ -208,6 +208,23 @@ def path_label(label: str) -> str:
     return parts[-1] if parts else label
 
 
+def side_of(name: str) -> str:
+    """Side that a name tells: `r`, `l` or empty.
+
+    Parameters
+    ----------
+    name : str
+        Name of a channel.
+
+    Examples
+    --------
+    >>> side_of("emg_sol_l"), side_of("hip_flexion_r_moment"), side_of("lumbar_bending")
+    ('l', 'r', '')
+    """
+    found = re.search(r"_(r|l)(?=$|[_./])", name.lower())
+    return found[1] if found else ""
+
+
 def schema_folder() -> Path:
     """Folder of the vocabulary and the JSON Schemas, in a checkout or in an installed wheel."""
     installed = Path(__file__).parent / "data_schema"

@@ -10,6 +10,7 @@ import json
 import sys
 import time
 from collections.abc import Iterator
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -270,16 +271,5 @@ def _as_dict(inspection: Inspection) -> dict[str, object]:
         "streams": dict(inspection.streams),
         "strides": {side: {"kept": kept, "dropped": lost} for side, (kept, lost) in inspection.strides.items()},
         "refusal": inspection.refusal,
-        "findings": [
-            {
-                "severity": finding.severity,
-                "kind": finding.kind,
-                "file": finding.file,
-                "channel": finding.channel,
-                "what": finding.what,
-                "spoils": finding.spoils,
-                "spans_s": [list(span) for span in finding.spans],
-            }
-            for finding in inspection.findings
-        ],
+        "findings": [asdict(finding) for finding in inspection.findings],
     }

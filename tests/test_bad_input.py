@@ -1,4 +1,4 @@
-"""Bad inputs that a laboratory meets: one refusal each, in words; the rest of the batch goes on; the exit code tells."""
+"""Bad inputs that a laboratory meets: one refusal each, in words; the rest goes on; the exit code tells."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@ import csv
 
 import pytest
 
-from gaitdisc.channel import Channel, nearest_word, schema_folder, vocabulary
+from gaitdisc.channel import Channel, nearest_word, schema_folder, side_of, vocabulary
 from gaitdisc.errors import ChannelError, UnitError
 
 
@@ -65,3 +65,14 @@ def test_the_file_has_no_doubled_names():
     with (schema_folder() / "channels.csv").open(encoding="utf-8") as file:
         names = [row["name"] for row in csv.DictReader(file)]
     assert len(names) == len(set(names))
+
+
+def test_sides():
+    assert [side_of(n) for n in ("a_r", "A_L", "a_r.x", "a_r/speed", "relative", "floor")] == [
+        "r",
+        "l",
+        "r",
+        "r",
+        "",
+        "",
+    ]

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.channel import Channel, folded_label, nearest_word, vocabulary
+from gaitdisc.channel import Channel, folded_label, nearest_word, side_of, vocabulary
 from gaitdisc.errors import ChannelError, UnitError
 from gaitdisc.units import convert, inner_unit, known_units, parsed_unit
 
@@ -104,23 +104,6 @@ def mapped_label(label: str, channels: Mapping[str, str] | None) -> str | None:
         return channels[label]
     alike = [name for key, name in channels.items() if folded_label(key) == folded_label(label)]
     return alike[0] if len(alike) == 1 and folded_label(label) else None
-
-
-def side_of(name: str) -> str:
-    """Side that a name tells: `r`, `l` or empty.
-
-    Parameters
-    ----------
-    name : str
-        Name of a channel.
-
-    Examples
-    --------
-    >>> side_of("emg_sol_l"), side_of("hip_flexion_r_moment"), side_of("lumbar_bending")
-    ('l', 'r', '')
-    """
-    found = re.search(r"_(r|l)(?=$|[_./])", name.lower())
-    return found[1] if found else ""
 
 
 def named_channel(name: str) -> Channel:

@@ -6,8 +6,8 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from gaitdisc.channel import QUANTITIES, Channel, folded_label, path_label, vocabulary
-from gaitdisc.ingest.columns import Column, column_in_unit, mapped_label, named_channel, side_of, split_unit
+from gaitdisc.channel import QUANTITIES, Channel, folded_label, path_label, side_of, vocabulary
+from gaitdisc.ingest.columns import Column, column_in_unit, mapped_label, named_channel, split_unit
 from gaitdisc.ingest.storage_header import StorageHeader
 from gaitdisc.recording import Finding
 

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
+from gaitdisc.channel import side_of
 from gaitdisc.recording import PERCENT
 from gaitdisc.report.figure import Figure, Room, in_style, legend, panels, sheets
 from gaitdisc.report.palette import SIDES, WITHOUT_DEVICE
-from gaitdisc.report.wording import counted, label, side_of, sideless, unit_text, upwards
+from gaitdisc.report.wording import counted, label, sideless, unit_text, upwards
 from gaitdisc.results import ResponseRun, WalkSummary
 
 if TYPE_CHECKING:

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
+from gaitdisc.channel import side_of
 from gaitdisc.report.figure import Figure, Room, in_style, legend, panels, sheets
 from gaitdisc.report.palette import MEASURED, MODELS, SIDES
 from gaitdisc.report.r2_summary import r2_by_variable
-from gaitdisc.report.wording import MODEL_WORDS, counted, label, number, side_of, unit_text, upwards
+from gaitdisc.report.wording import MODEL_WORDS, counted, label, number, unit_text, upwards
 from gaitdisc.results import ParticipantResponse
 
 if TYPE_CHECKING:

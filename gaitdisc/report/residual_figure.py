@@ -8,10 +8,11 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from gaitdisc.channel import side_of
 from gaitdisc.recording import PERCENT
 from gaitdisc.report.figure import Figure, Room, in_style, panels, sheets
 from gaitdisc.report.palette import MODELS, SIDES
-from gaitdisc.report.wording import MODEL_WORDS, counted, label, side_of, unit_text, upwards
+from gaitdisc.report.wording import MODEL_WORDS, counted, label, unit_text, upwards
 from gaitdisc.results import ParticipantResponse
 from gaitdisc.statistics.stride_residuals import LEAST_STRIDES, StrideMean, mean_over_strides
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 
-from gaitdisc.channel import vocabulary
+from gaitdisc.channel import side_of, vocabulary
 
 SIDE_WORDS = {"r": "right", "l": "left", "": ""}
 MODEL_WORDS = {"nominal": "Nominal", "augmented": "Augmented", "exo": "Exo", "discrepancy": "Discrepancy"}
@@ -16,25 +16,6 @@ LIGHTS = {
     "refused": ("red", "refused"),
 }
 _TRANSLATIONS = {"pelvis_tx": "pelvis fore-aft", "pelvis_ty": "pelvis vertical", "pelvis_tz": "pelvis sideways"}
-
-
-def side_of(name: str) -> str:
-    """Side of a channel: `r`, `l` or empty.
-
-    Parameters
-    ----------
-    name : str
-        Name of a channel.
-
-    Examples
-    --------
-    >>> side_of("emg_sol_l"), side_of("pelvis_tilt")
-    ('l', '')
-    """
-    channel = vocabulary().named(name)
-    if channel is not None:
-        return channel.side
-    return name[-1] if name.endswith(("_r", "_l")) else ""
 
 
 def sideless(name: str) -> str:

@@ -12,7 +12,6 @@ from gaitdisc.ingest.columns import (
     column_in_unit,
     mapped_label,
     named_channel,
-    side_of,
     split_unit,
 )
 
@@ -47,17 +46,6 @@ def test_labels_are_mapped_exactly_first_and_then_by_likeness_unless_two_are_ali
 def test_names_tell_quantities(name, quantity, unit, side):
     channel = named_channel(name)
     assert (channel.quantity, channel.unit, channel.side) == (quantity, unit, side)
-
-
-def test_sides():
-    assert [side_of(n) for n in ("a_r", "A_L", "a_r.x", "a_r/speed", "relative", "floor")] == [
-        "r",
-        "l",
-        "r",
-        "r",
-        "",
-        "",
-    ]
 
 
 @pytest.mark.parametrize(
