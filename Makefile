@@ -6,7 +6,7 @@ TORCH  ?= torch==2.13.0
 BIN    := $(VENV)/bin
 DEMO   ?= demo
 
-.PHONY: demo test slow lint format bench clean
+.PHONY: demo test slow lint format bench docs clean
 
 demo: $(VENV)/.base
 	$(BIN)/gaitdisc demo $(DEMO)
@@ -47,3 +47,7 @@ $(VENV)/.dev: $(VENV)/.base
 
 clean:
 	rm -rf $(VENV) $(DEMO) dist build
+
+docs: $(VENV)/.dev
+	$(BIN)/python -m pip install --quiet --editable '.[docs]'
+	$(BIN)/mkdocs build --strict --site-dir build/site

@@ -21,6 +21,7 @@ from gaitdisc.signals.derivatives import trajectory
 from gaitdisc.signals.emg_quality import emg_findings
 from gaitdisc.signals.envelope import enveloped
 from gaitdisc.signals.force_drift import drift_findings
+from gaitdisc.signals.gaps import filled
 from gaitdisc.signals.late_change import late_change_findings
 from gaitdisc.signals.plateaus import plateau_findings, plateau_marked
 from gaitdisc.signals.sides import verify_sides
@@ -28,9 +29,14 @@ from gaitdisc.signals.stride_quality import stride_findings as outlier_findings
 from gaitdisc.signals.strides import cut_strides
 from gaitdisc.signals.walking import verify_walking
 
+TEMPLATE_TIMES = 2.0  # the mean stride bridges gaps twice as long as the spline does (docs/derivatives.md)
+
 
 def processed(trial: Trial, study: Study) -> Walk:
     """Process one trial of a study.
+
+    Gaps up to the study's `gap_s` are bridged by a cubic spline, up to twice that by the person's mean stride, beyond
+    that left open and their strides dropped; plateaus, bridged gaps and filter edges are marked suspect.
 
     Parameters
     ----------
@@ -55,14 +61,16 @@ def processed(trial: Trial, study: Study) -> Walk:
     raw = plateau_marked(_needed(trial, "kinematics", study.models.angles))
     choice = chosen_contacts(trial, study.strides.detector, study.treadmill.direction if study.treadmill else "")
     limits = (study.strides.min_s, study.strides.max_s)
-    strides = {side: cut_strides(found, raw, *limits) for side, found in sorted(choice.contacts.items())}
     side = study.strides.side
-    if side not in strides:
+    if side not in choice.contacts:
         raise StrideError(
             f"percent stride follows side {side!r}",
-            f"{trial.name}: {choice.detector} finds strides of side {', '.join(strides) or 'none'} only",
+            f"{trial.name}: {choice.detector} finds contacts of side {', '.join(choice.contacts)} only",
             "Change side in [strides].",
         )
+    gap_s = study.filters.gap_s
+    raw = filled(raw, cut_strides(choice.contacts[side], None, *limits), gap_s, TEMPLATE_TIMES * gap_s)
+    strides = {side: cut_strides(found, raw, *limits) for side, found in sorted(choice.contacts.items())}
     findings = [*trial.findings, *quality_findings(trial, study.models.angles, study.models.emg), *choice.findings]
     if set(choice.contacts) == {"r", "l"}:
         findings += order_findings(choice.contacts["r"], choice.contacts["l"], trial.name)

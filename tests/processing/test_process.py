@@ -72,6 +72,19 @@ def test_a_plateau_is_found_and_its_accelerations_are_left_out(trial, study):
     assert not walk.trajectory.usable[values[:, hip] == -8.0, hip].any()
 
 
+@pytest.mark.parametrize(("samples", "kept"), [(8, True), (15, True), (40, False)])
+def test_gaps_are_bridged_by_spline_then_by_the_mean_stride_then_not(trial, study, samples, kept):
+    values = np.array(trial.stream("kinematics").values)
+    hip = trial.stream("kinematics").index("hip_rotation_r")
+    true = values[2000 : 2000 + samples, hip].copy()
+    values[2000 : 2000 + samples, hip] = np.nan
+    walk = processed(with_values(trial, "kinematics", values), study)
+    assert any(d.start < 20.0 and d.end > 20.0 for d in walk.strides["r"].dropped) != kept
+    assert not walk.trajectory.usable[2000 : 2000 + samples, hip].any()
+    if kept:
+        np.testing.assert_allclose(walk.state.values[2000 : 2000 + samples, hip], true, atol=1.0)
+
+
 def test_a_late_change_is_refused_or_told_as_the_study_wants(trial, study):
     values = np.array(trial.stream("kinematics").values)
     values[3000:] += np.where(np.arange(values.shape[1]) % 2, 6.0, -6.0)
