@@ -10,7 +10,7 @@ from pathlib import Path
 
 import gaitdisc
 from gaitdisc.errors import GaitdiscError, SchemaError
-from gaitdisc.ingest.reading import read_trial
+from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.processing.filter_null import filter_null
@@ -138,9 +138,7 @@ def _processed_walks(
 
 
 def _walk(study: Study, participant: Participant, planned: PlannedTrial) -> Walk:
-    files = [study.path_of(file) for file in planned.files]
-    trial = read_trial(files, study.channels or None, participant.id, planned.condition, planned.crop_s)
-    walk = processed(trial, study)
+    walk = processed(read_planned_trial(study, participant, planned), study)
     left_away = gait_samples(walk.trajectory, study.models.outputs)[1].finding()
     return replace(walk, findings=(*walk.findings, left_away))
 

@@ -104,10 +104,9 @@ def found_study(folder: Path | str, home: Path | str | None = None) -> tuple[Stu
 def _found_trials(folder: Path, notes: list[str]) -> list[FoundTrial]:
     from gaitdisc.ingest.c3d import C3DReader
 
+    inside = (path.relative_to(folder) for path in folder.rglob("*") if path.is_file())
     files = sorted(
-        path.relative_to(folder)
-        for path in folder.rglob("*")
-        if path.suffix.lower() in ENDINGS and path.is_file() and not any(p.startswith(".") for p in path.parts)
+        path for path in inside if path.suffix.lower() in ENDINGS and not any(p.startswith(".") for p in path.parts)
     )
     found = []
     with C3DReader() as reader:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from gaitdisc.errors import GaitdiscError, StrideError
 from gaitdisc.ingest.c3d import C3DReader
-from gaitdisc.ingest.reading import read_trial
+from gaitdisc.ingest.reading import read_planned_trial, read_trial
 from gaitdisc.ingest.study import UNKNOWN, Study
 from gaitdisc.processing.contact_choice import chosen_contacts
 from gaitdisc.processing.process import processed, quality_findings, stride_findings
@@ -87,12 +87,8 @@ def inspected_study(study: Study) -> Iterator[Inspection]:
         for participant in study.participants:
             for planned in participant.trials:
                 name = ", ".join(Path(file).name for file in planned.files)
-                files = [study.path_of(file) for file in planned.files]
                 try:
-                    channels = study.channels or None
-                    trial = read_trial(
-                        files, channels, participant.id, planned.condition, planned.crop_s, reader=reader
-                    )
+                    trial = read_planned_trial(study, participant, planned, reader)
                 except GaitdiscError as error:
                     yield Inspection(name, participant.id, planned.condition, refusal=str(error))
                     continue

@@ -90,6 +90,15 @@ def test_files_that_do_not_go_together_are_told(tmp_path):
     assert any("both have" in note for note in notes)
 
 
+def test_the_way_to_the_folder_does_not_matter_but_hidden_folders_are_passed_over(tmp_path, monkeypatch):
+    _walk(tmp_path / "lab" / "natural.mot")
+    _walk(tmp_path / "lab" / ".trash" / "exo.mot")
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    study, _ = found_study("../lab")
+    assert [trial.files for trial in study.participants[0].trials] == [("natural.mot",)]
+
+
 def test_folders_without_recordings_are_refused(tmp_path):
     with pytest.raises(ReadError, match="a folder of recordings is needed, none is none"):
         found_study(tmp_path / "none")
