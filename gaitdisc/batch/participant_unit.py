@@ -8,7 +8,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import gaitdisc
 from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
@@ -19,6 +18,7 @@ from gaitdisc.processing.walk import Walk
 from gaitdisc.response.fit_response import ResponseSettings, fit_response
 from gaitdisc.response.samples import gait_samples
 from gaitdisc.results import ParticipantResponse, Refusal, WalkSummary
+from gaitdisc.results.provenance import code_sha256
 from gaitdisc.results.store import load_response, load_walk, save_response, save_walk, unit_name
 
 Progress = Callable[[float], None]
@@ -93,7 +93,7 @@ def computed_unit(study: Study, participant: Participant, folder: Path, progress
 
 
 def unit_key(study: Study, trial: PlannedTrial) -> str:
-    """Hash of all that decides a walk's numbers: bytes of its files, settings, and the package's version.
+    """Hash of all that decides a walk's numbers: bytes of its files, settings, and the package's own code.
 
     Parameters
     ----------
@@ -103,11 +103,23 @@ def unit_key(study: Study, trial: PlannedTrial) -> str:
         Files and crop.
     """
     settings = study.model_dump(mode="json", exclude={"participants", "title"})
-    parts = [gaitdisc.__version__, json.dumps(settings, sort_keys=True), trial.model_dump_json(exclude={"files"})]
+    parts = [code_sha256(), json.dumps(settings, sort_keys=True), trial.model_dump_json(exclude={"files"})]
     for file in trial.files:
         path = study.path_of(file)
         parts.append(hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else f"missing {file}")
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+
+
+def response_settings(study: Study) -> ResponseSettings:
+    """Settings of the fits that a study asks for; what it does not say is the package's default.
+
+    Parameters
+    ----------
+    study : Study
+        Outputs, held-out part, seed.
+    """
+    training = TrainingSettings(seed=study.models.seed)
+    return ResponseSettings(study.models.outputs, study.held_out.seconds, study.held_out.share or 0.0, training)
 
 
 def _incomplete(study: Study, participant: Participant) -> str:
@@ -147,12 +159,7 @@ def _fitted(
     study: Study, participant: Participant, walks: Mapping[str, Walk], progress: Progress
 ) -> ParticipantResponse:
     nominal, exo = walks[study.conditions.nominal], walks[study.conditions.device]
-    settings = ResponseSettings(
-        study.models.outputs,
-        study.held_out.seconds,
-        study.held_out.share or 0.0,
-        TrainingSettings(seed=study.models.seed),
-    )
+    settings = response_settings(study)
     emg = exo.trial.streams.get("emg")
     emg_hz = emg.rate_hz if emg is not None and is_raw(emg) else None
     null = filter_null(exo.state.channels, study.filters, exo.state.rate_hz, emg_hz)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict
 from datetime import UTC, datetime
 from pathlib import Path
 
-from gaitdisc.batch.participant_unit import ParticipantUnit, computed_unit
+from gaitdisc.batch.participant_unit import ParticipantUnit, computed_unit, response_settings
 from gaitdisc.batch.run_lock import run_lock
 from gaitdisc.ingest.study import Participant, Study
+from gaitdisc.response.comparison import compare_models
 from gaitdisc.results import Provenance, ResponseRun
 from gaitdisc.results.provenance import installed_versions
 from gaitdisc.results.store import save_run
@@ -51,14 +53,16 @@ def run_study(
     """
     with run_lock(folder):
         units = list(_units(study, folder, jobs, told))
+        responses = tuple(unit.response for unit in units if unit.response is not None)
         run = ResponseRun(
             study.title or study.folder.name,
             study.conditions.nominal,
             study.conditions.device,
             tuple(walk for unit in units for walk in unit.walks),
-            tuple(unit.response for unit in units if unit.response is not None),
+            responses,
             tuple(refusal for unit in units for refusal in unit.refusals),
             _provenance(study, units),
+            compare_models(responses),
         )
         save_run(run, folder)
     return run
@@ -84,7 +88,8 @@ def _units(study: Study, folder: Path, jobs: int, told: Told) -> Iterator[Partic
 def _provenance(study: Study, units: Sequence[ParticipantUnit]) -> Provenance:
     files = {name: sha for unit in units for walk in unit.walks for name, sha in walk.files.items()}
     created = datetime.now(UTC).isoformat(timespec="seconds")
-    return Provenance(study.model_dump(mode="json"), study.models.seed, files, installed_versions(), SECTION, created)
+    settings = {**study.model_dump(mode="json"), "fits": asdict(response_settings(study))}
+    return Provenance(settings, study.models.seed, files, installed_versions(), SECTION, created)
 
 
 def _untold(fraction: float) -> None:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import hashlib
 import platform
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 from typing import Any
 
 import gaitdisc
 
-DISTRIBUTIONS = ("numpy", "scipy", "torch", "pandas", "scikit-learn", "ezc3d")
+DISTRIBUTIONS = ("numpy", "scipy", "torch", "pandas", "ezc3d")
 
 
 @dataclass(frozen=True)
@@ -48,10 +51,20 @@ class Provenance:
 
 def installed_versions() -> dict[str, str]:
     """Versions of this package, of Python and of the libraries that compute the numbers."""
-    versions = {"gaitdisc": gaitdisc.__version__, "python": platform.python_version()}
+    own = f"{gaitdisc.__version__} (code {code_sha256()[:12]})"
+    versions = {"gaitdisc": own, "python": platform.python_version()}
     for name in DISTRIBUTIONS:
         try:
             versions[name] = version(name)
         except PackageNotFoundError:
             versions[name] = "absent"
     return versions
+
+
+@cache
+def code_sha256() -> str:
+    """SHA-256 over the package's own source: results of other code are not taken for those of this one."""
+    digest = hashlib.sha256()
+    for path in sorted(Path(gaitdisc.__file__).parent.rglob("*.py")):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import pandas as pd
 
+from gaitdisc.results.pair_test import PairTests
 from gaitdisc.results.participant_response import ParticipantResponse
 from gaitdisc.results.provenance import Provenance
 from gaitdisc.results.walk_summary import WalkSummary
@@ -48,6 +49,8 @@ class ResponseRun:
         Everybody and everything left out.
     provenance : Provenance
         Settings, seed, files, versions.
+    tests : PairTests, optional
+        The models compared in pairs over the participants; None in runs of before there were tests.
     """
 
     title: str
@@ -57,6 +60,7 @@ class ResponseRun:
     responses: tuple[ParticipantResponse, ...]
     refusals: tuple[Refusal, ...]
     provenance: Provenance
+    tests: PairTests | None = None
 
     def r2_table(self) -> pd.DataFrame:
         """R2 of every participant, variable, model, kind and walk, one row each."""

@@ -42,7 +42,7 @@ def save_unit(
     tables : mapping of str to DataFrame
         File name -> table, written as CSV.
     arrays : mapping of str to ndarray
-        Written as `arrays.npz`.
+        Written as `arrays.npz`; no file where there are none.
 
     Raises
     ------
@@ -52,9 +52,12 @@ def save_unit(
     for file, table in tables.items():
         with whole_file(folder / file) as part:
             table.to_csv(part, index=False, lineterminator="\n")
-    with whole_file(folder / "arrays.npz") as part, part.open("wb") as stream:
-        np.savez_compressed(stream, **arrays)  # type: ignore[arg-type]
-    hashes = {file: _sha256(folder / file) for file in (*tables, "arrays.npz")}
+    files = [*tables]
+    if arrays:
+        files.append("arrays.npz")
+        with whole_file(folder / "arrays.npz") as part, part.open("wb") as stream:
+            np.savez_compressed(stream, **arrays)  # type: ignore[arg-type]
+    hashes = {file: _sha256(folder / file) for file in files}
     with whole_file(folder / name) as part:
         part.write_text(json_text({"format": FORMAT, **data, "sha256": hashes}), encoding="utf-8")
 
@@ -84,8 +87,10 @@ def load_unit(folder: Path, name: str) -> Unit:
         for file in data["sha256"]
         if file.endswith(".csv")
     }
-    with np.load(folder / "arrays.npz") as stored:
-        arrays = {key: stored[key] for key in stored.files}
+    arrays = {}
+    if "arrays.npz" in data["sha256"]:
+        with np.load(folder / "arrays.npz") as stored:
+            arrays = {key: stored[key] for key in stored.files}
     return data, tables, arrays
 
 
@@ -95,7 +100,7 @@ def read_json(path: Path) -> dict[str, Any]:
     Parameters
     ----------
     path : Path
-        `run.json`, `walk.json` or `response.json`.
+        `run.json`, `walk.json`, `response.json` or `tests.json`.
 
     Raises
     ------

@@ -8,7 +8,8 @@ import pytest
 
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Finding
-from gaitdisc.results import HeldOut, ParticipantResponse, Provenance, Refusal, ResponseRun, WalkSummary
+from gaitdisc.results import HeldOut, PairTests, ParticipantResponse, Provenance, Refusal, ResponseRun, WalkSummary
+from gaitdisc.results.pair_test import FAMILY_COLUMNS, TEST_COLUMNS
 
 
 @pytest.fixture
@@ -66,3 +67,14 @@ def run(walk, response) -> ResponseRun:
     return ResponseRun(
         "a study", "natural", "exo", (walk,), (response,), (Refusal("P02", "exo", "missing"),), provenance
     )
+
+
+@pytest.fixture
+def pair_tests() -> PairTests:
+    test = (
+        "augmented", "exo", "hip_flexion_r", 11, 0, False, 10.0, 43 / 1024, 1, 0.05, 43 / 1024, True,
+        0.1 + 0.2, 0.4, 0.1, 0.1, -float("inf"), float("inf"), -0.7, "",
+    )  # fmt: skip
+    family = ("pair", "augmented", "exo", "hip_flexion_r", 1, 0.05, 0.05, 43 / 1024, True)
+    tables = pd.DataFrame([test], columns=list(TEST_COLUMNS)), pd.DataFrame([family], columns=list(FAMILY_COLUMNS))
+    return PairTests(11, 0.05, 0.95, "", *tables)

@@ -1,6 +1,11 @@
+import json
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
+import pytest
 
+from gaitdisc.errors import SchemaError
 from gaitdisc.results.store import (
     load_response,
     load_run,
@@ -46,3 +51,32 @@ def test_saving_twice_gives_the_same_bytes(response, tmp_path):
         save_response(response, tmp_path / folder, "key")
     for file in ("response.json", "r2.csv", "fits.csv", "arrays.npz"):
         assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes()
+
+
+@pytest.fixture
+def saved(run, pair_tests, tmp_path):
+    save_walk(run.walks[0], tmp_path / "walks" / unit_name("P01", "exo"), "key")
+    save_response(run.responses[0], tmp_path / "responses" / "P01", "key")
+    save_run(replace(run, tests=pair_tests), tmp_path)
+    return tmp_path
+
+
+def test_the_paired_tests_come_back_as_they_were(saved, pair_tests):
+    loaded = load_run(saved).tests
+    assert (loaded.participants, loaded.alpha, loaded.level, loaded.too_few) == (11, 0.05, 0.95, "")
+    pd.testing.assert_frame_equal(loaded.tests, pair_tests.tests)
+    pd.testing.assert_frame_equal(loaded.families, pair_tests.families)
+
+
+def test_a_run_of_before_there_were_tests_is_still_read(saved):
+    data = json.loads((saved / "run.json").read_text(encoding="utf-8"))
+    del data["tests"]
+    (saved / "run.json").write_text(json.dumps(data), encoding="utf-8")
+    assert load_run(saved).tests is None
+
+
+def test_tests_that_were_changed_by_hand_are_told(saved):
+    file = saved / "tests" / "tests.csv"
+    file.write_text(file.read_text().replace("0.05", "0.99"))
+    with pytest.raises(SchemaError, match="tests/tests.csv is changed since it was saved"):
+        load_run(saved)
