@@ -69,3 +69,7 @@ class StrideError(GaitdiscError):
 
 class TrainingError(GaitdiscError):
     """A model cannot be fitted to the samples it was given."""
+
+
+class ComparisonError(GaitdiscError):
+    """Numbers cannot be compared by a test: missing ones that nobody explains, pairs that do not match."""

@@ -78,5 +78,5 @@ def test_a_run_of_before_there_were_tests_is_still_read(saved):
 def test_tests_that_were_changed_by_hand_are_told(saved):
     file = saved / "tests" / "tests.csv"
     file.write_text(file.read_text().replace("0.05", "0.99"))
-    with pytest.raises(SchemaError, match="tests/tests.csv is changed since it was saved"):
+    with pytest.raises(SchemaError, match=r"tests/tests\.csv is changed since it was saved"):
         load_run(saved)
