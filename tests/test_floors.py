@@ -17,7 +17,13 @@ FLOORS = (
     ("cli", "__main__"),
 )
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
-SOLE_HOME = {"torch": {"networks"}, "matplotlib": {"report"}, "pingouin": {"statistics"}, "ezc3d": {"ingest"}}
+SOLE_HOME = {
+    "torch": {"networks"},
+    "matplotlib": {"report"},
+    "pingouin": {"statistics"},
+    "statsmodels": {"statistics"},
+    "ezc3d": {"ingest"},
+}
 
 
 def _modules():
