@@ -1,0 +1,111 @@
+"""How much data is enough: the models of a participant fitted to less and less of the training part (section 4.2.4)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import pandas as pd
+
+from gaitdisc.errors import SamplingError, TrainingError
+from gaitdisc.recording import Trajectory
+from gaitdisc.response.fit_response import ResponseSettings, fit_response, held_out_part
+
+LENGTHS_S = (1.0, 10.0, 20.0, 30.0, 45.0, 60.0, 90.0, 120.0, 180.0)
+PARTS = ("first", "last")
+
+
+@dataclass(frozen=True, eq=False)
+class DataQuantity:
+    """R2 on the same held-out walking for every length of the training part.
+
+    Parameters
+    ----------
+    participant : str
+        Pseudonym.
+    table : DataFrame
+        length_s, n_training (samples of the device walk), and the columns of `ParticipantResponse.r2`.
+    left_away : dict of float to str
+        Length [s] -> why there is no row of it: longer than the training part, or too short to fit.
+    """
+
+    participant: str
+    table: pd.DataFrame
+    left_away: dict[float, str]
+
+
+def fit_data_quantity(
+    nominal: Trajectory,
+    exo: Trajectory,
+    settings: ResponseSettings,
+    lengths_s: Sequence[float] = LENGTHS_S,
+    part: str = "first",
+    progress: Callable[[float], None] | None = None,
+) -> DataQuantity:
+    """Fit Nominal, Exo and Discrepancy to parts of the training part, and to all of it, and judge each alike.
+
+    Parameters
+    ----------
+    nominal, exo : Trajectory
+        Whole walks of one participant.
+    settings : ResponseSettings
+        Outputs, held-out part, training.
+    lengths_s : sequence of float
+        Lengths of the training part [s]; its whole length is always added.
+    part : str
+        `first` takes the beginning of the training part, `last` its end, next to what is held out. The text does not
+        say which; the two differ where gait drifts.
+    progress : callable, optional
+        Called with the fraction done.
+
+    Returns
+    -------
+    DataQuantity
+
+    Raises
+    ------
+    SamplingError
+        If `part` is neither word, or a walk is too short to hold a part out.
+
+    References
+    ----------
+    Ebers 2023, section 4.2.4 and Fig. 4.4.
+    """
+    if part not in PARTS:
+        raise SamplingError("the training part is taken from its first or last seconds", f"found {part!r}", "Name one.")
+    progress = progress or (lambda _: None)
+    training = {"nominal": held_out_part(nominal, settings)[0], "exo": held_out_part(exo, settings)[0]}
+    whole_s = min(len(walk.time) / walk.rate_hz for walk in training.values())
+    wanted = sorted({length for length in lengths_s if length < whole_s})
+    left_away = {
+        length: f"the training part has {whole_s:.1f} s" for length in sorted(set(lengths_s)) if length >= whole_s
+    }
+    tables = []
+    for number, length in enumerate([*wanted, whole_s]):
+        less_nominal, less_exo = (_shortened(walk, settings, length, part) for walk in (nominal, exo))
+        told = partial(_told, progress, number, len(wanted) + 1)
+        try:
+            response = fit_response(less_nominal, less_exo, settings, progress=told)
+        except TrainingError as error:
+            left_away[length] = str(error)
+            continue
+        fits = response.fits
+        used = int(fits[(fits["model"] == "exo") & (fits["kind"] == "network")]["n_training"].iloc[0])
+        tables.append(response.r2.assign(length_s=length, n_training=used))
+    progress(1.0)
+    table = pd.concat(tables, ignore_index=True) if tables else pd.DataFrame()
+    return DataQuantity(exo.subject or nominal.subject, table, left_away)
+
+
+def _shortened(walk: Trajectory, settings: ResponseSettings, length_s: float, part: str) -> Trajectory:
+    """Walk whose training part keeps `length_s` seconds usable; the held-out part is untouched."""
+    training, _ = held_out_part(walk, settings)
+    count, keep = len(training.time), round(length_s * walk.rate_hz)
+    usable = walk.usable.copy()
+    usable[slice(keep, count) if part == "first" else slice(0, count - keep)] = False
+    return replace(walk, usable=usable)
+
+
+def _told(progress: Callable[[float], None], number: int, count: int, fraction: float) -> None:
+    progress((number + fraction) / count)
