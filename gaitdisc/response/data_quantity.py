@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import pandas as pd
@@ -11,28 +11,10 @@ import pandas as pd
 from gaitdisc.errors import SamplingError, TrainingError
 from gaitdisc.recording import Trajectory
 from gaitdisc.response.fit_response import ResponseSettings, fit_response, held_out_part
+from gaitdisc.results.data_quantity import QUANTITY_COLUMNS, DataQuantity
 
 LENGTHS_S = (1.0, 10.0, 20.0, 30.0, 45.0, 60.0, 90.0, 120.0, 180.0)
 PARTS = ("first", "last")
-
-
-@dataclass(frozen=True, eq=False)
-class DataQuantity:
-    """R2 on the same held-out walking for every length of the training part.
-
-    Parameters
-    ----------
-    participant : str
-        Pseudonym.
-    table : DataFrame
-        length_s, n_training (samples of the device walk), and the columns of `ParticipantResponse.r2`.
-    left_away : dict of float to str
-        Length [s] -> why there is no row of it: longer than the training part, or too short to fit.
-    """
-
-    participant: str
-    table: pd.DataFrame
-    left_away: dict[float, str]
 
 
 def fit_data_quantity(
@@ -94,8 +76,9 @@ def fit_data_quantity(
         used = int(fits[(fits["model"] == "exo") & (fits["kind"] == "network")]["n_training"].iloc[0])
         tables.append(response.r2.assign(length_s=length, n_training=used))
     progress(1.0)
-    table = pd.concat(tables, ignore_index=True) if tables else pd.DataFrame()
-    return DataQuantity(exo.subject or nominal.subject, table, left_away)
+    columns = pd.Index(QUANTITY_COLUMNS)
+    table = pd.concat(tables, ignore_index=True)[columns] if tables else pd.DataFrame(columns=columns)
+    return DataQuantity(exo.subject or nominal.subject, part, table, left_away)
 
 
 def _shortened(walk: Trajectory, settings: ResponseSettings, length_s: float, part: str) -> Trajectory:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import pandas as pd
 
+from gaitdisc.results.data_quantity import DataQuantity
 from gaitdisc.results.pair_test import PairTests
 from gaitdisc.results.participant_response import ParticipantResponse
 from gaitdisc.results.provenance import Provenance
@@ -51,6 +52,8 @@ class ResponseRun:
         Settings, seed, files, versions.
     tests : PairTests, optional
         The models compared in pairs over the participants; None in runs of before there were tests.
+    quantities : tuple of DataQuantity
+        What less data would have given, where `gaitdisc ablate` was run.
     """
 
     title: str
@@ -61,6 +64,7 @@ class ResponseRun:
     refusals: tuple[Refusal, ...]
     provenance: Provenance
     tests: PairTests | None = None
+    quantities: tuple[DataQuantity, ...] = ()
 
     def r2_table(self) -> pd.DataFrame:
         """R2 of every participant, variable, model, kind and walk, one row each."""

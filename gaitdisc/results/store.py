@@ -6,6 +6,7 @@ A run is a folder::
     walks/<person>-<condition>/    walk.json  strides.csv  arrays.npz
     responses/<person>/            response.json  r2.csv  fits.csv  arrays.npz
     tests/                         tests.json  tests.csv  families.csv
+    quantities/<person>/           quantity.json  quantity.csv
 
 A unit (one walk, one response) is complete when its JSON file stands, because that is written last and holds the hashes
 of the others. A damaged unit is told by its hash and computed again.
@@ -22,6 +23,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Finding
+from gaitdisc.results.data_quantity import DataQuantity
 from gaitdisc.results.pair_test import PairTests
 from gaitdisc.results.participant_response import HeldOut, ParticipantResponse
 from gaitdisc.results.provenance import Provenance
@@ -157,6 +159,41 @@ def load_response(folder: Path) -> tuple[ParticipantResponse, str]:
     return response, data["key"]
 
 
+def save_quantity(quantity: DataQuantity, folder: Path, key: str) -> None:
+    """Save what less data would have given for one participant.
+
+    Parameters
+    ----------
+    quantity : DataQuantity
+        What to keep.
+    folder : Path
+        Folder of this participant alone.
+    key : str
+        What it was computed from: a hash of files and settings.
+    """
+    left_away = [{"length_s": length, "reason": reason} for length, reason in quantity.left_away.items()]
+    data = {"key": key, "participant": quantity.participant, "part": quantity.part, "left_away": left_away}
+    save_unit(folder, "quantity.json", data, {"quantity.csv": quantity.table}, {})
+
+
+def load_quantity(folder: Path) -> tuple[DataQuantity, str]:
+    """Load what less data would have given, and the key it was computed from.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder that `save_quantity` wrote.
+
+    Raises
+    ------
+    SchemaError
+        If a file is missing, damaged or of another format.
+    """
+    data, tables, _ = load_unit(folder, "quantity.json")
+    left_away = {float(row["length_s"]): str(row["reason"]) for row in data["left_away"]}
+    return DataQuantity(data["participant"], data["part"], tables["quantity.csv"], left_away), data["key"]
+
+
 def save_run(run: ResponseRun, folder: Path) -> None:
     """Save what a run is, beside the units that were saved as they were computed.
 
@@ -176,6 +213,7 @@ def save_run(run: ResponseRun, folder: Path) -> None:
         "refusals": [asdict(refusal) for refusal in run.refusals],
         "provenance": asdict(run.provenance),
         "tests": run.tests is not None,
+        "quantities": [quantity.participant for quantity in run.quantities],
     }
     if run.tests is not None:
         _save_tests(run.tests, folder / "tests")
@@ -206,6 +244,7 @@ def load_run(folder: Path) -> ResponseRun:
         tuple(Refusal(**refusal) for refusal in data["refusals"]),
         Provenance(**data["provenance"]),
         _load_tests(folder / "tests") if data.get("tests") else None,
+        tuple(load_quantity(folder / "quantities" / name)[0] for name in data.get("quantities", ())),
     )
 
 
