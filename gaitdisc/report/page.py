@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import gaitdisc
+from gaitdisc.report.comparison_figure import comparison_figures
+from gaitdisc.report.comparison_tables import comparison_sentences, comparison_tables
 from gaitdisc.report.curves_figure import curves_figures
 from gaitdisc.report.figure import LARGEST_INLINE_SVG, Figure, SavedFigure, file_names, save_figure, save_table
 from gaitdisc.report.held_out_figure import held_out_figures
@@ -96,6 +98,8 @@ def write_report(run: ResponseRun, folder: Path) -> Path:
     responses = {response.participant: response for response in run.responses}
     sections = [_section(run, person, responses.get(person), names[person], folder) for person in people]
     overview = [save_figure(figure, folder / "figures") for figure in (r2_figures(run) if run.responses else [])]
+    compared = [save_figure(figure, folder / "figures") for figure in comparison_figures(run)]
+    pair_tables = comparison_tables(run)
     tables = {
         "refusals": refusals_table(run),
         "walks": walks_table(run),
@@ -104,7 +108,7 @@ def write_report(run: ResponseRun, folder: Path) -> Path:
         **({"people": participants_table(run), "study": study_r2_table(run)} if len(run.responses) > 1 else {}),
         **_provenance_tables(run),
     }
-    for table in tables.values():
+    for table in (*tables.values(), *pair_tables):
         save_table(table.numbers, folder / "tables" / f"{table.name}.csv")
     save_table(run.r2_table(), folder / "tables" / "r2.csv")
     text = _templates().get_template("report.html.j2").render(
@@ -112,6 +116,7 @@ def write_report(run: ResponseRun, folder: Path) -> Path:
         study=study_sentences(run),
         sections=sections,
         overview=overview,
+        comparison={"sentences": comparison_sentences(run), "figures": compared, "tables": pair_tables},
         tables=tables,
         method=method_sentences(run),
         headline=1 if not run.responses else 0 if len(run.responses) == 1 else 2,

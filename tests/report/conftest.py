@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.recording import PERCENT, Finding
+from gaitdisc.response.comparison import compare_models
 from gaitdisc.results import HeldOut, ParticipantResponse, Provenance, Refusal, ResponseRun, WalkSummary
 
 RATE_HZ = 100.0
@@ -187,3 +190,31 @@ def run():
 @pytest.fixture(scope="session")
 def refusal():
     return REFUSAL
+
+
+def make_tested(participants=11, outputs=("hip_flexion_r", "ankle_angle_l", "emg_sol_r")):
+    """Augmented equals Exo but for noise in all variables, but in the second it is .02 lower in everybody."""
+    responses = []
+    rng = np.random.default_rng(4)
+    for i in range(participants):
+        response = make_response(f"P{i + 1:02d}", outputs=outputs, seed=i)
+        table = response.r2
+        for column, variable in enumerate(outputs):
+            exo = 0.95 - 0.1 * column + 0.01 * rng.standard_normal()
+            augmented = exo - (0.02 if column == 1 else 0.0) + 0.001 * rng.standard_normal()
+            for model, value in (("nominal", exo - 0.1), ("augmented", augmented), ("exo", exo)):
+                chosen = (table["kind"] == "network") & (table["walk"] == "exo") & (table["model"] == model)
+                table.loc[chosen & (table["variable"] == variable), "r2"] = value
+        responses.append(response)
+    run = make_run(0, outputs=outputs)
+    return replace(run, responses=tuple(responses), tests=compare_models(responses))
+
+
+@pytest.fixture(scope="session")
+def tested_maker():
+    return make_tested
+
+
+@pytest.fixture(scope="session")
+def tested():
+    return make_tested()

@@ -116,3 +116,25 @@ def test_a_place_that_cannot_be_written_is_said(run, tmp_path):
     (tmp_path / "report").write_text("a file stands where the folder shall be")
     with pytest.raises(GaitdiscError, match="to be written whole"):
         write_report(run, tmp_path / "report")
+
+
+def test_the_paired_tests_have_their_section_and_the_same_bytes(tested_maker, tmp_path):
+    run = tested_maker(6, ("hip_flexion_r",))
+    text = write_report(run, tmp_path / "a").read_text(encoding="utf-8")
+    assert text.index("What the models explain") < text.index("Which model explains more") < text.index(">P01</h2>")
+    assert "tables/tests-augmented-exo.csv" in text
+    assert "figures/comparison.csv" in text
+    write_report(run, tmp_path / "b")
+    for file in ("report.html", "figures/comparison.svg", "tables/tests-nominal-exo.csv", "tables/tests-families.csv"):
+        assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes()
+
+
+def test_too_few_for_a_test_is_said(tested_maker, tmp_path):
+    text = write_report(tested_maker(2, ("hip_flexion_r",)), tmp_path).read_text(encoding="utf-8")
+    assert "2 participants are too few for a test: the smallest p is 0.5" in text
+    assert "figures/comparison.csv" not in text
+
+
+def test_a_run_of_before_there_were_tests_has_no_such_section(run_maker, tmp_path):
+    text = write_report(run_maker(2, outputs=("hip_flexion_r",)), tmp_path).read_text(encoding="utf-8")
+    assert "Which model explains more" not in text
