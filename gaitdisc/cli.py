@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -20,6 +20,7 @@ import gaitdisc
 from gaitdisc.errors import GaitdiscError, SchemaError
 
 if TYPE_CHECKING:
+    from gaitdisc.batch.run_study import Told
     from gaitdisc.ingest.study import Study
     from gaitdisc.processing.inspection import Inspection
     from gaitdisc.results import ResponseRun
@@ -86,13 +87,33 @@ def run(
     quiet: Quiet = False,
 ) -> None:
     """Process, fit, judge and report; what an earlier run has finished is kept."""
+    from gaitdisc.batch.run_study import run_study
     from gaitdisc.ingest.study_file import load_study
 
     loaded = load_study(study)
     if participant:
         chosen = tuple(loaded.participant(name) for name in participant)
         loaded = loaded.model_copy(update={"participants": chosen})
-    _run_and_report(loaded, out or loaded.folder / "run", jobs, quiet)
+    folder = out or loaded.folder / "run"
+    _report_on(lambda told: run_study(loaded, folder, jobs, told), loaded, folder, quiet)
+
+
+@app.command()
+def ablate(
+    study: Annotated[Path, typer.Argument(help="The study file or its folder.")],
+    out: Annotated[Path | None, typer.Option(help="Folder of the run; by default STUDY/run.")] = None,
+    length: Annotated[list[float] | None, typer.Option(help="Training length [s]; may be repeated.")] = None,
+    part: Annotated[str, typer.Option(help="Seconds of the training part that are taken: first or last.")] = "first",
+    quiet: Quiet = False,
+) -> None:
+    """Fit the models to less and less data: how much is enough."""
+    from gaitdisc.batch.ablate_study import ablate_study
+    from gaitdisc.ingest.study_file import load_study
+    from gaitdisc.response.data_quantity import LENGTHS_S
+
+    loaded = load_study(study)
+    folder, lengths = out or loaded.folder / "run", tuple(length) if length else LENGTHS_S
+    _report_on(lambda told: ablate_study(loaded, folder, lengths, part, told), loaded, folder, quiet)
 
 
 @app.command()
@@ -133,11 +154,13 @@ def demo(
 ) -> None:
     """Make small recordings of two driven walkers with a known ankle spring, and do the whole job on them."""
     from gaitdisc.batch.demonstration import write_demonstration
+    from gaitdisc.batch.run_study import run_study
     from gaitdisc.ingest.study_file import load_study
 
     typer.echo(f"Making recordings of two driven walkers, {seconds:g} s in each condition: a demonstration, no people.")
     write_demonstration(folder, seconds)
-    _run_and_report(load_study(folder), folder / "run", jobs, quiet)
+    study = load_study(folder)
+    _report_on(lambda told: run_study(study, folder / "run", jobs, told), study, folder / "run", quiet)
 
 
 def _version(wanted: bool) -> None:
@@ -164,47 +187,45 @@ def main() -> None:
         sys.exit(REFUSED)
 
 
-def _run_and_report(study: Study, folder: Path, jobs: int, quiet: bool) -> None:
+def _report_on(work: Callable[[Told], ResponseRun], study: Study, folder: Path, quiet: bool) -> None:
+    """Do the work with its progress shown, draw the report, and say who was refused."""
     from rich.console import Console
 
-    from gaitdisc.batch.run_study import run_study
     from gaitdisc.report.page import write_report
     from gaitdisc.report.text import r2_text
 
     started = time.perf_counter()
     try:
-        study_run = run_study(study, folder, jobs) if quiet else _with_progress(study, folder, jobs)
+        done = work(lambda *_: None) if quiet else _with_progress(work, [person.id for person in study.participants])
     except KeyboardInterrupt:
         typer.echo("Stopped. What was finished is kept; the same command goes on from there.", err=True)
         raise typer.Exit(STOPPED) from None
-    page = write_report(study_run, folder / "report")
-    if study_run.responses:
-        Console().print(r2_text(study_run))
-    for refusal in study_run.refusals:
+    page = write_report(done, folder / "report")
+    if done.responses:
+        Console().print(r2_text(done))
+    for refusal in done.refusals:
         who = " ".join(part for part in (refusal.participant, refusal.condition) if part)
         typer.echo(f"refused: {who}: {refusal.reason}", err=True)
-    typer.echo(f"{len(study_run.responses)} participants in {time.perf_counter() - started:.0f} s. report: {page}")
-    if study_run.refusals:
-        raise typer.Exit(SOME_REFUSED if study_run.responses else REFUSED)
+    typer.echo(f"{len(done.responses)} participants in {time.perf_counter() - started:.0f} s. report: {page}")
+    if done.refusals:
+        raise typer.Exit(SOME_REFUSED if done.responses else REFUSED)
 
 
-def _with_progress(study: Study, folder: Path, jobs: int) -> ResponseRun:
+def _with_progress(work: Callable[[Told], ResponseRun], people: list[str]) -> ResponseRun:
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-    from gaitdisc.batch.run_study import run_study
-
     elapsed, left = TimeElapsedColumn(), TimeRemainingColumn()
     columns = (TextColumn("{task.description}"), BarColumn(), elapsed, TextColumn("left"), left)
-    done = dict.fromkeys((person.id for person in study.participants), 0.0)
+    shares = dict.fromkeys(people, 0.0)
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("participants", total=len(done))
+        task = bar.add_task("participants", total=len(shares))
 
-        def told(participant: str, fraction: float) -> None:
-            done[participant] = fraction
-            bar.update(task, completed=sum(done.values()), description=f"{participant} of {len(done)} participants")
+        def told(participant: str, share: float) -> None:
+            shares[participant] = share
+            bar.update(task, completed=sum(shares.values()), description=f"{participant} of {len(shares)} participants")
 
-        return run_study(study, folder, jobs, told)
+        return work(told)
 
 
 def _inspections(what: Path) -> Iterator[Inspection]:

@@ -66,12 +66,11 @@ def computed_unit(study: Study, participant: Participant, folder: Path, progress
     not_complete = _incomplete(study, participant)
     if not_complete:
         return ParticipantUnit(refusals=(Refusal(participant.id, "", not_complete),))
-    planned = {word: participant.trials_of(word)[0] for word in (study.conditions.nominal, study.conditions.device)}
-    keys = {word: unit_key(study, trial) for word, trial in planned.items()}
+    keys = unit_keys(study, participant)
     stored = _stored(participant, keys, folder)
     if stored is not None:
         return stored
-    walks, refusals = _processed_walks(study, participant, planned)
+    walks, refusals = processed_walks(study, participant)
     summaries = {word: walk.summary() for word, walk in walks.items()}
     for word, summary in summaries.items():
         save_walk(summary, _walk_folder(folder, participant, word), keys[word])
@@ -88,8 +87,33 @@ def computed_unit(study: Study, participant: Participant, folder: Path, progress
         )
     except GaitdiscError as error:
         return ParticipantUnit(kept, None, (Refusal(participant.id, "", str(error)),))
-    save_response(response, folder / "responses" / participant.id, _response_key(keys))
+    save_response(response, folder / "responses" / participant.id, response_key(keys))
     return ParticipantUnit(kept, response)
+
+
+def unit_keys(study: Study, participant: Participant) -> dict[str, str]:
+    """Key of each of the two walks of a complete participant, by condition.
+
+    Parameters
+    ----------
+    study : Study
+        Settings.
+    participant : Participant
+        With one trial of each condition.
+    """
+    both = (study.conditions.nominal, study.conditions.device)
+    return {word: unit_key(study, participant.trials_of(word)[0]) for word in both}
+
+
+def response_key(keys: Mapping[str, str]) -> str:
+    """Key of what is fitted to both walks.
+
+    Parameters
+    ----------
+    keys : mapping of str to str
+        From `unit_keys`.
+    """
+    return hashlib.sha256("".join(keys.values()).encode()).hexdigest()
 
 
 def unit_key(study: Study, trial: PlannedTrial) -> str:
@@ -137,13 +161,20 @@ def _incomplete(study: Study, participant: Participant) -> str:
     return f"{needed}; {participant.id} has {found}{unused}. Correct the conditions in [[participants.trials]]."
 
 
-def _processed_walks(
-    study: Study, participant: Participant, planned: Mapping[str, PlannedTrial]
-) -> tuple[dict[str, Walk], tuple[Refusal, ...]]:
+def processed_walks(study: Study, participant: Participant) -> tuple[dict[str, Walk], tuple[Refusal, ...]]:
+    """Both walks of a complete participant, by condition, and why one could not be processed.
+
+    Parameters
+    ----------
+    study : Study
+        Settings.
+    participant : Participant
+        With one trial of each condition.
+    """
     walks, refusals = {}, []
-    for word, trial in planned.items():
+    for word in (study.conditions.nominal, study.conditions.device):
         try:
-            walks[word] = _walk(study, participant, trial)
+            walks[word] = _walk(study, participant, participant.trials_of(word)[0])
         except GaitdiscError as error:
             refusals.append(Refusal(participant.id, word, str(error)))
     return walks, tuple(refusals)
@@ -174,14 +205,10 @@ def _stored(participant: Participant, keys: Mapping[str, str], folder: Path) -> 
         response, stored_key = load_response(folder / "responses" / participant.id)
     except SchemaError:
         return None
-    if stored_key != _response_key(keys) or any(stored != key for (_, stored), key in walks):
+    if stored_key != response_key(keys) or any(stored != key for (_, stored), key in walks):
         return None
     return ParticipantUnit(tuple(walk for (walk, _), _ in walks), response)
 
 
 def _walk_folder(folder: Path, participant: Participant, word: str) -> Path:
     return folder / "walks" / unit_name(participant.id, word)
-
-
-def _response_key(keys: Mapping[str, str]) -> str:
-    return hashlib.sha256("".join(keys.values()).encode()).hexdigest()

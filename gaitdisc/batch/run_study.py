@@ -8,10 +8,11 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from gaitdisc.batch.participant_unit import ParticipantUnit, computed_unit, response_settings
+from gaitdisc.batch.quantity_unit import stored_quantity
 from gaitdisc.batch.run_lock import run_lock
 from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.response.comparison import compare_models
-from gaitdisc.results import Provenance, ResponseRun
+from gaitdisc.results import DataQuantity, ParticipantResponse, Provenance, ResponseRun
 from gaitdisc.results.provenance import installed_versions
 from gaitdisc.results.store import save_run
 
@@ -63,6 +64,7 @@ def run_study(
             tuple(refusal for unit in units for refusal in unit.refusals),
             _provenance(study, units),
             compare_models(responses),
+            _stored_quantities(study, responses, folder),
         )
         save_run(run, folder)
     return run
@@ -83,6 +85,13 @@ def _units(study: Study, folder: Path, jobs: int, told: Told) -> Iterator[Partic
         assert isinstance(unit, ParticipantUnit)
         told(person.id, 1.0)
         yield unit
+
+
+def _stored_quantities(
+    study: Study, responses: Sequence[ParticipantResponse], folder: Path
+) -> tuple[DataQuantity, ...]:
+    found = (stored_quantity(study, study.participant(each.participant), folder) for each in responses)
+    return tuple(quantity for quantity in found if quantity is not None)
 
 
 def _provenance(study: Study, units: Sequence[ParticipantUnit]) -> Provenance:

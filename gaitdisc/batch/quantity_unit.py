@@ -1,0 +1,86 @@
+"""One participant's models fitted to less and less data; kept on disk as soon as it is whole."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from gaitdisc.batch.participant_unit import processed_walks, response_key, response_settings, unit_keys
+from gaitdisc.errors import GaitdiscError, SchemaError
+from gaitdisc.ingest.study import Participant, Study
+from gaitdisc.response.data_quantity import fit_data_quantity
+from gaitdisc.results import DataQuantity, Refusal
+from gaitdisc.results.store import load_quantity, save_quantity
+
+
+def computed_quantity(
+    study: Study,
+    participant: Participant,
+    folder: Path,
+    lengths_s: Sequence[float],
+    part: str,
+    progress: Callable[[float], None],
+) -> DataQuantity | Refusal:
+    """Compute what less data gives one participant, or load what was computed from the same files and settings.
+
+    Parameters
+    ----------
+    study : Study
+        Settings.
+    participant : Participant
+        Who; complete in the study.
+    folder : Path
+        Folder of the run.
+    lengths_s : sequence of float
+        Lengths of the training part [s].
+    part : str
+        `first` or `last`.
+    progress : callable
+        Called with the fraction done.
+
+    Returns
+    -------
+    DataQuantity or Refusal
+        A refusal stops this participant and nobody else.
+    """
+    stored = stored_quantity(study, participant, folder)
+    if stored is not None and stored.part == part and _has(stored, lengths_s):
+        return stored
+    walks, refusals = processed_walks(study, participant)
+    if refusals:
+        return refusals[0]
+    nominal, exo = (walks[word].trajectory for word in (study.conditions.nominal, study.conditions.device))
+    try:
+        quantity = fit_data_quantity(nominal, exo, response_settings(study), lengths_s, part, progress)
+    except GaitdiscError as error:
+        return Refusal(participant.id, "", str(error))
+    save_quantity(quantity, _folder(folder, participant), response_key(unit_keys(study, participant)))
+    return quantity
+
+
+def stored_quantity(study: Study, participant: Participant, folder: Path) -> DataQuantity | None:
+    """Load what an earlier `ablate` computed from the same files and settings, if it is there and whole.
+
+    Parameters
+    ----------
+    study : Study
+        Settings.
+    participant : Participant
+        Who.
+    folder : Path
+        Folder of the run.
+    """
+    try:
+        quantity, key = load_quantity(_folder(folder, participant))
+    except SchemaError:
+        return None
+    return quantity if key == response_key(unit_keys(study, participant)) else None
+
+
+def _has(quantity: DataQuantity, lengths_s: Sequence[float]) -> bool:
+    there = {round(float(length), 6) for length in quantity.table["length_s"]} | set(quantity.left_away)
+    return {round(length, 6) for length in lengths_s} <= there
+
+
+def _folder(folder: Path, participant: Participant) -> Path:
+    return folder / "quantities" / participant.id

@@ -1,0 +1,36 @@
+import pytest
+
+from gaitdisc.batch.quantity_unit import computed_quantity, stored_quantity
+from gaitdisc.results import DataQuantity, Refusal
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("quantities")
+
+
+def test_it_is_computed_once_and_loaded_afterwards(study, folder):
+    person, told = study.participants[0], []
+    assert stored_quantity(study, person, folder) is None
+    first = computed_quantity(study, person, folder, (5.0,), "first", told.append)
+    assert isinstance(first, DataQuantity)
+    assert told[-1] == 1.0
+    work = len(told)
+    again = computed_quantity(study, person, folder, (5.0,), "first", told.append)
+    assert isinstance(again, DataQuantity)
+    assert again.table.equals(stored_quantity(study, person, folder).table)
+    assert len(told) == work
+
+
+def test_other_settings_are_not_taken_for_these(study, folder):
+    other = study.model_copy(update={"models": study.models.model_copy(update={"seed": 7})})
+    assert stored_quantity(other, other.participants[0], folder) is None
+
+
+def test_a_walk_that_is_refused_refuses_the_rest(study, tmp_path):
+    person = study.participants[0]
+    broken = person.trials[1].model_copy(update={"files": ("nowhere.mot",)})
+    person = person.model_copy(update={"trials": (person.trials[0], broken)})
+    refused = computed_quantity(study, person, tmp_path, (5.0,), "first", lambda _: None)
+    assert isinstance(refused, Refusal)
+    assert "nowhere.mot" in refused.reason
