@@ -14,6 +14,7 @@ from gaitdisc.report.curves_figure import curves_figures
 from gaitdisc.report.figure import LARGEST_INLINE_SVG, Figure, SavedFigure, file_names, save_figure, save_table
 from gaitdisc.report.held_out_figure import held_out_figures
 from gaitdisc.report.method import flattened, method_sentences, provenance_rows
+from gaitdisc.report.quantity_figure import quantity_figure, quantity_sentences
 from gaitdisc.report.r2_figure import r2_figures
 from gaitdisc.report.r2_tables import not_computed, participants_table, r2_table, study_r2_table
 from gaitdisc.report.residual_figure import residual_figures
@@ -100,6 +101,7 @@ def write_report(run: ResponseRun, folder: Path) -> Path:
     overview = [save_figure(figure, folder / "figures") for figure in (r2_figures(run) if run.responses else [])]
     compared = [save_figure(figure, folder / "figures") for figure in comparison_figures(run)]
     pair_tables = comparison_tables(run)
+    quantity = quantity_figure(run)
     tables = {
         "refusals": refusals_table(run),
         "walks": walks_table(run),
@@ -117,6 +119,8 @@ def write_report(run: ResponseRun, folder: Path) -> Path:
         sections=sections,
         overview=overview,
         comparison={"sentences": comparison_sentences(run), "figures": compared, "tables": pair_tables},
+        quantity=save_figure(quantity, folder / "figures") if quantity else None,
+        enough=quantity_sentences(run),
         tables=tables,
         method=method_sentences(run),
         headline=1 if not run.responses else 0 if len(run.responses) == 1 else 2,

@@ -1,0 +1,137 @@
+"""R2 against the length of the training part: how much data is enough (after Fig. 4.4)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from gaitdisc.report.figure import Figure, Room, in_style, legend, panels
+from gaitdisc.report.palette import MODELS
+from gaitdisc.report.r2_figure import LOWEST
+from gaitdisc.report.r2_summary import held_out_text
+from gaitdisc.report.wording import MODEL_WORDS, counted, number
+from gaitdisc.results import ResponseRun
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+GROUPS = {"angles": "joint angles", "EMG": "EMG envelopes"}
+HEIGHT = 2.3  # of a panel [inch]
+ENOUGH = 0.01  # as near to the whole training part as this
+
+
+@in_style
+def quantity_figure(run: ResponseRun) -> Figure | None:
+    """Median R2 over variables of Nominal, Augmented and Exo by training length; None where nothing was ablated.
+
+    Parameters
+    ----------
+    run : ResponseRun
+        With `quantities`.
+    """
+    if not run.quantities:
+        return None
+    numbers = quantity_numbers(run)
+    groups = [group for group in GROUPS if group in set(numbers["variables"])]
+    drawn, [row] = panels(1, len(groups), HEIGHT, Room(left=0.6, bottom=0.5))
+    low = max(LOWEST, float(np.floor(10 * numbers["r2"].min()) / 10))
+    for axes, group in zip(row, groups, strict=True):
+        _draw(axes, numbers[numbers["variables"] == group], low)
+        axes.set_title(GROUPS[group])
+    row[0].set_ylabel("R² on the held-out device walk [1]")
+    legend(drawn, _key())
+    return Figure("quantity", _caption(run, low), _alt(run), numbers, drawn)
+
+
+def quantity_numbers(run: ResponseRun) -> pd.DataFrame:
+    """Median R2 over the variables of a group, for each participant, length and model; networks only.
+
+    Parameters
+    ----------
+    run : ResponseRun
+        With `quantities`.
+
+    Returns
+    -------
+    DataFrame
+        variables (`angles` or `EMG`), participant, length_s, model, r2, count (variables).
+    """
+    tables = []
+    for quantity in run.quantities:
+        chosen = quantity.table[(quantity.table["kind"] == "network") & (quantity.table["walk"] == "exo")]
+        group = np.where(chosen["variable"].str.startswith("emg_"), "EMG", "angles")
+        grouped = chosen.assign(variables=group).groupby(["variables", "length_s", "model"], sort=True)["r2"]
+        table = grouped.agg(r2="median", count="count").reset_index()
+        tables.append(table.assign(participant=quantity.participant))
+    columns = ["variables", "participant", "length_s", "model", "r2", "count"]
+    return pd.concat(tables, ignore_index=True)[columns]
+
+
+def quantity_sentences(run: ResponseRun) -> list[str]:
+    """How much data the Exo model needs to come near to what the whole training part gives, and what was left away.
+
+    Parameters
+    ----------
+    run : ResponseRun
+        With `quantities`.
+    """
+    if not run.quantities:
+        return []
+    said = []
+    for quantity in run.quantities:
+        exo = quantity.medians()["exo"].sort_index()
+        whole, best = float(exo.index[-1]), float(exo.iloc[-1])
+        near = float(exo.index[(exo >= best - ENOUGH).to_numpy()].min())
+        reach = f"from {near:.0f} s on" if near < whole else "only with all of it"
+        said.append(
+            f"In {quantity.participant}, the Exo model comes within {ENOUGH:g} of what all {whole:.0f} s of training "
+            f"give (R² {number(best)}, median over variables) {reach}."
+        )
+    lengths = sorted({length for quantity in run.quantities for length in quantity.left_away})
+    if lengths:
+        shown = ", ".join(f"{length:g} s" for length in lengths)
+        said.append(f"Lengths left away, because a walk is too short for them or too few samples are left: {shown}.")
+    return said
+
+
+def _draw(axes: Axes, rows: pd.DataFrame, low: float) -> None:
+    for model, look in MODELS.items():
+        own = rows[rows["model"] == model]
+        for _, one in own.groupby("participant"):
+            axes.plot(one["length_s"], one["r2"], color=look.colour, linewidth=0.5, alpha=0.5)
+        middle = own.groupby("length_s")["r2"].median()
+        axes.plot(middle.index, middle, color=look.colour, linestyle=look.line, marker=look.mark, ms=3.5, linewidth=1.4)
+    axes.set_xscale("log")
+    lengths = sorted(set(rows["length_s"]))
+    shown = [x for i, x in enumerate(lengths) if i == 0 or x / lengths[i - 1] > 1.25 or x == lengths[-1]]
+    axes.set_xticks(shown, [f"{x:.0f}" for x in shown])
+    axes.minorticks_off()
+    axes.set_ylim(low, 1.0)
+    axes.set_xlabel("training length [s]")
+
+
+def _key() -> list:
+    from matplotlib.lines import Line2D
+
+    return [
+        Line2D([], [], color=look.colour, linestyle=look.line, marker=look.mark, ms=3.5, label=MODEL_WORDS[model])
+        for model, look in MODELS.items()
+    ]
+
+
+def _caption(run: ResponseRun, low: float) -> str:
+    parts = {quantity.part for quantity in run.quantities}
+    edge = f" Values below {number(low)} are cut off." if low == LOWEST else ""
+    return (
+        f"R² [1] of the second derivative, median over variables, on the held-out device walk ({run.exo}) against the "
+        f"length of the training part (its {' or '.join(sorted(parts))} seconds), "
+        f"n = {counted(len(run.quantities), 'participant')}; split: last {held_out_text(run)} s of each walk held out "
+        f"for every length alike. Thick: median over participants; thin: each participant; networks only.{edge} After "
+        f"Fig. 4.4 of the dissertation."
+    )
+
+
+def _alt(run: ResponseRun) -> str:
+    return f"R² of three models rising with the training length, for {counted(len(run.quantities), 'participant')}."
