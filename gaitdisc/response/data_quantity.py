@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 
+import numpy as np
 import pandas as pd
 
 from gaitdisc.errors import SamplingError, TrainingError
@@ -36,8 +37,8 @@ def fit_data_quantity(
     lengths_s : sequence of float
         Lengths of the training part [s]; its whole length is always added.
     part : str
-        `first` takes the beginning of the training part, `last` its end, next to what is held out. The text does not
-        say which; the two differ where gait drifts.
+        `first` takes the beginning of the training part, from its first usable sample on, `last` its end, next to what
+        is held out. The text does not say which; the two differ where gait drifts.
     progress : callable, optional
         Called with the fraction done.
 
@@ -85,8 +86,14 @@ def _shortened(walk: Trajectory, settings: ResponseSettings, length_s: float, pa
     """Walk whose training part keeps `length_s` seconds usable; the held-out part is untouched."""
     training, _ = held_out_part(walk, settings)
     count, keep = len(training.time), round(length_s * walk.rate_hz)
+    good = np.flatnonzero(np.isfinite(training.phi) & training.usable.all(axis=1))
+    if not len(good):
+        return walk
     usable = walk.usable.copy()
-    usable[slice(keep, count) if part == "first" else slice(0, count - keep)] = False
+    if part == "first":  # counted from the first sample that can be used: a filter's edge teaches nothing
+        usable[good[0] + keep : count] = False
+    else:
+        usable[: max(0, good[-1] + 1 - keep)] = False
     return replace(walk, usable=usable)
 
 
