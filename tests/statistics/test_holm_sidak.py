@@ -6,7 +6,6 @@ from statsmodels.stats.multitest import multipletests
 
 from gaitdisc.errors import ComparisonError
 from gaitdisc.statistics.holm_sidak import holm_sidak, holm_sidak_by, largest_family, step_levels
-from gaitdisc.statistics.signed_rank import exact_p
 
 PROBABILITIES = st.lists(st.floats(0, 1), min_size=1, max_size=24)
 
@@ -96,15 +95,3 @@ def test_the_largest_family_that_can_reject():
         most = largest_family(2 / 2**n)
         assert holm_sidak([2 / 2**n] + [1.0] * (most - 1)).rejected[0]
         assert not holm_sidak([2 / 2**n] + [1.0] * most).rejected[0]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("correlation", [0.0, 0.8])
-def test_the_family_wise_error_without_any_effect(correlation):
-    rng = np.random.default_rng(2)
-    families = 3000
-    shared = np.sqrt(correlation) * rng.standard_normal((families, 11, 1))
-    d = shared + np.sqrt(1 - correlation) * rng.standard_normal((families, 11, 8))
-    wrong = [holm_sidak([exact_p(family[:, k]) for k in range(8)]).rejected.any() for family in d]
-    assert np.mean(wrong) <= 0.05 + 3 * np.sqrt(0.05 * 0.95 / families)
-    assert np.mean(wrong) >= (0.03 if correlation == 0 else 0.005)

@@ -1,0 +1,92 @@
+"""How often the paired tests raise a false alarm where nothing differs: counted, not assumed.
+
+    python studies/family_wise_error.py
+
+Three models whose R2 are exchangeable are compared over participants in many studies without any effect, as
+`compare_models` does it: exact signed rank, Holm-Sidak over the variables of a pair.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.results.pair_test import FAMILIES
+from gaitdisc.statistics.holm_sidak import holm_sidak
+from gaitdisc.statistics.signed_rank import exact_p
+
+PAIRS = ((0, 1), (0, 2), (1, 2))
+CASES = ((11, 8, 0.0), (11, 8, 0.8), (12, 8, 0.0), (8, 6, 0.0))
+
+
+def p_of_sums(participants: int) -> NDArray[np.float64]:
+    """Exact p of every smaller sum of ranks W, 0 to the largest.
+
+    Parameters
+    ----------
+    participants : int
+        Pairs without zeros and ties.
+    """
+    found = []
+    for w in range(participants * (participants + 1) // 4 + 1):
+        differences, left = np.arange(1.0, participants + 1), w
+        for rank in range(participants, 0, -1):
+            if rank <= left:
+                differences[rank - 1], left = -rank, left - rank
+        found.append(exact_p(differences))
+    return np.array(found)
+
+
+def false_alarms(
+    participants: int, variables: int, correlation: float, studies: int = 20000, seed: int = 0
+) -> dict[str, float]:
+    """Share of studies without any effect in which at least one test says that two models differ.
+
+    Parameters
+    ----------
+    participants, variables : int
+        Of one study.
+    correlation : float
+        Of the variables within a participant.
+    studies : int
+        How many are simulated.
+    seed : int
+        Of the numbers.
+
+    Returns
+    -------
+    dict of str to float
+        one pair: in the family of the first pair; and in any of the three pairs under each family of `FAMILIES`.
+    """
+    rng = np.random.default_rng(seed)
+    table = p_of_sums(participants)
+    alarms = dict.fromkeys(("one pair", *FAMILIES), 0)
+    for _ in range(studies):
+        shared = np.sqrt(correlation) * rng.standard_normal((3, participants, 1))
+        r2 = shared + np.sqrt(1 - correlation) * rng.standard_normal((3, participants, variables))
+        p = np.array([table[_smaller_sum(r2[b] - r2[a])] for a, b in PAIRS])
+        by_pair = [bool(holm_sidak(row).rejected.any()) for row in p]
+        alarms["one pair"] += by_pair[0]
+        alarms["pair"] += any(by_pair)
+        alarms["all"] += bool(holm_sidak(p).rejected.any())
+        alarms["variable"] += any(holm_sidak(column).rejected.any() for column in p.T)
+    return {name: count / studies for name, count in alarms.items()}
+
+
+def _smaller_sum(differences: NDArray[np.float64]) -> NDArray[np.intp]:
+    ranks = np.abs(differences).argsort(axis=0).argsort(axis=0) + 1
+    positive = np.where(differences > 0, ranks, 0).sum(axis=0)
+    return np.minimum(positive, ranks.sum(axis=0) - positive)
+
+
+def main() -> None:
+    """Print the table."""
+    print("| n | variables | correlation | one pair's family | three pairs | all tests | each variable's pairs |")
+    print("|" + "---|" * 7)
+    for case in CASES:
+        found = false_alarms(*case)
+        print(f"| {case[0]} | {case[1]} | {case[2]:g} | {' | '.join(f'{share:.3f}' for share in found.values())} |")
+
+
+if __name__ == "__main__":
+    main()
