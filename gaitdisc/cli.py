@@ -84,10 +84,12 @@ def run(
     out: Annotated[Path | None, typer.Option(help="Folder of the run; by default STUDY/run.")] = None,
     participant: Annotated[list[str] | None, typer.Option(help="Only this participant; may be repeated.")] = None,
     jobs: Annotated[int, typer.Option("--jobs", "-j", min=1, help="Participants side by side.")] = 1,
+    cluster: Annotated[str, typer.Option(help="Address of a Dask scheduler, tcp://host:8786.")] = "",
     quiet: Quiet = False,
 ) -> None:
     """Process, fit, judge and report; what an earlier run has finished is kept."""
     from gaitdisc.batch.run_study import run_study
+    from gaitdisc.batch.workers import Workers
     from gaitdisc.ingest.study_file import load_study
 
     loaded = load_study(study)
@@ -95,7 +97,7 @@ def run(
         chosen = tuple(loaded.participant(name) for name in participant)
         loaded = loaded.model_copy(update={"participants": chosen})
     folder = out or loaded.folder / "run"
-    _report_on(lambda told: run_study(loaded, folder, jobs, told), loaded, folder, quiet)
+    _report_on(lambda told: run_study(loaded, folder, Workers(jobs, cluster), told), loaded, folder, quiet)
 
 
 @app.command()
@@ -155,12 +157,13 @@ def demo(
     """Make small recordings of two driven walkers with a known ankle spring, and do the whole job on them."""
     from gaitdisc.batch.demonstration import write_demonstration
     from gaitdisc.batch.run_study import run_study
+    from gaitdisc.batch.workers import Workers
     from gaitdisc.ingest.study_file import load_study
 
     typer.echo(f"Making recordings of two driven walkers, {seconds:g} s in each condition: a demonstration, no people.")
     write_demonstration(folder, seconds)
     study = load_study(folder)
-    _report_on(lambda told: run_study(study, folder / "run", jobs, told), study, folder / "run", quiet)
+    _report_on(lambda told: run_study(study, folder / "run", Workers(jobs), told), study, folder / "run", quiet)
 
 
 def _version(wanted: bool) -> None:

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 
 from gaitdisc.batch.participant_unit import ParticipantUnit, computed_unit, response_settings
 from gaitdisc.batch.quantity_unit import stored_quantity
 from gaitdisc.batch.run_lock import run_lock
+from gaitdisc.batch.workers import Workers, computed_side_by_side
 from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.response.comparison import compare_models
 from gaitdisc.results import DataQuantity, ParticipantResponse, Provenance, ResponseRun
@@ -23,7 +25,7 @@ Told = Callable[[str, float], None]
 def run_study(
     study: Study,
     folder: Path,
-    jobs: int = 1,
+    workers: Workers | None = None,
     told: Told = lambda *_: None,
 ) -> ResponseRun:
     """Process every walk of a study and fit every participant's models.
@@ -37,8 +39,8 @@ def run_study(
         Who, which files, which settings.
     folder : Path
         Folder of the run; made where it is missing.
-    jobs : int
-        Processes side by side, each with one thread; 1 works in this process.
+    workers : Workers, optional
+        Where participants are computed; in this process, one after the other, by default.
     told : callable
         Called with a participant's pseudonym and the fraction of that participant's work that is done.
 
@@ -51,9 +53,11 @@ def run_study(
     ------
     WriteError
         If another run works in the folder, or it cannot be written.
+    ClusterError
+        If the cluster cannot be reached.
     """
     with run_lock(folder):
-        units = list(_units(study, folder, jobs, told))
+        units = list(_units(study, folder, workers or Workers(), told))
         responses = tuple(unit.response for unit in units if unit.response is not None)
         run = ResponseRun(
             study.title or study.folder.name,
@@ -70,19 +74,14 @@ def run_study(
     return run
 
 
-def _units(study: Study, folder: Path, jobs: int, told: Told) -> Iterator[ParticipantUnit]:
-    people: Sequence[Participant] = study.participants
-    if jobs == 1 or len(people) == 1:
-        for person in people:
-            yield computed_unit(study, person, folder, lambda share, who=person.id: told(who, share))
+def _units(study: Study, folder: Path, workers: Workers, told: Told) -> Iterator[ParticipantUnit]:
+    if workers.here:
+        for person in study.participants:
+            yield computed_unit(study, person, folder, partial(told, person.id))
             told(person.id, 1.0)
         return
-    from joblib import Parallel, delayed
-
-    work = (delayed(computed_unit)(study, person, folder, _untold) for person in people)
-    results = Parallel(n_jobs=jobs, return_as="generator", inner_max_num_threads=1, backend="loky")(work)
-    for person, unit in zip(people, results, strict=True):
-        assert isinstance(unit, ParticipantUnit)
+    compute = partial(_computed_untold, study, folder.absolute())
+    for person, unit in computed_side_by_side(workers, compute, study.participants):
         told(person.id, 1.0)
         yield unit
 
@@ -101,5 +100,6 @@ def _provenance(study: Study, units: Sequence[ParticipantUnit]) -> Provenance:
     return Provenance(settings, study.models.seed, files, installed_versions(), SECTION, created)
 
 
-def _untold(fraction: float) -> None:
+def _computed_untold(study: Study, folder: Path, person: Participant) -> ParticipantUnit:
     """Progress within a participant does not cross the border of a process."""
+    return computed_unit(study, person, folder, lambda _: None)

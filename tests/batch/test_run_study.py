@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 
 from gaitdisc.batch.run_study import run_study
+from gaitdisc.batch.workers import Workers
 from gaitdisc.ingest.study_file import write_study
 from gaitdisc.results.store import load_run
 
@@ -62,7 +63,7 @@ def test_a_damaged_unit_is_computed_again_to_the_same_tables(run, study, finishe
 
 
 def test_side_by_side_gives_the_same_tables(run, study, tmp_path):
-    parallel = run_study(study, tmp_path / "parallel", jobs=2)
+    parallel = run_study(study, tmp_path / "parallel", Workers(jobs=2))
     pd.testing.assert_frame_equal(parallel.r2_table(), run.r2_table(), check_dtype=False)
 
 

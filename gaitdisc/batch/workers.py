@@ -1,0 +1,102 @@
+"""Where participants are computed: in this process, in processes beside it, or on a cluster."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from gaitdisc.errors import GaitdiscError
+
+Unit = TypeVar("Unit")
+Person = TypeVar("Person")
+CONNECT_S = 20.0
+
+
+class ClusterError(GaitdiscError):
+    """A cluster cannot be reached or used."""
+
+
+@dataclass(frozen=True)
+class Workers:
+    """Where to compute.
+
+    Parameters
+    ----------
+    jobs : int
+        Processes side by side, each with one thread; 1 works in this process.
+    cluster : str
+        Address of a Dask scheduler, `tcp://host:8786`; empty for this machine. Its workers need the package, the same
+        version, and the study's folders at the same paths.
+    """
+
+    jobs: int = 1
+    cluster: str = ""
+
+    @property
+    def here(self) -> bool:
+        """Whether everything is done in this process, where progress within a participant can be told."""
+        return self.jobs == 1 and not self.cluster
+
+
+def computed_side_by_side(
+    workers: Workers, compute: Callable[[Person], Unit], people: Sequence[Person]
+) -> Iterator[tuple[Person, Unit]]:
+    """Compute one unit a person on other processes or machines, and give them back in order as they are ready.
+
+    A worker of a cluster that dies is replaced by another: its person is computed again.
+
+    Parameters
+    ----------
+    workers : Workers
+        Where.
+    compute : callable
+        Takes a person; can be sent to another process.
+    people : sequence
+        Who.
+
+    Yields
+    ------
+    (person, unit)
+
+    Raises
+    ------
+    ClusterError
+        If there is no scheduler at the address, or the extra `cluster` is not installed.
+    """
+    from joblib import Parallel, delayed
+
+    with _backend(workers) as options:
+        results: Any = Parallel(return_as="generator", **options)(delayed(compute)(person) for person in people)
+        yield from zip(people, results, strict=True)
+
+
+@contextmanager
+def _backend(workers: Workers) -> Iterator[dict[str, Any]]:
+    if not workers.cluster:
+        yield {"n_jobs": workers.jobs, "backend": "loky", "inner_max_num_threads": 1}
+        return
+    try:
+        from distributed import Client
+    except ImportError as error:
+        raise ClusterError(
+            "a cluster needs the extra 'cluster' (dask.distributed)",
+            "it is not installed here",
+            "Install gaitdisc[cluster], or leave --cluster out.",
+        ) from error
+    from joblib import parallel_config
+
+    try:
+        client = Client(workers.cluster, timeout=CONNECT_S)
+    except (OSError, ValueError) as error:
+        raise ClusterError(
+            "a cluster needs a Dask scheduler that answers",
+            f"{workers.cluster}: {str(error)[:200] or type(error).__name__}",
+            "Start one with `dask scheduler`, correct the address, or leave --cluster out.",
+        ) from error
+    try:
+        with parallel_config(backend="dask"):
+            yield {"n_jobs": -1}
+    finally:
+        client.close()
