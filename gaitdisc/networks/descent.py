@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-import copy
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any, Protocol, cast
 
+import numpy as np
 import torch
+from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from gaitdisc.errors import TrainingError
+from gaitdisc.networks.feedforward import FeedForward
+from gaitdisc.networks.schedule import Schedule
+from gaitdisc.networks.torch_steps import TorchSteps
 from gaitdisc.networks.training_settings import TrainingSettings
-
-LEAST_STEPS = 1000  # short recordings have few batches an epoch: they get more epochs
 
 
 @dataclass(frozen=True)
@@ -26,50 +29,56 @@ class Descent:
         Mean squared error of the scaled outputs on the check part, after every epoch.
     best_epoch : int
         Epoch, from 1, whose weights the network has now.
+    arithmetic : str
+        What computed it: `fused` or `torch`.
     """
 
     losses: tuple[float, ...]
     best_epoch: int
+    arithmetic: str
 
 
-def epochs_of(samples: int, settings: TrainingSettings) -> int:
-    """Passes over a training part of that many samples: the epochs of the settings, or what 1,000 steps need.
+class Steps(Protocol):
+    """What computes a descent: `TorchSteps`, or `FusedSteps` where it can."""
 
-    Parameters
-    ----------
-    samples : int
-        Samples of the training part.
-    settings : TrainingSettings
-        Epochs and batch.
+    arithmetic: str
 
-    Examples
-    --------
-    >>> epochs_of(21_000, TrainingSettings()), epochs_of(2_000, TrainingSettings())
-    (20, 125)
-    """
-    return max(settings.epochs, math.ceil(LEAST_STEPS / math.ceil(samples / settings.batch)))
+    def epoch(self, order: Tensor, rates: NDArray[np.float64]) -> None:
+        """Step through all samples once, in that order and at these learning rates.
 
+        Parameters
+        ----------
+        order : Tensor (sample,)
+            In which the samples are seen.
+        rates : ndarray (step,)
+            Learning rate of each step.
+        """
+        ...
 
-def check_loss(network: nn.Module, check: tuple[Tensor, Tensor]) -> float:
-    """Mean squared error of the scaled outputs.
+    def loss(self) -> float:
+        """Mean squared error of the scaled outputs on the check part."""
+        ...
 
-    Parameters
-    ----------
-    network : torch module
-        Left in the mode in which nothing is dropped out.
-    check : pair of Tensor ((sample, input), (sample, output))
-        Scaled samples.
-    """
-    network.eval()
-    with torch.no_grad():
-        return float(nn.functional.mse_loss(network(check[0]), check[1]))
+    def weights(self) -> Any:
+        """Copy of the weights as they are."""
+        ...
+
+    def restore(self, weights: Any) -> None:
+        """Give the network weights that it had before.
+
+        Parameters
+        ----------
+        weights : what `weights` gave
+            To take.
+        """
+        ...
 
 
 def descend(
     network: nn.Module,
     part: tuple[Tensor, Tensor],
     check: tuple[Tensor, Tensor],
-    decay: float,
+    schedule: Schedule,
     settings: TrainingSettings,
     progress: Callable[[float], None] = lambda _: None,
 ) -> Descent:
@@ -83,10 +92,10 @@ def descend(
         Changed in place.
     part, check : pair of Tensor ((sample, input), (sample, output))
         Scaled samples to descend on, and to judge each epoch by.
-    decay : float
-        Decoupled weight decay, times the learning rate each step.
+    schedule : Schedule
+        Steps, learning rates, batch, decay.
     settings : TrainingSettings
-        Epochs, batch, learning rate, seed.
+        Seed of the order of the samples, and arithmetic.
     progress : callable
         Called after every epoch with the fraction done.
 
@@ -103,37 +112,38 @@ def descend(
     ----------
     Loshchilov and Hutter 2019, Decoupled weight decay regularization. The dissertation does not say how it trained.
     """
-    x, y = part
-    epochs = epochs_of(len(x), settings)
-    steps = epochs * math.ceil(len(x) / settings.batch)
-    matrices = [p for p in network.parameters() if p.ndim > 1]
-    others = [p for p in network.parameters() if p.ndim <= 1]
-    groups = [{"params": matrices, "weight_decay": decay}, {"params": others, "weight_decay": 0.0}]
-    adam = torch.optim.AdamW(groups, lr=settings.learning_rate, fused=True)
-    cosine = torch.optim.lr_scheduler.CosineAnnealingLR(adam, steps)
+    steps = _steps(network, part, check, schedule, settings.arithmetic)
     order = torch.Generator().manual_seed(settings.seed)
     losses: list[float] = []
-    best = copy.deepcopy(network.state_dict())
+    best = steps.weights()
+    epochs = len(schedule.rates)
     for epoch in range(1, epochs + 1):
-        network.train()
-        shuffled = torch.randperm(len(x), generator=order).to(x.device)
-        x_epoch, y_epoch = x[shuffled], y[shuffled]
-        for start in range(0, len(x), settings.batch):
-            rows = slice(start, start + settings.batch)
-            adam.zero_grad()
-            nn.functional.mse_loss(network(x_epoch[rows]), y_epoch[rows]).backward()
-            adam.step()
-            cosine.step()
-        losses.append(check_loss(network, check))
+        steps.epoch(torch.randperm(len(part[0]), generator=order), schedule.rates[epoch - 1])
+        losses.append(steps.loss())
         if not math.isfinite(losses[-1]):
             raise TrainingError(
                 "training needs a loss that stays finite",
-                f"it was {losses[-1]} after epoch {epoch} of {epochs} at learning rate {settings.learning_rate:g}",
+                f"it was {losses[-1]} after epoch {epoch} of {epochs} at learning rate {schedule.rates[0, 0]:g}",
                 "Lower the learning rate, tenfold at first; the findings may also name samples far out of range.",
             )
         if losses[-1] <= min(losses):
-            best = copy.deepcopy(network.state_dict())
+            best = steps.weights()
         progress(epoch / epochs)
-    network.load_state_dict(best)
+    steps.restore(best)
     network.eval()
-    return Descent(tuple(losses), losses.index(min(losses)) + 1)
+    return Descent(tuple(losses), losses.index(min(losses)) + 1, steps.arithmetic)
+
+
+def _steps(
+    network: nn.Module,
+    part: tuple[Tensor, Tensor],
+    check: tuple[Tensor, Tensor],
+    schedule: Schedule,
+    arithmetic: str,
+) -> Steps:
+    if arithmetic == "auto":
+        from gaitdisc.networks.fused_steps import FusedSteps, can_be_fused
+
+        if can_be_fused(network):
+            return FusedSteps(cast(FeedForward, network), part, check, schedule)
+    return TorchSteps(network, part, check, schedule)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Protocol, cast
 
 import numpy as np
@@ -45,7 +46,8 @@ def solve_readout(network: nn.Module, part: tuple[Tensor, Tensor], penalty: floa
     parts = cast(WithReadout, network)
     network.eval()
     with torch.no_grad():
-        weights, offset = _ridge(_features(network, part[0]), part[1].cpu().double().numpy(), penalty)
+        squares = _squares(_features(network, part[0]), part[1].cpu().double().numpy())
+        weights, offset = squares.solved(penalty)
         parts.readout.weight.copy_(torch.from_numpy(weights))
         parts.readout.bias.copy_(torch.from_numpy(offset))
 
@@ -68,25 +70,37 @@ def choose_penalty(
         One of `PENALTIES`; mean squared error of the scaled outputs.
     """
     network.eval()
-    h, h_check = _features(network, part[0]), _features(network, check[0])
-    y, y_check = (t.cpu().double().numpy() for t in (part[1], check[1]))
+    squares = _squares(_features(network, part[0]), part[1].cpu().double().numpy())
+    h, y = _features(network, check[0]), check[1].cpu().double().numpy()
     losses = []
     for penalty in PENALTIES:
-        weights, offset = _ridge(h, y, penalty)
-        losses.append(float(np.mean((y_check - h_check @ weights.T - offset) ** 2)))
+        weights, offset = squares.solved(penalty)
+        losses.append(float(np.mean((y - h @ weights.T - offset) ** 2)))
     best = int(np.argmin(losses))
     return PENALTIES[best], losses[best]
+
+
+@dataclass(frozen=True, eq=False)
+class _Squares:
+    """Means and mean products of features and outputs: all that ridge regression needs, whatever the penalty."""
+
+    h_mean: NDArray[np.float64]
+    y_mean: NDArray[np.float64]
+    h_h: NDArray[np.float64]
+    h_y: NDArray[np.float64]
+
+    def solved(self, penalty: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Weights (output, node) and offset (output,)."""
+        weights = np.asarray(np.linalg.solve(self.h_h + penalty * np.eye(len(self.h_h)), self.h_y).T, float)
+        return weights, self.y_mean - weights @ self.h_mean
+
+
+def _squares(h: NDArray[np.float64], y: NDArray[np.float64]) -> _Squares:
+    h_mean, y_mean = np.asarray(h.mean(axis=0), float), np.asarray(y.mean(axis=0), float)
+    h, y = h - h_mean, y - y_mean
+    return _Squares(h_mean, y_mean, h.T @ h / len(h), h.T @ y / len(h))
 
 
 def _features(network: nn.Module, x: Tensor) -> NDArray[np.float64]:
     with torch.no_grad():
         return cast(WithReadout, network).features(x).cpu().double().numpy()
-
-
-def _ridge(
-    h: NDArray[np.float64], y: NDArray[np.float64], penalty: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    h_mean, y_mean = np.asarray(h.mean(axis=0), float), np.asarray(y.mean(axis=0), float)
-    h, y = h - h_mean, y - y_mean
-    weights = np.asarray(np.linalg.solve(h.T @ h / len(h) + penalty * np.eye(h.shape[1]), h.T @ y / len(h)).T, float)
-    return weights, y_mean - weights @ h_mean

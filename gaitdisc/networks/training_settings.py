@@ -21,7 +21,7 @@ class TrainingSettings:
         Of the first step; it falls to 0 along a cosine.
     decays : tuple of float
         Candidates of the decoupled weight decay, weak to strong; they are tried in this order until the inner block
-        does worse, and the best is used.
+        does worse, each from the weights of the one before, and the best is used.
     inner_share : float
         Share of the training part in the inner block, its last samples.
     seed : int
@@ -31,6 +31,9 @@ class TrainingSettings:
     threads : int
         Threads of one training on the CPU. Networks of this size train slower on two threads than on one; participants
         are what to run beside each other.
+    arithmetic : str
+        `auto` computes the dissertation's network on the CPU by compiled code, with torch's numbers to rounding, and
+        everything else by torch; `torch` computes everything by torch.
 
     Raises
     ------
@@ -51,6 +54,7 @@ class TrainingSettings:
     seed: int = 0
     device: str = "cpu"
     threads: int = 1
+    arithmetic: str = "auto"
 
     def __post_init__(self) -> None:
         """Refuse settings that train nothing."""
@@ -59,6 +63,8 @@ class TrainingSettings:
         _refuse_unless(bool(self.decays), "at least one weight decay", "decays is empty")
         _refuse_unless(min(self.decays) >= 0, "weight decays of 0 or more", f"decays holds {min(self.decays)}")
         _refuse_unless(0 < self.inner_share < 1, "an inner_share between 0 and 1", f"it is {self.inner_share}")
+        known = self.arithmetic in ("auto", "torch")
+        _refuse_unless(known, "arithmetic 'auto' or 'torch'", f"it is {self.arithmetic!r}")
 
 
 def _refuse_unless(holds: bool, needed: str, found: str) -> None:

@@ -7,10 +7,13 @@ import pytest
 import torch
 
 from gaitdisc.errors import TrainingError
+from gaitdisc.networks import trainer
+from gaitdisc.networks.descent import descend
 from gaitdisc.networks.feedforward import FeedForward
 from gaitdisc.networks.trainer import chosen_device, train
 from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.recording import scale_of
+from gaitdisc.statistics.r2 import r2
 
 
 def same_weights(one, other):
@@ -51,7 +54,7 @@ def test_the_scale_never_sees_the_inner_block(swing, quick):
 
 def test_numbers_of_the_training_are_told(swing, quick):
     told = []
-    done = train(swing, FeedForward, replace(quick, decays=(0.1, 3.0)), told.append)
+    done = train(swing, FeedForward, replace(quick, decays=(0.1, 30.0)), told.append)
     assert (done.n_training, done.n_inner) == (2000, 300)
     assert len(done.losses) == 250  # 4 batches of 500: 1,000 steps
     assert done.losses[done.best_epoch - 1] == min(done.losses)
@@ -61,15 +64,36 @@ def test_numbers_of_the_training_are_told(swing, quick):
     assert done.seconds > 0
 
 
-def test_decays_are_tried_until_the_inner_block_does_worse(swing, quick):
-    built = []
+def test_decays_are_tried_each_from_the_one_before_until_the_inner_block_does_worse(swing, quick, monkeypatch):
+    tried, first_losses = [], []
 
-    def build(inputs, outputs):
-        built.append(inputs)
-        return FeedForward(inputs, outputs)
+    def descend_and_tell(network, part, check, schedule, *rest):
+        tried.append(schedule.decay)
+        done = descend(network, part, check, schedule, *rest)
+        first_losses.append(done.losses[0])
+        return done
 
-    train(swing, build, replace(quick, decays=(0.1, 10.0, 0.2, 0.3)))
-    assert len(built) == 2
+    monkeypatch.setattr(trainer, "descend", descend_and_tell)
+    train(swing, FeedForward, replace(quick, decays=(0.1, 0.1, 30.0, 0.2)))
+    assert tried == [0.1, 0.1, 30.0]
+    assert first_losses[1] < first_losses[0] / 10
+
+
+def test_a_worse_decay_leaves_the_weights_of_the_better(swing, quick):
+    alone = train(swing, FeedForward, replace(quick, decays=(0.1,)))
+    assert same_weights(alone, train(swing, FeedForward, replace(quick, decays=(0.1, 30.0))))
+
+
+def test_compiled_code_and_torch_give_one_r2(swing):
+    """The pendulum with noise in its acceleration, so that no path can be perfect."""
+    rng = np.random.default_rng(2)
+    noisy = swing.with_outputs(swing.y + 0.3 * swing.y.std(axis=0) * rng.normal(size=swing.y.shape))
+    part, later = noisy.rows(slice(0, 1500)), swing.rows(slice(1500, None))
+    done = {name: train(part, FeedForward, TrainingSettings(arithmetic=name)) for name in ("auto", "torch")}
+    assert (done["auto"].arithmetic, done["torch"].arithmetic) == ("fused", "torch")
+    found, wanted = (r2(later.y, done[name].network(later.x)) for name in ("auto", "torch"))
+    assert np.all(wanted > 0.9)
+    np.testing.assert_allclose(found, wanted, atol=0.005)
 
 
 def test_a_constant_input_weighs_nothing(swing, quick):

@@ -16,6 +16,7 @@ from gaitdisc.networks.training_settings import TrainingSettings
         ({"decays": ()}, "needs at least one weight decay; decays is empty"),
         ({"decays": (0.1, -0.2)}, "needs weight decays of 0 or more; decays holds -0.2"),
         ({"inner_share": 1.0}, "needs an inner_share between 0 and 1; it is 1.0"),
+        ({"arithmetic": "fast"}, "needs arithmetic 'auto' or 'torch'; it is 'fast'"),
     ],
 )
 def test_settings_that_train_nothing_are_refused(wrong: dict[str, Any], words):
