@@ -1,0 +1,102 @@
+"""Which training length is enough, tested over the participants (section 4.2.4)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pandas as pd
+
+from gaitdisc.response.comparison import ALPHA, FEWEST, compare_columns, too_few
+from gaitdisc.results.data_quantity import DataQuantity
+from gaitdisc.results.pair_test import TEST_COLUMNS
+
+WHOLE = "exo, whole training part"
+LENGTH_COLUMNS = ("length_s", *TEST_COLUMNS)
+
+
+def compare_lengths(quantities: Sequence[DataQuantity], alpha: float = ALPHA) -> pd.DataFrame:
+    """Compare, at every training length, Augmented with Exo, and Exo with the Exo of the whole training part.
+
+    Parameters
+    ----------
+    quantities : sequence of DataQuantity
+        The participants; fewer than six are not tested.
+    alpha : float
+        Of each family: the variables at one length. One family of all lengths could show nothing at n = 11, for it
+        would hold 72 tests or more and at most 52 can.
+
+    Returns
+    -------
+    DataFrame
+        Columns `LENGTH_COLUMNS`, one row a length, comparison and variable; empty for fewer than six participants.
+        second is `exo` or `exo, whole training part`. A participant without a length is left out of it by name.
+
+    References
+    ----------
+    Ebers 2023, section 4.2.4, comparisons (i) and (ii). The family is not said there.
+    """
+    if len(quantities) < FEWEST:
+        return pd.DataFrame(columns=pd.Index(LENGTH_COLUMNS))
+    tables = {q.participant: _network(q) for q in quantities}
+    longest = {person: float(table["length_s"].max()) for person, table in tables.items()}
+    whole = pd.DataFrame({p: _r2(table, "exo", longest[p]) for p, table in tables.items()}).T
+    lengths = sorted({float(n) for p, table in tables.items() for n in table["length_s"] if n < longest[p]})
+    parts = []
+    for length in lengths:
+        models = {
+            model: pd.DataFrame({p: _r2(table, model, length) for p, table in tables.items()}).T.reindex(
+                index=whole.index, columns=whole.columns
+            )
+            for model in ("augmented", "exo")
+        }
+        for first, second, columns in (
+            ("augmented", "exo", models["exo"]),
+            ("exo", WHOLE, whole),
+        ):
+            found = compare_columns(models[first], columns, alpha)
+            parts.append(found.assign(length_s=length, first=first, second=second))
+    return pd.concat(parts, ignore_index=True)[list(LENGTH_COLUMNS)]
+
+
+def enough_length(table: pd.DataFrame, second: str = WHOLE) -> float | None:
+    """Shortest training length [s] from which on no variable is shown to differ; None where there is no such length.
+
+    That nothing is shown is no proof of equality, least of all with few participants: the shifts say how far apart
+    the two may be.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Of `compare_lengths`.
+    second : str
+        `exo`, or `exo, whole training part`.
+    """
+    chosen = table[table["second"] == second]
+    found = None
+    for length in sorted({float(length) for length in chosen["length_s"]}, reverse=True):
+        rows = chosen[chosen["length_s"] == length]
+        if rows["different"].any() or not rows["p"].notna().any():
+            break
+        found = length
+    return found
+
+
+def why_no_lengths(quantities: Sequence[DataQuantity]) -> str:
+    """Why the lengths are not tested; empty where they are.
+
+    Parameters
+    ----------
+    quantities : sequence of DataQuantity
+        The participants.
+    """
+    return too_few(len(quantities)) if len(quantities) < FEWEST else ""
+
+
+def _network(quantity: DataQuantity) -> pd.DataFrame:
+    table = quantity.table
+    return table[(table["kind"] == "network") & (table["walk"] == "exo")]
+
+
+def _r2(table: pd.DataFrame, model: str, length: float) -> pd.Series:
+    chosen = table[(table["model"] == model) & (table["length_s"] == length)]
+    return chosen.groupby("variable", sort=False)["r2"].first().astype(float)
