@@ -1,0 +1,46 @@
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from gaitdisc.errors import ComparisonError
+from gaitdisc.response.subgroups import discrepancy_curves, find_responders
+
+PHASE = np.linspace(0, 2 * np.pi, 101)
+
+
+def response(i, kind, outputs=("ankle_angle_r", "emg_sol_r")):
+    """Discrepancy of a sine or a cosine, in deg/s2 and in V/s2, with a size of its own."""
+    rng = np.random.default_rng(i)
+    shape = np.sin(PHASE) if kind else np.cos(PHASE)
+    curve = (1 + 0.1 * rng.standard_normal()) * shape[None, :, None] * np.array([1000.0, 0.1])[: len(outputs)]
+    noise = 0.5 * rng.standard_normal((20, 101, len(outputs))) * np.array([1000.0, 0.1])[: len(outputs)]
+    return SimpleNamespace(outputs=outputs, residuals={"nominal": curve + noise})
+
+
+def test_two_kinds_of_responders_are_told_apart():
+    found = find_responders([response(i, i % 2) for i in range(12)])
+    assert found.count == 2
+    assert len(set(found.labels[::2])) == len(set(found.labels[1::2])) == 1
+
+
+def test_one_kind_has_no_sub_groups():
+    assert find_responders([response(i, 0) for i in range(12)]).count == 0
+
+
+def test_all_outputs_weigh_alike():
+    curves = discrepancy_curves([response(i, i % 2) for i in range(6)])
+    assert curves.shape == (6, 202)
+    angle, emg = (np.mean(curves[:, part] ** 2) for part in (slice(101), slice(101, None)))
+    assert angle == pytest.approx(1.0) == emg
+
+
+def test_missing_samples_are_left_out_of_the_mean():
+    holed = [response(i, 0) for i in range(6)]
+    holed[0].residuals["nominal"][3, 50, 0] = np.nan
+    assert np.isfinite(discrepancy_curves(holed)).all()
+
+
+def test_participants_of_different_outputs_are_refused():
+    with pytest.raises(ComparisonError, match="found 2 sets of outputs in 6 participants"):
+        discrepancy_curves([*(response(i, 0) for i in range(5)), response(5, 0, ("ankle_angle_r",))])
