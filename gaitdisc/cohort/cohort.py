@@ -1,0 +1,148 @@
+"""The cohort: twelve people, two walks each, and what is true of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from gaitdisc.cohort.device import STIFFNESS, Spring
+from gaitdisc.cohort.person import Person, drawn
+from gaitdisc.errors import SchemaError
+from gaitdisc.recording import Trial
+
+WALK_S = 240.0
+CONDITIONS = ("nominal", "exo")
+REPORTED_SEED, CALIBRATION_SEED = 20_000, 10_000  # people that are reported, and those that constants were set on
+CHANGES, CHANGE_SHARE = 6, 0.80  # who changes the way of walking late in the Exo trial, and after which share of it
+HIDDEN = ("spring", "weak plantarflexor", "late EMG", "foot mass", "scaled moment", "none")
+
+
+@dataclass(frozen=True, eq=False)
+class Walks:
+    """The two walks of one person, with the truth.
+
+    Parameters
+    ----------
+    person : Person
+        Who walked.
+    trials : dict of str to Trial
+        `nominal` and `exo`, as measured.
+    truth : dict
+        What is true of both, for tests alone: plain numbers and lists, to be written as JSON.
+    """
+
+    person: Person
+    trials: dict[str, Trial]
+    truth: dict[str, Any]
+
+
+def the_twelve(calibration: bool = False) -> tuple[Person, ...]:
+    """Six women and six men, one of whom changes gait late in the Exo trial.
+
+    Parameters
+    ----------
+    calibration : bool
+        The other twelve, on whom the constants of the model were set; they are never reported.
+
+    Returns
+    -------
+    tuple of Person
+
+    Examples
+    --------
+    >>> [person.sex for person in the_twelve()].count("f")
+    6
+    """
+    seed = CALIBRATION_SEED if calibration else REPORTED_SEED
+    letter = "C" if calibration else "W"
+    people = [drawn(f"{letter}{number + 1:02d}", seed + number, "fm"[number % 2]) for number in range(12)]
+    people[CHANGES] = replace(people[CHANGES], change_s=CHANGE_SHARE * WALK_S)
+    return tuple(people)
+
+
+def walks_of(person: Person, duration_s: float = WALK_S, hidden: str = "spring") -> Walks:
+    """Walk a person in both conditions and measure it.
+
+    Parameters
+    ----------
+    person : Person
+        Of the cohort.
+    duration_s : float
+        Length of each walk [s]; a late change of gait keeps its share of it.
+    hidden : str
+        What differs between the conditions: `spring`, with adaptation (the dissertation's); `weak plantarflexor`
+        (soleus and gastrocnemius give 75 % of their moment), `late EMG` (40 ms), `foot mass` (0.8 kg on each foot),
+        `scaled moment` (the spring's moment is 0.6 of what 5 N m/deg would give), `none`.
+
+    Returns
+    -------
+    Walks
+
+    Raises
+    ------
+    SchemaError
+        If the effect is none of `HIDDEN`.
+    """
+    from gaitdisc.cohort.measurement import measured
+    from gaitdisc.cohort.walk import walked
+
+    person = replace(person, change_s=person.change_s * duration_s / WALK_S)
+    spring, changed, late_s = _with_effect(person, hidden)
+    seeds = {word: _trial_seed(person, number) for number, word in enumerate(CONDITIONS)}
+    nominal = walked(person, None, duration_s, seeds["nominal"])
+    exo = walked(changed, spring, duration_s, seeds["exo"])
+    trials = {
+        "nominal": measured(nominal, f"{person.name}_nominal", "nominal"),
+        "exo": measured(exo, f"{person.name}_exo", "exo", late_s),
+    }
+    truth = {
+        "person": person.name,
+        "sex": person.sex,
+        "age_years": person.age_years,
+        "height_m": person.height_m,
+        "mass_kg": person.mass_kg,
+        "speed_m_per_s": person.speed_m_per_s,
+        "hidden": hidden,
+        "spring_nm_per_deg": spring.stiffness if spring else 0.0,
+        "engaged_deg": person.engaged_deg,
+        "relief": person.adaptation.relief,
+        "habit_change_rms_deg": float(np.sqrt(np.mean(person.adaptation.habit_deg**2))),
+        "effort_change": person.adaptation.effort.tolist(),
+        "change_s": person.change_s if np.isfinite(person.change_s) else None,
+        "emg_late_s": late_s,
+        "contacts_r_s": {"nominal": nominal.contacts().tolist(), "exo": exo.contacts().tolist()},
+    }
+    return Walks(person, trials, truth)
+
+
+def walked_cohort(duration_s: float = WALK_S, hidden: str = "spring") -> Iterator[Walks]:
+    """Walk the twelve, one after the other; only one person is in memory at a time.
+
+    Parameters
+    ----------
+    duration_s : float
+        Length of each walk [s].
+    hidden : str
+        As in `walks_of`.
+    """
+    for person in the_twelve():
+        yield walks_of(person, duration_s, hidden)
+
+
+def _with_effect(person: Person, hidden: str) -> tuple[Spring | None, Person, float]:
+    if hidden not in HIDDEN:
+        raise SchemaError(
+            f"the effect that is hidden is one of: {', '.join(HIDDEN)}", f"found {hidden!r}", "Use one of these."
+        )
+    spring = Spring(STIFFNESS * (0.6 if hidden == "scaled moment" else 1.0))
+    if hidden in ("spring", "scaled moment"):
+        return spring, person.adapted_to(spring), 0.0
+    weak = replace(person, plantarflexors=0.75 if hidden == "weak plantarflexor" else 1.0)
+    return None, replace(weak, foot_kg=0.8 if hidden == "foot mass" else 0.0), 0.04 if hidden == "late EMG" else 0.0
+
+
+def _trial_seed(person: Person, number: int) -> int:
+    return int(np.random.SeedSequence([round(person.mass_kg * 1e6), number]).generate_state(1)[0])

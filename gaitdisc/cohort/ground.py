@@ -1,0 +1,103 @@
+"""The belt: what it does to a foot along the habitual path, and how firmly.
+
+The vertical force is mostly prescribed: it follows the habitual curve of `habit.csv`, as does the shear. What is
+mechanical is what differs from the habit. A foot that is lower than usual is pushed up, one that the belt has carried
+further or less far than the leg's habit is pulled along: it sticks to the belt, whose speed is constant, whatever the
+phase does. All of this passes through a gate that is exactly zero in swing.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.cohort.habit import STANCE, habitual
+
+# centre of pressure from the ankle, as a share of the foot's length, over the stance (general knowledge: from the
+# heel's edge to the great toe, fast over the heel, slow under the forefoot)
+ROLLED = (0.0, 0.05, 0.12, 0.25, 0.40, 0.55, 0.70, 0.80, 0.90, 1.0)
+PRESSURE = (-0.17, -0.14, -0.07, 0.09, 0.21, 0.32, 0.43, 0.50, 0.56, 0.60)
+RISE, FALL = 0.10, 0.16  # shares of the stance over which the gate opens and closes
+
+
+class Belt(NamedTuple):
+    """How firmly the belt holds a foot.
+
+    Parameters
+    ----------
+    along, up, turn : float
+        Stiffness [N/m, N/m, N m/rad].
+    along_damping, up_damping, turn_damping : float
+        [N s/m, N s/m, N m s/rad].
+    """
+
+    along: float = 6000.0
+    up: float = 12000.0
+    turn: float = 120.0
+    along_damping: float = 180.0
+    up_damping: float = 360.0
+    turn_damping: float = 3.0
+
+
+def gate(phase: NDArray[np.float64]) -> NDArray[np.float64]:
+    """How much of a foot is on the belt: 0 in swing, 1 in mid-stance.
+
+    Parameters
+    ----------
+    phase : ndarray, any shape [share of a stride]
+        0 at contact.
+
+    Examples
+    --------
+    >>> gate(np.array([0.0, 0.3, 0.7])).tolist()
+    [0.0, 1.0, 0.0]
+    """
+    share = np.mod(phase, 1.0) / STANCE
+    opening = np.sin(0.5 * np.pi * np.clip(share / RISE, 0.0, 1.0)) ** 2
+    closing = np.sin(0.5 * np.pi * np.clip((1.0 - share) / FALL, 0.0, 1.0)) ** 2
+    return np.where(share < 1.0, opening * closing, 0.0)
+
+
+def habitual_force(phase: NDArray[np.float64], speed: float) -> NDArray[np.float64]:
+    """Ground force along the habit, of body weight 1.
+
+    Over a stride both feet carry the body's weight and push as much as they brake, as steady walking demands; the
+    published curves are scaled and shifted by a few percent for it.
+
+    Parameters
+    ----------
+    phase : ndarray (phase,) [share of a stride]
+        One whole cycle, evenly spaced, without its end.
+    speed : float
+        Dimensionless speed [1].
+
+    Returns
+    -------
+    ndarray (phase, 2) [body weight]
+        Forwards, upwards.
+    """
+    up = np.maximum(0.0, habitual("ground_vy", speed).at(phase))
+    up = up * 0.5 / up.mean()
+    along = habitual("ground_vx", speed).at(phase)
+    along = along - up * along.mean() / up.mean()
+    return np.column_stack([along, up])
+
+
+def pressure_centre(phase: NDArray[np.float64], sole_m: float) -> NDArray[np.float64]:
+    """Centre of pressure from the ankle, along the foot [m].
+
+    Parameters
+    ----------
+    phase : ndarray (phase,) [share of a stride]
+        0 at contact; in swing the value is held on the way back and means nothing.
+    sole_m : float
+        Length of the foot.
+    """
+    from scipy.interpolate import PchipInterpolator
+
+    share = np.mod(phase, 1.0) / STANCE
+    rolled = PchipInterpolator(ROLLED, PRESSURE)(np.minimum(share, 1.0))
+    back = np.clip((share - 1.0) / (1.0 / STANCE - 1.0), 0.0, 1.0)
+    return sole_m * (rolled + (PRESSURE[0] - PRESSURE[-1]) * np.sin(0.5 * np.pi * back) ** 2)

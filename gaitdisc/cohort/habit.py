@@ -1,0 +1,139 @@
+"""Habitual curves over the stride: how somebody of a given speed usually moves, is loaded and is active.
+
+The coefficients in `habit.csv` are fits of ours (rms 0.1 deg, 0.015 body weight, 0.001 of an EMG unit, or less) to the
+mean curves that Schwartz, Rozumalski and Trost publish as a supplement for two dimensionless speeds, Free (0.429) and
+Fast (0.560); between them a curve is interpolated linearly. Their 83 people are children; adults of the same
+dimensionless speed walk much alike, but this is why joint moments and cadence are judged against adults as well
+(docs/cohort.md). Soleus, vasti and gluteus medius are not among their muscles: for these `BURSTS` holds smooth bursts
+whose on and off are those of Perry and Burnfield, and whose heights are general knowledge.
+
+References
+----------
+Schwartz MH, Rozumalski A, Trost JP (2008). The effect of walking speed on the gait of typically developing children.
+J Biomech 41(8), 1639-1650, supplement. Perry J, Burnfield JM (2010). Gait Analysis, 2nd edition.
+"""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+TABLE = Path(__file__).with_name("habit.csv")
+STANCE = 0.60  # share of the stride over which the sine series of the ground forces extend
+# centre, half width [share of a stride], height [EMG unit of Schwartz et al., about a share of the largest effort]
+BURSTS: dict[str, tuple[tuple[float, float, float], ...]] = {
+    "emg_sol": ((0.41, 0.13, 0.50), (0.24, 0.20, 0.22)),
+    "emg_vas": ((0.07, 0.15, 0.38), (0.95, 0.09, 0.16)),
+    "emg_gmed": ((0.10, 0.14, 0.36), (0.27, 0.16, 0.20), (0.97, 0.06, 0.10)),
+}
+REST = 0.03
+SHARPER = 1.5  # the mean of 83 people smears bursts that are sharper in each of them; a judgement, not a measurement
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A curve over the stride as a short series.
+
+    Parameters
+    ----------
+    basis : str
+        `fourier`, or `stance sine`: sines over the stance, exactly zero in swing.
+    mean : float
+        Mean over the stride; 0 for a stance sine.
+    terms : tuple of float
+        cosine1, sine1, cosine2, ... or the amplitudes of 1, 2, ... half waves.
+
+    Examples
+    --------
+    >>> Curve("fourier", 1.0, (2.0, 0.0)).at(np.array([0.0, 0.5])).tolist()
+    [3.0, -1.0]
+    """
+
+    basis: str
+    mean: float
+    terms: tuple[float, ...]
+
+    def at(self, phase: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Value at phases of the stride.
+
+        Parameters
+        ----------
+        phase : ndarray, any shape [share of a stride]
+            0 at contact.
+        """
+        own = np.mod(phase, 1.0)
+        if self.basis == "fourier":
+            turn = 2 * np.pi * own
+            pairs = zip(self.terms[::2], self.terms[1::2], strict=True)
+            waves = [a * np.cos(k * turn) + b * np.sin(k * turn) for k, (a, b) in enumerate(pairs, 1)]
+            return self.mean + np.sum(waves, axis=0)
+        share = own / STANCE
+        waves = np.sum([b * np.sin(k * np.pi * share) for k, b in enumerate(self.terms, 1)], axis=0)
+        return np.where(share < 1.0, waves, 0.0)
+
+
+def habitual(name: str, speed: float) -> Curve:
+    """Habitual curve of a person who walks at a dimensionless speed.
+
+    Parameters
+    ----------
+    name : str
+        A joint angle (`knee_angle`), `pelvis_tilt` [deg], `ground_vx` or `ground_vy` [body weight], `emg_rf`,
+        `emg_ham`, `emg_gas`, `emg_ta` [EMG unit].
+    speed : float
+        Walking speed over the square root of gravity times leg length [1]; held within 0.35 and 0.60.
+
+    Returns
+    -------
+    Curve
+
+    Examples
+    --------
+    >>> knee = habitual("knee_angle", 0.429)
+    >>> round(float(knee.at(np.linspace(0, 1, 101)).max()), 1)  # published: 59.1 deg
+    59.3
+    """
+    (slow, low), (fast, high) = _rows()[name]
+    share = (np.clip(speed, 0.35, 0.60) - slow) / (fast - slow)
+    mixed = [float(a + share * (b - a)) for a, b in zip((low.mean, *low.terms), (high.mean, *high.terms), strict=True)]
+    return Curve(low.basis, mixed[0], tuple(mixed[1:]))
+
+
+def activity(muscle: str, phase: NDArray[np.float64], speed: float) -> NDArray[np.float64]:
+    """Habitual excitation of a muscle, of 1 at the largest effort.
+
+    Parameters
+    ----------
+    muscle : str
+        `emg_sol`, `emg_rf`, ...
+    phase : ndarray (phase,) [share of a stride]
+        0 at contact.
+    speed : float
+        Dimensionless speed [1].
+    """
+    if muscle in BURSTS:
+        bursts = [_burst(phase, *burst) for burst in BURSTS[muscle]]
+        return REST + np.sum(bursts, axis=0) * (1.0 + 1.5 * (speed - 0.429))
+    mean = np.maximum(REST, habitual(muscle, speed).at(phase))
+    low, high = mean.min(), mean.max()
+    return low + (high - low) * ((mean - low) / (high - low)) ** SHARPER
+
+
+def _burst(phase: NDArray[np.float64], centre: float, half_width: float, height: float) -> NDArray[np.float64]:
+    apart = np.abs(np.mod(phase - centre + 0.5, 1.0) - 0.5) / half_width
+    return np.where(apart < 1.0, height * np.cos(0.5 * np.pi * np.minimum(apart, 1.0)) ** 2, 0.0)
+
+
+@cache
+def _rows() -> dict[str, list[tuple[float, Curve]]]:
+    found: dict[str, list[tuple[float, Curve]]] = {}
+    with TABLE.open(encoding="utf-8", newline="") as file:
+        for row in csv.reader(line for line in file if not line.startswith("curve,")):
+            terms = tuple(float(cell) for cell in row[4:])
+            found.setdefault(row[0], []).append((float(row[1]), Curve(row[2], float(row[3]), terms)))
+    return found

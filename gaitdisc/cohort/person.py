@@ -1,0 +1,213 @@
+"""A person: size, speed, style of walking, variability, and how the device is met; all drawn from one seed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.cohort.device import Spring
+
+JOINTS = ("hip_flexion", "hip_adduction", "hip_rotation", "knee_angle", "ankle_angle")
+MUSCLES = ("emg_ham", "emg_rf", "emg_vas", "emg_gas", "emg_sol", "emg_ta", "emg_gmed")
+HARMONICS = 4
+LEG_OF_HEIGHT = 0.530
+CADENCE, CADENCE_SPEED = 0.565, 0.429  # steps and speed, dimensionless, of Schwartz et al. (2008), Free
+
+
+@dataclass(frozen=True, eq=False)
+class Style:
+    """How a person's habit differs from the average one.
+
+    Parameters
+    ----------
+    size : ndarray (joint,)
+        Factor on each curve.
+    offset_deg : ndarray (side, joint) [deg]
+        Constant shift of what is measured: where the markers sit.
+    wave_deg : ndarray (side, joint, harmonic, 2) [deg]
+        Cosine and sine of the first harmonics on top.
+    strength : ndarray (side, muscle)
+        Factor on each muscle's excitation.
+    """
+
+    size: NDArray[np.float64]
+    offset_deg: NDArray[np.float64]
+    wave_deg: NDArray[np.float64]
+    strength: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Adaptation:
+    """What a person learns on a spring of 5 N m/deg; in proportion on another.
+
+    Parameters
+    ----------
+    relief : float
+        Share of the spring's moment that the commands allow for.
+    habit_deg : ndarray (side, joint, harmonic, 2) [deg]
+        Change of the habit, cosine and sine of the first harmonics.
+    effort : ndarray (muscle,)
+        Relative change of each muscle's excitation.
+    """
+
+    relief: float
+    habit_deg: NDArray[np.float64]
+    effort: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Person:
+    """Somebody of the cohort.
+
+    Parameters
+    ----------
+    name, sex : str
+        Pseudonym; `f` or `m`.
+    age_years, height_m, mass_kg, speed_m_per_s, stride_s : float
+        Anthropometry, self-selected speed, mean stride time.
+    engaged_deg : float
+        Dorsiflexion at which the device's spring engages [deg].
+    style : Style
+        Habit.
+    adaptation : Adaptation
+        To the device.
+    drift_deg : ndarray (side, joint, harmonic, 2) [deg]
+        Habit towards which the person wanders slowly, and back.
+    unrest : float
+        Factor on all variability from stride to stride.
+    change_s : float
+        Time of a change of gait on the device [s]; infinite for those who stay the same.
+    learnt : Spring, optional
+        Spring that the commands are adapted to; None before any device.
+    plantarflexors : float
+        Strength of soleus and gastrocnemius that the person's own commands do not know of; 1 is as they expect.
+    foot_kg : float
+        Mass on each foot that the commands do not know of [kg].
+
+    Examples
+    --------
+    >>> person = drawn("W01", seed=1, sex="f")
+    >>> person.learnt is None, person.adapted_to(Spring()).learnt
+    (True, Spring(stiffness=5.0, slack_deg=0.0))
+    """
+
+    name: str
+    sex: str
+    age_years: float
+    height_m: float
+    mass_kg: float
+    speed_m_per_s: float
+    stride_s: float
+    engaged_deg: float
+    style: Style = field(repr=False)
+    adaptation: Adaptation = field(repr=False)
+    drift_deg: NDArray[np.float64] = field(repr=False)
+    unrest: float = 1.0
+    change_s: float = float("inf")
+    learnt: Spring | None = None
+    plantarflexors: float = 1.0
+    foot_kg: float = 0.0
+
+    def adapted_to(self, spring: Spring) -> Person:
+        """Return the same person after practice with a spring.
+
+        Parameters
+        ----------
+        spring : Spring
+            Of the device.
+        """
+        return replace(self, learnt=spring)
+
+    def unadapted(self) -> Person:
+        """Return the same person, who never learns: commands, habit and effort stay what they were."""
+        nothing = Adaptation(0.0, 0 * self.adaptation.habit_deg, 0 * self.adaptation.effort)
+        return replace(self, adaptation=nothing)
+
+    def relieved(self, relief: float) -> Person:
+        """Return the same person, who learns another share of the spring's moment.
+
+        Parameters
+        ----------
+        relief : float
+            Share of the spring's moment that the commands allow for, 0 to 1.
+        """
+        return replace(self, adaptation=replace(self.adaptation, relief=relief))
+
+    @property
+    def dimensionless_speed(self) -> float:
+        """Speed over the square root of gravity times leg length."""
+        return self.speed_m_per_s / float(np.sqrt(9.81 * LEG_OF_HEIGHT * self.height_m))
+
+
+def drawn(name: str, seed: int, sex: str) -> Person:
+    """Draw a person.
+
+    Sizes follow the dissertation's twelve adults (1.69 +- 0.10 m, 66.5 +- 11.7 kg, 1.36 +- 0.11 m/s); cadence follows
+    speed and leg length with the dimensionless cadence of Schwartz et al. (2008), as the square root of speed.
+
+    Parameters
+    ----------
+    name : str
+        Pseudonym.
+    seed : int
+        Everything about the person rests on it.
+    sex : str
+        `f` or `m`.
+
+    Returns
+    -------
+    Person
+
+    Examples
+    --------
+    >>> 1.4 < drawn("W01", 7, "f").height_m < 1.9
+    True
+    """
+    rng = np.random.default_rng([seed, 4])
+    height = (1.63 if sex == "f" else 1.755) + 0.065 * _held(rng)
+    mass = (22.6 if sex == "f" else 23.8) * (1 + 0.09 * _held(rng)) * height**2
+    speed = 1.36 + 0.11 * _held(rng)
+    leg = LEG_OF_HEIGHT * height
+    cadence = CADENCE * np.sqrt(speed / np.sqrt(9.81 * leg) / CADENCE_SPEED) * (1 + 0.02 * _held(rng))
+    return Person(
+        name,
+        sex,
+        float(23.9 + 1.8 * _held(rng)),
+        float(height),
+        float(mass),
+        float(speed),
+        float(2 / cadence * np.sqrt(leg / 9.81)),
+        float(-1.0 + 1.5 * _held(rng)),
+        _style(rng),
+        Adaptation(
+            float(np.clip(0.55 + 0.2 * _held(rng), 0.1, 0.95)),
+            _waves(rng, 0.9, 0.3),
+            np.clip(0.10 * rng.normal(size=len(MUSCLES)), -0.25, 0.25),
+        ),
+        _waves(rng, 0.15, 0.06),
+        float(np.clip(1 + 0.15 * _held(rng), 0.7, 1.3)),
+    )
+
+
+def _held(rng: np.random.Generator) -> float:
+    """Normal number, held within two standard deviations: a cohort of nondisabled people has no outliers."""
+    return float(np.clip(rng.normal(), -2.0, 2.0))
+
+
+def _style(rng: np.random.Generator) -> Style:
+    common = rng.normal(size=len(JOINTS)) * (3.0, 1.2, 3.0, 2.0, 1.8)
+    sides = rng.normal(size=(2, len(JOINTS))) * (0.8, 0.6, 1.2, 0.8, 0.8)
+    strength = np.exp(0.12 * rng.normal(size=len(MUSCLES)) + 0.08 * rng.normal(size=(2, len(MUSCLES))))
+    size = np.clip(1 + rng.normal(size=len(JOINTS)) * (0.03, 0.15, 0.15, 0.05, 0.08), 0.7, 1.3)
+    return Style(size, common + sides, _waves(rng, 0.6, 0.3), strength)
+
+
+def _waves(rng: np.random.Generator, both: float, side: float) -> NDArray[np.float64]:
+    """Harmonics that fall with their order, most of them common to both sides [deg]."""
+    fall = 1.0 / np.arange(1.0, HARMONICS + 1)[:, None]
+    shape = (len(JOINTS), HARMONICS, 2)
+    each = np.array([1.0, 0.5, 0.7, 1.2, 1.0])[:, None, None]
+    common = both * rng.normal(size=shape)
+    return np.stack([(common + side * rng.normal(size=shape)) * fall * each for _ in range(2)])

@@ -1,0 +1,252 @@
+"""A walk: a person, a device, a duration and a seed; and the truth of it, which no laboratory sees."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.cohort.body import LEG_OF_HEIGHT, leg_of
+from gaitdisc.cohort.controller import learnt_table
+from gaitdisc.cohort.device import FOOT_KG, SHANK_KG, Spring
+from gaitdisc.cohort.ground import Belt
+from gaitdisc.cohort.motion import NOISE, NOISE_STEPS, PACE_NOISE, PER_LEG_NOISE, STEP_S, WANDER, Loop, Worn, moved
+from gaitdisc.cohort.muscles import strength_of
+from gaitdisc.cohort.person import MUSCLES, Person
+from gaitdisc.errors import StrideError
+
+WARM_UP_S = 8.0  # walked before the recording begins
+QUICK_HZ, SLOW_HZ = 1000.0, 100.0
+CHANGE_S = 4.0  # a change of gait takes this long
+CHANGE_SIZE = 16.0  # of the drift's standard deviation
+TYPICAL_KG = 66.5
+# standard deviation [N m] and time constant [s] of the noise in the moments of hip, knee, ankle, adduction, rotation
+MOMENT_NOISE = (2.6, 2.8, 1.8, 1.2, 0.3)
+MOMENT_NOISE_S = 0.12
+MUSCLE_NOISE, MUSCLE_NOISE_S = (0.10, 0.06), (0.10, 6.0)
+PACE_NOISE_SIZE, PACE_NOISE_S = (0.018, 0.012), (0.3, 10.0)
+DRIFT_S = 25.0
+
+
+@dataclass(frozen=True, eq=False)
+class TrueWalk:
+    """Everything that happened during a walk.
+
+    Parameters
+    ----------
+    person : Person
+        Who walked.
+    device : Spring
+        What was worn.
+    seed : int
+        Of everything that varied.
+    quick_s, slow_s : ndarray (time,) [s]
+        Clocks at 1000 and 100 Hz.
+    phase : ndarray (quick,) [strides]
+        Of the right foot, counted on; a whole number is a contact. The left foot is half a stride off.
+    force : ndarray (quick, 2, 2) [N]
+        Side; forwards, upwards.
+    excitation : ndarray (quick, 2, 7) [1]
+        Side; muscle in the order of `MUSCLES`.
+    angles : ndarray (slow, 2, 5) [deg]
+        Side; joint in the order of `JOINTS`.
+    moments : ndarray (slow, 2, 3) [N m]
+        Side; hip and knee towards flexion, ankle towards dorsiflexion, without the device.
+    spring : ndarray (slow, 2) [N m]
+        Moment of the device on each ankle, towards dorsiflexion.
+    sole : ndarray (slow, 2) [m/s]
+        Speed forwards of the foot's point under the pressure; minus the belt's speed where the foot stands.
+    acceleration : ndarray (slow, 2, 3) [deg/s2]
+        Side; hip, knee, ankle.
+
+    Examples
+    --------
+    >>> from gaitdisc.cohort.person import drawn
+    >>> walk = walked(drawn("W01", 1, "f"), None, 5.0, seed=3)
+    >>> walk.angles.shape, walk.excitation.shape
+    ((500, 2, 5), (5000, 2, 7))
+    """
+
+    person: Person
+    device: Spring
+    seed: int
+    quick_s: NDArray[np.float64] = field(repr=False)
+    slow_s: NDArray[np.float64] = field(repr=False)
+    phase: NDArray[np.float64] = field(repr=False)
+    force: NDArray[np.float64] = field(repr=False)
+    excitation: NDArray[np.float64] = field(repr=False)
+    angles: NDArray[np.float64] = field(repr=False)
+    moments: NDArray[np.float64] = field(repr=False)
+    spring: NDArray[np.float64] = field(repr=False)
+    sole: NDArray[np.float64] = field(repr=False)
+    acceleration: NDArray[np.float64] = field(repr=False)
+
+    def contacts(self, side: int = 0) -> NDArray[np.float64]:
+        """Times at which a foot meets the belt, from the phase itself [s].
+
+        Parameters
+        ----------
+        side : int
+            0 right, 1 left.
+        """
+        own = self.phase + 0.5 * side
+        return np.interp(np.arange(np.ceil(own[0]), np.floor(own[-1]) + 1), own, self.quick_s)
+
+    def mean_stride(self, values: NDArray[np.float64], side: int = 0) -> NDArray[np.float64]:
+        """Mean curve over the true phase, 101 points.
+
+        Parameters
+        ----------
+        values : ndarray (slow or quick, ...)
+            A field of this walk.
+        side : int
+            0 right, 1 left: whose contact is 0 %.
+        """
+        return self.strides(values, side).mean(axis=0)
+
+    def strides(self, values: NDArray[np.float64], side: int = 0) -> NDArray[np.float64]:
+        """Each stride on 101 points of its true phase.
+
+        Parameters
+        ----------
+        values : ndarray (slow or quick, ...)
+            A field of this walk.
+        side : int
+            0 right, 1 left: whose contact is 0 %.
+
+        Returns
+        -------
+        ndarray (stride, 101, ...)
+        """
+        quick = len(values) == len(self.quick_s)
+        own = (self.phase if quick else self.phase[:: round(QUICK_HZ / SLOW_HZ)]) + 0.5 * side
+        first, last = int(np.ceil(own[0])), int(np.floor(own[-1]))
+        grid = (np.arange(first, last)[:, None] + np.linspace(0.0, 1.0, 101)).ravel()
+        flat = values.reshape(len(values), -1)
+        columns = [np.interp(grid, own, column) for column in flat.T]
+        return np.column_stack(columns).reshape(last - first, 101, *values.shape[1:])
+
+
+def walked(person: Person, device: Spring | None, duration_s: float, seed: int) -> TrueWalk:
+    """Walk on the treadmill for a while.
+
+    Parameters
+    ----------
+    person : Person
+        As adapted as they are (`Person.adapted_to`).
+    device : Spring or None
+        None, or stiffness 0, is the device without its spring; both give the same walk to the last bit.
+    duration_s : float
+        Length of the recording, after `WARM_UP_S` that are not kept [s].
+    seed : int
+        Of the variability; the same seed gives the same walk.
+
+    Returns
+    -------
+    TrueWalk
+
+    Raises
+    ------
+    StrideError
+        If the person falls, which none of those drawn was seen to do.
+
+    Examples
+    --------
+    >>> from gaitdisc.cohort.person import drawn
+    >>> walk = walked(drawn("W01", 1, "f"), Spring(5.0), 5.0, seed=3)
+    >>> bool(walk.spring.min() < -5.0)
+    True
+    """
+    device = device or Spring(0.0)
+    leg = leg_of(person.height_m, person.mass_kg, person.foot_kg)
+    strength = strength_of(person.mass_kg)
+    weak = strength.reach.copy()
+    weak[[MUSCLES.index("emg_gas"), MUSCLES.index("emg_sol")], 2] *= person.plantarflexors
+    engaged = np.radians(person.engaged_deg + device.slack_deg)
+    worn = Worn(float(np.degrees(device.stiffness)), float(engaged), person.speed_m_per_s, person.stride_s)
+    tables = np.stack(
+        [np.stack([learnt_table(person, side, drifted) for side in (0, 1)]) for drifted in (0.0, CHANGE_SIZE)]
+    )
+    noise = _noise(person, device, duration_s + WARM_UP_S, seed)
+    quick, slow, upright = moved(leg, strength._replace(reach=weak), Belt(), _loop(person), worn, tables, noise)
+    if not upright:
+        raise StrideError(
+            "a walk needs legs that stay under the body",
+            f"{person.name}, {device.stiffness:g} N m/deg, seed {seed}: a segment turned by more than 143 deg",
+            "Draw another person; please report the seed.",
+        )
+    return _kept(person, device, seed, quick, slow)
+
+
+def _loop(person: Person) -> Loop:
+    size = person.mass_kg / TYPICAL_KG
+    leg_m = LEG_OF_HEIGHT * person.height_m
+    return Loop(
+        stiffness=size * np.array([60.0, 35.0, 35.0]),
+        damping=size * np.array([8.0, 2.0, 1.5]),
+        loaded=np.array([1.0, 4.5, 3.0]),
+        reflex=25.0 * size,
+        reflex_lag_s=0.040,
+        side_stiffness=size * np.array([150.0, 30.0]),
+        side_damping=size * np.array([15.0, 2.0]),
+        side_inertia=size * np.array([3.5 * leg_m, 0.5]),
+        hurry=0.25,
+        moment_noise=person.unrest * size * np.array(MOMENT_NOISE),
+        muscle_noise=person.unrest * np.array(MUSCLE_NOISE),
+        pace_noise=person.unrest * np.array(PACE_NOISE_SIZE),
+        whole_kg=person.mass_kg + 2 * (SHANK_KG + FOOT_KG),
+        pelvis=size * np.array([600.0, 350.0, 4000.0, 500.0]),
+    )
+
+
+def _noise(person: Person, device: Spring, duration_s: float, seed: int) -> NDArray[np.float64]:
+    """Coloured noise of standard deviation 1 at 200 Hz, and in its last channel how far the habit has drifted."""
+    from scipy.signal import lfilter
+
+    rng = np.random.default_rng([seed, 11])
+    step_s = STEP_S * NOISE_STEPS
+    count = round(duration_s / step_s) + 1
+    colours = np.empty(NOISE)
+    for side in range(2):
+        own = colours[side * PER_LEG_NOISE : (side + 1) * PER_LEG_NOISE]
+        own[:5] = MOMENT_NOISE_S
+        own[5:12], own[12:] = MUSCLE_NOISE_S
+    colours[PACE_NOISE : PACE_NOISE + 2] = PACE_NOISE_S
+    colours[WANDER] = DRIFT_S
+    found = np.empty((count, NOISE))
+    for channel, colour in enumerate(colours):
+        keep = np.exp(-step_s / colour)
+        shocks = rng.normal(size=count) * np.sqrt(1 - keep**2)
+        shocks[0] = rng.normal()
+        found[:, channel] = lfilter([1.0], [1.0, -keep], shocks)
+    found[:, WANDER] = np.clip(found[:, WANDER], -2.5, 2.5)
+    if device.stiffness > 0:
+        time = np.arange(count) * step_s - WARM_UP_S
+        found[:, WANDER] += CHANGE_SIZE * np.clip((time - person.change_s) / CHANGE_S, 0.0, 1.0)
+    found[:, WANDER] /= CHANGE_SIZE
+    return found
+
+
+def _kept(person: Person, device: Spring, seed: int, quick: NDArray[np.float64], slow: NDArray[np.float64]) -> TrueWalk:
+    quick, slow = quick[round(WARM_UP_S * QUICK_HZ) :], slow[round(WARM_UP_S * SLOW_HZ) :]
+    psi = slow[:, 1:7].reshape(-1, 2, 3)
+    hips = slow[:, 7:11].reshape(-1, 2, 2)
+    flexion = [psi[:, :, 0], hips[:, :, 0], hips[:, :, 1], psi[:, :, 0] - psi[:, :, 1], psi[:, :, 2] - psi[:, :, 1]]
+    speedup = slow[:, 23:29].reshape(-1, 2, 3)
+    joints = [speedup[:, :, 0], speedup[:, :, 0] - speedup[:, :, 1], speedup[:, :, 2] - speedup[:, :, 1]]
+    return TrueWalk(
+        person,
+        device,
+        seed,
+        np.arange(len(quick)) / QUICK_HZ,
+        np.arange(len(slow)) / SLOW_HZ,
+        quick[:, 0],
+        quick[:, 1:5].reshape(-1, 2, 2),
+        quick[:, 5:19].reshape(-1, 2, 7),
+        np.degrees(np.stack(flexion, axis=2)),
+        slow[:, 11:17].reshape(-1, 2, 3),
+        slow[:, 17:19],
+        slow[:, 19:21],
+        np.degrees(np.stack(joints, axis=2)),
+    )

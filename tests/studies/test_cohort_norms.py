@@ -1,0 +1,42 @@
+"""The embedded cohort walks as people do, in the numbers that the table in docs/cohort.md prints."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+STUDY = Path(__file__).parents[2] / "studies" / "cohort_norms.py"
+
+
+@pytest.fixture(scope="module")
+def study():
+    spec = importlib.util.spec_from_file_location("cohort_norms", STUDY)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_the_table_prints_and_its_numbers_are_those_of_walking(study, capsys):
+    found = study.run(quick=True)
+    printed = capsys.readouterr().out
+    assert all(name in printed for name in study.SOURCES)
+    assert all(f"| {name} |" in printed for name in study.BURSTS)
+    ranges = {
+        "knee flexion, swing peak [deg]": (50, 68),
+        "ankle dorsiflexion, peak [deg]": (7, 16),
+        "ankle plantarflexion moment [N m/kg]": (1.0, 1.7),
+        "stance [% stride]": (56, 63),
+        "vertical force, first peak [BW]": (1.0, 1.3),
+        "sole over belt speed, stance [1]": (0.95, 1.05),
+    }
+    for name, (low, high) in ranges.items():
+        assert np.all((found[name] > low) & (found[name] < high)), (name, found[name])
+
+
+def test_a_burst_that_goes_over_the_contact_is_read_as_one(study):
+    curve = np.zeros(101)
+    curve[90:], curve[:11] = 1.0, 1.0
+    assert study.burst(curve) == "90-10"
