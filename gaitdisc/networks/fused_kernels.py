@@ -1,6 +1,8 @@
 """The dissertation's network in float32, forward, backward and Adam: matrix products by BLAS, all else compiled here.
 
-Between two matrix products each element is read and written once. Weights lie in one vector: the three matrices
+Between two matrix products each element is read and written once. A batch is worked on in blocks of 128 samples: the
+hidden layers stay in the cache, and OpenBLAS multiplies matrices below 10^6 multiplications in a quicker way (gradients
+of 256 samples: 82 GFLOP/s in blocks of up to 240, 75 from 248 on). Weights lie in one vector: the three matrices
 (node, input), (node, node), (output, node), then their three offsets.
 """
 
@@ -15,6 +17,7 @@ from numpy.typing import NDArray
 F32 = np.float32
 LOG2_E = F32(1.4426950408889634)
 LN_2_HIGH, LN_2_LOW = F32(0.693359375), F32(-2.12194440e-4)
+BLOCK = 128
 EXP_LEAST, EXP_MOST = F32(-87.0), F32(88.0)
 BETA_1, BETA_2, ADAM_EPSILON = F32(0.9), F32(0.999), F32(1e-8)  # torch's, and those of Kingma and Ba 2015
 
@@ -116,8 +119,8 @@ def _forward(weights, x, hidden, y):
 
 
 @compiled
-def _error(error, offset, y, offset_gradient):
-    share = F32(2.0 / error.size)
+def _error(error, offset, y, offset_gradient, samples):
+    share = F32(2.0 / (samples * y.shape[1]))
     offset_gradient[:] = F32(0)
     for row in range(error.shape[0]):
         for output in range(error.shape[1]):
@@ -153,17 +156,20 @@ def gradient(
     x: NDArray[np.float32],
     y: NDArray[np.float32],
     hidden: NDArray[np.float32],
+    samples: int,
 ) -> None:
-    """Gradient of the mean squared error, mean over samples and outputs.
+    """What a block of samples adds to the gradient of a batch's mean squared error.
 
     Parameters
     ----------
     weights, into : ndarray (weight,)
         Weights, and where their gradient goes.
     x, y : ndarray (sample, input), (sample, output)
-        Scaled samples, contiguous.
+        Scaled samples of the block, contiguous.
     hidden : ndarray (5, at least sample, node)
         Room to work in; its last length tells the number of nodes.
+    samples : int
+        Samples of the whole batch, over which the mean is taken.
     """
     count, nodes = len(x), hidden.shape[2]
     _, w2, w3, _, _, b3 = layers(weights, x.shape[1], nodes, y.shape[1])
@@ -172,7 +178,7 @@ def gradient(
     dn, dz = hidden[3, :count], hidden[4, :count]
     error = np.empty_like(y)
     _forward(weights, x, hidden, error)
-    _error(error, b3, y, c3)
+    _error(error, b3, y, c3, samples)
     np.dot(error.T, h, g3)
     np.dot(error, w3, dn)
     _radial_backward(dn, n, h, c2)
@@ -184,7 +190,7 @@ def gradient(
 
 @compiled
 def mean_squared_error(
-    weights: NDArray[np.float32], x: NDArray[np.float32], y: NDArray[np.float32], sizes: tuple[int, int]
+    weights: NDArray[np.float32], x: NDArray[np.float32], y: NDArray[np.float32], nodes: int
 ) -> float:
     """Mean squared error over samples and outputs.
 
@@ -194,17 +200,16 @@ def mean_squared_error(
         Of the network.
     x, y : ndarray (sample, input), (sample, output)
         Scaled samples, contiguous.
-    sizes : tuple of int
-        Nodes, and samples that are worked on at a time.
+    nodes : int
+        Of either hidden layer.
     """
-    nodes, batch = sizes
-    hidden = np.empty((3, batch, nodes), np.float32)
-    found = np.empty((batch, y.shape[1]), np.float32)
+    hidden = np.empty((3, BLOCK, nodes), np.float32)
+    found = np.empty((BLOCK, y.shape[1]), np.float32)
     offset = layers(weights, x.shape[1], nodes, y.shape[1])[5]
     total = 0.0
-    for start in range(0, len(x), batch):
-        wanted = y[start : start + batch]
-        _forward(weights, x[start : start + batch], hidden, found[: len(wanted)])
+    for start in range(0, len(x), BLOCK):
+        wanted = y[start : start + BLOCK]
+        _forward(weights, x[start : start + BLOCK], hidden, found[: len(wanted)])
         for row in range(wanted.shape[0]):
             for output in range(wanted.shape[1]):
                 d = found[row, output] + offset[output] - wanted[row, output]
@@ -262,13 +267,18 @@ def descend_epoch(
         factor on the root of the mean square (its bias correction).
     """
     nodes, batch = sizes
-    hidden = np.empty((5, batch, nodes), np.float32)
-    x_batch, y_batch = np.empty((batch, x.shape[1]), np.float32), np.empty((batch, y.shape[1]), np.float32)
-    g = np.empty_like(weights)
+    hidden = np.empty((5, BLOCK, nodes), np.float32)
+    x_block, y_block = np.empty((BLOCK, x.shape[1]), np.float32), np.empty((BLOCK, y.shape[1]), np.float32)
+    g, added = np.empty_like(weights), np.empty_like(weights)
     matrices = nodes * (x.shape[1] + nodes + y.shape[1])
     for step in range(len(paces)):
         rows = order[step * batch : (step + 1) * batch]
-        _gathered(x, rows, x_batch)
-        _gathered(y, rows, y_batch)
-        gradient(weights, g, x_batch[: rows.size], y_batch[: rows.size], hidden)
+        g[:] = F32(0)
+        for start in range(0, rows.size, BLOCK):
+            block = rows[start : start + BLOCK]
+            _gathered(x, block, x_block)
+            _gathered(y, block, y_block)
+            gradient(weights, added, x_block[: block.size], y_block[: block.size], hidden, rows.size)
+            for k in range(g.size):
+                g[k] += added[k]
         _adam(weights, g, moments, matrices, paces[step])

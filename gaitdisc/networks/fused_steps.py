@@ -11,8 +11,6 @@ from gaitdisc.networks.feedforward import FeedForward
 from gaitdisc.networks.fused_kernels import descend_epoch, mean_squared_error
 from gaitdisc.networks.schedule import Schedule
 
-BLOCK = 256  # samples whose hidden layers stay in the cache
-
 
 class FusedSteps:
     """Adam with decoupled decay on a `FeedForward` in float32 on the CPU, with gradients written by hand.
@@ -54,16 +52,18 @@ class FusedSteps:
         """
         number = self._done + 1 + np.arange(len(rates))
         self._done += len(rates)
-        shrunk = 1 - rates * self._schedule.decay
-        paces = np.column_stack([shrunk, rates / (1 - 0.9**number), 1 / np.sqrt(1 - 0.999**number)])
-        sizes = (self._nodes, self._schedule.batch)
+        paces = np.empty((len(rates), 3), np.float32)
+        paces[:, 0] = 1 - rates * self._schedule.decay
+        paces[:, 1] = rates / (1 - 0.9**number)
+        paces[:, 2] = 1 / np.sqrt(1 - 0.999**number)
         x, y = self._part
-        descend_epoch(self._weights, self._moments, x, y, order.numpy(), sizes, paces.astype(np.float32))
+        sizes = (self._nodes, self._schedule.batch)
+        descend_epoch(self._weights, self._moments, x, y, order.numpy(), sizes, paces)
 
     def loss(self) -> float:
         """Mean squared error of the scaled outputs on the check part."""
         x, y = self._check
-        return float(mean_squared_error(self._weights, x, y, (self._nodes, BLOCK)))
+        return float(mean_squared_error(self._weights, x, y, self._nodes))
 
     def weights(self) -> NDArray[np.float32]:
         """Copy of the weights as they are: a reference would follow the descent."""

@@ -20,7 +20,7 @@ def both(samples=1000, decay=0.3):
     x = torch.randn(samples, 9)
     y = torch.sin(x[:, :3]) + x[:, 3:6] * x[:, 6:]
     part, check = (x[:-100], y[:-100]), (x[-100:], y[-100:])
-    schedule = schedule_of(len(part[0]), decay, TrainingSettings(batch=128))
+    schedule = schedule_of(len(part[0]), decay, TrainingSettings(batch=200))
     twin = copy.deepcopy(network)
     return (
         (network, FusedSteps(network, part, check, schedule)),
