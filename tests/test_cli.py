@@ -105,7 +105,7 @@ def test_the_batch_goes_on_past_a_broken_file(study, recordings, tmp_path):
 
 
 def test_demo_does_the_whole_job(tmp_path):
-    done = called("demo", tmp_path / "demo", "--seconds", "20", "--quiet")
+    done = called("demo", tmp_path / "demo", "--seconds", "30", "--people", "1", "--quiet")
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "demo" / "run" / "report" / "report.html").stat().st_size > 10_000
     assert "no people" in done.stdout

@@ -1,58 +1,74 @@
-"""The demonstration's study folder: small recordings that the package makes itself, written as a laboratory's files."""
+"""The demonstration's study folder: the embedded cohort, written as a laboratory's files."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+import json
+from collections.abc import Callable
 from pathlib import Path
 
-from gaitdisc.cohort.driven_walker import DrivenWalker
+from gaitdisc.cohort.cohort import the_twelve, walks_of
 from gaitdisc.ingest.storage import write_storage
-from gaitdisc.ingest.study import Conditions, HeldOut, Models, Participant, PlannedTrial, Study
+from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import write_study
+from gaitdisc.ingest.table import write_table
 from gaitdisc.recording import Trial
+from gaitdisc.whole_file import write_whole
 
 WALK_S = 60.0
-SPRING_PER_S2 = 250.0
-PEOPLE = (DrivenWalker("W01", 1.08, 1.0, seed=11), DrivenWalker("W02", 1.15, 0.93, seed=12))
-FILES = {"kinematics": "ik.mot", "emg": "emg.sto", "forces": "grf.mot"}
-TITLE = "Demonstration: two driven walkers, with and without a one-sided ankle spring"
+MUSCLES = ("ham", "rf", "vas", "gas", "sol", "ta", "gmed")
+OUTPUTS = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", *(f"emg_{muscle}_r" for muscle in MUSCLES[:5]))
 
 
-def write_demonstration(folder: Path, duration_s: float = WALK_S) -> Study:
-    """Make the recordings and the study file.
+def write_demonstration(
+    folder: Path,
+    duration_s: float = WALK_S,
+    people: int = 12,
+    hidden: str = "spring",
+    told: Callable[[str, float], None] = lambda *_: None,
+) -> Study:
+    """Let the cohort walk and write the recordings, the study file, and apart from them the truth.
 
     Parameters
     ----------
     folder : Path
         Where the study shall lie.
     duration_s : float
-        Length of each walk [s].
+        Length of each walk [s]; the dissertation's is 240.
+    people : int
+        The first so many of the twelve.
+    hidden : str
+        What differs between the conditions: a word of `gaitdisc.cohort.cohort.HIDDEN`.
+    told : callable
+        Called with a pseudonym and 1.0 when that person has walked.
 
     Returns
     -------
     Study
         As written; it passes through the same reading as a laboratory's.
+
+    Raises
+    ------
+    SchemaError
+        If `hidden` is no such word.
     """
     participants = []
-    for person in PEOPLE:
-        walks = {
-            "nominal": person.walked(duration_s, "nominal"),
-            "exo": replace(person, spring_per_s2=SPRING_PER_S2).walked(duration_s, "exo"),
-        }
+    for person in the_twelve()[:people]:
+        walks = walks_of(person, duration_s, hidden)
         planned = tuple(
-            PlannedTrial(condition=word, files=_write_trial(trial, folder, f"raw/{person.name}/{word}"))
-            for word, trial in walks.items()
+            PlannedTrial(
+                condition=word,
+                files=_write_trial(trial, folder, f"raw/{person.name}/{word}"),
+                speed_m_per_s=person.speed_m_per_s,
+            )
+            for word, trial in walks.trials.items()
         )
         participants.append(Participant(id=person.name, trials=planned))
+        write_whole(folder / "truth" / f"{person.name}.json", json.dumps(walks.truth, indent=1))
+        told(person.name, 1.0)
     study = Study(
-        title=TITLE,
+        title=f"Demonstration: {people} of the embedded cohort, hidden effect: {hidden}",
         conditions=Conditions(nominal="nominal", device="exo"),
-        channels={f"emg_{muscle}_{side}": f"emg_{muscle}_{side} [V]" for side in "rl" for muscle in ("sol", "ta")},
-        models=Models(
-            emg=("emg_sol_r", "emg_ta_r", "emg_sol_l", "emg_ta_l"),
-            outputs=("hip_flexion_r", "knee_angle_r", "ankle_angle_r", "emg_sol_r", "emg_ta_r"),
-        ),
-        held_out=HeldOut(share=0.125),
+        models=Models(emg=tuple(f"emg_{muscle}_{side}" for side in "rl" for muscle in MUSCLES), outputs=OUTPUTS),
         participants=tuple(participants),
     ).placed(folder)
     write_study(study, folder / "study.toml")
@@ -60,9 +76,10 @@ def write_demonstration(folder: Path, duration_s: float = WALK_S) -> Study:
 
 
 def _write_trial(trial: Trial, folder: Path, stem: str) -> tuple[str, ...]:
-    names = []
-    for key, ending in FILES.items():
-        names.append(f"{stem}_{ending}")
-        (folder / names[-1]).parent.mkdir(parents=True, exist_ok=True)
-        write_storage(trial.stream(key), folder / names[-1])
-    return tuple(names)
+    """Angles as OpenSim writes them; EMG and forces, a hundred times as many numbers, as Parquet."""
+    angles, *tables = names = (f"{stem}_ik.mot", f"{stem}_emg.parquet", f"{stem}_forces.parquet")
+    (folder / angles).parent.mkdir(parents=True, exist_ok=True)
+    write_storage(trial.stream("kinematics"), folder / angles)
+    for key, name in zip(("emg", "forces"), tables, strict=True):
+        write_table(trial.stream(key), folder / name)
+    return names

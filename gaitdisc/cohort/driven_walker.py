@@ -1,9 +1,9 @@
-"""A small walker for the demonstration: ten joint angles driven towards a habit, with and without an ankle spring.
+"""A small walker for tests: ten joint angles driven towards a habit, with and without an ankle spring.
 
 It is no model of a body. Each angle is a damped oscillator that is driven towards its habitual curve by a phase that
 speeds up and slows down from stride to stride; a device adds the acceleration of a one-sided spring at the ankles. So
-the missing effect is known to the last digit, which is what a demonstration and a test need. The embedded cohort, with
-muscles, ground and load, will take its place behind `gaitdisc demo`.
+the missing effect is known to the last digit, which is what a test needs. The people of `gaitdisc demo` are those of
+`cohort.py`, with muscles, ground and load.
 
 The habitual curves are smooth curves of ordinary size (hip 40 deg, knee 60 deg, ankle 27 deg of range), not norm data.
 """
@@ -37,7 +37,7 @@ BURST = {"sol": (0.38, 0.11, 2.0e-4), "ta": (0.95, 0.10, 1.2e-4)}
 
 @dataclass(frozen=True)
 class DrivenWalker:
-    """One person of the demonstration.
+    """One person.
 
     Parameters
     ----------

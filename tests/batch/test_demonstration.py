@@ -1,14 +1,17 @@
+import json
+
 import pytest
 
 from gaitdisc.batch.demonstration import write_demonstration
-from gaitdisc.ingest.reading import read_trial
+from gaitdisc.errors import SchemaError
+from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study_file import load_study
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     folder = tmp_path_factory.mktemp("demo")
-    write_demonstration(folder, 20.0)
+    write_demonstration(folder, 30.0, people=1)
     return folder
 
 
@@ -16,12 +19,24 @@ def test_the_files_are_read_as_a_laboratory_would_write_them(folder):
     study = load_study(folder)
     assert study.missing_files() == ()
     assert study.one_condition_only() == ()
-    planned = study.participants[0].trials[0]
-    trial = read_trial([study.path_of(file) for file in planned.files], study.channels)
+    [person] = study.participants
+    trial = read_planned_trial(study, person, person.trials[0])
     assert set(trial.streams) == {"kinematics", "emg", "forces"}
     assert (trial.stream("emg").rate_hz, trial.stream("emg").channels[0].unit) == (1000.0, "V")
+    assert (len(trial.stream("emg").names), len(trial.stream("kinematics").names)) == (14, 10)
     assert trial.stream("kinematics").rate_hz == 100.0
 
 
-def test_it_says_that_nobody_walked(folder):
-    assert "driven walkers" in load_study(folder).title
+def test_the_truth_lies_apart_from_the_recordings(folder):
+    truth = json.loads((folder / "truth" / "W01.json").read_text())
+    assert truth["spring_nm_per_deg"] == 5.0
+    assert not any("truth" in file for trial in load_study(folder).participants[0].trials for file in trial.files)
+
+
+def test_it_says_what_it_is(folder):
+    assert load_study(folder).title == "Demonstration: 1 of the embedded cohort, hidden effect: spring"
+
+
+def test_an_effect_that_is_none(tmp_path):
+    with pytest.raises(SchemaError, match="found 'magic'"):
+        write_demonstration(tmp_path, 30.0, 1, "magic")
