@@ -173,5 +173,4 @@ def _line_of(severity: str, kind: str, same: list[Finding]) -> str:
 
 
 def _sorted(findings: list[Finding] | tuple[Finding, ...]) -> tuple[Finding, ...]:
-    order = {"refused": 0, "warning": 1, "note": 2}
-    return tuple(sorted(findings, key=lambda finding: order[finding.severity]))
+    return tuple(sorted(findings, key=lambda finding: finding.rank))

@@ -47,6 +47,11 @@ class Finding:
         if self.severity not in SEVERITIES:
             raise ValueError(f"severity is one of {SEVERITIES}, not {self.severity!r}")
 
+    @property
+    def rank(self) -> int:
+        """Place in a list that has the severest first: 0 for `refused`."""
+        return len(SEVERITIES) - 1 - SEVERITIES.index(self.severity)
+
     def line(self) -> str:
         """Return the finding as one line of text."""
         where = ", ".join(part for part in (self.file, self.channel) if part)

@@ -74,7 +74,6 @@ class ResponseRun:
 
     def findings_table(self) -> pd.DataFrame:
         """Every finding of every walk, one row each, the severest first."""
-        order = {"refused": 0, "warning": 1, "note": 2}
         rows = [
             {
                 "participant": walk.subject,
@@ -87,9 +86,9 @@ class ResponseRun:
                 "spoils": finding.spoils,
                 "spans_s": "; ".join(f"{start:.2f}-{end:.2f}" for start, end in finding.spans),
             }
-            for walk in self.walks
-            for finding in walk.findings
+            for walk, finding in sorted(
+                ((walk, finding) for walk in self.walks for finding in walk.findings), key=lambda both: both[1].rank
+            )
         ]
-        rows.sort(key=lambda row: order[row["severity"]])
         columns = ["participant", "condition", "severity", "kind", "file", "channel", "what", "spoils", "spans_s"]
         return pd.DataFrame(rows, columns=pd.Index(columns))

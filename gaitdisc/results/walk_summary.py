@@ -71,8 +71,7 @@ class WalkSummary:
     @property
     def worst(self) -> str:
         """Return the severest finding: `refused`, `warning`, `note`, or `clean` where there is none."""
-        seen = {finding.severity for finding in self.findings}
-        return next((severity for severity in ("refused", "warning", "note") if severity in seen), "clean")
+        return min(self.findings, key=lambda finding: finding.rank).severity if self.findings else "clean"
 
     def counted(self, kept: bool = True) -> dict[str, int]:
         """Number of strides of each side.

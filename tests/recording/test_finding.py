@@ -9,6 +9,11 @@ def test_line_without_channel():
     )
 
 
+def test_the_severest_comes_first():
+    findings = [Finding(severity, "gap", "a.c3d", "", "") for severity in ("note", "refused", "warning")]
+    assert [f.severity for f in sorted(findings, key=lambda f: f.rank)] == ["refused", "warning", "note"]
+
+
 def test_unknown_severity():
     with pytest.raises(ValueError, match="severity is one of"):
         Finding("fatal", "gap", "a", "b", "c")
