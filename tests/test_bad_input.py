@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from gaitdisc.cli import REFUSED, SOME_REFUSED, app, main
+from gaitdisc.cli import app, main
 from gaitdisc.cohort.driven_walker import DrivenWalker
+from gaitdisc.commands.exit_codes import REFUSED, SOME_REFUSED
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import write_study

@@ -20,6 +20,8 @@ def _public():
         for name, thing in vars(module).items():
             if name.startswith("_") or getattr(thing, "__module__", None) != info.name:
                 continue
+            if info.name == f"gaitdisc.commands.{name}":
+                continue  # a command's parameters are explained by its options
             if inspect.isfunction(thing):
                 yield f"{info.name}.{name}", thing
             elif inspect.isclass(thing):

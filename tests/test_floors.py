@@ -14,6 +14,7 @@ FLOORS = (
     ("ingest", "signals", "simulation", "cohort", "regression", "networks", "statistics", "results"),
     ("processing", "discrepancy", "discovery", "sensing", "response"),
     ("batch", "report"),
+    ("commands",),
     ("cli", "__main__"),
 )
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}

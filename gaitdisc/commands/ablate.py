@@ -1,0 +1,27 @@
+"""`gaitdisc ablate`: the models on less and less data."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from gaitdisc.commands.options import Quiet, RunPlace, StudyPlace
+from gaitdisc.commands.run_report import report_on
+
+
+def ablate(
+    study: StudyPlace,
+    out: RunPlace = None,
+    length: Annotated[list[float] | None, typer.Option(help="Training length [s]; may be repeated.")] = None,
+    part: Annotated[str, typer.Option(help="Seconds of the training part that are taken: first or last.")] = "first",
+    quiet: Quiet = False,
+) -> None:
+    """Fit the models to less and less data: how much is enough."""
+    from gaitdisc.batch.ablate_study import ablate_study
+    from gaitdisc.ingest.study_file import load_study
+    from gaitdisc.response.data_quantity import LENGTHS_S
+
+    loaded = load_study(study)
+    folder, lengths = out or loaded.folder / "run", tuple(length) if length else LENGTHS_S
+    report_on(lambda told: ablate_study(loaded, folder, lengths, part, told), loaded, folder, quiet)

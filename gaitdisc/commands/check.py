@@ -1,0 +1,110 @@
+"""`gaitdisc check`: a traffic light for each trial, before anything is fitted."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from gaitdisc.commands.exit_codes import REFUSED, SOME_REFUSED
+from gaitdisc.commands.options import Json
+from gaitdisc.errors import SchemaError
+
+if TYPE_CHECKING:
+    from gaitdisc.processing.inspection import Inspection
+
+LIGHTS = {"green": "green", "amber": "yellow", "red": "bold red"}
+
+
+def check(
+    what: Annotated[Path, typer.Argument(help="A study, its folder, one recording, or a folder of recordings.")],
+    notes: Annotated[
+        bool, typer.Option("--notes", help="Print notes as well as warnings; --json prints each finding.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Read everything, write nothing, and print a traffic light for each trial."""
+    seen = []
+    for inspection in _inspections(what):
+        seen.append(inspection)
+        if not as_json:
+            typer.echo(f"  read {inspection.participant} {inspection.name}", err=True)
+    if as_json:
+        typer.echo(json.dumps([_as_dict(inspection) for inspection in seen], indent=1))
+    else:
+        _print_inspections(seen, notes)
+    red = sum(inspection.light == "red" for inspection in seen)
+    if red:
+        raise typer.Exit(REFUSED if red == len(seen) else SOME_REFUSED)
+
+
+def _inspections(what: Path) -> Iterator[Inspection]:
+    from gaitdisc.ingest.c3d import C3DReader
+    from gaitdisc.ingest.reading import ENDINGS
+    from gaitdisc.ingest.study_file import load_study
+    from gaitdisc.processing.inspection import inspected_file, inspected_study
+
+    if not what.exists():
+        raise SchemaError("a study, a recording or a folder is needed", f"{what} is not there", "Check the path.")
+    if what.suffix == ".toml" or (what / "study.toml").is_file():
+        yield from inspected_study(load_study(what))
+        return
+    files = [what]
+    if what.is_dir():
+        files = sorted(file for file in what.rglob("*") if file.suffix.lower() in ENDINGS)
+        if not files:
+            raise SchemaError(
+                f"a study or recordings ({', '.join(ENDINGS)}) are needed",
+                f"{what} holds none",
+                "Name a study, a file, or a folder of recordings.",
+            )
+    with C3DReader() as reader:
+        for file in files:
+            yield inspected_file(file, reader)
+
+
+def _print_inspections(seen: list[Inspection], notes: bool) -> None:
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console()
+    table = Table("light", "who", "trial", "channels", "strides", "warnings", box=box.SIMPLE)
+    for inspection in seen:
+        light = LIGHTS[inspection.light]
+        lines = [
+            f"{side} {kept}" + (f" ({lost} dropped)" if lost else "")
+            for side, (kept, lost) in inspection.strides.items()
+        ]
+        warnings = sum(finding.severity != "note" for finding in inspection.findings)
+        table.add_row(
+            f"[{light}]{inspection.light}[/]",
+            inspection.participant,
+            "\n".join(part for part in (inspection.condition, inspection.name) if part),
+            "\n".join(f"{key} {words}" for key, words in inspection.streams.items()),
+            "\n".join(lines),
+            str(warnings or ""),
+        )
+    console.print(table)
+    for inspection in seen:
+        if inspection.refusal:
+            console.print(f"refused: {inspection.name or inspection.participant}: {inspection.refusal}", markup=False)
+        for line in inspection.grouped(notes):
+            console.print(line, markup=False, highlight=False)
+
+
+def _as_dict(inspection: Inspection) -> dict[str, object]:
+    return {
+        "light": inspection.light,
+        "participant": inspection.participant,
+        "condition": inspection.condition,
+        "file": inspection.name,
+        "streams": dict(inspection.streams),
+        "strides": {side: {"kept": kept, "dropped": lost} for side, (kept, lost) in inspection.strides.items()},
+        "refusal": inspection.refusal,
+        "findings": [asdict(finding) for finding in inspection.findings],
+    }

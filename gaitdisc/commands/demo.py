@@ -1,0 +1,41 @@
+"""`gaitdisc demo`: the whole job on the embedded cohort."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from gaitdisc.commands.exit_codes import SOME_REFUSED
+from gaitdisc.commands.options import Jobs, Quiet
+from gaitdisc.commands.run_report import report_on
+
+
+def demo(
+    folder: Annotated[Path, typer.Argument(help="Folder to make.")] = Path("demo"),
+    seconds: Annotated[float, typer.Option(min=30.0, help="Length of each walk; the dissertation's is 240.")] = 60.0,
+    people: Annotated[int, typer.Option(min=1, max=12, help="How many of the twelve.")] = 12,
+    hide: Annotated[
+        str, typer.Option(help="What differs between the walks: spring, weak plantarflexor, ...")
+    ] = "spring",
+    jobs: Jobs = 2,
+    quiet: Quiet = False,
+) -> None:
+    """Let the embedded cohort walk without and with an ankle spring, and do the whole job on its recordings."""
+    from gaitdisc.batch.demonstration import write_demonstration
+    from gaitdisc.batch.run_study import run_study
+    from gaitdisc.batch.workers import Workers
+    from gaitdisc.ingest.study_file import load_study
+
+    typer.echo(f"{people} of the embedded cohort walk {seconds:g} s in each condition: simulated, no people.")
+    write_demonstration(folder, seconds, people, hide, lambda who, _: typer.echo(f"  {who}", err=True, nl=not quiet))
+    study = load_study(folder)
+    try:
+        report_on(lambda told: run_study(study, folder / "run", Workers(jobs), told), study, folder / "run", quiet)
+    except typer.Exit as ended:
+        if ended.exit_code != SOME_REFUSED:
+            raise
+        typer.echo(
+            "Whoever changes the way of walking late in a trial is meant to be refused; that is the demonstration."
+        )

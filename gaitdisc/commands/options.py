@@ -1,0 +1,14 @@
+"""Options and arguments that several commands share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+StudyPlace = Annotated[Path, typer.Argument(help="The study file or its folder.")]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")]
+Jobs = Annotated[int, typer.Option("--jobs", "-j", min=1, help="Participants side by side.")]
+RunPlace = Annotated[Path | None, typer.Option("--out", help="Folder of the run; by default STUDY/run.")]

@@ -1,0 +1,31 @@
+"""`gaitdisc run`: process, fit, judge and report."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from gaitdisc.commands.options import Jobs, Quiet, RunPlace, StudyPlace
+from gaitdisc.commands.run_report import report_on
+
+
+def run(
+    study: StudyPlace,
+    out: RunPlace = None,
+    participant: Annotated[list[str] | None, typer.Option(help="Only this participant; may be repeated.")] = None,
+    jobs: Jobs = 1,
+    cluster: Annotated[str, typer.Option(help="Address of a Dask scheduler, tcp://host:8786.")] = "",
+    quiet: Quiet = False,
+) -> None:
+    """Process, fit, judge and report; what an earlier run has finished is kept."""
+    from gaitdisc.batch.run_study import run_study
+    from gaitdisc.batch.workers import Workers
+    from gaitdisc.ingest.study_file import load_study
+
+    loaded = load_study(study)
+    if participant:
+        chosen = tuple(loaded.participant(name) for name in participant)
+        loaded = loaded.model_copy(update={"participants": chosen})
+    folder = out or loaded.folder / "run"
+    report_on(lambda told: run_study(loaded, folder, Workers(jobs, cluster), told), loaded, folder, quiet)

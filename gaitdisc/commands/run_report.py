@@ -1,0 +1,75 @@
+"""Work on a run with its progress shown, then its report, then who was refused."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from gaitdisc.commands.exit_codes import REFUSED, SOME_REFUSED, STOPPED
+
+if TYPE_CHECKING:
+    from gaitdisc.batch.run_study import Told
+    from gaitdisc.ingest.study import Study
+    from gaitdisc.results import ResponseRun
+
+
+def report_on(work: Callable[[Told], ResponseRun], study: Study, folder: Path, quiet: bool) -> None:
+    """Do the work with its progress shown, draw the report, and say who was refused.
+
+    Parameters
+    ----------
+    work : callable
+        Gives the run; called with what it shall tell its progress to.
+    study : Study
+        Whose participants the progress counts.
+    folder : Path
+        Folder of the run.
+    quiet : bool
+        No progress.
+
+    Raises
+    ------
+    typer.Exit
+        With the exit code, if some or all participants were refused or the person at the keyboard stopped it.
+    """
+    from rich.console import Console
+
+    from gaitdisc.report.page import write_report
+    from gaitdisc.report.text import r2_text
+
+    started = time.perf_counter()
+    try:
+        done = work(lambda *_: None) if quiet else _with_progress(work, [person.id for person in study.participants])
+    except KeyboardInterrupt:
+        typer.echo("Stopped. What was finished is kept; the same command goes on from there.", err=True)
+        raise typer.Exit(STOPPED) from None
+    page = write_report(done, folder / "report")
+    if done.responses:
+        Console().print(r2_text(done))
+    for refusal in done.refusals:
+        who = " ".join(part for part in (refusal.participant, refusal.condition) if part)
+        typer.echo(f"refused: {who}: {refusal.reason}", err=True)
+    typer.echo(f"{len(done.responses)} participants in {time.perf_counter() - started:.0f} s. report: {page}")
+    if done.refusals:
+        raise typer.Exit(SOME_REFUSED if done.responses else REFUSED)
+
+
+def _with_progress(work: Callable[[Told], ResponseRun], people: list[str]) -> ResponseRun:
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+    elapsed, left = TimeElapsedColumn(), TimeRemainingColumn()
+    columns = (TextColumn("{task.description}"), BarColumn(), elapsed, TextColumn("left"), left)
+    shares = dict.fromkeys(people, 0.0)
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("participants", total=len(shares))
+
+        def told(participant: str, share: float) -> None:
+            shares[participant] = share
+            bar.update(task, completed=sum(shares.values()), description=f"{participant} of {len(shares)} participants")
+
+        return work(told)

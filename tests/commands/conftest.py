@@ -1,0 +1,37 @@
+"""A command line as a person calls it, and a study with one participant."""
+
+import subprocess
+import sys
+
+import pytest
+from typer.testing import CliRunner
+
+from gaitdisc.cli import app
+from gaitdisc.cohort.driven_walker import DrivenWalker
+from gaitdisc.ingest.storage import write_storage
+
+
+@pytest.fixture(scope="session")
+def called():
+    """Exit code and everything printed, with refusals printed as `main` prints them."""
+    return lambda *words: subprocess.run(
+        [sys.executable, "-m", "gaitdisc", *map(str, words)], capture_output=True, text=True, check=False
+    )
+
+
+@pytest.fixture(scope="session")
+def recordings(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("lab")
+    for condition, spring in (("natural", 0.0), ("exo", 250.0)):
+        walker = DrivenWalker("A", seed=8, spring_per_s2=spring)
+        path = folder / "walker1" / f"{condition}.mot"
+        path.parent.mkdir(exist_ok=True)
+        write_storage(walker.walked(40.0, condition).stream("kinematics"), path)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def study(recordings, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("study") / "study"
+    assert CliRunner().invoke(app, ["new", str(folder), "--from", str(recordings)]).exit_code == 0
+    return folder

@@ -1,0 +1,27 @@
+import json
+
+from typer.testing import CliRunner
+
+from gaitdisc.cli import app
+from gaitdisc.commands.exit_codes import REFUSED
+
+
+def test_each_trial_has_its_strides(study):
+    checked = CliRunner().invoke(app, ["check", str(study), "--json"])
+    assert checked.exit_code == 0, checked.output
+    seen = json.loads(checked.stdout)
+    assert sorted(one["condition"] for one in seen) == ["exo", "natural"]
+    assert all(one["strides"]["r"]["kept"] > 30 for one in seen)
+
+
+def test_check_writes_nothing(study):
+    before = sorted(path for path in study.rglob("*"))
+    CliRunner().invoke(app, ["check", str(study)])
+    assert sorted(path for path in study.rglob("*")) == before
+
+
+def test_a_refusal_is_one_sentence_and_exit_code_1(tmp_path, called):
+    done = called("check", tmp_path / "nowhere")
+    assert done.returncode == REFUSED
+    assert done.stderr.startswith("SchemaError: a study, a recording or a folder is needed; ")
+    assert "Traceback" not in done.stdout + done.stderr
