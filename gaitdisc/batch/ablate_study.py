@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -10,8 +10,10 @@ from pathlib import Path
 from gaitdisc.batch.quantity_unit import computed_quantity
 from gaitdisc.batch.run_lock import run_lock
 from gaitdisc.batch.run_study import Told, run_study
-from gaitdisc.ingest.study import Study
+from gaitdisc.batch.workers import Workers, computed_side_by_side
+from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.response.data_quantity import LENGTHS_S
+from gaitdisc.response.over_participants import compare_participants
 from gaitdisc.results import DataQuantity, Refusal, ResponseRun
 from gaitdisc.results.store import save_run
 
@@ -21,6 +23,7 @@ def ablate_study(
     folder: Path,
     lengths_s: Sequence[float] = LENGTHS_S,
     part: str = "first",
+    workers: Workers | None = None,
     told: Told = lambda *_: None,
 ) -> ResponseRun:
     """Fit every participant's models to less and less data; the run itself is made first where it is not there.
@@ -35,6 +38,8 @@ def ablate_study(
         Lengths of the training part [s]; its whole length is always added.
     part : str
         `first` or `last` seconds of the training part.
+    workers : Workers, optional
+        Where participants are computed; in this process, one after the other, by default.
     told : callable
         Called with a participant's pseudonym and the fraction of that participant's work that is done.
 
@@ -47,18 +52,46 @@ def ablate_study(
     ------
     WriteError
         If another run works in the folder, or it cannot be written.
+    ClusterError
+        If the cluster cannot be reached.
     """
-    run = run_study(study, folder)
+    workers = workers or Workers()
+    run = run_study(study, folder, workers)
     with run_lock(folder):
-        found = []
-        for response in run.responses:
-            person = study.participant(response.participant)
-            found.append(computed_quantity(study, person, folder, lengths_s, part, partial(told, person.id)))
-            told(person.id, 1.0)
+        people = [study.participant(response.participant) for response in run.responses]
+        found = list(_quantities(study, people, folder, (lengths_s, part), workers, told))
+        quantities = tuple(each for each in found if isinstance(each, DataQuantity))
         run = replace(
             run,
-            quantities=tuple(each for each in found if isinstance(each, DataQuantity)),
+            quantities=quantities,
             refusals=(*run.refusals, *(each for each in found if isinstance(each, Refusal))),
+            over=compare_participants(run.responses, quantities, study.models.seed),
         )
         save_run(run, folder)
     return run
+
+
+def _quantities(
+    study: Study,
+    people: Sequence[Participant],
+    folder: Path,
+    asked: tuple[Sequence[float], str],
+    workers: Workers,
+    told: Told,
+) -> Iterator[DataQuantity | Refusal]:
+    if workers.here:
+        for person in people:
+            yield computed_quantity(study, person, folder, *asked, partial(told, person.id))
+            told(person.id, 1.0)
+        return
+    compute = partial(_computed_untold, study, folder.absolute(), asked)
+    for person, quantity in computed_side_by_side(workers, compute, people):
+        told(person.id, 1.0)
+        yield quantity
+
+
+def _computed_untold(
+    study: Study, folder: Path, asked: tuple[Sequence[float], str], person: Participant
+) -> DataQuantity | Refusal:
+    """Progress within a participant does not cross the border of a process."""
+    return computed_quantity(study, person, folder, *asked, lambda _: None)

@@ -9,8 +9,8 @@ from gaitdisc.batch.participant_unit import processed_walks, response_key, respo
 from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.response.data_quantity import fit_data_quantity
-from gaitdisc.results import DataQuantity, Refusal
-from gaitdisc.results.store import load_quantity, save_quantity
+from gaitdisc.results import DataQuantity, ParticipantResponse, Refusal
+from gaitdisc.results.store import load_quantity, load_response, save_quantity
 
 
 def computed_quantity(
@@ -50,11 +50,13 @@ def computed_quantity(
     if refusals:
         return refusals[0]
     nominal, exo = (walks[word].trajectory for word in (study.conditions.nominal, study.conditions.device))
+    key = response_key(unit_keys(study, participant))
     try:
-        quantity = fit_data_quantity(nominal, exo, response_settings(study), lengths_s, part, progress)
+        whole = _whole(participant, folder, key)
+        quantity = fit_data_quantity(nominal, exo, response_settings(study), lengths_s, part, progress, whole)
     except GaitdiscError as error:
         return Refusal(participant.id, "", str(error))
-    save_quantity(quantity, _folder(folder, participant), response_key(unit_keys(study, participant)))
+    save_quantity(quantity, _folder(folder, participant), key)
     return quantity
 
 
@@ -75,6 +77,15 @@ def stored_quantity(study: Study, participant: Participant, folder: Path) -> Dat
     except SchemaError:
         return None
     return quantity if key == response_key(unit_keys(study, participant)) else None
+
+
+def _whole(participant: Participant, folder: Path, key: str) -> ParticipantResponse | None:
+    """What the run has of the whole training part, if it rests on the same files and settings."""
+    try:
+        response, stored_key = load_response(folder / "responses" / participant.id)
+    except SchemaError:
+        return None
+    return response if stored_key == key else None
 
 
 def _has(quantity: DataQuantity, lengths_s: Sequence[float]) -> bool:

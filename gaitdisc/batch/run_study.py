@@ -14,6 +14,7 @@ from gaitdisc.batch.run_lock import run_lock
 from gaitdisc.batch.workers import Workers, computed_side_by_side
 from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.response.comparison import compare_models
+from gaitdisc.response.over_participants import compare_participants
 from gaitdisc.results import DataQuantity, ParticipantResponse, Provenance, ResponseRun
 from gaitdisc.results.provenance import installed_versions
 from gaitdisc.results.store import save_run
@@ -59,6 +60,7 @@ def run_study(
     with run_lock(folder):
         units = list(_units(study, folder, workers or Workers(), told))
         responses = tuple(unit.response for unit in units if unit.response is not None)
+        quantities = _stored_quantities(study, responses, folder)
         run = ResponseRun(
             study.title or study.folder.name,
             study.conditions.nominal,
@@ -68,7 +70,8 @@ def run_study(
             tuple(refusal for unit in units for refusal in unit.refusals),
             _provenance(study, units),
             compare_models(responses),
-            _stored_quantities(study, responses, folder),
+            quantities,
+            compare_participants(responses, quantities, study.models.seed),
         )
         save_run(run, folder)
     return run

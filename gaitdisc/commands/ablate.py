@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from gaitdisc.commands.options import Quiet, RunPlace, StudyPlace
+from gaitdisc.commands.options import Cluster, Jobs, Quiet, RunPlace, StudyPlace
 from gaitdisc.commands.run_report import report_on
 
 
@@ -15,13 +15,18 @@ def ablate(
     out: RunPlace = None,
     length: Annotated[list[float] | None, typer.Option(help="Training length [s]; may be repeated.")] = None,
     part: Annotated[str, typer.Option(help="Seconds of the training part that are taken: first or last.")] = "first",
+    jobs: Jobs = 1,
+    cluster: Cluster = "",
     quiet: Quiet = False,
 ) -> None:
     """Fit the models to less and less data: how much is enough."""
     from gaitdisc.batch.ablate_study import ablate_study
+    from gaitdisc.batch.workers import Workers
     from gaitdisc.ingest.study_file import load_study
     from gaitdisc.response.data_quantity import LENGTHS_S
 
     loaded = load_study(study)
     folder, lengths = out or loaded.folder / "run", tuple(length) if length else LENGTHS_S
-    report_on(lambda told: ablate_study(loaded, folder, lengths, part, told), loaded, folder, quiet)
+    report_on(
+        lambda told: ablate_study(loaded, folder, lengths, part, Workers(jobs, cluster), told), loaded, folder, quiet
+    )

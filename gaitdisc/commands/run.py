@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from gaitdisc.commands.options import Jobs, Quiet, RunPlace, StudyPlace
+from gaitdisc.commands.options import Cluster, Jobs, Quiet, RunPlace, StudyPlace
 from gaitdisc.commands.run_report import report_on
 
 
@@ -15,7 +15,7 @@ def run(
     out: RunPlace = None,
     participant: Annotated[list[str] | None, typer.Option(help="Only this participant; may be repeated.")] = None,
     jobs: Jobs = 1,
-    cluster: Annotated[str, typer.Option(help="Address of a Dask scheduler, tcp://host:8786.")] = "",
+    cluster: Cluster = "",
     quiet: Quiet = False,
 ) -> None:
     """Process, fit, judge and report; what an earlier run has finished is kept."""

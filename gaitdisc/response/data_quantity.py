@@ -12,6 +12,7 @@ import pandas as pd
 from gaitdisc.errors import SamplingError, TrainingError
 from gaitdisc.recording import Trajectory
 from gaitdisc.response.fit_response import ResponseSettings, fit_response, held_out_part
+from gaitdisc.results import ParticipantResponse
 from gaitdisc.results.data_quantity import QUANTITY_COLUMNS, DataQuantity
 
 LENGTHS_S = (1.0, 10.0, 20.0, 30.0, 45.0, 60.0, 90.0, 120.0, 180.0)
@@ -25,6 +26,7 @@ def fit_data_quantity(
     lengths_s: Sequence[float] = LENGTHS_S,
     part: str = "first",
     progress: Callable[[float], None] | None = None,
+    whole: ParticipantResponse | None = None,
 ) -> DataQuantity:
     """Fit Nominal, Exo and Discrepancy to parts of the training part, and to all of it, and judge each alike.
 
@@ -41,6 +43,8 @@ def fit_data_quantity(
         is held out. The text does not say which; the two differ where gait drifts.
     progress : callable, optional
         Called with the fraction done.
+    whole : ParticipantResponse, optional
+        What the whole training part gave, fitted to the same walks with the same settings; it is then not fitted again.
 
     Returns
     -------
@@ -65,7 +69,7 @@ def fit_data_quantity(
         length: f"the training part has {whole_s:.1f} s" for length in sorted(set(lengths_s)) if length >= whole_s
     }
     tables = []
-    for number, length in enumerate([*wanted, whole_s]):
+    for number, length in enumerate(wanted if whole else [*wanted, whole_s]):
         less_nominal, less_exo = (_shortened(walk, settings, length, part) for walk in (nominal, exo))
         told = partial(_told, progress, number, len(wanted) + 1)
         try:
@@ -73,13 +77,19 @@ def fit_data_quantity(
         except TrainingError as error:
             left_away[length] = str(error)
             continue
-        fits = response.fits
-        used = int(fits[(fits["model"] == "exo") & (fits["kind"] == "network")]["n_training"].iloc[0])
-        tables.append(response.r2.assign(length_s=length, n_training=used))
+        tables.append(_with_length(response, length))
+    if whole:
+        tables.append(_with_length(whole, whole_s))
     progress(1.0)
     columns = pd.Index(QUANTITY_COLUMNS)
     table = pd.concat(tables, ignore_index=True)[columns] if tables else pd.DataFrame(columns=columns)
     return DataQuantity(exo.subject or nominal.subject, part, table, left_away)
+
+
+def _with_length(response: ParticipantResponse, length_s: float) -> pd.DataFrame:
+    fits, r2 = response.fits, response.r2
+    used = int(fits[(fits["model"] == "exo") & (fits["kind"] == "network")]["n_training"].iloc[0])
+    return r2[r2["kind"] != "null"].assign(length_s=length_s, n_training=used)  # the filters' null has no length
 
 
 def _shortened(walk: Trajectory, settings: ResponseSettings, length_s: float, part: str) -> Trajectory:

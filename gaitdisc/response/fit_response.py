@@ -55,16 +55,17 @@ class ResponseSettings:
 
 @dataclass(frozen=True, eq=False)
 class FittedResponse:
-    """The models of one participant, both kinds.
+    """The models of one participant, of every kind.
 
     Parameters
     ----------
-    network, ridge : ResponseModels
-        Networks, and the ridge regressions beside them.
+    network, ridge, linear : ResponseModels
+        Networks, and beside them ridge regressions with phase harmonics, and on the networks' own inputs alone.
     """
 
     network: ResponseModels
     ridge: ResponseModels
+    linear: ResponseModels
 
 
 def fit_response(
@@ -102,14 +103,15 @@ def fit_response(
 
     References
     ----------
-    Ebers 2023, Eqs. 4.1-4.5 and section 4.2.3. Beside the source: a ridge regression with phase harmonics and the
-    null of the filters stand beside every network, and the Nominal model is judged on held-out nominal walking, too.
+    Ebers 2023, Eqs. 4.1-4.5 and section 4.2.3. Beside the source: ridge regressions with phase harmonics and without,
+    and the null of the filters, stand beside every network, and the Nominal model is judged on held-out nominal
+    walking, too.
     """
     _check_pair(nominal, exo)
     held_nominal, held_exo = (held_out_part(walk, settings)[1] for walk in (nominal, exo))
     on_nominal, on_exo = (_held_out_samples(held, settings) for held in (held_nominal, held_exo))
     fitted = fit_both(nominal, exo, settings, progress)
-    kinds = {"network": fitted.network, "ridge": fitted.ridge}
+    kinds = {"network": fitted.network, "ridge": fitted.ridge, "linear": fitted.linear}
     judged = [_judged(kind, models, on_nominal, on_exo, settings) for kind, models in kinds.items()]
     predicted = {name: model(on_exo.x) for name, model in fitted.network.on_exo().items()}
     return ParticipantResponse(
@@ -148,10 +150,11 @@ def fit_both(
     """
     samples = [gait_samples(held_out_part(walk, settings)[0], settings.outputs)[0] for walk in (nominal, exo)]
     ridge = fit_models(*samples, fit=lambda part, _: fit_linear(part, settings.harmonics))
+    linear = fit_models(*samples, fit=lambda part, _: fit_linear(part, harmonics=0))
     networks = fit_models(
         *samples, fit=lambda part, told: fit_network(part, settings.training, told), progress=progress
     )
-    return FittedResponse(networks, ridge)
+    return FittedResponse(networks, ridge, linear)
 
 
 def held_out_part(walk: Trajectory, settings: ResponseSettings) -> tuple[Trajectory, Trajectory]:

@@ -8,10 +8,7 @@ import pandas as pd
 
 from gaitdisc.response.comparison import ALPHA, FEWEST, compare_columns, too_few
 from gaitdisc.results.data_quantity import DataQuantity
-from gaitdisc.results.pair_test import TEST_COLUMNS
-
-WHOLE = "exo, whole training part"
-LENGTH_COLUMNS = ("length_s", *TEST_COLUMNS)
+from gaitdisc.results.over_participants import LENGTH_COLUMNS, WHOLE, no_rows
 
 
 def compare_lengths(quantities: Sequence[DataQuantity], alpha: float = ALPHA) -> pd.DataFrame:
@@ -36,7 +33,7 @@ def compare_lengths(quantities: Sequence[DataQuantity], alpha: float = ALPHA) ->
     Ebers 2023, section 4.2.4, comparisons (i) and (ii). The family is not said there.
     """
     if len(quantities) < FEWEST:
-        return pd.DataFrame(columns=pd.Index(LENGTH_COLUMNS))
+        return no_rows("lengths")
     tables = {q.participant: _network(q) for q in quantities}
     longest = {person: float(table["length_s"].max()) for person, table in tables.items()}
     whole = pd.DataFrame({p: _r2(table, "exo", longest[p]) for p, table in tables.items()}).T
@@ -56,29 +53,6 @@ def compare_lengths(quantities: Sequence[DataQuantity], alpha: float = ALPHA) ->
             found = compare_columns(models[first], columns, alpha)
             parts.append(found.assign(length_s=length, first=first, second=second))
     return pd.concat(parts, ignore_index=True)[list(LENGTH_COLUMNS)]
-
-
-def enough_length(table: pd.DataFrame, second: str = WHOLE) -> float | None:
-    """Shortest training length [s] from which on no variable is shown to differ; None where there is no such length.
-
-    That nothing is shown is no proof of equality, least of all with few participants: the shifts say how far apart
-    the two may be.
-
-    Parameters
-    ----------
-    table : DataFrame
-        Of `compare_lengths`.
-    second : str
-        `exo`, or `exo, whole training part`.
-    """
-    chosen = table[table["second"] == second]
-    found = None
-    for length in sorted({float(length) for length in chosen["length_s"]}, reverse=True):
-        rows = chosen[chosen["length_s"] == length]
-        if rows["different"].any() or not rows["p"].notna().any():
-            break
-        found = length
-    return found
 
 
 def why_no_lengths(quantities: Sequence[DataQuantity]) -> str:

@@ -13,7 +13,8 @@ from gaitdisc.errors import ShapeError
 from gaitdisc.recording import PERCENT
 
 MODELS = ("nominal", "augmented", "exo")
-KINDS = ("network", "ridge", "null")
+BASELINES = ("ridge", "linear", "null")
+KINDS = ("network", *BASELINES)
 R2_COLUMNS = ("variable", "model", "kind", "walk", "r2", "n")
 FIT_COLUMNS = ("model", "kind", "decay", "epochs", "n_training", "n_inner", "seconds")
 
@@ -53,8 +54,9 @@ class ParticipantResponse:
     units : tuple of str
         Unit of each output, a second derivative.
     r2 : DataFrame
-        variable, model (of `MODELS`), kind (`network`, `ridge`, `null`), walk (`nominal` or `exo`: the held-out walking
-        that is predicted), r2, n (samples).
+        variable, model (of `MODELS`), kind (of `KINDS`: `network`; `ridge`, with harmonics of percent stride; `linear`,
+        ridge on the network's own inputs; `null`), walk (`nominal` or `exo`: the held-out walking that is predicted),
+        r2, n (samples).
     fits : DataFrame
         model (`nominal`, `exo`, `discrepancy`), kind, decay, epochs, n_training, n_inner, seconds.
     held_out : HeldOut
@@ -114,7 +116,7 @@ class ParticipantResponse:
         model : str
             One of `MODELS`.
         kind : str
-            `network`, `ridge` or `null`.
+            Of `KINDS`.
         walk : str
             `nominal` or `exo`.
         """

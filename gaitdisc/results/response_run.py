@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import pandas as pd
 
 from gaitdisc.results.data_quantity import DataQuantity
+from gaitdisc.results.over_participants import OverParticipants
 from gaitdisc.results.pair_test import PairTests
 from gaitdisc.results.participant_response import ParticipantResponse
 from gaitdisc.results.provenance import Provenance
@@ -54,6 +55,8 @@ class ResponseRun:
         The models compared in pairs over the participants; None in runs of before there were tests.
     quantities : tuple of DataQuantity
         What less data would have given, where `gaitdisc ablate` was run.
+    over : OverParticipants, optional
+        Training lengths, residuals and baselines compared over participants, and sub-groups; None in older runs.
     """
 
     title: str
@@ -65,6 +68,7 @@ class ResponseRun:
     provenance: Provenance
     tests: PairTests | None = None
     quantities: tuple[DataQuantity, ...] = ()
+    over: OverParticipants | None = None
 
     def r2_table(self) -> pd.DataFrame:
         """R2 of every participant, variable, model, kind and walk, one row each."""

@@ -6,6 +6,7 @@ A run is a folder::
     walks/<person>-<condition>/    walk.json  strides.csv  arrays.npz
     responses/<person>/            response.json  r2.csv  fits.csv  arrays.npz
     tests/                         tests.json  tests.csv  families.csv
+    over/                          over.json  lengths.csv  reductions.csv  reduction_tests.csv  ...
     quantities/<person>/           quantity.json  quantity.csv
 
 A unit (one walk, one response) is complete when its JSON file stands, because that is written last and holds the hashes
@@ -23,8 +24,8 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Finding
+from gaitdisc.results.comparison_store import load_over, load_tests, save_over, save_tests
 from gaitdisc.results.data_quantity import DataQuantity
-from gaitdisc.results.pair_test import PairTests
 from gaitdisc.results.participant_response import HeldOut, ParticipantResponse
 from gaitdisc.results.provenance import Provenance
 from gaitdisc.results.response_run import Refusal, ResponseRun
@@ -214,9 +215,12 @@ def save_run(run: ResponseRun, folder: Path) -> None:
         "provenance": asdict(run.provenance),
         "tests": run.tests is not None,
         "quantities": [quantity.participant for quantity in run.quantities],
+        "over": run.over is not None,
     }
     if run.tests is not None:
-        _save_tests(run.tests, folder / "tests")
+        save_tests(run.tests, folder / "tests")
+    if run.over is not None:
+        save_over(run.over, folder / "over")
     with whole_file(folder / "run.json") as part:
         part.write_text(json_text(data), encoding="utf-8")
 
@@ -243,8 +247,9 @@ def load_run(folder: Path) -> ResponseRun:
         tuple(load_response(folder / "responses" / name)[0] for name in data["responses"]),
         tuple(Refusal(**refusal) for refusal in data["refusals"]),
         Provenance(**data["provenance"]),
-        _load_tests(folder / "tests") if data.get("tests") else None,
+        load_tests(folder / "tests") if data.get("tests") else None,
         tuple(load_quantity(folder / "quantities" / name)[0] for name in data.get("quantities", ())),
+        load_over(folder / "over") if data.get("over") else None,
     )
 
 
@@ -263,23 +268,6 @@ def unit_name(subject: str, condition: str) -> str:
     """
     text = f"{subject}-{condition}"
     return "".join(letter if letter.isalnum() or letter in "-_" else "_" for letter in text)
-
-
-def _save_tests(tests: PairTests, folder: Path) -> None:
-    data = {
-        "participants": tests.participants,
-        "alpha": tests.alpha,
-        "level": tests.level,
-        "too_few": tests.too_few,
-    }
-    save_unit(folder, "tests.json", data, {"tests.csv": tests.tests, "families.csv": tests.families}, {})
-
-
-def _load_tests(folder: Path) -> PairTests:
-    data, tables, _ = load_unit(folder, "tests.json")
-    tests = tables["tests.csv"]
-    tests["left_out"] = tests["left_out"].astype(object).fillna("").astype(str)
-    return PairTests(data["participants"], data["alpha"], data["level"], data["too_few"], tests, tables["families.csv"])
 
 
 def _keyed(arrays: Mapping[str, NDArray[np.float64]], prefix: str) -> dict[str, NDArray[np.float64]]:

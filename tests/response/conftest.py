@@ -8,7 +8,7 @@ import pytest
 from gaitdisc.channel import Channel
 from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.recording import Strides, Trajectory
-from gaitdisc.response.fit_response import ResponseSettings
+from gaitdisc.response.fit_response import ResponseSettings, fit_response
 
 KNEE, ANKLE = "knee_angle_r", "ankle_angle_r"
 SPRING = 40.0  # 1/s2; the slack one acts where the ankle is beyond 0 deg
@@ -79,3 +79,13 @@ def no_spring():
 @pytest.fixture(scope="session")
 def settings():
     return ResponseSettings((KNEE, ANKLE), training=TrainingSettings(decays=(0.0,)))
+
+
+@pytest.fixture(scope="session")
+def judged(nominal, exo, settings):
+    """One participant, fitted and judged; with a null for the ankle alone."""
+    told = []
+    found = fit_response(nominal, exo, settings, {ANKLE: 0.507}, told.append)
+    assert told == sorted(told)
+    assert told[-1] == pytest.approx(1.0)
+    return found

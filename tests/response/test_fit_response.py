@@ -27,13 +27,9 @@ def fitted(nominal, exo, settings):
     return fit_both(nominal, exo, settings)
 
 
-@pytest.fixture(scope="module")
-def response(nominal, exo, settings):
-    told = []
-    found = fit_response(nominal, exo, settings, {ANKLE: 0.507}, told.append)
-    assert told == sorted(told)
-    assert told[-1] == pytest.approx(1.0)
-    return found
+@pytest.fixture
+def response(judged):
+    return judged
 
 
 def test_the_discrepancy_model_is_the_spring(fitted, exo, settings):
@@ -63,7 +59,7 @@ def test_the_augmented_model_explains_what_the_nominal_one_misses(response):
 
 def test_without_a_spring_there_is_no_discrepancy(nominal, no_spring, settings):
     found = fit_response(nominal, no_spring, settings)
-    for kind in ("network", "ridge"):
+    for kind in ("network", "ridge"):  # without harmonics, a torque locked to the phase is not known
         for variable in (KNEE, ANKLE):
             here, there = (found.r2_of(variable, "nominal", kind, walk) for walk in ("exo", "nominal"))
             assert here == pytest.approx(there, abs=0.01)
@@ -92,13 +88,14 @@ def test_tables_name_what_is_in_them(response):
     assert response.units == ("deg/s2", "deg/s2")
     assert len(response.inputs) == 5
     assert response.held_out_s == 7.5
-    assert len(response.r2) == 2 * 2 * 4 + 1
+    assert len(response.r2) == 3 * 2 * 4 + 1
     assert (response.r2["n"] == 750).all()
     assert response.r2_of(ANKLE, "nominal", "null") == 0.507
     assert np.isnan(response.r2_of(KNEE, "nominal", "null"))
-    assert response.fits["model"].tolist() == ["nominal", "exo", "discrepancy"] * 2
+    assert response.fits["model"].tolist() == ["nominal", "exo", "discrepancy"] * 3
     assert (response.fits["n_training"] == 6000 - 750 - 30).all()
     assert response.r2_of(ANKLE, "exo", "ridge") < response.r2_of(ANKLE, "exo")  # a slack spring is not linear
+    assert response.r2_of(KNEE, "exo", "linear") < response.r2_of(KNEE, "exo", "ridge")  # nor a torque locked to phase
 
 
 def test_r2_is_that_of_the_held_out_predictions_kept(response):

@@ -2,8 +2,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from gaitdisc.response.length_comparison import LENGTH_COLUMNS, WHOLE, compare_lengths, enough_length, why_no_lengths
+from gaitdisc.response.length_comparison import compare_lengths, why_no_lengths
 from gaitdisc.results.data_quantity import QUANTITY_COLUMNS, DataQuantity
+from gaitdisc.results.over_participants import LENGTH_COLUMNS, WHOLE
 
 VARIABLES = ("hip", "knee")
 
@@ -30,13 +31,11 @@ def test_the_length_that_is_enough():
     assert (found["tests"] == 2).all()
     short = found[(found["second"] == WHOLE) & (found["length_s"] == 1.0)]
     assert short["shift"].to_numpy() == pytest.approx(0.1, abs=0.002)
-    assert enough_length(found) == 60.0
 
 
 def test_augmented_against_exo_at_every_length():
     found = compare_lengths([quantity(i, augmented=-0.05) for i in range(11)])
     assert found.loc[found["second"] == "exo", "different"].all()
-    assert enough_length(found, "exo") is None
 
 
 def test_whole_parts_of_different_length_are_each_ones_own():
@@ -58,4 +57,3 @@ def test_too_few():
     assert not len(compare_lengths(few))
     assert "5 participants are too few" in why_no_lengths(few)
     assert why_no_lengths([quantity(i) for i in range(6)]) == ""
-    assert enough_length(compare_lengths(few)) is None

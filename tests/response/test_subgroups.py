@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.errors import ComparisonError
-from gaitdisc.response.subgroups import discrepancy_curves, find_responders
+from gaitdisc.response.subgroups import discrepancy_curves, find_responders, responder_table
 
 PHASE = np.linspace(0, 2 * np.pi, 101)
 
@@ -15,7 +15,7 @@ def response(i, kind, outputs=("ankle_angle_r", "emg_sol_r")):
     shape = np.sin(PHASE) if kind else np.cos(PHASE)
     curve = (1 + 0.1 * rng.standard_normal()) * shape[None, :, None] * np.array([1000.0, 0.1])[: len(outputs)]
     noise = 0.5 * rng.standard_normal((20, 101, len(outputs))) * np.array([1000.0, 0.1])[: len(outputs)]
-    return SimpleNamespace(outputs=outputs, residuals={"nominal": curve + noise})
+    return SimpleNamespace(participant=f"P{i + 1:02d}", outputs=outputs, residuals={"nominal": curve + noise})
 
 
 def test_two_kinds_of_responders_are_told_apart():
@@ -44,3 +44,24 @@ def test_missing_samples_are_left_out_of_the_mean():
 def test_participants_of_different_outputs_are_refused():
     with pytest.raises(ComparisonError, match="found 2 sets of outputs in 6 participants"):
         discrepancy_curves([*(response(i, 0) for i in range(5)), response(5, 0, ("ankle_angle_r",))])
+
+
+def test_each_responder_has_a_group_and_the_sentence_its_n():
+    table, said = responder_table([response(i, i % 2) for i in range(12)])
+    assert table["group"].nunique() == 2
+    assert said.startswith("Sub-groups: 2 groups part with silhouette")
+    assert said.endswith("(n = 12 participants)")
+
+
+def test_who_lacks_points_of_the_stride_is_left_out_by_name():
+    people = [response(i, 0) for i in range(7)]
+    people[2].residuals["nominal"][:, 50, 0] = np.nan
+    table, said = responder_table(people)
+    assert "P03" not in set(table["participant"])
+    assert "n = 6 participants; left out, for strides with missing points: P03" in said
+
+
+def test_five_are_too_few_and_it_is_said():
+    table, said = responder_table([response(i, 0) for i in range(5)])
+    assert not len(table)
+    assert said == "Sub-groups were not looked for, which takes 6 participants (n = 5 participants)"

@@ -1,0 +1,93 @@
+"""Saving and loading of what was compared over participants: the folders `tests/` and `over/` of a run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pandas as pd
+
+from gaitdisc.results.over_participants import OverParticipants
+from gaitdisc.results.pair_test import PairTests
+from gaitdisc.results.unit_folder import load_unit, save_unit
+
+
+def save_tests(tests: PairTests, folder: Path) -> None:
+    """Save the paired tests of the models.
+
+    Parameters
+    ----------
+    tests : PairTests
+        What to keep.
+    folder : Path
+        Folder of the tests alone.
+    """
+    data = {
+        "participants": tests.participants,
+        "alpha": tests.alpha,
+        "level": tests.level,
+        "too_few": tests.too_few,
+    }
+    save_unit(folder, "tests.json", data, {"tests.csv": tests.tests, "families.csv": tests.families}, {})
+
+
+def load_tests(folder: Path) -> PairTests:
+    """Load the paired tests of the models.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder that `save_tests` wrote.
+
+    Raises
+    ------
+    SchemaError
+        If a file is missing, damaged or of another format.
+    """
+    data, tables, _ = load_unit(folder, "tests.json")
+    return PairTests(
+        data["participants"],
+        data["alpha"],
+        data["level"],
+        data["too_few"],
+        _with_words(tables["tests.csv"]),
+        tables["families.csv"],
+    )
+
+
+def save_over(over: OverParticipants, folder: Path) -> None:
+    """Save the other comparisons over participants.
+
+    Parameters
+    ----------
+    over : OverParticipants
+        What to keep.
+    folder : Path
+        Folder of these comparisons alone.
+    """
+    data = {"lengths_said": over.lengths_said, "responders_said": over.responders_said}
+    save_unit(folder, "over.json", data, {f"{name}.csv": table for name, table in over.tables().items()}, {})
+
+
+def load_over(folder: Path) -> OverParticipants:
+    """Load the other comparisons over participants.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder that `save_over` wrote.
+
+    Raises
+    ------
+    SchemaError
+        If a file is missing, damaged or of another format.
+    """
+    data, files, _ = load_unit(folder, "over.json")
+    tables = {file.removesuffix(".csv"): _with_words(table) for file, table in files.items()}
+    return OverParticipants(**tables, lengths_said=data["lengths_said"], responders_said=data["responders_said"])
+
+
+def _with_words(table: pd.DataFrame) -> pd.DataFrame:
+    """An empty word comes back from a CSV as a missing number."""
+    if "left_out" in table:
+        table["left_out"] = table["left_out"].astype(object).fillna("").astype(str)
+    return table
