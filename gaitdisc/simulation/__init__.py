@@ -1,0 +1,1 @@
+"""The simulation file: read, run, add an effect, write back."""

@@ -1,0 +1,265 @@
+"""Whether the parts of a simulation hold together."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
+
+from gaitdisc.channel import nearest_word
+from gaitdisc.simulation.expression import RESERVED, Tree, delays, names, parsed, unknown_name
+from gaitdisc.simulation.parts import Term
+from gaitdisc.simulation.refusal import SimulationError
+
+if TYPE_CHECKING:
+    from gaitdisc.simulation.simulation import Simulation
+
+MOST_PARTS = 500  # states, inputs, parameters, ports, definitions and effects together
+MOST_CHARACTERS = 200_000  # of all expressions
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}\Z")
+_KEYWORDS = frozenset(
+    [
+        "and",
+        "as",
+        "assert",
+        "async",
+        "await",
+        "break",
+        "class",
+        "continue",
+        "def",
+        "del",
+        "elif",
+        "else",
+        "except",
+        "finally",
+        "for",
+        "from",
+        "global",
+        "if",
+        "import",
+        "in",
+        "is",
+        "lambda",
+        "nonlocal",
+        "not",
+        "or",
+        "pass",
+        "raise",
+        "return",
+        "try",
+        "while",
+        "with",
+        "yield",
+    ]
+)
+
+
+def check(simulation: Simulation) -> None:
+    """Refuse a simulation whose parts do not hold together.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        While it is made.
+
+    Raises
+    ------
+    SimulationError
+        With the part that is wrong as its place.
+    """
+    _check_size(simulation)
+    _check_names(simulation)
+    _check_numbers(simulation)
+    _check_equations(simulation)
+    _check_expressions(simulation)
+    _check_ports(simulation)
+
+
+def _check_size(simulation: Simulation) -> None:
+    if not simulation.states:
+        raise SimulationError("a simulation has one state or more", "there is none", "Add [states.<name>].")
+    parts = sum(
+        len(each)
+        for each in (simulation.states, simulation.inputs, simulation.parameters, simulation.ports,
+                     simulation.definitions, simulation.observations, simulation.effects)
+    )  # fmt: skip
+    if parts > MOST_PARTS:
+        raise SimulationError(
+            f"a simulation file has at most {MOST_PARTS} parts",
+            f"this one has {parts}",
+            "Give a model of this size as a PythonSimulation.",
+        )
+    lines = (*simulation.definitions, *simulation.equations, *simulation.observations)
+    characters = sum(len(text) for _, text in lines) + sum(len(each.term) for each in simulation.effects)
+    if characters > MOST_CHARACTERS:
+        raise SimulationError(
+            f"a simulation's expressions have at most {MOST_CHARACTERS} characters together",
+            f"these have {characters}",
+            "Give a model of this size as a PythonSimulation.",
+        )
+
+
+def _check_names(simulation: Simulation) -> None:
+    owner: dict[str, str] = {}
+    for section, name in _named(simulation):
+        if not _NAME.match(name) or name in _KEYWORDS:
+            raise SimulationError(
+                "a name is a letter, then letters, digits and _ (64 at most), and no word of Python",
+                f"found {name[:80]!r}",
+                "Rename it.",
+                (section, name[:80]),
+            )
+        if name in RESERVED:
+            raise SimulationError(
+                "a name is not that of a function, nor t", f"found {name!r}", "Rename it.", (section, name)
+            )
+        if name in owner:
+            raise SimulationError(
+                "each name means one thing",
+                f"{name!r} stands in [{owner[name]}] and in [{section}]",
+                "Rename one of them.",
+                (section, name),
+            )
+        owner[name] = section
+    observed = [name for name, _ in simulation.observations]
+    doubled = next((name for name in observed if observed.count(name) > 1), None)
+    if doubled is not None:
+        raise SimulationError(
+            "each observation has a name of its own", f"{doubled!r} stands twice", "Rename one.", ("observations",)
+        )
+
+
+def _named(simulation: Simulation) -> Iterator[tuple[str, str]]:
+    for section in ("states", "inputs", "parameters", "ports"):
+        for part in getattr(simulation, section):
+            yield section, part.name
+    for name, _ in simulation.definitions:
+        yield "definitions", name
+
+
+def _check_numbers(simulation: Simulation) -> None:
+    for parameter in simulation.parameters:
+        place = ("parameters", parameter.name)
+        bounds = [bound for bound in (parameter.low, parameter.high) if bound is not None]
+        for number in (parameter.value, *bounds):
+            if not math.isfinite(number):
+                raise SimulationError("a parameter is a finite number", f"found {number}", "Write a number.", place)
+        if len(bounds) == 2 and bounds[0] > bounds[1]:
+            raise SimulationError(
+                "low is at most high", f"low is {bounds[0]:g}, high {bounds[1]:g}", "Exchange them.", place
+            )
+    for state in simulation.states:
+        if state.initial is not None and not math.isfinite(state.initial):
+            found = f"initial is {state.initial}"
+            raise SimulationError("a state starts at a finite number", found, "Write one.", ("states", state.name))
+
+
+def _check_equations(simulation: Simulation) -> None:
+    states = [state.name for state in simulation.states]
+    given = [name for name, _ in simulation.equations]
+    for name in given:
+        if name not in states:
+            nearest = nearest_word(name, states)
+            remedy = f"Did you mean {nearest!r}?" if nearest else f"The states are {', '.join(states)}."
+            raise SimulationError("an equation belongs to a state", f"{name!r} is none", remedy, ("equations", name))
+    for name in states:
+        if given.count(name) != 1:
+            found = "it has none" if name not in given else "it has more"
+            raise SimulationError(
+                f"state {name!r} has one equation", found, f'Write {name} = "..." in [equations].', ("equations",)
+            )
+
+
+def _check_expressions(simulation: Simulation) -> None:
+    signals = simulation.signals
+    parameters = tuple(parameter.name for parameter in simulation.parameters)
+    plain = (*signals, *parameters, "t")
+    ports = tuple(port.name for port in simulation.ports)
+    known = (*plain, *ports)
+    for name, text in simulation.definitions:
+        _check_text(text, known, simulation, ("definitions", name))
+        known = (*known, name)
+    for name, text in simulation.equations:
+        _check_text(text, known, simulation, ("equations", name))
+    for name, text in simulation.observations:
+        _check_text(text, known, simulation, ("observations", name))
+    for number, term in enumerate(simulation.effects):
+        _check_place(term, ports, tuple(state.name for state in simulation.states), number)
+        _check_text(term.term, plain if term.kind == "port" else known, simulation, ("effects", str(number)))
+
+
+def _check_text(text: str, known: tuple[str, ...], simulation: Simulation, place: tuple[str, ...]) -> None:
+    try:
+        check_expression(text, known, simulation)
+    except SimulationError as error:
+        raise error.at(*place) from None
+
+
+def check_expression(text: str, known: tuple[str, ...], simulation: Simulation) -> Tree:
+    """Tree of an expression whose names all have values.
+
+    Parameters
+    ----------
+    text : str
+        Expression.
+    known : tuple of str
+        Names that may stand in it.
+    simulation : Simulation
+        Whose states and inputs may be delayed, by its parameters.
+
+    Raises
+    ------
+    SimulationError
+        If it does not parse, a name is unknown, or a delay is not of a state or an input.
+    """
+    tree = parsed(text)
+    unknown = next((name for name in names(tree) if name not in known), None)
+    if unknown is not None:
+        raise unknown_name(text, unknown, known)
+    fixed = set(known) - set(simulation.signals) - {"t"} - {port.name for port in simulation.ports}
+    fixed -= {name for name, _ in simulation.definitions}
+    for call in delays(tree):
+        signal, seconds = call.arguments
+        if next(names(signal), None) not in simulation.signals or set(names(signal)) != {getattr(signal, "name", None)}:
+            raise SimulationError(
+                "delay(signal, seconds) takes a state or an input",
+                f"in {text[:60]!r} its signal is something else",
+                f"Delay one of: {', '.join(simulation.signals)}.",
+            )
+        moving = next((name for name in names(seconds) if name not in fixed), None)
+        if moving is not None or next(delays(seconds), None) is not None:
+            raise SimulationError(
+                "the seconds of delay(signal, seconds) are numbers and parameters",
+                f"in {text[:60]!r} they use {moving or 'delay'!r}",
+                "Write a number or a parameter.",
+            )
+    return tree
+
+
+def _check_place(term: Term, ports: Iterable[str], states: Iterable[str], number: int) -> None:
+    place = ("effects", str(number))
+    if term.kind not in ("port", "equation"):
+        raise SimulationError("an effect acts at a port or in an equation", f"found {term.kind!r}", "Name one.", place)
+    among = tuple(ports if term.kind == "port" else states)
+    if term.place not in among:
+        raise SimulationError(
+            f"effect {term.name!r} acts at a {term.kind} of the simulation",
+            f"there is none called {term.place!r}",
+            f"Known: {', '.join(among) or 'none'}.",
+            place,
+        )
+
+
+def _check_ports(simulation: Simulation) -> None:
+    lines = (*simulation.definitions, *simulation.equations)
+    used = {name for _, text in lines for name in names(parsed(text))}
+    for port in simulation.ports:
+        if port.name not in used:
+            raise SimulationError(
+                "a port stands in an equation or a definition",
+                f"{port.name!r} stands nowhere, so that an effect there would change nothing",
+                "Add it to the equation of the place that it means, or take it away.",
+                ("ports", port.name),
+            )

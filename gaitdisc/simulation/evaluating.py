@@ -1,0 +1,116 @@
+"""Values of any expression of a simulation's names at many points: effects are scored along trajectories by it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gaitdisc.simulation.checking import check_expression
+from gaitdisc.simulation.delays import delayed_in_series
+from gaitdisc.simulation.program import compiled_program
+from gaitdisc.simulation.refusal import SimulationError
+from gaitdisc.simulation.running import at_points, compile_simulation, leaf_columns, simulation_scope
+from gaitdisc.simulation.simulation import Simulation
+
+
+@dataclass(frozen=True, eq=False)
+class Points:
+    """Where expressions are evaluated.
+
+    Parameters
+    ----------
+    t : ndarray (point,)
+        Time [s].
+    x : ndarray (point, state)
+        States.
+    u : ndarray (point, input)
+        Inputs.
+    values : ndarray (parameter,) or (point, parameter), optional
+        Parameters; the simulation's own where absent.
+    extras : mapping of str to float or ndarray (point,)
+        Further names, and their values.
+    rate : float
+        Samples a second [Hz] where the points are consecutive samples of one trial, so that delays have a value;
+        0 where they are not.
+    """
+
+    t: ArrayLike
+    x: NDArray[np.float64]
+    u: NDArray[np.float64]
+    values: NDArray[np.float64] | None = None
+    extras: Mapping[str, float | NDArray[np.float64]] = field(default_factory=dict)
+    rate: float = 0.0
+
+
+def evaluate(simulation: Simulation, expression: str, points: Points) -> NDArray[np.float64]:
+    """Value of one expression at each point, (point,).
+
+    Parameters
+    ----------
+    simulation : Simulation
+        Whose names may stand in it: states, inputs, parameters, ports, definitions, `t`.
+    expression : str
+        As in a simulation file; also the extras of the points.
+    points : Points
+        Where.
+
+    Raises
+    ------
+    SimulationError
+        If a name is unknown, or a delay is asked for at points that are no series.
+
+    Examples
+    --------
+    >>> from gaitdisc.simulation.parts import State
+    >>> decay = Simulation("decay", (State("x"),), equations=(("x", "-x"),))
+    >>> evaluate(decay, "gain*x**2", Points(np.zeros(2), np.array([[1.0], [3.0]]), np.empty((2, 0)), extras={"gain": 2}))
+    array([ 2., 18.])
+    """
+    return evaluate_many(simulation, [expression], points)[0]
+
+
+def evaluate_many(simulation: Simulation, expressions: Sequence[str], points: Points) -> NDArray[np.float64]:
+    """Value of many expressions at each point, (expression, point); what they share is computed once.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        Whose names may stand in them.
+    expressions : sequence of str
+        As for `evaluate`.
+    points : Points
+        Where.
+
+    Raises
+    ------
+    SimulationError
+        As `evaluate`.
+    """
+    compiled = compile_simulation(simulation)
+    names = ("t", *compiled.states, *compiled.inputs, *compiled.parameters, *points.extras)
+    scope = simulation_scope(simulation)
+    known = (*names, *scope)
+    trees = [check_expression(text, known, simulation) for text in expressions]
+    program = compiled_program(trees, names, (), scope)
+    values = compiled.defaults if points.values is None else np.asarray(points.values, float)
+    columns = leaf_columns(points.t, points.x, points.u, values)
+    columns += [np.asarray(extra, float) for extra in points.extras.values()]
+    count = len(np.atleast_1d(columns[0]))
+    if not program.delays:
+        return at_points(program, columns, None, count)
+    if points.rate <= 0:
+        raise SimulationError(
+            "delay(signal, seconds) needs consecutive samples of one trial",
+            "the points have no rate",
+            "Give Points(..., rate=...) with the samples of a single trial.",
+        )
+    ago = compiled_program([seconds for _, seconds in program.delays], names, (), scope)
+    seconds = at_points(ago, columns, None, count)
+    late = np.empty((count, len(program.delays)))
+    for k, (signal, _) in enumerate(program.delays):
+        wraps = any(each.wraps for each in simulation.inputs if each.name == signal)
+        late[:, k] = delayed_in_series(columns[names.index(signal)], seconds[k], points.rate, wraps)
+    return at_points(program, columns, late, count)

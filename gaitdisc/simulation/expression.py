@@ -1,0 +1,269 @@
+"""Expressions of a simulation file: arithmetic on names, parsed into a small tree of our own; nothing is ever executed.
+
+Python's `ast` only splits the text; what is kept of it is numbers, names, `+ - * / **`, unary minus and calls of the
+functions below. Length, nesting and size are bounded before and while the tree is built.
+"""
+
+from __future__ import annotations
+
+import ast
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+
+from gaitdisc.channel import nearest_word
+from gaitdisc.simulation.refusal import SimulationError
+
+LONGEST, DEEPEST, LARGEST = 20_000, 250, 4_000  # characters, nesting, nodes
+FUNCTIONS = {  # name: fewest and most arguments
+    **dict.fromkeys(("sin", "cos", "tan", "tanh", "exp", "log", "sqrt", "abs", "sign", "step"), (1, 1)),
+    **dict.fromkeys(("max", "min"), (2, 16)),
+    "delay": (2, 2),
+}
+RESERVED = frozenset({*FUNCTIONS, "t"})
+_ALLOWED = f"numbers, names, + - * / ** ( ) and {' '.join(FUNCTIONS)}"
+_STRANGE = re.compile(r"[^A-Za-z0-9_+\-*/(),. \t\r\n]")
+_BINARY = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}
+_WORDS = {
+    ast.Attribute: ("a dot after a name", "Names have no dots; write a number's point after a digit."),
+    ast.Lambda: ("a lambda", "Write the arithmetic itself."),
+    ast.IfExp: ("if and else", "Use step(a), which is 1 where a > 0 and 0 elsewhere."),
+    ast.BoolOp: ("'and' or 'or'", "Use products, max and min of step(...)."),
+    ast.Compare: ("a comparison", "Use step(a - b) for a > b."),
+    ast.FloorDiv: ("//", "Divide with /."),
+    ast.Tuple: ("a comma outside a function", "Write a decimal point, not a comma."),
+}
+_SIGNS = {
+    "^": "Write powers as x**2.",
+    "=": "Write the right-hand side only.",
+    ">": "Use step(a - b) for a > b.",
+    "<": "Use step(b - a) for a < b.",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """A finite number.
+
+    Parameters
+    ----------
+    value : float
+        Its value.
+    """
+
+    value: float
+
+
+@dataclass(frozen=True, slots=True)
+class Name:
+    """A name that the simulation gives a value to.
+
+    Parameters
+    ----------
+    name : str
+        State, input, parameter, port, definition or `t`.
+    """
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Operation:
+    """An operation on other expressions.
+
+    Parameters
+    ----------
+    symbol : str
+        `+ - * / **`, `neg`, or a function's name.
+    arguments : tuple of Number, Name or Operation
+        What it works on.
+    """
+
+    symbol: str
+    arguments: tuple[Tree, ...]
+
+
+Tree = Number | Name | Operation
+
+
+@lru_cache(maxsize=4096)
+def parsed(text: str) -> Tree:
+    """Tree of an expression.
+
+    Parameters
+    ----------
+    text : str
+        Numbers, names, `+ - * / **`, parentheses, and the functions of a simulation file.
+
+    Raises
+    ------
+    SimulationError
+        If anything else is met, or the text is too long, too deep or too large; it names the line, the column, what
+        was met and what is allowed.
+
+    Examples
+    --------
+    >>> parsed("-k*x")
+    Operation(symbol='*', arguments=(Operation(symbol='neg', arguments=(Name(name='k'),)), Name(name='x')))
+    """
+    if len(text) > LONGEST:
+        raise SimulationError(
+            f"an expression has at most {LONGEST} characters",
+            f"this one has {len(text)}: {text[:30]!r}...",
+            "Split it with [definitions].",
+        )
+    strange = _STRANGE.search(text)
+    if strange:
+        raise _refusal(text, strange.start(), f"{strange[0]!r}", _SIGNS.get(strange[0], f"Only {_ALLOWED}."))
+    flat = re.sub(r"\s", " ", text)
+    start = len(flat) - len(flat.lstrip())
+    if start == len(flat):
+        raise SimulationError("an expression is needed", "the text is empty", "Write 0 where nothing acts.")
+    try:
+        body = ast.parse(flat.strip(), mode="eval").body
+        return _Conversion(text, start).tree(body, 1)
+    except SyntaxError as error:
+        at = start + (error.offset or 1) - 1
+        raise _refusal(text, min(at, len(text) - 1), f"{error.msg}", "Correct what stands there.") from None
+    except (MemoryError, RecursionError, ValueError) as error:
+        if isinstance(error, SimulationError):
+            raise
+        raise _too_large(text) from None
+
+
+def names(tree: Tree) -> Iterator[str]:
+    """Names in an expression, each as often as it stands there.
+
+    Parameters
+    ----------
+    tree : Number, Name or Operation
+        From `parsed`.
+
+    Examples
+    --------
+    >>> sorted(set(names(parsed("-k*max(0, x - x0) + k"))))
+    ['k', 'x', 'x0']
+    """
+    if isinstance(tree, Name):
+        yield tree.name
+    elif isinstance(tree, Operation):
+        for argument in tree.arguments:
+            yield from names(argument)
+
+
+def delays(tree: Tree) -> Iterator[Operation]:
+    """Every `delay(signal, seconds)` of an expression.
+
+    Parameters
+    ----------
+    tree : Number, Name or Operation
+        From `parsed`.
+
+    Examples
+    --------
+    >>> [each.arguments[0].name for each in delays(parsed("1 - 2*delay(v, 0.1)"))]
+    ['v']
+    """
+    if isinstance(tree, Operation):
+        if tree.symbol == "delay":
+            yield tree
+        for argument in tree.arguments:
+            yield from delays(argument)
+
+
+def unknown_name(text: str, name: str, known: tuple[str, ...]) -> SimulationError:
+    """Refusal of a name that has no value, with the nearest one that has.
+
+    Parameters
+    ----------
+    text : str
+        The expression.
+    name : str
+        A name in it.
+    known : tuple of str
+        Names that may stand there.
+
+    Examples
+    --------
+    >>> unknown_name("b*omgea", "omgea", ("omega", "b")).remedy
+    "Did you mean 'omega'? Known here: omega, b."
+    """
+    found = re.search(rf"\b{re.escape(name)}\b", text)
+    nearest = nearest_word(name, known)
+    listed = ", ".join(known[:30]) + (", ..." if len(known) > 30 else "")
+    remedy = (f"Did you mean {nearest!r}? " if nearest else "") + f"Known here: {listed}."
+    return _refusal(text, found.start() if found else 0, f"the unknown name {name!r}", remedy)
+
+
+class _Conversion:
+    """From Python's tree to ours, counting as it goes."""
+
+    def __init__(self, text: str, start: int) -> None:
+        self._text, self._start, self._nodes = text, start, 0
+
+    def tree(self, node: ast.expr, depth: int) -> Tree:
+        self._nodes += 1
+        if depth > DEEPEST or self._nodes > LARGEST:
+            raise _too_large(self._text)
+        if isinstance(node, ast.Constant):
+            return self._number(node)
+        if isinstance(node, ast.Name):
+            return Name(node.id)
+        if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub | ast.UAdd):
+            inner = self.tree(node.operand, depth + 1)
+            if isinstance(node.op, ast.UAdd):
+                return inner
+            return Number(-inner.value) if isinstance(inner, Number) else Operation("neg", (inner,))
+        if isinstance(node, ast.BinOp) and type(node.op) in _BINARY:
+            sides = (self.tree(node.left, depth + 1), self.tree(node.right, depth + 1))
+            return Operation(_BINARY[type(node.op)], sides)
+        if isinstance(node, ast.Call):
+            return self._call(node, depth)
+        kind = type(node.op) if isinstance(node, ast.BinOp | ast.UnaryOp) else type(node)
+        found, remedy = _WORDS.get(kind, (f"{kind.__name__}, which is not arithmetic", f"Only {_ALLOWED}."))
+        raise self._refused(node, found, remedy)
+
+    def _number(self, node: ast.Constant) -> Number:
+        if type(node.value) not in (int, float):
+            raise self._refused(node, f"{node.value!r}, which is not a number", "Write it as a decimal number.")
+        try:
+            value = float(node.value)  # pyright: ignore[reportArgumentType]
+        except OverflowError:
+            value = math.inf
+        if not math.isfinite(value):
+            raise self._refused(node, "a number beyond 1.8e308", "Write a finite number.")
+        return Number(value)
+
+    def _call(self, node: ast.Call, depth: int) -> Operation:
+        if not isinstance(node.func, ast.Name) or node.keywords:
+            raise self._refused(node, "a call of something else than a named function", f"Only {_ALLOWED}.")
+        name, count = node.func.id, len(node.args)
+        if name not in FUNCTIONS:
+            nearest = nearest_word(name, FUNCTIONS)
+            hint = f"Did you mean {nearest!r}? " if nearest else ""
+            raise self._refused(node, f"the unknown function {name!r}", f"{hint}Only {_ALLOWED}.")
+        fewest, most = FUNCTIONS[name]
+        if not fewest <= count <= most:
+            wanted = f"{fewest}" if fewest == most else f"{fewest} to {most}"
+            raise self._refused(node, f"{name} with {count} arguments", f"Give {name} {wanted}.")
+        return Operation(name, tuple(self.tree(argument, depth + 1) for argument in node.args))
+
+    def _refused(self, node: ast.expr, found: str, remedy: str) -> SimulationError:
+        return _refusal(self._text, self._start + node.col_offset, found, remedy)
+
+
+def _refusal(text: str, at: int, found: str, remedy: str) -> SimulationError:
+    line, column = text.count("\n", 0, at) + 1, at - (text.rfind("\n", 0, at) + 1) + 1
+    around = text[max(0, at - 20) : at + 30].replace("\n", " ")
+    where = f"line {line}, column {column}" if "\n" in text else f"column {column}"
+    return SimulationError("an expression is arithmetic on names", f"at {where} ({around!r}) found {found}", remedy)
+
+
+def _too_large(text: str) -> SimulationError:
+    return SimulationError(
+        f"an expression nests at most {DEEPEST} deep and has at most {LARGEST} parts",
+        f"this one goes further: {text[:30]!r}...",
+        "Split it with [definitions].",
+    )

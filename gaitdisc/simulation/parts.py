@@ -1,0 +1,106 @@
+"""The named parts of a simulation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class State:
+    """One component of the state vector.
+
+    Parameters
+    ----------
+    name, unit, meaning : str
+        As in the file.
+    initial : float, optional
+        Where it starts [unit]; estimated from each trial's first samples where absent.
+    """
+
+    name: str
+    unit: str = "1"
+    meaning: str = ""
+    initial: float | None = None
+
+
+@dataclass(frozen=True)
+class Input:
+    """A measured signal that drives the simulation.
+
+    Parameters
+    ----------
+    name, unit, meaning : str
+        As in the file. One called `phase` of unit `1` is the share of the stride and wraps at 1.
+    """
+
+    name: str
+    unit: str = "1"
+    meaning: str = ""
+
+    @property
+    def wraps(self) -> bool:
+        """Whether it goes from just below 1 to 0 without passing what lies between."""
+        return self.name == "phase" and self.unit == "1"
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A number of the model.
+
+    Parameters
+    ----------
+    name : str
+        As in the file.
+    value : float
+        [unit].
+    unit : str
+        As in the file.
+    low, high : float, optional
+        What the user would believe [unit].
+    meaning : str
+        As in the file.
+    """
+
+    name: str
+    value: float
+    unit: str = "1"
+    low: float | None = None
+    high: float | None = None
+    meaning: str = ""
+
+
+@dataclass(frozen=True)
+class Port:
+    """A physical place where a missing effect may enter.
+
+    Parameters
+    ----------
+    name, unit, meaning : str
+        As in the file.
+    """
+
+    name: str
+    unit: str = "1"
+    meaning: str = ""
+
+
+@dataclass(frozen=True)
+class Term:
+    """An effect added to a simulation.
+
+    Parameters
+    ----------
+    place : str
+        Port, or state whose derivative it adds to.
+    kind : str
+        `port` or `equation`.
+    name : str
+        Name of the effect, `one_sided_spring`.
+    term : str
+        Expression.
+    """
+
+    place: str
+    kind: str
+    name: str
+    term: str

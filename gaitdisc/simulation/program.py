@@ -1,0 +1,241 @@
+"""Expressions compiled to data: a list of register operations that the machine interprets over many rows at once.
+
+Equal parts are computed once. What depends on parameters alone comes first and is computed once a run (`setup`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.simulation.expression import Name, Number, Operation, Tree
+from gaitdisc.simulation.rewriting import written
+
+CODES = {
+    "store": 0, "+": 1, "-": 2, "*": 3, "/": 4, "**": 5, "neg": 6, "sin": 7, "cos": 8, "tan": 9, "tanh": 10, "exp": 11,
+    "log": 12, "sqrt": 13, "abs": 14, "max": 15, "min": 16, "step": 17,
+}  # fmt: skip
+ROUNDED = 0.02  # sign(a) is tanh(a/0.02), so that a fixed step can cross zero
+_MOST_PRODUCTS = 8  # x**n is written as products up to this power
+_COMMUTES = frozenset(["+", "*", "max", "min"])
+
+
+@dataclass(frozen=True, eq=False)
+class Program:
+    """Register operations.
+
+    Parameters
+    ----------
+    leaves : tuple of str
+        Names whose values the first registers hold, in order.
+    delays : tuple of (str, tree)
+        Signal and seconds of what the next registers hold.
+    constants : ndarray (constant,)
+        What the registers after those hold.
+    code : ndarray (operation, 4)
+        Operation, register (or output) written, registers read.
+    setup : int
+        How many operations at the head depend on parameters alone.
+    registers, outputs : int
+        How many there are.
+    """
+
+    leaves: tuple[str, ...]
+    delays: tuple[tuple[str, Tree], ...]
+    constants: NDArray[np.float64]
+    code: NDArray[np.int64]
+    setup: int
+    registers: int
+    outputs: int
+
+    def used(self) -> NDArray[np.bool_]:
+        """Whether each leaf and each delay is read, (leaf and delay,)."""
+        reads = np.zeros(self.registers, bool)
+        reads[self.code[:, 2:].ravel()] = True
+        return reads[: len(self.leaves) + len(self.delays)]
+
+
+def compiled_program(
+    outputs: Sequence[Tree],
+    leaves: Sequence[str],
+    fixed: Sequence[str] = (),
+    definitions: Mapping[str, Tree] | None = None,
+) -> Program:
+    """Program of some expressions.
+
+    Parameters
+    ----------
+    outputs : sequence of tree
+        What is wanted.
+    leaves : sequence of str
+        Names that are given as numbers.
+    fixed : sequence of str
+        Those of them that do not change during a run.
+    definitions : mapping of str to tree, optional
+        Further names, in order, each in terms of leaves and of those before.
+
+    Examples
+    --------
+    >>> from gaitdisc.simulation.expression import parsed
+    >>> program = compiled_program([parsed("k*x + sin(k*x)")], ["x", "k"])
+    >>> len(program.code)  # one product, one sine, one sum, one store
+    4
+    """
+    graph = _Graph(leaves)
+    for name, tree in (definitions or {}).items():
+        graph.scope[name] = graph.node(tree)
+    wanted = [graph.node(tree) for tree in outputs]
+    return _laid_out(graph, wanted, frozenset(fixed))
+
+
+class _Graph:
+    """Every distinct part of the expressions once."""
+
+    def __init__(self, leaves: Sequence[str]) -> None:
+        self.leaves = tuple(leaves)
+        self.parts: list[tuple] = []  # ("leaf", name) | ("delay", signal, text) | ("constant", value) | (symbol, a, b)
+        self.delays: dict[tuple[str, str], Tree] = {}
+        self._numbers: dict[tuple, int] = {}
+        self.scope = {name: self._numbered(("leaf", name)) for name in leaves}
+
+    def node(self, tree: Tree) -> int:
+        if isinstance(tree, Number):
+            return self.constant(tree.value)
+        if isinstance(tree, Name):
+            return self.scope[tree.name]
+        if tree.symbol == "delay":
+            return self._delayed(tree)
+        return self._operation(tree.symbol, [self.node(argument) for argument in tree.arguments])
+
+    def constant(self, value: float) -> int:
+        return self._numbered(("constant", value, np.signbit(value)))
+
+    def _delayed(self, tree: Operation) -> int:
+        signal, seconds = tree.arguments
+        assert isinstance(signal, Name)  # checked with the simulation
+        key = (signal.name, written(seconds))
+        self.delays.setdefault(key, seconds)
+        return self._numbered(("delay", *key))
+
+    def _operation(self, symbol: str, arguments: list[int]) -> int:
+        if symbol == "sign":
+            return self._two("tanh", self._two("/", arguments[0], self.constant(ROUNDED)))
+        if symbol in ("max", "min"):
+            best = arguments[0]
+            for argument in arguments[1:]:
+                best = self._two(symbol, best, argument)
+            return best
+        if symbol == "**":
+            return self._power(*arguments)
+        return self._two(symbol, *arguments)
+
+    def _power(self, base: int, exponent: int) -> int:
+        value = self._value(exponent)
+        if value is None or value != int(value) or not 1 <= abs(value) <= _MOST_PRODUCTS:
+            return self._two("**", base, exponent)
+        power, rest, square = None, int(abs(value)), base
+        while rest:
+            if rest % 2:
+                power = square if power is None else self._two("*", power, square)
+            rest //= 2
+            square = self._two("*", square, square) if rest else square
+        assert power is not None  # the exponent is at least 1
+        return power if value > 0 else self._two("/", self.constant(1.0), power)
+
+    def _value(self, node: int) -> float | None:
+        part = self.parts[node]
+        return part[1] if part[0] == "constant" else None
+
+    def _two(self, symbol: str, a: int, b: int | None = None) -> int:
+        b = a if b is None else b
+        return self._numbered((symbol, *sorted((a, b))) if symbol in _COMMUTES else (symbol, a, b))
+
+    def _numbered(self, part: tuple) -> int:
+        if part not in self._numbers:
+            self._numbers[part] = len(self.parts)
+            self.parts.append(part)
+        return self._numbers[part]
+
+
+def _laid_out(graph: _Graph, wanted: list[int], fixed: frozenset[str]) -> Program:
+    """Registers and order: leaves, delays, constants, what is fixed, then the rest in registers used again."""
+    parts = graph.parts
+    needed = _needed(parts, wanted)
+    delayed = {key: len(graph.leaves) + i for i, key in enumerate(graph.delays)}
+    register = {graph.scope[name]: i for i, name in enumerate(graph.leaves)}
+    constants: list[float] = []
+    still: set[int] = set()
+    operations = []
+    for node in needed:
+        kind = parts[node][0]
+        if kind == "leaf":
+            still |= {node} if parts[node][1] in fixed else set()
+        elif kind == "delay":
+            register[node] = delayed[parts[node][1:]]
+        elif kind == "constant":
+            register[node] = len(graph.leaves) + len(delayed) + len(constants)
+            constants.append(parts[node][1])
+            still.add(node)
+        else:
+            operations.append(node)
+            still |= {node} if set(parts[node][1:]) <= still else set()
+    first = [node for node in operations if node in still]
+    order = _Order(register, len(graph.leaves) + len(delayed) + len(constants))
+    for node in first:
+        order.add(node, parts[node], keep=True)
+    setup = len(order.code)
+    rest = [node for node in operations if node not in still]
+    order.run(rest, parts, wanted)
+    code = np.array(order.code, np.int64).reshape(-1, 4)
+    seconds = tuple((signal, tree) for (signal, _), tree in graph.delays.items())
+    return Program(graph.leaves, seconds, np.array(constants), code, setup, max(order.most, 1), len(wanted))
+
+
+def _needed(parts: list[tuple], wanted: list[int]) -> list[int]:
+    seen, stack = set(wanted), list(wanted)
+    while stack:
+        part = parts[stack.pop()]
+        if part[0] not in ("leaf", "delay", "constant"):
+            for argument in part[1:]:
+                if argument not in seen:
+                    seen.add(argument)
+                    stack.append(argument)
+    return sorted(seen)
+
+
+class _Order:
+    """Operations one after the other, and the registers that are free again."""
+
+    def __init__(self, register: dict[int, int], taken: int) -> None:
+        self.code: list[tuple[int, int, int, int]] = []
+        self.most = taken
+        self._register, self._free = register, []
+
+    def add(self, node: int, part: tuple, keep: bool = False) -> None:
+        if self._free and not keep:
+            out = self._free.pop()
+        else:
+            out, self.most = self.most, self.most + 1
+        self._register[node] = out
+        self.code.append((CODES[part[0]], out, self._register[part[1]], self._register[part[2]]))
+
+    def run(self, nodes: list[int], parts: list[tuple], wanted: list[int]) -> None:
+        places: dict[int, list[int]] = {}
+        for output, node in enumerate(wanted):
+            places.setdefault(node, []).append(output)
+        last = {argument: step for step, node in enumerate(nodes) for argument in parts[node][1:]}
+        owned = set(nodes)
+        for node in places.keys() - owned:
+            self._store(node, places[node])
+        for step, node in enumerate(nodes):
+            self.add(node, parts[node])
+            self._store(node, places.get(node, []))
+            for argument in {*parts[node][1:], node}:
+                if argument in owned and last.get(argument, step) == step:
+                    self._free.append(self._register[argument])
+
+    def _store(self, node: int, outputs: list[int]) -> None:
+        self.code += [(CODES["store"], output, self._register[node], self._register[node]) for output in outputs]

@@ -1,0 +1,192 @@
+"""A simulation: states, inputs, parameters, ports, equations, and the effects that were added to it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from gaitdisc.simulation.checking import check
+from gaitdisc.simulation.expression import parsed
+from gaitdisc.simulation.parts import Input, Parameter, Port, State, Term
+from gaitdisc.simulation.refusal import SimulationError
+from gaitdisc.simulation.rewriting import substituted, written
+
+Lines = tuple[tuple[str, str], ...]  # name, expression
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """A dynamical system as a simulation file holds it; frozen, and checked when it is made.
+
+    Parameters
+    ----------
+    title : str
+        One line for a person.
+    states : tuple of State
+        In the order of the state vector.
+    inputs : tuple of Input
+        Measured signals that drive it.
+    parameters : tuple of Parameter
+        Numbers of the model.
+    ports : tuple of Port
+        Places where a missing effect may enter; zero in the model as given.
+    definitions : tuple of (str, str)
+        Name and expression, each may use those above.
+    equations : tuple of (str, str)
+        State and expression of its time derivative, in the order of the states.
+    observations : tuple of (str, str)
+        Measured column and expression; by default each state under its own name.
+    effects : tuple of Term
+        What was added, and where.
+    source : Path, optional
+        File it was read from.
+    layout : str
+        Text of that file, whose comments and order are kept when it is written back.
+
+    Raises
+    ------
+    SimulationError
+        If a name is unknown or doubled, an expression does not parse, a port is used nowhere, an equation is missing.
+
+    Examples
+    --------
+    >>> falling = Simulation("falling", (State("v", "m/s"),), equations=(("v", "-9.81"),))
+    >>> falling.with_effect(Term("v", "equation", "viscous_damping", "-0.4*v")).effects[0].term
+    '-0.4*v'
+    """
+
+    title: str
+    states: tuple[State, ...]
+    inputs: tuple[Input, ...] = ()
+    parameters: tuple[Parameter, ...] = ()
+    ports: tuple[Port, ...] = ()
+    definitions: Lines = ()
+    equations: Lines = ()
+    observations: Lines = ()
+    effects: tuple[Term, ...] = ()
+    source: Path | None = field(default=None, compare=False)
+    layout: str = field(default="", compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Make every part a tuple, and refuse what does not hold together."""
+        for part in ("states", "inputs", "parameters", "ports", "effects"):
+            object.__setattr__(self, part, tuple(getattr(self, part)))
+        for part in ("definitions", "equations", "observations"):
+            object.__setattr__(self, part, _lines(getattr(self, part)))
+        if not self.observations:
+            object.__setattr__(self, "observations", tuple((state.name, state.name) for state in self.states))
+        check(self)
+
+    @property
+    def signals(self) -> tuple[str, ...]:
+        """Names of the states and inputs: what changes in time and can be delayed."""
+        return (*(state.name for state in self.states), *(each.name for each in self.inputs))
+
+    def values(self) -> dict[str, float]:
+        """Parameters by name."""
+        return {parameter.name: parameter.value for parameter in self.parameters}
+
+    def with_effect(self, term: Term) -> Simulation:
+        """Simulation with one effect more.
+
+        Parameters
+        ----------
+        term : Term
+            What is added, and to which port or equation.
+        """
+        return replace(self, effects=(*self.effects, term))
+
+    def without_effects(self) -> Simulation:
+        """Simulation without anything added."""
+        return replace(self, effects=())
+
+    def with_values(self, values: Mapping[str, float]) -> Simulation:
+        """Simulation with other values of some parameters.
+
+        Parameters
+        ----------
+        values : mapping of str to float
+            By parameter's name.
+
+        Raises
+        ------
+        SimulationError
+            If there is no parameter of that name, or a value is not finite.
+        """
+        known = tuple(parameter.name for parameter in self.parameters)
+        for name in values:
+            if name not in known:
+                raise SimulationError(
+                    "a value belongs to a parameter of the simulation",
+                    f"there is none called {name!r}",
+                    f"Known: {', '.join(known) or 'none'}.",
+                )
+        changed = (replace(each, value=float(values.get(each.name, each.value))) for each in self.parameters)
+        return replace(self, parameters=tuple(changed))
+
+    def with_parameter(self, parameter: Parameter) -> Simulation:
+        """Simulation with a further parameter, or with another in the place of one of the same name.
+
+        Parameters
+        ----------
+        parameter : Parameter
+            Name, value, unit.
+        """
+        if all(each.name != parameter.name for each in self.parameters):
+            return replace(self, parameters=(*self.parameters, parameter))
+        kept = (parameter if each.name == parameter.name else each for each in self.parameters)
+        return replace(self, parameters=tuple(kept))
+
+    def with_observation(self, name: str, expression: str) -> Simulation:
+        """Simulation with a further observed channel, or with another expression for one that it has.
+
+        Parameters
+        ----------
+        name : str
+            Measured column.
+        expression : str
+            In the simulation's names.
+        """
+        kept = dict(self.observations)
+        kept[name] = expression
+        return replace(self, observations=tuple(kept.items()))
+
+    def with_input(self, name: str, expression: str) -> Simulation:
+        """Simulation in which an input is replaced by an expression of itself wherever it stands.
+
+        Parameters
+        ----------
+        name : str
+            Input.
+        expression : str
+            In states, inputs, parameters and `t`: `1.2*tau`, `delay(tau, 0.05)`.
+
+        Raises
+        ------
+        SimulationError
+            If there is no such input, or the expression is not of the simulation's names.
+        """
+        if all(each.name != name for each in self.inputs):
+            known = ", ".join(each.name for each in self.inputs) or "none"
+            raise SimulationError("an input is to be replaced", f"there is none called {name!r}", f"Known: {known}.")
+        by = {name: parsed(expression)}
+
+        def changed(text: str) -> str:
+            tree = parsed(text)
+            other = substituted(tree, by, self.signals)
+            return text if other == tree else written(other)
+
+        return replace(
+            self,
+            definitions=tuple((key, changed(text)) for key, text in self.definitions),
+            equations=tuple((key, changed(text)) for key, text in self.equations),
+            observations=tuple((key, changed(text)) for key, text in self.observations),
+            effects=tuple(replace(each, term=changed(each.term)) for each in self.effects),
+        )
+
+
+def _lines(given: Mapping[str, Any] | Sequence[tuple[str, Any]]) -> Lines:
+    pairs = given.items() if isinstance(given, Mapping) else given
+    return tuple((str(name), str(text)) for name, text in pairs)

@@ -1,0 +1,250 @@
+"""Reading a simulation file (docs/simulation.md)."""
+
+from __future__ import annotations
+
+import math
+import re
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from gaitdisc.channel import nearest_word
+from gaitdisc.errors import ReadError, SchemaError
+from gaitdisc.simulation.parts import Input, Parameter, Port, State, Term
+from gaitdisc.simulation.refusal import SimulationError
+from gaitdisc.simulation.simulation import Simulation
+
+LARGEST = 256 * 1024  # bytes
+MOST_TABLES = 1000  # the library that parses takes a time that grows with their square
+_TABLES = {
+    "states": ("unit", "meaning", "initial"),
+    "inputs": ("unit", "meaning"),
+    "parameters": ("value", "unit", "low", "high", "meaning"),
+    "ports": ("unit", "meaning"),
+}
+_EXPRESSIONS = ("definitions", "equations", "observations")
+_SECTIONS = ("title", *_TABLES, *_EXPRESSIONS, "effects")
+_EFFECT = ("port", "equation", "name", "term")
+
+
+def read_simulation(path: Path | str) -> Simulation:
+    """Simulation of a TOML file.
+
+    Parameters
+    ----------
+    path : Path or str
+        File of at most 256 KiB.
+
+    Returns
+    -------
+    Simulation
+        With its source and the text's layout, so that it can be written back.
+
+    Raises
+    ------
+    ReadError
+        If the file cannot be read, is too large, or is not TOML.
+    SchemaError
+        If it is no simulation: file, line, what was found and what to do.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> path = Path(tempfile.mkdtemp()) / "decay.toml"
+    >>> _ = path.write_text('[states.x]\\nunit = "1"\\n[equations]\\nx = "-x"\\n')
+    >>> read_simulation(path).equations
+    (('x', '-x'),)
+    """
+    path = Path(path)
+    try:
+        size = path.stat().st_size
+        if size > LARGEST:
+            raise ReadError(
+                f"a simulation file has at most {LARGEST // 1024} KiB",
+                f"{path.name} has {size / 1024:.0f} KiB",
+                "Give a model of this size as a PythonSimulation.",
+            )
+        text = path.read_bytes().decode("utf-8-sig")
+    except OSError as error:
+        raise ReadError(
+            "a simulation is read from a TOML file", f"{path.name}: {error.strerror or error}", "Check the path."
+        ) from error
+    except UnicodeDecodeError as error:
+        raise ReadError(
+            "a simulation file is text in UTF-8",
+            f"{path.name} has another byte at {error.start}",
+            "Save it as UTF-8.",
+        ) from error
+    return simulation_of(text, path.name, path)
+
+
+def simulation_of(text: str, file: str = "the simulation", source: Path | None = None) -> Simulation:
+    """Simulation of the text of a TOML file.
+
+    Parameters
+    ----------
+    text : str
+        The file.
+    file : str
+        What refusals call it.
+    source : Path, optional
+        Where it was read from.
+
+    Raises
+    ------
+    ReadError, SchemaError
+        As `read_simulation`.
+    """
+    if len(re.findall(r"^\s*\[", text, re.MULTILINE)) > MOST_TABLES:
+        raise _not_toml(file, f"more than {MOST_TABLES} tables")
+    if re.search(r"(?:\.[^.\n]{0,80}){40}", re.sub(r"\d\.\d|#.*|\"[^\"\n]*\"", "", text)):
+        raise _not_toml(file, "a key of more than 40 parts")
+    try:
+        table = tomllib.loads(text.replace("\r\n", "\n"))
+    except (tomllib.TOMLDecodeError, RecursionError, MemoryError, ValueError) as error:
+        raise _not_toml(file, str(error)[:200] or type(error).__name__) from None
+    try:
+        return _simulation(table, text, source)
+    except SimulationError as error:
+        raise _located(error, text, file) from None
+
+
+def _not_toml(file: str, found: str) -> ReadError:
+    return ReadError(f"{file} is to be a TOML file", found, "Correct it there; docs/simulation.md shows the form.")
+
+
+def _simulation(table: Mapping[str, Any], text: str, source: Path | None) -> Simulation:
+    _check_keys(table, _SECTIONS, ())
+    parts = {section: _table(table.get(section, {}), (section,)) for section in (*_TABLES, *_EXPRESSIONS)}
+    for section, keys in _TABLES.items():
+        for name, entry in parts[section].items():
+            _check_keys(_table(entry, (section, name)), keys, (section, name))
+    effects = table.get("effects", [])
+    if not isinstance(effects, list):
+        raise SimulationError(
+            "effects are a list of tables", "found something else", "Write [[effects]].", ("effects",)
+        )
+    lines = {
+        section: tuple((name, _expression(value, (section, name))) for name, value in parts[section].items())
+        for section in _EXPRESSIONS
+    }
+    return Simulation(
+        _text(table, "title", ()),
+        tuple(
+            State(n, _unit(e, ("states", n)), _text(e, "meaning", ("states", n)), _number(e, "initial", ("states", n)))
+            for n, e in parts["states"].items()
+        ),
+        tuple(
+            Input(n, _unit(e, ("inputs", n)), _text(e, "meaning", ("inputs", n))) for n, e in parts["inputs"].items()
+        ),
+        tuple(_parameter(n, e) for n, e in parts["parameters"].items()),
+        tuple(Port(n, _unit(e, ("ports", n)), _text(e, "meaning", ("ports", n))) for n, e in parts["ports"].items()),
+        lines["definitions"],
+        lines["equations"],
+        lines["observations"],
+        tuple(_effect(entry, number) for number, entry in enumerate(effects)),
+        source,
+        text,
+    )
+
+
+def _parameter(name: str, entry: Mapping[str, Any]) -> Parameter:
+    place = ("parameters", name)
+    value = _number(entry, "value", place)
+    if value is None:
+        raise SimulationError("a parameter has a value", "it has none", "Write value = ...", place)
+    low, high = _number(entry, "low", place), _number(entry, "high", place)
+    return Parameter(name, value, _unit(entry, place), low, high, _text(entry, "meaning", place))
+
+
+def _effect(entry: Any, number: int) -> Term:
+    place = ("effects", str(number))
+    entry = _table(entry, place)
+    _check_keys(entry, _EFFECT, place)
+    kinds = [kind for kind in ("port", "equation") if kind in entry]
+    if len(kinds) != 1 or "term" not in entry:
+        raise SimulationError(
+            "an effect has a term, and a port or an equation",
+            f"found {', '.join(entry) or 'nothing'}",
+            'Write port = "..." (or equation = "...") and term = "...".',
+            place,
+        )
+    term = _expression(entry["term"], place)
+    return Term(_text(entry, kinds[0], place), kinds[0], _text(entry, "name", place), term)
+
+
+def _check_keys(table: Mapping[str, Any], known: tuple[str, ...], place: tuple[str, ...]) -> None:
+    for key in table:
+        if key not in known:
+            nearest = nearest_word(key, known)
+            remedy = f"Did you mean {nearest!r}? " if nearest else ""
+            raise SimulationError(
+                "only keys of the simulation file stand here",
+                f"found {key[:60]!r}",
+                f"{remedy}Known: {', '.join(known)}.",
+                (*place, key) if not place else place,
+            )
+
+
+def _table(value: Any, place: tuple[str, ...]) -> Mapping[str, Any]:
+    if not isinstance(value, dict):
+        raise SimulationError("a table is needed", f"found {str(value)[:60]!r}", "Write [section.name].", place)
+    return value
+
+
+def _text(table: Mapping[str, Any], key: str, place: tuple[str, ...]) -> str:
+    value = table.get(key, "")
+    if not isinstance(value, str):
+        raise SimulationError(f"{key} is text", f"found {str(value)[:60]}", f'Write {key} = "...".', place or (key,))
+    return value
+
+
+def _unit(table: Mapping[str, Any], place: tuple[str, ...]) -> str:
+    return _text(table, "unit", place) or "1"
+
+
+def _number(table: Mapping[str, Any], key: str, place: tuple[str, ...]) -> float | None:
+    if key not in table:
+        return None
+    value = table[key]
+    if type(value) not in (int, float) or abs(value) > 1e300 or not math.isfinite(value):
+        found = f"found {str(value)[:60]}" if type(value) is not int else "found a number beyond 1e300"
+        raise SimulationError(f"{key} is a finite number", found, "Write it without quotes.", place)
+    return float(value)
+
+
+def _expression(value: Any, place: tuple[str, ...]) -> str:
+    if type(value) in (int, float) and abs(value) < 1e300 and math.isfinite(value):
+        return repr(value)
+    if not isinstance(value, str):
+        raise SimulationError("an expression is text", f"found {str(value)[:60]}", 'Write it in quotes: "..."', place)
+    return value
+
+
+def _located(error: SimulationError, text: str, file: str) -> SchemaError:
+    """Tell a refusal of the file and the line."""
+    line = _line(text, error.place)
+    where = f"{file}, line {line}" if line else file
+    part = f", [{error.place[0]}] {' '.join(error.place[1:])}".rstrip() if error.place else ""
+    return SchemaError(f"{where}{part}: {error.needed}", error.found, error.remedy)
+
+
+def _line(text: str, place: tuple[str, ...]) -> int | None:
+    """Line of a part, counted from 1; of its section where it has no line of its own."""
+    if not place:
+        return None
+    section, number, here = "", -1, None
+    for line, words in enumerate(text.split("\n"), 1):
+        header = re.match(r"\s*\[\[?\s*([A-Za-z0-9_.\"' -]+?)\s*\]\]?", words)
+        if header:
+            keys = tuple(key.strip("\"' ") for key in header[1].split("."))
+            section = keys[0]
+            number += keys == ("effects",)
+            if keys == place or (keys, (str(number),)) == (("effects",), place[1:]):
+                return line
+            here = line if section == place[0] and here is None else here
+        elif (section, *place[-1:]) == place or (not section and len(place) == 1):
+            if re.match(rf"\s*[\"']?{re.escape(place[-1])}[\"']?\s*[.=]", words):
+                return line
+    return here

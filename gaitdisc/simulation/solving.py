@@ -1,0 +1,108 @@
+"""One trial solved with an adaptive step: the reference that fixed steps are judged by."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gaitdisc.errors import SamplingError
+from gaitdisc.simulation.refusal import SimulationError
+from gaitdisc.simulation.running import compile_simulation
+from gaitdisc.simulation.simulation import Simulation
+
+TOLERANCE = 1e-12  # relative and absolute
+
+
+def solve(
+    simulation: Simulation,
+    time: ArrayLike,
+    inputs: Mapping[str, ArrayLike],
+    initial: Mapping[str, float],
+    tolerance: float = TOLERANCE,
+) -> NDArray[np.float64]:
+    """States of one trial by an adaptive Runge-Kutta method of order 8, (sample, state).
+
+    Parameters
+    ----------
+    simulation : Simulation
+        Without delays.
+    time : ndarray (sample,)
+        Increasing [s].
+    inputs : mapping of str to ndarray (sample,)
+        Linear between the samples; each sample is a corner that a step ends at.
+    initial : mapping of str to float
+        State at the first sample.
+    tolerance : float
+        Relative and absolute.
+
+    Raises
+    ------
+    SimulationError
+        If the simulation has delays, or the solution leaves every bound; it says when, and which state.
+
+    References
+    ----------
+    Hairer, Norsett, Wanner 1993, Solving Ordinary Differential Equations I: DOP853, as scipy has it.
+
+    Examples
+    --------
+    >>> from gaitdisc.simulation.parts import State
+    >>> decay = Simulation("decay", (State("x"),), equations=(("x", "-x"),))
+    >>> round(float(solve(decay, [0.0, 1.0], {}, {"x": 1.0})[-1, 0]), 9)
+    0.367879441
+    """
+    from scipy.integrate import solve_ivp
+
+    compiled = compile_simulation(simulation)
+    if compiled.right_hand_side.delays:
+        raise SimulationError(
+            "an adaptive step needs a simulation without delays",
+            f"{simulation.title!r} delays {compiled.right_hand_side.delays[0][0]!r}",
+            "Run it with a fixed step: compile_simulation(...).run(...).",
+        )
+    times = np.asarray(time, float)
+    if times.ndim != 1 or not np.all(np.diff(times) > 0):
+        raise SamplingError("times increase from sample to sample", "these do not", "Sort them.")
+    drive = np.column_stack(
+        [np.asarray(inputs[name], float) for name in compiled.inputs] or [np.empty((len(times), 0))]
+    )
+    wraps = [each.wraps for each in simulation.inputs]
+    drive[:, wraps] = np.unwrap(drive[:, wraps], period=1.0, axis=0)
+
+    def rates(t: float, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        u = np.array([[np.interp(t, times, column) for column in drive.T]]).reshape(1, -1)
+        u[:, wraps] %= 1.0
+        return compiled.rates(np.array([t]), x[None], u)[0]
+
+    found = np.empty((len(times), len(compiled.states)))
+    found[0] = [initial[name] for name in compiled.states]
+    corners = list(range(1, len(times))) if compiled.inputs else [len(times) - 1]
+    first = 0
+    for corner in corners:
+        span = times[first : corner + 1]
+        x0 = found[first]
+        part = solve_ivp(
+            rates, (span[0], span[-1]), x0, method="DOP853", t_eval=span, rtol=tolerance, atol=tolerance,
+            events=_beyond,
+        )  # fmt: skip
+        if not part.success or part.status == 1:
+            worst = compiled.states[int(np.argmax(np.abs(part.y[:, -1])))] if part.y.size else compiled.states[0]
+            raise SimulationError(
+                "a solution stays finite",
+                f"{simulation.title!r} leaves every bound after t = {part.t[-1] if part.t.size else span[0]:.6g} s "
+                f"in {worst!r}",
+                "Check the parameters and the start, or whether an effect pushes without limit.",
+            )
+        found[first : corner + 1] = part.y.T
+        first = corner
+    return found
+
+
+def _beyond(_t: float, x: NDArray[np.float64]) -> float:
+    """Fall through zero where a state passes 1e6."""
+    return float(1e6 - np.max(np.abs(x))) if np.all(np.isfinite(x)) else -1.0
+
+
+_beyond.terminal = True

@@ -1,0 +1,128 @@
+"""The parser lets arithmetic through and nothing else."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gaitdisc.simulation.expression import DEEPEST, LARGEST, LONGEST, Name, Number, Operation, names, parsed
+from gaitdisc.simulation.refusal import SimulationError
+
+
+def test_precedence_is_that_of_python():
+    assert parsed("-x**2") == Operation("neg", (Operation("**", (Name("x"), Number(2.0))),))
+    assert parsed("a - b - c") == parsed("(a - b) - c")
+    assert parsed("a**b**c") == parsed("a**(b**c)")
+    assert parsed("+x") == Name("x")
+
+
+def test_numbers_are_floats_and_keep_their_sign():
+    assert parsed("-2") == Number(-2.0)
+    assert parsed("1e-3") == Number(1e-3)
+    assert parsed("2**-1") == Operation("**", (Number(2.0), Number(-1.0)))
+
+
+def test_a_line_break_is_a_blank():
+    assert parsed("a +\n  b") == parsed("a + b")
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("x.__class__", "a dot after a name"),
+        ("lambda", "column"),
+        ("(lambda)", "column"),
+        ("x if y else z", "Use step"),
+        ("x and y", "Use products"),
+        ("x < y", "Use step(b - a)"),
+        ("x ^ 2", "Write powers as x**2"),
+        ("x = 2", "right-hand side only"),
+        ("x // 2", "Divide with /"),
+        ("1, 2", "decimal point"),
+        ("sine(x)", "Did you mean 'sin'?"),
+        ("max(x)", "max with 1 arguments"),
+        ("sin(x)(y)", "something else than a named function"),
+        ("sin(*x)", "not arithmetic"),
+        ("__import__(x)", "unknown function '__import__'"),
+        ("True", "not a number"),
+        ("1j", "not a number"),
+        ("...", "not a number"),
+        ("not x", "Not, which is not arithmetic"),
+        ("(yield)", "not arithmetic"),
+        ("(x for x in y)", "not arithmetic"),
+        ("1e999", "beyond 1.8e308"),
+        ("9" * 400, "beyond 1.8e308"),
+        ("9" * 5000, "column"),
+        ("х + 1", "'х'"),  # a Cyrillic letter
+        ("ｘ + 1", "'ｘ'"),  # a full-width letter, which Python would take for x
+        ("'x'", '"\'"'),
+        ("x[0]", "'['"),
+        ("x; y", "';'"),
+        ("", "the text is empty"),
+        ("   ", "the text is empty"),
+        ("x +", "column"),
+        ("(x", "column"),
+        ("x)", "column"),
+    ],
+)
+def test_anything_else_is_refused(text, words):
+    with pytest.raises(SimulationError) as refusal:
+        parsed(text)
+    assert words in str(refusal.value)
+
+
+def test_the_column_is_told():
+    with pytest.raises(SimulationError, match=r"column 9 .*'sine'"):
+        parsed("  tau + sine(x)")
+    with pytest.raises(SimulationError, match=r"line 2, column 3 .*'\^'"):
+        parsed("tau +\nx ^ 2")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "(" * 150 + "x" + ")" * 150,
+        "(" * 5000 + "x" + ")" * 5000,
+        "-" * 10_000 + "x",
+        "+".join(["x"] * 5000),
+        "x" * (LONGEST + 1),
+        "x+" * 500_000 + "x",
+        "sin(" * 4000 + "x" + ")" * 4000,
+        "max(" + ",".join(["x"] * 5000) + ")",
+        "2" + "**2" * 5000,
+    ],
+)
+def test_a_hostile_text_is_refused_without_end(text):
+    if text.count("(") == 150:  # many parentheses are harmless
+        assert parsed(text) == Name("x")
+        return
+    with pytest.raises(SimulationError):
+        parsed(text)
+
+
+def test_a_power_of_powers_is_not_computed():
+    tree = parsed("9**9**9**9")
+    assert list(names(tree)) == []
+    assert isinstance(tree, Operation)
+
+
+def test_limits_leave_room_for_a_long_sum():
+    terms = min(DEEPEST, LARGEST // 2) - 10
+    assert len(list(names(parsed(" + ".join(["x"] * terms))))) == terms
+
+
+@given(st.text(max_size=60))
+def test_any_text_parses_or_is_refused(text):
+    try:
+        parsed(text)
+    except SimulationError as error:
+        assert error.needed and error.found and error.remedy
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_a_number_keeps_its_value(value):
+    tree = parsed(repr(value))
+    assert isinstance(tree, Number)
+    assert tree.value == value or (np.isclose(value, 0) and math.copysign(1, value) < 0)

@@ -1,0 +1,73 @@
+"""Programs: equal parts once, what is fixed first, registers used again."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gaitdisc.simulation.expression import parsed
+from gaitdisc.simulation.program import CODES, compiled_program
+from gaitdisc.simulation.running import at_points
+
+
+def _value(text, **values):
+    program = compiled_program([parsed(text)], list(values))
+    return at_points(program, [np.array([float(value)]) for value in values.values()])[0, 0]
+
+
+def test_what_is_shared_is_computed_once():
+    program = compiled_program([parsed("sin(k*x) + x*k"), parsed("sin(x*k)**2")], ["x", "k"])
+    assert [int(op) for op in program.code[:, 0]].count(CODES["sin"]) == 1
+    assert len(program.code) == 4 + 2  # product, sine, sum, square; two stores
+
+
+def test_what_depends_on_parameters_alone_comes_first():
+    program = compiled_program([parsed("x*exp(k**2.5)/(2 + 3)")], ["x", "k"], ["k"])
+    assert program.setup == 3  # power, exponential, 2 + 3
+    assert program.code[program.setup :, 0].tolist() == [CODES["*"], CODES["/"], CODES["store"]]
+
+
+def test_what_nobody_needs_is_left_out():
+    program = compiled_program([parsed("x")], ["x"], (), {"unused": parsed("sin(x)")})
+    assert program.code[:, 0].tolist() == [CODES["store"]]
+
+
+def test_registers_are_used_again():
+    program = compiled_program([parsed(" + ".join(f"sin({i}*x)" for i in range(1, 100)))], ["x"])
+    assert program.registers < 1 + 99 + 8
+
+
+@pytest.mark.parametrize("power", [1, 2, 3, 4, 5, 7, 8, -1, -2, -3, 9, 0.5, 2.5, 0])
+def test_powers(power):
+    assert _value(f"x**{power}", x=1.7) == pytest.approx(1.7**power, rel=1e-15)
+    if power == int(power):
+        assert _value(f"x**{power}", x=-1.7) == pytest.approx((-1.7) ** power, rel=1e-15)
+
+
+def test_max_of_three():
+    assert _value("max(x, 2, k) - min(x, 2, k)", x=1.0, k=5.0) == 4.0
+
+
+def test_a_delay_is_a_leaf_of_its_own():
+    program = compiled_program([parsed("delay(x, d) - delay(x, d)*delay(v, d)")], ["x", "v", "d"])
+    assert [signal for signal, _ in program.delays] == ["x", "v"]
+    assert program.used().tolist() == [False, False, False, True, True]
+
+
+TERMS = {
+    "a*b": lambda a, b, c: a * b,
+    "sin(a + b)": lambda a, b, c: math.sin(a + b),
+    "b - c*a": lambda a, b, c: b - c * a,
+    "max(a, b)": lambda a, b, c: max(a, b),
+    "a/(1 + c**2)": lambda a, b, c: a / (1 + c**2),
+    "tanh(a*b)": lambda a, b, c: math.tanh(a * b),
+}
+
+
+@given(st.lists(st.sampled_from(sorted(TERMS)), min_size=1, max_size=30))
+def test_a_program_agrees_with_python(terms):
+    values = {"a": 0.3, "b": -1.2, "c": 0.7}
+    wanted = sum(TERMS[term](**values) for term in terms)
+    assert _value(" + ".join(f"({term})" for term in terms), **values) == pytest.approx(wanted, rel=1e-12, abs=1e-12)

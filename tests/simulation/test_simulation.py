@@ -1,0 +1,54 @@
+"""A simulation gives new ones; it never changes."""
+
+import pytest
+
+from gaitdisc.simulation.parts import Parameter, State, Term
+from gaitdisc.simulation.refusal import SimulationError
+from gaitdisc.simulation.simulation import Simulation
+
+
+def test_it_is_hashable_and_equal_by_its_parts(ankle):
+    other = Simulation(**{name: getattr(ankle, name) for name in ankle.__dataclass_fields__})
+    assert other == ankle
+    assert hash(other) == hash(ankle)
+
+
+def test_observations_are_the_states_by_default(ankle):
+    assert ankle.observations == (("theta", "theta"), ("omega", "omega"))
+
+
+def test_an_effect_is_added_and_taken_away(ankle):
+    spring = Term("ankle_moment", "port", "one_sided_spring", "-286*max(0, theta - 0.035)")
+    augmented = ankle.with_effect(spring)
+    assert augmented.effects == (spring,)
+    assert ankle.effects == ()
+    assert augmented.without_effects() == ankle
+
+
+def test_values_and_parameters(ankle):
+    assert ankle.with_values({"k": 30}).values()["k"] == 30.0
+    more = ankle.with_parameter(Parameter("x0", 0.03, "rad")).with_parameter(Parameter("k", 28.0))
+    assert more.values() == {"inertia": 0.12, "b": 1.1, "k": 28.0, "x0": 0.03}
+    with pytest.raises(SimulationError, match=r"none called 'kk'.*Known: inertia, b, k"):
+        ankle.with_values({"kk": 1.0})
+
+
+def test_an_observation_is_changed_or_added(ankle):
+    seen = ankle.with_observation("theta", "1.1*theta").with_observation("power", "tau*omega")
+    assert seen.observations == (("theta", "1.1*theta"), ("omega", "omega"), ("power", "tau*omega"))
+
+
+def test_an_input_is_replaced_wherever_it_stands(ankle):
+    late = ankle.with_effect(Term("omega", "equation", "feedback", "delay(tau, 0.1)")).with_input(
+        "tau", "1.2*delay(tau, 0.05)"
+    )
+    assert dict(late.equations)["omega"] == "(1.2*delay(tau, 0.05) + ankle_moment - b*omega - spring)/inertia"
+    assert late.effects[0].term == "1.2*delay(tau, 0.05 + 0.1)"
+    assert late.definitions == ankle.definitions
+    with pytest.raises(SimulationError, match="Known: tau, phase"):
+        ankle.with_input("force", "2*force")
+
+
+def test_equations_come_as_a_mapping_too():
+    decay = Simulation("decay", (State("x"),), equations={"x": "-x"})  # type: ignore[arg-type]
+    assert decay.equations == (("x", "-x"),)

@@ -1,0 +1,130 @@
+"""Reading: every part arrives, every fault is told with its file and line."""
+
+import numpy as np
+import pytest
+
+from gaitdisc.errors import GaitdiscError, ReadError
+from gaitdisc.simulation.parts import Parameter, Term
+from gaitdisc.simulation.simulation_file import read_simulation, simulation_of
+
+
+def test_every_part_is_read(ankle, ankle_text, tmp_path):
+    path = tmp_path / "ankle.toml"
+    path.write_text(ankle_text + '[[effects]]\nport = "ankle_moment"\nname = "spring"\nterm = "-286*max(0, theta)"\n')
+    read = read_simulation(path)
+    assert read.title == "Ankle"
+    assert [state.unit for state in read.states] == ["rad", "rad/s"]
+    assert read.parameters[2] == Parameter("k", 25.0, "1", 10.0, 60.0)
+    assert read.effects == (Term("ankle_moment", "port", "spring", "-286*max(0, theta)"),)
+    assert read.source == path and read.layout.startswith("\ntitle")
+    assert read.without_effects() == ankle
+
+
+def test_a_number_is_an_expression():
+    assert simulation_of("[states.x]\n[equations]\nx = 1.5\n").equations == (("x", "1.5"),)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("[states.theta]", "[states.theta", "to be a TOML file"),
+        (
+            "[inputs.tau]",
+            "[input.tau]",
+            "line 7, [input]: only keys of the simulation file stand here; found 'input'. Did you mean 'inputs'",
+        ),
+        (
+            'unit = "rad/s"',
+            'units = "rad/s"',
+            "line 5, [states] omega: only keys of the simulation file stand here; found 'units'. Did you mean 'unit'",
+        ),
+        ("value = 1.1", "value = nan", "line 13, [parameters] b: value is a finite number; found nan"),
+        ("value = 1.1", "value = true", "value is a finite number; found True"),
+        ("value = 1.1", "value = 1" + "0" * 400, "a number beyond 1e300"),
+        ("value = 1.1", 'unit = "N"', "a parameter has a value"),
+        ('unit = "rad/s"', "unit = 3", "unit is text; found 3"),
+        ('theta = "omega"', 'theta = "omegga"', "ankle.toml, line 24, [equations] theta: an expression is arithmetic"),
+        ('theta = "omega"', 'theta = "omegga"', "Did you mean 'omega'"),
+        ('theta = "omega"', "theta = [1]", "an expression is text"),
+        ('"k*theta"', '"k theta"', "line 22, [definitions] spring"),
+        ("[definitions]", "[[effects]]\nport = 1\n[definitions]", "an effect has a term"),
+        ("[definitions]", '[[effects]]\nport = "ankle"\nterm = "1"\n[definitions]', "line 21, [effects] 0: effect ''"),
+        ("[definitions]", "[states.x.y]\n[definitions]", "found 'y'"),
+        ("[ports.ankle_moment]", "[ports]\nankle_moment = 3\n[ports.other]", "a table is needed; found '3'"),
+        ("ankle_moment - b", "b", "'ankle_moment' stands nowhere"),
+    ],
+)
+def test_a_fault_is_told_with_its_place(ankle_text, old, new, words):
+    with pytest.raises(GaitdiscError) as refusal:
+        simulation_of(ankle_text.replace(old, new, 1), "ankle.toml")
+    assert "ankle.toml" in str(refusal.value)
+    assert words in str(refusal.value)
+
+
+def test_files_that_cannot_be_read(tmp_path):
+    with pytest.raises(ReadError, match=r"absent\.toml: No such file"):
+        read_simulation(tmp_path / "absent.toml")
+    with pytest.raises(ReadError, match="simulation is read from a TOML file"):
+        read_simulation(tmp_path)
+    (tmp_path / "latin.toml").write_bytes(b'title = "caf\xe9"')
+    with pytest.raises(ReadError, match="another byte at 12"):
+        read_simulation(tmp_path / "latin.toml")
+
+
+HEAD = '[states.x]\nunit = "1"\n[equations]\nx = "-x"\n'
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "x" * 300_000,
+        "a = " + "[" * 100_000,
+        "a = " + "{a=" * 20_000,
+        ".".join(["a"] * 100_000) + " = 1",
+        "[" + ".".join(["a"] * 100_000) + "]",
+        "".join(f"[a{i}.b.c.d]\n" for i in range(15_000)),
+        "a = " + "9" * 200_000,
+        "a = " + '"' * 200_000,
+        HEAD + "[definitions]\n" + "".join(f'd{i} = "x"\n' for i in range(14_000)),
+        HEAD + "[definitions]\n" + "".join(f'd{i} = "d{i - 1}*d{i - 1}"\n' for i in range(1, 5000)),
+        HEAD.replace('"-x"', '"' + "x+" * 120_000 + 'x"'),
+        HEAD.replace('"-x"', '"' + "(" * 100_000 + 'x"'),
+        HEAD.replace('"-x"', '"x.__class__.__bases__"'),
+        HEAD.replace('"-x"', '"().__class__"'),
+        HEAD.replace('"-x"', '"__import__(x)"'),
+        HEAD.replace('"-x"', '"(lambda x: x)(x)"'),
+        HEAD.replace('"-x"', '"х"'),
+        HEAD.replace('"-x"', '"1e400*x"'),
+        HEAD.replace('"-x"', '"delay(x, delay(x, 1))"'),
+        HEAD.replace('"-x"', '"d"') + '[definitions]\nd = "d"\n',
+        HEAD.replace('"-x"', "inf"),
+        HEAD.replace('"-x"', "9" * 4000),
+        HEAD + "[parameters.k]\nvalue = inf\n",
+        HEAD + "[parameters.k]\nvalue = 1e400\n",
+        HEAD + "[parameters.__builtins__]\nvalue = 1\n",
+        HEAD + '[parameters."k; import os"]\nvalue = 1\n',
+    ],
+)
+def test_a_hostile_file_is_refused(text, tmp_path):
+    path = tmp_path / "hostile.toml"
+    path.write_text(text)
+    with pytest.raises(GaitdiscError) as refusal:
+        read_simulation(path)
+    assert len(str(refusal.value)) < 2500
+
+
+def test_doubling_definitions_stay_small():
+    """d399 written out would have 2^399 parts; compiled, it has one product for each definition."""
+    from gaitdisc.simulation.running import compile_simulation
+
+    lines = "\n".join(f'd{i} = "d{i - 1}*d{i - 1}"' for i in range(1, 400))
+    text = HEAD.replace('"-x"', '"d399"') + f'[definitions]\nd0 = "x"\n{lines}\n'
+    assert len(compile_simulation(simulation_of(text)).right_hand_side.code) == 400
+
+
+def test_an_exponent_without_end_is_a_row_without_end():
+    text = HEAD.replace('"-x"', '"9**9**9**9*x"')
+    from gaitdisc.simulation.running import compile_simulation
+
+    assert np.isinf(compile_simulation(simulation_of(text)).rates(np.zeros(1), np.ones((1, 1)), np.empty((1, 0)))[0, 0])

@@ -1,0 +1,53 @@
+"""Adaptive and fixed steps agree; an explosion is told."""
+
+import numpy as np
+import pytest
+
+from gaitdisc.errors import SamplingError
+from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.simulation.refusal import SimulationError
+from gaitdisc.simulation.running import compile_simulation
+from gaitdisc.simulation.simulation_file import simulation_of
+from gaitdisc.simulation.solving import solve
+
+LORENZ = simulation_of(
+    '[states.x]\n[states.y]\n[states.z]\n[equations]\nx = "10*(y - x)"\ny = "x*(28 - z) - y"\nz = "x*y - 8/3*z"\n'
+)
+
+
+def test_lorenz_by_both():
+    start = {"x": -8.0, "y": 8.0, "z": 27.0}
+    exact = solve(LORENZ, np.arange(301) / 100, {}, start)
+    fixed, _ = compile_simulation(LORENZ).run(
+        Drive.of([np.empty((301, 0))], 100.0),
+        Rows(np.array([0]), np.array([0]), np.array([[-8.0, 8.0, 27.0]])), 300, substeps=40,
+    )  # fmt: skip
+    np.testing.assert_allclose(fixed[0], exact, atol=2e-5)
+
+
+def test_inputs_by_both(ankle):
+    t = np.arange(41) / 100
+    tau = np.where((t * 10).astype(int) % 2, 5.0, -3.0)
+    phase = (t * 3) % 1
+    exact = solve(ankle, t, {"tau": tau, "phase": phase}, {"theta": 0.1, "omega": 0.0}, tolerance=1e-9)
+    fixed, _ = compile_simulation(ankle).run(
+        Drive.of([np.column_stack([tau, phase])], 100.0), Rows(np.array([0]), np.array([0]), np.array([[0.1, 0.0]])), 40
+    )
+    np.testing.assert_allclose(fixed[0], exact, atol=1e-7)
+
+
+def test_an_explosion_is_told_with_its_time_and_state():
+    blow = simulation_of('title = "blow"\n[states.x]\n[states.y]\n[equations]\nx = "1"\ny = "y**2"\n')
+    with pytest.raises(SimulationError, match=r"leaves every bound after t = 0\.99.* in 'y'"):
+        solve(blow, np.linspace(0, 2, 201), {}, {"x": 0.0, "y": 1.0})
+
+
+def test_delays_are_refused():
+    late = simulation_of('[states.x]\n[equations]\nx = "-delay(x, 1)"\n')
+    with pytest.raises(SimulationError, match="without delays"):
+        solve(late, [0.0, 1.0], {}, {"x": 1.0})
+
+
+def test_times_increase():
+    with pytest.raises(SamplingError, match="times increase"):
+        solve(LORENZ, [0.0, 1.0, 1.0], {}, {"x": 1.0, "y": 1.0, "z": 1.0})
