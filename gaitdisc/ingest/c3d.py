@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -19,6 +18,7 @@ from gaitdisc.ingest.c3d_labels import LabelMap
 from gaitdisc.ingest.c3d_layout import C3DLayout, expected_layout
 from gaitdisc.ingest.c3d_parameters import C3DParameters, read_c3d_parameters
 from gaitdisc.ingest.c3d_points import Streams, point_names, point_streams
+from gaitdisc.ingest.file_hash import file_sha256
 from gaitdisc.ingest.force_plates import force_plates, plate_streams
 from gaitdisc.ingest.reader_process import RawTrial, ReaderProcess, ReadRequest
 from gaitdisc.recording import Finding, Recording, Source, Trial
@@ -104,7 +104,7 @@ class C3DReader:
         layout, findings = expected_layout(header, parameters)
         rate_hz, doubts = _rate(header, parameters, layout)
         with ThreadPoolExecutor(1) as beside:  # the hash is done while the other process reads
-            sha256 = beside.submit(_sha256, path)
+            sha256 = beside.submit(file_sha256, path)
             raw, more = self._raw(path, header, layout)
         findings += [*doubts, *more]
         labels = LabelMap(channels)
@@ -246,8 +246,3 @@ def _all_labels(parameters: C3DParameters, layout: C3DLayout) -> list[str]:
 def _in_words(said: str, path: Path) -> str:
     """Show what a reader said on one line, without the folder, which may name a person."""
     return " ".join(said.replace(str(path), path.name).split())[:200].rstrip(".")
-
-
-def _sha256(path: Path) -> str:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()

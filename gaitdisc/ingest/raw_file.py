@@ -8,6 +8,7 @@ from pathlib import Path
 
 from gaitdisc.channel import nearest_word
 from gaitdisc.errors import ReadError
+from gaitdisc.ingest.file_hash import known_sha256
 from gaitdisc.recording import Source
 
 
@@ -21,6 +22,8 @@ class RawFile:
         Name without the folder; the folder may tell who the person is and goes no further.
     content : bytes
         The whole file.
+    sha256 : str
+        Of these bytes, where it is known; otherwise it is computed when it is asked for.
 
     Examples
     --------
@@ -30,6 +33,7 @@ class RawFile:
 
     name: str
     content: bytes
+    sha256: str = ""
 
     @property
     def stem(self) -> str:
@@ -44,7 +48,7 @@ class RawFile:
         reader : str
             What reads the file.
         """
-        return Source(self.name, hashlib.sha256(self.content).hexdigest(), reader)
+        return Source(self.name, self.sha256 or hashlib.sha256(self.content).hexdigest(), reader)
 
     def lines(self) -> list[str]:
         """Return the lines of a text file, without their ends.
@@ -100,7 +104,7 @@ def read_raw(path: Path | str) -> RawFile:
         raise ReadError(needed, f"the system says: {words}", "Check the name and the right to read it.") from error
     if not content.strip():
         raise ReadError(needed, f"it is empty ({len(content)} bytes)", "Export or copy it again.")
-    return RawFile(path.name, content)
+    return RawFile(path.name, content, known_sha256(path))
 
 
 def _near(path: Path) -> str:

@@ -160,15 +160,15 @@ def fits_table(run: ResponseRun) -> Table:
         The whole result.
     """
     tables = [r.fits.assign(participant=r.participant) for r in run.responses]
-    columns = ["participant", "model", "kind", "decay", "epochs", "n_training", "n_inner", "seconds"]
+    columns = ["participant", "model", "kind", "decay", "epochs", "n_training", "n_inner"]
     numbers = pd.concat(tables, ignore_index=True)[columns] if tables else pd.DataFrame(columns=pd.Index(columns))
     rows = [
         (str(row.participant), MODEL_WORDS.get(str(row.model), str(row.model)), str(row.kind), _plain(row.decay),
-         _plain(row.epochs), _plain(row.n_training), _plain(row.n_inner), f"{row.seconds:.3g}")
+         _plain(row.epochs), _plain(row.n_training), _plain(row.n_inner))
         for row in numbers.itertuples(index=False)
     ]  # fmt: skip
     headings = (
-        "participant", "model", "kind", "decay chosen", "epochs", "training samples", "inner samples", "time [s]",
+        "participant", "model", "kind", "decay chosen", "epochs", "training samples", "inner samples",
     )  # fmt: skip
     caption = (
         f"Fits, n = {len(rows)}; decay: strength of the regularisation, chosen on inner samples, a contiguous last "

@@ -229,7 +229,7 @@ def _null_rows(null_r2: Mapping[str, float], settings: ResponseSettings, samples
 
 def _fit_rows(kind: str, models: ResponseModels) -> pd.DataFrame:
     fits = {"nominal": models.nominal, "exo": models.exo, "discrepancy": models.discrepancy}
-    rows = [(name, kind, fit.decay, fit.epochs, fit.n_training, fit.n_inner, fit.seconds) for name, fit in fits.items()]
+    rows = [(name, kind, fit.decay, fit.epochs, fit.n_training, fit.n_inner) for name, fit in fits.items()]
     return pd.DataFrame(rows, columns=pd.Index(FIT_COLUMNS))
 
 

@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import ShapeError
 from gaitdisc.recording import PERCENT
+from gaitdisc.results.on_disk import lies_on_disk, may_lie_on_disk
 
 MODELS = ("nominal", "augmented", "exo")
 BASELINES = ("ridge", "linear", "null")
 KINDS = ("network", *BASELINES)
 R2_COLUMNS = ("variable", "model", "kind", "walk", "r2", "n")
-FIT_COLUMNS = ("model", "kind", "decay", "epochs", "n_training", "n_inner", "seconds")
+FIT_COLUMNS = ("model", "kind", "decay", "epochs", "n_training", "n_inner")
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +42,7 @@ class HeldOut:
     predicted: Mapping[str, NDArray[np.float64]]
 
 
+@may_lie_on_disk("held_out", "residuals")
 @dataclass(frozen=True, eq=False)
 class ParticipantResponse:
     """Nominal, Exo, Discrepancy and Augmented for one participant (Eqs. 4.2-4.5), judged on held-out walking.
@@ -58,9 +60,10 @@ class ParticipantResponse:
         ridge on the network's own inputs; `null`), walk (`nominal` or `exo`: the held-out walking that is predicted),
         r2, n (samples).
     fits : DataFrame
-        model (`nominal`, `exo`, `discrepancy`), kind, decay, epochs, n_training, n_inner, seconds.
+        model (`nominal`, `exo`, `discrepancy`), kind, decay, epochs, n_training, n_inner.
     held_out : HeldOut
-        Held-out device walking with the networks' predictions.
+        Held-out device walking with the networks' predictions; of a response that was loaded it is read each time it
+        is looked at, as are the residuals.
     residuals : mapping of str to ndarray (stride, phase, output) [unit/s2]
         Measured minus predicted, every held-out stride of the device walk on 101 points; keys among `MODELS`.
     held_out_s : float
@@ -83,7 +86,9 @@ class ParticipantResponse:
     held_out_s: float
 
     def __post_init__(self) -> None:
-        """Check shapes once."""
+        """Check shapes once, before they are saved."""
+        if lies_on_disk(self, "held_out"):
+            return
         count = len(self.outputs)
         columns = {
             "units": len(self.units),

@@ -15,7 +15,6 @@ of the others. A damaged unit is told by its hash and computed again.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 
@@ -26,6 +25,7 @@ from gaitdisc.channel import Channel
 from gaitdisc.recording import Finding
 from gaitdisc.results.comparison_store import load_over, load_tests, save_over, save_tests
 from gaitdisc.results.data_quantity import DataQuantity
+from gaitdisc.results.on_disk import Arrays
 from gaitdisc.results.participant_response import HeldOut, ParticipantResponse
 from gaitdisc.results.provenance import Provenance
 from gaitdisc.results.response_run import Refusal, ResponseRun
@@ -89,7 +89,7 @@ def load_walk(folder: Path) -> tuple[WalkSummary, str]:
         data["rate_hz"],
         data["detector"],
         tuple(Channel(**channel) for channel in data["channels"]),
-        arrays["curves"],
+        arrays.later(_curves),
         strides,
         findings,
         data["files"],
@@ -153,8 +153,8 @@ def load_response(folder: Path) -> tuple[ParticipantResponse, str]:
         tuple(data["units"]),
         tables["r2.csv"],
         tables["fits.csv"],
-        HeldOut(arrays["time"], arrays["phi"], arrays["measured"], _keyed(arrays, "predicted_")),
-        _keyed(arrays, "residual_"),
+        arrays.later(_held_out),
+        arrays.later(_residuals),
         data["held_out_s"],
     )
     return response, data["key"]
@@ -270,5 +270,17 @@ def unit_name(subject: str, condition: str) -> str:
     return "".join(letter if letter.isalnum() or letter in "-_" else "_" for letter in text)
 
 
-def _keyed(arrays: Mapping[str, NDArray[np.float64]], prefix: str) -> dict[str, NDArray[np.float64]]:
+def _curves(arrays: Arrays) -> NDArray[np.float64]:
+    return arrays["curves"]
+
+
+def _held_out(arrays: Arrays) -> HeldOut:
+    return HeldOut(arrays["time"], arrays["phi"], arrays["measured"], _keyed(arrays, "predicted_"))
+
+
+def _residuals(arrays: Arrays) -> dict[str, NDArray[np.float64]]:
+    return _keyed(arrays, "residual_")
+
+
+def _keyed(arrays: Arrays, prefix: str) -> dict[str, NDArray[np.float64]]:
     return {key.removeprefix(prefix): values for key, values in arrays.items() if key.startswith(prefix)}

@@ -15,11 +15,11 @@ from jsonschema import Draft202012Validator
 from numpy.typing import NDArray
 
 from gaitdisc.channel import schema_folder
-from gaitdisc.errors import SchemaError
+from gaitdisc.results.on_disk import StoredArrays, damaged
 from gaitdisc.whole_file import whole_file
 
 FORMAT = 1
-Unit = tuple[dict[str, Any], dict[str, pd.DataFrame], dict[str, NDArray[np.float64]]]
+Unit = tuple[dict[str, Any], dict[str, pd.DataFrame], StoredArrays]
 
 
 def save_unit(
@@ -72,6 +72,15 @@ def load_unit(folder: Path, name: str) -> Unit:
     name : str
         Name of the JSON file.
 
+    Returns
+    -------
+    data : dict
+        What is named.
+    tables : dict of str to DataFrame
+        By file name.
+    arrays : StoredArrays
+        By name; they are not read here.
+
     Raises
     ------
     SchemaError
@@ -81,17 +90,13 @@ def load_unit(folder: Path, name: str) -> Unit:
     for file, wanted in data["sha256"].items():
         path = folder / file
         if not path.is_file() or _sha256(path) != wanted:
-            raise _damaged(path, "missing" if not path.is_file() else "changed since it was saved (SHA-256 differs)")
+            raise damaged(path, "missing" if not path.is_file() else "changed since it was saved (SHA-256 differs)")
     tables = {
         file: pd.read_csv(folder / file, engine="python", keep_default_na=False, na_values=[""])
         for file in data["sha256"]
         if file.endswith(".csv")
     }
-    arrays = {}
-    if "arrays.npz" in data["sha256"]:
-        with np.load(folder / "arrays.npz") as stored:
-            arrays = {key: stored[key] for key in stored.files}
-    return data, tables, arrays
+    return data, tables, StoredArrays(folder / "arrays.npz", data["sha256"].get("arrays.npz", ""))
 
 
 def read_json(path: Path) -> dict[str, Any]:
@@ -110,14 +115,14 @@ def read_json(path: Path) -> dict[str, Any]:
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
-        raise _damaged(path, "missing") from None
+        raise damaged(path, "missing") from None
     except (OSError, ValueError) as error:
-        raise _damaged(path, f"not readable as JSON ({error})") from error
+        raise damaged(path, f"not readable as JSON ({error})") from error
     if not isinstance(data, dict) or data.get("format") != FORMAT:
-        raise _damaged(path, f"of format {data.get('format') if isinstance(data, dict) else None!r}, not {FORMAT}")
+        raise damaged(path, f"of format {data.get('format') if isinstance(data, dict) else None!r}, not {FORMAT}")
     wrong = next(iter(_validator(path.stem).iter_errors(data)), None)
     if wrong is not None:
-        raise _damaged(path, f"not of the agreed form at {wrong.json_path}: {wrong.message[:200]}")
+        raise damaged(path, f"not of the agreed form at {wrong.json_path}: {wrong.message[:200]}")
     return data
 
 
@@ -125,14 +130,6 @@ def read_json(path: Path) -> dict[str, Any]:
 def _validator(part: str) -> Draft202012Validator:
     schema = json.loads((schema_folder() / "results.schema.json").read_text(encoding="utf-8"))
     return Draft202012Validator({"$ref": f"#/$defs/{part}", "$defs": schema["$defs"]})
-
-
-def _damaged(path: Path, what: str) -> SchemaError:
-    return SchemaError(
-        "results need every file of their folder as it was saved",
-        f"{path.parent.name}/{path.name} is {what}",
-        "Run `gaitdisc run` on the study again: what is whole is kept, the rest is computed anew.",
-    )
 
 
 def json_text(data: Mapping[str, Any]) -> str:
@@ -147,4 +144,5 @@ def json_text(data: Mapping[str, Any]) -> str:
 
 
 def _sha256(path: Path) -> str:
-    return hashlib.sha256(path.read_bytes()).hexdigest()
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -13,10 +13,12 @@ from gaitdisc.channel import Channel
 from gaitdisc.errors import ShapeError
 from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.recording.arrays import read_only
+from gaitdisc.results.on_disk import lies_on_disk, may_lie_on_disk
 
 STRIDE_COLUMNS = ("side", "start_s", "end_s", "kept", "reason")
 
 
+@may_lie_on_disk("curves")
 @dataclass(frozen=True, eq=False)
 class WalkSummary:
     """One walk of one person, small enough to keep.
@@ -32,7 +34,7 @@ class WalkSummary:
     channels : tuple of Channel
         Channels of `curves`.
     curves : ndarray (stride, phase, channel) [channel's unit]
-        Every kept stride on 101 points.
+        Every kept stride on 101 points; of a walk that was loaded it is read each time it is looked at.
     strides : DataFrame
         One row a stride, kept or dropped: side, start_s, end_s, kept, reason.
     findings : tuple of Finding
@@ -58,7 +60,9 @@ class WalkSummary:
     files: Mapping[str, str]
 
     def __post_init__(self) -> None:
-        """Check shapes once."""
+        """Check shapes once, before they are saved."""
+        if lies_on_disk(self, "curves"):
+            return
         wanted = (len(PERCENT), len(self.channels))
         if np.ndim(self.curves) != 3 or self.curves.shape[1:] != wanted:
             raise ShapeError(

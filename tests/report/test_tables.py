@@ -38,7 +38,7 @@ def test_refusals_findings_and_drops(run_maker, refusal):
 
 def test_fits(run_maker):
     table = fits_table(run_maker(outputs=OUTPUTS))
-    assert table.rows[0] == ("P01", "Nominal", "network", "0.1", "40", "5214", "782", "1.31")
+    assert table.rows[0] == ("P01", "Nominal", "network", "0.1", "40", "5214", "782")
     assert "n = 6" in table.caption
     assert fits_table(run_maker(0)).rows == ()
 

@@ -51,7 +51,6 @@ def response() -> ParticipantResponse:
             "epochs": [30],
             "n_training": [200],
             "n_inner": [30],
-            "seconds": [0.5],
         }
     )
     held_out = HeldOut(

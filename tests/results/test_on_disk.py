@@ -1,0 +1,43 @@
+import pickle
+
+import numpy as np
+import pytest
+
+from gaitdisc.errors import SchemaError
+from gaitdisc.results import on_disk
+from gaitdisc.results.on_disk import lies_on_disk
+from gaitdisc.results.store import load_response, save_response
+
+
+@pytest.fixture
+def stored(response, tmp_path):
+    save_response(response, tmp_path, "key")
+    return load_response(tmp_path)[0]
+
+
+def test_arrays_are_read_when_they_are_looked_at(response, stored, monkeypatch):
+    assert lies_on_disk(stored, "held_out") and lies_on_disk(stored, "residuals")
+    assert not lies_on_disk(response, "held_out")
+    np.testing.assert_array_equal(stored.held_out.measured, response.held_out.measured)
+    assert stored.residuals.keys() == response.residuals.keys()
+    read = []
+    monkeypatch.setattr(on_disk.np, "load", lambda *_, **__: read.append(1))
+    assert stored.held_out.time is stored.held_out.time, "what was just read is not read again"
+    assert read == []
+
+
+def test_a_response_that_goes_to_another_process_takes_no_arrays_along(response, stored):
+    assert len(pickle.dumps(stored)) < len(pickle.dumps(response))
+    np.testing.assert_array_equal(pickle.loads(pickle.dumps(stored)).held_out.phi, response.held_out.phi)
+
+
+def test_arrays_that_changed_or_went_since_the_run_was_loaded_are_told(response, tmp_path):
+    save_response(response, tmp_path, "key")
+    changed, gone = load_response(tmp_path)[0], load_response(tmp_path)[0]
+    on_disk._arrays.cache_clear()
+    (tmp_path / "arrays.npz").write_bytes(b"other")
+    with pytest.raises(SchemaError, match=r"arrays.npz is changed since it was saved.*gaitdisc run"):
+        _ = changed.held_out
+    (tmp_path / "arrays.npz").unlink()
+    with pytest.raises(SchemaError, match=r"arrays.npz is missing"):
+        _ = gone.residuals
