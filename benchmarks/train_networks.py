@@ -1,34 +1,41 @@
-"""Training all networks of chapter 4: ours against the loop a user would write, side by side in one run.
+"""Training all networks of chapter 4: ours against the loop a user would write, on the embedded cohort.
 
-    python benchmarks/train_networks.py [--share 0.1] [--processes 2] [--only ours|loop] [--arithmetic auto|torch]
+    python benchmarks/train_networks.py [--people 12] [--processes 2] [--only ours|loop] [--seed 0] [--arithmetic auto]
 
-The study: twelve people, ten lengths of the training part (1 to 210 s at 100 Hz), three networks each (Nominal, Exo,
-Discrepancy): 360 networks of 49 inputs, 64 and 64 nodes, 8 outputs. `--share` takes that part of the people, with all
-their lengths and models. The walks are made here: Fourier series of a wandering phase with wandering amplitudes and
-noise, through the filters of the study, with a device that changes the series; outputs are second derivatives.
+The study: twelve people, ten lengths of the training part (1 s to all of 210 s at 100 Hz), three networks each
+(Nominal, Exo, Discrepancy): 360 networks of 49 inputs, 64 and 64 nodes, 8 outputs, judged on 30 s held out.
 
 The loop: PyTorch, DataLoader, batch 64, Adam at 1e-3, 30 epochs, one network after the other, one thread (two are
-slower). Ours: `fit_models` with its defaults, decays and penalties chosen on inner blocks, in processes of one thread.
-Before and after each length our side multiplies matrices of 1024 x 1024 in float32, so that its share of the
-machine's rate is one of what neighbours left at that time. Starting processes is told apart: it is paid once.
+slower). It takes a quarter of an hour, so every person and length is recorded as it is done in
+`train_networks_loop.jsonl`, with the hash of its samples and of its own code, and is not run again while these hold;
+a run that was stopped goes on. Further seeds of the loop tell how far it differs from itself.
+
+Ours: `fit_models` with its defaults, decays and penalties chosen on inner blocks, in processes of one thread. Before
+and after each length our side multiplies matrices of 1024 x 1024 in float32, so that its share of the machine's rate
+is one of what neighbours left at that time. Starting processes is told apart: it is paid once.
 """
 
 from __future__ import annotations
 
 import argparse
+import hashlib
+import inspect
+import json
 import os
 import platform
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from datetime import UTC, datetime
+from pathlib import Path
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import joblib
 import numpy as np
 import torch
+from cohort_samples import PersonSamples, person_samples
 from numpy.typing import NDArray
-from scipy.signal import butter, sosfiltfilt
 from torch import nn
 from torch.utils.data import DataLoader, TensorDataset
 
@@ -39,74 +46,27 @@ from gaitdisc.recording import Samples
 from gaitdisc.response.models import fit_models, fit_network
 from gaitdisc.statistics.r2 import r2
 
-PEOPLE, RATE_HZ, WALK_S, HELD_OUT_S = 12, 100.0, 240.0, 30.0
+PEOPLE = 12
 LENGTHS_S = (1, 10, 20, 30, 45, 60, 90, 120, 180, 210)
-ANGLES, MUSCLES = 10, 14
-ANGLE_HZ, ENVELOPE_HZ = 6.0, 10.0
-VARIABLES = {"hip": 0, "knee": 3, "ankle": 4, "HAM": 10, "RF": 11, "VAS": 12, "GAS": 13, "SOL": 14}
+VARIABLES = ("hip", "knee", "ankle", "HAM", "RF", "VAS", "GAS", "SOL")
 MODELS = ("nominal", "augmented", "exo")
 FORWARD = 2 * (49 * 64 + 64 * 64 + 64 * 8)  # FLOP of the matrix products for one sample
 FORWARD_BACKWARD = 2 * FORWARD + 2 * (64 * 64 + 64 * 8)  # no gradient of the inputs
 GOAL_S, GOAL_R2, GOAL_RATE = 60.0, 0.005, 0.45
+RECORD = Path(__file__).with_name("train_networks_loop.jsonl")
+
+Parts = tuple[Samples, Samples, Samples]
 
 
 @dataclass(frozen=True)
 class Done:
     """A person and length: R2 (model, variable), seconds by the clock and of the core; ours: matrix work, rates."""
 
-    r2: NDArray[np.float64]
+    r2: list[list[float]]
     seconds: float
     core_seconds: float
     flop: float = 0.0
     rates: tuple[tuple[float, float], ...] = ()
-
-
-def walk(person: int, device: bool) -> Samples:
-    """240 s of one person: 24 channels, their rates and percent stride; second derivatives of eight channels."""
-    body, trial = np.random.default_rng([77, person]), np.random.default_rng([78, person, device])
-    count = int(WALK_S * RATE_HZ)
-    phase = np.cumsum((0.93 + 0.05 * body.normal()) * (1 + 0.02 * slow(trial, count, 1, 1.0)[:, 0])) / RATE_HZ
-    x = np.empty((count, ANGLES + MUSCLES))
-    for column in range(ANGLES + MUSCLES):
-        angle = column < ANGLES
-        order = np.arange(1, 7 if angle else 10)
-        series = body.normal(size=(len(order), 2)) / order[:, None] ** (1.5 if angle else 1.0)
-        changed = body.normal(size=series.shape) / order[:, None] ** 1.5
-        series = (series + 0.15 * device * changed) * (
-            1 + 0.12 * slow(trial, count, series.size, 0.6).reshape(count, -1, 2)
-        )
-        turn = 2 * np.pi * phase[:, None] * order
-        values = np.sum(series[:, :, 0] * np.cos(turn) + series[:, :, 1] * np.sin(turn), axis=1)
-        values /= values.std()
-        if not angle:
-            values = np.exp(values) / np.exp(values).std()  # bursts
-        cutoff = ANGLE_HZ if angle else ENVELOPE_HZ
-        x[:, column] = low_pass(
-            values + (0.05 if angle else 0.35) * slow(trial, count, 1, cutoff)[:, 0], RATE_HZ, cutoff
-        )
-    rates = np.gradient(x, 1 / RATE_HZ, axis=0)
-    y = np.gradient(rates, 1 / RATE_HZ, axis=0)[:, list(VARIABLES.values())]
-    phi = 100 * (phase % 1)
-    names = [f"channel_{number}" for number in range(x.shape[1])]
-    inputs = (*names, *(f"{name}_rate" for name in names), "phi")
-    return Samples(np.column_stack([x, rates, phi]), y, inputs, tuple(VARIABLES), np.arange(count) / RATE_HZ, phi)
-
-
-def slow(random: np.random.Generator, count: int, columns: int, cutoff_hz: float) -> NDArray[np.float64]:
-    """Noise below a frequency, standard deviation 1."""
-    noise = low_pass(random.normal(size=(count, columns)), RATE_HZ, cutoff_hz)
-    return noise / noise.std(axis=0)
-
-
-def low_pass(values: NDArray[np.float64], rate_hz: float, cutoff_hz: float) -> NDArray[np.float64]:
-    """Butterworth of order 4 each way, as the study's."""
-    return np.asarray(sosfiltfilt(butter(4, cutoff_hz, fs=rate_hz, output="sos"), values, axis=0))
-
-
-def parts(walks: tuple[Samples, Samples], length_s: int) -> tuple[Samples, Samples, Samples]:
-    """Training parts of the walks without and with device, and held-out device walking."""
-    first, held_out = slice(0, int(length_s * RATE_HZ)), slice(int((WALK_S - HELD_OUT_S) * RATE_HZ), None)
-    return walks[0].rows(first), walks[1].rows(first), walks[1].rows(held_out)
 
 
 def ours(nominal: Samples, exo: Samples, held_out: Samples, arithmetic: str) -> Done:
@@ -124,7 +84,7 @@ def ours(nominal: Samples, exo: Samples, held_out: Samples, arithmetic: str) -> 
         trainer.descend = plain
     rates.append(matrix_rate())
     on_exo = models.on_exo()
-    found = np.stack([r2(held_out.y, on_exo[name](held_out.x)) for name in MODELS])
+    found = [r2(held_out.y, on_exo[name](held_out.x)).tolist() for name in MODELS]
     return Done(found, seconds, core_seconds, sum(work), tuple(rates))
 
 
@@ -162,8 +122,10 @@ class UsersNetwork(nn.Module):
         return self.third(torch.exp(-(self.second(torch.sigmoid(self.first(x))) ** 2)))
 
 
-def users_fit(x: NDArray[np.float64], y: NDArray[np.float64]) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
-    torch.manual_seed(0)
+def users_fit(
+    x: NDArray[np.float64], y: NDArray[np.float64], seed: int
+) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
+    torch.manual_seed(seed)
     x_mean, x_sd, y_mean, y_sd = x.mean(0), x.std(0), y.mean(0), y.std(0)
     scaled = [torch.tensor(v, dtype=torch.float32) for v in ((x - x_mean) / x_sd, (y - y_mean) / y_sd)]
     network, loss = UsersNetwork(), nn.MSELoss()
@@ -182,51 +144,79 @@ def users_fit(x: NDArray[np.float64], y: NDArray[np.float64]) -> Callable[[NDArr
     return predicted
 
 
-def users_loop(nominal: Samples, exo: Samples, held_out: Samples) -> Done:
+def users_loop(nominal: Samples, exo: Samples, held_out: Samples, seed: int) -> Done:
     """Three networks by the loop, one after the other."""
     with pinned_threads(1):
         begun, begun_core = time.perf_counter(), time.process_time()
-        f, y = users_fit(nominal.x, nominal.y), users_fit(exo.x, exo.y)
-        g = users_fit(exo.x, exo.y - f(exo.x))
+        f, y = users_fit(nominal.x, nominal.y, seed), users_fit(exo.x, exo.y, seed)
+        g = users_fit(exo.x, exo.y - f(exo.x), seed)
         seconds, core_seconds = time.perf_counter() - begun, time.process_time() - begun_core
     x = held_out.x
     predictions = {"nominal": f(x), "augmented": f(x) + g(x), "exo": y(x)}
-    return Done(np.stack([r2(held_out.y, predictions[name]) for name in MODELS]), seconds, core_seconds)
+    return Done([r2(held_out.y, predictions[name]).tolist() for name in MODELS], seconds, core_seconds)
+
+
+def recorded_loop(
+    walks: dict[int, PersonSamples], units: list[tuple[int, int]], seed: int, run: bool = True
+) -> dict[tuple[int, int], Done]:
+    """Loop on all units: those on record for these samples and this code are taken, the rest is run and recorded."""
+    code = hashlib.sha256("".join(map(inspect.getsource, (UsersNetwork, users_fit, users_loop))).encode()).hexdigest()
+    keys = {person: f"{samples_key(samples)} {code[:12]}" for person, samples in walks.items()}
+    found: dict[tuple[int, int], Done] = {}
+    for line in RECORD.read_text().splitlines() if RECORD.is_file() else ():
+        one = json.loads(line)
+        if one["seed"] == seed and keys.get(one["person"]) == one["key"]:
+            found[one["person"], one["length_s"]] = Done(one["r2"], one["seconds"], one["core_seconds"])
+    left = [unit for unit in units if unit not in found] if run else []
+    print(f"the loop, seed {seed}: {len(found)} of {len(units)} people and lengths on record, {len(left)} to run")
+    for person, length in left:
+        load = os.getloadavg()[0]
+        done = users_loop(*walks[person].first(length), seed)
+        rounded = Done(np.round(done.r2, 5).tolist(), round(done.seconds, 3), round(done.core_seconds, 3))
+        told = {"person": person, "length_s": length, "seed": seed, "key": keys[person], "load": round(load, 1)}
+        told |= {"torch": torch.__version__, "date": datetime.now(UTC).date().isoformat()}
+        with RECORD.open("a") as record:
+            record.write(json.dumps(told | {k: v for k, v in asdict(rounded).items() if v}) + "\n")
+        found[person, length] = rounded
+    return {unit: found[unit] for unit in units if unit in found}
+
+
+def samples_key(samples: PersonSamples) -> str:
+    arrays = (samples.nominal.x, samples.nominal.y, samples.exo.x, samples.exo.y, samples.held_out.y)
+    return hashlib.sha256(b"".join(np.ascontiguousarray(array).tobytes() for array in arrays)).hexdigest()[:12]
 
 
 def main() -> None:
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    arguments.add_argument("--share", type=float, default=0.1, help="of the people, at least one")
+    arguments.add_argument("--people", type=int, default=PEOPLE, help="the first so many of the twelve")
     arguments.add_argument("--processes", type=int, default=2)
-    arguments.add_argument("--only", choices=("ours", "loop"))
+    arguments.add_argument("--only", choices=("ours", "loop"), help="loop: only run and record it")
+    arguments.add_argument("--seed", type=int, default=0, help="of the loop")
+    arguments.add_argument("--most", type=int, default=210, help="no lengths above this [s]")
     arguments.add_argument("--arithmetic", choices=("auto", "torch"), default="auto")
     options = arguments.parse_args()
-    people = range(max(1, round(PEOPLE * options.share)))
-    share = len(people) / PEOPLE
-    walks = {person: (walk(person, False), walk(person, True)) for person in people}
-    units = [(person, length) for length in reversed(LENGTHS_S) for person in people]  # the longest first
-    given = [parts(walks[person], length) for person, length in units]
     print(f"{platform.machine()}, {os.cpu_count()} cores, torch {torch.__version__}; load {os.getloadavg()[0]:.1f}")
-    print(f"{3 * len(units)} of 360 networks: {len(people)} of {PEOPLE} people, share {share:.3f}")
-    sides: dict[str, list[Done]] = {}
+    begun = time.perf_counter()
+    walks = {number: person_samples(number) for number in range(options.people)}
+    print(f"{options.people} people walked and were processed in {time.perf_counter() - begun:.0f} s, one process")
+    lengths = [length for length in reversed(LENGTHS_S) if length <= options.most]  # the longest first
+    units = [(person, length) for length in lengths for person in walks]
+    mine = {}
     if options.only != "loop":
-        sides["ours"] = run_ours(given, share, options)
-    if options.only != "ours":
-        sides["the loop"] = [users_loop(*unit) for unit in given]
-        seconds, core = (
-            sum(times) for times in zip(*((d.seconds, d.core_seconds) for d in sides["the loop"]), strict=True)
-        )
-        print(
-            f"the loop: {seconds:.1f} s by the clock, {core:.1f} s of the core; whole study {core / share / 60:.1f} min"
-        )
+        mine = dict(zip(units, run_ours([walks[p].first(s) for p, s in units], options), strict=True))
+    loop = recorded_loop(walks, units, options.seed, options.only != "ours")
+    if loop:
+        seconds, core = (sum(getattr(d, name) for d in loop.values()) for name in ("seconds", "core_seconds"))
+        print(f"the loop, {3 * len(loop)} networks: {seconds:.0f} s by the clock, {core:.0f} s of the core")
+    if mine and loop:
+        both = [unit for unit in units if unit in loop]
+        shares = [sum(side[unit].core_seconds for unit in both) for side in (loop, mine)]
+        print(f"one core: the loop takes {shares[0] / shares[1]:.1f} times as long")
+        print_r2(mine, loop, recorded_loop(walks, units, options.seed + 1, run=False))
     print(f"load {os.getloadavg()[0]:.1f}")
-    if len(sides) == 2:
-        core = {name: sum(one.core_seconds for one in done) for name, done in sides.items()}
-        print(f"one core: the loop takes {core['the loop'] / core['ours']:.1f} times as long")
-        print_r2(units, sides)
 
 
-def run_ours(given: list[tuple[Samples, Samples, Samples]], share: float, options: argparse.Namespace) -> list[Done]:
+def run_ours(given: list[Parts], options: argparse.Namespace) -> list[Done]:
     with joblib.Parallel(n_jobs=options.processes, pre_dispatch="all") as parallel:
         begun = time.perf_counter()
         parallel(joblib.delayed(ours)(*given[-1], options.arithmetic) for _ in range(2 * options.processes))
@@ -238,30 +228,37 @@ def run_ours(given: list[tuple[Samples, Samples, Samples]], share: float, option
     seconds, core = sum(one.seconds for one in done), sum(one.core_seconds for one in done)
     flop = sum(one.flop for one in done)
     rates = np.mean([rate for one in done for rate in one.rates], axis=0)
-    print(f"ours ({options.arithmetic}), {options.processes} processes of one thread, {start:.1f} s to start them:")
+    print(
+        f"ours ({options.arithmetic}), {3 * len(done)} networks, {options.processes} processes of one thread, ", end=""
+    )
+    print(f"{start:.1f} s to start them:")
     for name, spent, rate in (("by the clock", seconds, rates[0]), ("of the cores", core, rates[1])):
-        each = spent / options.processes
-        print(f"  {name}: {each:.1f} s, whole study {each / share:.0f} s (goal {GOAL_S:.0f}); a process has")
-        found, there = flop / spent / 1e9, rate / 1e9
-        print(f"    {found:.1f} of {there:.1f} GFLOP/s of 1024^3 products: {found / there:.0%} (goal {GOAL_RATE:.0%})")
+        each, found, there = spent / options.processes, flop / spent / 1e9, rate / 1e9
+        print(f"  {name}: {each:.1f} s a process (goal {GOAL_S:.0f} for all 360); a process has {found:.1f} of", end="")
+        print(f" {there:.1f} GFLOP/s of 1024^3 products: {found / there:.0%} (goal {GOAL_RATE:.0%})")
     print(f"  {flop / 1e12:.2f} TFLOP of matrix products; wall clock with judging and measuring the rate {wall:.1f} s")
     return done
 
 
-def print_r2(units: list[tuple[int, int]], sides: dict[str, list[Done]]) -> None:
+def print_r2(
+    mine: dict[tuple[int, int], Done], loop: dict[tuple[int, int], Done], again: dict[tuple[int, int], Done]
+) -> None:
+    """Medians over people and models, and the worst variable of any one model, beside the loop's own spread."""
     print("\nR2 on held-out device walking, median over people and the three models: the loop / ours (difference)\n")
-    print("| training | " + " | ".join(VARIABLES) + " | least difference |")
-    print("|---|" + "---|" * (len(VARIABLES) + 1))
-    for length in LENGTHS_S:
-        loop, found = (
-            np.median([one.r2 for unit, one in zip(units, sides[name], strict=True) if unit[1] == length], axis=(0, 1))
-            for name in ("the loop", "ours")
-        )
-        apart = found - loop
-        cells = [f"{a:.3f} / {b:.3f} ({b - a:+.3f})" for a, b in zip(loop, found, strict=True)]
-        print(
-            f"| {length} s | {' | '.join(cells)} | {apart.min():+.4f}{'' if apart.min() >= -GOAL_R2 else ', missed'} |"
-        )
+    head = "least difference | of one model | loop of the next seed, least | of one model"
+    print(f"| training | {' | '.join(VARIABLES)} | {head} |\n{'|---' * (len(VARIABLES) + 5)}|")
+    for length in sorted({unit[1] for unit in loop}):
+        of = [np.array([d.r2 for u, d in side.items() if u[1] == length]) for side in (loop, mine, again)]
+        a, b = (np.median(side, axis=(0, 1)) for side in of[:2])
+        cells = [f"{x:.3f} / {y:.3f} ({y - x:+.3f})" for x, y in zip(a, b, strict=True)]
+        for other in of[1:]:
+            if len(other) != len(of[0]):
+                cells += ["", ""]
+                continue
+            least = (np.median(other, axis=(0, 1)) - a).min()
+            one = (np.median(other, axis=0) - np.median(of[0], axis=0)).min()
+            cells += [f"{least:+.4f}{'' if least >= -GOAL_R2 else ', missed'}", f"{one:+.4f}"]
+        print(f"| {length} s | {' | '.join(cells)} |")
 
 
 if __name__ == "__main__":
