@@ -7,15 +7,16 @@ from collections.abc import Callable
 from pathlib import Path
 
 from gaitdisc.cohort.cohort import the_twelve, walks_of
+from gaitdisc.ingest.c3d_writing import write_c3d
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import write_study
-from gaitdisc.ingest.table import write_table
 from gaitdisc.recording import Trial
 from gaitdisc.whole_file import write_whole
 
 WALK_S = 60.0
 MUSCLES = ("ham", "rf", "vas", "gas", "sol", "ta", "gmed")
+FORCES = tuple(f"ground_force_{side}_v{axis}" for side in "rl" for axis in "xy")
 OUTPUTS = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", *(f"emg_{muscle}_r" for muscle in MUSCLES[:5]))
 
 
@@ -68,6 +69,7 @@ def write_demonstration(
     study = Study(
         title=f"Demonstration: {people} of the embedded cohort, hidden effect: {hidden}",
         conditions=Conditions(nominal="nominal", device="exo"),
+        channels={name: f"{name} [N]" for name in FORCES},
         models=Models(emg=tuple(f"emg_{muscle}_{side}" for side in "rl" for muscle in MUSCLES), outputs=OUTPUTS),
         participants=tuple(participants),
     ).placed(folder)
@@ -76,10 +78,9 @@ def write_demonstration(
 
 
 def _write_trial(trial: Trial, folder: Path, stem: str) -> tuple[str, ...]:
-    """Angles as OpenSim writes them; EMG and forces, a hundred times as many numbers, as Parquet."""
-    angles, *tables = names = (f"{stem}_ik.mot", f"{stem}_emg.parquet", f"{stem}_forces.parquet")
+    """Angles as OpenSim writes them; EMG and forces as the analog channels of a C3D file."""
+    angles, analog = names = (f"{stem}_ik.mot", f"{stem}.c3d")
     (folder / angles).parent.mkdir(parents=True, exist_ok=True)
     write_storage(trial.stream("kinematics"), folder / angles)
-    for key, name in zip(("emg", "forces"), tables, strict=True):
-        write_table(trial.stream(key), folder / name)
+    write_c3d((trial.stream("emg"), trial.stream("forces")), folder / analog)
     return names

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from gaitdisc.errors import GaitdiscError, SchemaError
+from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.networks.training_settings import TrainingSettings
@@ -19,7 +20,15 @@ from gaitdisc.response.fit_response import ResponseSettings, fit_response
 from gaitdisc.response.samples import gait_samples
 from gaitdisc.results import ParticipantResponse, Refusal, WalkSummary
 from gaitdisc.results.provenance import code_sha256
-from gaitdisc.results.store import load_response, load_walk, save_response, save_walk, unit_name
+from gaitdisc.results.store import (
+    load_refused,
+    load_response,
+    load_walk,
+    save_refused,
+    save_response,
+    save_walk,
+    unit_name,
+)
 
 Progress = Callable[[float], None]
 SHARE_OF_PROCESSING = 0.1
@@ -37,15 +46,21 @@ class ParticipantUnit:
         None where a walk or the fit was refused.
     refusals : tuple of Refusal
         Why, in the words of the error.
+    key : str
+        What the unit rests on, of `response_key`; empty where nothing was read.
     """
 
     walks: tuple[WalkSummary, ...] = ()
     response: ParticipantResponse | None = None
     refusals: tuple[Refusal, ...] = ()
+    key: str = ""
 
 
 def computed_unit(study: Study, participant: Participant, folder: Path, progress: Progress) -> ParticipantUnit:
     """Compute one participant, or load what an earlier run computed from the same files and settings.
+
+    What is given back was loaded from the folder in either case, so that arrays stay there until they are looked at,
+    and a run that went on has the numbers of one that was never stopped, to the last bit.
 
     Parameters
     ----------
@@ -62,6 +77,11 @@ def computed_unit(study: Study, participant: Participant, folder: Path, progress
     -------
     ParticipantUnit
         A refusal is part of the result; it stops this participant and nobody else.
+
+    Raises
+    ------
+    WriteError
+        If the folder cannot be written.
     """
     not_complete = _incomplete(study, participant)
     if not_complete:
@@ -70,25 +90,24 @@ def computed_unit(study: Study, participant: Participant, folder: Path, progress
     stored = _stored(participant, keys, folder)
     if stored is not None:
         return stored
-    walks, refusals = processed_walks(study, participant)
-    summaries = {word: walk.summary() for word, walk in walks.items()}
-    for word, summary in summaries.items():
-        save_walk(summary, _walk_folder(folder, participant, word), keys[word])
-    kept = tuple(summaries.values())
-    if refusals:
-        return ParticipantUnit(kept, None, refusals)
-    progress(SHARE_OF_PROCESSING)
-    try:
-        response = _fitted(
-            study,
-            participant,
-            walks,
-            lambda share: progress(SHARE_OF_PROCESSING + (1 - SHARE_OF_PROCESSING) * share),
-        )
-    except GaitdiscError as error:
-        return ParticipantUnit(kept, None, (Refusal(participant.id, "", str(error)),))
-    save_response(response, folder / "responses" / participant.id, response_key(keys))
-    return ParticipantUnit(kept, response)
+    walks, errors = _walks_and_errors(study, participant)
+    for word, walk in walks.items():
+        save_walk(walk.summary(), _walk_folder(folder, participant, word), keys[word])
+    if not errors:
+        progress(SHARE_OF_PROCESSING)
+        try:
+            response = _fitted(study, participant, walks, partial(_after_processing, progress))
+        except GaitdiscError as error:
+            errors[""] = error
+        else:
+            save_response(response, folder / "responses" / participant.id, response_key(keys))
+            return _stored(participant, keys, folder) or ParticipantUnit(_loaded(walks, participant, folder), response)
+    refusals = tuple(Refusal(participant.id, word, str(error)) for word, error in errors.items())
+    if not any(
+        isinstance(error, ReadError) for error in errors.values()
+    ):  # what could not be read may be readable next
+        save_refused(refusals, tuple(walks), folder / "refused" / participant.id, response_key(keys))
+    return ParticipantUnit(_loaded(walks, participant, folder), None, refusals, response_key(keys))
 
 
 def unit_keys(study: Study, participant: Participant) -> dict[str, str]:
@@ -129,8 +148,10 @@ def unit_key(study: Study, trial: PlannedTrial) -> str:
     settings = study.model_dump(mode="json", exclude={"participants", "title"})
     parts = [code_sha256(), json.dumps(settings, sort_keys=True), trial.model_dump_json(exclude={"files"})]
     for file in trial.files:
-        path = study.path_of(file)
-        parts.append(hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else f"missing {file}")
+        try:
+            parts.append(file_sha256(study.path_of(file)))
+        except OSError as error:
+            parts.append(f"{file}: {error.strerror}")
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()
 
 
@@ -171,17 +192,26 @@ def processed_walks(study: Study, participant: Participant) -> tuple[dict[str, W
     participant : Participant
         With one trial of each condition.
     """
-    walks, refusals = {}, []
+    walks, errors = _walks_and_errors(study, participant)
+    return walks, tuple(Refusal(participant.id, word, str(error)) for word, error in errors.items())
+
+
+def _walks_and_errors(study: Study, participant: Participant) -> tuple[dict[str, Walk], dict[str, GaitdiscError]]:
+    walks, errors = {}, {}
     for word in (study.conditions.nominal, study.conditions.device):
         try:
             walks[word] = _walk(study, participant, participant.trials_of(word)[0])
         except GaitdiscError as error:
-            refusals.append(Refusal(participant.id, word, str(error)))
-    return walks, tuple(refusals)
+            errors[word] = error
+    return walks, errors
 
 
-def _walk(study: Study, participant: Participant, planned: PlannedTrial) -> Walk:
-    walk = processed(read_planned_trial(study, participant, planned), study)
+def _after_processing(progress: Progress, share: float) -> None:
+    progress(SHARE_OF_PROCESSING + (1 - SHARE_OF_PROCESSING) * share)
+
+
+def _walk(study: Study, participant: Participant, planned: PlannedTrial, reader: C3DReader) -> Walk:
+    walk = processed(read_planned_trial(study, participant, planned, reader), study)
     left_away = gait_samples(walk.trajectory, study.models.outputs)[1].finding()
     return replace(walk, findings=(*walk.findings, left_away))
 
@@ -200,14 +230,38 @@ def _fitted(
 
 def _stored(participant: Participant, keys: Mapping[str, str], folder: Path) -> ParticipantUnit | None:
     """Whole unit of an earlier run, if all of it rests on the same files and settings."""
+    key = response_key(keys)
     try:
-        walks = [(load_walk(_walk_folder(folder, participant, word)), key) for word, key in keys.items()]
+        refusals, words, stored_key = load_refused(folder / "refused" / participant.id)
+        if stored_key == key:
+            return ParticipantUnit(_with_keys(participant, words, keys, folder), None, refusals, key)
+    except SchemaError:
+        pass  # nobody was refused, or not for what is there now
+    try:
         response, stored_key = load_response(folder / "responses" / participant.id)
+        walks = _with_keys(participant, tuple(keys), keys, folder)
     except SchemaError:
         return None
-    if stored_key != response_key(keys) or any(stored != key for (_, stored), key in walks):
-        return None
-    return ParticipantUnit(tuple(walk for (walk, _), _ in walks), response)
+    return ParticipantUnit(walks, response, (), key) if stored_key == key else None
+
+
+def _with_keys(
+    participant: Participant, words: tuple[str, ...], keys: Mapping[str, str], folder: Path
+) -> tuple[WalkSummary, ...]:
+    """Walks of these conditions, if they rest on the files and settings of the keys."""
+    walks = [(load_walk(_walk_folder(folder, participant, word)), keys.get(word)) for word in words]
+    for (walk, stored_key), key in walks:
+        if stored_key != key:
+            raise SchemaError(
+                "a walk that is kept needs the files and settings of now",
+                f"{walk.subject} {walk.condition} rests on others",
+                "It is computed anew.",
+            )
+    return tuple(walk for (walk, _), _ in walks)
+
+
+def _loaded(walks: Mapping[str, Walk], participant: Participant, folder: Path) -> tuple[WalkSummary, ...]:
+    return tuple(load_walk(_walk_folder(folder, participant, word))[0] for word in walks)
 
 
 def _walk_folder(folder: Path, participant: Participant, word: str) -> Path:

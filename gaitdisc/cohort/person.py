@@ -13,6 +13,7 @@ JOINTS = ("hip_flexion", "hip_adduction", "hip_rotation", "knee_angle", "ankle_a
 MUSCLES = ("emg_ham", "emg_rf", "emg_vas", "emg_gas", "emg_sol", "emg_ta", "emg_gmed")
 HARMONICS = 4
 LEG_OF_HEIGHT = 0.530
+STANCE, STANCE_SPREAD = 0.607, 0.012  # of adults 60 to 62 % (Perry); of the children 59 (Schwartz et al. 2008)
 CADENCE, CADENCE_SPEED = 0.565, 0.429  # steps and speed, dimensionless, of Schwartz et al. (2008), Free
 
 
@@ -77,6 +78,8 @@ class Person:
         Habit towards which the person wanders slowly, and back.
     unrest : float
         Factor on all variability from stride to stride.
+    stance : float
+        Share of the stride that a foot is loaded by more than 20 N.
     change_s : float
         Time of a change of gait on the device [s]; infinite for those who stay the same.
     learnt : Spring, optional
@@ -105,6 +108,7 @@ class Person:
     adaptation: Adaptation = field(repr=False)
     drift_deg: NDArray[np.float64] = field(repr=False)
     unrest: float = 1.0
+    stance: float = STANCE
     change_s: float = float("inf")
     learnt: Spring | None = None
     plantarflexors: float = 1.0
@@ -188,6 +192,7 @@ def drawn(name: str, seed: int, sex: str) -> Person:
         ),
         _waves(rng, 0.15, 0.06),
         float(np.clip(1 + 0.15 * _held(rng), 0.7, 1.3)),
+        float(STANCE + STANCE_SPREAD * _held(rng)),
     )
 
 

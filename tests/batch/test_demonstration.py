@@ -1,8 +1,11 @@
 import json
+from pathlib import Path
 
+import numpy as np
 import pytest
 
 from gaitdisc.batch.demonstration import write_demonstration
+from gaitdisc.cohort.cohort import the_twelve, walks_of
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study_file import load_study
@@ -25,6 +28,19 @@ def test_the_files_are_read_as_a_laboratory_would_write_them(folder):
     assert (trial.stream("emg").rate_hz, trial.stream("emg").channels[0].unit) == (1000.0, "V")
     assert (len(trial.stream("emg").names), len(trial.stream("kinematics").names)) == (14, 10)
     assert trial.stream("kinematics").rate_hz == 100.0
+    assert [Path(file).suffix for file in person.trials[0].files] == [".mot", ".c3d"]
+    assert trial.stream("emg").source.reader.startswith("ezc3d")
+
+
+def test_what_is_read_is_what_was_measured(folder):
+    study = load_study(folder)
+    [person] = study.participants
+    walked = walks_of(the_twelve()[0], 30.0).trials["nominal"]
+    read = read_planned_trial(study, person, person.trials[0])
+    for key, within in (("emg", 0.0), ("forces", 1e-3), ("kinematics", 1e-5)):
+        assert read.stream(key).names == walked.stream(key).names
+        np.testing.assert_allclose(read.stream(key).values, walked.stream(key).values, rtol=0, atol=within)
+        np.testing.assert_allclose(read.stream(key).time, walked.stream(key).time, rtol=0, atol=1e-9)
 
 
 def test_the_truth_lies_apart_from_the_recordings(folder):

@@ -1,59 +1,14 @@
-"""What a leg has learnt holds the belt's speed, and its commands are the inverse dynamics of its habit."""
+"""What a leg has learnt: a whole table, and commands that allow for the spring."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from gaitdisc.cohort.body import leg_of
-from gaitdisc.cohort.controller import (
-    COLUMNS,
-    PHASES,
-    belt_held,
-    contact_path,
-    engaged_moment,
-    habit_angles,
-    hip_motion,
-    learnt_table,
-    thigh_shank_foot,
-)
+from gaitdisc.cohort.controller import COLUMNS, engaged_moment, learnt_table
 from gaitdisc.cohort.device import Spring
-from gaitdisc.cohort.ground import pressure_centre
+from gaitdisc.cohort.leg_path import PHASES
 from gaitdisc.cohort.person import drawn
-
-PHASE = np.arange(PHASES) / PHASES
-STANDS = (PHASE > 0.10) & (PHASE < 0.48)
-
-
-def sole_speed(person, psi):
-    leg = leg_of(person.height_m, person.mass_kg)
-    path = contact_path(leg, psi, pressure_centre(PHASE, leg.sole_m)) / person.stride_s
-    return (path + hip_motion(person, PHASE))[STANDS]
-
-
-@pytest.mark.parametrize("seed", range(6))
-def test_a_standing_foot_goes_with_the_belt(seed):
-    person = drawn("A", seed, "fm"[seed % 2])
-    leg = leg_of(person.height_m, person.mass_kg)
-    free = thigh_shank_foot(habit_angles(person, 0, PHASE))
-    held = belt_held(person, leg, free, hip_motion(person, PHASE))
-    assert sole_speed(person, held)[:, 0] == pytest.approx(-person.speed_m_per_s, rel=0.03)
-    assert np.abs(np.degrees(held - free)).max() < 9.0
-
-
-def test_the_published_curves_nearly_hold_the_belt_themselves():
-    person = drawn("A", 2, "f")
-    free = thigh_shank_foot(habit_angles(person, 0, PHASE))
-    assert sole_speed(person, free)[:, 0].mean() == pytest.approx(-person.speed_m_per_s, rel=0.08)
-
-
-def test_thigh_shank_foot_adds_up():
-    psi = thigh_shank_foot(np.array([[20.0, 1.0, 2.0, 15.0, -5.0]]))
-    assert np.degrees(psi[0]) == pytest.approx([20.0, 5.0, 0.0])
-
-
-def test_a_hip_comes_back_after_a_stride():
-    assert hip_motion(drawn("A", 1, "f"), PHASE).mean(axis=0) == pytest.approx([0.0, 0.0], abs=1e-9)
 
 
 def test_the_table_is_whole_and_closes():

@@ -1,0 +1,240 @@
+"""The path of a leg's habit: its angles over the stride, the hip they hang on, and a foot that goes with the belt."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.cohort.body import GRAVITY, Leg, ankle_place, cycle_rate
+from gaitdisc.cohort.device import STIFFNESS
+from gaitdisc.cohort.ground import STANCE, habitual_force, pressure_centre
+from gaitdisc.cohort.habit import habitual
+from gaitdisc.cohort.person import HARMONICS, JOINTS, Person
+
+PHASES = 1000
+LOADED_SHARE = 0.596  # of the stride: where the habitual vertical force of a typical adult falls below 20 N
+FIRM = (10.0, 1.0)  # weight of the speed of the foot over the belt, along and up, against the habit
+HALF_WIDTH = 0.05  # of the pelvis between the hips, of height
+HELD_EDGE = 0.4  # of half the stance
+CORRECTED = 6  # harmonics of the correction
+
+
+def staged(person: Person, phase: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Phase of the published curves at a phase of the person's own stride.
+
+    Contact stays contact; the middle of the stride comes later, by as much as puts the end of the stance where the
+    person has it: stage = phase - delay (1 - cos(2 pi phase)) / 2.
+
+    Parameters
+    ----------
+    person : Person
+        Whose share of stance counts.
+    phase : ndarray, any shape [share of a stride]
+        0 at contact.
+
+    Examples
+    --------
+    >>> from gaitdisc.cohort.person import drawn
+    >>> person = drawn("W01", 1, "f")
+    >>> round(float(staged(person, np.array([person.stance]))[0]), 3) == LOADED_SHARE
+    True
+    """
+    delay = 2 * (person.stance - LOADED_SHARE) / (1 - np.cos(2 * np.pi * person.stance))
+    return phase - 0.5 * delay * (1 - np.cos(2 * np.pi * phase))
+
+
+def habit_angles(person: Person, side: int, phase: NDArray[np.float64], drifted: float = 0.0) -> NDArray[np.float64]:
+    """Joint angles of a person's habit, before the belt has its say.
+
+    Parameters
+    ----------
+    person : Person
+        Style, and what was learnt on a spring.
+    side : int
+        0 right, 1 left.
+    phase : ndarray (phase,) [share of a stride]
+        0 at contact; the curves follow the person's own stance (`staged`).
+    drifted : float
+        How far the habit has wandered [1].
+
+    Returns
+    -------
+    ndarray (phase, joint) [deg]
+        In the order of `JOINTS`; hip flexion is counted from the vertical.
+    """
+    speed, style, phase = person.dimensionless_speed, person.style, staged(person, phase)
+    curves = np.column_stack([habitual(joint, speed).at(phase) for joint in JOINTS])
+    curves[:, 0] -= habitual("pelvis_tilt", speed).at(phase)
+    mean = curves.mean(axis=0)
+    waves = style.wave_deg[side] + drifted * person.drift_deg[side]
+    if person.learnt is not None:
+        waves = waves + person.learnt.stiffness / STIFFNESS * person.adaptation.habit_deg[side]
+    turn = 2 * np.pi * np.outer(phase, np.arange(1, HARMONICS + 1))
+    own = np.cos(turn) @ waves[:, :, 0].T + np.sin(turn) @ waves[:, :, 1].T
+    return mean + (curves - mean) * style.size + own
+
+
+def thigh_shank_foot(angles: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Absolute angles of the segments from joint angles.
+
+    Parameters
+    ----------
+    angles : ndarray (phase, joint) [deg]
+        In the order of `JOINTS`.
+
+    Returns
+    -------
+    ndarray (phase, 3) [rad]
+    """
+    thigh = angles[:, 0]
+    shank = thigh - angles[:, 3]
+    return np.radians(np.column_stack([thigh, shank, shank + angles[:, 4]]))
+
+
+def hip_motion(person: Person, phase: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Velocity of a hip on the treadmill, along the habit.
+
+    The body's centre moves as the ground forces of both feet accelerate it (2.8 cm up and down, 1.6 cm to and fro in a
+    person of 1.62 m at 1.27 m/s); the pelvis turns and tilts about it.
+
+    Parameters
+    ----------
+    person : Person
+        Speed, stride time, size.
+    phase : ndarray (phase,) [share of a stride]
+        One whole cycle from the contact of the hip's own foot.
+
+    Returns
+    -------
+    ndarray (phase, 2) [m/s]
+        Forwards, upwards; means of zero.
+    """
+    phase = staged(person, phase)
+    force = habitual_force(phase, person.dimensionless_speed)
+    both = GRAVITY * (force + np.roll(force, len(phase) // 2, axis=0))
+    centre = _integrated(both, person.stride_s / len(phase))
+    turns = [habitual(name, person.dimensionless_speed).at(phase) for name in ("pelvis_rotation", "pelvis_obliquity")]
+    offset = HALF_WIDTH * person.height_m * np.sin(np.radians(np.column_stack(turns)))
+    return centre + cycle_rate(offset, person.stride_s / len(phase))
+
+
+def belt_held(person: Person, leg: Leg, psi: NDArray[np.float64], hip_rate: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Habit whose foot moves with the belt while it stands.
+
+    The published curves, with the pelvis that the ground forces move, carry the foot at 0.93 to 1.1 of the belt's
+    speed. The smallest smooth correction of thigh, shank and foot is added (least squares over `CORRECTED` harmonics,
+    Gauss-Newton) with which the point under the pressure goes backwards at the belt's speed, and neither up nor down.
+
+    Parameters
+    ----------
+    person : Person
+        Speed and stride time.
+    leg : Leg
+        Lengths.
+    psi : ndarray (phase, 3) [rad]
+        One whole cycle.
+    hip_rate : ndarray (phase, 2) [m/s]
+        From `hip_motion`.
+
+    Returns
+    -------
+    ndarray (phase, 3) [rad]
+    """
+    phase = np.arange(len(psi)) / len(psi)
+    order = np.arange(1, CORRECTED + 1)
+    turn = 2 * np.pi * np.outer(phase, order)
+    waves = np.hstack([np.cos(turn), np.sin(turn)])
+    slopes = 2 * np.pi * np.hstack([-order * np.sin(turn), order * np.cos(turn)])
+    stage = staged(person, phase)
+    weight = _held_window(stage) / (person.speed_m_per_s * person.stride_s)
+    reluctance = np.diag(np.tile(np.r_[order, order] ** 0.5, 3)) * np.sqrt(len(psi) / 2)
+    pressure = pressure_centre(stage, leg.sole_m)
+    wanted = -person.stride_s * (hip_rate + np.array([person.speed_m_per_s, 0.0]))
+    moved, found = np.zeros(6 * CORRECTED), psi
+    for _ in range(4):
+        slip, rate, lever = (
+            contact_path(leg, found, pressure) - wanted,
+            by_phase(found),
+            pressed_point(leg, found[:, 2], pressure),
+        )
+        c, s = np.cos(found), np.sin(found)
+        l1, l2 = leg.thigh_m, leg.shank_m
+        along = [l1 * c[:, 0], l2 * c[:, 1], -lever[:, 1]], [l1 * s[:, 0], l2 * s[:, 1], lever[:, 0]]
+        bend = [-l1 * s[:, 0], -l2 * s[:, 1], -lever[:, 0]], [l1 * c[:, 0], l2 * c[:, 1], -lever[:, 1]]
+        left, right = [reluctance], [-reluctance @ moved]
+        for axis, firm in enumerate(FIRM):
+            pairs = zip(along[axis], (b * rate[:, j] for j, b in enumerate(bend[axis])), strict=True)
+            gain = np.hstack([a[:, None] * slopes + b[:, None] * waves for a, b in pairs])
+            left.append(firm * weight[:, None] * gain)
+            right.append(-firm * weight * slip[:, axis])
+        moved = moved + np.linalg.lstsq(np.vstack(left), np.concatenate(right), rcond=None)[0]
+        found = psi + waves @ moved.reshape(3, -1).T
+    return found
+
+
+def contact_path(leg: Leg, psi: NDArray[np.float64], pressure: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Rate by phase of the foot's point under the pressure, from the hip.
+
+    Parameters
+    ----------
+    leg : Leg
+        Lengths.
+    psi : ndarray (phase, 3) [rad]
+        One whole cycle.
+    pressure : ndarray (phase,) [m]
+        Centre of pressure along the foot.
+
+    Returns
+    -------
+    ndarray (phase, 2) [m]
+        Forwards, upwards.
+    """
+    lever, turning = pressed_point(leg, psi[:, 2], pressure), by_phase(psi)[:, 2:]
+    return by_phase(ankle_place(leg, psi)) + turning * lever[:, ::-1] * (-1.0, 1.0)
+
+
+def pressed_point(leg: Leg, foot: NDArray[np.float64], pressure: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Point under the pressure, from the ankle, in the laboratory's directions.
+
+    Parameters
+    ----------
+    leg : Leg
+        Height of the ankle.
+    foot : ndarray (phase,) [rad]
+        Absolute angle of the foot.
+    pressure : ndarray (phase,) [m]
+        Centre of pressure along the foot, from the ankle.
+
+    Returns
+    -------
+    ndarray (phase, 2) [m]
+        Forwards, upwards.
+    """
+    c, s = np.cos(foot), np.sin(foot)
+    return np.column_stack([pressure * c + leg.ankle_m * s, pressure * s - leg.ankle_m * c])
+
+
+def by_phase(cycle: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Rate by phase of one whole cycle.
+
+    Parameters
+    ----------
+    cycle : ndarray (phase, ...)
+        Evenly spaced, without its end.
+    """
+    return cycle_rate(cycle, 1 / len(cycle))
+
+
+def _held_window(phase: NDArray[np.float64]) -> NDArray[np.float64]:
+    """1 while the foot stands alone, falling to 0 at contact and at the toe's end: there a shoe gives and rolls."""
+    share = (phase - 0.5 * STANCE) / (0.5 * STANCE)
+    return np.clip((1.0 - np.abs(share)) / HELD_EDGE, 0.0, 1.0)
+
+
+def _integrated(cycle: NDArray[np.float64], step_s: float) -> NDArray[np.float64]:
+    """Periodic integral without its mean."""
+    spectrum = np.fft.rfft(cycle, axis=0)
+    turns = 2j * np.pi * np.fft.rfftfreq(len(cycle), step_s)
+    spectrum[1:] /= turns[1:, None]
+    spectrum[0] = 0.0
+    return np.fft.irfft(spectrum, len(cycle), axis=0)
