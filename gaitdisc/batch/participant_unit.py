@@ -198,11 +198,12 @@ def processed_walks(study: Study, participant: Participant) -> tuple[dict[str, W
 
 def _walks_and_errors(study: Study, participant: Participant) -> tuple[dict[str, Walk], dict[str, GaitdiscError]]:
     walks, errors = {}, {}
-    for word in (study.conditions.nominal, study.conditions.device):
-        try:
-            walks[word] = _walk(study, participant, participant.trials_of(word)[0])
-        except GaitdiscError as error:
-            errors[word] = error
+    with C3DReader() as reader:  # starts its process at the first C3D file, one for both walks
+        for word in (study.conditions.nominal, study.conditions.device):
+            try:
+                walks[word] = _walk(study, participant, participant.trials_of(word)[0], reader)
+            except GaitdiscError as error:
+                errors[word] = error
     return walks, errors
 
 
