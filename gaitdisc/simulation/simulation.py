@@ -153,6 +153,27 @@ class Simulation:
         kept[name] = expression
         return replace(self, observations=tuple(kept.items()))
 
+    def observing(self, names: Sequence[str]) -> Simulation:
+        """Simulation with some of its observations only, in the order asked for.
+
+        Parameters
+        ----------
+        names : sequence of str
+            Measured columns.
+
+        Raises
+        ------
+        SimulationError
+            If there is no observation of a name.
+        """
+        has = dict(self.observations)
+        for name in names:
+            if name not in has:
+                raise SimulationError(
+                    "an observation of the simulation", f"{name!r} is none", f"Known: {', '.join(has)}."
+                )
+        return replace(self, observations=tuple((name, has[name]) for name in names))
+
     def with_input(self, name: str, expression: str) -> Simulation:
         """Simulation in which an input is replaced by an expression of itself wherever it stands.
 

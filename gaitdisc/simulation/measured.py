@@ -1,0 +1,248 @@
+"""Measured trials: what drives a simulation, and what was observed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.errors import SamplingError, ShapeError
+from gaitdisc.recording import Finding
+from gaitdisc.recording.arrays import read_only
+from gaitdisc.simulation.drive import Drive
+
+SHORTEST = 20  # samples of a trial
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """Trials at one rate.
+
+    Parameters
+    ----------
+    drive : Drive
+        Inputs of each trial.
+    observed : ndarray (trial, sample, channel)
+        Measured channels; NaN beyond a trial's end.
+    trials : tuple of str
+        Names of the trials.
+    channels : tuple of str
+        Names of the observed channels, in the order of the simulation's observations.
+    findings : tuple of Finding
+        What a user must know of them.
+    source : str
+        Name of the file.
+
+    Raises
+    ------
+    ShapeError
+        If they do not fit together.
+
+    Examples
+    --------
+    >>> drive = Drive.of([np.empty((30, 0))] * 2, 100.0)
+    >>> Measured(drive, np.zeros((2, 30, 1)), ("1", "2"), ("x",)).selected([1]).trials
+    ('2',)
+    """
+
+    drive: Drive
+    observed: NDArray[np.float64]
+    trials: tuple[str, ...]
+    channels: tuple[str, ...]
+    findings: tuple[Finding, ...] = ()
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        """Freeze, and refuse what does not fit."""
+        observed = read_only(np.ascontiguousarray(self.observed, float))
+        wanted = (len(self.trials), self.drive.inputs.shape[1], len(self.channels))
+        if observed.shape != wanted or len(self.drive.samples) != len(self.trials):
+            raise ShapeError(
+                "measured trials have observed values (trial, sample, channel)",
+                f"found {observed.shape} where {wanted} was expected",
+                "Pad the trials to one length with NaN.",
+            )
+        object.__setattr__(self, "observed", observed)
+
+    @property
+    def rate(self) -> float:
+        """Samples a second [Hz]."""
+        return self.drive.rate
+
+    @property
+    def samples(self) -> NDArray[np.int64]:
+        """Length of each trial (trial,)."""
+        return self.drive.samples
+
+    def time(self, trial: int) -> NDArray[np.float64]:
+        """Times of a trial's samples (sample,) [s].
+
+        Parameters
+        ----------
+        trial : int
+            Its number.
+        """
+        return self.drive.time0[trial] + np.arange(self.samples[trial]) / self.rate
+
+    def selected(self, trials: Sequence[int]) -> Measured:
+        """Some of the trials.
+
+        Parameters
+        ----------
+        trials : sequence of int
+            Their numbers.
+        """
+        which = np.asarray(trials, int)
+        longest = int(self.samples[which].max())
+        drive = Drive(self.rate, self.drive.time0[which], self.drive.inputs[which, :longest], self.drive.samples[which])
+        names = tuple(self.trials[trial] for trial in which)
+        return Measured(drive, self.observed[which, :longest], names, self.channels, self.findings, self.source)
+
+    def between(self, first: int, end: int) -> Measured:
+        """Samples first to end of every trial that has them all.
+
+        Parameters
+        ----------
+        first, end : int
+            Counted from each trial's start; `end` is not included.
+        """
+        which = np.flatnonzero(self.samples >= end)
+        if first < 0 or end <= first or not which.size:
+            raise SamplingError(
+                f"samples {first} to {end} of a trial are needed",
+                f"the longest has {int(self.samples.max())}",
+                "Ask for fewer.",
+            )
+        time0 = self.drive.time0[which] + first / self.rate
+        drive = Drive(self.rate, time0, self.drive.inputs[which, first:end], np.full(len(which), end - first))
+        names = tuple(self.trials[trial] for trial in which)
+        return Measured(drive, self.observed[which, first:end], names, self.channels, self.findings, self.source)
+
+
+@dataclass(frozen=True, eq=False)
+class TrialColumns:
+    """What one trial gives before it is checked.
+
+    Parameters
+    ----------
+    name : str
+        Of the trial.
+    time : ndarray (sample,) [s]
+        As measured.
+    inputs, observed : ndarray (sample, input), (sample, channel)
+        Columns that the simulation needs.
+    """
+
+    name: str
+    time: NDArray[np.float64]
+    inputs: NDArray[np.float64]
+    observed: NDArray[np.float64]
+
+
+def measured_of_trials(
+    trials: Sequence[TrialColumns],
+    inputs: Sequence[str],
+    channels: Sequence[str],
+    source: str,
+    findings: Sequence[Finding] = (),
+) -> Measured:
+    """Measured trials, checked.
+
+    Parameters
+    ----------
+    trials : sequence of TrialColumns
+        In order.
+    inputs, channels : sequence of str
+        Names of their columns.
+    source : str
+        Name of the file.
+    findings : sequence of Finding
+        What was seen before.
+
+    Raises
+    ------
+    SamplingError
+        If a trial is too short, its time is uneven or doubled, or the rates differ.
+    ShapeError
+        If an observed channel never varies.
+    """
+    rates = [_rate(trial, source) for trial in trials]
+    apart = int(np.argmax(np.abs(np.array(rates) - rates[0])))
+    if abs(rates[apart] - rates[0]) > 2e-3 * rates[0]:
+        raise SamplingError(
+            "all trials have one rate",
+            f"{source}, trial {trials[0].name!r} has {rates[0]:.6g} Hz, trial {trials[apart].name!r} {rates[apart]:.6g}",
+            "Resample them to one rate.",
+        )
+    longest = max(len(trial.time) for trial in trials)
+    observed = np.full((len(trials), longest, len(channels)), np.nan)
+    for number, trial in enumerate(trials):
+        observed[number, : len(trial.time)] = trial.observed
+    drive = Drive.of([trial.inputs for trial in trials], rates[0], [float(trial.time[0]) for trial in trials])
+    seen = [*findings, *_constant(trials, inputs, channels, source)]
+    if len(trials) == 1:
+        seen.append(
+            Finding(
+                "warning", "one trial", source, f"trial {trials[0].name!r} is the only one ({len(trials[0].time)} samples)",
+                "held-out proof on other trials: only a later part of this one can be held out; record a second one",
+            )
+        )  # fmt: skip
+    return Measured(drive, observed, tuple(trial.name for trial in trials), tuple(channels), tuple(seen), source)
+
+
+def _constant(
+    trials: Sequence[TrialColumns], inputs: Sequence[str], channels: Sequence[str], source: str
+) -> list[Finding]:
+    """Refuse an observed channel that never varies; tell of what does not vary in a trial."""
+    found = []
+    for kind, names in (("observed", channels), ("inputs", inputs)):
+        for column, name in enumerate(names):
+            still = [trial.name for trial in trials if np.ptp(getattr(trial, kind)[:, column]) == 0]
+            if len(still) == len(trials) and kind == "observed":
+                raise ShapeError(
+                    f"an observed channel varies: {name!r}",
+                    f"{source} has {getattr(trials[0], kind)[0, column]:g} in every sample",
+                    "Take the channel out of [observations], or correct the column.",
+                )
+            if still:
+                what = f"constant in {len(still)} of {len(trials)} trials (first: {still[0]!r})"
+                severity = "warning" if kind == "observed" else "note"
+                found.append(Finding(severity, "constant", source, what, "what these trials tell", name))
+    return found
+
+
+def _rate(trial: TrialColumns, source: str) -> float:
+    """Samples a second of an evenly sampled trial."""
+    time, where = trial.time, f"{source}, trial {trial.name!r}"
+    if len(time) < SHORTEST:
+        raise SamplingError(
+            f"a trial has {SHORTEST} samples or more", f"{where} has {len(time)}", "Leave it out, or record longer."
+        )
+    steps = np.diff(time)
+    back = int(np.argmin(steps))
+    if steps[back] <= 0:
+        what = "stands twice" if steps[back] == 0 else f"is followed by {time[back + 1]:.6g} s"
+        raise SamplingError(
+            "time increases within a trial",
+            f"{where}: t = {time[back]:.6g} s {what} (sample {back + 2} of the trial)",
+            "Take the doubled rows away, or give each trial a name of its own in the column 'trial'.",
+        )
+    mean = (time[-1] - time[0]) / (len(time) - 1)
+    off = np.abs(time - time[0] - mean * np.arange(len(time)))
+    printed = 0.51 * 10.0 ** -_decimals(time)
+    if off.max() > max(1e-3 * mean, min(2 * printed, 0.25 * mean)):
+        worst = int(np.argmax(np.abs(steps - mean)))
+        raise SamplingError(
+            "a trial is sampled evenly",
+            f"{where}: a step of {steps[worst]:.6g} s after t = {time[worst]:.6g} s where the mean is {mean:.6g} s "
+            f"(steps from {steps.min():.6g} to {steps.max():.6g} s)",
+            "Resample it to an even rate, or cut it at the gap into two trials.",
+        )
+    return float(np.round(1.0 / mean, 9)) if abs(1 / mean - round(1 / mean)) > 1e-4 else float(round(1 / mean))
+
+
+def _decimals(time: NDArray[np.float64]) -> int:
+    """Decimals that the times were printed with, 9 at most."""
+    return next((d for d in range(9) if np.all(np.abs(time - np.round(time, d)) < 1e-12 * (1 + np.abs(time)))), 9)

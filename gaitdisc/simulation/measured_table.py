@@ -1,0 +1,261 @@
+"""Reading measured trials: a CSV or Parquet table, or recordings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.channel import nearest_word
+from gaitdisc.errors import ChannelError, ReadError, UnitError
+from gaitdisc.recording import Finding, Recording
+from gaitdisc.simulation.measured import Measured, TrialColumns, measured_of_trials
+from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.simulation.unit_factor import unit_factor
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+ENDINGS = (".csv", ".parquet")
+
+
+def read_measured(path: Path | str, simulation: Simulation) -> Measured:
+    """Trials of a table with the columns `trial`, `time` [s], each input and each observed channel.
+
+    Without a column `trial` the table is one trial. Of observations that the simulation file does not list (each state
+    under its own name) those are taken that the table has.
+
+    Parameters
+    ----------
+    path : Path or str
+        CSV (comma, or semicolon with decimal commas) or Parquet.
+    simulation : Simulation
+        Whose inputs and observations are wanted.
+
+    Raises
+    ------
+    ReadError
+        If the file cannot be read, a cell is no number, or one is empty or NaN: trial, line and column are told.
+    ChannelError
+        If a column is missing; the nearest one is named.
+    SamplingError, ShapeError
+        As `measured_of_trials`.
+
+    Examples
+    --------
+    >>> read_measured("walk.csv", read_simulation("ankle.toml")).channels  # doctest: +SKIP
+    ('theta',)
+    """
+    path = Path(path)
+    table = _table(path)
+    columns = [str(column).strip() for column in table.columns]
+    table.columns = columns
+    inputs = tuple(each.name for each in simulation.inputs)
+    channels = _channels(simulation, columns, path.name)
+    for name in ("time", *inputs):
+        if name not in columns:
+            raise _missing(name, columns, path.name)
+    trial = _trials(table, path.name)
+    numbers = {name: _numbers(table, name, trial, path.name) for name in dict.fromkeys(("time", *inputs, *channels))}
+    order = list(dict.fromkeys(trial.tolist()))
+    parts = []
+    for name in order:
+        rows = np.flatnonzero(trial == name)
+        stacked = [
+            np.column_stack([numbers[each][rows] for each in names] or [np.empty((len(rows), 0))])
+            for names in (inputs, channels)
+        ]
+        parts.append(TrialColumns(str(name), numbers["time"][rows], stacked[0], stacked[1]))
+    return measured_of_trials(parts, inputs, channels, path.name, _left_out(simulation, columns, channels, path.name))
+
+
+def measured_of_recordings(recordings: Sequence[Recording], simulation: Simulation) -> Measured:
+    """Trials of recordings, one each, converted to the simulation's units.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+        With a channel for each input and each observation, at one rate.
+    simulation : Simulation
+        Whose inputs and observations are wanted.
+
+    Raises
+    ------
+    ChannelError
+        If a channel is missing.
+    UnitError
+        If a channel's unit measures something else than the simulation's.
+    ReadError
+        If a value is NaN.
+
+    Examples
+    --------
+    >>> measured_of_recordings([walk], simulation).rate  # doctest: +SKIP
+    100.0
+    """
+    inputs = tuple(each.name for each in simulation.inputs)
+    findings: dict[str, Finding] = {}
+    parts = []
+    channels = _channels(simulation, recordings[0].names, recordings[0].source.file or "recording 1")
+    for number, recording in enumerate(recordings, 1):
+        name = recording.source.file or f"recording {number}"
+        columns = []
+        for wanted in dict.fromkeys((*inputs, *channels)):
+            if wanted not in recording.names:
+                raise _missing(wanted, recording.names, name)
+            values = _converted(recording, wanted, simulation, (name, findings))
+            bad = np.flatnonzero(~np.isfinite(values))
+            if bad.size:
+                raise ReadError(
+                    "a measured channel has a value in every sample",
+                    f"{name}, {wanted}: {bad.size} of {len(values)} are missing, first at t = {recording.time[bad[0]]:.4g} s",
+                    "Cut the trial there, or fill the gap before.",
+                )
+            columns.append((wanted, values))
+        by_name = dict(columns)
+        stacked = [
+            np.column_stack([by_name[each] for each in names] or [np.empty((len(recording.time), 0))])
+            for names in (inputs, channels)
+        ]
+        parts.append(TrialColumns(name, np.array(recording.time), stacked[0], stacked[1]))
+    return measured_of_trials(parts, inputs, channels, parts[0].name, list(findings.values()))
+
+
+def _table(path: Path) -> pd.DataFrame:
+    import pandas as pd
+
+    if path.suffix.lower() not in ENDINGS:
+        raise ReadError(
+            "measured data are a CSV or Parquet table", f"{path.name} ends in {path.suffix!r}", "Export it as CSV."
+        )
+    try:
+        if path.suffix.lower() == ".parquet":
+            return pd.read_parquet(path)
+        with path.open(encoding="utf-8-sig") as file:
+            head = file.readline(100_000)
+        european = ";" in head
+        _refuse_doubled(head.split(";" if european else ","), path.name)
+        return pd.read_csv(
+            path,
+            sep=";" if european else ",",
+            decimal="," if european else ".",
+            dtype={"trial": str},
+            encoding="utf-8-sig",
+            skipinitialspace=True,
+            low_memory=False,
+        )
+    except ChannelError:
+        raise
+    except OSError as error:
+        found = f"{path.name}: {error.strerror or error}"
+        raise ReadError("measured data are read from a table", found, "Check the path.") from error
+    except Exception as error:  # pandas and pyarrow have no common ancestor of theirs
+        found = f"{path.name}: {str(error).splitlines()[0][:200] if str(error) else type(error).__name__}"
+        raise ReadError("measured data are a CSV or Parquet table", found, "Open it and export it again.") from error
+
+
+def _refuse_doubled(head: Sequence[str], file: str) -> None:
+    names = [name.strip().strip('"') for name in head]
+    doubled = next((name for name in names if name and names.count(name) > 1), None)
+    if doubled is not None:
+        raise ChannelError("each column has a name of its own", f"{file} has {doubled!r} twice", "Rename one.")
+
+
+def _channels(simulation: Simulation, columns: Sequence[str], file: str) -> tuple[str, ...]:
+    """Observed channels that the data have."""
+    names = tuple(name for name, _ in simulation.observations)
+    if simulation.observations != tuple((state.name, state.name) for state in simulation.states):
+        for name in names:
+            if name not in columns:
+                raise _missing(name, columns, file)
+        return names
+    there = tuple(name for name in names if name in columns)
+    if not there:
+        raise _missing(names[0], columns, file)
+    return there
+
+
+def _missing(name: str, columns: Sequence[str], file: str) -> ChannelError:
+    nearest = nearest_word(name, columns)
+    hint = f", the nearest is {nearest!r}" if nearest else ""
+    listed = ", ".join(columns[:20]) + (", ..." if len(columns) > 20 else "")
+    return ChannelError(
+        f"the simulation needs a measured column {name!r}",
+        f"{file} has {listed}{hint}",
+        f"Rename the column to {name!r}, or change the simulation file.",
+    )
+
+
+def _trials(table: pd.DataFrame, file: str) -> NDArray[np.object_]:
+    if "trial" not in table.columns:
+        nearest = nearest_word("trial", [column for column in table.columns if column != "time"])
+        if nearest:
+            raise _missing("trial", list(table.columns), file)
+        return np.full(len(table), "1", object)
+    empty = np.flatnonzero(table["trial"].isna().to_numpy())
+    if empty.size:
+        raise ReadError(
+            "every row names its trial", f"{file}, line {empty[0] + 2} has none", "Fill the column 'trial'."
+        )
+    return table["trial"].astype(str).to_numpy(object)
+
+
+def _numbers(table: pd.DataFrame, name: str, trial: NDArray[np.object_], file: str) -> NDArray[np.float64]:
+    import pandas as pd
+
+    values = pd.to_numeric(table[name], errors="coerce").to_numpy(float)
+    bad = np.flatnonzero(~np.isfinite(values))
+    if bad.size:
+        row = int(bad[0])
+        cell = table[name].iloc[row]
+        shown = "an empty cell" if pd.isna(cell) else repr(cell)
+        raise ReadError(
+            "every cell of a measured column is a number",
+            f"{file}, line {row + 2} (trial {trial[row]!r}), column {name!r} has {shown}"
+            + (f"; {bad.size} such cells" if bad.size > 1 else ""),
+            "Fill or cut the gap; a trial has no missing samples.",
+        )
+    return values
+
+
+def _left_out(simulation: Simulation, columns: Sequence[str], channels: tuple[str, ...], file: str) -> list[Finding]:
+    """Tell of states that are not measured, and of columns that nothing asked for."""
+    found = []
+    absent = [name for name, _ in simulation.observations if name not in channels]
+    if absent:
+        what = f"not measured: {', '.join(absent)}"
+        found.append(
+            Finding("note", "not measured", file, what, "nothing; it follows from the others by the equations")
+        )
+    wanted = {"trial", "time", *channels, *(each.name for each in simulation.inputs)}
+    unused = [column for column in columns if column not in wanted]
+    if unused:
+        listed = ", ".join(unused[:10]) + (", ..." if len(unused) > 10 else "")
+        found.append(Finding("note", "unused columns", file, listed, ""))
+    return found
+
+
+def _converted(
+    recording: Recording, name: str, simulation: Simulation, told: tuple[str, dict[str, Finding]]
+) -> NDArray[np.float64]:
+    """Channel in the simulation's unit."""
+    file, findings = told
+    channel = recording.channels[recording.names.index(name)]
+    units = {part.name: part.unit for part in (*simulation.states, *simulation.inputs)}
+    observed = dict(simulation.observations).get(name, name)
+    to = units.get(name, units.get(observed.strip()))
+    factor = None if to is None else unit_factor(channel.unit, to)
+    if factor is None:
+        what = f"{channel.unit!r} is not compared with the simulation's {to!r}" if to else f"{channel.unit!r} as it is"
+        findings[name] = Finding("note", "unit", file, what, "nothing if both mean the same", name)
+        return recording[name]
+    if np.isnan(factor):
+        raise UnitError(
+            f"{name!r} is measured in a unit of the simulation's kind, {to!r}",
+            f"{file} has it in {channel.unit!r}",
+            "Correct the unit in the simulation file or in the study.",
+        )
+    return recording[name] if factor == 1.0 else recording[name] * factor

@@ -1,0 +1,78 @@
+"""Measured trials: lengths, selections, and what is refused of their clocks."""
+
+import numpy as np
+import pytest
+
+from gaitdisc.errors import SamplingError, ShapeError
+from gaitdisc.simulation.drive import Drive
+from gaitdisc.simulation.measured import Measured, TrialColumns, measured_of_trials
+
+
+def _trial(name="1", count=50, rate=100.0, time=None, observed=None):
+    t = np.arange(count) / rate if time is None else np.asarray(time, float)
+    x = np.sin(5 * t)[:, None] if observed is None else observed
+    return TrialColumns(name, t, np.cos(t)[:, None], x)
+
+
+def _measured(*trials):
+    return measured_of_trials(trials, ["u"], ["x"], "walk.csv")
+
+
+def test_trials_of_different_lengths():
+    measured = _measured(_trial("a"), _trial("b", 80))
+    assert measured.samples.tolist() == [50, 80]
+    assert measured.rate == 100.0
+    assert np.isnan(measured.observed[0, 50:]).all() and np.isfinite(measured.observed[1]).all()
+    assert measured.findings == ()
+    np.testing.assert_allclose(measured.time(1), np.arange(80) / 100)
+
+
+def test_some_trials_and_some_samples():
+    measured = _measured(_trial("a"), _trial("b", 80))
+    assert measured.selected([0]).observed.shape == (1, 50, 1)
+    late = measured.between(40, 80)
+    assert late.trials == ("b",)
+    assert late.time(0)[0] == pytest.approx(0.4)
+    with pytest.raises(SamplingError, match="samples 40 to 90 .* the longest has 80"):
+        measured.between(40, 90)
+
+
+def test_one_trial_is_told():
+    (finding,) = _measured(_trial()).findings
+    assert finding.kind == "one trial" and "only a later part" in finding.spoils
+
+
+def test_printed_times_are_even_enough():
+    assert _measured(_trial(time=np.round(np.arange(200) / 60, 3)), _trial("b", rate=60.0)).rate == pytest.approx(
+        60, rel=1e-3
+    )
+    assert _measured(_trial(time=np.round(7 + np.arange(500) / 100, 2)), _trial("b")).rate == 100.0
+
+
+@pytest.mark.parametrize(
+    ("trials", "words"),
+    [
+        ([_trial(count=7)], "trial '1' has 7"),
+        ([_trial(time=np.arange(50) / 100 + (np.arange(50) > 30) * 0.05)], "a step of 0.06 s after t = 0.3 s"),
+        ([_trial(time=np.sort(np.random.default_rng(0).uniform(0, 1, 50)))], "sampled evenly"),
+        ([_trial(time=np.repeat(np.arange(25) / 100, 2))], "t = 0 s stands twice"),
+        ([_trial(time=np.arange(50) % 25 / 100)], r"t = 0.24 s is followed by 0 s \(sample 26"),
+        ([_trial("a"), _trial("b", rate=50.0)], "trial 'a' has 100 Hz, trial 'b' 50"),
+    ],
+)  # fmt: skip
+def test_clocks_that_do_not_run_are_refused(trials, words):
+    with pytest.raises(SamplingError, match=words):
+        _measured(*trials)
+
+
+def test_a_constant_channel_is_refused_a_constant_trial_told():
+    still = np.full((50, 1), 3.0)
+    with pytest.raises(ShapeError, match="'x'; walk.csv has 3 in every sample"):
+        _measured(_trial("a", observed=still), _trial("b", observed=still))
+    (finding,) = _measured(_trial("a", observed=still), _trial("b")).findings
+    assert finding.line().startswith("warning: walk.csv, x: constant: constant in 1 of 2 trials (first: 'a')")
+
+
+def test_shapes_are_checked():
+    with pytest.raises(ShapeError, match=r"\(1, 30, 2\) where \(1, 30, 1\)"):
+        Measured(Drive.of([np.empty((30, 0))], 100.0), np.zeros((1, 30, 2)), ("1",), ("x",))

@@ -1,0 +1,119 @@
+"""Tables and recordings: one clear refusal for each fault."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from gaitdisc.channel import Channel
+from gaitdisc.errors import ChannelError, GaitdiscError, ReadError, UnitError
+from gaitdisc.recording import Recording, Source
+from gaitdisc.simulation.measured_table import measured_of_recordings, read_measured
+
+
+def _table(trials=("1", "2"), count=40):
+    t = np.arange(count) / 100
+    parts = [
+        pd.DataFrame({"trial": name, "time": t, "tau": np.sin(t * 9), "phase": (t * 2) % 1, "theta": np.cos(t * 7)})
+        for name in trials
+    ]
+    return pd.concat(parts, ignore_index=True)
+
+
+def test_a_table_is_read(ankle, tmp_path):
+    table = _table(("walk a", "walk b"))
+    table.to_csv(tmp_path / "walk.csv", index=False)
+    table.to_parquet(tmp_path / "walk.parquet")
+    for ending in ("csv", "parquet"):
+        measured = read_measured(tmp_path / f"walk.{ending}", ankle)
+        assert measured.trials == ("walk a", "walk b")
+        assert measured.channels == ("theta",)
+        assert measured.drive.inputs.shape == (2, 40, 2)
+        np.testing.assert_allclose(measured.observed[1, :, 0], table["theta"][40:], rtol=1e-12)
+        assert [finding.kind for finding in measured.findings] == ["not measured"]
+    assert ankle.observing(measured.channels).observations == (("theta", "theta"),)
+
+
+def test_semicolons_with_decimal_commas(ankle, tmp_path):
+    _table().to_csv(tmp_path / "walk.csv", index=False, sep=";", decimal=",")
+    assert read_measured(tmp_path / "walk.csv", ankle).observed[0, 0, 0] == 1.0
+
+
+def test_trial_numbers_keep_their_order(ankle, tmp_path):
+    _table((10, 9, 2)).to_csv(tmp_path / "walk.csv", index=False)
+    assert read_measured(tmp_path / "walk.csv", ankle).trials == ("10", "9", "2")
+
+
+def test_a_table_without_trials_is_one(ankle, tmp_path):
+    _table(("1",)).drop(columns="trial").to_csv(tmp_path / "walk.csv", index=False)
+    assert read_measured(tmp_path / "walk.csv", ankle).trials == ("1",)
+
+
+def _broken(change):
+    table = _table().astype({"theta": object, "tau": object, "time": object, "trial": object})
+    change(table)
+    return table
+
+
+def _set(row, column, value):
+    return lambda table: table.__setitem__(column, [value if i == row else v for i, v in enumerate(table[column])])
+
+
+@pytest.mark.parametrize(
+    ("table", "kind", "words"),
+    [
+        (_table().rename(columns={"tau": "tau_ankle"}), ChannelError, "column 'tau'; walk.csv has trial, time, tau_ankle"),
+        (_table().rename(columns={"theta": "Theta_"}), ChannelError, "column 'theta'; walk.csv has trial, time, tau, phase, Theta_, the nearest is 'Theta_'"),
+        (_table().rename(columns={"time": "t"}), ChannelError, "needs a measured column 'time'"),
+        (_table().rename(columns={"trial": "Trial"}), ChannelError, "the nearest is 'Trial'"),
+        (_table().assign(extra=1).rename(columns={"extra": " tau"}), ChannelError, "'tau' twice"),
+        (_broken(_set(47, "theta", None)), ReadError, "line 49 (trial '2'), column 'theta' has an empty cell"),
+        (_broken(_set(5, "tau", "n.a.")), ReadError, "line 7 (trial '1'), column 'tau' has 'n.a.'"),
+        (_broken(_set(5, "tau", "inf")), ReadError, "line 7 (trial '1'), column 'tau' has"),
+        (_broken(_set(9, "trial", None)), ReadError, "line 11 has none"),
+    ],
+)  # fmt: skip
+def test_faults_are_told_with_their_place(ankle, tmp_path, table, kind, words):
+    table.to_csv(tmp_path / "walk.csv", index=False)
+    with pytest.raises(kind) as refusal:
+        read_measured(tmp_path / "walk.csv", ankle)
+    assert words in str(refusal.value)
+
+
+def test_observations_that_the_file_lists_are_all_needed(ankle, tmp_path):
+    _table().to_csv(tmp_path / "walk.csv", index=False)
+    with pytest.raises(ChannelError, match="needs a measured column 'power'"):
+        read_measured(tmp_path / "walk.csv", ankle.with_observation("power", "tau*omega").observing(["theta", "power"]))
+
+
+@pytest.mark.parametrize("name", ["absent.csv", "walk.xlsx", "broken.parquet", "empty.csv", "ragged.csv"])
+def test_files_that_are_no_table(ankle, tmp_path, name):
+    (tmp_path / "broken.parquet").write_bytes(b"PAR1 no")
+    (tmp_path / "empty.csv").write_text("")
+    (tmp_path / "ragged.csv").write_text("trial,time\n1,2,3,4,5\n1,2\n,,,,,,,,\n")
+    with pytest.raises(GaitdiscError) as refusal:
+        read_measured(tmp_path / name, ankle)
+    assert name in str(refusal.value)
+
+
+def _recording(unit="deg", tau=None):
+    t = np.arange(50) / 100
+    channels = (Channel("theta", "angle", unit), Channel("tau", "moment", "N m"), Channel("phase", "signal", "1"))
+    tau = np.cos(9 * t) if tau is None else tau
+    return Recording(t, np.column_stack([np.sin(7 * t), tau, t % 1]), channels, source=Source("walk.mot"))
+
+
+def test_recordings_are_converted(ankle):
+    measured = measured_of_recordings([_recording(), _recording("rad")], ankle)
+    np.testing.assert_allclose(measured.observed[0] / (math.pi / 180), measured.observed[1], atol=1e-12)
+    assert measured.channels == ("theta",)
+
+
+def test_recordings_with_faults(ankle):
+    with pytest.raises(UnitError, match=r"'theta'.*'rad'; walk.mot has it in 'N m'"):
+        measured_of_recordings([_recording("N m")], ankle)
+    with pytest.raises(ReadError, match=r"walk.mot, tau: 1 of 50 are missing, first at t = 0.07 s"):
+        measured_of_recordings([_recording(tau=np.where(np.arange(50) == 7, np.nan, np.arange(50.0)))], ankle)
+    with pytest.raises(ChannelError, match="needs a measured column 'tau'"):
+        measured_of_recordings([_recording().selected(["theta", "phase"])], ankle)
