@@ -6,10 +6,12 @@ import hashlib
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
-from gaitdisc.errors import GaitdiscError, SchemaError
+from gaitdisc.errors import GaitdiscError, ReadError, SchemaError
 from gaitdisc.ingest.c3d import C3DReader
+from gaitdisc.ingest.file_hash import file_sha256
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.networks.training_settings import TrainingSettings
@@ -103,9 +105,7 @@ def computed_unit(study: Study, participant: Participant, folder: Path, progress
             save_response(response, folder / "responses" / participant.id, response_key(keys))
             return _stored(participant, keys, folder) or ParticipantUnit(_loaded(walks, participant, folder), response)
     refusals = tuple(Refusal(participant.id, word, str(error)) for word, error in errors.items())
-    if not any(
-        isinstance(error, ReadError) for error in errors.values()
-    ):  # what could not be read may be readable next
+    if not any(isinstance(error, ReadError) for error in errors.values()):  # that may be readable another time
         save_refused(refusals, tuple(walks), folder / "refused" / participant.id, response_key(keys))
     return ParticipantUnit(_loaded(walks, participant, folder), None, refusals, response_key(keys))
 
