@@ -43,40 +43,40 @@ def computed_quantity(
     DataQuantity or Refusal
         A refusal stops this participant and nobody else.
     """
-    stored = stored_quantity(study, participant, folder)
+    key = response_key(unit_keys(study, participant))
+    stored = stored_quantity(participant, folder, key)
     if stored is not None and stored.part == part and _has(stored, lengths_s):
         return stored
     walks, refusals = processed_walks(study, participant)
     if refusals:
         return refusals[0]
     nominal, exo = (walks[word].trajectory for word in (study.conditions.nominal, study.conditions.device))
-    key = response_key(unit_keys(study, participant))
     try:
         whole = _whole(participant, folder, key)
         quantity = fit_data_quantity(nominal, exo, response_settings(study), lengths_s, part, progress, whole)
     except GaitdiscError as error:
         return Refusal(participant.id, "", str(error))
     save_quantity(quantity, _folder(folder, participant), key)
-    return quantity
+    return stored_quantity(participant, folder, key) or quantity
 
 
-def stored_quantity(study: Study, participant: Participant, folder: Path) -> DataQuantity | None:
+def stored_quantity(participant: Participant, folder: Path, key: str) -> DataQuantity | None:
     """Load what an earlier `ablate` computed from the same files and settings, if it is there and whole.
 
     Parameters
     ----------
-    study : Study
-        Settings.
     participant : Participant
         Who.
     folder : Path
         Folder of the run.
+    key : str
+        What it must rest on, of `response_key`.
     """
     try:
-        quantity, key = load_quantity(_folder(folder, participant))
+        quantity, stored_key = load_quantity(_folder(folder, participant))
     except SchemaError:
         return None
-    return quantity if key == response_key(unit_keys(study, participant)) else None
+    return quantity if stored_key == key else None
 
 
 def _whole(participant: Participant, folder: Path, key: str) -> ParticipantResponse | None:

@@ -15,7 +15,7 @@ from gaitdisc.batch.workers import Workers, computed_side_by_side
 from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.response.comparison import compare_models
 from gaitdisc.response.over_participants import compare_participants
-from gaitdisc.results import DataQuantity, ParticipantResponse, Provenance, ResponseRun
+from gaitdisc.results import DataQuantity, Provenance, ResponseRun
 from gaitdisc.results.provenance import installed_versions
 from gaitdisc.results.store import save_run
 
@@ -60,7 +60,7 @@ def run_study(
     with run_lock(folder):
         units = list(_units(study, folder, workers or Workers(), told))
         responses = tuple(unit.response for unit in units if unit.response is not None)
-        quantities = _stored_quantities(study, responses, folder)
+        quantities = _stored_quantities(study, units, folder)
         run = ResponseRun(
             study.title or study.folder.name,
             study.conditions.nominal,
@@ -89,10 +89,9 @@ def _units(study: Study, folder: Path, workers: Workers, told: Told) -> Iterator
         yield unit
 
 
-def _stored_quantities(
-    study: Study, responses: Sequence[ParticipantResponse], folder: Path
-) -> tuple[DataQuantity, ...]:
-    found = (stored_quantity(study, study.participant(each.participant), folder) for each in responses)
+def _stored_quantities(study: Study, units: Sequence[ParticipantUnit], folder: Path) -> tuple[DataQuantity, ...]:
+    whole = [(unit.response.participant, unit.key) for unit in units if unit.response is not None]
+    found = (stored_quantity(study.participant(name), folder, key) for name, key in whole)
     return tuple(quantity for quantity in found if quantity is not None)
 
 

@@ -5,6 +5,7 @@ A run is a folder::
     run.json                       title, conditions, refusals, provenance, which units there are
     walks/<person>-<condition>/    walk.json  strides.csv  arrays.npz
     responses/<person>/            response.json  r2.csv  fits.csv  arrays.npz
+    refused/<person>/              refused.json
     tests/                         tests.json  tests.csv  families.csv
     over/                          over.json  lengths.csv  reductions.csv  reduction_tests.csv  ...
     quantities/<person>/           quantity.json  quantity.csv
@@ -193,6 +194,41 @@ def load_quantity(folder: Path) -> tuple[DataQuantity, str]:
     data, tables, _ = load_unit(folder, "quantity.json")
     left_away = {float(row["length_s"]): str(row["reason"]) for row in data["left_away"]}
     return DataQuantity(data["participant"], data["part"], tables["quantity.csv"], left_away), data["key"]
+
+
+def save_refused(refusals: tuple[Refusal, ...], walks: tuple[str, ...], folder: Path, key: str) -> None:
+    """Save why a participant was refused, so that a run that goes on does not read and process the walks again.
+
+    Parameters
+    ----------
+    refusals : tuple of Refusal
+        In the words of the errors.
+    walks : tuple of str
+        Conditions whose walk could be processed all the same.
+    folder : Path
+        Folder of this participant alone.
+    key : str
+        What it was computed from: a hash of files and settings.
+    """
+    data = {"key": key, "refusals": [asdict(refusal) for refusal in refusals], "walks": list(walks)}
+    save_unit(folder, "refused.json", data, {}, {})
+
+
+def load_refused(folder: Path) -> tuple[tuple[Refusal, ...], tuple[str, ...], str]:
+    """Load why a participant was refused, the conditions whose walk was processed, and the key.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder that `save_refused` wrote.
+
+    Raises
+    ------
+    SchemaError
+        If the file is missing, damaged or of another format.
+    """
+    data, _, _ = load_unit(folder, "refused.json")
+    return tuple(Refusal(**refusal) for refusal in data["refusals"]), tuple(data["walks"]), data["key"]
 
 
 def save_run(run: ResponseRun, folder: Path) -> None:

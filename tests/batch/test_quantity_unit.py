@@ -1,5 +1,6 @@
 import pytest
 
+from gaitdisc.batch.participant_unit import response_key, unit_keys
 from gaitdisc.batch.quantity_unit import computed_quantity, stored_quantity
 from gaitdisc.results import DataQuantity, Refusal
 
@@ -11,20 +12,22 @@ def folder(tmp_path_factory):
 
 def test_it_is_computed_once_and_loaded_afterwards(study, folder):
     person, told = study.participants[0], []
-    assert stored_quantity(study, person, folder) is None
+    key = response_key(unit_keys(study, person))
+    assert stored_quantity(person, folder, key) is None
     first = computed_quantity(study, person, folder, (5.0,), "first", told.append)
     assert isinstance(first, DataQuantity)
     assert told[-1] == 1.0
     work = len(told)
     again = computed_quantity(study, person, folder, (5.0,), "first", told.append)
     assert isinstance(again, DataQuantity)
-    assert again.table.equals(stored_quantity(study, person, folder).table)
+    assert again.table.equals(stored_quantity(person, folder, key).table)
     assert len(told) == work
 
 
 def test_other_settings_are_not_taken_for_these(study, folder):
+    person = study.participants[0]
     other = study.model_copy(update={"models": study.models.model_copy(update={"seed": 7})})
-    assert stored_quantity(other, other.participants[0], folder) is None
+    assert stored_quantity(person, folder, response_key(unit_keys(other, person))) is None
 
 
 def test_a_walk_that_is_refused_refuses_the_rest(study, tmp_path):
