@@ -8,13 +8,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import gaitdisc
+from gaitdisc.report.block import save_block
 from gaitdisc.report.comparison_figure import comparison_figures
 from gaitdisc.report.comparison_tables import comparison_sentences, comparison_tables
 from gaitdisc.report.curves_figure import curves_figures
 from gaitdisc.report.figure import LARGEST_INLINE_SVG, Figure, SavedFigure, file_names, save_figure, save_table
 from gaitdisc.report.held_out_figure import held_out_figures
 from gaitdisc.report.method import flattened, method_sentences, provenance_rows
-from gaitdisc.report.quantity_figure import quantity_figure, quantity_sentences
+from gaitdisc.report.over_blocks import over_blocks
 from gaitdisc.report.r2_figure import r2_figures
 from gaitdisc.report.r2_tables import not_computed, participants_table, r2_table, study_r2_table
 from gaitdisc.report.residual_figure import residual_figures
@@ -101,7 +102,7 @@ def write_report(run: ResponseRun, folder: Path) -> Path:
     overview = [save_figure(figure, folder / "figures") for figure in (r2_figures(run) if run.responses else [])]
     compared = [save_figure(figure, folder / "figures") for figure in comparison_figures(run)]
     pair_tables = comparison_tables(run)
-    quantity = quantity_figure(run)
+    blocks = [save_block(block, folder) for block in over_blocks(run)]
     tables = {
         "refusals": refusals_table(run),
         "walks": walks_table(run),
@@ -119,8 +120,7 @@ def write_report(run: ResponseRun, folder: Path) -> Path:
         sections=sections,
         overview=overview,
         comparison={"sentences": comparison_sentences(run), "figures": compared, "tables": pair_tables},
-        quantity=save_figure(quantity, folder / "figures") if quantity else None,
-        enough=quantity_sentences(run),
+        blocks=blocks,
         tables=tables,
         method=method_sentences(run),
         headline=1 if not run.responses else 0 if len(run.responses) == 1 else 2,

@@ -12,13 +12,14 @@ from gaitdisc.report.palette import MODELS
 from gaitdisc.report.r2_figure import LOWEST
 from gaitdisc.report.r2_summary import held_out_text
 from gaitdisc.report.wording import MODEL_WORDS, counted, number
-from gaitdisc.results import ResponseRun
+from gaitdisc.results import DataQuantity, ResponseRun
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 GROUPS = {"angles": "joint angles", "EMG": "EMG envelopes"}
 HEIGHT = 2.3  # of a panel [inch]
+APART = 1.4  # least ratio of two lengths that are both written at the axis
 ENOUGH = 0.01  # as near to the whole training part as this
 
 
@@ -79,21 +80,36 @@ def quantity_sentences(run: ResponseRun) -> list[str]:
     """
     if not run.quantities:
         return []
-    said = []
-    for quantity in run.quantities:
-        exo = quantity.medians()["exo"].sort_index()
-        whole, best = float(exo.index[-1]), float(exo.iloc[-1])
-        near = float(exo.index[(exo >= best - ENOUGH).to_numpy()].min())
-        reach = f"from {near:.0f} s on" if near < whole else "only with all of it"
-        said.append(
-            f"In {quantity.participant}, the Exo model comes within {ENOUGH:g} of what all {whole:.0f} s of training "
-            f"give (R² {number(best)}, median over variables) {reach}."
-        )
+    near = pd.DataFrame([_near(quantity) for quantity in run.quantities], columns=pd.Index(["from", "whole", "r2"]))
+    who = run.quantities[0].participant if len(near) == 1 else f"Over {counted(len(near), 'participant')}"
+    reach = f"from {_seconds(near['from'])} on" if (near["from"] < near["whole"]).any() else "only with all of it"
+    middle = "" if len(near) == 1 else ", medians and ranges over participants"
+    said = [
+        f"{f'In {who}' if len(near) == 1 else who}, the Exo model comes within {ENOUGH:g} of what all "
+        f"{_seconds(near['whole'])} of training give (R² {number(near['r2'].median())}, median over variables) "
+        f"{reach}{middle}."
+    ]
     lengths = sorted({length for quantity in run.quantities for length in quantity.left_away})
     if lengths:
         shown = ", ".join(f"{length:g} s" for length in lengths)
         said.append(f"Lengths left away, because a walk is too short for them or too few samples are left: {shown}.")
     return said
+
+
+def _near(quantity: DataQuantity) -> tuple[float, float, float]:
+    """Training length from which on Exo is near to its best, the whole length, and R2 at the whole."""
+    exo = quantity.medians()["exo"].sort_index()
+    far = exo.index[(exo < exo.iloc[-1] - ENOUGH).to_numpy()]
+    return (
+        float(exo.index[exo.index > far.max()].min() if len(far) else exo.index[0]),
+        float(exo.index[-1]),
+        exo.iloc[-1],
+    )
+
+
+def _seconds(lengths: pd.Series) -> str:
+    low, high = lengths.min(), lengths.max()
+    return f"{lengths.median():.0f} s" + (f" ({low:.0f} to {high:.0f} s)" if high - low >= 0.5 else "")
 
 
 def _draw(axes: Axes, rows: pd.DataFrame, low: float) -> None:
@@ -105,7 +121,10 @@ def _draw(axes: Axes, rows: pd.DataFrame, low: float) -> None:
         axes.plot(middle.index, middle, color=look.colour, linestyle=look.line, marker=look.mark, ms=3.5, linewidth=1.4)
     axes.set_xscale("log")
     lengths = sorted(set(rows["length_s"]))
-    shown = [x for i, x in enumerate(lengths) if i == 0 or x / lengths[i - 1] > 1.25 or x == lengths[-1]]
+    shown = lengths[-1:]
+    for length in reversed(lengths):
+        if shown[0] / length > APART:
+            shown.insert(0, length)
     axes.set_xticks(shown, [f"{x:.0f}" for x in shown])
     axes.minorticks_off()
     axes.set_ylim(low, 1.0)

@@ -56,7 +56,7 @@ def r2_numbers(run: ResponseRun) -> pd.DataFrame:
     for response in run.responses:
         table = r2_by_variable(response)
         for column in R2_TABLE:
-            if column.walk == "exo":
+            if column.walk == "exo" and column.kind != "linear":
                 tables.append(
                     pd.DataFrame(
                         {
@@ -155,10 +155,11 @@ def _limit(numbers: pd.DataFrame) -> float:
 def _caption(run: ResponseRun, low: float, null: bool) -> str:
     people = len(run.responses)
     marks = (
-        "Filled marks: networks; hollow marks of the same shape: ridge regression"
+        "Filled marks: networks; hollow marks of the same shape: ridge regression with phase harmonics"
         if people == 1
         else f"Small filled marks: networks, one a participant, with a box of quartiles from {FEWEST_FOR_BOXES} "
-        "participants on (thick line: median, whiskers: all); hollow marks: median of ridge regression"
+        "participants on (thick line: median, whiskers: all); hollow marks: median of ridge regression with phase "
+        "harmonics"
     )
     samples = _samples(run)
     noise = "dashed: what band-limited noise alone would reach" if null else "what noise would reach was not computed"

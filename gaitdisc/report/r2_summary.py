@@ -40,6 +40,7 @@ _JUDGED = (("nominal", "nominal"), ("nominal", "exo"), ("augmented", "exo"), ("e
 R2_TABLE = (
     *(R2Column(f"{model}_on_{walk}", model, "network", walk) for model, walk in _JUDGED),
     *(R2Column(f"ridge_{model}_on_{walk}", model, "ridge", walk) for model, walk in _JUDGED),
+    *(R2Column(f"linear_{model}_on_exo", model, "linear", "exo") for model in ("nominal", "augmented", "exo")),
     R2Column("null_on_exo", "", "null", "exo"),
 )
 

@@ -18,7 +18,7 @@ from gaitdisc.report.tables import Table
 from gaitdisc.report.wording import counted, label, number, unit_text
 from gaitdisc.results import ParticipantResponse, ResponseRun
 
-_R2_GROUPS = (("", 1), ("network", 4), ("ridge", 4), ("noise", 1))
+_R2_GROUPS = (("", 1), ("network", 4), ("ridge, phase harmonics", 4), ("ridge, inputs alone", 3), ("noise", 1))
 
 
 def r2_table(response: ParticipantResponse, name: str) -> Table:
@@ -43,7 +43,8 @@ def r2_table(response: ParticipantResponse, name: str) -> Table:
         f"{response.participant}: R² [1] of the second derivative of each variable (its unit in brackets) on held-out "
         f"device walking, but for the columns that say “no device”; n = {samples} samples of the device walk and "
         f"{without} of the walk without; split: last {response.held_out_s:.4g} s of each walk held out, seen by no "
-        f"model. Null: what band-limited noise alone would reach."
+        f"model. Ridge: with harmonics of percent stride beside the network’s inputs, and on these inputs alone. Null: "
+        f"what band-limited noise alone would reach."
     )
     numbers = table.reset_index()
     numbers.insert(1, "unit", list(response.units))

@@ -44,7 +44,8 @@ def study_sentences(run: ResponseRun) -> list[str]:
     if len(ridge):
         wins = int((ridge >= MARGIN).sum())
         sentences.append(
-            f"Ridge regression in place of the networks gives Augmented {_median_iqr(table['ridge_augmented_on_exo'])} "
+            f"Ridge regression with phase harmonics in place of the networks gives Augmented "
+            f"{_median_iqr(table['ridge_augmented_on_exo'])} "
             f"and beats the network in {wins} of {counted(len(ridge), 'participant')}."
         )
     if table["null_on_exo"].notna().any():
@@ -137,7 +138,7 @@ def _ridge(middle: pd.Series) -> str:
     if not ridge:
         return ""
     said = listed([f"{MODEL_WORDS[model]} {number(value)}" for model, value in ridge.items()])
-    start = f"Ridge regression on the same samples, without any network, reaches {said}"
+    start = f"Ridge regression with phase harmonics on the same samples, without any network, reaches {said}"
     wins = [model for model, value in ridge.items() if value - middle[_ON_EXO[model]] >= MARGIN]
     if wins:
         beaten = listed([f"{MODEL_WORDS[m]} ({number(ridge[m])} against {number(middle[_ON_EXO[m]])})" for m in wins])

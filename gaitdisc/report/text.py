@@ -20,7 +20,9 @@ from gaitdisc.results import ResponseRun
 if TYPE_CHECKING:
     import rich.table
 
-_SHOWN = [column for column in R2_TABLE if (column.kind, column.walk) != ("ridge", "nominal")]
+_SHOWN = [
+    column for column in R2_TABLE if (column.kind, column.walk) != ("ridge", "nominal") and column.kind != "linear"
+]
 _SHORT = {"nominal": "Nominal", "augmented": "Augm.", "exo": "Exo", "": "null"}
 
 

@@ -11,6 +11,7 @@ import pytest
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.response.comparison import compare_models
+from gaitdisc.response.over_participants import compare_participants
 from gaitdisc.results import HeldOut, ParticipantResponse, Provenance, Refusal, ResponseRun, WalkSummary
 
 RATE_HZ = 100.0
@@ -93,6 +94,7 @@ def make_response(subject, *, outputs=ANGLES, held_out_s=7.5, seed=0, gain=0.9, 
         r2 = 1 - ((measured - values) ** 2).sum(0) / spread
         add(model, "network", "exo", r2)
         add(model, "ridge", "exo", r2 - ridge)
+        add(model, "linear", "exo", r2 - 2 * ridge)
     add("nominal", "network", "nominal", np.full(len(outputs), 0.95) - 0.01 * rng.random(len(outputs)))
     add("nominal", "ridge", "nominal", np.full(len(outputs), 0.93))
     add("nominal", "null", "exo", np.full(len(outputs), 0.51))
@@ -207,7 +209,8 @@ def make_tested(participants=11, outputs=("hip_flexion_r", "ankle_angle_l", "emg
                 table.loc[chosen & (table["variable"] == variable), "r2"] = value
         responses.append(response)
     run = make_run(0, outputs=outputs)
-    return replace(run, responses=tuple(responses), tests=compare_models(responses))
+    over = compare_participants(responses)
+    return replace(run, responses=tuple(responses), tests=compare_models(responses), over=over)
 
 
 @pytest.fixture(scope="session")

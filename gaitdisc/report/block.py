@@ -1,0 +1,73 @@
+"""A part of the page over all participants: what it says, then figures and tables."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from gaitdisc.report.figure import Figure, SavedFigure, save_figure, save_table
+from gaitdisc.report.tables import Table
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """One part, as it is computed.
+
+    Parameters
+    ----------
+    anchor : str
+        Where the page links to.
+    heading : str
+        Of the part.
+    sentences : tuple of str
+        What the figures and tables say; a block without any is not shown.
+    figures : tuple of Figure
+        Drawn below.
+    tables : tuple of Table
+        Below the figures.
+    """
+
+    anchor: str
+    heading: str
+    sentences: tuple[str, ...]
+    figures: tuple[Figure, ...] = ()
+    tables: tuple[Table, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class SavedBlock:
+    """One part, with its figures and tables on disk.
+
+    Parameters
+    ----------
+    anchor, heading : str
+        As in `Block`.
+    sentences : tuple of str
+        As in `Block`.
+    figures : tuple of SavedFigure
+        As the page shows them.
+    tables : tuple of Table
+        As the page shows them.
+    """
+
+    anchor: str
+    heading: str
+    sentences: tuple[str, ...]
+    figures: tuple[SavedFigure, ...]
+    tables: tuple[Table, ...]
+
+
+def save_block(block: Block, folder: Path) -> SavedBlock:
+    """Write the figures and tables of a part.
+
+    Parameters
+    ----------
+    block : Block
+        What to save.
+    folder : Path
+        Folder of the report.
+    """
+    figures = tuple(save_figure(figure, folder / "figures") for figure in block.figures)
+    for table in block.tables:
+        save_table(table.numbers, folder / "tables" / f"{table.name}.csv")
+    return SavedBlock(block.anchor, block.heading, block.sentences, figures, block.tables)
