@@ -21,7 +21,7 @@ def delayed_in_rows(
 ) -> NDArray[np.float64]:
     """Delayed signals of the observations along rows, (row, step, delay).
 
-    States are cubic between the samples of their row, which comes near to the finer steps of the run; inputs are linear.
+    States are cubic between the samples of their row, near to the finer steps of the run; inputs are linear.
 
     Parameters
     ----------

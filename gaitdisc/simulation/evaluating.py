@@ -66,7 +66,8 @@ def evaluate(simulation: Simulation, expression: str, points: Points) -> NDArray
     --------
     >>> from gaitdisc.simulation.parts import State
     >>> decay = Simulation("decay", (State("x"),), equations=(("x", "-x"),))
-    >>> evaluate(decay, "gain*x**2", Points(np.zeros(2), np.array([[1.0], [3.0]]), np.empty((2, 0)), extras={"gain": 2}))
+    >>> points = Points(np.zeros(2), np.array([[1.0], [3.0]]), np.empty((2, 0)), extras={"gain": 2})
+    >>> evaluate(decay, "gain*x**2", points)
     array([ 2., 18.])
     """
     return evaluate_many(simulation, [expression], points)[0]

@@ -173,7 +173,8 @@ def measured_of_trials(
     if abs(rates[apart] - rates[0]) > 2e-3 * rates[0]:
         raise SamplingError(
             "all trials have one rate",
-            f"{source}, trial {trials[0].name!r} has {rates[0]:.6g} Hz, trial {trials[apart].name!r} {rates[apart]:.6g}",
+            f"{source}, trial {trials[0].name!r} has {rates[0]:.6g} Hz, "
+            f"trial {trials[apart].name!r} {rates[apart]:.6g}",
             "Resample them to one rate.",
         )
     longest = max(len(trial.time) for trial in trials)
@@ -185,10 +186,13 @@ def measured_of_trials(
     if len(trials) == 1:
         seen.append(
             Finding(
-                "warning", "one trial", source, f"trial {trials[0].name!r} is the only one ({len(trials[0].time)} samples)",
+                "warning",
+                "one trial",
+                source,
+                f"trial {trials[0].name!r} is the only one ({len(trials[0].time)} samples)",
                 "held-out proof on other trials: only a later part of this one can be held out; record a second one",
             )
-        )  # fmt: skip
+        )
     return Measured(drive, observed, tuple(trial.name for trial in trials), tuple(channels), tuple(seen), source)
 
 

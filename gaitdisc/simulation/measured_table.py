@@ -111,7 +111,8 @@ def measured_of_recordings(recordings: Sequence[Recording], simulation: Simulati
             if bad.size:
                 raise ReadError(
                     "a measured channel has a value in every sample",
-                    f"{name}, {wanted}: {bad.size} of {len(values)} are missing, first at t = {recording.time[bad[0]]:.4g} s",
+                    f"{name}, {wanted}: {bad.size} of {len(values)} are missing, "
+                    f"first at t = {recording.time[bad[0]]:.4g} s",
                     "Cut the trial there, or fill the gap before.",
                 )
             columns.append((wanted, values))

@@ -51,6 +51,16 @@ class Program:
     registers: int
     outputs: int
 
+    def placed(self, rows: int) -> NDArray[np.uint64]:
+        """Code with first places in flat memory instead of the numbers of registers, (operation, 4).
+
+        Parameters
+        ----------
+        rows : int
+            Places that each register and each output takes.
+        """
+        return (self.code * np.array([1, rows, rows, rows])).astype(np.uint64)
+
     def used(self) -> NDArray[np.bool_]:
         """Whether each leaf and each delay is read, (leaf and delay,)."""
         reads = np.zeros(self.registers, bool)

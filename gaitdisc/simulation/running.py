@@ -76,23 +76,18 @@ class Compiled:
         ok : ndarray of bool (row,)
             False where a row diverged.
         """
-        from gaitdisc.simulation.machine import BLOCK, integrate_block
+        from gaitdisc.simulation.machine import BLOCK, integrate
 
         place, starts, values = self._rows(drive, rows)
         seconds = self._seconds(self.right_hand_side, values)
         found = np.full((len(starts), steps + 1, len(self.states)), np.nan)
         found[:, 0] = starts
-        ok = np.isfinite(starts).all(axis=1)
-        program = self._instructions()
+        ok = np.asarray(np.isfinite(starts).all(axis=1))
+        program = self._instructions(BLOCK)
         wraps = np.array([each.wraps for each in self.simulation.inputs], bool)
         driven = (drive.rate, drive.time0, drive.inputs, drive.samples, wraps)
         before = read_only(np.empty((0, 0, 0)) if past is None else np.ascontiguousarray(past, float))
-        blocks = -(-len(starts) // BLOCK)
-        for part in np.array_split(np.arange(len(starts)), max(blocks, 1)):
-            if part.size:
-                s = slice(part[0], part[-1] + 1)
-                own = (place[s], starts[s], values[s], seconds[s])
-                integrate_block(program, driven, own, (steps, substeps), before, (found[s], ok[s]))
+        integrate(program, driven, (place, starts, values, seconds), (steps, substeps), before, (found, ok))
         return found, ok
 
     def rates(
@@ -152,7 +147,7 @@ class Compiled:
         """
         from gaitdisc.simulation.delays import delayed_in_rows
 
-        place, starts, values = self._rows(drive, rows)
+        place, _, values = self._rows(drive, rows)
         count, steps, n = states.shape
         sample = place[:, 1, None] + np.arange(steps)
         held = np.minimum(sample, drive.samples[place[:, 0], None] - 1)
@@ -197,14 +192,14 @@ class Compiled:
         wanted = compiled_program([seconds for _, seconds in program.delays], self.parameters)
         return np.ascontiguousarray(at_points(wanted, list(values.T), None, len(values)).T)
 
-    def _instructions(self) -> tuple:
+    def _instructions(self, rows: int) -> tuple:
         program = self.right_hand_side
         kinds = [
             (1, self.states.index(signal)) if signal in self.states else (0, self.inputs.index(signal))
             for signal, _ in program.delays
         ]
         delayed = np.array(kinds, np.int64).reshape(-1, 2)
-        return program.code, program.setup, program.constants, delayed, program.registers
+        return program.placed(rows), program.setup, program.constants, delayed, program.registers
 
 
 @lru_cache(maxsize=64)
@@ -294,7 +289,7 @@ def at_points(
     points : int, optional
         How many; the length of the first column by default.
     """
-    from gaitdisc.simulation.machine import evaluate_blocks
+    from gaitdisc.simulation.machine import BLOCK, evaluate_blocks
 
     if program.delays and (late is None or np.shape(late)[-1] != len(program.delays)):
         raise SimulationError(
@@ -311,7 +306,7 @@ def at_points(
             spread[k] = int(np.ndim(source) > 0)
             table[k, : count if np.ndim(source) else 1] = source
     into = np.empty((program.outputs, count))
-    evaluate_blocks(program.code, program.constants, table, spread, into)
+    evaluate_blocks(program.placed(BLOCK), program.constants, table, spread, into)
     return into
 
 

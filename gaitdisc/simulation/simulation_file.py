@@ -29,7 +29,7 @@ _EFFECT = ("port", "equation", "name", "term")
 
 
 def read_simulation(path: Path | str) -> Simulation:
-    """Simulation of a TOML file.
+    r"""Simulation of a TOML file.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def read_simulation(path: Path | str) -> Simulation:
     --------
     >>> import tempfile
     >>> path = Path(tempfile.mkdtemp()) / "decay.toml"
-    >>> _ = path.write_text('[states.x]\\nunit = "1"\\n[equations]\\nx = "-x"\\n')
+    >>> _ = path.write_text('[states.x]\nunit = "1"\n[equations]\nx = "-x"\n')
     >>> read_simulation(path).equations
     (('x', '-x'),)
     """
@@ -183,7 +183,7 @@ def _check_keys(table: Mapping[str, Any], known: tuple[str, ...], place: tuple[s
                 "only keys of the simulation file stand here",
                 f"found {key[:60]!r}",
                 f"{remedy}Known: {', '.join(known)}.",
-                (*place, key) if not place else place,
+                place or (key,),
             )
 
 
@@ -244,7 +244,8 @@ def _line(text: str, place: tuple[str, ...]) -> int | None:
             if keys == place or (keys, (str(number),)) == (("effects",), place[1:]):
                 return line
             here = line if section == place[0] and here is None else here
-        elif (section, *place[-1:]) == place or (not section and len(place) == 1):
-            if re.match(rf"\s*[\"']?{re.escape(place[-1])}[\"']?\s*[.=]", words):
+        elif (section, place[-1]) == place or (not section and len(place) == 1):
+            key = re.match(r"\s*[\"']?([A-Za-z0-9_-]+)[\"']?\s*[.=]", words)
+            if key and key[1] == place[-1]:
                 return line
     return here

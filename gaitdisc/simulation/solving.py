@@ -105,4 +105,4 @@ def _beyond(_t: float, x: NDArray[np.float64]) -> float:
     return float(1e6 - np.max(np.abs(x))) if np.all(np.isfinite(x)) else -1.0
 
 
-_beyond.terminal = True
+setattr(_beyond, "terminal", True)  # noqa: B010 the way in which solve_ivp is told
