@@ -10,6 +10,8 @@ from pathlib import Path
 
 from gaitdisc.errors import WriteError
 
+PART = ".part-"  # files begin with it until they are whole
+
 
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
@@ -41,7 +43,7 @@ def whole_file(path: Path) -> Iterator[Path]:
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
+        handle, name = tempfile.mkstemp(prefix=f"{PART}{path.stem}-", suffix=path.suffix, dir=path.parent)
         os.close(handle)
     except OSError as error:
         raise _refusal(path, error) from error
@@ -88,6 +90,27 @@ def write_whole(path: Path | str, content: bytes | str) -> Path:
     with whole_file(path) as part:
         part.write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
     return path
+
+
+def sweep_parts(folder: Path) -> None:
+    """Delete what a killed program left of files that it never finished.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder in which, and below which, nobody else writes now.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> folder = Path(tempfile.mkdtemp())
+    >>> (folder / ".part-r2-x.csv").touch()
+    >>> sweep_parts(folder)
+    >>> list(folder.iterdir())
+    []
+    """
+    for part in folder.rglob(f"{PART}*"):
+        part.unlink(missing_ok=True)
 
 
 def _ordinary_mode() -> int:

@@ -9,7 +9,7 @@ import gaitdisc
 
 PACKAGE = Path(gaitdisc.__file__).parent
 FLOORS = (
-    ("errors", "units", "channel", "whole_file"),
+    ("errors", "units", "channel", "whole_file", "compiled"),
     ("recording", "model"),
     ("ingest", "signals", "simulation", "cohort", "regression", "networks", "statistics", "results"),
     ("processing", "discrepancy", "discovery", "sensing", "response"),

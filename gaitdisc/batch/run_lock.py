@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
+import fcntl
 import json
 import os
 import socket
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from gaitdisc.errors import WriteError
+from gaitdisc.whole_file import sweep_parts
 
 
 @contextmanager
 def run_lock(folder: Path) -> Iterator[None]:
-    """Hold a run folder for this process; a lock that a killed run left behind is taken over.
+    """Hold a run folder for this process, and clear away what a killed run left unfinished in it.
+
+    The system itself frees the lock of a process that ends, however it ends; that a number of a process is given to
+    another afterwards, as in a container that is started again, does no harm. Between machines that share a disk such
+    locks are not to be relied on: a lock file of another machine is believed.
 
     Parameters
     ----------
@@ -35,55 +42,54 @@ def run_lock(folder: Path) -> Iterator[None]:
     path = folder / ".lock"
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        _take(path)
+        handle = _taken(path)
+        sweep_parts(folder)
     except OSError as error:
         raise WriteError(
             "a run needs a folder that it can write",
             f"{folder}: the system says: {error.strerror or error}",
-            "Choose another with --out.",
+            "Make room, mend the right to write, or choose another folder with --out.",
         ) from error
     try:
         yield
     finally:
         path.unlink(missing_ok=True)
+        os.close(handle)
 
 
-def _take(path: Path) -> None:
-    for _ in range(2):
+def _taken(path: Path) -> int:
+    """Open and locked lock file, which says who holds it."""
+    while True:
+        handle = os.open(path, os.O_CREAT | os.O_RDWR)
         try:
-            handle = os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY)
-        except FileExistsError:
-            _refuse_living_holder(path)
-            path.unlink(missing_ok=True)
-            continue
-        with os.fdopen(handle, "w") as file:
-            json.dump({"pid": os.getpid(), "host": socket.gethostname()}, file)
-        return
-    _refuse(path, "another run that started at the same moment")
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            if path.is_file() and path.stat().st_ino == os.fstat(handle).st_ino:
+                _refuse_other_machine(path)
+                os.truncate(handle, 0)
+                os.write(handle, json.dumps({"pid": os.getpid(), "host": socket.gethostname()}).encode())
+                return handle
+        except BlockingIOError:
+            os.close(handle)
+            _refuse(path, f"process {_holder(path).get('pid', 'unknown')} on this machine")
+        except BaseException:
+            os.close(handle)
+            raise
+        os.close(handle)  # its last holder deleted it between our opening and our locking
 
 
-def _refuse_living_holder(path: Path) -> None:
+def _refuse_other_machine(path: Path) -> None:
+    holder = _holder(path)
+    if holder.get("host", socket.gethostname()) != socket.gethostname():
+        _refuse(path, f"process {holder.get('pid')} on {holder['host']}")
+
+
+def _holder(path: Path) -> dict[str, Any]:
+    """Who says to hold the folder; nothing where a process was killed before it could say."""
     try:
         holder = json.loads(path.read_text())
     except (OSError, ValueError):
-        return  # killed while it took the lock
-    here = holder.get("host") == socket.gethostname()
-    if not here:
-        _refuse(path, f"process {holder.get('pid')} on {holder.get('host')}")
-    if _alive(int(holder.get("pid", -1))):
-        _refuse(path, f"process {holder['pid']} on this machine")
-
-
-def _alive(pid: int) -> bool:
-    if pid == os.getpid():
-        return True
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    except OSError:
-        return True
-    return True
+        return {}
+    return holder if isinstance(holder, dict) else {}
 
 
 def _refuse(path: Path, holder: str) -> None:

@@ -11,8 +11,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from gaitdisc.compiled import compiled
 
 F32 = np.float32
 LOG2_E = F32(1.4426950408889634)
@@ -22,10 +23,10 @@ EXP_LEAST, EXP_MOST = F32(-87.0), F32(88.0)
 BETA_1, BETA_2, ADAM_EPSILON = F32(0.9), F32(0.999), F32(1e-8)  # torch's, and those of Kingma and Ba 2015
 
 # Without numpy's division and without fused multiply-add the compiler makes no vector code of these loops.
-compiled = njit(cache=True, error_model="numpy", fastmath={"contract"})
+fast = compiled(error_model="numpy", fastmath={"contract"})
 
 
-@compiled
+@fast
 def exponential(x: np.float32) -> np.float32:
     """Return e^x in float32, within 1e-7 of its value from -87 to 88, as vector code; NaN stays NaN.
 
@@ -60,7 +61,7 @@ def exponential(x: np.float32) -> np.float32:
     return p * np.int32((np.int32(k) + 127) << 23).view(np.float32)
 
 
-@compiled
+@fast
 def layers(weights: NDArray[np.float32], inputs: int, nodes: int, outputs: int):
     """Return the three matrices, then the three offsets: views into the vector.
 
@@ -90,14 +91,14 @@ def layers(weights: NDArray[np.float32], inputs: int, nodes: int, outputs: int):
     )
 
 
-@compiled
+@fast
 def _sigmoid(z, offset):
     for row in range(z.shape[0]):
         for node in range(z.shape[1]):
             z[row, node] = F32(1) / (F32(1) + exponential(-(z[row, node] + offset[node])))
 
 
-@compiled
+@fast
 def _radial(n, offset, h):
     for row in range(n.shape[0]):
         for node in range(n.shape[1]):
@@ -106,7 +107,7 @@ def _radial(n, offset, h):
             h[row, node] = exponential(-value * value)
 
 
-@compiled
+@fast
 def _forward(weights, x, hidden, y):
     """Leave s, n, h in hidden[0..2], and outputs without their offset in y."""
     w1, w2, w3, b1, b2, _ = layers(weights, x.shape[1], hidden.shape[2], y.shape[1])
@@ -118,7 +119,7 @@ def _forward(weights, x, hidden, y):
     np.dot(h, w3.T, y)
 
 
-@compiled
+@fast
 def _error(error, offset, y, offset_gradient, samples):
     share = F32(2.0 / (samples * y.shape[1]))
     offset_gradient[:] = F32(0)
@@ -129,7 +130,7 @@ def _error(error, offset, y, offset_gradient, samples):
             offset_gradient[output] += d
 
 
-@compiled
+@fast
 def _radial_backward(d, n, h, offset_gradient):
     offset_gradient[:] = F32(0)
     for row in range(d.shape[0]):
@@ -139,7 +140,7 @@ def _radial_backward(d, n, h, offset_gradient):
             offset_gradient[node] += value
 
 
-@compiled
+@fast
 def _sigmoid_backward(d, s, offset_gradient):
     offset_gradient[:] = F32(0)
     for row in range(d.shape[0]):
@@ -149,7 +150,7 @@ def _sigmoid_backward(d, s, offset_gradient):
             offset_gradient[node] += value
 
 
-@compiled
+@fast
 def gradient(
     weights: NDArray[np.float32],
     into: NDArray[np.float32],
@@ -188,7 +189,7 @@ def gradient(
     np.dot(dz.T, x, g1)
 
 
-@compiled
+@fast
 def mean_squared_error(
     weights: NDArray[np.float32], x: NDArray[np.float32], y: NDArray[np.float32], nodes: int
 ) -> float:
@@ -217,7 +218,7 @@ def mean_squared_error(
     return total / y.size
 
 
-@compiled
+@fast
 def _adam(weights, g, moments, matrices, pace):
     m, v = moments[0], moments[1]
     shrunk, size, spread = pace[0], pace[1], pace[2]
@@ -230,7 +231,7 @@ def _adam(weights, g, moments, matrices, pace):
         weights[k] -= size * m[k] / (math.sqrt(v[k]) * spread + ADAM_EPSILON)
 
 
-@compiled
+@fast
 def _gathered(values, rows, into):
     for k in range(rows.size):
         row = values[rows[k]]
@@ -238,7 +239,7 @@ def _gathered(values, rows, into):
             into[k, column] = row[column]
 
 
-@compiled
+@fast
 def descend_epoch(
     weights: NDArray[np.float32],
     moments: NDArray[np.float32],

@@ -46,3 +46,37 @@ def test_a_folder_that_cannot_be_made(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(WriteError, match="--out"), run_lock(tmp_path / "file" / "run"):
         pass
+
+
+def test_a_number_that_another_process_has_by_now_holds_nothing(tmp_path):
+    """A container that is started again gives the same numbers to its processes, this one's own among them."""
+    for pid in (os.getpid(), os.getppid()):
+        (tmp_path / ".lock").write_text(json.dumps({"pid": pid, "host": socket.gethostname()}))
+        with run_lock(tmp_path):
+            pass
+
+
+def test_of_many_that_start_at_once_one_gets_the_folder(tmp_path):
+    code = (
+        "import sys, time; from pathlib import Path; from gaitdisc.batch.run_lock import run_lock\n"
+        "from gaitdisc.errors import WriteError\n"
+        "try:\n    with run_lock(Path(sys.argv[1])): print('held', flush=True); sys.stdin.read()\n"
+        "except WriteError as error: print(error)"
+    )
+    started = [
+        subprocess.Popen([sys.executable, "-c", code, str(tmp_path)], stdin=-1, stdout=-1, text=True) for _ in range(4)
+    ]
+    said = [process.stdout.readline() for process in started]
+    for process in started:
+        process.communicate("")
+    assert said.count("held\n") == 1
+    assert all("is held by process" in line for line in said if line != "held\n")
+
+
+def test_what_a_killed_run_left_unfinished_is_cleared_away(tmp_path):
+    unit = tmp_path / "responses" / "P01"
+    unit.mkdir(parents=True)
+    (unit / ".part-r2-abc.csv").write_text("half")
+    (unit / "r2.csv").write_text("whole")
+    with run_lock(tmp_path):
+        assert [file.name for file in unit.iterdir()] == ["r2.csv"]
