@@ -156,9 +156,12 @@ class Compiled:
         seconds = self._seconds(self.observation, values)
         late = delayed_in_rows(self, (drive, place, past), states, seconds)
         points = count * steps
-        wide = np.repeat(values, steps, axis=0) if np.ndim(rows.values) == 2 else values[0]
-        columns = leaf_columns(t.ravel(), states.reshape(points, n), u.reshape(points, -1), wide)
-        found = at_points(self.observation, columns, late.reshape(points, -1))
+        columns = leaf_columns(t.ravel(), states.reshape(points, n), u.reshape(points, -1), values[0])
+        first, used = 1 + n + len(self.inputs), self.observation.used()
+        for column in range(len(self.parameters)):
+            if used[first + column]:
+                columns[first + column] = np.repeat(values[:, column], steps)
+        found = at_points(self.observation, columns, late.reshape(points, -1), points)
         return np.ascontiguousarray(found.T).reshape(count, steps, len(self.observed))
 
     def _rows(self, drive: Drive, rows: Rows) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:

@@ -33,7 +33,7 @@ def test_some_trials_and_some_samples():
     late = measured.between(40, 80)
     assert late.trials == ("b",)
     assert late.time(0)[0] == pytest.approx(0.4)
-    with pytest.raises(SamplingError, match="samples 40 to 90 .* the longest has 80"):
+    with pytest.raises(SamplingError, match=r"samples 40 to 90 .* the longest has 80"):
         measured.between(40, 90)
 
 
@@ -67,7 +67,7 @@ def test_clocks_that_do_not_run_are_refused(trials, words):
 
 def test_a_constant_channel_is_refused_a_constant_trial_told():
     still = np.full((50, 1), 3.0)
-    with pytest.raises(ShapeError, match="'x'; walk.csv has 3 in every sample"):
+    with pytest.raises(ShapeError, match=r"'x'; walk\.csv has 3 in every sample"):
         _measured(_trial("a", observed=still), _trial("b", observed=still))
     (finding,) = _measured(_trial("a", observed=still), _trial("b")).findings
     assert finding.line().startswith("warning: walk.csv, x: constant: constant in 1 of 2 trials (first: 'a')")

@@ -63,8 +63,8 @@ def _set(row, column, value):
 @pytest.mark.parametrize(
     ("table", "kind", "words"),
     [
-        (_table().rename(columns={"tau": "tau_ankle"}), ChannelError, "column 'tau'; walk.csv has trial, time, tau_ankle"),
-        (_table().rename(columns={"theta": "Theta_"}), ChannelError, "column 'theta'; walk.csv has trial, time, tau, phase, Theta_, the nearest is 'Theta_'"),
+        (_table().rename(columns={"tau": "tau_a"}), ChannelError, "column 'tau'; walk.csv has trial, time, tau_a"),
+        (_table().rename(columns={"theta": "Theta_"}), ChannelError, "tau, phase, Theta_, the nearest is 'Theta_'"),
         (_table().rename(columns={"time": "t"}), ChannelError, "needs a measured column 'time'"),
         (_table().rename(columns={"trial": "Trial"}), ChannelError, "the nearest is 'Trial'"),
         (_table().assign(extra=1).rename(columns={"extra": " tau"}), ChannelError, "'tau' twice"),

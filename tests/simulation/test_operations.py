@@ -10,8 +10,6 @@ from gaitdisc.simulation.operations import exponential, hyperbolic_tangent, sine
 RNG = np.random.default_rng(5)
 TURNS = np.arange(-50, 51) * np.pi / 2
 ANGLES = np.concatenate([RNG.uniform(-10, 10, 3000), RNG.uniform(-1e5, 1e5, 3000), TURNS])
-    [RNG.uniform(-10, 10, 3000), RNG.uniform(-1e5, 1e5, 3000), np.arange(-50, 51) * np.pi / 2, [0.0]]
-)
 
 
 @pytest.mark.parametrize(("quarter", "wanted"), [(0, math.sin), (1, math.cos)])
