@@ -12,10 +12,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from gaitdisc.cohort.device import FOOT_KG, SHANK_KG
+from gaitdisc.compiled import compiled
 
 GRAVITY = 9.81
 LEG_OF_HEIGHT = 0.530  # greater trochanter over ground, Winter (2009), figure 4.1
@@ -89,7 +89,7 @@ def leg_of(height_m: float, mass_kg: float, added_foot_kg: float = 0.0) -> Leg:
     return Leg(l1, l2, s1, s2, m3, forward, down, i1, i2, i3, 0.039 * height_m, sole)
 
 
-@njit(cache=True)
+@compiled
 def inertia(leg, psi, m):
     """Write the mass matrix M(psi) into m (3, 3) [kg m2]."""
     c1, s1, c2, s2, c3, s3 = _turns(psi)
@@ -101,7 +101,7 @@ def inertia(leg, psi, m):
     m[1, 0], m[2, 0], m[2, 1] = m[0, 1], m[0, 2], m[1, 2]
 
 
-@njit(cache=True)
+@compiled
 def bias(leg, psi, rate, ax, ay, b):
     """Write what gravity, the hip's acceleration and the turning of the links demand into b (3,) [N m]."""
     c1, s1, c2, s2, c3, s3 = _turns(psi)
@@ -115,7 +115,7 @@ def bias(leg, psi, rate, ax, ay, b):
     b[2] = m3 * (fx * ax + fy * up + l1 * (fy * c1 - fx * s1) * w1 + l2 * (fy * c2 - fx * s2) * w2)
 
 
-@njit(cache=True)
+@compiled
 def moved_by_ground(leg, psi, forces, arm, q):
     """Add the ground's force (x, y) at `arm` (x, y) from the ankle to the generalised moments q (3,) [N m]."""
     c1, s1, c2, s2, _, _ = _turns(psi)
@@ -124,7 +124,7 @@ def moved_by_ground(leg, psi, forces, arm, q):
     q[2] += arm[0] * forces[1] - arm[1] * forces[0]
 
 
-@njit(cache=True)
+@compiled
 def solved(m, q, x):
     """Write M^-1 q into x (3,) by Cholesky, M being symmetric and positive."""
     l00 = np.sqrt(m[0, 0])
@@ -139,12 +139,12 @@ def solved(m, q, x):
     x[0] = (y0 - l10 * x[1] - l20 * x[2]) / l00
 
 
-@njit(cache=True)
+@compiled
 def _turns(psi):
     return np.cos(psi[0]), np.sin(psi[0]), np.cos(psi[1]), np.sin(psi[1]), np.cos(psi[2]), np.sin(psi[2])
 
 
-@njit(cache=True)
+@compiled
 def _foot(leg, c3, s3):
     """How the foot's centre moves with its angle."""
     return -leg.foot_forward_m * s3 + leg.foot_down_m * c3, leg.foot_forward_m * c3 + leg.foot_down_m * s3

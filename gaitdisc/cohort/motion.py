@@ -11,12 +11,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from gaitdisc.cohort.body import bias, inertia, moved_by_ground, solved
 from gaitdisc.cohort.controller import COLUMNS, LAG_S
 from gaitdisc.cohort.muscles import LEAST, MOST, activated, muscle_moments
+from gaitdisc.compiled import compiled
 
 STEP_S = 0.0005
 LEAST_LOAD = 0.3  # of the habitual vertical force
@@ -100,7 +100,7 @@ class Worn(NamedTuple):
     stride_s: float
 
 
-@njit(cache=True)
+@compiled
 def moved(leg, strength, belt, loop, worn, tables, noise):  # noqa: PLR0912, PLR0915
     """Integrate the walk of both legs.
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from gaitdisc.cohort.person import MUSCLES
+from gaitdisc.compiled import compiled
 
 RISE_S, FALL_S = 0.015, 0.045  # activation dynamics; Winter (2009) and Zajac (1989) give this order
 # moment at full activation [N m per kg of body mass] about hip and knee (flexion), ankle (dorsiflexion)
@@ -83,14 +83,14 @@ def strength_of(mass_kg: float) -> Strength:
     return Strength(reach, up, down, ABDUCTION * mass_kg)
 
 
-@njit(cache=True)
+@compiled
 def activated(excitation, activation, step_s):
     """Activation after one step of first-order dynamics, faster in rising than in falling [1]."""
     pace = RISE_S if excitation > activation else FALL_S
     return activation + (excitation - activation) * step_s / pace
 
 
-@njit(cache=True)
+@compiled
 def muscle_moments(strength, activation, joint_rate, moments):
     """Add the muscles' moments to moments (3,), with what lengthening gains [N m]."""
     for muscle in range(strength.reach.shape[0]):
@@ -104,7 +104,7 @@ def muscle_moments(strength, activation, joint_rate, moments):
             moments[joint] += strength.reach[muscle, joint] * activation[muscle] * gain
 
 
-@njit(cache=True)
+@compiled
 def cycle_activation(excitation, step_s, turns):
     """Periodic activation (phase, muscle) of a periodic excitation, after some turns of the cycle."""
     count, muscles = excitation.shape

@@ -9,10 +9,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
+
+from gaitdisc.compiled import compiled
 
 # Without numpy's division there would be a branch in every loop.
-compiled = njit(cache=True, error_model="numpy", fastmath=False, nogil=True)
+fast = compiled(error_model="numpy", fastmath=False, nogil=True)
 
 BLOCK = 64  # rows at once
 _ROUND = 6755399441055744.0  # 1.5 * 2**52: adding it leaves the nearest whole number in the low bits
@@ -22,7 +23,7 @@ _HALF_PI = (1.57079632673412561417, 6.07710050630396597660e-11, 2.02226624871116
 _FAR = 1e5  # beyond, the library reduces the angle
 
 
-@compiled
+@fast
 def exponential(x):
     """e^x, with x held at 700 at most.
 
@@ -55,7 +56,7 @@ def exponential(x):
     return 0.0 if x < -708.0 else value
 
 
-@compiled
+@fast
 def hyperbolic_tangent(x):
     """Tanh x.
 
@@ -82,7 +83,7 @@ def hyperbolic_tangent(x):
     return near if abs(x) < 0.625 else far
 
 
-@compiled
+@fast
 def sine(x, quarter):
     """Sine of x + quarter quarter turns, for |x| up to 1e5.
 
@@ -119,7 +120,7 @@ def sine(x, quarter):
     return -value if turn & 2 else value
 
 
-@compiled
+@fast
 def execute(code, registers, outputs, width):  # noqa: PLR0912 a branch for each operation
     """Run register operations over the first rows of a block.
 
@@ -160,7 +161,7 @@ def execute(code, registers, outputs, width):  # noqa: PLR0912 a branch for each
             _chosen(op, registers, (z, a, b), width)
 
 
-@compiled
+@fast
 def _turning(op, registers, places, width):
     z, a, b = places
     if op == 5:
@@ -179,7 +180,7 @@ def _turning(op, registers, places, width):
         _waving(op, registers, (z, a), width)
 
 
-@compiled
+@fast
 def _waving(op, registers, places, width):
     z, a = places
     most = 0.0
@@ -194,7 +195,7 @@ def _waving(op, registers, places, width):
             registers[z + r] = sine(registers[a + r], quarter)
 
 
-@compiled
+@fast
 def _growing(op, registers, places, width):
     z, a = places
     if op == 11:
@@ -209,7 +210,7 @@ def _growing(op, registers, places, width):
             registers[z + r] = np.sqrt(registers[a + r])
 
 
-@compiled
+@fast
 def _chosen(op, registers, places, width):
     z, a, b = places
     if op == 14:
