@@ -108,7 +108,7 @@ def evaluate_many(simulation: Simulation, expressions: Sequence[str], points: Po
             "the points have no rate",
             "Give Points(..., rate=...) with the samples of a single trial.",
         )
-    ago = compiled_program([seconds for _, seconds in program.delays], names, (), scope)
+    ago = compiled_program([seconds for _, seconds in program.delays], names, (), {})
     seconds = at_points(ago, columns, None, count)
     late = np.empty((count, len(program.delays)))
     for k, (signal, _) in enumerate(program.delays):

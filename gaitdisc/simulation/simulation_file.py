@@ -201,7 +201,7 @@ def _text(table: Mapping[str, Any], key: str, place: tuple[str, ...]) -> str:
 
 
 def _unit(table: Mapping[str, Any], place: tuple[str, ...]) -> str:
-    return _text(table, "unit", place) or "1"
+    return _text(table, "unit", place) if "unit" in table else "1"
 
 
 def _number(table: Mapping[str, Any], key: str, place: tuple[str, ...]) -> float | None:

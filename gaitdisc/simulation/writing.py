@@ -1,0 +1,211 @@
+"""Writing a simulation back, with the comments and the order of the file that it came from."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+
+from gaitdisc.errors import GaitdiscError
+from gaitdisc.simulation.parts import Parameter, Term
+from gaitdisc.simulation.simulation import Lines, Simulation
+from gaitdisc.simulation.simulation_file import simulation_of
+from gaitdisc.whole_file import write_whole
+
+_HEADER = re.compile(r"\s*\[")
+_STRING = r"\"(?:[^\"\\\n]|\\.)*\"|'[^'\n]*'|[^#\"'\n]*?"
+
+
+def write_simulation(simulation: Simulation, path: Path | str) -> Path:
+    r"""Write a simulation file, whole or not at all.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        What the file shall hold.
+    path : Path or str
+        Where.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    WriteError
+        If it cannot be written; an older file is left as it was.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> decay = simulation_of('[states.x]  # metres\n[equations]\nx = "-x"\n')
+    >>> more = decay.with_effect(Term("x", "equation", "constant_load", "0.5"))
+    >>> print(write_simulation(more, Path(tempfile.mkdtemp()) / "decay.toml").read_text(), end="")
+    [states.x]  # metres
+    [equations]
+    x = "-x"
+    <BLANKLINE>
+    [[effects]]
+    equation = "x"
+    name = "constant_load"
+    term = "0.5"
+    """
+    return write_whole(path, simulation_text(simulation))
+
+
+def simulation_text(simulation: Simulation) -> str:
+    """Text of a simulation file.
+
+    What it was read from is changed only where the simulation differs; where that cannot be done (values inside inline
+    tables, say) everything is written anew.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        What the text shall hold.
+    """
+    if simulation.layout:
+        text = _changed_text(simulation)
+        try:
+            if simulation_of(text) == simulation:
+                return text
+        except GaitdiscError:
+            pass  # the layout is one that line by line changes do not fit
+    return _new_text(simulation)
+
+
+def _changed_text(simulation: Simulation) -> str:
+    before = simulation_of(simulation.layout)
+    ending = "\r\n" if "\r\n" in simulation.layout else "\n"
+    lines = simulation.layout.replace("\r\n", "\n").rstrip("\n").split("\n")
+    added = []
+    known = {parameter.name: parameter for parameter in before.parameters}
+    for parameter in simulation.parameters:
+        if parameter.name not in known:
+            added += ["", *_parameter(parameter)]
+        elif parameter != known[parameter.name]:
+            lines = _with_parameter(lines, known[parameter.name], parameter)
+    for section in ("definitions", "equations"):
+        lines = _with_expressions(lines, section, getattr(before, section), getattr(simulation, section))
+    lines = _with_observations(lines, before, simulation)
+    kept = before.effects == simulation.effects[: len(before.effects)]
+    if not kept:
+        lines = _without_effects(lines)
+    for term in simulation.effects[len(before.effects) if kept else 0 :]:
+        added += ["", *_effect(term)]
+    return ending.join([*lines, *added, ""])
+
+
+def _with_parameter(lines: list[str], old: Parameter, new: Parameter) -> list[str]:
+    """Another value in the parameter's table, or the whole table anew."""
+    start, end = _table(lines, rf"parameters\s*\.\s*{old.name}")
+    if start < 0:
+        return lines
+    if replace(old, value=new.value) != new:
+        return [*lines[:start], *_parameter(new), *lines[end:]]
+    return _with_values(lines, (start, end), {"value": repr(new.value)})
+
+
+def _with_expressions(lines: list[str], section: str, old: Lines, new: Lines) -> list[str]:
+    had = dict(old)
+    changed = {name: _quoted(text) for name, text in new if had.get(name) != text}
+    return _with_values(lines, _table(lines, section), changed) if changed else lines
+
+
+def _with_observations(lines: list[str], before: Simulation, after: Simulation) -> list[str]:
+    if before.observations == after.observations:
+        return lines
+    start, end = _table(lines, "observations")
+    has, wanted = dict(before.observations), dict(after.observations)
+    if start < 0:
+        return [*lines, "", "[observations]", *_expressions(after.observations)]
+    if [name for name in wanted if name in has] != list(has):
+        return [*lines[: start + 1], *_expressions(after.observations), "", *lines[end:]]
+    lines = _with_expressions(lines, "observations", before.observations, after.observations)
+    while not lines[end - 1].strip():
+        end -= 1
+    new = tuple((name, text) for name, text in after.observations if name not in has)
+    return [*lines[:end], *_expressions(new), *lines[end:]]
+
+
+def _without_effects(lines: list[str]) -> list[str]:
+    start, end = _table(lines, "effects", double=True)
+    while start >= 0:
+        lines = [*lines[:start], *lines[end:]]
+        start, end = _table(lines, "effects", double=True)
+    while lines and not lines[-1].strip():
+        lines.pop()
+    return lines
+
+
+def _table(lines: list[str], name: str, double: bool = False) -> tuple[int, int]:
+    """Lines from a table's header to the next header; -1 where there is none."""
+    opening, closing = ("[[", "]]") if double else ("[", "]")
+    header = re.compile(rf"\s*{re.escape(opening)}\s*{name}\s*{re.escape(closing)}\s*(#.*)?$")
+    start = next((number for number, line in enumerate(lines) if header.match(line)), -1)
+    end = next((number for number in range(start + 1, len(lines)) if _HEADER.match(lines[number])), len(lines))
+    return start, end
+
+
+def _with_values(lines: list[str], span: tuple[int, int], values: dict[str, str]) -> list[str]:
+    """Other values of some keys of a table; what stands before and after them is kept."""
+    changed = list(lines)
+    for number in range(max(span[0], 0), span[1]):
+        found = re.match(rf"(\s*[\"']?([^\"'=\s]+)[\"']?\s*=\s*)({_STRING})(\s*(?:#.*)?)$", lines[number])
+        if found and found[2] in values:
+            changed[number] = f"{found[1]}{values[found[2]]}{found[4]}"
+    return changed
+
+
+def _new_text(simulation: Simulation) -> str:
+    lines = [f"title = {_quoted(simulation.title)}"]
+    for section in ("states", "inputs"):
+        for part in getattr(simulation, section):
+            lines += ["", f"[{section}.{part.name}]", f"unit = {_quoted(part.unit)}", *_meaning(part.meaning)]
+            if section == "states" and part.initial is not None:
+                lines.append(f"initial = {part.initial!r}")
+    for parameter in simulation.parameters:
+        lines += ["", *_parameter(parameter)]
+    for port in simulation.ports:
+        lines += ["", f"[ports.{port.name}]", f"unit = {_quoted(port.unit)}", *_meaning(port.meaning)]
+    for section in ("definitions", "equations", "observations"):
+        if getattr(simulation, section):
+            lines += ["", f"[{section}]", *_expressions(getattr(simulation, section))]
+    for term in simulation.effects:
+        lines += ["", *_effect(term)]
+    return "\n".join([*lines, ""])
+
+
+def _parameter(parameter: Parameter) -> list[str]:
+    bounds = [
+        f"{key} = {bound!r}" for key, bound in (("low", parameter.low), ("high", parameter.high)) if bound is not None
+    ]
+    unit = f"unit = {_quoted(parameter.unit)}"
+    meaning = _meaning(parameter.meaning)
+    return [f"[parameters.{parameter.name}]", f"value = {parameter.value!r}", unit, *bounds, *meaning]
+
+
+def _effect(term: Term) -> list[str]:
+    return [
+        "[[effects]]",
+        f"{term.kind} = {_quoted(term.place)}",
+        f"name = {_quoted(term.name)}",
+        f"term = {_quoted(term.term)}",
+    ]
+
+
+def _expressions(lines: Iterable[tuple[str, str]]) -> list[str]:
+    return [
+        f"{name if re.match(r'[A-Za-z0-9_-]+$', name) else _quoted(name)} = {_quoted(text)}" for name, text in lines
+    ]
+
+
+def _meaning(text: str) -> list[str]:
+    return [f"meaning = {_quoted(text)}"] if text else []
+
+
+def _quoted(text: str) -> str:
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
+    return '"' + re.sub(r"[\x00-\x1f\x7f]", lambda found: f"\\u{ord(found[0]):04x}", escaped) + '"'

@@ -1,0 +1,121 @@
+"""What is written is read back the same, and what a person wrote around it stays."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gaitdisc.errors import WriteError
+from gaitdisc.simulation.parts import Input, Parameter, Port, State, Term
+from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.simulation.simulation_file import read_simulation, simulation_of
+from gaitdisc.simulation.writing import simulation_text, write_simulation
+
+SPRING = Term("ankle_moment", "port", "one_sided_spring", "-286.0*max(0, theta - 0.035)")
+
+
+def test_an_effect_is_appended_and_nothing_else_changes(ankle, ankle_text):
+    text = simulation_text(ankle.with_effect(SPRING))
+    assert text == ankle_text + (
+        '\n[[effects]]\nport = "ankle_moment"\nname = "one_sided_spring"\nterm = "-286.0*max(0, theta - 0.035)"\n'
+    )
+
+
+def test_only_what_changed_changes(ankle, ankle_text):
+    changed = ankle.with_values({"k": 31.5}).with_input("tau", "1.2*tau").with_observation("theta", "theta + 0.01")
+    text = simulation_text(changed)
+    assert simulation_of(text) == changed
+    before, after = ankle_text.split("\n"), text.split("\n")
+    assert [line for line in before if line not in after] == [
+        "value = 25.0   # passive",
+        'omega = "(tau + ankle_moment - b*omega - spring)/inertia"',
+    ]
+    assert "value = 31.5   # passive" in after
+
+
+def test_parameters_are_added_and_tables_replaced(ankle):
+    changed = ankle.with_parameter(Parameter("x0", 0.03, "rad", 0.0, 0.1, "engagement"))
+    changed = changed.with_parameter(Parameter("b", 1.3, "N m s/rad", 1.0, 2.0))
+    text = simulation_text(changed)
+    assert simulation_of(text) == changed
+    assert "# passive" in text and "# a joint" in text
+
+
+@pytest.mark.parametrize("names", [["omega"], ["omega", "theta"], ["theta", "omega", "power"]])
+def test_observations(ankle_text, names):
+    given_ones = simulation_of(
+        ankle_text.replace(
+            "[definitions]", '[observations]\ntheta = "theta"  # goniometer\nomega = "omega"\n\n[definitions]'
+        )
+    )
+    changed = given_ones.with_observation("power", "tau*omega").observing(names)
+    text = simulation_text(changed)
+    assert simulation_of(text) == changed
+    assert ("# goniometer" in text) == (names[0] == "theta")
+
+
+def test_effects_that_were_there_are_taken_away(ankle, ankle_text):
+    augmented = simulation_of(simulation_text(ankle.with_effect(SPRING)))
+    assert simulation_text(augmented) == augmented.layout
+    assert simulation_text(augmented.without_effects()) == ankle_text
+    other = augmented.without_effects().with_effect(Term("omega", "equation", "constant_load", "1.0"))
+    assert simulation_of(simulation_text(other)) == other
+
+
+def test_windows_line_ends_stay(ankle_text):
+    windows = simulation_of(ankle_text.replace("\n", "\r\n"))
+    text = simulation_text(windows.with_values({"k": 30.0}).with_effect(SPRING))
+    assert text.count("\r\n") == text.count("\n")
+
+
+def test_a_layout_that_does_not_fit_is_written_anew():
+    inline = simulation_of('[states]\nx = {unit = "m"}\n[parameters]\nk = {value = 2}\n[equations]\nx = "-k*x"\n')
+    changed = inline.with_values({"k": 3.0})
+    assert simulation_of(simulation_text(changed)) == changed
+
+
+def test_a_number_as_an_expression_is_replaced():
+    falling = simulation_of("[states.v]\n[inputs.u]\n[equations]\nv = -9.81 # gravity\n")
+    changed = simulation_of(falling.layout.replace("-9.81", '"u"')).with_input("u", "2*u")
+    assert '"2*u" # gravity' in simulation_text(changed)
+
+
+def test_the_file_is_read_back(ankle, tmp_path):
+    path = write_simulation(ankle.with_effect(SPRING), tmp_path / "new" / "augmented.toml")
+    assert read_simulation(path) == ankle.with_effect(SPRING)
+    with pytest.raises(WriteError, match="is to be written whole"):
+        write_simulation(ankle, path / "below.toml")
+
+
+words = st.text(st.characters(codec="utf-8"), max_size=12)
+numbers = st.floats(allow_nan=False, min_value=-1e299, max_value=1e299)
+expressions = st.sampled_from(
+    ["x", "-k*x + u", "max(0, x - k)**2", "delay(u, 0.1)*t", "force + 1e-3", "sin(v)/(1 + k)"]
+)
+
+
+@st.composite
+def simulations(draw):
+    term = st.builds(
+        Term, st.just("force"), st.just("port"), words, expressions.filter(lambda text: "force" not in text)
+    )
+    return Simulation(
+        draw(words),
+        (State("x", draw(words), draw(words), draw(st.none() | numbers)), State("v")),
+        (Input("u", draw(words), draw(words)),),
+        (Parameter("k", draw(numbers), draw(words), draw(st.none() | st.just(-1e300)), None, draw(words)),),
+        (Port("force", draw(words), draw(words)),),
+        tuple((f"d{i}", text) for i, text in enumerate(draw(st.lists(expressions, max_size=3)))),
+        (("x", "v + force"), ("v", draw(expressions))),
+        tuple({draw(words.filter(bool)): draw(expressions) for _ in range(draw(st.integers(0, 3)))}.items()),
+        tuple(draw(st.lists(term, max_size=2))),
+    )
+
+
+@given(simulations(), numbers, expressions)
+def test_what_is_written_is_read(simulation, value, expression):
+    text = simulation_text(simulation)
+    read = simulation_of(text)
+    assert read == simulation
+    changed = read.with_values({"k": value}).with_input("u", "2*delay(u, 0.1)").with_observation("seen", expression)
+    changed = changed.with_effect(Term("v", "equation", "more", expression))
+    assert simulation_of(simulation_text(changed)) == changed
