@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import pandas as pd
@@ -125,8 +126,10 @@ class ParticipantResponse:
         walk : str
             `nominal` or `exo`.
         """
-        wanted = {"variable": variable, "model": model, "kind": kind, "walk": walk}
-        chosen = self.r2
-        for column, value in wanted.items():
-            chosen = chosen[chosen[column] == value]
-        return float(chosen["r2"].iloc[0]) if len(chosen) else float("nan")
+        return self._r2.get((variable, model, kind, walk), float("nan"))
+
+    @cached_property
+    def _r2(self) -> dict[tuple[str, str, str, str], float]:
+        """R2 by variable, model, kind and walk: a report asks for each of them many times."""
+        columns = (self.r2[name] for name in ("variable", "model", "kind", "walk", "r2"))
+        return {(v, model, kind, walk): float(value) for v, model, kind, walk, value in zip(*columns, strict=True)}
