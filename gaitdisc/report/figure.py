@@ -32,6 +32,7 @@ STYLE = {
     "font.size": 8.0,
     "text.parse_math": False,
     "axes.titlesize": 8.0,
+    "axes.titley": 1.0,  # no title looks for its place among the ticks, which costs a tenth of the drawing
     "axes.labelsize": 7.5,
     "xtick.labelsize": 7.0,
     "ytick.labelsize": 7.0,
@@ -219,6 +220,7 @@ def save_figure(figure: Figure, folder: Path, inline_bytes: int = LARGEST_INLINE
     inline_bytes : int
         Largest SVG that is shown in the page; beyond it the smaller of SVG and PNG is.
     """
+    _place_no_empty_labels(figure.drawn)
     svg, png = _svg(figure.drawn), _png(figure.drawn)
     for ending, content in (("svg", svg), ("png", png)):
         with whole_file(folder / f"{figure.name}.{ending}") as part:
@@ -267,6 +269,14 @@ def file_names(participants: Sequence[str]) -> dict[str, str]:
     return names
 
 
+def _place_no_empty_labels(drawn: matplotlib.figure.Figure) -> None:
+    # each axis measures its ticks to place its label, even one without words
+    for axes in drawn.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            if not axis.get_label_text():
+                axis.set_label_coords(0.5, 0.0)
+
+
 @in_style
 def _svg(drawn: matplotlib.figure.Figure) -> bytes:
     stream = io.StringIO()
@@ -292,8 +302,8 @@ def _png(drawn: matplotlib.figure.Figure) -> bytes:
     few = (
         Image.frombytes("RGBA", (width, len(pixels) // (4 * width)), pixels)
         .convert("RGB")
-        .quantize(PNG_COLOURS, dither=Image.Dither.NONE)
+        .quantize(PNG_COLOURS, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
     )
     small = io.BytesIO()
-    few.save(small, format="png", optimize=True, dpi=(PNG_DOTS_PER_INCH, PNG_DOTS_PER_INCH))
+    few.save(small, format="png", compress_level=6, dpi=(PNG_DOTS_PER_INCH, PNG_DOTS_PER_INCH))
     return small.getvalue()

@@ -8,7 +8,6 @@ from typing import Any
 
 from gaitdisc.report.r2_summary import held_out_text
 from gaitdisc.results import Provenance, ResponseRun
-from gaitdisc.signals.butterworth import effective_cutoff_hz
 
 _FILTER_WORDS = ("filter", "cutoff", "low_pass", "high_pass", "lowpass", "highpass", "order", "envelope", "band")
 
@@ -84,6 +83,8 @@ def provenance_rows(provenance: Provenance) -> list[tuple[str, str]]:
 
 
 def _filter_sentence(run: ResponseRun) -> str:
+    from gaitdisc.signals.butterworth import effective_cutoff_hz  # brings scipy.signal, which takes a second
+
     settings = run.provenance.settings
     filters = settings.get("filters")
     if not isinstance(filters, Mapping) or not {"kinematics_hz", "order"} <= set(filters):

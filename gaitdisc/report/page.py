@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -30,7 +31,7 @@ from gaitdisc.report.tables import (
     refusals_table,
     walks_table,
 )
-from gaitdisc.results import ParticipantResponse, ResponseRun
+from gaitdisc.results import ResponseRun
 from gaitdisc.whole_file import whole_file
 
 if TYPE_CHECKING:
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
 
 INLINE_BYTES = 4_000_000  # of all figures together, about; beyond it they are shown as pictures
 FIGURES_A_PERSON = 5
+MOST_PROCESSES = 4  # that draw; each holds some 400 MB
 MOST_OPEN = 2  # with more participants than this, the first screen is brief and their sections are folded
 
 
@@ -97,8 +99,7 @@ def write_report(run: ResponseRun, folder: Path) -> Path:
     """
     people = list(dict.fromkeys([*(r.participant for r in run.responses), *(w.subject for w in run.walks)]))
     names = file_names(people)
-    responses = {response.participant: response for response in run.responses}
-    sections = [_section(run, person, responses.get(person), names[person], folder) for person in people]
+    sections = _sections(run, names, folder)
     overview = [save_figure(figure, folder / "figures") for figure in (r2_figures(run) if run.responses else [])]
     compared = [save_figure(figure, folder / "figures") for figure in comparison_figures(run)]
     pair_tables = comparison_tables(run)
@@ -114,7 +115,7 @@ def write_report(run: ResponseRun, folder: Path) -> Path:
     for table in (*tables.values(), *pair_tables):
         save_table(table.numbers, folder / "tables" / f"{table.name}.csv")
     save_table(run.r2_table(), folder / "tables" / "r2.csv")
-    text = _templates().get_template("report.html.j2").render(
+    text = templates().get_template("report.html.j2").render(
         run=run,
         study=study_sentences(run),
         sections=sections,
@@ -133,7 +134,32 @@ def write_report(run: ResponseRun, folder: Path) -> Path:
     return page
 
 
-def _section(run: ResponseRun, person: str, response: ParticipantResponse | None, name: str, folder: Path) -> Section:
+def _sections(run: ResponseRun, names: dict[str, str], folder: Path) -> list[Section]:
+    """Drawing takes seconds a participant: with more than two of them they are drawn side by side."""
+    limit = min(LARGEST_INLINE_SVG, INLINE_BYTES // (FIGURES_A_PERSON * max(1, len(run.responses))))
+    alone = [(_of_one(run, person), person, name, folder, limit) for person, name in names.items()]
+    processes = min(os.cpu_count() or 1, MOST_PROCESSES, len(alone))
+    if len(alone) <= MOST_OPEN or processes < 2:
+        return [_section(*each) for each in alone]
+    from joblib import Parallel, delayed
+
+    drawn = Parallel(n_jobs=processes, backend="loky", inner_max_num_threads=1)(delayed(_section)(*a) for a in alone)
+    return [section for section in drawn if section is not None]
+
+
+def _of_one(run: ResponseRun, person: str) -> ResponseRun:
+    return replace(
+        run,
+        walks=tuple(walk for walk in run.walks if walk.subject == person),
+        responses=tuple(response for response in run.responses if response.participant == person),
+        tests=None,
+        quantities=(),
+        over=None,
+    )
+
+
+def _section(run: ResponseRun, person: str, name: str, folder: Path, limit: int) -> Section:
+    response = next(iter(run.responses), None)
     strides = strides_figure(run, person, name)
     drawn: dict[str, list[Figure]] = {
         "held_out": held_out_figures(response, name) if response else [],
@@ -141,7 +167,6 @@ def _section(run: ResponseRun, person: str, response: ParticipantResponse | None
         "curves": curves_figures(run, person, name),
         "strides": [strides] if strides else [],
     }
-    limit = min(LARGEST_INLINE_SVG, INLINE_BYTES // (FIGURES_A_PERSON * max(1, len(run.responses))))
     r2, dropped = (r2_table(response, name) if response else None), dropped_table(run, person, name)
     for table in (r2, dropped):
         if table is not None:
@@ -169,18 +194,19 @@ def _provenance_tables(run: ResponseRun) -> dict[str, Table]:
     }
 
 
-def _templates() -> jinja2.Environment:
+def templates() -> jinja2.Environment:
+    """Templates of the pages, with the filter that binds numbers to their units."""
     import jinja2
 
-    templates = jinja2.Environment(
+    found = jinja2.Environment(
         loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    templates.filters["bound"] = _bound
-    return templates
+    found.filters["bound"] = _bound
+    return found
 
 
 def _bound(text: str) -> str:

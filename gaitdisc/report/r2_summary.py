@@ -53,13 +53,18 @@ def r2_by_variable(response: ParticipantResponse) -> pd.DataFrame:
     response : ParticipantResponse
         Holds one row for each variable, model, kind and walk.
     """
-    table = pd.DataFrame(index=pd.Index(response.outputs, name="variable"))
-    for column in R2_TABLE:
-        rows = response.r2[(response.r2["kind"] == column.kind) & (response.r2["walk"] == column.walk)]
-        if column.model:
-            rows = rows[rows["model"] == column.model]
-        table[column.key] = rows.groupby("variable")["r2"].first().reindex(table.index).astype(float)
-    return table
+    known = response.r2
+    found = {
+        (variable, "" if kind == "null" else model, kind, walk): r2
+        for variable, model, kind, walk, r2 in zip(
+            *(known[name] for name in ("variable", "model", "kind", "walk", "r2")), strict=True
+        )
+    }
+    columns = {
+        column.key: [found.get((v, column.model, column.kind, column.walk), np.nan) for v in response.outputs]
+        for column in R2_TABLE
+    }
+    return pd.DataFrame(columns, index=pd.Index(response.outputs, name="variable"), dtype=float)
 
 
 def medians(table: pd.DataFrame) -> pd.Series:

@@ -138,3 +138,14 @@ def test_too_few_for_a_test_is_said(tested_maker, tmp_path):
 def test_a_run_of_before_there_were_tests_has_no_such_section(run_maker, tmp_path):
     text = write_report(run_maker(2, outputs=("hip_flexion_r",)), tmp_path).read_text(encoding="utf-8")
     assert "Which model explains more" not in text
+
+
+def test_participants_drawn_side_by_side_are_those_drawn_alone(run_maker, tmp_path):
+    run = run_maker(3, outputs=("hip_flexion_r",))
+    write_report(run, tmp_path / "all")
+    first = replace(run, walks=run.walks[:2], responses=run.responses[:1])
+    write_report(first, tmp_path / "one")
+    alone = sorted(path for path in (tmp_path / "one" / "figures").iterdir() if "P01" in path.name)
+    assert len(alone) >= 4 * 3
+    for path in alone:
+        assert path.read_bytes() == (tmp_path / "all" / "figures" / path.name).read_bytes()
