@@ -55,7 +55,7 @@ class Walk:
             self.strides[self.side].detector,
             self.state.channels,
             self._curves(),
-            pd.concat([_stride_table(self.strides[side]) for side in sorted(self.strides)], ignore_index=True),
+            pd.concat([stride_table(self.strides[side]) for side in sorted(self.strides)], ignore_index=True),
             self.findings,
             files,
         )
@@ -69,7 +69,14 @@ class Walk:
         return curves
 
 
-def _stride_table(strides: Strides) -> pd.DataFrame:
+def stride_table(strides: Strides) -> pd.DataFrame:
+    """Kept and dropped strides of one side in order of time, columns `STRIDE_COLUMNS`.
+
+    Parameters
+    ----------
+    strides : Strides
+        Of one side.
+    """
     kept = [(strides.side, start, end, True, "") for start, end in zip(strides.start, strides.end, strict=True)]
     dropped = [(strides.side, d.start, d.end, False, d.reason) for d in strides.dropped]
     rows = sorted([*kept, *dropped], key=lambda row: row[1])

@@ -1,0 +1,141 @@
+"""Two recordings, or the two conditions of a study, from their files to their mismatch."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from gaitdisc.batch.participant_unit import processed_walks
+from gaitdisc.discovery.compare import compare_people, compare_walks
+from gaitdisc.errors import SchemaError
+from gaitdisc.ingest.reading import read_trial
+from gaitdisc.ingest.study import Study
+from gaitdisc.processing.walk_pair import walk_pair
+from gaitdisc.recording import Finding
+from gaitdisc.results import WalkSummary
+from gaitdisc.results.mismatch import Mismatch
+from gaitdisc.signals.butterworth import KINEMATICS_HZ
+
+
+def compare_files(
+    first: Path,
+    second: Path,
+    channels: tuple[str, ...] = (),
+    cutoff_hz: float = KINEMATICS_HZ,
+    detector: str = "auto",
+) -> Mismatch:
+    """Mismatch of two recordings, first minus second.
+
+    Parameters
+    ----------
+    first : Path
+        A simulated walk, or one condition.
+    second : Path
+        The measured walk, or the other condition.
+    channels : tuple of str
+        Only these; by default all that both have.
+    cutoff_hz : float
+        -3 dB frequency of one pass of the low-pass of angles and moments.
+    detector : str
+        What finds initial contact in both.
+
+    Returns
+    -------
+    Mismatch
+
+    Raises
+    ------
+    GaitdiscError
+        If a file cannot be read, is no walking, or the two have nothing in common.
+    """
+    names = _names(first, second)
+    trials = [replace(read_trial(path), name=name) for path, name in zip((first, second), names, strict=True)]
+    walks = walk_pair(trials[0], trials[1], cutoff_hz, detector)
+    if walks[0].files and set(walks[0].files.values()) == set(walks[1].files.values()):
+        raise SchemaError(
+            "a comparison needs two different recordings",
+            f"{first.name} and {second.name} hold the same bytes",
+            "Name a simulated and a measured walk, or two conditions.",
+        )
+    return _with_settings(
+        compare_walks(walks[0], walks[1], channels), {"cutoff_hz": cutoff_hz, "detector": walks[0].detector}
+    )
+
+
+def compare_study(study: Study, participant: str = "", channels: tuple[str, ...] = ()) -> Mismatch:
+    """Mismatch of the device walk against the nominal walk: of one participant's strides, or over participants.
+
+    Parameters
+    ----------
+    study : Study
+        With both conditions; its filters and its detector are used.
+    participant : str
+        Pseudonym; all participants, paired, where it is empty.
+    channels : tuple of str
+        Only these; by default the study's angles and EMG.
+
+    Returns
+    -------
+    Mismatch
+        Device minus nominal. Participants who lack a walk, or of whom one was refused, are named in the findings.
+
+    Raises
+    ------
+    GaitdiscError
+        If the participant's walks are refused, or too few participants are left.
+    """
+    settings = study.model_dump(mode="json", include={"filters", "strides", "conditions"})
+    if participant:
+        walks = _walks_of(study, participant)
+        if isinstance(walks, str):
+            raise SchemaError(
+                f"both walks of {participant} are to be compared", walks, "Mend it, or choose another participant."
+            )
+        return _with_settings(compare_walks(walks[0], walks[1], channels), settings)
+    pairs, left_out = [], []
+    for person in study.participants:
+        walks = _walks_of(study, person.id)
+        if isinstance(walks, str):
+            left_out.append(Finding("refused", "left out", person.id, walks, "this participant's part"))
+        else:
+            pairs.append(walks)
+    mismatch = compare_people(pairs, channels)
+    return _with_settings(replace(mismatch, findings=(*left_out, *mismatch.findings)), settings)
+
+
+def _walks_of(study: Study, participant: str) -> tuple[WalkSummary, WalkSummary] | str:
+    """Device and nominal walk, or why there are none."""
+    person = study.participant(participant)
+    both = (study.conditions.device, study.conditions.nominal)
+    counts = [len(person.trials_of(word)) for word in both]
+    if person.excluded:
+        return f"excluded in the study: {person.excluded}"
+    if counts != [1, 1]:
+        return f"{counts[0]} walks of {both[0]!r} and {counts[1]} of {both[1]!r}, where one of each is needed"
+    walks, refusals = processed_walks(study, person)
+    if refusals:
+        return "; ".join(f"{refusal.condition}: {refusal.reason}" for refusal in refusals)
+    return walks[both[0]].summary(), walks[both[1]].summary()
+
+
+def _names(first: Path, second: Path) -> tuple[str, str]:
+    if first.stem != second.stem:
+        return _apart(first.stem, second.stem)
+    if first.suffix != second.suffix:
+        return first.name, second.name
+    return f"{first.parent.name}/{first.stem}", f"{second.parent.name}/{second.stem}"
+
+
+def _apart(first: str, second: str) -> tuple[str, str]:
+    """Names without the words that both begin or end with."""
+    words = [first.split("_"), second.split("_")]
+    while min(map(len, words)) > 1 and words[0][0] == words[1][0]:
+        words = [one[1:] for one in words]
+    while min(map(len, words)) > 1 and words[0][-1] == words[1][-1]:
+        words = [one[:-1] for one in words]
+    return "_".join(words[0]), "_".join(words[1])
+
+
+def _with_settings(mismatch: Mismatch, settings: dict[str, object]) -> Mismatch:
+    made = mismatch.provenance
+    return replace(mismatch, provenance=replace(made, settings={**made.settings, **settings}))

@@ -1,0 +1,75 @@
+"""`gaitdisc compare`: where a simulated and a measured walk, or two conditions, disagree over the stride."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from gaitdisc.commands.exit_codes import SOME_REFUSED
+
+if TYPE_CHECKING:
+    from gaitdisc.results.mismatch import Mismatch
+
+
+def compare(
+    first: Annotated[Path, typer.Argument(metavar="SIM", help="A simulated walk or one condition; or a study.")],
+    second: Annotated[
+        Path | None, typer.Argument(metavar="MEASURED", help="The measured walk or the other condition.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder of the report; by default ./compare, or STUDY/compare.")
+    ] = None,
+    participant: Annotated[
+        str, typer.Option(help="Of a study: compare the strides of this one; by default all, paired.")
+    ] = "",
+    channel: Annotated[list[str] | None, typer.Option(help="Only this channel; may be repeated.")] = None,
+    cutoff: Annotated[float, typer.Option(min=1.0, help="Low-pass of two files' angles and moments [Hz].")] = 6.0,
+    detector: Annotated[
+        str, typer.Option(help="Initial contact in two files: auto, force, events, markers or angles.")
+    ] = "auto",
+) -> None:
+    """Say where over the stride two walks disagree, how much, and whether that is more than chance."""
+    from rich.console import Console
+
+    from gaitdisc.batch.compare_recordings import compare_files
+    from gaitdisc.report.mismatch_page import write_mismatch_report
+    from gaitdisc.report.mismatch_sentences import mismatch_sentences
+    from gaitdisc.report.mismatch_tables import mismatch_text
+    from gaitdisc.results.mismatch_folder import save_mismatch
+
+    channels = tuple(channel or ())
+    if second is None:
+        mismatch, folder = _of_study(first, participant, channels)
+    elif participant:
+        raise typer.BadParameter("--participant belongs to a study; two files are given")
+    else:
+        mismatch, folder = compare_files(first, second, channels, cutoff, detector), Path("compare")
+    folder = out or folder
+    save_mismatch(mismatch, folder)
+    page = write_mismatch_report(mismatch, folder)
+    typer.echo(" ".join(mismatch_sentences(mismatch)))
+    Console().print(mismatch_text(mismatch))
+    refused = [finding for finding in mismatch.findings if finding.severity == "refused"]
+    for finding in mismatch.findings:
+        if finding.severity != "note":
+            typer.echo(finding.line(), err=True)
+    typer.echo(f"report: {page}")
+    if refused:
+        raise typer.Exit(SOME_REFUSED)
+
+
+def _of_study(place: Path, participant: str, channels: tuple[str, ...]) -> tuple[Mismatch, Path]:
+    from gaitdisc.batch.compare_recordings import compare_study
+    from gaitdisc.errors import SchemaError
+    from gaitdisc.ingest.study_file import load_study
+
+    if place.is_file() and place.suffix.lower() != ".toml":
+        raise SchemaError(
+            "a comparison needs two recordings, or a study",
+            f"{place.name} is one recording",
+            "Name the measured walk after it: gaitdisc compare SIM MEASURED.",
+        )
+    study = load_study(place)
+    return compare_study(study, participant, channels), study.folder / "compare"

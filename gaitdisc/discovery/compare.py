@@ -1,0 +1,287 @@
+"""Where two walks disagree, in which part of the stride, how much, and whether strides by chance could have made it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from datetime import UTC, datetime
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel
+from gaitdisc.discovery.compare_channels import CommonCurves, common_curves
+from gaitdisc.errors import ComparisonError
+from gaitdisc.recording import PERCENT, Finding
+from gaitdisc.results import WalkSummary
+from gaitdisc.results.mismatch import CHANNEL_COLUMNS, REGION_COLUMNS, Exchange, Mismatch
+from gaitdisc.results.provenance import Provenance, installed_versions
+from gaitdisc.statistics.cluster_test import (
+    FEWEST_IN_EACH,
+    FEWEST_IN_ONE,
+    USUAL,
+    ClusterTest,
+    PermutationPlan,
+    one_sample_test,
+    two_sample_test,
+)
+from gaitdisc.statistics.stride_blocks import block_length, block_means, block_worth, stride_correlation
+
+MOST_SHIFT = 10  # % of the stride
+POWER_80 = 0.8416  # standard normal quantile of .8
+SECTION = "Find: mismatch of two walks over the stride"
+
+
+@dataclass(frozen=True, eq=False)
+class _Compared:
+    """A test, what it exchanged, and the curves it was about."""
+
+    test: ClusterTest
+    exchange: Exchange
+    gap: NDArray[np.float64]
+    means: tuple[NDArray[np.float64], NDArray[np.float64]]
+    sds: tuple[NDArray[np.float64], NDArray[np.float64]]
+
+
+def compare_walks(
+    first: WalkSummary,
+    second: WalkSummary,
+    wanted: Sequence[str] = (),
+    plan: PermutationPlan = USUAL,
+) -> Mismatch:
+    """Mismatch of two walks, first minus second; strides, or blocks of them, are the units of exchange.
+
+    Where successive strides depend on each other, blocks of consecutive strides are exchanged, and the dependence that
+    blocks still have widens the standard error. A first walk of fewer than six strides (a periodic simulation has one)
+    is taken as a curve: the second walk's strides are tested against it.
+
+    Parameters
+    ----------
+    first : WalkSummary
+        A simulation, or a condition.
+    second : WalkSummary
+        What was measured, or the other condition; its strides give the spread.
+    wanted : sequence of str, optional
+        Only these channels; by default all that both have.
+    plan : PermutationPlan
+        Level, number of permutations, seed.
+
+    Returns
+    -------
+    Mismatch
+        Its p speaks of these two recordings; that other people, or another day, would give the same it cannot say.
+
+    Raises
+    ------
+    ChannelError
+        If they have no channel in common.
+    ComparisonError
+        If there are too few strides for any test.
+    """
+    common = common_curves((first, second), wanted)
+    compared = _of_strides(common, (_name(first), _name(second)), plan)
+    files = {**first.files, **second.files}
+    findings = (*first.findings, *second.findings, *common.findings)
+    return _mismatch((_name(first), _name(second)), common.channels, compared, findings, _provenance(plan, files))
+
+
+def compare_people(
+    pairs: Sequence[tuple[WalkSummary, WalkSummary]],
+    wanted: Sequence[str] = (),
+    plan: PermutationPlan = USUAL,
+) -> Mismatch:
+    """Mismatch of two conditions over people, paired: each person's mean difference is one unit.
+
+    Parameters
+    ----------
+    pairs : sequence of (WalkSummary, WalkSummary)
+        Both walks of each person, in the same order of conditions; first minus second.
+    wanted : sequence of str, optional
+        Only these channels; by default all that every walk has.
+    plan : PermutationPlan
+        Level, number of permutations, seed.
+
+    Returns
+    -------
+    Mismatch
+        Its standard deviations are those from stride to stride, root mean square over people.
+
+    Raises
+    ------
+    ChannelError
+        If the walks have no channel in common.
+    ComparisonError
+        If there are fewer than six people.
+    """
+    if len(pairs) < FEWEST_IN_ONE:
+        raise ComparisonError(
+            f"two conditions are compared over {FEWEST_IN_ONE} participants or more",
+            f"{len(pairs)} have both",
+            "Compare the strides of one of them: --participant.",
+        )
+    walks = [walk for pair in pairs for walk in pair]
+    common = common_curves(walks, wanted)
+    means = [np.array([curves.mean(axis=0) for curves in common.curves[k::2]]) for k in (0, 1)]
+    spreads = [[_sd(curves) for curves in common.curves[k::2]] for k in (0, 1)]
+    test = one_sample_test(means[0] - means[1], plan)
+    strides = [sum(map(len, common.curves[k::2])) for k in (0, 1)]
+    exchange = _exchange("participant", (len(pairs), len(pairs)), (strides[0], strides[1]), test)
+    gap = (means[0] - means[1]).mean(axis=0)
+    sds = tuple(np.sqrt(np.mean(np.square(one), axis=0)) for one in spreads)
+    compared = _Compared(test, exchange, gap, (means[0].mean(axis=0), means[1].mean(axis=0)), (sds[0], sds[1]))
+    files = {name: sha for walk in walks for name, sha in walk.files.items()}
+    findings = (*(finding for walk in walks for finding in walk.findings), *common.findings)
+    names = (pairs[0][0].condition, pairs[0][1].condition)
+    return _mismatch(names, common.channels, compared, findings, _provenance(plan, files))
+
+
+def best_shift(first: NDArray[np.float64], second: NDArray[np.float64]) -> tuple[float, float]:
+    """By how much later the first curve fits the second best [% stride], and the rms gap that is left then.
+
+    Parameters
+    ----------
+    first, second : ndarray (phase,) [channel's unit]
+        Mean curves over one stride on 101 points; the stride is closed, 100 % is 0 %.
+
+    Returns
+    -------
+    shift_percent, rms : float
+        Within 10 % of the stride, in steps of 1 %.
+
+    Examples
+    --------
+    >>> wave = np.sin(2 * np.pi * PERCENT / 100)
+    >>> [round(value, 3) for value in best_shift(np.roll(wave[:-1], -3)[np.arange(101) % 100], wave)]
+    [3.0, 0.0]
+    """
+    one, other = first[:-1], second[:-1]
+    shifts = sorted(range(-MOST_SHIFT, MOST_SHIFT + 1), key=abs)  # of equals the smallest
+    left = [_rms(np.roll(one, shift) - other) for shift in shifts]
+    return float(shifts[int(np.argmin(left))]), min(left)
+
+
+def _of_interest(findings: Sequence[Finding], channels: Sequence[Channel]) -> tuple[Finding, ...]:
+    """Return the findings about what was compared, each once, the severest first."""
+    names = {channel.name for channel in channels} | {""}
+    kept = dict.fromkeys(finding for finding in findings if finding.channel in names or finding.kind == "unit")
+    return tuple(sorted(kept, key=lambda finding: finding.rank))
+
+
+def _of_strides(common: CommonCurves, names: tuple[str, str], plan: PermutationPlan) -> _Compared:
+    first, second = common.curves
+    as_curve = len(first) < FEWEST_IN_EACH
+    fewest = FEWEST_IN_ONE if as_curve else FEWEST_IN_EACH
+    if len(second) < fewest:
+        raise ComparisonError(
+            f"{names[1]} is what is compared with, and its strides give the spread: {fewest} or more are needed",
+            f"it has {len(second)}, {names[0]} has {len(first)}",
+            "Record longer; a walk of a single stride, such as a periodic simulation, is named first.",
+        )
+    if as_curve:
+        correlation, shortest = stride_correlation(second), len(second)
+    else:
+        correlation = np.maximum(stride_correlation(first), stride_correlation(second))
+        shortest = min(len(first), len(second))
+    length = block_length(float(correlation.max()), shortest)
+    worth = block_worth(correlation, length)
+    units = [block_means(curves, length) for curves in common.curves]
+    curve = first.mean(axis=0)
+    if as_curve:
+        test = one_sample_test(curve - units[1], plan, worth)
+        means, counts = (curve, units[1].mean(axis=0)), (1, len(units[1]))
+    else:
+        test = two_sample_test(units[0], units[1], plan, worth)
+        means, counts = (units[0].mean(axis=0), units[1].mean(axis=0)), (len(units[0]), len(units[1]))
+    unit = "stride" if length == 1 else f"block of {length} strides"
+    exchange = _exchange(unit, counts, (len(first), len(second)), test)
+    return _Compared(test, exchange, means[0] - means[1], means, (_sd(first), _sd(second)))
+
+
+def _exchange(unit: str, counts: tuple[int, int], strides: tuple[int, int], test: ClusterTest) -> Exchange:
+    return Exchange(unit, *counts, *strides, test.permutations, test.exact, test.threshold, test.alpha)
+
+
+def _mismatch(
+    names: tuple[str, str],
+    channels: tuple[Channel, ...],
+    compared: _Compared,
+    findings: tuple[Finding, ...],
+    provenance: Provenance,
+) -> Mismatch:
+    half = compared.test.threshold * compared.test.standard_error
+    curves = {
+        "first": compared.means[0],
+        "second": compared.means[1],
+        "sd_first": compared.sds[0],
+        "sd_second": compared.sds[1],
+        "gap": compared.gap,
+        "low": compared.gap - half,
+        "high": compared.gap + half,
+        "t": compared.test.t,
+    }
+    return Mismatch(
+        names[0],
+        names[1],
+        channels,
+        curves,
+        _regions(channels, compared),
+        _summary(channels, compared),
+        compared.exchange,
+        _of_interest(findings, channels),
+        provenance,
+    )
+
+
+def _regions(channels: tuple[Channel, ...], compared: _Compared) -> pd.DataFrame:
+    rows = []
+    for cluster in compared.test.clusters:
+        inside = slice(cluster.first, cluster.last + 1)
+        gap = compared.gap[inside, cluster.channel]
+        at = cluster.first + int(np.argmax(np.abs(gap)))
+        channel = channels[cluster.channel]
+        largest = float(compared.gap[at, cluster.channel])
+        sd = float(compared.sds[1][at, cluster.channel])
+        rows.append((
+            channel.name, channel.unit, PERCENT[cluster.first], PERCENT[cluster.last], largest, PERCENT[at],
+            _in_sd(largest, sd), float(gap.mean()), cluster.p,
+        ))  # fmt: skip
+    return pd.DataFrame(rows, columns=pd.Index(REGION_COLUMNS))
+
+
+def _summary(channels: tuple[Channel, ...], compared: _Compared) -> pd.DataFrame:
+    test, gap = compared.test, compared.gap
+    differing = {cluster.channel for cluster in test.clusters}
+    within = (np.abs(gap) + test.threshold * test.standard_error).max(axis=0)
+    visible = (test.threshold + POWER_80) * np.median(test.standard_error, axis=0)
+    rows = []
+    for column, channel in enumerate(channels):
+        at = int(np.argmax(np.abs(gap[:, column])))
+        largest, sd = float(gap[at, column]), compared.sds[1][:, column]
+        rows.append((
+            channel.name, channel.unit, column in differing, largest, PERCENT[at], _in_sd(largest, float(sd[at])),
+            _rms(gap[:, column]), _rms(sd), float(test.p[column]), float(within[column]), float(visible[column]),
+            *best_shift(compared.means[0][:, column], compared.means[1][:, column]),
+        ))  # fmt: skip
+    return pd.DataFrame(rows, columns=pd.Index(CHANNEL_COLUMNS))
+
+
+def _provenance(plan: PermutationPlan, files: Mapping[str, str]) -> Provenance:
+    now = datetime.now(UTC).isoformat(timespec="seconds")
+    return Provenance(asdict(plan), plan.seed, files, installed_versions(), SECTION, now)
+
+
+def _sd(curves: NDArray[np.float64]) -> NDArray[np.float64]:
+    return curves.std(axis=0, ddof=1) if len(curves) > 1 else np.full(curves.shape[1:], np.nan)
+
+
+def _rms(values: NDArray[np.float64]) -> float:
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def _in_sd(gap: float, sd: float) -> float:
+    return gap / sd if sd > 0 else float("nan")
+
+
+def _name(walk: WalkSummary) -> str:
+    return " ".join(part for part in (walk.subject, walk.condition) if part)

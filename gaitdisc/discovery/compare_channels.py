@@ -1,0 +1,188 @@
+"""What two walks have in common: channels with one unit, and the strides that are whole in all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel, nearest_word
+from gaitdisc.errors import ChannelError
+from gaitdisc.recording import Finding
+from gaitdisc.results import WalkSummary
+
+LEAST_KEPT = 0.5  # of a walk's strides: a channel that would cost more is left out
+SPOILED = ("frozen", "clipped", "dead")  # kinds of findings: what is left of the channel does not move as the joint did
+STILL = 1e-6  # of its largest value: a channel that moves less is locked
+
+
+@dataclass(frozen=True, eq=False)
+class CommonCurves:
+    """Strides of two walks or more, complete, on the channels that all have.
+
+    Parameters
+    ----------
+    channels : tuple of Channel
+        In the order of the first walk.
+    curves : tuple of ndarray (stride, phase, channel) [each channel's unit]
+        One a walk.
+    findings : tuple of Finding
+        What was left out, and why.
+    """
+
+    channels: tuple[Channel, ...]
+    curves: tuple[NDArray[np.float64], ...]
+    findings: tuple[Finding, ...]
+
+
+def common_curves(walks: Sequence[WalkSummary], wanted: Sequence[str] = ()) -> CommonCurves:
+    """Strides of walks on the channels that all of them have in one unit.
+
+    Left out, each with a finding: channels that a walk lacks or gives in another unit, that do not move in any walk,
+    that repeat another channel, of which half of the strides or more have gaps, or that the quality checks found
+    frozen, clipped or dead (unless they are asked for). The foot with fewer strides tells how many are used of both.
+
+    Parameters
+    ----------
+    walks : sequence of WalkSummary
+        Two or more.
+    wanted : sequence of str, optional
+        Only these channels; by default all.
+
+    Returns
+    -------
+    CommonCurves
+
+    Raises
+    ------
+    ChannelError
+        If they have no channel in common, or one that is wanted is not among those they have.
+    """
+    findings: list[Finding] = []
+    shared = _shared(walks, wanted, findings)
+    if not wanted:
+        shared = _sound(shared, walks, findings)
+    by_channel = {c.name: [_whole(walk, c.name) for walk in walks] for c in shared}
+    shared = [c for c in shared if _usable(c, by_channel[c.name], walks, findings)]
+    shared = _moving(shared, by_channel, walks, findings)
+    if not shared:
+        raise ChannelError(
+            "walks are compared in channels that both have, in one unit, and that move",
+            f"{' and '.join(_name(walk) for walk in walks[:2])} have {_counts(walks)} channels, none of that kind"
+            + (f": {findings[0].what}" if findings else ""),
+            "Map the labels of both files to the same names in a study's [channels], and state the units.",
+        )
+    curves = []
+    for number, walk in enumerate(walks):
+        parts = [by_channel[c.name][number] for c in shared]
+        fewest, most = min(map(len, parts)), max(map(len, parts))
+        if fewest < most:
+            what = f"{most - fewest} of {most} strides not used, which some of the {len(shared)} channels lack"
+            findings.append(Finding("note", "strides", _name(walk), what, "nothing but the number of strides"))
+        curves.append(np.stack([part[:fewest] for part in parts], axis=2))
+    return CommonCurves(tuple(shared), tuple(curves), tuple(findings))
+
+
+def _shared(walks: Sequence[WalkSummary], wanted: Sequence[str], findings: list[Finding]) -> list[Channel]:
+    units = [{channel.name: channel.unit for channel in walk.channels} for walk in walks]
+    everywhere = [name for name in units[0] if all(name in unit for unit in units)]
+    for name in wanted:
+        if name not in everywhere:
+            nearest = nearest_word(name, everywhere)
+            lacking = [_name(walk) for walk, unit in zip(walks, units, strict=True) if name not in unit]
+            raise ChannelError(
+                f"channel {name!r} is to be compared",
+                f"{', '.join(lacking)} lack{'s' if len(lacking) == 1 else ''} it"
+                + (f"; the nearest that all have is {nearest!r}" if nearest else ""),
+                f"Choose among: {', '.join(everywhere) or 'none'}.",
+            )
+    _say_lacking(walks, units, findings)
+    kept = []
+    for channel in walks[0].channels:
+        if channel.name not in everywhere or (wanted and channel.name not in wanted):
+            continue
+        found = sorted({unit[channel.name] for unit in units})
+        if len(found) > 1:
+            what = f"given in {' and in '.join(map(repr, found))}"
+            findings.append(Finding("warning", "unit", _both(walks), what, "the comparison of it", channel.name))
+        else:
+            kept.append(channel)
+    return kept
+
+
+def _say_lacking(walks: Sequence[WalkSummary], units: list[dict[str, str]], findings: list[Finding]) -> None:
+    everything = {name for unit in units for name in unit}
+    for walk, unit in zip(walks, units, strict=True):
+        absent = sorted(everything - set(unit))
+        if absent:
+            more = f" and {len(absent) - 6} more" if len(absent) > 6 else ""
+            what = f"no {', '.join(absent[:6])}{more}, which the other has"
+            findings.append(Finding("note", "not compared", _name(walk), what, "the comparison of these"))
+
+
+def _sound(shared: list[Channel], walks: Sequence[WalkSummary], findings: list[Finding]) -> list[Channel]:
+    spoiled = {f.channel: f.kind for walk in walks for f in walk.findings if f.kind in SPOILED and f.severity != "note"}
+    named = [f"{c.name} ({spoiled[c.name]})" for c in shared if c.name in spoiled]
+    if named:
+        what = f"{', '.join(named)}: left out; name one with --channel to compare it nevertheless"
+        findings.append(Finding("warning", "not compared", _both(walks), what, "the comparison of these"))
+    return [c for c in shared if c.name not in spoiled]
+
+
+def _whole(walk: WalkSummary, name: str) -> NDArray[np.float64]:
+    """Strides of one channel without a gap, (stride, phase)."""
+    column = [channel.name for channel in walk.channels].index(name)
+    curves = walk.curves[:, :, column]
+    return curves[np.isfinite(curves).all(axis=1)]
+
+
+def _usable(
+    channel: Channel, parts: list[NDArray[np.float64]], walks: Sequence[WalkSummary], findings: list[Finding]
+) -> bool:
+    for part, walk in zip(parts, walks, strict=True):
+        if len(part) <= LEAST_KEPT * len(walk.curves) and len(part) < len(walk.curves):
+            what = f"{len(walk.curves) - len(part)} of {len(walk.curves)} strides have gaps: left out"
+            findings.append(Finding("warning", "gaps", _name(walk), what, "the comparison of it", channel.name))
+            return False
+    return all(len(part) for part in parts)
+
+
+def _moving(
+    shared: list[Channel],
+    by_channel: dict[str, list[NDArray[np.float64]]],
+    walks: Sequence[WalkSummary],
+    findings: list[Finding],
+) -> list[Channel]:
+    still, twins, kept = [], [], []
+    for channel in shared:
+        parts = by_channel[channel.name]
+        size = max(float(np.abs(part).max()) for part in parts)
+        if max(float(np.ptp(part)) for part in parts) <= STILL * max(size, 1.0):
+            still.append(channel.name)
+        elif any(_same(parts, by_channel[other.name]) for other in kept):
+            twins.append(channel.name)
+        else:
+            kept.append(channel)
+    for names, what in ((still, "do not move in any walk"), (twins, "repeat another channel, number by number")):
+        if names:
+            text = f"{', '.join(names)} {what}: left out"
+            findings.append(Finding("note", "not compared", _both(walks), text, "nothing"))
+    return kept
+
+
+def _same(one: list[NDArray[np.float64]], other: list[NDArray[np.float64]]) -> bool:
+    return all(a.shape == b.shape and np.allclose(a, b, rtol=0, atol=1e-6) for a, b in zip(one, other, strict=True))
+
+
+def _name(walk: WalkSummary) -> str:
+    return " ".join(part for part in (walk.subject, walk.condition) if part)
+
+
+def _both(walks: Sequence[WalkSummary]) -> str:
+    return ", ".join(_name(walk) for walk in walks) if len(walks) == 2 else f"{len(walks)} walks"
+
+
+def _counts(walks: Sequence[WalkSummary]) -> str:
+    return " and ".join(str(len(walk.channels)) for walk in walks[:2])

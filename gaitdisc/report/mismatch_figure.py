@@ -1,0 +1,187 @@
+"""Both walks over the stride and the gap between them, shaded where it is more than chance."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+
+from gaitdisc.channel import side_of
+from gaitdisc.report.curves_figure import sides_together
+from gaitdisc.report.figure import Figure, Room, in_style, legend, panels, sheets
+from gaitdisc.report.mismatch_sentences import spoken
+from gaitdisc.report.palette import SIDES, WITHOUT_DEVICE
+from gaitdisc.report.wording import counted, label, unit_text, upwards
+from gaitdisc.results.mismatch import Mismatch
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+
+Draw = Callable[["Axes", pd.DataFrame, list[dict[str, Any]], str], None]
+COLUMNS, MOST_ROWS = 3, 4
+SHADE = "#f2b632"  # a gap; no side and no model has this colour
+
+
+@in_style
+def mismatch_figures(mismatch: Mismatch) -> list[Figure]:
+    """Curves of both walks, then the gap with its band; some dozen channels a figure.
+
+    Parameters
+    ----------
+    mismatch : Mismatch
+        What was found.
+    """
+    parts = sheets(sides_together(list(mismatch.names)), COLUMNS * MOST_ROWS)
+    figures = []
+    for kind, draw in (("curves", _draw_curves), ("gap", _draw_gap)):
+        for number, names in enumerate(parts):
+            name = f"mismatch-{kind}-{number + 1}" if len(parts) > 1 else f"mismatch-{kind}"
+            figures.append(_figure(mismatch, names, name, kind, draw))
+    return figures
+
+
+def mismatch_numbers(mismatch: Mismatch, names: list[str]) -> pd.DataFrame:
+    """Everything drawn of some channels, one row a channel and percent.
+
+    Parameters
+    ----------
+    mismatch : Mismatch
+        What was found.
+    names : list of str
+        Channels.
+    """
+    tables = []
+    for name in names:
+        table = mismatch.curve_table(name)
+        table.insert(0, "unit", mismatch.channels[mismatch.names.index(name)].unit)
+        table.insert(0, "channel", name)
+        tables.append(table)
+    return pd.concat(tables, ignore_index=True)
+
+
+def _figure(mismatch: Mismatch, names: list[str], name: str, kind: str, draw: Draw) -> Figure:
+    columns = min(COLUMNS, len(names))
+    drawn, grid = panels(-(-len(names) // columns), columns, 1.3, Room(left=0.6, across=0.62, down=0.46))
+    cells = [axes for row in grid for axes in row]
+    numbers = mismatch_numbers(mismatch, names)
+    for axes, channel in zip(cells, names, strict=False):
+        curves = numbers[numbers["channel"] == channel]
+        draw(axes, curves, mismatch.regions_of(channel), SIDES[side_of(channel)].colour)
+        axes.set_title(label(channel), color=SIDES[side_of(channel)].colour, fontsize=7.6)
+        up = upwards(channel)
+        unit = unit_text(str(curves["unit"].iloc[0]))
+        axes.set_ylabel(f"[{unit}]" + (f" ↑ {up}" if up and len(up) < 22 else ""), fontsize=6.8, labelpad=1)
+        axes.set_xlim(0, 100)
+        axes.set_xticks([0, 25, 50, 75, 100])
+    for axes in cells[len(names) :]:
+        axes.set_visible(False)
+    for axes in cells[max(0, len(names) - columns) : len(names)]:
+        axes.set_xlabel("stride [%]", labelpad=1)
+    legend(drawn, _key(mismatch, kind))
+    return Figure(name, _caption(mismatch, kind, len(names)), _alt(mismatch, names), numbers, drawn)
+
+
+def _draw_curves(axes: Axes, curves: pd.DataFrame, regions: list[dict[str, Any]], colour: str) -> None:
+    percent = curves["percent"].to_numpy()
+    sd = curves["sd_second"].fillna(0.0)
+    look = WITHOUT_DEVICE
+    axes.fill_between(
+        percent, curves["second"] - sd, curves["second"] + sd, color=look.colour, alpha=0.2, linewidth=0, zorder=1
+    )
+    axes.fill_between(
+        percent,
+        curves["first"],
+        curves["second"],
+        where=curves["differs"].to_numpy(bool),
+        color=SHADE,
+        alpha=0.55,
+        linewidth=0,
+        zorder=2,
+    )
+    axes.plot(percent, curves["second"], color=look.colour, linestyle=look.line, linewidth=1.2, zorder=3)
+    axes.plot(percent, curves["first"], color=colour, linewidth=1.3, zorder=4)
+    _bars(axes, regions)
+
+
+def _draw_gap(axes: Axes, curves: pd.DataFrame, regions: list[dict[str, Any]], colour: str) -> None:
+    percent = curves["percent"].to_numpy()
+    axes.axhline(0.0, color="#888888", linewidth=0.6, zorder=0)
+    axes.fill_between(percent, curves["low"], curves["high"], color=colour, alpha=0.22, linewidth=0, zorder=1)
+    axes.fill_between(
+        percent,
+        curves["gap"],
+        0.0,
+        where=curves["differs"].to_numpy(bool),
+        color=SHADE,
+        alpha=0.55,
+        linewidth=0,
+        zorder=2,
+    )
+    axes.plot(percent, curves["gap"], color=colour, linewidth=1.3, zorder=3)
+    _bars(axes, regions)
+
+
+def _bars(axes: Axes, regions: list[dict[str, Any]]) -> None:
+    """Mark the stretches along the foot of the panel too, where a thin shade would be overlooked."""
+    for row in regions:
+        ends = [float(row["from_percent"]) - 0.5, float(row["to_percent"]) + 0.5]
+        axes.plot(
+            ends,
+            [0.02, 0.02],
+            color="#b06f00",
+            linewidth=2.2,
+            transform=axes.get_xaxis_transform(),
+            solid_capstyle="butt",
+        )
+
+
+def _key(mismatch: Mismatch, kind: str) -> list[Artist]:
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    shade = Patch(color=SHADE, alpha=0.55, label="more than chance")
+    if kind == "gap":
+        band = f"gap, {100 * (1 - mismatch.exchange.alpha):g} % band for all points and channels"
+        return [Line2D([], [], color=SIDES[""].colour, label=band), shade]
+    without = {"color": WITHOUT_DEVICE.colour, "linestyle": WITHOUT_DEVICE.line}
+    return [
+        Line2D([], [], **without, label=f"{mismatch.second}, ± sd"),
+        Line2D([], [], color=SIDES["l"].colour, label=f"{mismatch.first}, left"),
+        Line2D([], [], color=SIDES["r"].colour, label="right"),
+        shade,
+    ]
+
+
+def _caption(mismatch: Mismatch, kind: str, count: int) -> str:
+    done = mismatch.exchange
+    n = f"n = {done.strides_first} and {done.strides_second} strides"
+    if done.unit == "participant":
+        n = f"n = {done.first} participants, {n}"
+    shaded = (
+        f"Shaded, with a bar at the foot: where the permutation test says more than chance, p < {done.alpha:g} for all "
+        f"points and channels together."
+    )
+    if kind == "gap":
+        return (
+            f"Gap, {mismatch.first} minus {mismatch.second}, {counted(count, 'channel')}, {n}. Band: "
+            f"{100 * (1 - done.alpha):g} % for all points and channels together. {shaded}"
+        )
+    return (
+        f"Mean curves over the stride, {counted(count, 'channel')}, {n}. Grey, dashed: {mismatch.second}, mean ± "
+        f"standard deviation from stride to stride; solid: {mismatch.first}, red on the left, blue on the right, black "
+        f"where there is no side. 0 %: initial contact of the channel's own foot. {shaded}"
+    )
+
+
+def _alt(mismatch: Mismatch, names: list[str]) -> str:
+    parts = []
+    for name in names:
+        regions = mismatch.regions_of(name)
+        spans = ", ".join(f"{row['from_percent']:.0f}-{row['to_percent']:.0f} %" for row in regions)
+        largest = mismatch.curves["gap"][:, mismatch.names.index(name)]
+        size = f"{largest[np.argmax(np.abs(largest))]:.3g}"
+        parts.append(f"{spoken(name)} {size}" + (f", differs at {spans}" if spans else ", no gap seen"))
+    return f"{mismatch.first} against {mismatch.second} over the stride. Largest gaps: {'; '.join(parts)}."

@@ -1,0 +1,289 @@
+"""Sentences about a mismatch: which joint, which way, how far, in which part of the stride; or that there is no gap."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from gaitdisc.channel import side_of
+from gaitdisc.report.wording import SIDE_WORDS, counted, label, listed, number, sideless, unit_text, upwards
+from gaitdisc.results.mismatch import Exchange, Mismatch
+
+MOST_NAMED = 3
+MOST_LISTED = 8
+MOSTLY_TIMING = 0.6  # of the gap that is left when the curve is moved along the stride
+# meaning of a larger value -> what the joint is then, and what it is when the value is smaller
+DIRECTIONS = {
+    "dorsiflexion": ("dorsiflexed", "plantarflexed"),
+    "flexion": ("flexed", "extended"),
+    "adduction": ("adducted", "abducted"),
+    "internal rotation": ("internally rotated", "externally rotated"),
+    "inversion": ("inverted", "everted"),
+}
+JOINTS = {
+    "hip_flexion": "hip",
+    "hip_adduction": "hip",
+    "hip_rotation": "hip",
+    "knee_angle": "knee",
+    "knee_adduction": "knee",
+    "knee_rotation": "knee",
+    "ankle_angle": "ankle",
+    "subtalar_angle": "subtalar joint",
+}
+
+
+def mismatch_sentences(mismatch: Mismatch) -> list[str]:
+    """Answer first: the largest gaps, or none; then what agrees, and to within how much.
+
+    Parameters
+    ----------
+    mismatch : Mismatch
+        What was found.
+    """
+    ordered = mismatch.ordered()
+    if not ordered:
+        return [_no_gap(mismatch), _visible(mismatch, list(mismatch.names))]
+    sentences = [_gap(mismatch, ordered[0])]
+    sentences += [_further(mismatch, name) for name in ordered[1:MOST_NAMED]]
+    if len(ordered) > MOST_NAMED:
+        more = len(ordered) - MOST_NAMED
+        others = _shortened(ordered[MOST_NAMED:])
+        sentences.append(f"{counted(more, 'further channel')} {'differs' if more == 1 else 'differ'} too: {others}.")
+    sentences += [timing] if (timing := _timing(mismatch, ordered[0])) else []
+    agreeing = [name for name in mismatch.names if name not in ordered]
+    return [*sentences, _agreeing(mismatch, agreeing)] if agreeing else sentences
+
+
+def method_sentences(mismatch: Mismatch) -> list[str]:
+    """How the mismatch was found, and what its p speaks of.
+
+    Parameters
+    ----------
+    mismatch : Mismatch
+        What was found.
+    """
+    done = mismatch.exchange
+    band = f"{100 * (1 - done.alpha):g} %"
+    all_of = "all that there are" if done.exact else "drawn at random"
+    if done.unit == "participant":
+        units = (
+            f"Participants are the units, paired (n = {done.first}): under the null the sign of each one's mean "
+            f"difference is by chance."
+        )
+        about = "p speaks of people like these."
+    else:
+        about = (
+            "p speaks of these two recordings alone: another day, other markers or other people are not in it, and "
+            "two walks of one person often differ by more than their strides do."
+        )
+        units = _units(mismatch)
+    return [
+        f"Gap: mean curve of {mismatch.first} minus that of {mismatch.second}, each channel over the strides of its "
+        f"own foot, on 101 points of the stride.",
+        units,
+        f"A t at every point is held against the largest |t| over all points and all "
+        f"{counted(len(mismatch.channels), 'channel')} in {done.permutations} permutations ({all_of}); the "
+        f"gap is shaded beyond |t| = {done.threshold:.2f}, which {100 * done.alpha:g} % of them exceed anywhere. The p "
+        f"of a stretch is that of its integral above this threshold.",
+        f"The band of the gap holds {band} for all points and channels together, and widens where successive strides "
+        f"depend on each other.",
+        f"Standard deviations are those of {mismatch.second} from stride to stride at the same point. {about}",
+    ]
+
+
+def region_words(row: Mapping[str, Any]) -> str:
+    """Part of the stride in words.
+
+    Parameters
+    ----------
+    row : mapping
+        A row of `Mismatch.regions`.
+
+    Examples
+    --------
+    >>> region_words({"from_percent": 12.0, "to_percent": 55.0})
+    'between 12 and 55 % of the stride'
+    """
+    first, last = float(row["from_percent"]), float(row["to_percent"])
+    if first == 0 and last == 100:
+        return "throughout the stride"
+    return f"at {first:.0f} % of the stride" if first == last else f"between {first:.0f} and {last:.0f} % of the stride"
+
+
+def p_words(p: float) -> str:
+    """A p as it is printed.
+
+    Parameters
+    ----------
+    p : float
+        0 to 1.
+
+    Examples
+    --------
+    >>> p_words(0.0004), p_words(0.0312)
+    ('p < .001', 'p = .031')
+    """
+    return "p < .001" if p < 0.001 else f"p = {p:.3f}".replace("0.", ".", 1)
+
+
+def direction_words(name: str, gap: float, unit: str) -> str:
+    """Which way and how far a channel lies from the other walk's.
+
+    Parameters
+    ----------
+    name : str
+        Of the channel.
+    gap : float
+        First minus second [unit].
+    unit : str
+        Of the gap.
+
+    Examples
+    --------
+    >>> direction_words("ankle_angle_r", -6.1, "deg"), direction_words("pelvis_tilt", 2.0, "deg")
+    ('the right ankle is up to 6.1 deg more plantarflexed', 'pelvis tilt is up to 2.0 deg higher')
+    """
+    size = f"{amount(abs(gap))} {unit_text(unit)}"
+    stem, side = sideless(name), SIDE_WORDS[side_of(name)]
+    ways = DIRECTIONS.get(upwards(name))
+    if stem in JOINTS and ways:
+        return f"the {side} {JOINTS[stem]} is up to {size} more {ways[0] if gap > 0 else ways[1]}"
+    return f"{spoken(name)} is up to {size} {'higher' if gap > 0 else 'lower'}"
+
+
+def spoken(name: str) -> str:
+    """Name of a channel as it is said in a sentence, the side first.
+
+    Parameters
+    ----------
+    name : str
+        Of the channel.
+
+    Examples
+    --------
+    >>> spoken("knee_angle_r"), spoken("emg_sol_l"), spoken("pelvis_tilt")
+    ('right knee angle', 'left EMG soleus', 'pelvis tilt')
+    """
+    words, _, side = label(name).partition(", ")
+    return f"{side} {words}" if side else words
+
+
+def amount(value: float) -> str:
+    """Write a size with one digit after the point, or two significant digits where it is small.
+
+    Parameters
+    ----------
+    value : float
+        In any unit.
+
+    Examples
+    --------
+    >>> amount(6.14), amount(0.0321), amount(123.4)
+    ('6.1', '0.032', '123.4')
+    """
+    return f"{value:.1f}" if value >= 1 else f"{value:.2g}"
+
+
+def _units(mismatch: Mismatch) -> str:
+    done = mismatch.exchange
+    if done.first == 1:
+        return (
+            f"{mismatch.first} has {counted(done.strides_first, 'stride')} and was taken as a curve without spread; "
+            f"{counted(done.strides_second, 'stride')} of {mismatch.second}{_blocks(done, str(done.second))} were "
+            f"tested against it: under the null the sign of each one's difference is by chance."
+        )
+    return (
+        f"{done.strides_first} strides of {mismatch.first} and {done.strides_second} of {mismatch.second}"
+        f"{_blocks(done, f'{done.first} and {done.second}')} are the units: under the null the sign of each one's "
+        f"departure from its walk's mean is by chance, which allows the two to differ in spread."
+    )
+
+
+def _blocks(done: Exchange, counts: str) -> str:
+    if done.unit == "stride":
+        return ""
+    return f", in {counts} blocks{done.unit.removeprefix('block')} because successive strides depend on each other,"
+
+
+def _shortened(names: list[str]) -> str:
+    words = [spoken(name) for name in names]
+    if len(words) <= MOST_LISTED + 1:
+        return listed(words)
+    return f"{', '.join(words[:MOST_LISTED])} and {len(words) - MOST_LISTED} more"
+
+
+def _largest(mismatch: Mismatch, name: str) -> dict[str, Any]:
+    return max(mismatch.regions_of(name), key=lambda row: abs(row["gap"]))
+
+
+def _size(row: Mapping[str, Any]) -> str:
+    sd = float(row["gap_sd"])
+    in_sd = f"{amount(abs(sd))} stride-to-stride sd, " if math.isfinite(sd) else ""
+    return f"{region_words(row)} ({in_sd}{p_words(float(row['p']))})"
+
+
+def _gap(mismatch: Mismatch, name: str) -> str:
+    row = _largest(mismatch, name)
+    way = direction_words(name, float(row["gap"]), str(row["unit"]))
+    return f"In {mismatch.first} {way} than in {mismatch.second} {_size(row)}."
+
+
+def _further(mismatch: Mismatch, name: str) -> str:
+    row = _largest(mismatch, name)
+    way = direction_words(name, float(row["gap"]), str(row["unit"]))
+    return f"{way[0].upper()}{way[1:]} {_size(row)}."
+
+
+def _timing(mismatch: Mismatch, name: str) -> str:
+    row = mismatch.summary_of(name)
+    shift, before, after = float(row["shift_percent"]), float(row["rms_gap"]), float(row["rms_shifted"])
+    if shift == 0 or after > MOSTLY_TIMING * before:
+        return ""
+    unit = unit_text(str(row["unit"]))
+    way = f"{abs(shift):.0f} % of the stride {'later' if shift > 0 else 'earlier'}"
+    return (
+        f"Much of the largest gap is timing: moved {way}, the curve of {mismatch.first} is {number(after, 1)} instead "
+        f"of {number(before, 1)} {unit} away (rms)."
+    )
+
+
+def _agreeing(mismatch: Mismatch, names: list[str]) -> str:
+    words = _shortened(names)
+    bounds = _by_unit(mismatch, names, "within")
+    sure = f"{100 * (1 - mismatch.exchange.alpha):g} %"
+    return f"No gap is seen in {words}: with {sure} confidence they agree to within {bounds} at every point."
+
+
+def _no_gap(mismatch: Mismatch) -> str:
+    count = counted(len(mismatch.channels), "channel")
+    p = float(mismatch.summary["p"].min())
+    done = mismatch.exchange
+    n = (
+        counted(done.first, "participant")
+        if done.unit == "participant"
+        else f"{done.strides_first} and {done.strides_second} strides"
+    )
+    return f"No gap: {mismatch.first} and {mismatch.second} cannot be told apart in {count} ({n}, {p_words(p)})."
+
+
+def _visible(mismatch: Mismatch, names: list[str]) -> str:
+    seen = _by_unit(mismatch, names, "visible", smallest=True)
+    return (
+        f"That is no proof of none: a gap would have been seen, in four such comparisons of five, from {seen} on; and "
+        f"gaps of up to {_by_unit(mismatch, names, 'within')} at some point are not excluded."
+    )
+
+
+def _by_unit(mismatch: Mismatch, names: list[str], column: str, smallest: bool = False) -> str:
+    """Largest value for each unit, with the range where asked for."""
+    rows = [mismatch.summary_of(name) for name in names]
+    parts = []
+    for unit in dict.fromkeys(str(row["unit"]) for row in rows):
+        of_unit = sorted((row for row in rows if row["unit"] == unit), key=lambda row: row[column])
+        ends = [(amount(float(row[column])), spoken(str(row["channel"]))) for row in (of_unit[0], of_unit[-1])]
+        text = f"{ends[1][0]} {unit_text(unit)}"
+        if smallest and len(of_unit) > 1:
+            text = f"{ends[0][0]} ({ends[0][1]}) to {text} ({ends[1][1]})"
+        parts.append(text)
+    return listed(parts)

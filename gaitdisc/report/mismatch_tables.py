@@ -1,0 +1,142 @@
+"""Tables of a mismatch: where each channel differs, and what each one would have shown."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import pandas as pd
+
+from gaitdisc.report.mismatch_sentences import amount, spoken
+from gaitdisc.report.tables import Table
+from gaitdisc.report.wording import counted, unit_text
+from gaitdisc.results.mismatch import Mismatch
+
+if TYPE_CHECKING:
+    import rich.table
+
+HEADINGS = ("channel", "stride [%]", "gap", "at [%]", "in sd", "p")
+NONE = "–"
+
+
+def regions_table(mismatch: Mismatch) -> Table:
+    """Every stretch that differs, channel by channel, the largest gap against its spread first.
+
+    Parameters
+    ----------
+    mismatch : Mismatch
+        What was found.
+    """
+    rows = [row for name in mismatch.ordered() for row in _rows(mismatch, name)]
+    caption = (
+        f"Where they differ, n = {len(mismatch.regions)} parts of the stride: {mismatch.first} minus "
+        f"{mismatch.second}; gap: the largest in that part, and in stride-to-stride standard deviations of "
+        f"{mismatch.second} there; p: of that part, corrected for all points and channels."
+    )
+    return Table("regions", caption, HEADINGS, tuple(rows), mismatch.regions)
+
+
+def channels_table(mismatch: Mismatch) -> Table:
+    """Every channel, whether it differs or not, and what the comparison could have seen of it.
+
+    Parameters
+    ----------
+    mismatch : Mismatch
+        What was found.
+    """
+    rows = tuple(
+        (
+            spoken(str(row["channel"])),
+            "yes" if row["differs"] else "no",
+            _signed(float(row["largest_gap"]), str(row["unit"])),
+            f"{row['at_percent']:.0f}",
+            amount(float(row["rms_gap"])),
+            amount(float(row["rms_sd"])),
+            _p(float(row["p"])),
+            amount(float(row["within"])),
+            amount(float(row["visible"])),
+            f"{row['shift_percent']:+.0f}" if row["shift_percent"] else "0",
+            amount(float(row["rms_shifted"])),
+        )
+        for row in map(mismatch.summary_of, mismatch.names)
+    )
+    caption = (
+        f"All {counted(len(rows), 'channel')}. rms: root mean square over the stride, of the gap and of the "
+        f"stride-to-stride sd of {mismatch.second}; p: of the largest |t|, corrected for all points and channels; "
+        f"agrees within: what the band of the gap allows at its worst point; visible: the gap that four such "
+        f"comparisons of five would have seen at a typical point; shift: how much later the curve of "
+        f"{mismatch.first} fits best, and the rms gap that is left then."
+    )
+    headings = (
+        "channel", "differs", "largest gap", "at [%]", "rms gap", "rms sd", "p", "agrees within", "visible",
+        "shift [%]", "rms left",
+    )  # fmt: skip
+    return Table("channels", caption, headings, rows, mismatch.summary)
+
+
+def findings_of(mismatch: Mismatch) -> Table:
+    """What was seen on the way, the severest first.
+
+    Parameters
+    ----------
+    mismatch : Mismatch
+        What was found.
+    """
+    rows = tuple((f.severity, f.file, f.channel, f"{f.kind}: {f.what}", f.spoils) for f in mismatch.findings)
+    columns = ("severity", "file", "channel", "what", "spoils")
+    caption = f"Seen on the way, n = {len(rows)}."
+    return Table("findings", caption, columns, rows, pd.DataFrame(rows, columns=pd.Index(columns)))
+
+
+def mismatch_text(mismatch: Mismatch) -> rich.table.Table:
+    """Table for a terminal of 80 columns: what differs, then what does not.
+
+    Parameters
+    ----------
+    mismatch : Mismatch
+        What was found.
+    """
+    from rich import box
+    from rich.markup import escape
+    from rich.table import Table as Printed
+
+    table = Printed(box=box.SIMPLE)
+    for number, heading in enumerate(HEADINGS):
+        table.add_column(escape(heading), justify="right" if number else "left", no_wrap=True)
+    rest = [name for name in mismatch.names if name not in mismatch.ordered()]
+    for row in [*regions_table(mismatch).rows, *(row for name in rest for row in _rows(mismatch, name))]:
+        table.add_row(*map(escape, row))
+    return table
+
+
+def _rows(mismatch: Mismatch, name: str) -> list[tuple[str, ...]]:
+    regions = mismatch.regions_of(name)
+    if not regions:
+        row = mismatch.summary_of(name)
+        gap = _signed(float(row["largest_gap"]), str(row["unit"]))
+        return [
+            (spoken(name), NONE, gap, f"{row['at_percent']:.0f}", _in_sd(float(row["gap_sd"])), _p(float(row["p"])))
+        ]
+    return [
+        (
+            spoken(name),
+            f"{row['from_percent']:.0f} to {row['to_percent']:.0f}",
+            _signed(float(row["gap"]), str(row["unit"])),
+            f"{row['at_percent']:.0f}",
+            _in_sd(float(row["gap_sd"])),
+            _p(float(row["p"])),
+        )
+        for row in regions
+    ]
+
+
+def _signed(gap: float, unit: str) -> str:
+    return f"{'−' if gap < 0 else '+'}{amount(abs(gap))} {unit_text(unit)}"
+
+
+def _in_sd(value: float) -> str:
+    return amount(abs(value)) if math.isfinite(value) else NONE
+
+
+def _p(p: float) -> str:
+    return "< .001" if p < 0.001 else f"{p:.3f}"

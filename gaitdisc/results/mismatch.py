@@ -1,0 +1,183 @@
+"""Where two walks disagree: the gap over the stride of every channel, and where it is more than chance."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel
+from gaitdisc.errors import SchemaError, ShapeError
+from gaitdisc.recording import PERCENT, Finding
+from gaitdisc.recording.arrays import read_only
+from gaitdisc.results.provenance import Provenance
+
+CURVES = ("first", "second", "sd_first", "sd_second", "gap", "low", "high", "t")
+REGION_COLUMNS = ("channel", "unit", "from_percent", "to_percent", "gap", "at_percent", "gap_sd", "mean_gap", "p")
+CHANNEL_COLUMNS = (
+    "channel", "unit", "differs", "largest_gap", "at_percent", "gap_sd", "rms_gap", "rms_sd", "p", "within", "visible",
+    "shift_percent", "rms_shifted",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Exchange:
+    """What was exchanged in the permutation test, and how often.
+
+    Parameters
+    ----------
+    unit : str
+        `stride`, `block of 3 strides`, `participant`.
+    first, second : int
+        Units of either walk; 1 for a walk that was taken as a curve without spread of its own.
+    strides_first, strides_second : int
+        Strides of either walk that the units hold.
+    permutations : int
+        How many.
+    exact : bool
+        Whether these are all that there are.
+    threshold : float
+        |t| that only `alpha` of them exceed anywhere in the stride and in any channel.
+    alpha : float
+        Of the whole family of points and channels.
+    """
+
+    unit: str
+    first: int
+    second: int
+    strides_first: int
+    strides_second: int
+    permutations: int
+    exact: bool
+    threshold: float
+    alpha: float
+
+
+@dataclass(frozen=True, eq=False)
+class Mismatch:
+    """First minus second, over the stride.
+
+    Parameters
+    ----------
+    first, second : str
+        What the two walks are called; the second is the one that is compared with, and gives the spread.
+    channels : tuple of Channel
+        That both have.
+    curves : mapping of str to ndarray (phase, channel) [channel's unit]
+        `first`, `second`: mean curves. `sd_first`, `sd_second`: from stride to stride; NaN where there is one stride.
+        `gap`: first minus second, with `low` and `high`, ends of its band: 1 - alpha for all points and channels
+        together. `t` [1].
+    regions : DataFrame
+        One row a stretch of the stride where the gap is more than chance, columns `REGION_COLUMNS`: largest gap, where,
+        in stride-to-stride standard deviations of the second walk there; mean gap; p (of the cluster, corrected).
+    summary : DataFrame
+        One row a channel, columns `CHANNEL_COLUMNS`: whether it differs; largest gap anywhere and where; rms over the
+        stride of gap and of the second walk's sd; p of the largest |t|, corrected; `within`, the largest gap that the
+        band allows; `visible`, the gap that four such comparisons of five would have seen; `shift_percent`, by how much
+        later the first walk's curve fits best, and `rms_shifted`, the rms gap that is left then.
+    exchange : Exchange
+        What was exchanged in the test.
+    findings : tuple of Finding
+        What was seen on the way: of both walks, and of channels that could not be compared.
+    provenance : Provenance
+        Settings, seed, files.
+
+    Raises
+    ------
+    ShapeError
+        If a curve is missing or has another shape than (phase, channel).
+    SchemaError
+        If a table lacks a column.
+    """
+
+    first: str
+    second: str
+    channels: tuple[Channel, ...]
+    curves: Mapping[str, NDArray[np.float64]]
+    regions: pd.DataFrame
+    summary: pd.DataFrame
+    exchange: Exchange
+    findings: tuple[Finding, ...]
+    provenance: Provenance
+
+    def __post_init__(self) -> None:
+        """Check shapes and columns once."""
+        wanted = (len(PERCENT), len(self.channels))
+        for name in CURVES:
+            found = np.shape(self.curves[name]) if name in self.curves else "none"
+            if found != wanted:
+                raise ShapeError(
+                    f"a mismatch needs {name!r} of shape {wanted}",
+                    f"found {found}",
+                    "Compare the walks again: `gaitdisc compare`.",
+                )
+        for name, table, columns in (
+            ("regions", self.regions, REGION_COLUMNS),
+            ("summary", self.summary, CHANNEL_COLUMNS),
+        ):
+            missing = [column for column in columns if column not in table]
+            if missing:
+                raise SchemaError(
+                    f"a mismatch needs the columns {', '.join(columns)} in {name}",
+                    f"{name} lacks {', '.join(missing)}",
+                    "Compare the walks again: `gaitdisc compare`.",
+                )
+        object.__setattr__(self, "curves", {name: read_only(self.curves[name]) for name in CURVES})
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the channels, in order."""
+        return tuple(channel.name for channel in self.channels)
+
+    @property
+    def rmse(self) -> dict[str, float]:
+        """Root mean square over the stride of the gap between the mean curves [each channel's unit]."""
+        return {name: float(self.summary_of(name)["rms_gap"]) for name in self.names}
+
+    def curve_table(self, name: str) -> pd.DataFrame:
+        """Everything over the stride of one channel, one row a percent.
+
+        Parameters
+        ----------
+        name : str
+            Of the channel.
+        """
+        column = self.names.index(name)
+        table = pd.DataFrame({key: self.curves[key][:, column] for key in CURVES})
+        table.insert(0, "percent", PERCENT)
+        table["differs"] = np.abs(table["t"]) > self.exchange.threshold
+        return table
+
+    def ordered(self) -> list[str]:
+        """Names of the channels that differ, the largest gap against its own spread first."""
+        differing = self.summary[self.summary["differs"].astype(bool)]
+        size = differing["rms_gap"] / differing["rms_sd"].clip(lower=1e-12)
+        return [str(name) for name in differing.loc[size.sort_values(ascending=False).index, "channel"]]
+
+    def regions_of(self, name: str) -> list[dict[str, Any]]:
+        """Stretches of one channel, in order of the stride: rows of `regions`.
+
+        Parameters
+        ----------
+        name : str
+            Of the channel.
+        """
+        return _records(self.regions[self.regions["channel"] == name])
+
+    def summary_of(self, name: str) -> dict[str, Any]:
+        """Row of `summary` of one channel.
+
+        Parameters
+        ----------
+        name : str
+            Of the channel.
+        """
+        return _records(self.summary[self.summary["channel"] == name])[0]
+
+
+def _records(table: pd.DataFrame) -> list[dict[str, Any]]:
+    return [{str(key): value for key, value in row.items()} for row in table.to_dict("records")]

@@ -1,0 +1,318 @@
+"""Where over the stride curves differ: a permutation test of all points and all channels at once, and its clusters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import trapezoid
+
+from gaitdisc.errors import ComparisonError, ShapeError
+
+FEWEST_IN_ONE = 6  # 2^5 sign flips, of which the smallest p is 1/32
+FEWEST_IN_EACH = 6  # fewer departures hold the level no longer
+AT_ONCE = 2**23  # numbers held at once while permuting
+ROUNDING = 1e-6  # of a channel's spread: a standard error below it is rounding
+Statistic = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+
+
+@dataclass(frozen=True)
+class Cluster:
+    """A stretch of the stride in which two sets of curves differ.
+
+    Parameters
+    ----------
+    channel : int
+        Column of the curves.
+    first, last : int
+        Points of the stride, both inside.
+    sign : int
+        1 where the first set lies above, -1 where it lies below.
+    mass : float
+        Integral of |t| above the threshold over the points.
+    p : float
+        Share of permutations with a cluster of that mass or more anywhere in the stride and in any channel.
+    """
+
+    channel: int
+    first: int
+    last: int
+    sign: int
+    mass: float
+    p: float
+
+
+@dataclass(frozen=True, eq=False)
+class ClusterTest:
+    """A permutation test of curves, all points and channels corrected together.
+
+    Parameters
+    ----------
+    t : ndarray (phase, channel)
+        Statistic of the curves as they are.
+    standard_error : ndarray (phase, channel) [each channel's unit]
+        Of the difference.
+    threshold : float
+        |t| that only alpha of the permutations exceed anywhere.
+    p : ndarray (channel,)
+        Of the channel's largest |t|, corrected for all points and channels.
+    clusters : tuple of Cluster
+        Stretches beyond the threshold, by channel and point.
+    permutations : int
+        How many, the curves as they are among them.
+    exact : bool
+        Whether these are all that there are.
+    alpha : float
+        Chance of a point beyond the threshold anywhere where nothing differs.
+    """
+
+    t: NDArray[np.float64]
+    standard_error: NDArray[np.float64]
+    threshold: float
+    p: NDArray[np.float64]
+    clusters: tuple[Cluster, ...]
+    permutations: int
+    exact: bool
+    alpha: float
+
+
+@dataclass(frozen=True)
+class PermutationPlan:
+    """How a permutation test is run.
+
+    Parameters
+    ----------
+    alpha : float
+        Chance of a false alarm anywhere in the stride and in any channel.
+    permutations : int
+        Most of them; where there are no more, all are taken.
+    seed : int
+        Of those drawn.
+    """
+
+    alpha: float = 0.05
+    permutations: int = 2000
+    seed: int = 0
+
+
+USUAL = PermutationPlan()
+
+
+def one_sample_test(
+    curves: NDArray[np.float64],
+    plan: PermutationPlan = USUAL,
+    worth: NDArray[np.float64] | None = None,
+) -> ClusterTest:
+    """Test whether curves lie about zero: differences of pairs, or curves minus one that is known.
+
+    Under the null the sign of a unit's curve as a whole is by chance, which keeps what binds its points and channels
+    together. Student's t at every point; the threshold is that of the largest |t| over points and channels.
+
+    Parameters
+    ----------
+    curves : ndarray (unit, phase, channel) [each channel's unit]
+        Complete; units are exchangeable: people, strides, or blocks of strides.
+    plan : PermutationPlan
+        Level, number, seed.
+    worth : ndarray (channel,), optional
+        Independent units that one unit is worth, at most 1; t is divided by the root of its inverse.
+
+    Returns
+    -------
+    ClusterTest
+
+    Raises
+    ------
+    ShapeError
+        If the curves are not (unit, phase, channel), or a value is missing.
+    ComparisonError
+        If there are fewer than six units, or so few permutations that none could be significant.
+
+    References
+    ----------
+    Nichols and Holmes 2002 (largest statistic); Pataky, Vanrenterghem and Robinson 2015 (curves; spm1d). Differs from
+    spm1d: one threshold for both signs, and channels are corrected together.
+
+    Examples
+    --------
+    >>> curves = np.random.default_rng(0).normal(0.0, 1.0, (20, 101, 1))
+    >>> curves[:, 40:60] += 3.0
+    >>> [(found.first, found.last) for found in one_sample_test(curves).clusters]
+    [(40, 59)]
+    """
+    _check(curves, FEWEST_IN_ONE)
+    n, *shape = curves.shape
+    flat = curves.reshape(n, -1)
+    squares, least = (flat**2).sum(axis=0), _least_error(curves, n)
+
+    def t_of(signs: NDArray[np.float64]) -> NDArray[np.float64]:
+        mean = signs @ flat / n
+        variance = np.maximum(squares - n * mean**2, 0.0) / (n - 1)
+        return (mean / np.sqrt(variance / n + least)).reshape(-1, *shape)
+
+    mean = curves.mean(axis=0)
+    error = np.sqrt(curves.var(axis=0, ddof=1) / n + least.reshape(shape))
+    return _tested(mean / error, error, t_of, _signs(n, plan), plan, worth)
+
+
+def two_sample_test(
+    first: NDArray[np.float64],
+    second: NDArray[np.float64],
+    plan: PermutationPlan = USUAL,
+    worth: NDArray[np.float64] | None = None,
+) -> ClusterTest:
+    """Test whether two independent sets of curves differ, first minus second.
+
+    Under the null the sign of each unit's departure from the mean of its set is by chance. Welch's t at every point;
+    the threshold is that of the largest |t| over points and channels. Signs are turned rather than units exchanged
+    between the sets, because a simulation spreads less than people do: with three times the spread in one of two sets
+    of 8 to 20 units, exchange raised a false alarm in .05 to .59 of 300 draws, signs in .04 to .07.
+
+    Parameters
+    ----------
+    first, second : ndarray (unit, phase, channel) [each channel's unit]
+        Complete; units are exchangeable: people, strides, or blocks of strides.
+    plan : PermutationPlan
+        Level, number, seed.
+    worth : ndarray (channel,), optional
+        Independent units that one unit is worth, at most 1; t is divided by the root of its inverse.
+
+    Returns
+    -------
+    ClusterTest
+
+    Raises
+    ------
+    ShapeError
+        If the curves are not (unit, phase, channel), differ in phase or channel, or a value is missing.
+    ComparisonError
+        If a set has fewer than four units, or there are so few permutations that none could be significant.
+
+    References
+    ----------
+    As `one_sample_test`; signs of departures: Liu 1988, Winkler et al. 2014. spm1d's permutation test exchanges units
+    and pools the variances.
+
+    Examples
+    --------
+    >>> first, second = np.random.default_rng(0).normal(0.0, 1.0, (2, 20, 101, 1))
+    >>> first[:, 40:60] -= 4.0
+    >>> [(found.first, found.last, found.sign) for found in two_sample_test(first, second).clusters]
+    [(40, 59, -1)]
+    """
+    _check(first, FEWEST_IN_EACH)
+    _check(second, FEWEST_IN_EACH)
+    if first.shape[1:] != second.shape[1:]:
+        raise ShapeError(
+            "two sets of curves need the same points of the stride and channels",
+            f"found {first.shape} and {second.shape}",
+            "Normalise both to 101 points and choose the channels that both have.",
+        )
+    sets, shape = (first, second), first.shape[1:]
+    apart = [(curves - curves.mean(axis=0)).reshape(len(curves), -1) for curves in sets]
+    least = _least_error(np.concatenate(apart).reshape(-1, *shape), len(first) + len(second))
+
+    def t_of(signs: NDArray[np.float64]) -> NDArray[np.float64]:
+        means, squares = [], least
+        for part, turned in zip(apart, np.split(signs, [len(first)], axis=1), strict=True):
+            n = len(part)
+            mean = turned @ part / n
+            squares = squares + np.maximum((part**2).sum(axis=0) - n * mean**2, 0.0) / (n - 1) / n
+            means.append(mean)
+        return ((means[0] - means[1]) / np.sqrt(squares)).reshape(-1, *shape)
+
+    difference = first.mean(axis=0) - second.mean(axis=0)
+    variance = first.var(axis=0, ddof=1) / len(first) + second.var(axis=0, ddof=1) / len(second)
+    error = np.sqrt(variance + least.reshape(shape))
+    return _tested(difference / error, error, t_of, _signs(len(first) + len(second), plan), plan, worth)
+
+
+def _tested(
+    t: NDArray[np.float64],
+    error: NDArray[np.float64],
+    t_of: Statistic,
+    drawn: tuple[NDArray[np.float64], bool],
+    plan: PermutationPlan,
+    worth: NDArray[np.float64] | None,
+) -> ClusterTest:
+    permutations, exact = drawn
+    share = np.sqrt(np.ones(t.shape[1]) if worth is None else np.minimum(worth, 1.0))
+    largest = [np.abs(t_of(part)).max(axis=(1, 2)) for part in _parts(permutations, t.size)]
+    over_all = np.concatenate([[np.abs(t).max()], *largest])  # the curves as they are count as one
+    threshold = float(np.sort(over_all)[::-1][int(np.floor(plan.alpha * len(over_all)))])
+    beyond = permutations[over_all[1:] > threshold]
+    fields = [t, *(one for part in _parts(beyond, t.size) for one in t_of(part))]
+    masses = np.zeros(len(over_all))
+    masses[: len(fields)] = [max((mass for *_, mass in _stretches(one, threshold)), default=0.0) for one in fields]
+    t, error = t * share, error / share
+    clusters = tuple(
+        Cluster(channel, first, last, sign, mass, float(np.mean(masses >= mass * (1 - 1e-9))))
+        for channel, first, last, sign, mass in _stretches(t, threshold)
+    )
+    p = np.array([np.mean(over_all >= peak * (1 - 1e-9)) for peak in np.abs(t).max(axis=0)])
+    return ClusterTest(t, error, threshold, p, clusters, len(over_all), exact, plan.alpha)
+
+
+def _stretches(t: NDArray[np.float64], threshold: float) -> Iterator[tuple[int, int, int, int, float]]:
+    """Channel, first and last point, sign and mass of every run beyond the threshold."""
+    for channel in np.flatnonzero((np.abs(t) > threshold).any(axis=0)):
+        side = np.sign(t[:, channel]) * (np.abs(t[:, channel]) > threshold)
+        edges = np.flatnonzero(np.diff(side, prepend=0.0, append=0.0))
+        for start, end in pairwise(edges):
+            if side[start]:
+                above = np.abs(t[start:end, channel]) - threshold
+                mass = float(trapezoid(above)) if len(above) > 1 else float(above[0])
+                yield int(channel), int(start), int(end) - 1, int(side[start]), mass
+
+
+def _parts(drawn: NDArray[np.float64], size: int) -> Iterator[NDArray[np.float64]]:
+    step = max(1, AT_ONCE // (4 * size))
+    for start in range(0, len(drawn), step):
+        yield drawn[start : start + step]
+
+
+def _signs(n: int, plan: PermutationPlan) -> tuple[NDArray[np.float64], bool]:
+    """One row a permutation, and whether these are all; with all signs turned |t| is the same, so one stays."""
+    exact = 2 ** (n - 1) <= plan.permutations
+    if exact:
+        turned = (np.arange(1, 2 ** (n - 1))[:, None] >> np.arange(n - 1)) & 1
+    else:
+        turned = np.random.default_rng(plan.seed).integers(0, 2, (plan.permutations - 1, n - 1))
+    _check_count(len(turned) + 1, plan)
+    signs = np.ones((len(turned), n))
+    signs[:, 1:] -= 2.0 * turned
+    return signs, exact
+
+
+def _least_error(curves: NDArray[np.float64], n: int) -> NDArray[np.float64]:
+    """Square of the smallest standard error that is more than rounding, (phase x channel,)."""
+    spread = np.maximum((curves**2).mean(axis=(0, 1)), np.finfo(float).tiny)
+    return np.broadcast_to(ROUNDING**2 * spread / n, curves.shape[1:]).ravel()
+
+
+def _check(curves: NDArray[np.float64], fewest: int) -> None:
+    if curves.ndim != 3 or not np.isfinite(curves).all():
+        missing = int(np.sum(~np.isfinite(curves)))
+        raise ShapeError(
+            "a test over the stride needs complete curves (unit, phase, channel)",
+            f"found {curves.shape}" + (f", {missing} values missing" if missing else ""),
+            "Leave out strides or channels with gaps, by name.",
+        )
+    if len(curves) < fewest:
+        raise ComparisonError(
+            f"a permutation test at the 5 % level needs {fewest} units or more in a set",
+            f"found {len(curves)}",
+            "Record more strides or people; with fewer, no result could be significant.",
+        )
+
+
+def _check_count(count: int, plan: PermutationPlan) -> None:
+    if plan.alpha * count < 1:
+        raise ComparisonError(
+            f"a permutation test at level {plan.alpha:g} needs {int(np.ceil(1 / plan.alpha))} permutations or more",
+            f"there are {count}",
+            "Raise the number of permutations, or the level.",
+        )

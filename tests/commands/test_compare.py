@@ -1,0 +1,46 @@
+import pytest
+from typer.testing import CliRunner
+
+from gaitdisc.cli import app
+from gaitdisc.commands.exit_codes import REFUSED
+
+USAGE = 2
+
+
+def test_two_recordings_give_a_sentence_a_table_and_a_report(recordings, tmp_path):
+    first, second = (recordings / "walker1" / f"{word}.mot" for word in ("exo", "natural"))
+    done = CliRunner().invoke(app, ["compare", str(first), str(second), "--out", str(tmp_path)])
+    assert done.exit_code == 0, done.output
+    assert done.stdout.startswith("In exo the ")
+    assert "ankle is up to" in done.stdout.split(".")[0] + done.stdout.split(".")[1]
+    assert (tmp_path / "report.html").is_file()
+    assert (tmp_path / "mismatch.json").is_file()
+
+
+def test_a_participant_of_a_study(study):
+    done = CliRunner().invoke(app, ["compare", str(study), "--participant", "walker1", "--channel", "ankle_angle_r"])
+    assert done.exit_code == 0, done.output
+    assert done.stdout.startswith("In walker1 exo the right ankle is")
+    assert (study / "compare" / "report.html").is_file()
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["{exo}"], "a comparison needs two recordings, or a study; exo.mot is one recording. Name the measured walk"),
+        (["{exo}", "{exo}"], "hold the same bytes"),
+        (["{exo}", "{natural}", "--channel", "ankle_ange_r"], "the nearest that all have is 'ankle_angle_r'"),
+        (["{exo}", "{natural}", "--detector", "force"], "strides that one detector finds in both"),
+    ],
+)
+def test_refusals_are_one_sentence(called, recordings, tmp_path, words, said):
+    files = {word: recordings / "walker1" / f"{word}.mot" for word in ("exo", "natural")}
+    done = called("compare", *(word.format(**files) for word in words), "--out", tmp_path)
+    assert done.returncode == REFUSED
+    assert said in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_a_participant_of_two_files_is_wrong_usage(recordings):
+    files = [str(recordings / "walker1" / f"{word}.mot") for word in ("exo", "natural")]
+    assert CliRunner().invoke(app, ["compare", *files, "--participant", "P01"]).exit_code == USAGE

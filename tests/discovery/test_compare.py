@@ -1,0 +1,112 @@
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy.ndimage import gaussian_filter1d
+
+from gaitdisc.channel import Channel
+from gaitdisc.discovery.compare import best_shift, compare_people, compare_walks
+from gaitdisc.errors import ComparisonError
+from gaitdisc.recording import PERCENT
+from gaitdisc.results import WalkSummary
+from gaitdisc.results.walk_summary import STRIDE_COLUMNS
+
+CHANNELS = tuple(Channel(f"{joint}_r", "angle", "deg", "r") for joint in ("hip_flexion", "knee_angle", "ankle_angle"))
+SHAPE = np.stack([20 * np.cos(2 * np.pi * k * PERCENT / 100) for k in (1, 2, 3)], axis=1)
+BUMP = np.where((PERCENT >= 30) & (PERCENT <= 60), -6.0, 0.0)
+
+
+def walk(name, strides, seed, rho=0.0, sd=1.5):
+    rng = np.random.default_rng(seed)
+    noise = gaussian_filter1d(rng.standard_normal((strides, 141, 3)), 5, axis=1)[:, 20:121]
+    noise *= sd / noise.std()
+    for k in range(1, strides):
+        noise[k] = rho * noise[k - 1] + np.sqrt(1 - rho**2) * noise[k]
+    strides_table = pd.DataFrame(columns=pd.Index(STRIDE_COLUMNS))
+    return WalkSummary("", name, 60.0, 100.0, "angles", CHANNELS, SHAPE + noise, strides_table, (), {name: "0" * 64})
+
+
+def bent(summary):
+    curves = np.array(summary.curves)
+    curves[:, :, 2] += BUMP
+    return replace(summary, curves=curves)
+
+
+def test_a_known_gap_is_found_where_it_is_and_nowhere_else():
+    found = compare_walks(bent(walk("sim", 40, 1)), walk("measured", 50, 2))
+    assert found.ordered() == ["ankle_angle_r"]
+    [region] = found.regions_of("ankle_angle_r")
+    assert region["from_percent"] == pytest.approx(30, abs=1)
+    assert region["to_percent"] == pytest.approx(60, abs=1)
+    assert region["gap"] == pytest.approx(-6, abs=1)
+    assert region["gap_sd"] == pytest.approx(-4, abs=1.2)
+    assert region["p"] < 0.001
+    inside = (found.curves["low"] <= -6) & (found.curves["high"] >= -6)
+    assert inside[32:58, 2].all()
+    assert found.summary_of("hip_flexion_r")["within"] < 2.5
+    assert found.rmse["ankle_angle_r"] == pytest.approx(6 * np.sqrt(0.31), abs=0.4)
+
+
+def test_no_gap_and_what_could_have_been_seen():
+    found = compare_walks(walk("sim", 40, 3), walk("measured", 50, 4))
+    assert not len(found.regions)
+    assert 0.8 < found.summary_of("knee_angle_r")["visible"] < 2.0
+    seen = compare_walks(replace(walk("sim", 40, 3), curves=walk("sim", 40, 3).curves + 2.0), walk("measured", 50, 4))
+    assert seen.ordered()
+
+
+def test_one_stride_is_a_curve_tested_against_the_strides():
+    periodic = replace(walk("sim", 1, 5), curves=(SHAPE + np.stack([0 * BUMP, 0 * BUMP, BUMP], axis=1))[None])
+    found = compare_walks(periodic, walk("measured", 30, 6))
+    assert found.ordered() == ["ankle_angle_r"]
+    assert (found.exchange.first, found.exchange.strides_first) == (1, 1)
+    assert np.isnan(found.curves["sd_first"]).all()
+
+
+def test_dependent_strides_are_gathered_into_blocks():
+    found = compare_walks(walk("sim", 80, 7, rho=0.6), walk("measured", 80, 8, rho=0.6))
+    assert found.exchange.unit.startswith("block of ")
+    assert not len(found.regions)
+    wider = found.curves["high"] - found.curves["low"]
+    plain = compare_walks(walk("sim", 80, 7), walk("measured", 80, 8)).curves
+    assert np.median(wider) > 1.5 * np.median(plain["high"] - plain["low"])
+
+
+def test_too_few_strides_are_refused_in_words():
+    with pytest.raises(ComparisonError, match=r"measured is what is compared with.*it has 1, sim has 30") as refused:
+        compare_walks(walk("sim", 30, 1), walk("measured", 1, 2))
+    assert "periodic simulation, is named first" in refused.value.remedy
+
+
+def test_people_are_units_and_paired():
+    pairs = []
+    for person in range(8):
+        own = np.random.default_rng(person).normal(0, 8)  # people differ by more than conditions
+        nominal, device = walk("nominal", 10, [person, 1]), bent(walk("exo", 12, [person, 2]))
+        pairs.append((replace(device, curves=device.curves + own), replace(nominal, curves=nominal.curves + own)))
+    found = compare_people(pairs)
+    assert found.exchange.unit == "participant"
+    assert (found.exchange.first, found.exchange.permutations, found.exchange.exact) == (8, 128, True)
+    assert found.ordered() == ["ankle_angle_r"]
+    assert found.curves["sd_second"].mean() == pytest.approx(1.5, abs=0.3)
+    with pytest.raises(ComparisonError, match=r"6 participants or more; 5 have both"):
+        compare_people(pairs[:5])
+
+
+def test_a_shifted_curve_is_told():
+    wave = SHAPE[:, 0]
+    shift, left = best_shift(np.roll(wave[:-1], 4)[np.arange(101) % 100], wave)
+    assert shift == -4
+    assert left == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.slow
+def test_the_band_holds_the_true_gap_everywhere_in_95_percent():
+    """Strides that depend on each other, a gap in one channel; 200 pairs of walks."""
+    truth = np.stack([0 * BUMP, 0 * BUMP, BUMP], axis=1)
+    held = []
+    for seed in range(200):
+        found = compare_walks(bent(walk("a", 60, [seed, 1], rho=0.4)), walk("b", 60, [seed, 2], rho=0.4, sd=3.0))
+        held.append(bool(((found.curves["low"] <= truth) & (truth <= found.curves["high"])).all()))
+    assert 0.89 <= np.mean(held) <= 0.99

@@ -1,0 +1,73 @@
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from gaitdisc.channel import Channel
+from gaitdisc.discovery.compare_channels import common_curves
+from gaitdisc.errors import ChannelError
+from gaitdisc.recording import Finding
+from gaitdisc.results import WalkSummary
+from gaitdisc.results.walk_summary import STRIDE_COLUMNS
+
+NO_STRIDES = pd.DataFrame(columns=pd.Index(STRIDE_COLUMNS))
+
+
+def summary(name, strides=10, units=None, seed=0):
+    units = units or {"hip_flexion_r": "deg", "ankle_angle_r": "deg"}
+    curves = np.random.default_rng(seed).normal(size=(strides, 101, len(units)))
+    channels = tuple(Channel(key, "angle", unit, "r") for key, unit in units.items())
+    return WalkSummary("", name, 10.0, 100.0, "angles", channels, curves, NO_STRIDES, (), {})
+
+
+def test_channels_that_one_lacks_and_other_units_are_left_out_and_said():
+    one = summary("sim", units={"hip_flexion_r": "deg", "ankle_angle_r_moment": "N m", "knee_angle_r": "deg"})
+    other = summary("measured", units={"hip_flexion_r": "deg", "ankle_angle_r_moment": "N m/kg"}, seed=1)
+    found = common_curves((one, other))
+    assert [c.name for c in found.channels] == ["hip_flexion_r"]
+    said = [finding.line() for finding in found.findings]
+    assert any("measured: not compared: no knee_angle_r, which the other has" in line for line in said)
+    assert any("ankle_angle_r_moment: unit: given in 'N m' and in 'N m/kg'" in line for line in said)
+
+
+def test_nothing_in_common_is_refused_in_words():
+    one, other = summary("sim", units={"hip_flexion_r": "deg"}), summary("measured", units={"knee_angle_r": "deg"})
+    with pytest.raises(ChannelError, match="sim and measured have 1 and 1 channels, none of that kind"):
+        common_curves((one, other))
+    with pytest.raises(ChannelError, match="'hip_flexion_r' is to be compared; measured lacks it"):
+        common_curves((one, other), ("hip_flexion_r",))
+
+
+def test_locked_and_repeated_channels_are_left_out():
+    walks = []
+    for name, seed in (("a", 0), ("b", 1)):
+        walk = summary(name, units={"hip_flexion_r": "deg", "mtp_angle_r": "deg", "knee_angle_r": "deg"}, seed=seed)
+        curves = np.array(walk.curves)
+        curves[:, :, 1], curves[:, :, 2] = 4.0, curves[:, :, 0]
+        walks.append(replace(walk, curves=curves))
+    found = common_curves(walks)
+    assert [c.name for c in found.channels] == ["hip_flexion_r"]
+    assert [f.what.split(":")[0] for f in found.findings] == [
+        "mtp_angle_r do not move in any walk",
+        "knee_angle_r repeat another channel, number by number",
+    ]
+
+
+def test_frozen_channels_are_compared_only_when_asked_for():
+    frozen = Finding("warning", "frozen", "a.mot", "the same value for 9 s", "", "ankle_angle_r")
+    walks = replace(summary("a"), findings=(frozen,)), summary("b", seed=1)
+    assert [c.name for c in common_curves(walks).channels] == ["hip_flexion_r"]
+    assert "ankle_angle_r (frozen): left out" in common_curves(walks).findings[0].what
+    assert [c.name for c in common_curves(walks, ("ankle_angle_r",)).channels] == ["ankle_angle_r"]
+
+
+def test_a_stride_with_a_gap_is_left_out_and_a_channel_full_of_gaps_too():
+    walk = summary("a")
+    curves = np.array(walk.curves)
+    curves[3, 50, 0] = np.nan
+    curves[:8, 20, 1] = np.nan
+    found = common_curves((replace(walk, curves=curves), summary("b", 7, seed=1)))
+    assert [c.name for c in found.channels] == ["hip_flexion_r"]
+    assert [len(c) for c in found.curves] == [9, 7]
+    assert any("8 of 10 strides have gaps" in f.what for f in found.findings)
