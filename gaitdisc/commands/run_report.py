@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import typer
 
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from gaitdisc.batch.run_study import Told
     from gaitdisc.ingest.study import Study
     from gaitdisc.results import ResponseRun
+
+Result = TypeVar("Result")
 
 
 def report_on(work: Callable[[Told], ResponseRun], study: Study, folder: Path, quiet: bool) -> None:
@@ -43,7 +45,7 @@ def report_on(work: Callable[[Told], ResponseRun], study: Study, folder: Path, q
 
     started = time.perf_counter()
     try:
-        done = work(lambda *_: None) if quiet else _with_progress(work, [person.id for person in study.participants])
+        done = work(lambda *_: None) if quiet else with_progress(work, [person.id for person in study.participants])
     except KeyboardInterrupt:
         typer.echo("Stopped. What was finished is kept; the same command goes on from there.", err=True)
         raise typer.Exit(STOPPED) from None
@@ -58,7 +60,16 @@ def report_on(work: Callable[[Told], ResponseRun], study: Study, folder: Path, q
         raise typer.Exit(SOME_REFUSED if done.responses else REFUSED)
 
 
-def _with_progress(work: Callable[[Told], ResponseRun], people: list[str]) -> ResponseRun:
+def with_progress(work: Callable[[Told], Result], people: list[str]) -> Result:
+    """Do the work with a bar that counts participants.
+
+    Parameters
+    ----------
+    work : callable
+        Called with what it shall tell its progress to.
+    people : list of str
+        Pseudonyms.
+    """
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 

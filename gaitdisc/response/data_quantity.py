@@ -70,7 +70,7 @@ def fit_data_quantity(
     }
     tables = []
     for number, length in enumerate(wanted if whole else [*wanted, whole_s]):
-        less_nominal, less_exo = (_shortened(walk, settings, length, part) for walk in (nominal, exo))
+        less_nominal, less_exo = (shortened(walk, settings, length, part) for walk in (nominal, exo))
         told = partial(_told, progress, number, len(wanted) + 1)
         try:
             response = fit_response(less_nominal, less_exo, settings, progress=told)
@@ -92,8 +92,20 @@ def _with_length(response: ParticipantResponse, length_s: float) -> pd.DataFrame
     return r2[r2["kind"] != "null"].assign(length_s=length_s, n_training=used)  # the filters' null has no length
 
 
-def _shortened(walk: Trajectory, settings: ResponseSettings, length_s: float, part: str) -> Trajectory:
-    """Walk whose training part keeps `length_s` seconds usable; the held-out part is untouched."""
+def shortened(walk: Trajectory, settings: ResponseSettings, length_s: float, part: str) -> Trajectory:
+    """Walk whose training part keeps so many seconds usable; the held-out part is untouched.
+
+    Parameters
+    ----------
+    walk : Trajectory
+        Whole walk.
+    settings : ResponseSettings
+        Held-out part.
+    length_s : float
+        Length that stays usable [s].
+    part : str
+        `first`, counted from the first usable sample, or `last`.
+    """
     training, _ = held_out_part(walk, settings)
     count, keep = len(training.time), round(length_s * walk.rate_hz)
     good = np.flatnonzero(np.isfinite(training.phi) & training.usable.all(axis=1))

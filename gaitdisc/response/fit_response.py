@@ -109,7 +109,7 @@ def fit_response(
     """
     _check_pair(nominal, exo)
     held_nominal, held_exo = (held_out_part(walk, settings)[1] for walk in (nominal, exo))
-    on_nominal, on_exo = (_held_out_samples(held, settings) for held in (held_nominal, held_exo))
+    on_nominal, on_exo = (held_out_samples(held, settings) for held in (held_nominal, held_exo))
     fitted = fit_both(nominal, exo, settings, progress)
     kinds = {"network": fitted.network, "ridge": fitted.ridge, "linear": fitted.linear}
     judged = [_judged(kind, models, on_nominal, on_exo, settings) for kind, models in kinds.items()]
@@ -175,6 +175,31 @@ def held_out_part(walk: Trajectory, settings: ResponseSettings) -> tuple[Traject
     return walk.split(length)
 
 
+def held_out_samples(held_out: Trajectory, settings: ResponseSettings) -> Samples:
+    """Samples of a held-out part that models are judged on.
+
+    Parameters
+    ----------
+    held_out : Trajectory
+        Of `held_out_part`.
+    settings : ResponseSettings
+        Outputs.
+
+    Raises
+    ------
+    TrainingError
+        If there are fewer than `LEAST_HELD_OUT`.
+    """
+    samples, dropped = gait_samples(held_out, settings.outputs)
+    if len(samples) < LEAST_HELD_OUT:
+        raise TrainingError(
+            f"a model is judged on {LEAST_HELD_OUT} held-out samples at least",
+            f"the last {len(held_out.time) / held_out.rate_hz:.2f} s: {dropped.finding().line()}",
+            "Hold out a longer part, or mend or leave away the channels named.",
+        )
+    return samples
+
+
 def residual_strides(held_out: Trajectory, samples: Samples, predicted: NDArray[np.float64]) -> NDArray[np.float64]:
     """Measured minus predicted over every stride that lies wholly in the held-out part.
 
@@ -195,17 +220,6 @@ def residual_strides(held_out: Trajectory, samples: Samples, predicted: NDArray[
     residual = np.full((len(held_out.time), len(samples.outputs)), np.nan)
     residual[np.searchsorted(held_out.time, samples.time)] = samples.y - predicted
     return stride_curves(held_out.time, residual, strides_of_phase(held_out.time, held_out.phi))
-
-
-def _held_out_samples(held_out: Trajectory, settings: ResponseSettings) -> Samples:
-    samples, dropped = gait_samples(held_out, settings.outputs)
-    if len(samples) < LEAST_HELD_OUT:
-        raise TrainingError(
-            f"a model is judged on {LEAST_HELD_OUT} held-out samples at least",
-            f"the last {len(held_out.time) / held_out.rate_hz:.2f} s: {dropped.finding().line()}",
-            "Hold out a longer part, or mend or leave away the channels named.",
-        )
-    return samples
 
 
 def _judged(

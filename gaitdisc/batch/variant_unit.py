@@ -1,0 +1,141 @@
+"""One participant's models with one thing changed at a time; kept on disk as soon as they are whole."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Mapping
+from functools import partial
+from pathlib import Path
+
+import pandas as pd
+
+from gaitdisc.batch.participant_unit import processed_walks, response_key, response_settings, unit_keys
+from gaitdisc.errors import GaitdiscError, SchemaError
+from gaitdisc.ingest.c3d import C3DReader
+from gaitdisc.ingest.reading import read_planned_trial
+from gaitdisc.ingest.study import Participant, Study
+from gaitdisc.processing.filter_null import filter_null
+from gaitdisc.processing.process import is_raw, processed
+from gaitdisc.recording import Trajectory, Trial
+from gaitdisc.response.data_quantity import shortened
+from gaitdisc.response.fit_response import ResponseSettings, fit_response, held_out_part
+from gaitdisc.response.modalities import fit_without
+from gaitdisc.response.sensitivity import Setting, settings_around
+from gaitdisc.results import Refusal
+from gaitdisc.results.variant_store import load_variants, save_variants
+from gaitdisc.results.variants import VARIANT_COLUMNS, Variants
+
+Progress = Callable[[float], None]
+
+
+def computed_variants(
+    study: Study, participant: Participant, folder: Path, question: str, progress: Progress
+) -> Variants | Refusal:
+    """Compute one participant's variants, or load what was computed from the same files and settings.
+
+    Parameters
+    ----------
+    study : Study
+        Settings.
+    participant : Participant
+        Who; complete in the study.
+    folder : Path
+        Folder of the run.
+    question : str
+        `modalities` or `sensitivity`.
+    progress : callable
+        Called with the fraction done.
+
+    Returns
+    -------
+    Variants or Refusal
+        A refusal stops this participant and nobody else.
+    """
+    place = folder / question / "people" / participant.id
+    key = _key(study, participant, question)
+    try:
+        stored, stored_key = load_variants(place)
+        if stored_key == key:
+            return stored
+    except SchemaError:
+        pass  # nothing there, or damaged: computed anew
+    found = (
+        _modalities(study, participant, progress)
+        if question == "modalities"
+        else _sensitivity(study, participant, progress)
+    )
+    if isinstance(found, Variants):
+        save_variants(found, place, key)
+    return found
+
+
+def _key(study: Study, participant: Participant, question: str) -> str:
+    asked = [question, *(repr(setting) for setting in _settings(study) if question == "sensitivity")]
+    return hashlib.sha256("\n".join([response_key(unit_keys(study, participant)), *asked]).encode()).hexdigest()
+
+
+def _modalities(study: Study, participant: Participant, progress: Progress) -> Variants | Refusal:
+    walks, refusals = processed_walks(study, participant)
+    if refusals:
+        return refusals[0]
+    nominal, exo = (walks[word].trajectory for word in _words(study))
+    try:
+        table = fit_without(nominal, exo, response_settings(study), progress)
+    except GaitdiscError as error:
+        return Refusal(participant.id, "", str(error))
+    return Variants(participant.id, "modalities", table, {})
+
+
+def _sensitivity(study: Study, participant: Participant, progress: Progress) -> Variants | Refusal:
+    try:
+        with C3DReader() as reader:
+            planned = {word: participant.trials_of(word)[0] for word in _words(study)}
+            trials = {word: read_planned_trial(study, participant, one, reader) for word, one in planned.items()}
+    except GaitdiscError as error:
+        return Refusal(participant.id, "", str(error))
+    tables, left_away = [], {}
+    settings = _settings(study)
+    for number, setting in enumerate(settings):
+        try:
+            told = partial(_told, progress, number, len(settings))
+            tables.append(_under(study, trials, setting, told).assign(variant=setting.name))
+        except GaitdiscError as error:
+            left_away[setting.name] = str(error)
+    if not tables:
+        return Refusal(participant.id, "", next(iter(left_away.values())))
+    table = pd.concat(tables, ignore_index=True)[list(VARIANT_COLUMNS)]
+    return Variants(participant.id, "sensitivity", table, left_away)
+
+
+def _under(study: Study, trials: Mapping[str, Trial], setting: Setting, told: Progress) -> pd.DataFrame:
+    """R2 on device walking under one setting."""
+    cut_offs = {"kinematics_hz": setting.angles_hz, "emg_lowpass_hz": setting.emg_hz}
+    filtered = study.model_copy(update={"filters": study.filters.model_copy(update=cut_offs)})
+    nominal, exo = (processed(trials[word], filtered) for word in _words(study))
+    fits = response_settings(study)
+    emg = exo.trial.streams.get("emg")
+    emg_hz = emg.rate_hz if emg is not None and is_raw(emg) else None
+    null = filter_null(exo.state.channels, filtered.filters, exo.state.rate_hz, emg_hz)
+    less_nominal, less_exo = (_first_share(walk.trajectory, fits, setting.share) for walk in (nominal, exo))
+    found = fit_response(less_nominal, less_exo, fits, null, told).r2
+    return found[found["walk"] == "exo"]
+
+
+def _first_share(walk: Trajectory, fits: ResponseSettings, share: float) -> Trajectory:
+    """Walk of whose training part the first so much is used."""
+    if share == 1:
+        return walk
+    return shortened(walk, fits, share * len(held_out_part(walk, fits)[0].time) / walk.rate_hz, "first")
+
+
+def _settings(study: Study) -> tuple[Setting, ...]:
+    filters = study.filters
+    return settings_around(filters.kinematics_hz, filters.emg_lowpass_hz, bool(study.models.emg))
+
+
+def _words(study: Study) -> tuple[str, str]:
+    return study.conditions.nominal, study.conditions.device
+
+
+def _told(progress: Progress, number: int, count: int, fraction: float) -> None:
+    progress((number + fraction) / count)

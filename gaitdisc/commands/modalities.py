@@ -1,0 +1,13 @@
+"""`gaitdisc modalities`: the models without one family of inputs at a time."""
+
+from __future__ import annotations
+
+from gaitdisc.commands.options import Cluster, Jobs, Quiet, RunPlace, StudyPlace
+from gaitdisc.commands.vary_report import vary
+
+
+def modalities(
+    study: StudyPlace, out: RunPlace = None, jobs: Jobs = 1, cluster: Cluster = "", quiet: Quiet = False
+) -> None:
+    """Fit the models without one family of inputs at a time: which inputs carry the response."""
+    vary(study, out, "modalities", (jobs, cluster), quiet)

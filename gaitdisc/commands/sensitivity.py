@@ -1,0 +1,13 @@
+"""`gaitdisc sensitivity`: the models under other cut-offs and training lengths."""
+
+from __future__ import annotations
+
+from gaitdisc.commands.options import Cluster, Jobs, Quiet, RunPlace, StudyPlace
+from gaitdisc.commands.vary_report import vary
+
+
+def sensitivity(
+    study: StudyPlace, out: RunPlace = None, jobs: Jobs = 1, cluster: Cluster = "", quiet: Quiet = False
+) -> None:
+    """Fit the models under other filter cut-offs and training lengths: does the finding rest on them."""
+    vary(study, out, "sensitivity", (jobs, cluster), quiet)

@@ -1,0 +1,59 @@
+"""Work on a question beside the study with its progress shown, then its page."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import typer
+
+from gaitdisc.commands.exit_codes import REFUSED, SOME_REFUSED, STOPPED
+from gaitdisc.commands.run_report import with_progress
+
+
+def vary(place: Path, out: Path | None, question: str, workers: tuple[int, str], quiet: bool) -> None:
+    """Answer a question of a study and write its page.
+
+    Parameters
+    ----------
+    place : Path
+        The study file or its folder.
+    out : Path, optional
+        Folder of the run.
+    question : str
+        `modalities` or `sensitivity`.
+    workers : (int, str)
+        Participants side by side, and the address of a Dask scheduler or nothing.
+    quiet : bool
+        No progress.
+
+    Raises
+    ------
+    typer.Exit
+        With the exit code, if some or all participants were refused or the person at the keyboard stopped it.
+    """
+    from gaitdisc.batch.vary_study import vary_study
+    from gaitdisc.batch.workers import Workers
+    from gaitdisc.ingest.study_file import load_study
+    from gaitdisc.report.variants_page import variant_sentences, write_variants
+
+    study = load_study(place)
+    folder, started, side_by_side = out or study.folder / "run", time.perf_counter(), Workers(*workers)
+    people = [person.id for person in study.participants]
+    try:
+        if quiet:
+            done = vary_study(study, folder, question, side_by_side)
+        else:
+            done = with_progress(lambda told: vary_study(study, folder, question, side_by_side, told), people)
+    except KeyboardInterrupt:
+        typer.echo("Stopped. What was finished is kept; the same command goes on from there.", err=True)
+        raise typer.Exit(STOPPED) from None
+    page = write_variants(done, folder / question)
+    for sentence in variant_sentences(done):
+        typer.echo(sentence)
+    for refusal in done.refusals:
+        who = " ".join(part for part in (refusal.participant, refusal.condition) if part)
+        typer.echo(f"refused: {who}: {refusal.reason}", err=True)
+    typer.echo(f"{len(done.people)} participants in {time.perf_counter() - started:.0f} s. report: {page}")
+    if done.refusals:
+        raise typer.Exit(SOME_REFUSED if done.people else REFUSED)

@@ -1,0 +1,177 @@
+"""Which inputs carry the response: the models fitted without one family of inputs at a time (section 6.2.2)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import pandas as pd
+
+from gaitdisc.channel import side_of
+from gaitdisc.model import Model
+from gaitdisc.recording import Samples, Trajectory
+from gaitdisc.response.comparison import ALPHA, FEWEST, compare_columns
+from gaitdisc.response.fit_response import ResponseSettings, held_out_part, held_out_samples
+from gaitdisc.response.models import fit_linear, fit_network
+from gaitdisc.response.samples import PHASE, gait_samples
+from gaitdisc.results.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, Variants
+from gaitdisc.statistics.r2 import r2
+
+ALL = "all inputs"
+MODELS = ("augmented", "exo")
+Fitted = Callable[[Samples], Model]
+
+
+def input_families(inputs: Sequence[str]) -> dict[str, tuple[str, ...]]:
+    """Families of inputs that are left away, one at a time.
+
+    Parameters
+    ----------
+    inputs : sequence of str
+        Names of the samples' inputs: `knee_angle_r`, `d(knee_angle_r)/dt`, `phi`.
+
+    Returns
+    -------
+    dict of str to tuple of str
+        Name of the family -> its inputs: a kind of measurement; one joint or muscle, both sides, with its velocities.
+        Families that would leave nothing, and those equal to an earlier one, are not among them.
+
+    Examples
+    --------
+    >>> input_families(("knee_angle_r", "emg_sol_r", "d(knee_angle_r)/dt", "d(emg_sol_r)/dt", "phi"))["emg_sol"]
+    ('emg_sol_r', 'd(emg_sol_r)/dt')
+    """
+    channels = {name: _channel(name) for name in inputs if name != PHASE}
+    fast = {name for name in channels if name.startswith("d(")}
+    emg = {name for name in channels if channels[name].startswith("emg_")}
+    angles = set(channels) - emg
+    groups = {
+        "percent stride": {PHASE} & set(inputs),
+        "angles and their velocities": angles,
+        "EMG and its velocities": emg,
+        "angles": angles - fast,
+        "angle velocities": angles & fast,
+        "EMG": emg - fast,
+        "EMG velocities": emg & fast,
+    }
+    for name, channel in channels.items():
+        groups.setdefault(_sideless(channel), set()).add(name)
+    found: dict[str, tuple[str, ...]] = {}
+    for family, members in groups.items():
+        chosen = tuple(name for name in inputs if name in members)
+        if chosen and len(chosen) < len(inputs) and chosen not in found.values():
+            found[family] = chosen
+    return found
+
+
+def fit_without(
+    nominal: Trajectory,
+    exo: Trajectory,
+    settings: ResponseSettings,
+    progress: Callable[[float], None] | None = None,
+) -> pd.DataFrame:
+    """Fit Discrepancy and Exo without one family of inputs at a time, and judge them on held-out device walking.
+
+    The Nominal model keeps all of its inputs, so that what Augmented loses is what the Discrepancy model lost.
+
+    Parameters
+    ----------
+    nominal, exo : Trajectory
+        Whole walks of one participant.
+    settings : ResponseSettings
+        Outputs, held-out part, training.
+    progress : callable, optional
+        Called with the fraction done.
+
+    Returns
+    -------
+    DataFrame
+        Columns `VARIANT_COLUMNS`; variant is `ALL` or the name of a family.
+
+    Raises
+    ------
+    TrainingError
+        If a model cannot be fitted, or too little is held out.
+
+    References
+    ----------
+    Ebers 2023, section 6.2.2, asks which modalities are needed. A family's fall of R2 says what the other inputs cannot
+    replace, no more: joint angles and EMG of one walk go together, so that a family whose absence costs nothing may
+    carry the response as well as those that stand in for it.
+    """
+    progress = progress or (lambda _: None)
+    training = [gait_samples(held_out_part(walk, settings)[0], settings.outputs)[0] for walk in (nominal, exo)]
+    held = held_out_samples(held_out_part(exo, settings)[1], settings)
+    families = {ALL: (), **input_families(held.inputs)}
+    kinds: dict[str, Fitted] = {
+        "network": lambda samples: fit_network(samples, settings.training).model,
+        "ridge": lambda samples: fit_linear(samples, settings.harmonics).model,
+    }
+    known = {kind: fit(training[0]) for kind, fit in kinds.items()}
+    rows = []
+    for number, (family, left_away) in enumerate(families.items()):
+        fewer, judged = _without(training[1], left_away), _without(held, left_away)
+        for kind, fit in kinds.items():
+            missed = fewer.with_outputs(training[1].y - known[kind](training[1].x))
+            predicted = {
+                "augmented": known[kind](held.x) + fit(missed)(judged.x),
+                "exo": fit(fewer)(judged.x),
+            }
+            for model, values in predicted.items():
+                found = zip(settings.outputs, r2(held.y, values), strict=True)
+                rows += [(family, variable, model, kind, value, len(held)) for variable, value in found]
+        progress((number + 1) / len(families))
+    return pd.DataFrame(rows, columns=pd.Index(VARIANT_COLUMNS))
+
+
+def compare_modalities(people: Sequence[Variants], alpha: float = ALPHA) -> pd.DataFrame:
+    """Test R2 without a family of inputs against R2 with all, over participants.
+
+    Parameters
+    ----------
+    people : sequence of Variants
+        Of the question `modalities`; fewer than six are not tested.
+    alpha : float
+        Of each family of tests: the variables of one model and one family of inputs.
+
+    Returns
+    -------
+    DataFrame
+        Columns `VARIANT_TEST_COLUMNS`; first is `all inputs`, second `without`, so that a negative shift is a fall.
+    """
+    if len(people) < FEWEST:
+        return pd.DataFrame(columns=pd.Index(VARIANT_TEST_COLUMNS))
+    table = pd.concat([each.table.assign(participant=each.participant) for each in people], ignore_index=True)
+    table = table[table["kind"] == "network"]
+    variants = [variant for variant in table["variant"].unique() if variant != ALL]
+    of = partial(_by_participant, table)
+    parts = [
+        compare_columns(of(ALL, model), of(variant, model), alpha).assign(
+            variant=variant, model=model, first=ALL, second="without"
+        )
+        for model in MODELS
+        for variant in variants
+    ]
+    return pd.concat(parts, ignore_index=True)[list(VARIANT_TEST_COLUMNS)]
+
+
+def _by_participant(table: pd.DataFrame, variant: str, model: str) -> pd.DataFrame:
+    chosen = table[(table["variant"] == variant) & (table["model"] == model)]
+    wide = chosen.pivot_table(index="participant", columns="variable", values="r2", sort=False, dropna=False)
+    return wide.reindex(index=table["participant"].unique(), columns=table["variable"].unique())
+
+
+def _without(samples: Samples, left_away: Sequence[str]) -> Samples:
+    kept = [name not in left_away for name in samples.inputs]
+    names = tuple(name for name, keep in zip(samples.inputs, kept, strict=True) if keep)
+    return replace(samples, x=samples.x[:, np.array(kept)], inputs=names)
+
+
+def _channel(name: str) -> str:
+    return name.removeprefix("d(").removesuffix(")/dt") if name.startswith("d(") else name
+
+
+def _sideless(channel: str) -> str:
+    return channel.removesuffix(f"_{side_of(channel)}") if side_of(channel) else channel

@@ -1,0 +1,91 @@
+"""What a participant's models explain when one thing is changed: an input left away, a filter, a training length."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import pandas as pd
+
+from gaitdisc.errors import SchemaError
+from gaitdisc.results.pair_test import TEST_COLUMNS
+from gaitdisc.results.response_run import Refusal
+
+QUESTIONS = ("modalities", "sensitivity")
+VARIANT_COLUMNS = ("variant", "variable", "model", "kind", "r2", "n")
+VARIANT_TEST_COLUMNS = ("variant", "model", *TEST_COLUMNS)
+
+
+@dataclass(frozen=True, eq=False)
+class Variants:
+    """R2 on held-out device walking of one participant, under every variant.
+
+    Parameters
+    ----------
+    participant : str
+        Pseudonym.
+    question : str
+        Of `QUESTIONS`: `modalities`, inputs left away; `sensitivity`, filters and training lengths.
+    table : DataFrame
+        Columns `VARIANT_COLUMNS`: variant (in words), variable, model, kind, r2, n (held-out samples).
+    left_away : mapping of str to str
+        Variant -> why there is no row of it.
+
+    Raises
+    ------
+    SchemaError
+        If the table lacks a column, or the question is none.
+    """
+
+    participant: str
+    question: str
+    table: pd.DataFrame
+    left_away: Mapping[str, str]
+
+    def __post_init__(self) -> None:
+        """Check question and columns once."""
+        missing = [column for column in VARIANT_COLUMNS if column not in self.table.columns]
+        if missing or self.question not in QUESTIONS:
+            found = f"lacks {', '.join(missing)}" if missing else f"is of the question {self.question!r}"
+            raise SchemaError(
+                f"variants need the columns {', '.join(VARIANT_COLUMNS)} and a question: {', '.join(QUESTIONS)}",
+                f"the table of {self.participant} {found}",
+                "Compute it again: `gaitdisc modalities` or `gaitdisc sensitivity`.",
+            )
+
+
+@dataclass(frozen=True, eq=False)
+class VariantRun:
+    """The variants of a study, over its participants.
+
+    Parameters
+    ----------
+    title : str
+        Title of the study.
+    exo : str
+        The study's word for the device walk.
+    question : str
+        Of `QUESTIONS`.
+    people : tuple of Variants
+        Every participant whose models could be fitted.
+    tests : DataFrame
+        Columns `VARIANT_TEST_COLUMNS`; empty for fewer than six participants.
+    refusals : tuple of Refusal
+        Everybody left out.
+    held_out_s : tuple of float
+        Shortest and longest held-out part [s].
+    """
+
+    title: str
+    exo: str
+    question: str
+    people: tuple[Variants, ...]
+    tests: pd.DataFrame
+    refusals: tuple[Refusal, ...]
+    held_out_s: tuple[float, float]
+
+    def r2_table(self) -> pd.DataFrame:
+        """R2 of every participant, variant, variable, model and kind, one row each."""
+        tables = [each.table.assign(participant=each.participant) for each in self.people]
+        columns = ["participant", *VARIANT_COLUMNS]
+        return pd.concat(tables, ignore_index=True)[columns] if tables else pd.DataFrame(columns=pd.Index(columns))

@@ -1,0 +1,46 @@
+from pathlib import Path
+
+import pytest
+
+from gaitdisc.batch.variant_unit import computed_variants
+from gaitdisc.response.modalities import ALL
+from gaitdisc.response.sensitivity import AS_STUDIED
+from gaitdisc.results import Refusal
+from gaitdisc.results.variants import Variants
+
+
+def computed(study, folder, question):
+    told = []
+    found = computed_variants(study, study.participants[0], folder, question, told.append)
+    return found, told
+
+
+@pytest.mark.parametrize(("question", "first"), [("modalities", ALL), ("sensitivity", AS_STUDIED)])
+def test_variants_are_computed_once_and_then_loaded(study, tmp_path, question, first):
+    found, told = computed(study, tmp_path, question)
+    assert isinstance(found, Variants)
+    assert found.table["variant"].iloc[0] == first
+    assert told == sorted(told)
+    assert told[-1] == pytest.approx(1.0)
+    again, told = computed(study, tmp_path, question)
+    assert told == []
+    assert again.table.equals(computed(study, tmp_path, question)[0].table)
+    assert again.table["r2"].to_numpy() == pytest.approx(found.table["r2"].to_numpy())
+
+
+def test_a_cut_off_changes_what_is_judged(study, tmp_path):
+    found, _ = computed(study, tmp_path, "sensitivity")
+    middle = found.table[found.table["kind"] == "network"].groupby(["variant", "model"])["r2"].median()
+    assert middle["angles 12 Hz", "exo"] < middle["angles 4 Hz", "exo"]  # faster noise is less predictable
+    assert {"25% of the training part", "50% of the training part"} <= set(found.table["variant"])
+    assert "null" in set(found.table["kind"])
+
+
+def test_a_file_that_cannot_be_read_refuses_this_participant(study, tmp_path):
+    gone = study.participants[0].trials[0].model_copy(update={"files": ("gone.mot",)})
+    person = study.participants[0].model_copy(update={"trials": (gone, study.participants[0].trials[1])})
+    for question in ("modalities", "sensitivity"):
+        refused = computed_variants(study, person, tmp_path, question, lambda _: None)
+        assert isinstance(refused, Refusal)
+        assert "gone.mot" in refused.reason
+    assert not list(Path(tmp_path).rglob("variants.json"))
