@@ -43,13 +43,13 @@ def delayed_in_rows(
             column = compiled.inputs.index(signal)
             wraps = compiled.simulation.inputs[column].wraps
             at = np.clip(place[:, 1, None] + position, 0, drive.samples[place[:, 0], None] - 1)
-            late[:, :, k] = _linear(drive.inputs[:, :, column], place[:, 0], at, wraps)
+            late[:, :, k] = linear_in_rows(drive.inputs[:, :, column], place[:, 0], at, wraps)
             continue
         column = compiled.states.index(signal)
         late[:, :, k] = _cubic(states[:, :, column], np.clip(position, 0, steps - 1))
         before = (position < 0) & (place[:, 1, None] > 0)
         if past is not None and before.any():
-            measured = _before(past[:, :, column], place, position, states[:, 0, column])
+            measured = before_rows(past[:, :, column], place, position, states[:, 0, column])
             late[:, :, k] = np.where(before, measured, late[:, :, k])
     return late
 
@@ -76,13 +76,25 @@ def delayed_in_series(
     [0.0, 0.0, 0.5, 1.5]
     """
     at = np.clip(np.arange(len(signal)) - seconds * rate, 0, len(signal) - 1)
-    return _linear(signal[None], np.array([0]), at[None], wraps)[0]
+    return linear_in_rows(signal[None], np.array([0]), at[None], wraps)[0]
 
 
-def _linear(
+def linear_in_rows(
     series: NDArray[np.float64], which: NDArray[np.int64], at: NDArray[np.float64], wraps: bool
 ) -> NDArray[np.float64]:
-    """Values (row, step) of series (trial, sample) at places (row, step) of trials (row,)."""
+    """Values between the samples of series, (row, step).
+
+    Parameters
+    ----------
+    series : ndarray (trial, sample)
+        Signals.
+    which : ndarray (row,)
+        Trial of each row.
+    at : ndarray (row, step)
+        Places, in samples, inside the trial.
+    wraps : bool
+        Whether the signal wraps at 1.
+    """
     k = np.minimum(at.astype(int), series.shape[1] - 2) if series.shape[1] > 1 else np.zeros(at.shape, int)
     value, after = series[which[:, None], k], series[which[:, None], np.minimum(k + 1, series.shape[1] - 1)]
     slope = after - value
@@ -97,7 +109,7 @@ def _cubic(series: NDArray[np.float64], at: NDArray[np.float64]) -> NDArray[np.f
     count, steps = series.shape
     rows = np.arange(count)
     if steps < 4:
-        return _linear(series, rows, at, False)
+        return linear_in_rows(series, rows, at, False)
     first = np.clip(at.astype(int) - 1, 0, steps - 4)
     found = np.zeros(at.shape)
     for i in range(4):
@@ -109,10 +121,22 @@ def _cubic(series: NDArray[np.float64], at: NDArray[np.float64]) -> NDArray[np.f
     return found
 
 
-def _before(
+def before_rows(
     past: NDArray[np.float64], place: NDArray[np.int64], position: NDArray[np.float64], start: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Measured state before each row began, joined to the row's own start; the start where it was not measured."""
+    """Measured state before each row began, joined to the row's own start, (row, step).
+
+    Parameters
+    ----------
+    past : ndarray (trial, sample)
+        Measured state; where it is NaN the start counts.
+    place : ndarray (row, 2)
+        Trial and first sample of each row.
+    position : ndarray (row, step)
+        Places, in samples, counted from each row's start.
+    start : ndarray (row,)
+        State at the start.
+    """
     begin = place[:, 1, None]
     at = np.clip(begin + position, 0, begin)
     k = np.minimum(at.astype(int), np.maximum(begin - 1, 0))

@@ -223,7 +223,7 @@ def _before(past, place, position, column, start):
     if past.shape[0] == 0 or begin == 0:
         return start
     at = max(begin + position, 0.0)
-    k = int(at)
+    k = min(int(at), begin - 1)  # a position just below 0 may round to the start
     value = past[trial, k, column]
     after = start if k + 1 == begin else past[trial, k + 1, column]
     value += (at - k) * (after - value)

@@ -14,6 +14,7 @@ from gaitdisc.recording.arrays import read_only
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.expression import Number, Operation, Tree, parsed
 from gaitdisc.simulation.program import Program, compiled_program
+from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
 
@@ -206,12 +207,12 @@ class Compiled:
 
 
 @lru_cache(maxsize=64)
-def compile_simulation(simulation: Simulation) -> Compiled:
+def compile_simulation(simulation: Simulation | PythonSimulation) -> Compiled:
     """Simulation made ready to run; the same one again costs nothing.
 
     Parameters
     ----------
-    simulation : Simulation
+    simulation : Simulation or PythonSimulation
         With its effects, which are part of the right-hand side.
 
     Examples
@@ -220,6 +221,10 @@ def compile_simulation(simulation: Simulation) -> Compiled:
     >>> compile_simulation(Simulation("decay", (State("x"),), equations=(("x", "-x"),))).states
     ('x',)
     """
+    if not isinstance(simulation, Simulation):
+        from gaitdisc.simulation.python_running import compile_python_simulation
+
+        return compile_python_simulation(simulation)
     states = tuple(state.name for state in simulation.states)
     inputs = tuple(each.name for each in simulation.inputs)
     parameters = tuple(parameter.name for parameter in simulation.parameters)

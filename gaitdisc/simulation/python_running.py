@@ -1,0 +1,167 @@
+"""Running a simulation whose right-hand side is a Python object: rows side by side, steps one after the other."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gaitdisc.simulation.delays import before_rows, linear_in_rows
+from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.simulation.python_simulation import PythonSimulation, called
+from gaitdisc.simulation.running import SUBSTEPS, Compiled, at_points, compile_simulation, leaf_columns
+
+BOUND = 1e6  # a state beyond has diverged
+
+
+@dataclass(frozen=True, eq=False)
+class PythonCompiled(Compiled):
+    """A `PythonSimulation` that is ready to run; it runs and observes as `Compiled` does.
+
+    Parameters
+    ----------
+    simulation, states, inputs, parameters, observed, defaults, right_hand_side, observation : as for `Compiled`
+        The right-hand side gives what the function is fed with.
+    model : PythonSimulation
+        Whose function is called.
+    """
+
+    model: PythonSimulation
+
+    def run(
+        self,
+        drive: Drive,
+        rows: Rows,
+        steps: int,
+        *,
+        substeps: int = SUBSTEPS,
+        past: NDArray[np.float64] | None = None,
+    ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        """States along each row, as `Compiled.run`.
+
+        Parameters
+        ----------
+        drive, rows, steps, substeps, past : as for `Compiled.run`
+            The same.
+        """
+        place, starts, values = self._rows(drive, rows)
+        walk = _Walk(self, drive, (place, starts, values), past, substeps)
+        found = np.full((len(starts), steps + 1, len(self.states)), np.nan)
+        found[:, 0] = starts
+        ok = np.asarray(np.isfinite(starts).all(axis=1))
+        x = starts
+        last = drive.samples[place[:, 0]] - 1
+        for sample in range(steps):
+            for sub in range(substeps):
+                x = walk.step(x, sample * substeps + sub)
+            there = place[:, 1] + sample + 1 <= last
+            ok &= ~there | np.all(np.abs(x) < BOUND, axis=1)
+            found[ok & there, sample + 1] = x[ok & there]
+            x[~ok] = np.nan
+        return found, ok
+
+    def rates(
+        self,
+        t: ArrayLike,
+        x: NDArray[np.float64],
+        u: NDArray[np.float64],
+        values: NDArray[np.float64] | None = None,
+        late: NDArray[np.float64] | None = None,
+    ) -> NDArray[np.float64]:
+        """Right-hand side at many points, as `Compiled.rates`.
+
+        Parameters
+        ----------
+        t, x, u, values, late : as for `Compiled.rates`
+            The same.
+        """
+        x = np.asarray(x, float)
+        given = self.defaults if values is None else np.asarray(values, float)
+        columns = leaf_columns(np.broadcast_to(np.asarray(t, float), len(x)), x, u, given)
+        fed = at_points(self.right_hand_side, columns, late, len(x)).T
+        return called(self.model, columns[0], x, fed, np.broadcast_to(given, (len(x), len(self.parameters))))
+
+
+def compile_python_simulation(model: PythonSimulation) -> PythonCompiled:
+    """Make a simulation of a Python object ready to run; `compile_simulation` does this too.
+
+    Parameters
+    ----------
+    model : PythonSimulation
+        With its effects.
+    """
+    own, feeds = compile_simulation(model.parts), compile_simulation(model.feeds)
+    return PythonCompiled(
+        model.parts,
+        own.states,
+        own.inputs,
+        own.parameters,
+        own.observed,
+        own.defaults,
+        feeds.observation,
+        own.observation,
+        model,
+    )
+
+
+class _Walk:
+    """Rows that are stepped together, and the history that their delays need."""
+
+    def __init__(
+        self,
+        compiled: PythonCompiled,
+        drive: Drive,
+        rows: tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]],
+        past: NDArray[np.float64] | None,
+        substeps: int,
+    ) -> None:
+        self._compiled, self._drive, self._past, self._substeps = compiled, drive, past, substeps
+        self._place, starts, self._values = rows
+        self._seconds = compiled._seconds(compiled.right_hand_side, self._values)
+        self._history = [starts]
+
+    def step(self, x: NDArray[np.float64], done: int) -> NDArray[np.float64]:
+        """One step of Runge-Kutta from step number `done`."""
+        h = 1.0 / (self._drive.rate * self._substeps)
+        with np.errstate(all="ignore"):  # a row that leaves every bound is told, not warned of
+            k1 = self._rates(x, done)
+            k2 = self._rates(x + h / 2 * k1, done + 0.5)
+            k3 = self._rates(x + h / 2 * k2, done + 0.5)
+            k4 = self._rates(x + h * k3, done + 1.0)
+            x = x + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+        if self._compiled.right_hand_side.delays:
+            self._history.append(x)
+        return x
+
+    def _rates(self, x: NDArray[np.float64], step: float) -> NDArray[np.float64]:
+        sample = step / self._substeps
+        at = np.full((len(x), 1), sample)
+        t = self._drive.time0[self._place[:, 0]] + (self._place[:, 1] + sample) / self._drive.rate
+        u = np.column_stack([self._input(k, at) for k in range(len(self._compiled.inputs))] or [np.empty((len(x), 0))])
+        late = [
+            self._delayed(signal, sample - self._seconds[:, k, None] * self._drive.rate)
+            for k, (signal, _) in enumerate(self._compiled.right_hand_side.delays)
+        ]
+        return self._compiled.rates(t, x, u, self._values, np.column_stack(late) if late else None)
+
+    def _input(self, column: int, at: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Input at places (row, 1) counted from each row's start."""
+        wraps = self._compiled.simulation.inputs[column].wraps
+        trial, begin = self._place[:, 0], self._place[:, 1, None]
+        at = np.clip(begin + at, 0, self._drive.samples[trial, None] - 1)
+        return linear_in_rows(self._drive.inputs[:, :, column], trial, at, wraps)
+
+    def _delayed(self, signal: str, at: NDArray[np.float64]) -> NDArray[np.float64]:
+        if signal in self._compiled.inputs:
+            return self._input(self._compiled.inputs.index(signal), at)
+        column = self._compiled.states.index(signal)
+        steps = np.clip(at * self._substeps, 0, len(self._history) - 1)
+        first = int(steps.min())
+        history = np.stack([each[:, column] for each in self._history[first : int(steps.max()) + 2]], axis=1)
+        value = linear_in_rows(history, np.arange(len(at)), steps - first, False)
+        if self._past is None or not np.any(at < 0):
+            return value
+        start = self._history[0][:, column]
+        measured = before_rows(self._past[:, :, column], self._place, at, start)
+        return np.where((at < 0) & (self._place[:, 1, None] > 0), measured, value)
