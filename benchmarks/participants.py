@@ -21,10 +21,12 @@ import sys
 import tempfile
 from pathlib import Path
 
-from gaitdisc.cohort.driven_walker import DrivenWalker
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import write_study
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+from driven_walker import DrivenWalker  # noqa: E402
 
 SPRING_PER_S2 = {"nominal": 0.0, "exo": 250.0}
 PROGRAM = """

@@ -8,10 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from driven_walker import DrivenWalker
 from typer.testing import CliRunner
 
 from gaitdisc.cli import app, main
-from gaitdisc.cohort.driven_walker import DrivenWalker
 from gaitdisc.commands.exit_codes import REFUSED, SOME_REFUSED
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial, Study

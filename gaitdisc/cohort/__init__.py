@@ -1,1 +1,1 @@
-"""People that the package makes itself: the embedded cohort of twelve, and two small driven walkers."""
+"""People that the package makes itself: the embedded cohort of twelve."""

@@ -37,8 +37,8 @@ def on_one_base(trial: Trial, rate_hz: float, keys: tuple[str, ...] | None = Non
 
     Examples
     --------
-    >>> from gaitdisc.cohort.driven_walker import DrivenWalker
-    >>> on_one_base(DrivenWalker("P01").walked(5.0, "nominal"), 100.0).rate_hz
+    >>> from gaitdisc.cohort.cohort import the_twelve, walks_of
+    >>> on_one_base(walks_of(the_twelve()[0], 5.0).trials["nominal"], 100.0).rate_hz
     100.0
     """
     chosen = {key: trial.stream(key) for key in (keys or tuple(trial.streams))}

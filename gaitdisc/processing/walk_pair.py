@@ -68,10 +68,10 @@ def walk_pair(
 
     Examples
     --------
-    >>> from gaitdisc.cohort.driven_walker import DrivenWalker
-    >>> walks = [DrivenWalker("P01", seed=seed).walked(20.0, "nominal") for seed in (1, 2)]
+    >>> from gaitdisc.cohort.cohort import the_twelve, walks_of
+    >>> walks = walks_of(the_twelve()[0], 20.0).trials.values()
     >>> [(walk.detector, walk.curves.shape[1:]) for walk in walk_pair(*walks)]
-    [('force', (101, 16)), ('force', (101, 16))]
+    [('force', (101, 28)), ('force', (101, 28))]
     """
     given = (first, second)
     trials = [_with_strides(trial) for trial in given]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from driven_walker import DrivenWalker
 
-from gaitdisc.cohort.driven_walker import DrivenWalker
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial, Study
 

@@ -1,7 +1,7 @@
 import pytest
+from driven_walker import DrivenWalker
 
 from gaitdisc.batch.compare_recordings import compare_files, compare_study
-from gaitdisc.cohort.driven_walker import DrivenWalker
 from gaitdisc.errors import ComparisonError, SchemaError
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study

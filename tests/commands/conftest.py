@@ -4,10 +4,10 @@ import subprocess
 import sys
 
 import pytest
+from driven_walker import DrivenWalker
 from typer.testing import CliRunner
 
 from gaitdisc.cli import app
-from gaitdisc.cohort.driven_walker import DrivenWalker
 from gaitdisc.ingest.storage import write_storage
 
 

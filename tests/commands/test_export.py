@@ -1,4 +1,5 @@
-from gaitdisc.cohort.driven_walker import DrivenWalker
+from driven_walker import DrivenWalker
+
 from gaitdisc.ingest.storage import write_storage
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
+from driven_walker import DrivenWalker
 
-from gaitdisc.cohort.driven_walker import DrivenWalker
 from gaitdisc.ingest.study import Conditions, Participant, Study
 from gaitdisc.recording import Trial
 

@@ -2,9 +2,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from driven_walker import HABIT, JOINTS, DrivenWalker
 
 from gaitdisc.channel import vocabulary
-from gaitdisc.cohort.driven_walker import HABIT, JOINTS, DrivenWalker
 from gaitdisc.errors import StrideError
 from gaitdisc.processing.walk_pair import walk_pair
 from gaitdisc.recording import Recording, Trial

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
+from driven_walker import DrivenWalker
 
-from gaitdisc.cohort.driven_walker import DrivenWalker
 from gaitdisc.discovery.compare import compare_walks
 from gaitdisc.processing.walk_pair import walk_pair
 from gaitdisc.report.figure import save_figure

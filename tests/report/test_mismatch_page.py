@@ -1,6 +1,7 @@
 from html.parser import HTMLParser
 
-from gaitdisc.cohort.driven_walker import DrivenWalker
+from driven_walker import DrivenWalker
+
 from gaitdisc.discovery.compare import compare_walks
 from gaitdisc.processing.walk_pair import walk_pair
 from gaitdisc.report.mismatch_page import write_mismatch_report

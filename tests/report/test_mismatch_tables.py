@@ -1,6 +1,6 @@
 import pytest
+from driven_walker import DrivenWalker
 
-from gaitdisc.cohort.driven_walker import DrivenWalker
 from gaitdisc.discovery.compare import compare_walks
 from gaitdisc.processing.walk_pair import walk_pair
 from gaitdisc.report.mismatch_tables import channels_table, findings_of, mismatch_text, regions_table

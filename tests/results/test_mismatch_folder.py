@@ -1,8 +1,8 @@
 import numpy as np
 import pandas as pd
 import pytest
+from driven_walker import DrivenWalker
 
-from gaitdisc.cohort.driven_walker import DrivenWalker
 from gaitdisc.discovery.compare import compare_walks
 from gaitdisc.errors import SchemaError
 from gaitdisc.processing.walk_pair import walk_pair

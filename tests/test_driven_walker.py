@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
-
-from gaitdisc.cohort.driven_walker import DrivenWalker
+from driven_walker import DrivenWalker
 
 
 @pytest.fixture(scope="module")
