@@ -79,3 +79,22 @@ def _parsed(unit: str) -> tuple[float, Dimension] | None:
             factor *= own**power
             powers = [a + power * b for a, b in zip(powers, dimension, strict=True)]
     return factor, tuple(powers)
+
+
+def dimension_of(unit: str) -> Dimension | None:
+    """Powers of kg, m, s and V in a unit, an angle counting as a pure number; None where the unit is unknown.
+
+    Parameters
+    ----------
+    unit : str
+        Product of base units with powers.
+
+    Examples
+    --------
+    >>> dimension_of("N m s/rad") == dimension_of("kg m^2/s")
+    True
+    """
+    found = _parsed(unit)
+    return (
+        None if found is None else tuple(power for base, power in zip(_BASES, found[1], strict=True) if base != "rad")
+    )

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from gaitdisc.simulation.unit_factor import unit_factor
+from gaitdisc.simulation.unit_factor import dimension_of, unit_factor
 
 
 @pytest.mark.parametrize(
@@ -35,3 +35,8 @@ def test_what_measures_something_else_has_no_factor():
 @pytest.mark.parametrize("unit", ["furlong", "N m rad-", "", "m^^2", "x" * 10_000])
 def test_unknown_units_are_not_guessed(unit):
     assert unit_factor(unit, "m") is None
+
+
+def test_an_angle_has_no_dimension():
+    assert dimension_of("rad/s") == dimension_of("1/s")
+    assert dimension_of("furlong") is None

@@ -1,0 +1,112 @@
+"""Whether the units of a simulation fit together; what does not is told, never refused."""
+
+from __future__ import annotations
+
+from gaitdisc.recording import Finding
+from gaitdisc.simulation.expression import Name, Number, Operation, Tree, parsed
+from gaitdisc.simulation.rewriting import written
+from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.simulation.unit_factor import Dimension, dimension_of
+
+_SAME = frozenset(["+", "-", "max", "min"])
+_PLAIN = frozenset(["sin", "cos", "tan", "tanh", "exp", "log"])  # of a pure number, giving one
+
+
+def unit_findings(simulation: Simulation) -> tuple[Finding, ...]:
+    r"""Warnings where unlike units are added, a port's unit does not fit its place, or a unit is unknown.
+
+    A number without a name may carry any unit, and so does what it multiplies; an angle counts as a pure number.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        Whose definitions, equations and effects are looked at.
+
+    Examples
+    --------
+    >>> from gaitdisc.simulation.simulation_file import simulation_of
+    >>> text = '[states.x]\nunit = "m"\n[parameters.f]\nvalue = 1\nunit = "N"\n[equations]\nx = "f"\n'
+    >>> print(unit_findings(simulation_of(text))[0].what)
+    [equations] x: 'f' is not of the unit m/s
+    """
+    check = _Check(simulation)
+    for name, text in simulation.definitions:
+        check.known[name] = check.unit(parsed(text), f"[definitions] {name}")
+    for name, text in simulation.equations:
+        check.expect(text, check.rate(name), f"[equations] {name}", f"{_unit_of(simulation, name)}/s")
+    ports = {port.name: port.unit for port in simulation.ports}
+    for number, term in enumerate(simulation.effects, 1):
+        where = f"[effects] {number}"
+        if term.kind == "port":
+            check.expect(term.term, check.known[term.place], where, ports[term.place])
+        else:
+            check.expect(term.term, check.rate(term.place), where, f"{_unit_of(simulation, term.place)}/s")
+    return tuple(check.findings)
+
+
+def _unit_of(simulation: Simulation, state: str) -> str:
+    return next(each.unit for each in simulation.states if each.name == state)
+
+
+class _Check:
+    def __init__(self, simulation: Simulation) -> None:
+        self.findings: list[Finding] = []
+        self._file = simulation.source.name if simulation.source else simulation.title
+        self.known: dict[str, Dimension | None] = {"t": dimension_of("s")}
+        for part in (*simulation.states, *simulation.inputs, *simulation.parameters, *simulation.ports):
+            self.known[part.name] = dimension_of(part.unit)
+            if self.known[part.name] is None:
+                what = f"{part.unit!r} is no unit that the package knows"
+                self.findings.append(Finding("note", "unit", self._file, what, "the check of what is added", part.name))
+
+    def rate(self, state: str) -> Dimension | None:
+        """Dimension of a state's derivative."""
+        own, second = self.known[state], dimension_of("s")
+        return None if own is None or second is None else tuple(a - b for a, b in zip(own, second, strict=True))
+
+    def expect(self, text: str, wanted: Dimension | None, where: str, unit: str) -> None:
+        """Tell where an expression has another dimension than its place."""
+        found = self.unit(parsed(text), where)
+        if found is not None and wanted is not None and found != wanted:
+            self._tell(f"{where}: {_short(parsed(text))} is not of the unit {unit}")
+
+    def unit(self, tree: Tree, where: str) -> Dimension | None:
+        """Dimension of an expression; None where it may be any."""
+        if not isinstance(tree, Operation):
+            return self.known.get(tree.name) if isinstance(tree, Name) else None
+        parts = [self.unit(argument, where) for argument in tree.arguments]
+        if tree.symbol in _SAME:
+            return self._alike(tree, parts, where)
+        if tree.symbol in _PURE:
+            if tree.symbol in _OF_PURE and parts[0] is not None and any(parts[0]):
+                self._tell(f"{where}: {_short(tree)} takes a pure number or an angle")
+            return dimension_of("1")
+        return parts[0] if tree.symbol in ("neg", "abs", "delay") else self._product(tree, parts)
+
+    def _product(self, tree: Operation, parts: list[Dimension | None]) -> Dimension | None:
+        one, other = parts[0], parts[-1]
+        if tree.symbol in ("sqrt", "**"):
+            exponent = Number(0.5) if tree.symbol == "sqrt" else tree.arguments[1]
+            known = one is not None and isinstance(exponent, Number)
+            return tuple(exponent.value * power for power in one) if known else None
+        if one is None or other is None:
+            return None
+        sign = 1 if tree.symbol == "*" else -1
+        return tuple(a + sign * b for a, b in zip(one, other, strict=True))
+
+    def _alike(self, tree: Operation, parts: list[Dimension | None], where: str) -> Dimension | None:
+        there = [(part, argument) for part, argument in zip(parts, tree.arguments, strict=True) if part is not None]
+        for part, argument in there[1:]:
+            if part != there[0][0]:
+                word = "compared" if tree.symbol in ("max", "min") else "added"
+                self._tell(f"{where}: {_short(there[0][1])} and {_short(argument)} are {word} and differ in unit")
+                return None
+        return there[0][0] if there else None
+
+    def _tell(self, what: str) -> None:
+        self.findings.append(Finding("warning", "unit", self._file, what, "the numbers there, if the units are right"))
+
+
+def _short(tree: Tree) -> str:
+    text = written(tree)
+    return repr(text if len(text) <= 40 else text[:37] + "...")

@@ -1,0 +1,55 @@
+"""A run that blows up is told with trial, time, state and parameter."""
+
+import numpy as np
+import pytest
+
+from gaitdisc.simulation.divergence import divergences, refuse_divergence
+from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.simulation.refusal import SimulationError
+from gaitdisc.simulation.running import compile_simulation
+from gaitdisc.simulation.simulation_file import simulation_of
+
+TEXT = """title = "growth"
+[states.x]
+[states.y]
+[parameters.calm]
+value = 1.0
+[parameters.wild]
+value = 20.0
+[equations]
+x = "-calm*x"
+y = "wild*y - calm*y{more}"
+"""
+
+
+def _run(more="", values=None):
+    compiled = compile_simulation(simulation_of(TEXT.format(more=more)))
+    drive = Drive.of([np.empty((101, 0))] * 2, 100.0, [0.0, 5.0])
+    rows = Rows(np.array([0, 1]), np.array([0, 10]), np.array([[1.0, 0.0], [1.0, 1.0]]), values)
+    return compiled, drive, rows, *compiled.run(drive, rows, 80)
+
+
+def test_trial_time_state_and_parameter():
+    (told,) = divergences(*_run())
+    assert (told.row, told.trial, told.state, told.parameter) == (1, 1, "y", "wild")
+    assert told.time == pytest.approx(5.1 + np.log(1e6) / 19, abs=0.011)
+    assert 1e5 < told.value < 1e6
+
+
+def test_the_refusal_says_so():
+    with pytest.raises(
+        SimulationError, match=r"'growth' leaves it in trial 2 after t = 5\.8.* s, first in 'y'.*'wild'"
+    ):
+        refuse_divergence(*_run())
+    refuse_divergence(*_run(values=np.array([1.0, 2.0])))
+
+
+def test_a_row_that_is_lost_at_once():
+    (one, other) = divergences(*_run(" + sqrt(-1 - y**2)"))
+    assert (one.state, one.time) == ("y", 0.0)
+    assert other.time == 5.1
+
+
+def test_with_a_delay():
+    (told,) = divergences(*_run(" + 0*delay(x, 0.1)"))
+    assert told.parameter == "wild"

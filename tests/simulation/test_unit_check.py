@@ -1,0 +1,63 @@
+"""Units that do not fit are told; those that do are not."""
+
+import pytest
+
+from gaitdisc.simulation.bundled import bundled, bundled_names
+from gaitdisc.simulation.parts import Parameter, Term
+from gaitdisc.simulation.simulation_file import simulation_of
+from gaitdisc.simulation.unit_check import unit_findings
+
+TEXT = """title = "mass"
+[states.x]
+unit = "m"
+[states.v]
+unit = "m/s"
+[inputs.u]
+unit = "N"
+[parameters.m]
+value = 2.0
+unit = "kg"
+[parameters.k]
+value = 30.0
+unit = "{k}"
+[ports.force]
+unit = "{port}"
+[equations]
+x = "v"
+v = "(u + force - k*x)/m{more}"
+"""
+
+
+def _told(k="N/m", port="N", more="", effect=None):
+    simulation = simulation_of(TEXT.format(k=k, port=port, more=more))
+    simulation = simulation.with_parameter(Parameter("c", 1.0, "N s/m"))
+    return [each.what for each in unit_findings(simulation.with_effect(effect) if effect else simulation)]
+
+
+def test_units_that_fit_are_not_told():
+    assert _told() == []
+    assert _told(k="kg/s^2") == []
+    assert _told(effect=Term("force", "port", "a", "-c*v - 286.0*max(0, x - 0.035)")) == []
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"port": "N m"}, "[equations] v: 'u' and 'force' are added and differ in unit"),
+        ({"k": "N"}, "'u + force' and 'k*x' are added and differ in unit"),
+        ({"k": "furlong"}, "'furlong' is no unit that the package knows"),
+        ({"more": " + x*t"}, "are added and differ in unit"),
+        ({"more": "*m/m*t"}, "is not of the unit m/s/s"),
+        ({"more": " + sin(x)"}, "'sin(x)' takes a pure number or an angle"),
+        ({"effect": Term("force", "port", "a", "-c*x")}, "[effects] 1: '-c*x' is not of the unit N"),
+        ({"effect": Term("v", "equation", "a", "-c*v/m*x/x*t")}, "[effects] 1"),
+        ({"effect": Term("force", "port", "a", "max(c*v, m)")}, "'c*v' and 'm' are compared"),
+    ],
+)
+def test_units_that_do_not_fit_are_told(changed, words):
+    assert any(words in what for what in _told(**changed))
+
+
+@pytest.mark.parametrize("name", [name for name in bundled_names() if not name.startswith(("lorenz", "van"))])
+def test_what_comes_along_fits(name):
+    assert unit_findings(bundled(name)) == ()
