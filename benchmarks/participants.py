@@ -26,7 +26,7 @@ from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial,
 from gaitdisc.ingest.study_file import write_study
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
-from driven_walker import DrivenWalker  # noqa: E402
+from driven_walker import DrivenWalker
 
 SPRING_PER_S2 = {"nominal": 0.0, "exo": 250.0}
 PROGRAM = """
