@@ -9,7 +9,8 @@ from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.unit_factor import Dimension, dimension_of
 
 _SAME = frozenset(["+", "-", "max", "min"])
-_PLAIN = frozenset(["sin", "cos", "tan", "tanh", "exp", "log"])  # of a pure number, giving one
+_OF_PURE = frozenset({"sin", "cos", "tan", "tanh", "exp", "log"})
+_PURE = _OF_PURE | {"sign", "step"}
 
 
 def unit_findings(simulation: Simulation) -> tuple[Finding, ...]:
@@ -87,8 +88,9 @@ class _Check:
         one, other = parts[0], parts[-1]
         if tree.symbol in ("sqrt", "**"):
             exponent = Number(0.5) if tree.symbol == "sqrt" else tree.arguments[1]
-            known = one is not None and isinstance(exponent, Number)
-            return tuple(exponent.value * power for power in one) if known else None
+            if one is None or not isinstance(exponent, Number):
+                return None
+            return tuple(exponent.value * power for power in one)
         if one is None or other is None:
             return None
         sign = 1 if tree.symbol == "*" else -1
