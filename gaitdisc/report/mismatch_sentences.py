@@ -144,7 +144,7 @@ def direction_words(name: str, gap: float, unit: str) -> str:
     >>> direction_words("ankle_angle_r", -6.1, "deg"), direction_words("pelvis_tilt", 2.0, "deg")
     ('the right ankle is up to 6.1 deg more plantarflexed', 'pelvis tilt is up to 2.0 deg higher')
     """
-    size = f"{amount(abs(gap))} {unit_text(unit)}"
+    size = with_unit(amount(abs(gap)), unit)
     stem, side = sideless(name), SIDE_WORDS[side_of(name)]
     ways = DIRECTIONS.get(upwards(name))
     if stem in JOINTS and ways:
@@ -167,6 +167,24 @@ def spoken(name: str) -> str:
     """
     words, _, side = label(name).partition(", ")
     return f"{side} {words}" if side else words
+
+
+def with_unit(size: str, unit: str) -> str:
+    """Size with its unit; a ratio has none.
+
+    Parameters
+    ----------
+    size : str
+        A number as it is printed.
+    unit : str
+        As the package writes it.
+
+    Examples
+    --------
+    >>> with_unit("6.1", "deg"), with_unit("0.15", "1")
+    ('6.1 deg', '0.15')
+    """
+    return size if unit == "1" else f"{size} {unit_text(unit)}"
 
 
 def amount(value: float) -> str:
@@ -240,11 +258,10 @@ def _timing(mismatch: Mismatch, name: str) -> str:
     shift, before, after = float(row["shift_percent"]), float(row["rms_gap"]), float(row["rms_shifted"])
     if shift == 0 or after > MOSTLY_TIMING * before:
         return ""
-    unit = unit_text(str(row["unit"]))
     way = f"{abs(shift):.0f} % of the stride {'later' if shift > 0 else 'earlier'}"
     return (
         f"Much of the largest gap is timing: moved {way}, the curve of {mismatch.first} is {number(after, 1)} instead "
-        f"of {number(before, 1)} {unit} away (rms)."
+        f"of {with_unit(number(before, 1), str(row['unit']))} away (rms)."
     )
 
 
@@ -282,7 +299,7 @@ def _by_unit(mismatch: Mismatch, names: list[str], column: str, smallest: bool =
     for unit in dict.fromkeys(str(row["unit"]) for row in rows):
         of_unit = sorted((row for row in rows if row["unit"] == unit), key=lambda row: row[column])
         ends = [(amount(float(row[column])), spoken(str(row["channel"]))) for row in (of_unit[0], of_unit[-1])]
-        text = f"{ends[1][0]} {unit_text(unit)}"
+        text = with_unit(ends[1][0], unit)
         if smallest and len(of_unit) > 1:
             text = f"{ends[0][0]} ({ends[0][1]}) to {text} ({ends[1][1]})"
         parts.append(text)

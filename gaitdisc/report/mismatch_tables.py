@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
-from gaitdisc.report.mismatch_sentences import amount, spoken
+from gaitdisc.report.mismatch_sentences import amount, spoken, with_unit
 from gaitdisc.report.tables import Table
-from gaitdisc.report.wording import counted, unit_text
+from gaitdisc.report.wording import counted
 from gaitdisc.results.mismatch import Mismatch
 
 if TYPE_CHECKING:
@@ -102,7 +102,7 @@ def mismatch_text(mismatch: Mismatch) -> rich.table.Table:
 
     table = Printed(box=box.SIMPLE)
     for number, heading in enumerate(HEADINGS):
-        table.add_column(escape(heading), justify="right" if number else "left", no_wrap=True)
+        table.add_column(escape(heading), justify="right" if number else "left", no_wrap=number > 0)
     rest = [name for name in mismatch.names if name not in mismatch.ordered()]
     for row in [*regions_table(mismatch).rows, *(row for name in rest for row in _rows(mismatch, name))]:
         table.add_row(*map(escape, row))
@@ -131,7 +131,7 @@ def _rows(mismatch: Mismatch, name: str) -> list[tuple[str, ...]]:
 
 
 def _signed(gap: float, unit: str) -> str:
-    return f"{'−' if gap < 0 else '+'}{amount(abs(gap))} {unit_text(unit)}"
+    return with_unit(f"{'−' if gap < 0 else '+'}{amount(abs(gap))}", unit)
 
 
 def _in_sd(value: float) -> str:

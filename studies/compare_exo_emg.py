@@ -1,0 +1,63 @@
+"""EMG over the stride of eight people under two settings of an ankle exoskeleton, compared point by point.
+
+    python studies/compare_exo_emg.py [DATA] [OUT]
+
+DATA holds the folder ankle_exo_emg_grf (by default ../shared/data/gait, or GAITDISC_DATA/gait); OUT gets the report.
+The source gives 30 points of each stride, brought to 101 here by lines; what EMG is scaled by is not known.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel
+from gaitdisc.discovery.compare import compare_people
+from gaitdisc.recording import PERCENT
+from gaitdisc.report.mismatch_page import write_mismatch_report
+from gaitdisc.report.mismatch_sentences import mismatch_sentences
+from gaitdisc.results import WalkSummary
+from gaitdisc.results.mismatch import Mismatch
+from gaitdisc.results.walk_summary import STRIDE_COLUMNS
+
+PEOPLE, FORCES = 8, 6  # the first six signals are ground forces
+HARD, EASY = "C6", "C1"
+
+
+def run(data: Path, first: str = HARD, second: str = EASY) -> Mismatch:
+    """Mismatch of two settings, paired over the eight people."""
+    stored = np.load(data / "ankle_exo_emg_grf" / "assisted.npz")
+    signals = [str(name) for name in stored["signals"]][FORCES:]
+    pairs = [
+        (
+            summary(stored[f"x_S{person:02d}{first}"], signals, f"S{person:02d}", first),
+            summary(stored[f"x_S{person:02d}{second}"], signals, f"S{person:02d}", second),
+        )
+        for person in range(1, PEOPLE + 1)
+    ]
+    return compare_people(pairs)
+
+
+def summary(strides: NDArray[np.float64], signals: list[str], person: str, condition: str) -> WalkSummary:
+    """Strides of one walk on 101 points: EMG alone."""
+    bins = np.linspace(0.0, 100.0, strides.shape[2])
+    emg = np.asarray(strides[:, FORCES:], float)
+    curves = np.stack([[np.interp(PERCENT, bins, curve) for curve in stride] for stride in emg])
+    channels = tuple(Channel(f"emg_{signal.lower()}", "emg", "1", signal[-1].lower()) for signal in signals)
+    table = pd.DataFrame(columns=pd.Index(STRIDE_COLUMNS))
+    return WalkSummary(person, condition, 0.0, 0.0, "source", channels, np.swapaxes(curves, 1, 2), table, (), {})
+
+
+if __name__ == "__main__":
+    shared = Path(os.environ.get("GAITDISC_DATA", Path(__file__).parents[2] / "shared" / "data")) / "gait"
+    found = run(Path(sys.argv[1]) if len(sys.argv) > 1 else shared)
+    print(" ".join(mismatch_sentences(found)))
+    print(found.summary.round(3).to_string())
+    print(found.regions.round(3).to_string())
+    if len(sys.argv) > 2:
+        print(write_mismatch_report(found, Path(sys.argv[2])))
