@@ -1,0 +1,139 @@
+"""What the embedded cohort gives for each number that chapter 4 prints, by the `id` of studies/ch4_printed.toml."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pandas as pd
+
+from gaitdisc.batch.demonstration import OUTPUTS
+from gaitdisc.report.wording import sideless
+from gaitdisc.response.comparison import r2_by_participant
+from gaitdisc.response.residual_reduction import representative
+from gaitdisc.results import ResponseRun
+
+ANGLES, EMG = OUTPUTS[:3], OUTPUTS[3:]
+
+
+def medians(run: ResponseRun, model: str, walk: str = "exo") -> pd.Series:
+    """Median over participants of the network's R2, one number a variable.
+
+    Parameters
+    ----------
+    run : ResponseRun
+        With responses.
+    model, walk : str
+        As in `ParticipantResponse.r2`.
+    """
+    rows = run.r2_table()
+    chosen = rows[(rows["model"] == model) & (rows["walk"] == walk) & (rows["kind"] == "network")]
+    return chosen.groupby("variable")["r2"].median().reindex(OUTPUTS)
+
+
+def _range(values: pd.Series, factor: float = 1.0, digits: int = 3) -> str:
+    return f"{factor * values.min():.{digits}f}-{factor * values.max():.{digits}f}"
+
+
+def _differ(run: ResponseRun, first: str, second: str, sign: int) -> pd.DataFrame:
+    rows = run.tests.of_pair(first, second) if run.tests else pd.DataFrame()
+    return rows[rows["different"].astype(bool) & (sign * rows["rank_biserial"] > 0)] if len(rows) else rows
+
+
+def _named(rows: pd.DataFrame) -> str:
+    return ", ".join(sideless(name) for name in rows["variable"]) if len(rows) else "none"
+
+
+def _gain(run: ResponseRun) -> str:
+    responses = run.responses
+    return _range(
+        (r2_by_participant(responses, "augmented") - r2_by_participant(responses, "nominal")).median(), 100, 1
+    )
+
+
+def _over_nominal(run: ResponseRun) -> str:
+    rows = _differ(run, "nominal", "augmented", 1)
+    return f"{len(rows)} of {len(OUTPUTS)}, p <= {rows['p'].max():.3f}" if len(rows) else "not tested"
+
+
+def _hip(run: ResponseRun) -> str:
+    if run.over is None or not (person := representative(run.over.reductions)):
+        return "too few strides"
+    rows = run.over.reductions
+    own = rows[(rows["participant"] == person) & (rows["variable"] == ANGLES[0]) & (rows["model"] == "augmented")]
+    both = [f"{100 * float(own[f'{measure}_reduction'].iloc[0]):.1f}" for measure in ("peak_to_peak", "rms")]
+    return f"{'; '.join(both)} ({person})"
+
+
+def _reduced(run: ResponseRun) -> pd.DataFrame:
+    rows = run.over.reduction_tests if run.over else pd.DataFrame()
+    return rows[rows["second"] == "augmented"] if len(rows) else rows
+
+
+def _hip_all(run: ResponseRun) -> str:
+    rows = _reduced(run)
+    rows = rows[rows["variable"] == ANGLES[0]] if len(rows) else rows
+    found = [
+        [f"{100 * float(x):.0f}" for x in row] for row in rows.reindex(columns=["shift", "low", "high"]).to_numpy()
+    ]
+    return "; ".join(f"{middle} [{low}, {high}]" for middle, low, high in found)
+
+
+def _emg_reduced(run: ResponseRun) -> str:
+    rows = _reduced(run)
+    rows = rows[(rows["measure"] == "rms") & rows["variable"].isin(EMG)] if len(rows) else rows
+    return _named(rows[rows["different"].astype(bool) & (rows["shift"] > 0)]) if len(rows) else "not tested"
+
+
+def _below_exo_by(run: ResponseRun) -> str:
+    apart = medians(run, "exo") - medians(run, "augmented")
+    return ", ".join(f"{apart[name]:.4f}" for name in ("knee_angle_r", "ankle_angle_r", "emg_ham_r", "emg_vas_r"))
+
+
+def _at_one_second(run: ResponseRun) -> str:
+    table = pd.DataFrame(
+        [quantity.medians().loc[1.0] for quantity in run.quantities if 1.0 in quantity.medians().index]
+    )
+    return (
+        ", ".join(f"{table[model].median():.2f}" for model in ("nominal", "augmented", "exo")) if len(table) else "none"
+    )
+
+
+def _lengths(run: ResponseRun) -> str:
+    rows = run.over.lengths if run.over else pd.DataFrame()
+    if not len(rows):
+        return "not tested"
+    rows = rows[(rows["second"] == "exo") & rows["different"].astype(bool)]
+    counts = rows.groupby("length_s").size()
+    return "; ".join(f"{length:g} ({count} variables)" for length, count in counts.items()) or "none"
+
+
+def _enough(run: ResponseRun) -> str:
+    if run.over is None or not len(run.over.lengths):
+        return "not tested"
+    found = run.over.enough_length()
+    return f"{found:g}" if found else "not even 180"
+
+
+OURS: dict[str, Callable[[ResponseRun], str]] = {
+    "people": lambda run: str(len(run.responses)),
+    "nominal_angles_without": lambda run: _range(medians(run, "nominal", "nominal")[list(ANGLES)]),
+    "nominal_emg_without": lambda run: _range(medians(run, "nominal", "nominal")[list(EMG)]),
+    "nominal_angles": lambda run: _range(medians(run, "nominal")[list(ANGLES)]),
+    "nominal_emg": lambda run: _range(medians(run, "nominal")[list(EMG)]),
+    "augmented_angles": lambda run: _range(medians(run, "augmented")[list(ANGLES)]),
+    "augmented_emg": lambda run: _range(medians(run, "augmented")[list(EMG)]),
+    "exo_angles": lambda run: _range(medians(run, "exo")[list(ANGLES)]),
+    "exo_emg": lambda run: _range(medians(run, "exo")[list(EMG)]),
+    "augmented_over_nominal": _over_nominal,
+    "gain": _gain,
+    "augmented_below_exo": lambda run: _named(_differ(run, "augmented", "exo", 1)),
+    "below_exo_by": _below_exo_by,
+    "augmented_above_exo": lambda run: _named(_differ(run, "augmented", "exo", -1)),
+    "exo_below_one": lambda run: _named(_differ(run, "exo", "perfect", 1)),
+    "hip_reduction": _hip,
+    "hip_reduction_all": lambda run: _hip_all(run) or "not tested",
+    "emg_reduced": _emg_reduced,
+    "at_one_second": _at_one_second,
+    "lengths_augmented_exo": _lengths,
+    "lengths_enough": _enough,
+}
