@@ -115,6 +115,10 @@ def measured_of_recordings(recordings: Sequence[Recording], simulation: Simulati
                     f"first at t = {recording.time[bad[0]]:.4g} s",
                     "Cut the trial there, or fill the gap before.",
                 )
+            doubtful = int(np.count_nonzero(np.asarray(recording.suspect)[:, recording.names.index(wanted)]))
+            if doubtful:
+                what = f"{doubtful} of {len(values)} samples are marked as not to be trusted"
+                findings[f"{name} {wanted}"] = Finding("warning", "suspect", name, what, "what rests on them", wanted)
             columns.append((wanted, values))
         by_name = dict(columns)
         stacked = [

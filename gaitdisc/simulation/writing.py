@@ -9,21 +9,23 @@ from pathlib import Path
 
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.simulation.parts import Parameter, Term
+from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.simulation import Lines, Simulation
-from gaitdisc.simulation.simulation_file import simulation_of
+from gaitdisc.simulation.simulation_file import read_simulation, simulation_of
 from gaitdisc.whole_file import write_whole
 
 _HEADER = re.compile(r"\s*\[")
 _STRING = r"\"(?:[^\"\\\n]|\\.)*\"|'[^'\n]*'|[^#\"'\n]*?"
 
 
-def write_simulation(simulation: Simulation, path: Path | str) -> Path:
+def write_simulation(simulation: Simulation | PythonSimulation, path: Path | str) -> Path:
     r"""Write a simulation file, whole or not at all.
 
     Parameters
     ----------
-    simulation : Simulation
-        What the file shall hold.
+    simulation : Simulation or PythonSimulation
+        What the file shall hold. Of a Python object that is everything but its right-hand side: `effects_of` reads the
+        effects again, to be given to it.
     path : Path or str
         Where.
 
@@ -52,6 +54,8 @@ def write_simulation(simulation: Simulation, path: Path | str) -> Path:
     name = "constant_load"
     term = "0.5"
     """
+    if isinstance(simulation, PythonSimulation):
+        return write_whole(path, _python_text(simulation))
     return write_whole(path, simulation_text(simulation))
 
 
@@ -74,6 +78,25 @@ def simulation_text(simulation: Simulation) -> str:
         except GaitdiscError:
             pass  # the layout is one that line by line changes do not fit
     return _new_text(simulation)
+
+
+def effects_of(path: Path | str) -> tuple[Term, ...]:
+    """Effects in a file that was written from a `PythonSimulation`, to be given to the object again.
+
+    Parameters
+    ----------
+    path : Path or str
+        File.
+    """
+    return read_simulation(path).effects
+
+
+def _python_text(simulation: PythonSimulation) -> str:
+    """Text that reads as a simulation, whose equations only say what the function may depend on."""
+    told = "# The right-hand side is a Python object. The equations below only list the names that it may depend on;\n"
+    told += "# give the effects to the object: for term in effects_of(path): model = model.with_effect(term)\n"
+    late = "".join(f"# the model's input {name} is {text}\n" for name, text in simulation.replaced)
+    return told + late + _new_text(simulation.parts)
 
 
 def _changed_text(simulation: Simulation) -> str:

@@ -8,8 +8,27 @@ import pytest
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, GaitdiscError, ReadError, UnitError
+from gaitdisc.ingest.reading import read_trial
 from gaitdisc.recording import Recording, Source
+from gaitdisc.simulation.drive import Rows
 from gaitdisc.simulation.measured_table import measured_of_recordings, read_measured
+from gaitdisc.simulation.running import compile_simulation
+from gaitdisc.simulation.simulation_file import simulation_of
+
+KNEE = """title = "shank"
+[states.knee_angle_r]
+unit = "rad"
+[states.rate]
+unit = "rad/s"
+[inputs.knee_angle_r_moment]
+unit = "N m"
+[parameters.inertia]
+value = 0.45
+unit = "kg m^2"
+[equations]
+knee_angle_r = "rate"
+rate = "knee_angle_r_moment/inertia"
+"""
 
 
 def _table(trials=("1", "2"), count=40):
@@ -108,6 +127,30 @@ def test_recordings_are_converted(ankle):
     measured = measured_of_recordings([_recording(), _recording("rad")], ankle)
     np.testing.assert_allclose(measured.observed[0] / (math.pi / 180), measured.observed[1], atol=1e-12)
     assert measured.channels == ("theta",)
+
+
+def test_suspect_samples_are_told(ankle):
+    recording = _recording()
+    marks = np.zeros((50, 3), bool)
+    marks[3:9, 0] = True
+    findings = measured_of_recordings([recording.with_values(recording.values, marks)], ankle).findings
+    assert any(each.kind == "suspect" and "6 of 50 samples" in each.what for each in findings)
+
+
+def test_a_real_walk_drives_a_knee(gait_data):
+    """Inverse kinematics [deg] and inverse dynamics [N m] of one walk: converted, and a rigid shank follows for 50 ms."""
+    folder = gait_data / "opensim_walks" / "mrs_emg_walking"
+    walk = read_trial([folder / "IK_gait.mot", folder / "ID_gait.sto"]).on_one_base(100.0)
+    knee = simulation_of(KNEE)
+    measured = measured_of_recordings([walk], knee)
+    np.testing.assert_allclose(np.degrees(measured.observed[0, :, 0]), walk["knee_angle_r"], rtol=1e-12)
+    np.testing.assert_array_equal(measured.drive.inputs[0, :, 0], walk["knee_angle_r_moment"])
+    begin = np.arange(0, 190, 20)
+    angle = measured.observed[0, :, 0]
+    rows = Rows(np.zeros(10, int), begin, np.column_stack([angle, np.gradient(angle, 0.01)])[begin])
+    states, ok = compile_simulation(knee).run(measured.drive, rows, 20)
+    assert ok.all()
+    assert np.degrees(np.abs(states[:, 5, 0] - angle[begin + 5])).max() < 10
 
 
 def test_recordings_with_faults(ankle):

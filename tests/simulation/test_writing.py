@@ -6,9 +6,10 @@ from hypothesis import strategies as st
 
 from gaitdisc.errors import WriteError
 from gaitdisc.simulation.parts import Input, Parameter, Port, State, Term
+from gaitdisc.simulation.python_simulation import python_simulation
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.simulation_file import read_simulation, simulation_of
-from gaitdisc.simulation.writing import simulation_text, write_simulation
+from gaitdisc.simulation.writing import effects_of, simulation_text, write_simulation
 
 SPRING = Term("ankle_moment", "port", "one_sided_spring", "-286.0*max(0, theta - 0.035)")
 
@@ -84,6 +85,15 @@ def test_the_file_is_read_back(ankle, tmp_path):
     assert read_simulation(path) == ankle.with_effect(SPRING)
     with pytest.raises(WriteError, match="is to be written whole"):
         write_simulation(ankle, path / "below.toml")
+
+
+def test_a_python_object_leaves_its_effects(tmp_path):
+    model = python_simulation("ball", lambda *_: 0, [State("v")], [Input("u")], ports=[Port("drag")])
+    term = Term("drag", "port", "viscous_damping", "-0.4*v")
+    path = write_simulation(model.with_effect(term).with_input("u", "delay(u, 0.1)"), tmp_path / "ball.toml")
+    assert effects_of(path) == (term,)
+    assert "The right-hand side is a Python object" in path.read_text()
+    assert "# the model's input u is delay(u, 0.1)" in path.read_text()
 
 
 words = st.text(st.characters(codec="utf-8"), max_size=12)
