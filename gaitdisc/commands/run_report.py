@@ -55,6 +55,9 @@ def report_on(work: Callable[[Told], ResponseRun], study: Study, folder: Path, q
     for refusal in done.refusals:
         who = " ".join(part for part in (refusal.participant, refusal.condition) if part)
         typer.echo(f"refused: {who}: {refusal.reason}", err=True)
+    for quantity in done.quantities:
+        for length_s, reason in quantity.left_away.items():
+            typer.echo(f"left out: {quantity.participant}, training length {length_s:g} s: {reason}", err=True)
     typer.echo(f"{len(done.responses)} participants in {time.perf_counter() - started:.0f} s. report: {page}")
     if done.refusals:
         raise typer.Exit(SOME_REFUSED if done.responses else REFUSED)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
+from gaitdisc.errors import TrainingError
 from gaitdisc.model import Augmented, Model, augment
 from gaitdisc.networks.feedforward import FeedForward
 from gaitdisc.networks.trainer import train
@@ -88,12 +89,30 @@ def fit_models(
     Returns
     -------
     ResponseModels
+
+    Raises
+    ------
+    TrainingError
+        If a model cannot be fitted; it names the model.
     """
     parts = [partial(_third, progress or (lambda _: None), done) for done in range(3)]
-    f = fit(nominal, parts[0])
-    y = fit(exo, parts[1])
-    g = fit(exo.with_outputs(exo.y - f.model(exo.x)), parts[2])
+    f = _named("Nominal", fit, nominal, parts[0])
+    y = _named("Exo", fit, exo, parts[1])
+    g = _named("Discrepancy", fit, exo.with_outputs(exo.y - f.model(exo.x)), parts[2])
     return ResponseModels(nominal=f, exo=y, discrepancy=g)
+
+
+def _named(
+    model: str,
+    fit: Callable[[Samples, Callable[[float], None]], Fit],
+    samples: Samples,
+    progress: Callable[[float], None],
+) -> Fit:
+    """Fit, and name the model where it is refused."""
+    try:
+        return fit(samples, progress)
+    except TrainingError as error:
+        raise TrainingError(f"the {model} model: {error.needed}", error.found, error.remedy) from error
 
 
 def _third(progress: Callable[[float], None], done: int, fraction: float) -> None:

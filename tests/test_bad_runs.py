@@ -1,0 +1,215 @@
+"""Bad input of a run, end to end through the command line: what is said, and that the others go on."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import re
+import shutil
+import socket
+from functools import partial
+
+import numpy as np
+import pandas as pd
+import pytest
+from driven_walker import DrivenWalker
+from typer.testing import CliRunner
+
+from gaitdisc.cli import app, main
+from gaitdisc.commands.exit_codes import REFUSED, SOME_REFUSED
+from gaitdisc.ingest.storage import write_storage
+from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial, Study
+from gaitdisc.ingest.study_file import write_study
+from gaitdisc.networks.training_settings import TrainingSettings
+
+ANGLES = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", "hip_flexion_l", "knee_angle_l", "ankle_angle_l")
+
+
+@pytest.fixture(scope="module")
+def recordings(tmp_path_factory):
+    """Walks of 24 s without and with a spring, sound and with a channel that does not move."""
+    folder = tmp_path_factory.mktemp("recordings")
+    for word, spring in (("nominal", 0.0), ("exo", 250.0)):
+        walk = DrivenWalker("P01", seed=3, spring_per_s2=spring).walked(24.0, word)
+        angles = walk.stream("kinematics").selected(ANGLES)
+        write_storage(angles, folder / f"{word}.mot")
+        for channel in ("ankle_angle_r", "ankle_angle_l"):
+            values = np.array(angles.values)
+            values[:, angles.index(channel)] = 5.0
+            write_storage(angles.with_values(values), folder / f"still_{channel}_{word}.mot")
+    return folder
+
+
+@pytest.fixture
+def folder(recordings, tmp_path):
+    for file in recordings.iterdir():
+        (tmp_path / file.name).symlink_to(file)
+    return tmp_path
+
+
+def walker(name, nominal="nominal.mot", exo="exo.mot"):
+    files = {"nominal": nominal, "exo": exo}
+    trials = tuple(PlannedTrial(condition=word, files=(file,)) for word, file in files.items() if file)
+    return Participant(id=name, trials=trials)
+
+
+def written(folder, *people, outputs=("knee_angle_r", "ankle_angle_r")):
+    study = Study(
+        conditions=Conditions(nominal="nominal", device="exo"),
+        models=Models(angles=ANGLES, outputs=outputs),
+        participants=people,
+    )
+    write_study(study.placed(folder), folder / "study.toml")
+
+
+def said(word, folder, *options):
+    """Exit code and all that is printed, on one line."""
+    done = CliRunner().invoke(app, [word, str(folder), "--quiet", *options])
+    assert done.exception is None or isinstance(done.exception, SystemExit), done.exception
+    return done.exit_code, " ".join(done.output.split())
+
+
+def page_of(folder):
+    """Text of the report, without its figures."""
+    page = (folder / "run" / "report" / "report.html").read_text(encoding="utf-8")
+    text = re.sub(r"<svg.*?</svg>|<style.*?</style>|<[^>]+>", " ", page, flags=re.DOTALL)
+    return " ".join(text.split())
+
+
+def test_one_participant_carries_no_test(folder):
+    written(folder, walker("P01"))
+    code, _ = said("run", folder)
+    assert code == 0
+    assert "One participant carries no test: what follows describes this participant only." in page_of(folder)
+    tests = json.loads((folder / "run" / "tests" / "tests.json").read_text())
+    assert tests["participants"] == 1
+    assert tests["too_few"]
+
+
+def test_whoever_is_left_out_is_named_and_every_table_has_its_n(folder):
+    written(
+        folder, walker("P01"), walker("P02", exo=""), walker("P03", exo="gone.mot"), walker("P04"),
+        walker("P05", "still_ankle_angle_r_nominal.mot", "still_ankle_angle_r_exo.mot"),
+    )  # fmt: skip
+    code, words = said("run", folder)
+    assert code == SOME_REFUSED
+    assert "P02: a comparison needs one trial of 'nominal' and one of 'exo'; P02 has 1 of 'nominal', none of" in words
+    assert "refused: P03 exo: gone.mot is to be read; there is no such file, the nearest is 'exo.mot'." in words
+    assert "refused: P05: the Nominal model: a fit needs outputs that vary; P05: d2(ankle_angle_r)/dt2 is" in words
+    assert "n = 2 participants" in words
+    page = page_of(folder)
+    assert "2 of 5 participants were analysed" in page or "n = 2 participants" in page
+    assert all(name in page for name in ("P02", "P03", "P05"))
+    table = pd.read_csv(folder / "run" / "report" / "tables" / "r2.csv")
+    assert sorted(set(table["participant"])) == ["P01", "P04"]
+    assert (table["n"] > 0).all()
+    tests = pd.read_csv(folder / "run" / "tests" / "tests.csv")
+    assert set(tests["n"]) <= {2}
+
+
+def test_an_input_that_does_not_move_is_told(folder):
+    written(folder, walker("P01", "still_ankle_angle_l_nominal.mot", "still_ankle_angle_l_exo.mot"))
+    code, _ = said("run", folder)
+    assert code == 0
+    findings = pd.read_csv(folder / "run" / "report" / "tables" / "findings.csv")
+    told = findings[findings["channel"] == "ankle_angle_l"]
+    assert list(told["what"]) == ["5 deg throughout"] * 2
+    assert told["spoils"].str.contains("a locked coordinate, or nothing was measured").all()
+
+
+def test_a_training_that_does_not_converge_is_refused_by_participant_and_model(folder, monkeypatch):
+    diverging = partial(TrainingSettings, learning_rate=1e30)
+    monkeypatch.setattr("gaitdisc.batch.participant_unit.TrainingSettings", diverging)
+    written(folder, walker("P01"))
+    code, words = said("run", folder)
+    assert code == REFUSED
+    assert "refused: P01: the Nominal model: training needs a loss that stays finite; it was" in words
+    assert "at learning rate 1e+30. Take another seed" in words
+
+
+def test_a_trial_shorter_than_the_longest_training_length_shortens_the_ablation_and_says_so(folder):
+    written(folder, walker("P01"))
+    code, words = said("ablate", folder, "--length", "5", "--length", "60")
+    assert code == 0
+    assert "left out: P01, training length 60 s: the training part has 20.7 s" in words
+    assert "Lengths left away, because a walk is too short for them or too few samples are left: 60 s" in page_of(
+        folder
+    )
+    quantity = pd.read_csv(folder / "run" / "quantities" / "P01" / "quantity.csv")
+    assert sorted(set(quantity["length_s"])) == [5.0, 20.7]
+
+
+def refused_words(monkeypatch, capsys, *words):
+    """Stop with exit code 1, and what is said."""
+    monkeypatch.setattr("sys.argv", ["gaitdisc", *map(str, words), "--quiet"])
+    with pytest.raises(SystemExit) as stopped:
+        main()
+    assert stopped.value.code == REFUSED
+    return " ".join(capsys.readouterr().err.split())
+
+
+def test_a_disk_that_fills_in_the_middle_keeps_what_was_finished(folder, monkeypatch, capsys):
+    written(folder, walker("P01"), walker("P02"))
+    plain = os.fsync
+
+    def full(handle):
+        if (folder / "run" / "responses" / "P01" / "response.json").exists():
+            raise OSError(errno.ENOSPC, "No space left on device")
+        plain(handle)
+
+    with monkeypatch.context() as disk:
+        disk.setattr(os, "fsync", full)
+        words = refused_words(disk, capsys, "run", folder)
+    assert "WriteError" in words and "No space left on device. Make room or choose another folder" in words
+    assert not (folder / "run" / "run.json").exists()
+    assert not list(folder.rglob(".part-*"))
+    kept = (folder / "run" / "responses" / "P01" / "response.json").stat().st_mtime_ns
+    code, words = said("run", folder)
+    assert (code, "n = 2 participants" in words) == (0, True)
+    assert (folder / "run" / "responses" / "P01" / "response.json").stat().st_mtime_ns == kept
+
+
+def test_a_folder_that_cannot_be_written(folder, monkeypatch, capsys):
+    written(folder, walker("P01"))
+    (folder / "file").write_text("")
+    words = refused_words(monkeypatch, capsys, "run", folder, "--out", folder / "file" / "run")
+    assert "a run needs a folder that it can write" in words and "choose another folder with --out" in words
+
+
+def test_two_runs_in_one_folder(folder, monkeypatch, capsys):
+    from gaitdisc.batch.run_lock import run_lock
+
+    written(folder, walker("P01"))
+    with run_lock(folder / "run"):
+        words = refused_words(monkeypatch, capsys, "run", folder)
+    assert f"is held by process {os.getpid()} on this machine. Wait for it" in words
+
+
+def test_a_run_that_was_moved_to_another_machine_goes_on_there(folder, monkeypatch, tmp_path_factory):
+    written(folder, walker("P01"))
+    said("run", folder)
+    there = tmp_path_factory.mktemp("another") / "machine"
+    shutil.copytree(folder, there)
+    shutil.rmtree(folder / "run")
+    monkeypatch.setattr(socket, "gethostname", lambda: "another")
+    kept = (there / "run" / "responses" / "P01" / "response.json").stat().st_mtime_ns
+    assert said("run", there)[0] == 0
+    assert (there / "run" / "responses" / "P01" / "response.json").stat().st_mtime_ns == kept
+    assert CliRunner().invoke(app, ["report", str(there / "run")]).exit_code == 0
+
+
+@pytest.mark.parametrize("file", ["response.json", "r2.csv", "arrays.npz"])
+def test_a_damaged_unit_is_told_by_report_and_mended_by_run(folder, monkeypatch, capsys, file):
+    written(folder, walker("P01"))
+    said("run", folder)
+    damaged = folder / "run" / "responses" / "P01" / file
+    whole = damaged.read_bytes()
+    damaged.write_bytes(whole[: len(whole) // 2])
+    monkeypatch.setattr("sys.argv", ["gaitdisc", "report", str(folder / "run")])
+    with pytest.raises(SystemExit):
+        main()
+    words = " ".join(capsys.readouterr().err.split())
+    assert f"P01/{file} is" in words and "Run `gaitdisc run` on the study again" in words
+    assert said("run", folder)[0] == 0
+    assert damaged.read_bytes() == whole
