@@ -8,11 +8,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from gaitdisc.simulation.at_points import at_points, leaf_columns
 from gaitdisc.simulation.checking import check_expression
 from gaitdisc.simulation.delays import delayed_in_series
 from gaitdisc.simulation.program import compiled_program
 from gaitdisc.simulation.refusal import SimulationError
-from gaitdisc.simulation.running import at_points, compile_simulation, leaf_columns, simulation_scope
+from gaitdisc.simulation.running import compile_simulation, simulation_scope
 from gaitdisc.simulation.simulation import Simulation
 
 
