@@ -138,7 +138,7 @@ def test_suspect_samples_are_told(ankle):
 
 
 def test_a_real_walk_drives_a_knee(gait_data):
-    """Inverse kinematics [deg] and inverse dynamics [N m] of one walk: converted, and a rigid shank follows for 50 ms."""
+    """Inverse kinematics [deg] and inverse dynamics [N m] of one walk: converted, and a shank follows for 50 ms."""
     folder = gait_data / "opensim_walks" / "mrs_emg_walking"
     walk = read_trial([folder / "IK_gait.mot", folder / "ID_gait.sto"]).on_one_base(100.0)
     knee = simulation_of(KNEE)
