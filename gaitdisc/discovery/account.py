@@ -1,0 +1,111 @@
+"""An account of the data: the simulation with some explanations in it, fitted."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.shooting import Fitted, Shooting
+from gaitdisc.simulation.running import Compiled, compile_simulation
+from gaitdisc.simulation.simulation import Simulation
+
+
+@dataclass(frozen=True)
+class Part:
+    """One explanation with its numbers.
+
+    Parameters
+    ----------
+    candidate : Candidate
+        The explanation.
+    values : dict of str to float
+        Slot -> number.
+    """
+
+    candidate: Candidate
+    values: dict[str, float]
+
+
+@dataclass(frozen=True)
+class Account:
+    """The simulation with some explanations in it, fitted to segments.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        With the explanations, their numbers as parameters.
+    machine : Compiled
+        The same, ready to run.
+    parts : tuple of Part
+        The explanations, with the numbers that were found.
+    fit : Fitted
+        The fit.
+    """
+
+    simulation: Simulation
+    machine: Compiled
+    parts: tuple[Part, ...]
+    fit: Fitted
+
+    @property
+    def size(self) -> int:
+        """How many numbers were fitted."""
+        return len(self.fit.free)
+
+    @property
+    def criterion(self) -> float:
+        """Misfit plus the Bayesian price of each number fitted; the smaller the better."""
+        return self.fit.misfit + self.size * float(np.log(self.fit.white.size))
+
+
+def with_parts(base: Simulation, parts: tuple[Part, ...]) -> tuple[Simulation, tuple[dict[str, str], ...]]:
+    """Return a simulation with explanations in it, their numbers as parameters, and for each its slots' parameters.
+
+    Parameters
+    ----------
+    base : Simulation
+        As read.
+    parts : tuple of Part
+        The explanations.
+    """
+    simulation, names = base, []
+    for number, part in enumerate(parts):
+        simulation, slots = part.candidate.in_fit(simulation, f"part{number}", part.values)
+        names.append(slots)
+    return simulation, tuple(names)
+
+
+def account_for(
+    shooting: Shooting, base: Simulation, parts: tuple[Part, ...], starts: NDArray[np.float64], turns: int = 12
+) -> Account:
+    """Fit a simulation with explanations in it.
+
+    Parameters
+    ----------
+    shooting : Shooting
+        The segments.
+    base : Simulation
+        As read.
+    parts : tuple of Part
+        The explanations, with numbers to begin from.
+    starts : ndarray (segment, state)
+        Start states to begin from.
+    turns : int
+        Most steps of the fit.
+    """
+    simulation, names = with_parts(base, parts)
+    machine = compile_simulation(simulation)
+    values = machine.defaults.copy()
+    for part, slots in zip(parts, names, strict=True):
+        for slot, name in slots.items():
+            values[machine.parameters.index(name)] = part.values[slot]
+    free = tuple(name for slots in names for name in slots.values())
+    fit = shooting.fitted(machine, free, values, starts, turns)
+    found = tuple(
+        Part(part.candidate, {slot: float(fit.values[machine.parameters.index(name)]) for slot, name in slots.items()})
+        for part, slots in zip(parts, names, strict=True)
+    )
+    return Account(simulation, machine, found, fit)

@@ -1,0 +1,244 @@
+"""The answer: numbers with intervals, where it acts, how far the gap shrank, and one sentence."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gaitdisc.discovery.account import Part
+from gaitdisc.discovery.evidence import Judged
+from gaitdisc.discovery.held_out import drawn_runs, gap_size, runs_of
+from gaitdisc.discovery.inquiry import Inquiry
+from gaitdisc.discovery.shaken import Shaken
+from gaitdisc.discovery.wording import sentence_of
+from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, Whereabouts
+from gaitdisc.simulation.evaluating import Points, evaluate
+from gaitdisc.simulation.simulation import Simulation
+
+NORMAL_95 = 1.959964
+TIE = 6.0  # fall of the criterion below which two explanations are told apart by nothing
+RIVALS = 6
+HALF = 0.5
+
+
+def answer(
+    inquiry: Inquiry, as_read: Judged, verdict: str, now: Judged, rivals: tuple[Judged, ...], shaking: Shaken | None
+) -> tuple[Discovery, Simulation]:
+    """Write down what an inquiry came to.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        What was asked.
+    as_read : Judged
+        The simulation as read.
+    verdict : str
+        One of the contract's.
+    now : Judged
+        The simulation with what was found in it.
+    rivals : tuple of Judged
+        What else was weighed, best first.
+    shaking : Shaken or None
+        For process noise.
+
+    Returns
+    -------
+    discovery : Discovery
+        The answer.
+    augmented : Simulation
+        The simulation with what was found, its numbers written in.
+    """
+    channels = tuple(name for name, _ in inquiry.search.base.observations)
+    floor = now.noise.size
+    sizes = []
+    for trials in (inquiry.learned, inquiry.held_out):
+        before, after = (runs_of(inquiry, one, trials, now) for one in (as_read, now))
+        sizes.append(gap_size(before, after, floor, channels))
+    train, held_out = sizes
+    closed = 1 - (held_out.after**2 - floor_of(held_out)) / max(held_out.before**2 - floor_of(held_out), 1e-12)
+    effects = tuple(found_effects(inquiry, now, closed, as_read.evidence - best_evidence(rivals, as_read)))
+    if shaking:
+        effects = (FoundEffect(shaking.place.kind, shaking.place.name, "process_noise", "", {"strength": Estimate(shaking.strength, np.nan, np.nan)}),)
+    discovery = Discovery(
+        verdict,
+        "",
+        whereabouts(inquiry, now, shaking, train.before**2, train.after**2),
+        effects,
+        rivals_of(as_read, now, rivals),
+        train,
+        held_out,
+        channels,
+        units_of(inquiry),
+        drawn_runs(inquiry, before, after, inquiry.held_out),
+        inquiry.measured.findings,
+    )
+    return sentence_of(discovery, inquiry), augmented_of(inquiry.search.base, now.account.parts)
+
+
+def augmented_of(base: Simulation, parts: tuple[Part, ...]) -> Simulation:
+    """Return a simulation with explanations in it, their numbers written in.
+
+    Parameters
+    ----------
+    base : Simulation
+        As read.
+    parts : tuple of Part
+        The explanations.
+    """
+    for part in parts:
+        base = part.candidate.written(base, {slot: f"{value:.6g}" for slot, value in part.values.items()})
+    return base
+
+
+def floor_of(size) -> float:  # noqa: ANN001
+    return size.noise_floor**2
+
+
+def best_evidence(rivals: tuple[Judged, ...], as_read: Judged) -> float:
+    return rivals[0].evidence if rivals else as_read.evidence
+
+
+def found_effects(inquiry: Inquiry, now: Judged, closed: float, gained: float) -> list[FoundEffect]:
+    """List the explanations with their numbers and intervals.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        What was asked.
+    now : Judged
+        The account.
+    closed : float
+        Share of the held-out gap that is closed.
+    gained : float
+        Fall of the criterion.
+    """
+    error = dict(zip(now.account.fit.free, np.sqrt(np.diag(now.account.fit.covariance)), strict=True))
+    found = []
+    for number, part in enumerate(now.account.parts):
+        candidate = part.candidate
+        names = {slot: candidate.place if candidate.verdict == "wrong_parameter" else f"part{number}_{slot}" for slot in candidate.slots}
+        estimates = {
+            slot: Estimate(value, value - NORMAL_95 * error[names[slot]], value + NORMAL_95 * error[names[slot]])
+            for slot, value in part.values.items()
+        }
+        numbers = {slot: f"{value:.6g}" for slot, value in part.values.items()}
+        term = candidate.term(numbers) if candidate.verdict == "missing_physics" else ""
+        found.append(FoundEffect(candidate.kind, candidate.place, candidate.name, term, estimates, closed, gained))
+    return found
+
+
+def rivals_of(as_read: Judged, now: Judged, rivals: tuple[Judged, ...]) -> tuple[FoundEffect, ...]:
+    """List what else was weighed for the first place.
+
+    Parameters
+    ----------
+    as_read, now : Judged
+        The simulation as read and with what was found.
+    rivals : tuple of Judged
+        Best first.
+    """
+    own = {part.candidate.label for part in now.account.parts}
+    best = best_evidence(rivals, as_read)
+    listed = []
+    for rival in rivals:
+        last = rival.account.parts[-1]
+        if last.candidate.label in own:
+            continue
+        estimates = {slot: Estimate(value, np.nan, np.nan) for slot, value in last.values.items()}
+        listed.append(
+            FoundEffect(
+                last.candidate.kind,
+                last.candidate.place,
+                last.candidate.name,
+                "",
+                estimates,
+                bic=as_read.evidence - rival.evidence,
+                tied=bool(own and rival.evidence - best < TIE),
+            )
+        )
+    return tuple(listed[:RIVALS])
+
+
+def whereabouts(
+    inquiry: Inquiry, now: Judged, shaking: Shaken | None, before: float, after: float
+) -> tuple[Whereabouts, ...]:
+    """Say where the gap arises.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        What was asked.
+    now : Judged
+        The account.
+    shaking : Shaken or None
+        For process noise.
+    before, after : float
+        Mean squared gap, as shares of the channels' variance.
+    """
+    if shaking:
+        return (Whereabouts(shaking.place.kind, shaking.place.name, float("nan")),)
+    share = (before - after) / before if before > 0 else 0.0
+    return tuple(
+        Whereabouts(
+            part.candidate.kind, part.candidate.place, share / len(now.account.parts), phase_of(inquiry, now, part), region_of(part)
+        )
+        for part in now.account.parts
+    )
+
+
+def phase_of(inquiry: Inquiry, now: Judged, part: Part) -> tuple[float, ...]:
+    """Return the part of the stride in which an effect is at least half as strong as at its strongest.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        What was asked.
+    now : Judged
+        The account.
+    part : Part
+        One of its explanations.
+    """
+    names = [one.name for one in inquiry.search.base.inputs]
+    if "phase" not in names or part.candidate.verdict != "missing_physics":
+        return ()
+    segments, drive = now.shooting.segments, inquiry.measured.drive
+    inputs = segments.of(drive.inputs).reshape(-1, len(names))
+    states = now.account.fit.states.reshape(len(inputs), -1)
+    time = (drive.time0[segments.trial][:, None] + (segments.begin[:, None] + np.arange(segments.length)) / drive.rate).ravel()
+    term = part.candidate.term({slot: f"{value:.9g}" for slot, value in part.values.items()})
+    if "delay(" in term:
+        return ()
+    push = np.abs(evaluate(inquiry.search.base, term, Points(time, states, inputs)))
+    phase = inputs[:, names.index("phase")]
+    mean = np.array([push[(phase >= one / 100) & (phase < (one + 1) / 100)].mean(initial=0.0, where=True) if np.any((phase >= one / 100) & (phase < (one + 1) / 100)) else 0.0 for one in range(100)])
+    strong = np.flatnonzero(mean > HALF * mean.max())
+    return (float(strong[0] / 100), float((strong[-1] + 1) / 100)) if strong.size else ()
+
+
+def region_of(part: Part) -> str:
+    """Say in which states an effect acts.
+
+    Parameters
+    ----------
+    part : Part
+        An explanation.
+    """
+    candidate = part.candidate
+    if candidate.name == "one_sided_spring":
+        side = ">" if "- _x0" in candidate.pieces[0] else "<"
+        return f"{candidate.role} {side} {part.values['x0']:.4g}"
+    if candidate.name == "dead_zone_spring":
+        return f"abs({candidate.role}) > {part.values['d']:.4g}"
+    return ""
+
+
+def units_of(inquiry: Inquiry) -> tuple[str, ...]:
+    """Return the units of the observed channels, where they are states.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        What was asked.
+    """
+    units = {state.name: state.unit for state in inquiry.search.base.states}
+    return tuple(units.get(text.strip(), "") for _, text in inquiry.search.base.observations)
+

@@ -1,0 +1,232 @@
+"""A candidate: one explanation of a gap, at one place, with numbers still to be found."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from gaitdisc.discovery.catalogue import Shape
+from gaitdisc.discovery.places import Place
+from gaitdisc.simulation.parts import Parameter, Term
+from gaitdisc.simulation.simulation import Simulation
+
+# verdict -> the kind of place it names
+PLACE_OF = {
+    "wrong_parameter": "parameter",
+    "input_error": "input",
+    "sensor_error": "observation",
+    "wrong_initial_condition": "state",
+}
+# How an error of a signal reads, {s} being the signal: (slot, value when nothing is wrong, expression)
+SIGNAL_ERRORS = {
+    "input_gain": ("gain", 1.0, "{gain}*{s}"),
+    "input_delay": ("seconds", 0.0, "delay({s}, {seconds})"),
+    "sensor_gain": ("gain", 1.0, "{gain}*({s})"),
+    "sensor_offset": ("offset", 0.0, "({s}) + {offset}"),
+    "sensor_drift": ("rate", 0.0, "({s}) + {rate}*t"),
+    "sensor_lag": ("seconds", 0.0, "{s}"),
+}
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One explanation of a gap, at one place.
+
+    Parameters
+    ----------
+    verdict : str
+        `missing_physics`, `wrong_parameter`, `input_error` or `sensor_error`.
+    kind : str
+        What `place` is: `port`, `equation`, `parameter`, `input`, `observation`.
+    place : str
+        Its name.
+    name : str
+        Name of the effect, of discovery.md's tables.
+    pieces : tuple of str
+        For a missing term, its pieces over the simulation's names; its constants as words that begin with `_`.
+    constants : mapping of str to str
+        For a missing term, its constants and the grid on which each is searched.
+    role : str
+        For a missing term, what stands for x in it (for the grids).
+    means : str
+        One clause for a reader.
+    value : float
+        For a wrong parameter, the number in the file.
+    """
+
+    verdict: str
+    kind: str
+    place: str
+    name: str
+    pieces: tuple[str, ...] = ()
+    constants: Mapping[str, str] | None = None
+    role: str = ""
+    means: str = ""
+    value: float = 0.0
+
+    @property
+    def slots(self) -> tuple[str, ...]:
+        """The numbers to be found, by name: factors first."""
+        if self.verdict == "missing_physics":
+            factors = tuple(f"factor_{i}" if i else "factor" for i in range(len(self.pieces)))
+            return (*factors, *(self.constants or {}))
+        if self.verdict == "wrong_parameter":
+            return ("value",)
+        return (SIGNAL_ERRORS[self.name][0],)
+
+    @property
+    def idle(self) -> dict[str, float]:
+        """Values at which the candidate changes nothing (constants of a shape are not among them)."""
+        if self.verdict == "missing_physics":
+            return {slot: 0.0 for slot in self.slots if slot.startswith("factor")}
+        if self.verdict == "wrong_parameter":
+            return {"value": self.value}
+        slot, none, _ = SIGNAL_ERRORS[self.name]
+        return {slot: none}
+
+    @property
+    def label(self) -> str:
+        """Name and place, as one word."""
+        return f"{self.name}@{self.place}"
+
+    def written(self, simulation: Simulation, numbers: Mapping[str, str]) -> Simulation:
+        """Return the simulation with this explanation in it.
+
+        Parameters
+        ----------
+        simulation : Simulation
+            Without it.
+        numbers : mapping of str to str
+            For each slot, a number or the name of a parameter, as text.
+        """
+        if self.verdict == "missing_physics":
+            return simulation.with_effect(Term(self.place, self.kind, self.name, self.term(numbers)))
+        if self.verdict == "wrong_parameter":
+            return simulation.with_values({self.place: float(numbers["value"])})
+        form = SIGNAL_ERRORS[self.name][2]
+        if self.verdict == "input_error":
+            return simulation.with_input(self.place, form.format(s=self.place, **numbers))
+        seen = dict(simulation.observations)[self.place]
+        if self.name == "sensor_lag":
+            signals = "|".join(re.escape(signal) for signal in simulation.signals)
+            seen = re.sub(rf"\b({signals})\b", lambda match: f"delay({match.group()}, {numbers['seconds']})", seen)
+        return simulation.with_observation(self.place, form.format(s=seen, **numbers))
+
+    @property
+    def is_late(self) -> bool:
+        """Whether the number to be found is a delay of a signal."""
+        return self.name in ("input_delay", "sensor_lag")
+
+    def pieces_at(self, constants: Mapping[str, str]) -> tuple[str, ...]:
+        """Return the pieces of a missing term with its constants written in.
+
+        Parameters
+        ----------
+        constants : mapping of str to str
+            For each constant, a number or the name of a parameter, as text.
+        """
+        marked = {f"_{slot}": text for slot, text in constants.items()}
+        return Shape(self.name, self.pieces).written(marked)
+
+    def term(self, numbers: Mapping[str, str]) -> str:
+        """Return the missing term as an expression.
+
+        Parameters
+        ----------
+        numbers : mapping of str to str
+            For each slot, a number or the name of a parameter, as text.
+        """
+        pieces = self.pieces_at({slot: numbers[slot] for slot in self.constants or {}})
+        return " + ".join(
+            numbers[slot] if piece == "1" else f"{numbers[slot]}*({piece})" for slot, piece in zip(self.slots, pieces, strict=False)
+        )
+
+    def in_fit(self, simulation: Simulation, tag: str, values: Mapping[str, float]) -> tuple[Simulation, dict[str, str]]:
+        """Return the simulation with this explanation in it and its numbers free.
+
+        Parameters
+        ----------
+        simulation : Simulation
+            Without it.
+        tag : str
+            Begins the names of the parameters that are added.
+        values : mapping of str to float
+            Where each slot begins.
+
+        Returns
+        -------
+        simulation : Simulation
+            With it.
+        names : dict of str to str
+            Slot -> parameter.
+        """
+        if self.verdict == "wrong_parameter":
+            return simulation, {"value": self.place}
+        names = {slot: f"{tag}_{slot}" for slot in self.slots}
+        for slot, name in names.items():
+            simulation = simulation.with_parameter(Parameter(name, float(values[slot])))
+        return self.written(simulation, names), names
+
+
+def candidates_of(simulation: Simulation, places: tuple[Place, ...], shapes: tuple[Shape, ...]) -> tuple[Candidate, ...]:
+    """List everything that could explain a gap, missing physics beside wrong numbers, inputs and sensors.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        As read.
+    places : tuple of Place
+        Where a term may enter.
+    shapes : tuple of Shape
+        The catalogue.
+    """
+    used = "\n".join(text for _, text in (*simulation.definitions, *simulation.equations))
+    found = [
+        Candidate("wrong_parameter", "parameter", parameter.name, "wrong_parameter", means="a wrong number", value=parameter.value)
+        for parameter in simulation.parameters
+    ]
+    for name in (one.name for one in simulation.inputs):
+        if _occurs(name, used):
+            found += [Candidate("input_error", "input", name, error) for error in ("input_delay", "input_gain")]
+    for name, _ in simulation.observations:
+        found += [
+            Candidate("sensor_error", "observation", name, error)
+            for error in ("sensor_gain", "sensor_offset", "sensor_lag", "sensor_drift")
+        ]
+    has_phase = any(one.name == "phase" for one in simulation.inputs)
+    for place in places:
+        for shape in shapes:
+            if shape.needs == "angle" and not place.angle or shape.uses_phase and not has_phase:
+                continue
+            found += [
+                Candidate(
+                    "missing_physics", place.kind, place.name, shape.name, shape.written(names | {one: f"_{one}" for one in shape.constants}), shape.constants, role, shape.means
+                )
+                for role, names in _castings(shape, place)
+            ]
+    return tuple(found)
+
+
+def _castings(shape: Shape, place: Place) -> list[tuple[str, dict[str, str]]]:
+    """What may stand for the roles of a shape at a place: (what stands for x, names)."""
+    roles = set(shape.roles)
+    if roles <= {"x", "v"}:
+        castings = []
+        for x, v in place.motions:
+            late = any("delay(" in piece for piece in shape.pieces)
+            if ("v" in roles and not v) or (late and " " in x):
+                continue
+            castings.append((x, {"x": x} | ({"v": v} if v else {})))
+            if not roles or shape.needs == "angle":
+                break
+        return castings
+    if roles == {"y"}:
+        return [(other, {"y": other}) for other in place.others]
+    if roles == {"a", "b"}:
+        return [(a, {"a": a, "b": b}) for a, b in place.products]
+    return []
+
+
+def _occurs(name: str, text: str) -> bool:
+    return re.search(rf"\b{re.escape(name)}\b", text) is not None

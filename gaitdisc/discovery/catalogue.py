@@ -1,0 +1,174 @@
+"""The catalogue of physical effects: shapes with unknown constants, read from a file that the user can extend."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from gaitdisc.errors import SchemaError
+
+ROLES = ("x", "v", "y", "a", "b")
+GRIDS = ("quantiles of x", "half widths of x", "delays", "frequencies", "phases", "phase widths")
+NEEDS = ("", "angle")
+_NAME = re.compile(r"[a-z_][a-z0-9_]*")
+_ENTRIES = ("name", "pieces", "constants", "needs", "means")
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A physical effect before it has a place: what it looks like and which of its numbers are unknown.
+
+    Parameters
+    ----------
+    name : str
+        The effect's name; several shapes may share one (a spring engaging above or below).
+    pieces : tuple of str
+        Expressions of the roles x (a position-like state), v (its rate), y (another state), a and b (two states), of `t`,
+        `phase` and the constants. Each piece has its own factor in the fit.
+    constants : mapping of str to str
+        Unknown numbers inside the shape, and the grid on which the search for each begins.
+    needs : str
+        What the place must offer: `angle`, or nothing.
+    means : str
+        One clause that a person understands.
+
+    Examples
+    --------
+    >>> spring = Shape("one_sided_spring", ("max(0, x - x0)",), {"x0": "quantiles of x"})
+    >>> spring.roles, spring.written({"x": "theta"})
+    (('x',), ('max(0, theta - x0)',))
+    """
+
+    name: str
+    pieces: tuple[str, ...]
+    constants: Mapping[str, str] = field(default_factory=dict)
+    needs: str = ""
+    means: str = ""
+
+    @property
+    def roles(self) -> tuple[str, ...]:
+        """The roles that occur in the pieces, in the order x, v, y, a, b."""
+        seen = {word for piece in self.pieces for word in _NAME.findall(piece)} - set(self.constants)
+        return tuple(role for role in ROLES if role in seen)
+
+    @property
+    def uses_phase(self) -> bool:
+        """Whether the effect is locked to the stride."""
+        return any("phase" in _NAME.findall(piece) for piece in self.pieces)
+
+    def written(self, names: Mapping[str, str]) -> tuple[str, ...]:
+        """Return the pieces with names put for roles and constants.
+
+        Parameters
+        ----------
+        names : mapping of str to str
+            A state's name, or a difference of two, for each role; a parameter's name or a number for each constant.
+            What is not mentioned stays.
+        """
+
+        def put(match: re.Match[str]) -> str:
+            text = names.get(match.group(), match.group())
+            return text if _NAME.fullmatch(text) or _is_number(text) else f"({text})"
+
+        return tuple(_NAME.sub(put, piece) for piece in self.pieces)
+
+
+@cache
+def known_shapes() -> tuple[Shape, ...]:
+    """Return the shapes that come with the package.
+
+    Examples
+    --------
+    >>> "coulomb_friction" in {shape.name for shape in known_shapes()}
+    True
+    """
+    text = (files("gaitdisc") / "discovery" / "catalogue.toml").read_text(encoding="utf-8")
+    return _shapes(tomllib.loads(text), "catalogue.toml")
+
+
+def read_catalogue(path: Path | str) -> tuple[Shape, ...]:
+    """Read effects of the user's own, in the form of the package's catalogue.
+
+    Parameters
+    ----------
+    path : Path or str
+        A TOML file with one `[[shape]]` for each effect.
+
+    Returns
+    -------
+    tuple of Shape
+        The user's shapes alone, in the file's order.
+
+    Raises
+    ------
+    SchemaError
+        If the file is not TOML or an entry does not have the form.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> file = Path(tempfile.mkdtemp()) / "mine.toml"
+    >>> _ = file.write_text('[[shape]]\\nname = "quintic"\\npieces = ["x**5"]\\nmeans = "a very stiff spring"')
+    >>> read_catalogue(file)[0].roles
+    ('x',)
+    """
+    path = Path(path)
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise SchemaError(
+            "a catalogue is a TOML file of [[shape]] entries", f"{path.name}: {error}", "Mend the file."
+        ) from error
+    return _shapes(content, path.name)
+
+
+def _shapes(content: dict[str, Any], file: str) -> tuple[Shape, ...]:
+    entries = content.get("shape")
+    if not isinstance(entries, list) or not entries or set(content) != {"shape"}:
+        raise SchemaError(
+            "a catalogue holds [[shape]] entries and nothing else",
+            f"{file} holds {', '.join(sorted(content)) or 'nothing'}",
+            'Begin each effect with a line "[[shape]]".',
+        )
+    return tuple(_shape(entry, f"{file}, shape {number}") for number, entry in enumerate(entries, 1))
+
+
+def _shape(entry: Any, where: str) -> Shape:
+    if not isinstance(entry, dict):
+        raise SchemaError("a shape is a table", f"{where} is not one", 'Begin it with a line "[[shape]]".')
+    for key in entry:
+        if key not in _ENTRIES:
+            near = get_close_matches(key, _ENTRIES, 1)
+            hint = f"Did you mean {near[0]}?" if near else "Remove it."
+            raise SchemaError(f"a shape has the entries {', '.join(_ENTRIES)}", f"{where} has {key!r}", hint)
+    name, pieces, constants = entry.get("name"), entry.get("pieces"), entry.get("constants", {})
+    if not isinstance(name, str) or not _NAME.fullmatch(name):
+        raise SchemaError(
+            "a shape's name is lower-case words joined by _", f"{where} has {name!r}", 'Write name = "my_effect".'
+        )
+    if not isinstance(pieces, list) or not pieces or not all(isinstance(piece, str) for piece in pieces):
+        raise SchemaError(
+            "a shape's pieces are a list of expressions", f"{where} has {pieces!r}", 'Write pieces = ["x**2"].'
+        )
+    if not isinstance(constants, dict) or not all(grid in GRIDS for grid in constants.values()):
+        raise SchemaError(
+            f"a constant's search begins on one of {', '.join(GRIDS)}", f"{where} has {constants!r}", "Choose one of these."
+        )
+    if entry.get("needs", "") not in NEEDS:
+        raise SchemaError('a shape needs "angle" or nothing', f"{where} has {entry['needs']!r}", "Remove the line.")
+    return Shape(name, tuple(pieces), dict(constants), entry.get("needs", ""), str(entry.get("means", name)))
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return not text.startswith("-")

@@ -1,0 +1,151 @@
+"""Find, name, add, show: the whole inquiry, from a simulation and measured trials to an answer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gaitdisc.discovery.account import Part
+from gaitdisc.discovery.answer import answer
+from gaitdisc.discovery.catalogue import Shape
+from gaitdisc.discovery.evidence import Judged
+from gaitdisc.discovery.fitted_shape import fitted_shape
+from gaitdisc.discovery.held_out import runs_of
+from gaitdisc.discovery.inquiry import Inquiry, begin_inquiry
+from gaitdisc.discovery.search import MARGIN
+from gaitdisc.discovery.shaken import Shaken, shaken
+from gaitdisc.results.discovery import Discovery
+from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.simulation import Simulation
+
+MOST_NAMES = 2
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What the search came to.
+
+    Parameters
+    ----------
+    word : str
+        One of the contract's verdicts.
+    account : Judged
+        The simulation with what was found in it.
+    rivals : tuple of Judged
+        What else was weighed, best first.
+    shaking : Shaken or None
+        For process noise: where, and how strong.
+    """
+
+    word: str
+    account: Judged
+    rivals: tuple[Judged, ...]
+    shaking: Shaken | None = None
+
+
+def discover(
+    simulation: Simulation,
+    measured: Measured,
+    shapes: tuple[Shape, ...] = (),
+    told: Callable[[str], None] = lambda _: None,
+) -> tuple[Discovery, Simulation]:
+    """Find where a simulation and measured trials disagree, name what is missing, add it, show the gap shrink.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        As read.
+    measured : Measured
+        Its trials; a quarter is held out.
+    shapes : tuple of Shape
+        Effects of the user's own, beside the catalogue.
+    told : callable
+        Takes one line about each step.
+
+    Returns
+    -------
+    discovery : Discovery
+        The answer.
+    augmented : Simulation
+        The simulation with what was found in it.
+    """
+    inquiry = begin_inquiry(simulation, measured, shapes)
+    told("fitting the simulation as it was read")
+    as_read = inquiry.as_read()
+    told(f"weighing {len(inquiry.search.candidates)} explanations")
+    verdict = judge(inquiry, as_read)
+    told("showing it on what was held out")
+    return answer(inquiry, as_read, verdict.word, verdict.account, verdict.rivals, verdict.shaking)
+
+
+def judge(inquiry: Inquiry, as_read: Judged) -> Verdict:
+    """Search, and decide which of the contract's verdicts the data support.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        What is asked.
+    as_read : Judged
+        The simulation as read.
+    """
+    named, rivals = inquiry.search.grown(as_read, MOST_NAMES + 1)
+    memory = any(named.noise.lags)
+    if memory:
+        shaking = random_push(inquiry, as_read, named)
+        if shaking:
+            return Verdict("process_noise", as_read, tuple(rivals), shaking)
+        shape = fitted_shape(as_read, inquiry.search)
+        if shape and shape.evidence < min(named.evidence, as_read.evidence) - MARGIN:
+            return Verdict("unnamed", shape, (named, *rivals))
+    if len(named.account.parts) > MOST_NAMES:
+        shape = fitted_shape(as_read, inquiry.search)
+        return Verdict("unnamed", shape or named, (named, *rivals))
+    if not named.account.parts:
+        return Verdict("no_gap", as_read, tuple(rivals))
+    longer = inquiry.lengthened(named)
+    if not proven(inquiry, as_read, longer):
+        return Verdict("no_gap", as_read, (named, *rivals))
+    return Verdict(longer.account.parts[0].candidate.verdict, longer, tuple(rivals))
+
+
+def random_push(inquiry: Inquiry, as_read: Judged, named: Judged) -> Shaken | None:
+    """Return the random push that explains the gap better than what was named and than noise of the sensors, if any.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        What is asked.
+    as_read, named : Judged
+        The simulation as read and with what the search let in.
+    """
+    best = shaken(as_read.shooting, as_read.account, inquiry.search.places)[0]
+    gained = (best.rival - best.evidence) * as_read.account.fit.residual.size / best.numbers
+    return best if gained > max(as_read.evidence - named.evidence, 0.0) + MARGIN else None
+
+
+def proven(inquiry: Inquiry, as_read: Judged, now: Judged) -> bool:
+    """Whether what was found makes the misfit fall on the trials that were held out.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        What is asked.
+    as_read, now : Judged
+        The simulation as read and with what was found.
+    """
+    like = replace(as_read, shooting=as_read.shooting.with_noise(now.noise))
+    before, after = (runs_of(inquiry, one, inquiry.held_out, like) for one in (as_read, now))
+    return bool(np.nan_to_num(before.misfits - after.misfits, nan=0.0).sum() > 0)
+
+
+def numbers_of(part: Part) -> dict[str, str]:
+    """Return a part's numbers as they are written into a file.
+
+    Parameters
+    ----------
+    part : Part
+        An explanation with its numbers.
+    """
+    return {slot: f"{value:.6g}" for slot, value in part.values.items()}

@@ -1,0 +1,114 @@
+"""A fitted shape: bumps over the states, where no known effect explains what is left."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.discovery.account import Account, Part, account_for
+from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.evidence import Judged, judged
+from gaitdisc.discovery.places import Place
+from gaitdisc.discovery.search import TURNS, Search
+from gaitdisc.simulation.evaluating import Points, evaluate_many
+
+BUMPS = 5
+FLAT_BUMPS = 7
+STRIDE_BUMPS = 10
+SHARPNESS = 1.2  # of a bump's width against the distance to the next
+SIGNIFICANT = 3.0  # standard errors that a bump must have to stay
+
+
+def shapes_at(place: Place, judged_now: Judged, search: Search) -> list[Candidate]:
+    """Return the shapes that could be fitted at a place: over one state, over two, over the stride.
+
+    Parameters
+    ----------
+    place : Place
+        Where it enters.
+    judged_now : Judged
+        An account, whose run says which states are visited.
+    search : Search
+        What is searched.
+    """
+    x, v = place.motions[0]
+    axes = [x, v] if v else [x, *place.others[:1]]
+    ranges = {axis: _visited(axis, judged_now, search) for axis in axes}
+    shapes = [_bumps(ranges, {axis: FLAT_BUMPS for axis in [one]}) for one in axes]
+    if len(axes) > 1:
+        shapes.append(_bumps(ranges, dict.fromkeys(axes, BUMPS)))
+    if any(one.name == "phase" for one in search.base.inputs):
+        centres = (np.arange(STRIDE_BUMPS) + 0.5) / STRIDE_BUMPS
+        sharp = (STRIDE_BUMPS / (SHARPNESS * 2 * np.pi)) ** 2 * 2
+        shapes.append([f"exp({sharp:.4g}*(cos(6.283185307179586*(phase - {c:.4g})) - 1))" for c in centres])
+    return [
+        Candidate("missing_physics", place.kind, place.name, "unnamed", tuple(pieces), None, x, "an effect that has no name here")
+        for pieces in shapes
+    ]
+
+
+def fitted_shape(now: Judged, search: Search) -> Judged | None:
+    """Fit a shape at every place and return the best account of one, without the bumps that carry nothing.
+
+    Parameters
+    ----------
+    now : Judged
+        The simulation as read, without any explanation.
+    search : Search
+        What is searched.
+
+    Returns
+    -------
+    Judged or None
+        None where no shape can be fitted.
+    """
+    tried = []
+    for place in search.places:
+        for shape in shapes_at(place, now, search):
+            part = Part(shape, dict.fromkeys(shape.slots, 0.0))
+            account = account_for(now.shooting, search.base, (part,), now.account.fit.starts, TURNS)
+            if np.isfinite(account.fit.misfit):
+                tried.append(account)
+    kept = [_thinned(now, search, one) for one in sorted(tried, key=lambda one: one.criterion)[:3]]
+    judged_ones = [judged(now.shooting, search.base, one) for one in kept if np.isfinite(one.fit.misfit)]
+    return min(judged_ones, key=lambda one: one.evidence, default=None)
+
+
+def _thinned(now: Judged, search: Search, account: Account) -> Account:
+    """Leave out the bumps whose factor is lost in its error, and fit again."""
+    (part,) = account.parts
+    error = np.sqrt(np.diag(account.fit.covariance))
+    value = np.array([part.values[slot] for slot in part.candidate.slots])
+    keep = np.abs(value) > SIGNIFICANT * error
+    if keep.all() or not keep.any():
+        return account
+    pieces = tuple(piece for piece, stays in zip(part.candidate.pieces, keep, strict=True) if stays)
+    fewer = Candidate("missing_physics", part.candidate.kind, part.candidate.place, "unnamed", pieces, None, part.candidate.role, part.candidate.means)
+    values = dict(zip(fewer.slots, value[keep].tolist(), strict=True))
+    return account_for(now.shooting, search.base, (Part(fewer, values),), account.fit.starts, TURNS)
+
+
+def _visited(axis: str, now: Judged, search: Search) -> tuple[float, float]:
+    """Return where a state or difference mostly lies."""
+    states = now.account.fit.states.reshape(-1, now.account.fit.starts.shape[1])
+    inputs = np.zeros((len(states), len(search.base.inputs)))
+    along = evaluate_many(search.base, [axis], Points(np.zeros(len(states)), states, inputs))[0]
+    low, high = np.quantile(along, [0.02, 0.98])
+    return float(low), float(high)
+
+
+def _bumps(ranges: dict[str, tuple[float, float]], counts: dict[str, int]) -> list[str]:
+    centres: list[list[str]] = []
+    for axis, count in counts.items():
+        low, high = ranges[axis]
+        step = (high - low) / (count - 1) or 1.0
+        name = f"({axis})" if " " in axis else axis
+        at: NDArray[np.float64] = np.linspace(low, high, count)
+        centres.append([f"(({name} - {_number(centre)})/{SHARPNESS * step:.4g})**2" for centre in at])
+    return [f"exp(-({' + '.join(parts)}))" for parts in product(*centres)]
+
+
+def _number(value: float) -> str:
+    return f"{value:.4g}" if value >= 0 else f"({value:.4g})"

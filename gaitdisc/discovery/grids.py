@@ -1,0 +1,117 @@
+"""Where the search for a constant inside a shape begins: thresholds, delays, frequencies, phases."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+QUANTILES = np.linspace(0.04, 0.96, 15)
+HALF_WIDTHS = np.linspace(0.08, 0.92, 9)
+DELAYS_PER_PERIOD = np.linspace(0.02, 0.55, 20)
+PHASES = np.arange(0.0, 1.0, 0.05) + 0.025
+PHASE_WIDTHS = np.array([0.03, 0.06, 0.12, 0.25])
+MOST_FREQUENCIES = 240
+NOISE_FACTOR = 6.0  # times the median line of the spectrum is taken for noise
+
+
+@dataclass(frozen=True)
+class Rhythm:
+    """The times of a record that grids are made from.
+
+    Parameters
+    ----------
+    period : float
+        The motion's main period [s].
+    duration : float
+        The longest trial [s].
+    rate : float
+        Samples a second [Hz].
+    """
+
+    period: float
+    duration: float
+    rate: float
+
+
+def rhythm_of(observed: NDArray[np.float64], rate: float) -> Rhythm:
+    """Read the main period off the measured channels.
+
+    Parameters
+    ----------
+    observed : ndarray (trial, sample, channel)
+        Measured, NaN where a trial has ended.
+    rate : float
+        Samples a second [Hz].
+
+    Examples
+    --------
+    >>> t = np.arange(1000) / 100
+    >>> bool(abs(rhythm_of(np.sin(2 * np.pi * 0.5 * t)[None, :, None], 100).period - 2.0) < 0.1)
+    True
+    """
+    periods = []
+    for trial in observed:
+        seen = trial[np.isfinite(trial).all(axis=1)]
+        centred = seen - seen.mean(axis=0)
+        centred = centred / np.maximum(centred.std(axis=0), 1e-12)
+        power = (np.abs(np.fft.rfft(centred * np.hanning(len(seen))[:, None], axis=0)) ** 2).sum(axis=1)
+        frequency = np.fft.rfftfreq(len(seen), 1 / rate)
+        power[0] = 0.0
+        power = np.maximum(power - NOISE_FACTOR * np.median(power), 0.0)
+        periods.append(1 / max(float((frequency * power).sum() / max(power.sum(), 1e-300)), 1 / (len(seen) / rate)))
+    return Rhythm(float(np.median(periods)), observed.shape[1] / rate, rate)
+
+
+def grid(kind: str, along: NDArray[np.float64], rhythm: Rhythm) -> NDArray[np.float64]:
+    """Return where the search for one constant begins.
+
+    Parameters
+    ----------
+    kind : str
+        As in the catalogue: `quantiles of x`, `half widths of x`, `delays`, `frequencies`, `phases`, `phase widths`.
+    along : ndarray (sample,)
+        x along the run.
+    rhythm : Rhythm
+        The record's times.
+    """
+    if kind == "quantiles of x":
+        return np.quantile(along, QUANTILES)
+    if kind == "half widths of x":
+        return np.quantile(np.abs(along), HALF_WIDTHS)
+    if kind == "delays":
+        return delays(rhythm)
+    if kind == "frequencies":
+        spacing = np.pi / rhythm.duration
+        most = min(MOST_FREQUENCIES, int(10 * np.pi / rhythm.period / spacing) + 8)
+        return spacing * np.arange(2, most + 2)
+    return PHASES if kind == "phases" else PHASE_WIDTHS
+
+
+def delays(rhythm: Rhythm) -> NDArray[np.float64]:
+    """Return the delays at which a search begins [s]: up to about half a period.
+
+    Parameters
+    ----------
+    rhythm : Rhythm
+        The record's times.
+    """
+    return np.maximum(DELAYS_PER_PERIOD * rhythm.period, 0.5 / rhythm.rate)
+
+
+def cells(constants: dict[str, str], along: NDArray[np.float64], rhythm: Rhythm) -> list[dict[str, float]]:
+    """Return every combination of the constants' beginnings.
+
+    Parameters
+    ----------
+    constants : dict of str to str
+        Constant -> kind of grid.
+    along : ndarray (sample,)
+        x along the run.
+    rhythm : Rhythm
+        The record's times.
+    """
+    axes = [grid(kind, along, rhythm) for kind in constants.values()]
+    return [dict(zip(constants, (float(one) for one in cell), strict=True)) for cell in product(*axes)]

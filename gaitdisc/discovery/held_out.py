@@ -1,0 +1,127 @@
+"""Proof on data that were never fitted: each run's start is found, nothing else."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.discovery.evidence import Judged
+from gaitdisc.discovery.inquiry import Inquiry
+from gaitdisc.discovery.shooting import Fitted
+from gaitdisc.results.discovery import GapSize, Runs
+
+FLIPS = 9999
+
+
+@dataclass(frozen=True)
+class Trial:
+    """Runs over some trials, with the constants of an account and start states of their own.
+
+    Parameters
+    ----------
+    fit : Fitted
+        Of the start states alone.
+    measured : ndarray (run, sample, channel)
+        The measurement.
+    """
+
+    fit: Fitted
+    measured: NDArray[np.float64]
+
+    @property
+    def misfits(self) -> NDArray[np.float64]:
+        """Misfit of each run (run,)."""
+        return (self.fit.white**2).sum(axis=1)
+
+
+def runs_of(inquiry: Inquiry, now: Judged, trials: tuple[int, ...], like: Judged) -> Trial:
+    """Run an account over trials, finding nothing but the start states.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        The trials.
+    now : Judged
+        The account.
+    trials : tuple of int
+        Which.
+    like : Judged
+        Whose noise and whose length of runs are used.
+    """
+    periods = like.shooting.segments.length / (inquiry.rhythm.period * inquiry.rhythm.rate)
+    segments = inquiry.segments(trials, periods)
+    shooting = inquiry.shooting(segments).with_noise(like.noise)
+    fit = shooting.fitted(now.account.machine, (), now.account.fit.values, inquiry.guess.starts(segments), 30)
+    return Trial(fit, shooting.seen)
+
+
+def gap_size(before: Trial, after: Trial, floor: NDArray[np.float64], channels: tuple[str, ...]) -> GapSize:
+    """Measure the gap before and after, and the chance of such a fall.
+
+    Parameters
+    ----------
+    before, after : Trial
+        The same runs of the simulation as read and with what was found.
+    floor : ndarray (channel,)
+        Standard deviation of the noise [the channel's unit].
+    channels : tuple of str
+        Names of the channels.
+    """
+    spread = np.nanstd(after.measured, axis=(0, 1))
+    rms = [np.sqrt(np.nanmean(one.fit.residual**2, axis=(0, 1))) for one in (before, after)]
+    sizes = {
+        name: (float(rms[0][i]), float(rms[1][i]), float(floor[i])) for i, name in enumerate(channels)
+    }
+    whole = [float(np.sqrt(np.mean((one / spread) ** 2))) for one in (*rms, floor)]
+    return GapSize(whole[0], whole[1], whole[2], chance(before.misfits - after.misfits), sizes)
+
+
+def chance(gains: NDArray[np.float64], seed: int = 0) -> float:
+    """Chance of so great a mean gain if each run's gain could as well have had the other sign.
+
+    Parameters
+    ----------
+    gains : ndarray (run,)
+        Fall of the misfit, run by run.
+    seed : int
+        Of the flips, where there are too many to take all.
+
+    Examples
+    --------
+    >>> chance(np.array([3.0, 2.0, 1.0]))
+    0.125
+    """
+    if not np.isfinite(gains).all():
+        return float("nan")
+    n = len(gains)
+    if n <= 13:
+        signs = 1 - 2 * ((np.arange(2**n)[:, None] >> np.arange(n)) & 1)
+        return float(np.mean(signs @ gains >= gains.sum() * (1 - 1e-12)))
+    signs = np.random.default_rng(seed).choice([-1.0, 1.0], (FLIPS, n))
+    return float((1 + np.sum(signs @ gains >= gains.sum())) / (FLIPS + 1))
+
+
+def drawn_runs(inquiry: Inquiry, before: Trial, after: Trial, trials: tuple[int, ...]) -> Runs:
+    """Return the runs as a report draws them.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        The trials.
+    before, after : Trial
+        The same runs of the simulation as read and with what was found.
+    trials : tuple of int
+        Which trials they lie in.
+    """
+    runs, length = before.measured.shape[:2]
+    periods = length / (inquiry.rhythm.period * inquiry.rhythm.rate)
+    segments = inquiry.segments(trials, periods)
+    drive = inquiry.measured.drive
+    names = [one.name for one in inquiry.search.base.inputs]
+    time = drive.time0[segments.trial][:, None] + (segments.begin[:, None] + np.arange(length)) / drive.rate
+    phase = segments.of(drive.inputs)[:, :, names.index("phase")] if "phase" in names else np.zeros((runs, 0))
+    return Runs(
+        segments.trial, time, phase, before.measured, before.measured - before.fit.residual, after.measured - after.fit.residual
+    )

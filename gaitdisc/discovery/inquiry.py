@@ -1,0 +1,148 @@
+"""An inquiry: one simulation, one set of measured trials, and what is asked of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from gaitdisc.discovery.account import account_for
+from gaitdisc.discovery.candidate import candidates_of
+from gaitdisc.discovery.catalogue import Shape, known_shapes
+from gaitdisc.discovery.evidence import Judged, judged
+from gaitdisc.discovery.first_states import StateGuess, guess_states
+from gaitdisc.discovery.grids import Rhythm, rhythm_of
+from gaitdisc.discovery.linearised import linearise_along
+from gaitdisc.discovery.noise import white_noise
+from gaitdisc.discovery.places import kinematic_rates, places_of
+from gaitdisc.discovery.search import Search
+from gaitdisc.discovery.segments import Segments, cut_segments
+from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.running import compile_simulation
+from gaitdisc.simulation.simulation import Simulation
+
+FEWEST_SAMPLES = 16  # of a segment
+GROWTH = 5.0  # of a small change of the start, by which a run is cut
+LENGTHENED = 3  # times as long, again and again, while a run stays with the data
+SUBSTEPS = 2
+
+
+@dataclass(frozen=True)
+class Inquiry:
+    """A simulation, measured trials, and which of them are held out.
+
+    Parameters
+    ----------
+    search : Search
+        The simulation, and everything that could explain a gap.
+    measured : Measured
+        All trials.
+    learned, held_out : tuple of int
+        Trials that are searched and fitted, and trials that are only judged on.
+    guess : StateGuess
+        States, roughly.
+    """
+
+    search: Search
+    measured: Measured
+    learned: tuple[int, ...]
+    held_out: tuple[int, ...]
+    guess: StateGuess
+
+    @property
+    def rhythm(self) -> Rhythm:
+        """The record's times."""
+        return self.search.rhythm
+
+    def segments(self, trials: tuple[int, ...], periods: float = 1.0) -> Segments:
+        """Cut trials into runs.
+
+        Parameters
+        ----------
+        trials : tuple of int
+            Which.
+        periods : float
+            Length of a run, in main periods.
+        """
+        wanted = max(int(periods * self.rhythm.period * self.rhythm.rate), FEWEST_SAMPLES)
+        return cut_segments(self.measured.drive.samples, trials, wanted)
+
+    def shooting(self, segments: Segments) -> Shooting:
+        """Return the segments, ready to be fitted, under noise of unit size.
+
+        Parameters
+        ----------
+        segments : Segments
+            The runs.
+        """
+        channels = self.measured.observed.shape[2]
+        return Shooting(self.measured, segments, white_noise(np.ones(channels)), SUBSTEPS, self.guess.states)
+
+    def as_read(self) -> Judged:
+        """Return the simulation as read, fitted to short runs and judged.
+
+        The runs last one period, or less where a small change of the start grows fast (chaos, a fall).
+        """
+        shooting = self.shooting(self.segments(self.learned, self._tame_periods()))
+        account = account_for(shooting, self.search.base, (), self.guess.starts(shooting.segments))
+        return judged(shooting.with_past(account.fit.states), self.search.base, account)
+
+    def _tame_periods(self) -> float:
+        """Return how long a run may be, in periods, before a change of its start has grown by `GROWTH`."""
+        shooting = self.shooting(self.segments(self.learned))
+        states = shooting.segments.of(self.guess.states)
+        machine = compile_simulation(self.search.base)
+        line = linearise_along(shooting, self.search.base, (), states, machine.defaults)
+        scale = np.maximum(states.std(axis=(0, 1)), 1e-9)
+        change = np.repeat(np.eye(len(scale))[None], len(states), axis=0)
+        for step in range(states.shape[1] - 1):
+            change = line.onward[:, step] @ change
+            growth = np.linalg.norm(change * scale / scale[:, None], 2, axis=(1, 2))
+            if np.median(growth) > GROWTH:
+                return (step + 1) / (self.rhythm.period * self.rhythm.rate)
+        return 1.0
+
+    def lengthened(self, now: Judged) -> Judged:
+        """Return an account fitted to runs as long as it can follow.
+
+        Parameters
+        ----------
+        now : Judged
+            Fitted to shorter runs.
+        """
+        shortest = int(min(self.measured.drive.samples[trial] for trial in self.learned))
+        while now.shooting.segments.length * 2 < shortest:
+            guess = self.guess.with_run(now.shooting.segments, now.account.fit.states)
+            periods = LENGTHENED * now.shooting.segments.length / (self.rhythm.period * self.rhythm.rate)
+            shooting = self.shooting(self.segments(self.learned, periods)).with_noise(now.noise)
+            longer = account_for(shooting, self.search.base, now.account.parts, guess.starts(shooting.segments))
+            if not np.isfinite(longer.fit.misfit):
+                break
+            longer = judged(shooting.with_past(longer.fit.states), self.search.base, longer)
+            if (longer.noise.size > 1.3 * now.noise.size).any() or not self.search.sensible(longer.account):
+                break
+            now = longer
+        return now
+
+
+def begin_inquiry(simulation: Simulation, measured: Measured, shapes: tuple[Shape, ...] = ()) -> Inquiry:
+    """Prepare an inquiry: split the trials, list places and explanations, guess the states.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        As read.
+    measured : Measured
+        Its trials; of four, one is held out, of one, the last quarter of its time.
+    shapes : tuple of Shape
+        Effects of the user's own, beside the catalogue.
+    """
+    machine = compile_simulation(simulation)
+    rate_of, places = kinematic_rates(simulation, machine), places_of(simulation, machine)
+    rhythm = rhythm_of(measured.observed, measured.drive.rate)
+    search = Search(simulation, places, candidates_of(simulation, places, (*known_shapes(), *shapes)), rhythm)
+    trials = len(measured.drive.samples)
+    held = max(round(trials / 4), 1)
+    guess = guess_states(simulation, measured.observed, measured.drive.rate, rhythm.period, rate_of)
+    return Inquiry(search, measured, tuple(range(trials - held)), tuple(range(trials - held, trials)), guess)

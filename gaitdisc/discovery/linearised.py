@@ -1,0 +1,239 @@
+"""First-order response: what a small effect would change in every segment, without running it.
+
+Along a fitted run the map from one sample to the next is linearised once, x[k+1] = F x[k] + G push[k]; the response to any
+candidate is then a recursion over samples, for hundreds of candidates at once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.discovery.places import Place
+from gaitdisc.discovery.shooting import Fitted, Shooting
+from gaitdisc.simulation.drive import Rows
+from gaitdisc.simulation.running import Compiled, compile_simulation
+from gaitdisc.simulation.parts import Parameter, Term
+from gaitdisc.simulation.simulation import Simulation
+
+NUDGE = 1e-5
+PUSH = 1e-4
+
+
+@dataclass(frozen=True)
+class Linearised:
+    """The one-sample maps of a fitted run, linearised.
+
+    Parameters
+    ----------
+    onward : ndarray (segment, step, state, state)
+        F: what a change of state becomes one sample later.
+    pushed : ndarray (segment, step, state, place)
+        G: what a unit push at a place, held over the sample, adds.
+    landed : ndarray (segment, step, state)
+        Where each step of the run lands.
+    """
+
+    onward: NDArray[np.float64]
+    pushed: NDArray[np.float64]
+    landed: NDArray[np.float64]
+
+    def of_push(self, place: int, push: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the change of state (segment, sample, state, candidate) that pushes at a place cause.
+
+        Parameters
+        ----------
+        place : int
+            Number of the place.
+        push : ndarray (segment, sample, candidate)
+            The push at each sample [the place's unit].
+        """
+        held = 0.5 * (push[:, :-1] + push[:, 1:])
+        return self.of_change(self.pushed[:, :, :, place, None] * held[:, :, None, :])
+
+    def of_change(self, change: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the change of state (segment, sample, state, candidate) that changes of each step's landing cause.
+
+        Parameters
+        ----------
+        change : ndarray (segment, step, state, candidate)
+            What each step lands further.
+        """
+        segments, steps, states, candidates = change.shape
+        out = np.zeros((segments, steps + 1, states, candidates))
+        for step in range(steps):
+            out[:, step + 1] = self.onward[:, step] @ out[:, step] + change[:, step]
+        return out
+
+
+def linearise(shooting: Shooting, simulation: Simulation, places: tuple[Place, ...], fit: Fitted) -> Linearised:
+    """Linearise every step of a fitted run.
+
+    Parameters
+    ----------
+    shooting : Shooting
+        The segments.
+    simulation : Simulation
+        What was fitted.
+    places : tuple of Place
+        Where pushes may come.
+    fit : Fitted
+        The run.
+    """
+    return linearise_along(shooting, simulation, places, fit.states, fit.values)
+
+
+def linearise_along(
+    shooting: Shooting,
+    simulation: Simulation,
+    places: tuple[Place, ...],
+    run: NDArray[np.float64],
+    values: NDArray[np.float64],
+) -> Linearised:
+    """Linearise every step along given states.
+
+    Parameters
+    ----------
+    shooting : Shooting
+        The segments.
+    simulation : Simulation
+        What runs there.
+    places : tuple of Place
+        Where pushes may come.
+    run : ndarray (segment, sample, state)
+        The states.
+    values : ndarray (parameter,)
+        Its parameters.
+    """
+    machine = pushable(simulation, places)
+    n, own = run.shape[2], len(values)
+    spans = NUDGE * np.maximum(np.abs(run).max(axis=(0, 1)), 1e-3)
+    versions = 1 + n + len(places)
+    states = np.repeat(run[None, :, :-1], versions, axis=0)
+    many = np.repeat(np.concatenate([values, np.zeros(len(places))])[None], versions, axis=0)
+    for state in range(n):
+        states[1 + state, ..., state] += spans[state]
+    for place in range(len(places)):
+        many[1 + n + place, own + place] = PUSH
+    landed = steps_of(shooting, machine, states, many)
+    change = landed[1:] - landed[0]
+    onward = np.moveaxis(change[:n] / spans[:, None, None, None], 0, -1)
+    pushed = np.moveaxis(change[n:] / PUSH, 0, -1)
+    return Linearised(onward, pushed, landed[0])
+
+
+def steps_of(
+    shooting: Shooting, machine: Compiled, states: NDArray[np.float64], values: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Run every step of every segment by itself.
+
+    Parameters
+    ----------
+    shooting : Shooting
+        The segments.
+    machine : Compiled
+        The simulation.
+    states : ndarray (version, segment, step, state)
+        Where each step starts.
+    values : ndarray (version, parameter)
+        Parameters of each version.
+
+    Returns
+    -------
+    ndarray (version, segment, step, state)
+        Where each step lands.
+    """
+    versions, segments, steps, n = states.shape
+    trial = np.repeat(shooting.segments.trial, steps)
+    begin = (shooting.segments.begin[:, None] + np.arange(steps)).ravel()
+    rows = Rows(
+        np.tile(trial, versions), np.tile(begin, versions), states.reshape(-1, n), np.repeat(values, segments * steps, axis=0)
+    )
+    landed, _ = machine.run(shooting.measured.drive, rows, 1, substeps=shooting.substeps, past=shooting.past)
+    return landed[:, 1].reshape(versions, segments, steps, n)
+
+
+def pushable(simulation: Simulation, places: tuple[Place, ...]) -> Compiled:
+    """Compile a simulation with a push, zero at first, at every place.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        Without the pushes.
+    places : tuple of Place
+        Where they come; their parameters follow the simulation's own.
+    """
+    for number, place in enumerate(places):
+        simulation = simulation.with_parameter(Parameter(f"push_{number}", 0.0))
+        simulation = simulation.with_effect(Term(place.name, place.kind, "push", f"push_{number}"))
+    return compile_simulation(simulation)
+
+
+def seen_change(
+    shooting: Shooting, machine: Compiled, fit: Fitted, change: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return what changes of state change in the measured channels (segment, sample, channel, candidate).
+
+    Parameters
+    ----------
+    shooting : Shooting
+        The segments.
+    machine : Compiled
+        The simulation that was fitted.
+    fit : Fitted
+        The run.
+    change : ndarray (segment, sample, state, candidate)
+        To first order.
+    """
+    if machine.observation.delays:
+        return _seen_late(shooting, machine, fit, change)
+    n = fit.starts.shape[1]
+    spans = NUDGE * np.maximum(np.abs(fit.states).max(axis=(0, 1)), 1e-3)
+    versions = np.repeat(fit.states[None], n + 1, axis=0)
+    for state in range(n):
+        versions[1 + state, ..., state] += spans[state]
+    seen = observed_of(shooting, machine, versions, np.repeat(fit.values[None], n + 1, axis=0))
+    slopes = np.moveaxis((seen[1:] - seen[0]) / spans[:, None, None, None], 0, -1)
+    return slopes @ change
+
+
+def observed_of(
+    shooting: Shooting, machine: Compiled, states: NDArray[np.float64], values: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return what would be measured along given states (version, segment, sample, channel).
+
+    Parameters
+    ----------
+    shooting : Shooting
+        The segments.
+    machine : Compiled
+        The simulation.
+    states : ndarray (version, segment, sample, state)
+        Its states.
+    values : ndarray (version, parameter)
+        Its parameters.
+    """
+    segments, versions = shooting.segments, len(states)
+    rows = Rows(
+        np.tile(segments.trial, versions),
+        np.tile(segments.begin, versions),
+        states[:, :, 0].reshape(versions * len(segments), -1),
+        np.repeat(values, len(segments), axis=0),
+    )
+    flat = states.reshape(-1, *states.shape[2:])
+    seen = machine.observe(shooting.measured.drive, rows, flat, past=shooting.past)
+    return seen.reshape(versions, len(segments), segments.length, -1)
+
+
+def _seen_late(
+    shooting: Shooting, machine: Compiled, fit: Fitted, change: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """As `seen_change`, where what is measured depends on states some time ago: each candidate observed by itself."""
+    spans = np.maximum(np.abs(fit.states).max(axis=(0, 1)), 1e-3)
+    size = (np.abs(change).max(axis=(0, 1)) / spans[:, None]).max(axis=0)
+    nudge = NUDGE / np.maximum(size, 1e-300)
+    versions = np.concatenate([fit.states[None], np.moveaxis(change * nudge, -1, 0) + fit.states])
+    seen = observed_of(shooting, machine, versions, np.repeat(fit.values[None], len(versions), axis=0))
+    return np.moveaxis(seen[1:] - seen[0], 0, -1) / nudge

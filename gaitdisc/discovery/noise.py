@@ -1,0 +1,110 @@
+"""The noise of a measurement, learned from what is left over: its size, and how long it remembers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import solve_toeplitz
+
+MOST_LAGS = 16
+WHITE_SHARE = 0.01  # of the variance taken as white, so that smooth noise is not divided by nothing
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Stationary noise of each channel as an autoregression of its own past.
+
+    Parameters
+    ----------
+    predictors : tuple of tuple of ndarray
+        For each channel, the predictor of each order 0, 1, ..., p (p,): what the samples before say of the next.
+    spread : tuple of ndarray
+        For each channel, the standard deviation of what each of these predictors leaves [the channel's unit].
+
+    Examples
+    --------
+    >>> white = Noise(((np.zeros(0),),), (np.array([2.0]),))
+    >>> white.whitened(np.full((1, 3, 1), 4.0))[0, :, 0]
+    array([2., 2., 2.])
+    """
+
+    predictors: tuple[tuple[NDArray[np.float64], ...], ...]
+    spread: tuple[NDArray[np.float64], ...]
+
+    @property
+    def size(self) -> NDArray[np.float64]:
+        """Standard deviation of the noise of each channel (channel,)."""
+        return np.array([spread[0] for spread in self.spread])
+
+    @property
+    def lags(self) -> tuple[int, ...]:
+        """How many samples the noise of each channel remembers; 0 is white."""
+        return tuple(len(spread) - 1 for spread in self.spread)
+
+    def whitened(self, residual: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return residuals as independent numbers of unit variance, if the noise is what it is taken for.
+
+        Parameters
+        ----------
+        residual : ndarray (segment, sample, channel, ...)
+            Each segment begins afresh: its first samples are predicted from the few before them.
+        """
+        from gaitdisc.discovery.whitening import whiten
+
+        wide = np.ascontiguousarray(residual, float).reshape(*residual.shape[:3], -1)
+        out = np.empty_like(wide)
+        for channel, (predictors, spread) in enumerate(zip(self.predictors, self.spread, strict=True)):
+            table = np.zeros((len(spread), max(len(spread) - 1, 1)))
+            for order, predictor in enumerate(predictors):
+                table[order, :order] = predictor
+            whiten(wide, channel, table, spread, out)
+        return out.reshape(residual.shape)
+
+
+def white_noise(size: NDArray[np.float64]) -> Noise:
+    """Return noise without memory.
+
+    Parameters
+    ----------
+    size : ndarray (channel,)
+        Its standard deviation [the channel's unit].
+    """
+    return Noise(tuple((np.zeros(0),) for _ in size), tuple(np.array([one]) for one in size))
+
+
+def noise_of(residual: NDArray[np.float64], used: float = 0.0) -> Noise:
+    """Learn the noise from residuals (Yule-Walker; the order by the Bayesian criterion).
+
+    Parameters
+    ----------
+    residual : ndarray (segment, sample, channel)
+        Measured minus fitted. Segments are not joined.
+    used : float
+        Numbers that the fit took from each segment and channel; the variance is enlarged accordingly.
+
+    Examples
+    --------
+    >>> e = np.random.default_rng(0).normal(0, 3, (20, 200, 1))
+    >>> noise = noise_of(e)
+    >>> noise.lags, bool(abs(noise.size[0] - 3) < 0.1)
+    ((0,), True)
+    """
+    predictors, spread = [], []
+    segments, samples, channels = residual.shape
+    enlarge = samples / max(samples - used, 1.0)
+    for channel in range(channels):
+        e = residual[:, :, channel]
+        most = min(MOST_LAGS, samples // 4)
+        covariance = np.array([(e[:, : samples - lag] * e[:, lag:]).sum() / e.size for lag in range(most + 1)]) * enlarge
+        covariance[0] = max(covariance[0] * (1 + WHITE_SHARE), np.finfo(float).tiny)
+        orders = [np.zeros(0)] + [
+            solve_toeplitz(covariance[:order], covariance[1 : order + 1]) for order in range(1, most + 1)
+        ]
+        left = np.array([covariance[0] - order @ covariance[1 : len(order) + 1] for order in orders])
+        left = np.maximum(left, 1e-12 * covariance[0])
+        best = int(np.argmin(e.size * np.log(left) + np.arange(most + 1) * np.log(e.size)))
+        predictors.append(tuple(orders[: best + 1]))
+        spread.append(np.sqrt(left[: best + 1]))
+    return Noise(tuple(predictors), tuple(spread))

@@ -1,0 +1,126 @@
+"""Places: where in a simulation an effect may enter, and which states it would see there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from gaitdisc.simulation.parts import Term
+from gaitdisc.simulation.running import Compiled, compile_simulation
+from gaitdisc.simulation.simulation import Simulation
+
+ANGLES = ("rad", "deg")
+
+
+@dataclass(frozen=True)
+class Place:
+    """A port, or an equation of a model without ports.
+
+    Parameters
+    ----------
+    kind : str
+        `port` or `equation`.
+    name : str
+        Its name in the simulation file.
+    motions : tuple of (str, str)
+        Position-like state and its rate, the place's own first, then its differences with others; the rate is empty for
+        a state that has none (first-order systems).
+    others : tuple of str
+        States that would act here as a coupling.
+    products : tuple of (str, str)
+        Pairs of states whose product may act here.
+    angle : bool
+        Whether the place's own position is an angle.
+    """
+
+    kind: str
+    name: str
+    motions: tuple[tuple[str, str], ...]
+    others: tuple[str, ...]
+    products: tuple[tuple[str, str], ...]
+    angle: bool
+
+
+def kinematic_rates(simulation: Simulation, machine: Compiled) -> dict[str, str]:
+    """Find the states whose equation only says that their derivative is another state.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        As read.
+    machine : Compiled
+        The same, compiled.
+
+    Returns
+    -------
+    dict of str to str
+        Position-like state -> the state that is its rate.
+    """
+    states = [state.name for state in simulation.states]
+    rng = np.random.default_rng(0)
+    x, u = rng.uniform(0.1, 1.0, (16, len(states))), rng.uniform(0.1, 0.9, (16, len(simulation.inputs)))
+    rates = machine.rates(np.zeros(16), x, u, machine.defaults)
+    pairs = {}
+    for position, name in enumerate(states):
+        for rate, other in enumerate(states):
+            if rate != position and np.array_equal(rates[:, position], x[:, rate]):
+                pairs[name] = other
+    return pairs
+
+
+def places_of(simulation: Simulation, machine: Compiled) -> tuple[Place, ...]:
+    """List where a missing effect may enter: the ports, or else every equation that is not mere kinematics.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        As read.
+    machine : Compiled
+        The same, compiled.
+    """
+    rate_of = kinematic_rates(simulation, machine)
+    if not simulation.ports:
+        named = [state.name for state in simulation.states if state.name not in rate_of]
+        return tuple(_place(simulation, "equation", name, name, rate_of) for name in named)
+    return tuple(
+        _place(simulation, "port", port.name, driven_state(simulation, machine, port.name), rate_of)
+        for port in simulation.ports
+    )
+
+
+def driven_state(simulation: Simulation, machine: Compiled, port: str) -> str:
+    """Name the state whose derivative a port moves most.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        As read.
+    machine : Compiled
+        The same, compiled.
+    port : str
+        Name of the port.
+    """
+    pushed = compile_simulation(simulation.with_effect(Term(port, "port", "push", "1")))
+    rng = np.random.default_rng(0)
+    x = rng.uniform(-0.3, 0.3, (16, len(simulation.states)))
+    u = rng.uniform(0.1, 0.9, (16, len(simulation.inputs)))
+    moved = pushed.rates(np.zeros(16), x, u, pushed.defaults) - machine.rates(np.zeros(16), x, u, machine.defaults)
+    return simulation.states[int(np.argmax(np.abs(moved).mean(axis=0)))].name
+
+
+def _place(simulation: Simulation, kind: str, name: str, driven: str, rate_of: dict[str, str]) -> Place:
+    position_of = {rate: position for position, rate in rate_of.items()}
+    units = {state.name: state.unit for state in simulation.states}
+    own = position_of.get(driven, driven)
+    motions = [(own, rate_of.get(own, ""))]
+    if own in rate_of:
+        motions += [
+            (f"{own} - {other}", f"{rate_of[own]} - {rate_of[other]}")
+            for other in rate_of
+            if other != own and units[other] == units[own]
+        ]
+    others = tuple(state.name for state in simulation.states if state.name not in motions[0])
+    products = tuple(combinations([state.name for state in simulation.states], 2))
+    return Place(kind, name, tuple(motions), others, products, own in rate_of and units[own] in ANGLES)

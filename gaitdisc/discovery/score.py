@@ -1,0 +1,202 @@
+"""Score every candidate at once: how far the misfit would fall if it were let in, to first order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.grids import Rhythm, cells, delays
+from gaitdisc.discovery.linearised import Linearised, linearise, observed_of, seen_change, steps_of
+from gaitdisc.discovery.places import Place
+from gaitdisc.discovery.shooting import Fitted, Shooting, start_basis, without
+from gaitdisc.simulation.evaluating import Points, evaluate_many
+from gaitdisc.simulation.running import Compiled, compile_simulation
+from gaitdisc.simulation.simulation import Simulation
+
+AT_ONCE = 96
+NUDGE = 1e-4
+
+
+@dataclass(frozen=True)
+class Score:
+    """What a candidate promises.
+
+    Parameters
+    ----------
+    candidate : Candidate
+        The explanation.
+    values : dict of str to float
+        Its numbers, to first order.
+    gain : float
+        Fall of the misfit (twice the log likelihood) that they promise.
+    """
+
+    candidate: Candidate
+    values: dict[str, float]
+    gain: float
+
+
+@dataclass(frozen=True)
+class _Cell:
+    """One point of a candidate's grid, and the columns that stand for it."""
+
+    candidate: int
+    constants: dict[str, float]
+    idle: dict[str, float]  # the slots that columns stand for, and where they change nothing
+    tried: float = 0.0  # a delay that its column was made with; 0 where the column is a slope
+
+
+@dataclass(frozen=True)
+class Scorer:
+    """A fitted simulation, linearised, against which candidates are scored.
+
+    Parameters
+    ----------
+    shooting : Shooting
+        The segments.
+    simulation : Simulation
+        What was fitted.
+    machine : Compiled
+        The same, compiled.
+    fit : Fitted
+        Its fit.
+    places : tuple of Place
+        Where terms may enter.
+    rhythm : Rhythm
+        The record's times.
+    """
+
+    shooting: Shooting
+    simulation: Simulation
+    machine: Compiled
+    fit: Fitted
+    places: tuple[Place, ...]
+    rhythm: Rhythm
+
+    def scores(self, candidates: tuple[Candidate, ...]) -> list[Score]:
+        """Return the best score of each candidate, the greatest gain first.
+
+        Parameters
+        ----------
+        candidates : tuple of Candidate
+            The explanations.
+        """
+        basis, known, left = self._explained()
+        best: dict[int, Score] = {}
+        for some, columns in self._columns(candidates):
+            columns = without(basis, columns).reshape(left.size, -1)
+            columns = columns - known @ (known.T @ columns)
+            for score, number in _gains(columns, left, some, candidates):
+                if number not in best or score.gain > best[number].gain:
+                    best[number] = score
+        return sorted(best.values(), key=lambda score: -score.gain)
+
+    def _explained(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """Basis of the start states, basis of the constants already in (number, constant), and what is left (number,)."""
+        basis = start_basis(self.fit.slopes[..., : self.fit.starts.shape[1]])
+        left, slopes = self.fit.projected
+        flat = slopes.reshape(left.size, -1)
+        size = np.linalg.norm(flat, axis=0)
+        known = np.linalg.qr(flat[:, size > 0] / size[size > 0])[0]
+        return basis, known, left.ravel() - known @ (known.T @ left.ravel())
+
+    def _columns(self, candidates: tuple[Candidate, ...]) -> Iterator[tuple[list[_Cell], NDArray[np.float64]]]:
+        """Yield cells and what each of their slots would change, whitened (segment, number, column)."""
+        line = linearise(self.shooting, self.simulation, self.places, self.fit)
+        for number, place in enumerate(self.places):
+            here = [i for i, one in enumerate(candidates) if (one.kind, one.place) == (place.kind, place.name)]
+            jobs = [(cell, pieces) for i in here for cell, pieces in self._cells(i, candidates[i])]
+            for first in range(0, len(jobs), AT_ONCE):
+                some = jobs[first : first + AT_ONCE]
+                push = self._along([piece for _, pieces in some for piece in pieces])
+                yield [cell for cell, _ in some], self._white(line.of_push(number, push))
+        for i, one in enumerate(candidates):
+            if one.verdict != "missing_physics" and _fits_beside(one, self.simulation):
+                yield self._signal_columns(line, i, one)
+
+    def _cells(self, number: int, candidate: Candidate) -> list[tuple[_Cell, tuple[str, ...]]]:
+        constants = dict(candidate.constants or {})
+        along = self._along([candidate.role])[:, :, 0].ravel() if constants else np.zeros(1)
+        return [
+            (_Cell(number, cell, candidate.idle), candidate.pieces_at({slot: f"{value:.9g}" for slot, value in cell.items()}))
+            for cell in cells(constants, along, self.rhythm)
+        ]
+
+    def _along(self, expressions: list[str]) -> NDArray[np.float64]:
+        """Return expressions along the run (segment, sample, expression)."""
+        segments, drive = self.shooting.segments, self.shooting.measured.drive
+        out = np.zeros((len(segments), segments.length, len(expressions)))
+        for trial in np.unique(segments.trial):
+            mine = np.flatnonzero(segments.trial == trial)
+            samples = (segments.begin[mine][:, None] + np.arange(segments.length)).ravel()
+            t = drive.time0[trial] + samples / drive.rate
+            x = self.fit.states[mine].reshape(len(samples), -1)
+            points = Points(t, x, drive.inputs[trial, samples], self.fit.values, rate=drive.rate)
+            values = evaluate_many(self.simulation, expressions, points)
+            out[mine] = np.moveaxis(values.reshape(len(expressions), len(mine), segments.length), 0, -1)
+        return np.nan_to_num(out, nan=0.0, posinf=0.0, neginf=0.0)
+
+    def _white(self, change: NDArray[np.float64]) -> NDArray[np.float64]:
+        return self.shooting.whitened(seen_change(self.shooting, self.machine, self.fit, change))
+
+    def _signal_columns(self, line: Linearised, number: int, candidate: Candidate) -> tuple[list[_Cell], NDArray[np.float64]]:
+        """What a wrong number, input or sensor changes: in each step's landing, and in what is seen."""
+        (slot, none), late = next(iter(candidate.idle.items())), candidate.is_late
+        simulation, names = candidate.in_fit(self.simulation, "tried", {slot: none})
+        machine = compile_simulation(simulation)
+        place = machine.parameters.index(names[slot])
+        values = machine.defaults.copy()
+        values[: len(self.fit.values)] = self.fit.values
+        none = float(values[place])
+        tried = delays(self.rhythm) if late else np.array([none + NUDGE * max(abs(none), 1e-2)])
+        values = np.repeat(values[None], len(tried), axis=0)
+        values[:, place] = tried
+        over = np.ones(len(tried)) if late else tried - none
+        columns = self.shooting.whitened(np.moveaxis(self._seen_over(machine, values, over), 0, -1))
+        if candidate.verdict != "sensor_error":
+            states = np.repeat(self.fit.states[None, :, :-1], len(tried), axis=0)
+            landed = steps_of(self.shooting, machine, states, values) - line.landed
+            columns += self._white(line.of_change(np.moveaxis(landed / over[:, None, None, None], 0, -1)))
+        return [_Cell(number, {}, {slot: none}, float(one) if late else 0.0) for one in tried], columns
+
+    def _seen_over(
+        self, machine: Compiled, values: NDArray[np.float64], over: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """What is seen to change though no state does (version, segment, sample, channel)."""
+        states = np.repeat(self.fit.states[None], len(values), axis=0)
+        seen = observed_of(self.shooting, machine, states, values)
+        base = observed_of(self.shooting, self.machine, states[:1], self.fit.values[None])
+        return (seen - base) / over[:, None, None, None]
+
+
+def _gains(
+    columns: NDArray[np.float64], left: NDArray[np.float64], some: list[_Cell], candidates: tuple[Candidate, ...]
+) -> Iterator[tuple[Score, int]]:
+    """Yield each cell's score; a cell has as many columns as slots that columns stand for."""
+    size = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    match = columns.T @ left
+    first = 0
+    for cell in some:
+        mine = slice(first, first + len(cell.idle))
+        first = mine.stop
+        block = columns[:, mine] / size[mine]
+        found = np.linalg.lstsq(block.T @ block, match[mine] / size[mine], rcond=1e-10)[0] / size[mine]
+        gain = float(found @ match[mine])
+        if size[mine].max() <= 1e-9 or (cell.tried and found[0] <= 0):
+            continue
+        if cell.tried:
+            values = dict.fromkeys(cell.idle, cell.tried)
+        else:
+            values = {slot: none + float(one) for (slot, none), one in zip(cell.idle.items(), found, strict=True)}
+        yield Score(candidates[cell.candidate], values | cell.constants, gain), cell.candidate
+
+
+def _fits_beside(candidate: Candidate, simulation: Simulation) -> bool:
+    """Whether a signal error can be written into what is there: a signal that is late already is not delayed again."""
+    if candidate.name != "sensor_lag":
+        return True
+    return "delay(" not in dict(simulation.observations)[candidate.place]

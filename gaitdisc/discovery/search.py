@@ -1,0 +1,178 @@
+"""The search: explanations are let in one by one, exchanged while that helps, and thrown out when they earn nothing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from gaitdisc.discovery.account import Account, Part, account_for
+from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.evidence import Judged, judged
+from gaitdisc.discovery.grids import Rhythm
+from gaitdisc.discovery.places import Place
+from gaitdisc.discovery.score import Scorer
+from gaitdisc.simulation.simulation import Simulation
+
+MARGIN = 10.0  # by which the criterion must fall for one more explanation
+REFITTED = 14
+JUDGED = 5
+TURNS = 15
+# Where two explanations fit equally well, the simpler statement first.
+PREFERENCE = ("wrong_parameter", "missing_physics", "input_error", "sensor_error")
+ALIKE = 1.0
+
+
+@dataclass(frozen=True)
+class Search:
+    """What is searched, and in what.
+
+    Parameters
+    ----------
+    base : Simulation
+        As read.
+    places : tuple of Place
+        Where terms may enter.
+    candidates : tuple of Candidate
+        The explanations.
+    rhythm : Rhythm
+        The record's times.
+    """
+
+    base: Simulation
+    places: tuple[Place, ...]
+    candidates: tuple[Candidate, ...]
+    rhythm: Rhythm
+
+    def extended(self, now: Judged, judge: int = JUDGED) -> list[Judged]:
+        """Return the account with one explanation more: the most promising refitted, the best of these judged; best first.
+
+        Parameters
+        ----------
+        now : Judged
+            What is in already.
+        judge : int
+            How many are judged under noise of their own.
+        """
+        account, shooting = now.account, now.shooting
+        scorer = Scorer(shooting, account.simulation, account.machine, account.fit, self.places, self.rhythm)
+        present = {(part.candidate.label, part.candidate.pieces) for part in account.parts}
+        open_ones = tuple(one for one in self.candidates if (one.label, one.pieces) not in present)
+        price = float(np.log(account.fit.white.size))
+        scores = sorted(scorer.scores(open_ones), key=lambda one: price * len(one.candidate.slots) - one.gain)
+        worth = [one for one in scores if one.gain > price * len(one.candidate.slots)][:REFITTED]
+        tried = [
+            account_for(shooting, self.base, (*account.parts, Part(one.candidate, one.values)), account.fit.starts, TURNS)
+            for one in worth
+        ]
+        tried = sorted((one for one in tried if self.sensible(one)), key=lambda one: one.criterion)[:judge]
+        return ranked([judged(shooting, self.base, one) for one in tried])
+
+    def sensible(self, account: Account) -> bool:
+        """Whether every number of an account lies where it means what its name says.
+
+        Parameters
+        ----------
+        account : Account
+            A fitted one.
+        """
+        if not np.isfinite(account.fit.misfit):
+            return False
+        for part in account.parts:
+            for slot, kind in (part.candidate.constants or {}).items():
+                value = part.values[slot]
+                if kind == "delays" and not 0 < value < self.rhythm.period or kind == "frequencies" and value <= 0:
+                    return False
+                if kind == "half widths of x" and value <= 0 or kind == "phase widths" and not 0 < value < 1:
+                    return False
+            if part.candidate.is_late and not 0 < part.values["seconds"] < self.rhythm.period:
+                return False
+        return True
+
+    def exchanged(self, now: Judged) -> Judged:
+        """Return the account after each explanation was tried against all others in its place.
+
+        Parameters
+        ----------
+        now : Judged
+            With two explanations or more.
+        """
+        for number in range(len(now.account.parts)):
+            others = self.extended(self.without(now, number))
+            if others and others[0].evidence < now.evidence - ALIKE:
+                now = others[0]
+        return now
+
+    def without(self, now: Judged, number: int) -> Judged:
+        """Return the account less one explanation.
+
+        Parameters
+        ----------
+        now : Judged
+            A fitted account.
+        number : int
+            Which explanation goes.
+        """
+        parts = now.account.parts[:number] + now.account.parts[number + 1 :]
+        fewer = account_for(now.shooting, self.base, parts, now.account.fit.starts, TURNS)
+        return judged(now.shooting, self.base, fewer)
+
+    def pruned(self, now: Judged) -> Judged:
+        """Return the account without the explanations that do not earn their price and the margin.
+
+        Parameters
+        ----------
+        now : Judged
+            A fitted account.
+        """
+        while now.account.parts:
+            fewer = [self.without(now, number) for number in range(len(now.account.parts))]
+            best = min(fewer, key=lambda one: one.evidence)
+            if best.evidence > now.evidence + MARGIN:
+                break
+            now = best
+        return now
+
+    def grown(self, now: Judged, most: int) -> tuple[Judged, list[Judged]]:
+        """Let explanations in while they earn their place.
+
+        Parameters
+        ----------
+        now : Judged
+            What to begin with.
+        most : int
+            Most explanations.
+
+        Returns
+        -------
+        now : Judged
+            With what was let in.
+        rivals : list of Judged
+            What else stood for the first place, best first.
+        """
+        rivals: list[Judged] = []
+        while len(now.account.parts) < most:
+            more = self.extended(now)
+            rivals = rivals or more
+            if not more or more[0].evidence > now.evidence - MARGIN:
+                break
+            now = more[0]
+            if len(now.account.parts) > 1:
+                now = self.exchanged(now)
+        return now, rivals
+
+
+def ranked(accounts: list[Judged]) -> list[Judged]:
+    """Return accounts, the best first; of those that fit alike, the simplest statement first.
+
+    Parameters
+    ----------
+    accounts : list of Judged
+        Of equal segments.
+    """
+    accounts = sorted((one for one in accounts if np.isfinite(one.evidence)), key=lambda one: one.evidence)
+    if not accounts:
+        return accounts
+    alike = [one for one in accounts if one.evidence < accounts[0].evidence + ALIKE]
+    alike.sort(key=lambda one: [PREFERENCE.index(part.candidate.verdict) for part in one.account.parts])
+    return alike + accounts[len(alike) :]

@@ -1,0 +1,67 @@
+"""Segments: a long record cut into short runs, so that a wrong model stays near the data and its error can be read."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.errors import SamplingError
+
+
+@dataclass(frozen=True)
+class Segments:
+    """Runs of equal length inside the trials, each sample in at most one.
+
+    Parameters
+    ----------
+    trial : ndarray of int (segment,)
+        The trial that each lies in.
+    begin : ndarray of int (segment,)
+        Its first sample.
+    length : int
+        Samples of each.
+    """
+
+    trial: NDArray[np.intp]
+    begin: NDArray[np.intp]
+    length: int
+
+    def __len__(self) -> int:
+        return len(self.begin)
+
+    def of(self, records: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the segments of records (trial, sample, ...) as (segment, sample, ...)."""
+        return records[self.trial[:, None], self.begin[:, None] + np.arange(self.length)]
+
+
+def cut_segments(samples: NDArray[np.intp], trials: tuple[int, ...], length: int) -> Segments:
+    """Cut trials into segments of about a length.
+
+    Parameters
+    ----------
+    samples : ndarray of int (trial,)
+        Samples of every trial.
+    trials : tuple of int
+        The trials to cut.
+    length : int
+        Samples wanted; the shortest of the trials decides what divides it evenly.
+
+    Raises
+    ------
+    SamplingError
+        If a trial has fewer than four samples.
+
+    Examples
+    --------
+    >>> cut_segments(np.array([100, 70]), (0, 1), 30).begin.tolist()
+    [0, 35, 0, 35]
+    """
+    shortest = int(min(samples[trial] for trial in trials))
+    if shortest < 4:
+        raise SamplingError("a trial needs at least 4 samples", f"one has {shortest}", "Leave it out.")
+    length = shortest // max(round(shortest / length), 1)
+    pairs = [(trial, begin) for trial in trials for begin in range(0, int(samples[trial]) - length + 1, length)]
+    trial, begin = np.array(pairs, dtype=np.intp).T
+    return Segments(trial, begin, length)

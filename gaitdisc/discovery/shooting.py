@@ -1,0 +1,269 @@
+"""Fit a simulation to segments of a record: start states of each segment projected out, unknown constants shared."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.discovery.noise import Noise
+from gaitdisc.discovery.segments import Segments
+from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.drive import Rows
+from gaitdisc.simulation.running import Compiled
+
+DAMPING = 1e-3
+MOST_DAMPING = 1e6
+NUDGE = 1e-5
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A simulation fitted to segments.
+
+    Parameters
+    ----------
+    free : tuple of str
+        The constants that were fitted.
+    values : ndarray (parameter,)
+        Every parameter of the simulation, fitted or not, in its unit.
+    starts : ndarray (segment, state)
+        Start states.
+    states : ndarray (segment, sample, state)
+        The run.
+    residual : ndarray (segment, sample, channel)
+        Measured minus run [the channel's unit].
+    white : ndarray (segment, sample times channel)
+        The residual as independent numbers of unit variance.
+    slopes : ndarray (segment, sample times channel, state + free)
+        What each start state and each constant would change in `white`; empty where the run failed.
+    """
+
+    free: tuple[str, ...]
+    values: NDArray[np.float64]
+    starts: NDArray[np.float64]
+    states: NDArray[np.float64]
+    residual: NDArray[np.float64]
+    white: NDArray[np.float64]
+    slopes: NDArray[np.float64]
+
+    @property
+    def misfit(self) -> float:
+        """Sum of squares of `white`: minus twice the log likelihood, up to a constant."""
+        return float((self.white**2).sum()) if np.isfinite(self.white).all() else np.inf
+
+    @property
+    def projected(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """What the start states cannot explain: of `white` (segment, sample times channel), of the constants' slopes."""
+        n = self.starts.shape[1]
+        basis = start_basis(self.slopes[..., :n])
+        return without(basis, self.white[..., None])[..., 0], without(basis, self.slopes[..., n:])
+
+    @property
+    def covariance(self) -> NDArray[np.float64]:
+        """Covariance of the fitted constants (free, free), from the curvature of the misfit."""
+        if not self.free:
+            return np.zeros((0, 0))
+        _, slopes = self.projected
+        flat = slopes.reshape(-1, len(self.free))
+        size = np.linalg.norm(flat, axis=0)
+        size[size == 0] = 1.0
+        return np.linalg.pinv((flat / size).T @ (flat / size), rcond=1e-12) / np.outer(size, size)
+
+
+@dataclass(frozen=True)
+class Shooting:
+    """Segments of measured trials and what it takes to run a simulation over them.
+
+    Parameters
+    ----------
+    measured : Measured
+        Trials, with the inputs that drive the simulation.
+    segments : Segments
+        The runs.
+    noise : Noise
+        What the residual is divided by.
+    substeps : int
+        Runge-Kutta steps a sample.
+    past : ndarray (trial, sample, state) or None
+        States before a segment begins, for what comes late.
+    """
+
+    measured: Measured
+    segments: Segments
+    noise: Noise
+    substeps: int = 2
+    past: NDArray[np.float64] | None = None
+
+    @property
+    def seen(self) -> NDArray[np.float64]:
+        """The measurement in each segment (segment, sample, channel)."""
+        return self.segments.of(self.measured.observed)
+
+    def run(
+        self, machine: Compiled, starts: NDArray[np.float64], values: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Run a simulation over all segments, several versions at once.
+
+        Parameters
+        ----------
+        machine : Compiled
+            The simulation.
+        starts : ndarray (version, segment, state)
+            Start states.
+        values : ndarray (version, parameter)
+            Parameters.
+
+        Returns
+        -------
+        states : ndarray (version, segment, sample, state)
+            NaN from where a run left every bound.
+        observed : ndarray (version, segment, sample, channel)
+            What would be measured.
+        """
+        versions, segments = starts.shape[:2]
+        rows = Rows(
+            np.tile(self.segments.trial, versions),
+            np.tile(self.segments.begin, versions),
+            starts.reshape(versions * segments, -1),
+            np.repeat(values, segments, axis=0),
+        )
+        states, _ = machine.run(self.measured.drive, rows, self.segments.length - 1, substeps=self.substeps, past=self.past)
+        observed = machine.observe(self.measured.drive, rows, states, past=self.past)
+        shape = (versions, segments, self.segments.length)
+        return states.reshape(*shape, -1), observed.reshape(*shape, -1)
+
+    def whitened(self, residual: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return (segment, sample, channel, ...) whitened and flat: (segment, sample times channel, ...)."""
+        white = self.noise.whitened(np.nan_to_num(residual, nan=0.0, posinf=0.0, neginf=0.0))
+        return white.reshape(white.shape[0], -1, *white.shape[3:])
+
+    def at(self, machine: Compiled, free: tuple[str, ...], values: NDArray[np.float64], starts: NDArray[np.float64]) -> Fitted:
+        """Return the fit at given constants and start states, with its slopes.
+
+        Parameters
+        ----------
+        machine : Compiled
+            The simulation.
+        free : tuple of str
+            Constants whose slopes are wanted.
+        values : ndarray (parameter,)
+            All parameters.
+        starts : ndarray (segment, state)
+            Start states.
+        """
+        n, index = starts.shape[1], [machine.parameters.index(name) for name in free]
+        spans = np.maximum(np.abs(starts).max(axis=0), 1e-3)
+        nudges = np.concatenate([NUDGE * spans, NUDGE * np.maximum(np.abs(values[index]), 1e-2)])
+        many_starts = np.repeat(starts[None], 1 + len(nudges), axis=0)
+        many_values = np.repeat(values[None], 1 + len(nudges), axis=0)
+        for state in range(n):
+            many_starts[1 + state, :, state] += nudges[state]
+        for place, parameter in enumerate(index):
+            many_values[1 + n + place, parameter] += nudges[n + place]
+        states, observed = self.run(machine, many_starts, many_values)
+        residual = self.seen - observed[0]
+        failed = ~np.isfinite(observed[0]).all()
+        white = self.whitened(residual)
+        if failed:
+            return Fitted(free, values, starts, states[0], residual, np.full_like(white, np.inf), np.zeros((0, 0, 0)))
+        change = np.moveaxis((observed[1:] - observed[0]) / nudges[:, None, None, None], 0, -1)
+        change[np.isnan(self.seen)] = 0.0
+        return Fitted(free, values, starts, states[0], residual, white, self.whitened(change))
+
+    def fitted(
+        self, machine: Compiled, free: tuple[str, ...], values: NDArray[np.float64], starts: NDArray[np.float64], turns: int = 12
+    ) -> Fitted:
+        """Fit constants and start states (Levenberg-Marquardt; the start states of each segment solved for within).
+
+        Parameters
+        ----------
+        machine : Compiled
+            The simulation.
+        free : tuple of str
+            Constants to fit.
+        values : ndarray (parameter,)
+            Where all parameters begin.
+        starts : ndarray (segment, state)
+            Where the start states begin.
+        turns : int
+            Most steps.
+        """
+        now, damping = self.at(machine, free, values, starts), DAMPING
+        for _ in range(turns):
+            if not np.isfinite(now.misfit):
+                break
+            moved = None
+            while damping < MOST_DAMPING:
+                step = self.at(machine, free, *_step(now, machine, damping))
+                if step.misfit <= now.misfit:
+                    moved, damping = step, max(damping / 10, 1e-9)
+                    break
+                damping *= 10
+            if moved is None:
+                break
+            gained, now = now.misfit - moved.misfit, moved
+            if gained < 1e-2 + 1e-6 * now.misfit:
+                break
+        return now
+
+    def with_past(self, states: NDArray[np.float64]) -> Shooting:
+        """Return the same segments with a run's states as the past of what comes late.
+
+        Parameters
+        ----------
+        states : ndarray (segment, sample, state)
+            A fitted run.
+        """
+        if self.past is None:
+            return self
+        past = self.past.copy()
+        past[self.segments.trial[:, None], self.segments.begin[:, None] + np.arange(self.segments.length)] = states
+        return replace(self, past=past)
+
+    def with_noise(self, noise: Noise) -> Shooting:
+        """Return the same segments, divided by other noise."""
+        return replace(self, noise=noise)
+
+
+def start_basis(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return an orthonormal basis, segment by segment, of what the start states can explain.
+
+    Parameters
+    ----------
+    slopes : ndarray (segment, number, state)
+        Slopes of the whitened residual.
+    """
+    size = np.linalg.norm(slopes, axis=1, keepdims=True)
+    basis, triangle = np.linalg.qr(slopes / np.where(size > 0, size, 1.0))
+    weak = np.abs(np.diagonal(triangle, axis1=1, axis2=2)) < 1e-7
+    return basis * ~weak[:, None, :]
+
+
+def without(basis: NDArray[np.float64], columns: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return columns (segment, number, column) less what the basis explains of them."""
+    return columns - basis @ (np.swapaxes(basis, 1, 2) @ columns)
+
+
+def _step(now: Fitted, machine: Compiled, damping: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return (values, starts) one damped Gauss-Newton step on."""
+    n = now.starts.shape[1]
+    shape, change = now.slopes[..., :n], now.slopes[..., n:]
+    values = now.values.copy()
+    rest = now.white
+    if now.free:
+        white, slopes = now.projected
+        flat = slopes.reshape(-1, len(now.free))
+        size = np.linalg.norm(flat, axis=0)
+        size[size == 0] = 1.0
+        flat = flat / size
+        normal = flat.T @ flat + damping * np.eye(len(now.free))
+        move = np.linalg.lstsq(normal, flat.T @ white.ravel(), rcond=None)[0] / size
+        values[[machine.parameters.index(name) for name in now.free]] += move
+        rest = rest - change @ move
+    size = np.linalg.norm(shape, axis=1, keepdims=True)
+    scaled = shape / np.where(size > 0, size, 1.0)
+    normal = np.swapaxes(scaled, 1, 2) @ scaled + max(damping, 1e-9) * np.eye(n)
+    move = np.linalg.solve(normal, np.swapaxes(scaled, 1, 2) @ rest[..., None])[..., 0]
+    return values, now.starts + move / np.where(size > 0, size, 1.0)[:, 0]
