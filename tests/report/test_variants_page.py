@@ -30,7 +30,7 @@ def test_a_page_stands_alone_and_is_the_same_each_time(tmp_path):
         text = page.read_text(encoding="utf-8")
         assert "the gait &lt;changes&gt;" in text
         assert "<script" not in text
-        assert "src=\"http" not in text
+        assert 'src="http' not in text
         assert (tmp_path / question / "tables" / "r2.csv").is_file()
         assert write_variants(run, tmp_path / question).read_text(encoding="utf-8") == text
 
