@@ -124,7 +124,7 @@ def descend(
             raise TrainingError(
                 "training needs a loss that stays finite",
                 f"it was {losses[-1]} after epoch {epoch} of {epochs} at learning rate {schedule.rates[0, 0]:g}",
-                "Take another seed or a tenth of the learning rate; the findings may also name samples far out of range.",
+                "Take another seed or a tenth of the learning rate; findings may also name samples far out of range.",
             )
         if losses[-1] <= min(losses):
             best = steps.weights()

@@ -24,9 +24,12 @@ BETA_1, BETA_2, ADAM_EPSILON = F32(0.9), F32(0.999), F32(1e-8)  # torch's, and t
 
 # Without numpy's division and without fused multiply-add the compiler makes no vector code of these loops.
 fast = compiled(error_model="numpy", fastmath={"contract"})
+# One function each way in: with calls between compiled functions, a process that compiles and one that loads what was
+# kept take different copies of what is called, and differ in the last bit.
+inlined = compiled(error_model="numpy", fastmath={"contract"}, inline="always")
 
 
-@fast
+@inlined
 def exponential(x: np.float32) -> np.float32:
     """Return e^x in float32, within 1e-7 of its value from -87 to 88, as vector code; NaN stays NaN.
 
@@ -61,7 +64,7 @@ def exponential(x: np.float32) -> np.float32:
     return p * np.int32((np.int32(k) + 127) << 23).view(np.float32)
 
 
-@fast
+@inlined
 def layers(weights: NDArray[np.float32], inputs: int, nodes: int, outputs: int):
     """Return the three matrices, then the three offsets: views into the vector.
 
@@ -91,14 +94,14 @@ def layers(weights: NDArray[np.float32], inputs: int, nodes: int, outputs: int):
     )
 
 
-@fast
+@inlined
 def _sigmoid(z, offset):
     for row in range(z.shape[0]):
         for node in range(z.shape[1]):
             z[row, node] = F32(1) / (F32(1) + exponential(-(z[row, node] + offset[node])))
 
 
-@fast
+@inlined
 def _radial(n, offset, h):
     for row in range(n.shape[0]):
         for node in range(n.shape[1]):
@@ -107,7 +110,7 @@ def _radial(n, offset, h):
             h[row, node] = exponential(-value * value)
 
 
-@fast
+@inlined
 def _forward(weights, x, hidden, y):
     """Leave s, n, h in hidden[0..2], and outputs without their offset in y."""
     w1, w2, w3, b1, b2, _ = layers(weights, x.shape[1], hidden.shape[2], y.shape[1])
@@ -119,7 +122,7 @@ def _forward(weights, x, hidden, y):
     np.dot(h, w3.T, y)
 
 
-@fast
+@inlined
 def _error(error, offset, y, offset_gradient, samples):
     share = F32(2.0 / (samples * y.shape[1]))
     offset_gradient[:] = F32(0)
@@ -130,7 +133,7 @@ def _error(error, offset, y, offset_gradient, samples):
             offset_gradient[output] += d
 
 
-@fast
+@inlined
 def _radial_backward(d, n, h, offset_gradient):
     offset_gradient[:] = F32(0)
     for row in range(d.shape[0]):
@@ -140,7 +143,7 @@ def _radial_backward(d, n, h, offset_gradient):
             offset_gradient[node] += value
 
 
-@fast
+@inlined
 def _sigmoid_backward(d, s, offset_gradient):
     offset_gradient[:] = F32(0)
     for row in range(d.shape[0]):
@@ -150,7 +153,7 @@ def _sigmoid_backward(d, s, offset_gradient):
             offset_gradient[node] += value
 
 
-@fast
+@inlined
 def gradient(
     weights: NDArray[np.float32],
     into: NDArray[np.float32],
@@ -218,7 +221,7 @@ def mean_squared_error(
     return total / y.size
 
 
-@fast
+@inlined
 def _adam(weights, g, moments, matrices, pace):
     m, v = moments[0], moments[1]
     shrunk, size, spread = pace[0], pace[1], pace[2]
@@ -231,7 +234,7 @@ def _adam(weights, g, moments, matrices, pace):
         weights[k] -= size * m[k] / (math.sqrt(v[k]) * spread + ADAM_EPSILON)
 
 
-@fast
+@inlined
 def _gathered(values, rows, into):
     for k in range(rows.size):
         row = values[rows[k]]
