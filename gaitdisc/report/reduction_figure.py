@@ -154,8 +154,8 @@ def _caption(run: ResponseRun) -> str:
         f"Residual (measured minus predicted second derivative) averaged over the held-out strides of the device walk "
         f"({run.exo}): 1 − its size / its size under the Nominal model, measured from peak to peak and as root mean "
         f"square over the stride; n = {counted(people, 'participant')}; split: last {held_out_text(run)} s held out. "
-        f"Marks: participants; values below {number(LOWEST, 0)} % stand at the edge. After Fig. 4.3 of the dissertation, "
-        f"which gives one number: 52.8 %, hip, one participant, the measure not said."
+        f"Marks: participants; values below {number(LOWEST, 0)} % stand at the edge. After Fig. 4.3 of the "
+        f"dissertation, which gives one number: 52.8 %, hip, one participant, the measure not said."
     )
 
 
