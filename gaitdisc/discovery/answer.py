@@ -209,7 +209,8 @@ def phase_of(inquiry: Inquiry, now: Judged, part: Part) -> tuple[float, ...]:
         return ()
     push = np.abs(evaluate(inquiry.search.base, term, Points(time, states, inputs)))
     phase = inputs[:, names.index("phase")]
-    mean = np.array([push[(phase >= one / 100) & (phase < (one + 1) / 100)].mean(initial=0.0, where=True) if np.any((phase >= one / 100) & (phase < (one + 1) / 100)) else 0.0 for one in range(100)])
+    bins = np.minimum((phase * 100).astype(int), 99)
+    mean = np.bincount(bins, push, 100) / np.maximum(np.bincount(bins, minlength=100), 1)
     strong = np.flatnonzero(mean > HALF * mean.max())
     return (float(strong[0] / 100), float((strong[-1] + 1) / 100)) if strong.size else ()
 

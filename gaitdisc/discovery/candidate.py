@@ -217,6 +217,8 @@ def _castings(shape: Shape, place: Place) -> list[tuple[str, dict[str, str]]]:
             late = any("delay(" in piece for piece in shape.pieces)
             if ("v" in roles and not v) or (late and " " in x):
                 continue
+            if x in place.others and shape.pieces in (("x",), ("v",)):
+                continue  # that is a coupling
             castings.append((x, {"x": x} | ({"v": v} if v else {})))
             if not roles or shape.needs == "angle":
                 break

@@ -21,6 +21,7 @@ from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
 
 MOST_NAMES = 2
+REPEATS = 0.5  # of what random pushes explain, which something that repeats itself has to explain
 
 
 @dataclass(frozen=True)
@@ -91,13 +92,13 @@ def judge(inquiry: Inquiry, as_read: Judged) -> Verdict:
         The simulation as read.
     """
     named, rivals = inquiry.search.grown(as_read, MOST_NAMES + 1)
-    memory = any(named.noise.lags)
-    if memory:
-        shaking = random_push(inquiry, as_read, named)
-        if shaking:
-            return Verdict("process_noise", as_read, tuple(rivals), shaking)
+    if named.noise.remembers:
         shape = fitted_shape(as_read, inquiry.search)
-        if shape and shape.evidence < min(named.evidence, as_read.evidence) - MARGIN:
+        shaking = random_push(inquiry, as_read)
+        ordered = [one for one in (named, shape) if one and explains(inquiry, as_read, one, shaking)]
+        if shaking and not ordered:
+            return Verdict("process_noise", as_read, tuple(rivals), shaking[0])
+        if shape in ordered and shape.evidence < min(named.evidence, as_read.evidence) - MARGIN:
             return Verdict("unnamed", shape, (named, *rivals))
     if len(named.account.parts) > MOST_NAMES:
         shape = fitted_shape(as_read, inquiry.search)
@@ -110,19 +111,37 @@ def judge(inquiry: Inquiry, as_read: Judged) -> Verdict:
     return Verdict(longer.account.parts[0].candidate.verdict, longer, tuple(rivals))
 
 
-def random_push(inquiry: Inquiry, as_read: Judged, named: Judged) -> Shaken | None:
-    """Return the random push that explains the gap better than what was named and than noise of the sensors, if any.
+def random_push(inquiry: Inquiry, as_read: Judged) -> tuple[Shaken, float] | None:
+    """Return the random push that explains the gap better than noise of the sensors, and by how much, if there is one.
 
     Parameters
     ----------
     inquiry : Inquiry
         What is asked.
-    as_read, named : Judged
-        The simulation as read and with what the search let in.
+    as_read : Judged
+        The simulation as read.
     """
     best = shaken(as_read.shooting, as_read.account, inquiry.search.places)[0]
     gained = (best.rival - best.evidence) * as_read.account.fit.residual.size / best.numbers
-    return best if gained > max(as_read.evidence - named.evidence, 0.0) + MARGIN else None
+    return (best, gained) if gained > MARGIN else None
+
+
+def explains(inquiry: Inquiry, as_read: Judged, now: Judged, shaking: tuple[Shaken, float] | None) -> bool:
+    """Whether something that repeats itself explains the gap: at least half as well as random pushes, and on held-out trials.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        What is asked.
+    as_read, now : Judged
+        The simulation as read and with what was found.
+    shaking : tuple of Shaken and float, or None
+        The random push, and what it gains.
+    """
+    if not now.account.parts:
+        return False
+    gained = as_read.evidence - now.evidence
+    return gained > (REPEATS * shaking[1] if shaking else MARGIN) and proven(inquiry, as_read, now)
 
 
 def proven(inquiry: Inquiry, as_read: Judged, now: Judged) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from itertools import product
 
 import numpy as np
@@ -18,6 +19,8 @@ BUMPS = 5
 FLAT_BUMPS = 7
 STRIDE_BUMPS = 10
 SHARPNESS = 1.2  # of a bump's width against the distance to the next
+SHARE_OF_SPEED = 0.2  # at which friction that depends on place has risen
+_ONE_BUMP = re.compile(r"exp\(-\(\((\w+|\(.*?\)) - (\S+?)\)/(\S+?)\)\*\*2\)\)(.*)")
 SIGNIFICANT = 3.0  # standard errors that a bump must have to stay
 
 
@@ -37,6 +40,11 @@ def shapes_at(place: Place, judged_now: Judged, search: Search) -> list[Candidat
     axes = [x, v] if v else [x, *place.others[:1]]
     ranges = {axis: _visited(axis, judged_now, search) for axis in axes}
     shapes = [_bumps(ranges, {axis: FLAT_BUMPS for axis in [one]}) for one in axes]
+    if v:
+        speed = max(abs(one) for one in ranges[v])
+        name = f"({v})" if " " in v else v
+        across = _bumps(ranges, {x: FLAT_BUMPS})
+        shapes += [[f"{piece}*{name}" for piece in across], [f"{piece}*tanh({name}/{SHARE_OF_SPEED * speed:.4g})" for piece in across]]
     if len(axes) > 1:
         shapes.append(_bumps(ranges, dict.fromkeys(axes, BUMPS)))
     if any(one.name == "phase" for one in search.base.inputs):
@@ -71,7 +79,9 @@ def fitted_shape(now: Judged, search: Search) -> Judged | None:
             account = account_for(now.shooting, search.base, (part,), now.account.fit.starts, TURNS)
             if np.isfinite(account.fit.misfit):
                 tried.append(account)
-    kept = [_thinned(now, search, one) for one in sorted(tried, key=lambda one: one.criterion)[:3]]
+    best = sorted(tried, key=lambda one: one.criterion)[:2]
+    kept = [_thinned(now, search, one) for one in best]
+    kept += [local for one in kept for local in _local(now, search, one)]
     judged_ones = [judged(now.shooting, search.base, one) for one in kept if np.isfinite(one.fit.misfit)]
     return min(judged_ones, key=lambda one: one.evidence, default=None)
 
@@ -88,6 +98,38 @@ def _thinned(now: Judged, search: Search, account: Account) -> Account:
     fewer = Candidate("missing_physics", part.candidate.kind, part.candidate.place, "unnamed", pieces, None, part.candidate.role, part.candidate.means)
     values = dict(zip(fewer.slots, value[keep].tolist(), strict=True))
     return account_for(now.shooting, search.base, (Part(fewer, values),), account.fit.starts, TURNS)
+
+
+def _local(now: Judged, search: Search, account: Account) -> list[Account]:
+    """Fit one bump whose place and width are free, from each of the two strongest of a shape over one state."""
+    (part,) = account.parts
+    found = []
+    strongest = sorted(part.candidate.pieces, key=lambda piece: -abs(part.values[_slot_of(part, piece)]))[:2]
+    for piece in strongest:
+        bump = _ONE_BUMP.fullmatch(piece)
+        if not bump:
+            continue
+        name, centre, width, rest = bump.groups()
+        shape = f"exp(-((({name} - _c)/_w)**2)){rest}"
+        local = Candidate(
+            "missing_physics",
+            part.candidate.kind,
+            part.candidate.place,
+            "unnamed",
+            (shape,),
+            {"c": "quantiles of x", "w": "half widths of x"},
+            part.candidate.role,
+            part.candidate.means,
+        )
+        begin = {"factor": part.values[_slot_of(part, piece)], "c": float(centre.strip("()")), "w": float(width) / 2}
+        one = account_for(now.shooting, search.base, (Part(local, begin),), now.account.fit.starts, 2 * TURNS)
+        if search.sensible(one):
+            found.append(one)
+    return found
+
+
+def _slot_of(part: Part, piece: str) -> str:
+    return part.candidate.slots[part.candidate.pieces.index(piece)]
 
 
 def _visited(axis: str, now: Judged, search: Search) -> tuple[float, float]:

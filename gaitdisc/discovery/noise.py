@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.linalg import solve_toeplitz
 
 MOST_LAGS = 16
+MEMORY = 1.03  # in standard deviations before and after the past is taken off
 WHITE_SHARE = 0.01  # of the variance taken as white, so that smooth noise is not divided by nothing
 
 
@@ -42,6 +43,11 @@ class Noise:
     def lags(self) -> tuple[int, ...]:
         """How many samples the noise of each channel remembers; 0 is white."""
         return tuple(len(spread) - 1 for spread in self.spread)
+
+    @property
+    def remembers(self) -> bool:
+        """Whether what went before says more than next to nothing of what comes."""
+        return any(spread[0] > MEMORY * spread[-1] for spread in self.spread)
 
     def whitened(self, residual: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return residuals as independent numbers of unit variance, if the noise is what it is taken for.

@@ -25,8 +25,8 @@ class Place:
     name : str
         Its name in the simulation file.
     motions : tuple of (str, str)
-        Position-like state and its rate, the place's own first, then its differences with others; the rate is empty for
-        a state that has none (first-order systems).
+        Position-like state and its rate, the place's own first, then its differences with others, then (at a port) the
+        others; the rate is empty for a state that has none (first-order systems).
     others : tuple of str
         States that would act here as a coupling.
     products : tuple of (str, str)
@@ -91,7 +91,9 @@ def places_of(simulation: Simulation, machine: Compiled) -> tuple[Place, ...]:
 
 
 def driven_state(simulation: Simulation, machine: Compiled, port: str) -> str:
-    """Name the state whose derivative a port moves most.
+    """Name the state that a port drives: the one it is named after, or else the one whose derivative it moves most.
+
+    In a chain of bodies a moment at one joint may move another joint's angle more than its own.
 
     Parameters
     ----------
@@ -102,6 +104,10 @@ def driven_state(simulation: Simulation, machine: Compiled, port: str) -> str:
     port : str
         Name of the port.
     """
+    words = set(port.split("_"))
+    namesakes = [state.name for state in simulation.states if state.name in words]
+    if len(namesakes) == 1:
+        return namesakes[0]
     pushed = compile_simulation(simulation.with_effect(Term(port, "port", "push", "1")))
     rng = np.random.default_rng(0)
     x = rng.uniform(-0.3, 0.3, (16, len(simulation.states)))
@@ -121,6 +127,8 @@ def _place(simulation: Simulation, kind: str, name: str, driven: str, rate_of: d
             for other in rate_of
             if other != own and units[other] == units[own]
         ]
+        if kind == "port":
+            motions += [(other, rate) for other, rate in rate_of.items() if other != own]
     others = tuple(state.name for state in simulation.states if state.name not in motions[0])
     products = tuple(combinations([state.name for state in simulation.states], 2))
     return Place(kind, name, tuple(motions), others, products, own in rate_of and units[own] in ANGLES)

@@ -15,6 +15,7 @@ from gaitdisc.discovery.score import Scorer
 from gaitdisc.simulation.simulation import Simulation
 
 MARGIN = 10.0  # by which the criterion must fall for one more explanation
+MATERIAL = 0.015  # of what is explained already, which one more has to explain
 REFITTED = 14
 JUDGED = 5
 TURNS = 15
@@ -151,10 +152,12 @@ class Search:
             What else stood for the first place, best first.
         """
         rivals: list[Judged] = []
+        first = now.evidence
         while len(now.account.parts) < most:
             more = self.extended(now)
             rivals = rivals or more
-            if not more or more[0].evidence > now.evidence - MARGIN:
+            gained = now.evidence - more[0].evidence if more else 0.0
+            if gained < max(MARGIN, MATERIAL * (first - now.evidence)):
                 break
             now = more[0]
             if len(now.account.parts) > 1:
