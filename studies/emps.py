@@ -1,0 +1,113 @@
+"""A motor axis whose linear model lacks dry friction: what is named first, its size, and what is left.
+
+    python studies/emps.py [DATA] [--quick]
+
+DATA holds DATA_EMPS.mat of Janot, Gautier and Brunot (2019), nonlinearbenchmark.org, by default
+../shared/data/hidden_effect/emps (or GAITDISC_DATA/hidden_effect/emps), and DATA_EMPS_PULSES.mat where it was got too:
+there the motor gives pulses that the first record has not. The record is cut into stretches of half a second; the last quarter of them, and all of the second file, are never fitted: in each only the start is found.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from gaitdisc.discovery.discover import discover
+from gaitdisc.discovery.evidence import Judged
+from gaitdisc.discovery.held_out import Trial, runs_of
+from gaitdisc.discovery.inquiry import Inquiry, begin_inquiry
+from gaitdisc.results.discovery import Discovery
+from gaitdisc.simulation.measured import Measured, TrialColumns, measured_of_trials
+from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.simulation.simulation_file import read_simulation
+
+MODEL = Path(__file__).with_name("emps.toml")
+PUBLISHED_N = 20.3935
+EVERY, RATE_HZ, STRETCH_S = 10, 100.0, 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """What was found.
+
+    Parameters
+    ----------
+    named, place : str
+        The explanation that is named first.
+    friction_n : float
+        Its force [N].
+    left_mm : dict of str to tuple
+        Free-run error before and after, of the held-out stretches and of the pulses [mm].
+    whole : Discovery or None
+        What the whole inquiry says, with everything else that it finds; not asked for in a quick run.
+    """
+
+    named: str
+    place: str
+    friction_n: float
+    left_mm: dict[str, tuple[float, float]]
+    whole: Discovery | None
+
+
+def run(quick: bool, data: Path) -> Result:
+    """Search the first record; judge on its end, and on the pulses where they are there."""
+    simulation = read_simulation(MODEL)
+    measured = stretches(data / "DATA_EMPS.mat", simulation)
+    inquiry = begin_inquiry(simulation, measured)
+    as_read = inquiry.as_read()
+    first = inquiry.search.extended(as_read)[0]
+    part = first.account.parts[0]
+    runs = {"held-out stretches": free_runs(inquiry, inquiry.held_out, as_read, first)}
+    if (data / "DATA_EMPS_PULSES.mat").exists():
+        pulses = begin_inquiry(simulation, stretches(data / "DATA_EMPS_PULSES.mat", simulation))
+        runs["pulses"] = free_runs(pulses, (*pulses.learned, *pulses.held_out), as_read, first)
+    left = {name: (rms(before), rms(after)) for name, (before, after) in runs.items()}
+    whole = None if quick else discover(simulation, measured)[0]
+    named, place = part.candidate.name, part.candidate.place
+    return Result(named, place, -part.values.get("factor", float("nan")), left, whole)
+
+
+def stretches(path: Path, simulation: Simulation) -> Measured:
+    """Trials of half a second: force of the motor [N], position [mm]."""
+    from scipy.io import loadmat
+    from scipy.signal import decimate
+
+    record = loadmat(path)
+    force = record["vir"].ravel() * record["gtau"].item()
+    slow = np.column_stack([decimate(one, EVERY, ftype="fir") for one in (force, 1000 * record["qm"].ravel())])
+    length = int(STRETCH_S * RATE_HZ)
+    trials = [
+        TrialColumns(
+            str(n + 1), np.arange(at, at + length) / RATE_HZ, slow[at : at + length, :1], slow[at : at + length, 1:]
+        )
+        for n, at in enumerate(range(0, len(slow) - length, length))
+    ]
+    return measured_of_trials(trials, ("force",), tuple(name for name, _ in simulation.observations), path.name)
+
+
+def free_runs(inquiry: Inquiry, trials: tuple[int, ...], before: Judged, after: Judged) -> tuple[Trial, Trial]:
+    """Runs of the model as read and with what was named, over trials that were not fitted."""
+    return runs_of(inquiry, before, trials, after), runs_of(inquiry, after, trials, after)
+
+
+def rms(runs: Trial) -> float:
+    """Root mean square error of free runs [mm]."""
+    return float(np.sqrt(np.mean(runs.fit.residual**2)))
+
+
+if __name__ == "__main__":
+    words = [word for word in sys.argv[1:] if word != "--quick"]
+    shared = Path(os.environ.get("GAITDISC_DATA", Path(__file__).parents[2] / "shared" / "data")) / "hidden_effect"
+    found = run("--quick" in sys.argv, Path(words[0]) if words else shared / "emps")
+    off = 100 * (found.friction_n / PUBLISHED_N - 1)
+    print(f"named first: {found.named} at {found.place}, {found.friction_n:.2f} N ({off:+.1f} % of {PUBLISHED_N:g} N)")
+    for name, (before, after) in found.left_mm.items():
+        print(f"{name}: free-run error {before:.3f} mm -> {after:.3f} mm ({100 * (1 - after / before):.1f} % less)")
+    if found.whole:
+        print(found.whole.sentence)
+        for rival in found.whole.rivals:
+            print(f"  weighed too: {rival.name} at {rival.place}, criterion falls by {rival.bic:.0f}")

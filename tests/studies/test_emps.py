@@ -1,0 +1,41 @@
+import importlib.util
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+PROJECT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def study():
+    spec = importlib.util.spec_from_file_location("emps", PROJECT / "studies" / "emps.py")
+    assert spec and spec.loader
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["emps"] = module  # dataclasses look their module up
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def found(study):
+    data = Path(os.environ.get("GAITDISC_DATA", PROJECT.parent / "shared" / "data")) / "hidden_effect" / "emps"
+    if not (data / "DATA_EMPS.mat").exists():
+        pytest.skip(f"the motor's record is absent: {data} (set GAITDISC_DATA)")
+    return study.run(True, data)
+
+
+def test_dry_friction_is_named_first_and_of_the_published_size(study, found):
+    assert (found.named, found.place) == ("coulomb_friction", "carriage")
+    assert found.friction_n == pytest.approx(study.PUBLISHED_N, rel=0.03)
+
+
+def test_free_runs_that_were_never_fitted_lose_four_fifths_of_their_error(found):
+    for before, after in found.left_mm.values():
+        assert after < 0.2 * before
+
+
+def test_the_model_is_the_published_one_without_friction(study):
+    values = study.read_simulation(study.MODEL).values()
+    assert values == {"mass": 95.1089, "viscous": 203.5034, "offset": -3.1648}
