@@ -94,7 +94,7 @@ def floor_of(size) -> float:  # noqa: ANN001
 
 
 def best_evidence(rivals: tuple[Judged, ...], as_read: Judged) -> float:
-    return rivals[0].evidence if rivals else as_read.evidence
+    return min([one.evidence for one in rivals], default=as_read.evidence)
 
 
 def found_effects(inquiry: Inquiry, now: Judged, closed: float, gained: float) -> list[FoundEffect]:
@@ -139,7 +139,7 @@ def rivals_of(as_read: Judged, now: Judged, rivals: tuple[Judged, ...]) -> tuple
     own = {part.candidate.label for part in now.account.parts}
     best = best_evidence(rivals, as_read)
     listed = []
-    for rival in rivals:
+    for rival in (one for one in rivals if one.account.parts):
         last = rival.account.parts[-1]
         if last.candidate.label in own:
             continue

@@ -10,18 +10,22 @@ import numpy as np
 from gaitdisc.discovery.account import Part
 from gaitdisc.discovery.answer import answer
 from gaitdisc.discovery.catalogue import Shape
-from gaitdisc.discovery.evidence import Judged
+from gaitdisc.discovery.evidence import Judged, compared
 from gaitdisc.discovery.fitted_shape import fitted_shape
 from gaitdisc.discovery.held_out import runs_of
 from gaitdisc.discovery.inquiry import Inquiry, begin_inquiry
-from gaitdisc.discovery.search import MARGIN
+from gaitdisc.discovery.search import MARGIN, ranked
 from gaitdisc.discovery.shaken import Shaken, shaken
 from gaitdisc.results.discovery import Discovery
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
 
 MOST_NAMES = 2
-REPEATS = 0.5  # of what random pushes explain, which something that repeats itself has to explain
+NEAR = 40.0  # by which a rival's evidence may be worse and still be tried on long runs
+MOST_NEAR = 4
+REPEATS = 0.2  # of the misfit, which something that repeats itself has to take away where random pushes would do
+PUSHED = 0.03  # by which random pushes must be likelier than a sensor's own memory, for each number
+WORTH = 0.05  # of what was named, which a shape without a name must explain beyond it
 
 
 @dataclass(frozen=True)
@@ -94,25 +98,50 @@ def judge(inquiry: Inquiry, as_read: Judged) -> Verdict:
     named, rivals = inquiry.search.grown(as_read, MOST_NAMES + 1)
     if named.noise.remembers:
         shape = fitted_shape(as_read, inquiry.search)
+        plain, *found = compared([as_read, named, *([shape] if shape else [])], inquiry.search.base)
         shaking = random_push(inquiry, as_read)
-        ordered = [one for one in (named, shape) if one and explains(inquiry, as_read, one, shaking)]
+        ordered = [one for one in found if explains(inquiry, plain, one, shaking)]
         if shaking and not ordered:
-            return Verdict("process_noise", as_read, tuple(rivals), shaking[0])
-        if shape in ordered and shape.evidence < min(named.evidence, as_read.evidence) - MARGIN:
-            return Verdict("unnamed", shape, (named, *rivals))
+            return Verdict("process_noise", as_read, tuple(rivals), shaking)
+        if shape and found[1] in ordered and found[1].evidence < found[0].evidence - WORTH * (plain.evidence - found[0].evidence) - MARGIN:
+            return Verdict("unnamed", found[1], (named, *rivals))
     if len(named.account.parts) > MOST_NAMES:
         shape = fitted_shape(as_read, inquiry.search)
         return Verdict("unnamed", shape or named, (named, *rivals))
     if not named.account.parts:
         return Verdict("no_gap", as_read, tuple(rivals))
-    longer = inquiry.lengthened(named)
+    longer = decided(inquiry, named, rivals)
     if not proven(inquiry, as_read, longer):
         return Verdict("no_gap", as_read, (named, *rivals))
     return Verdict(longer.account.parts[0].candidate.verdict, longer, tuple(rivals))
 
 
-def random_push(inquiry: Inquiry, as_read: Judged) -> tuple[Shaken, float] | None:
-    """Return the random push that explains the gap better than noise of the sensors, and by how much, if there is one.
+def decided(inquiry: Inquiry, named: Judged, rivals: list[Judged]) -> Judged:
+    """Return what was named, fitted to long runs; where a rival comes near, the one that long runs prefer.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        What is asked.
+    named : Judged
+        What the search let in.
+    rivals : list of Judged
+        What else stood for the first place.
+    """
+    longer = inquiry.lengthened(named)
+    if len(named.account.parts) > 1:
+        return longer
+    near = [one for one in rivals if one is not named and one.evidence < named.evidence + NEAR][:MOST_NEAR]
+    contest = [longer]
+    for one in near:
+        rival = inquiry.lengthened(one, longer.shooting.segments.length)
+        if rival.shooting.segments.length == longer.shooting.segments.length:
+            contest.append(rival)
+    return ranked(contest)[0]
+
+
+def random_push(inquiry: Inquiry, as_read: Judged) -> Shaken | None:
+    """Return the random push that explains the gap better than noise of the sensors, if there is one.
 
     Parameters
     ----------
@@ -122,26 +151,25 @@ def random_push(inquiry: Inquiry, as_read: Judged) -> tuple[Shaken, float] | Non
         The simulation as read.
     """
     best = shaken(as_read.shooting, as_read.account, inquiry.search.places)[0]
-    gained = (best.rival - best.evidence) * as_read.account.fit.residual.size / best.numbers
-    return (best, gained) if gained > MARGIN else None
+    return best if best.rival - best.evidence > PUSHED * best.numbers + MARGIN else None
 
 
-def explains(inquiry: Inquiry, as_read: Judged, now: Judged, shaking: tuple[Shaken, float] | None) -> bool:
-    """Whether something that repeats itself explains the gap: at least half as well as random pushes, and on held-out trials.
+def explains(inquiry: Inquiry, as_read: Judged, now: Judged, shaking: Shaken | None) -> bool:
+    """Whether something that repeats itself explains the gap, also on held-out trials.
 
     Parameters
     ----------
     inquiry : Inquiry
         What is asked.
     as_read, now : Judged
-        The simulation as read and with what was found.
-    shaking : tuple of Shaken and float, or None
-        The random push, and what it gains.
+        The simulation as read and with what was found, under one noise.
+    shaking : Shaken or None
+        Random pushes that would explain it as well; they leave nothing for anything that repeats itself.
     """
-    if not now.account.parts:
+    if not now.account.parts or as_read.evidence - now.evidence < MARGIN:
         return False
-    gained = as_read.evidence - now.evidence
-    return gained > (REPEATS * shaking[1] if shaking else MARGIN) and proven(inquiry, as_read, now)
+    share = REPEATS if shaking else 0.0
+    return proven(inquiry, as_read, now) and 1 - now.account.fit.misfit / as_read.account.fit.misfit > share
 
 
 def proven(inquiry: Inquiry, as_read: Judged, now: Judged) -> bool:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.discovery.account import Account, Part, account_for
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.evidence import Judged, judged
+from gaitdisc.discovery.evidence import Judged, compared
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.search import TURNS, Search
 from gaitdisc.simulation.evaluating import Points, evaluate_many
@@ -82,8 +82,8 @@ def fitted_shape(now: Judged, search: Search) -> Judged | None:
     best = sorted(tried, key=lambda one: one.criterion)[:2]
     kept = [_thinned(now, search, one) for one in best]
     kept += [local for one in kept for local in _local(now, search, one)]
-    judged_ones = [judged(now.shooting, search.base, one) for one in kept if np.isfinite(one.fit.misfit)]
-    return min(judged_ones, key=lambda one: one.evidence, default=None)
+    weighed = [Judged(one, now.shooting) for one in kept if np.isfinite(one.fit.misfit)]
+    return min(compared(weighed, search.base), key=lambda one: one.evidence) if weighed else None
 
 
 def _thinned(now: Judged, search: Search, account: Account) -> Account:

@@ -33,7 +33,7 @@ class Trial:
     @property
     def misfits(self) -> NDArray[np.float64]:
         """Misfit of each run (run,)."""
-        return (self.fit.white**2).sum(axis=1)
+        return self.fit.misfits
 
 
 def runs_of(inquiry: Inquiry, now: Judged, trials: tuple[int, ...], like: Judged) -> Trial:

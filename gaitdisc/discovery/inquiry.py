@@ -24,7 +24,10 @@ from gaitdisc.simulation.simulation import Simulation
 
 FEWEST_SAMPLES = 16  # of a segment
 GROWTH = 5.0  # of a small change of the start, by which a run is cut
+MOST_RUNS = 0.8
+STEPS_TO_TAME = (0.3, 1.0)  # shares of that length, so that each fit begins near its end
 LENGTHENED = 3  # times as long, again and again, while a run stays with the data
+FOLLOWED = 1.3  # times the noise of the shorter runs, beyond which a run does not follow the data
 SUBSTEPS = 2
 
 
@@ -84,8 +87,11 @@ class Inquiry:
 
         The runs last one period, or less where a small change of the start grows fast (chaos, a fall).
         """
-        shooting = self.shooting(self.segments(self.learned, self._tame_periods()))
-        account = account_for(shooting, self.search.base, (), self.guess.starts(shooting.segments))
+        periods, guess = self._tame_periods(), self.guess
+        for share in STEPS_TO_TAME:
+            shooting = self.shooting(self.segments(self.learned, share * periods))
+            account = account_for(shooting, self.search.base, (), guess.starts(shooting.segments))
+            guess = guess.with_run(shooting.segments, account.fit.states)
         return judged(shooting.with_past(account.fit.states), self.search.base, account)
 
     def _tame_periods(self) -> float:
@@ -99,28 +105,30 @@ class Inquiry:
         for step in range(states.shape[1] - 1):
             change = line.onward[:, step] @ change
             growth = np.linalg.norm(change * scale / scale[:, None], 2, axis=(1, 2))
-            if np.median(growth) > GROWTH:
+            if np.quantile(growth, MOST_RUNS) > GROWTH:
                 return (step + 1) / (self.rhythm.period * self.rhythm.rate)
         return 1.0
 
-    def lengthened(self, now: Judged) -> Judged:
+    def lengthened(self, now: Judged, most: int = 10**9) -> Judged:
         """Return an account fitted to runs as long as it can follow.
 
         Parameters
         ----------
         now : Judged
             Fitted to shorter runs.
+        most : int
+            Longest run wanted [samples].
         """
-        shortest = int(min(self.measured.drive.samples[trial] for trial in self.learned))
-        while now.shooting.segments.length * 2 < shortest:
+        longest = min(most, int(min(self.measured.drive.samples[trial] for trial in self.learned)))
+        while now.shooting.segments.length * 2 < longest:
             guess = self.guess.with_run(now.shooting.segments, now.account.fit.states)
-            periods = LENGTHENED * now.shooting.segments.length / (self.rhythm.period * self.rhythm.rate)
-            shooting = self.shooting(self.segments(self.learned, periods)).with_noise(now.noise)
-            longer = account_for(shooting, self.search.base, now.account.parts, guess.starts(shooting.segments))
+            samples = min(LENGTHENED * now.shooting.segments.length, longest)
+            shooting = self.shooting(self.segments(self.learned, samples / (self.rhythm.period * self.rhythm.rate)))
+            longer = account_for(shooting.with_noise(now.noise), self.search.base, now.account.parts, guess.starts(shooting.segments))
             if not np.isfinite(longer.fit.misfit):
                 break
             longer = judged(shooting.with_past(longer.fit.states), self.search.base, longer)
-            if (longer.noise.size > 1.3 * now.noise.size).any() or not self.search.sensible(longer.account):
+            if (longer.noise.size > FOLLOWED * now.noise.size).any() or not self.search.sensible(longer.account):
                 break
             now = longer
         return now

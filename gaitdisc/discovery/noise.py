@@ -10,7 +10,7 @@ from scipy.linalg import solve_toeplitz
 
 MOST_LAGS = 16
 MEMORY = 1.03  # in standard deviations before and after the past is taken off
-WHITE_SHARE = 0.01  # of the variance taken as white, so that smooth noise is not divided by nothing
+WHITE_SHARE = 0.05  # of the variance is taken as white: no simulation is right to the last decimal at high frequency
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ def white_noise(size: NDArray[np.float64]) -> Noise:
     return Noise(tuple((np.zeros(0),) for _ in size), tuple(np.array([one]) for one in size))
 
 
-def noise_of(residual: NDArray[np.float64], used: float = 0.0) -> Noise:
+def noise_of(residual: NDArray[np.float64], used: float = 0.0, white_share: float = WHITE_SHARE) -> Noise:
     """Learn the noise from residuals (Yule-Walker; the order by the Bayesian criterion).
 
     Parameters
@@ -89,6 +89,8 @@ def noise_of(residual: NDArray[np.float64], used: float = 0.0) -> Noise:
         Measured minus fitted. Segments are not joined.
     used : float
         Numbers that the fit took from each segment and channel; the variance is enlarged accordingly.
+    white_share : float
+        Of the variance, taken as white whatever the residuals say.
 
     Examples
     --------
@@ -104,7 +106,8 @@ def noise_of(residual: NDArray[np.float64], used: float = 0.0) -> Noise:
         e = residual[:, :, channel]
         most = min(MOST_LAGS, samples // 4)
         covariance = np.array([(e[:, : samples - lag] * e[:, lag:]).sum() / e.size for lag in range(most + 1)]) * enlarge
-        covariance[0] = max(covariance[0] * (1 + WHITE_SHARE), np.finfo(float).tiny)
+        covariance[0] = max(covariance[0], np.finfo(float).tiny)
+        covariance[1:] /= 1 + white_share
         orders = [np.zeros(0)] + [
             solve_toeplitz(covariance[:order], covariance[1 : order + 1]) for order in range(1, most + 1)
         ]

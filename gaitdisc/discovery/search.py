@@ -8,16 +8,18 @@ import numpy as np
 
 from gaitdisc.discovery.account import Account, Part, account_for
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.evidence import Judged, judged
+from gaitdisc.discovery.evidence import Judged, compared
 from gaitdisc.discovery.grids import Rhythm
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.score import Scorer
+from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.simulation import Simulation
 
 MARGIN = 10.0  # by which the criterion must fall for one more explanation
-MATERIAL = 0.015  # of what is explained already, which one more has to explain
+MATERIAL = 0.003  # of what is explained already, which one more has to explain
 REFITTED = 14
 JUDGED = 5
+VISITED = (0.01, 0.99)  # quantiles of a state between which a threshold has a meaning
 TURNS = 15
 # Where two explanations fit equally well, the simpler statement first.
 PREFERENCE = ("wrong_parameter", "missing_physics", "input_error", "sensor_error")
@@ -46,14 +48,19 @@ class Search:
     rhythm: Rhythm
 
     def extended(self, now: Judged, judge: int = JUDGED) -> list[Judged]:
-        """Return the account with one explanation more: the most promising refitted, the best of these judged; best first.
+        """Return the account and, after it, others with one explanation more, all under the noise that the best leaves.
 
         Parameters
         ----------
         now : Judged
             What is in already.
         judge : int
-            How many are judged under noise of their own.
+            How many of the most promising, once refitted, are put under that noise.
+
+        Returns
+        -------
+        list of Judged
+            Empty where no explanation fits; in no order after the first.
         """
         account, shooting = now.account, now.shooting
         scorer = Scorer(shooting, account.simulation, account.machine, account.fit, self.places, self.rhythm)
@@ -67,7 +74,9 @@ class Search:
             for one in worth
         ]
         tried = sorted((one for one in tried if self.sensible(one)), key=lambda one: one.criterion)[:judge]
-        return ranked([judged(shooting, self.base, one) for one in tried])
+        if not tried:
+            return []
+        return compared([now, *(Judged(one, shooting) for one in tried)], self.base)
 
     def sensible(self, account: Account) -> bool:
         """Whether every number of an account lies where it means what its name says.
@@ -82,6 +91,8 @@ class Search:
         for part in account.parts:
             for slot, kind in (part.candidate.constants or {}).items():
                 value = part.values[slot]
+                if kind == "quantiles of x" and not self._visited(account, part.candidate.role, value):
+                    return False
                 if kind == "delays" and not 0 < value < self.rhythm.period or kind == "frequencies" and value <= 0:
                     return False
                 if kind == "half widths of x" and value <= 0 or kind == "phase widths" and not 0 < value < 1:
@@ -89,6 +100,14 @@ class Search:
             if part.candidate.is_late and not 0 < part.values["seconds"] < self.rhythm.period:
                 return False
         return True
+
+    def _visited(self, account: Account, role: str, value: float) -> bool:
+        """Whether a threshold lies where the run goes: beyond, a one-sided spring is a linear one, or nothing."""
+        states = account.fit.states.reshape(-1, account.fit.starts.shape[1])
+        nothing = np.zeros((len(states), len(self.base.inputs)))
+        along = evaluate(self.base, role, Points(np.zeros(len(states)), states, nothing))
+        low, high = np.quantile(along, VISITED)
+        return bool(low < value < high)
 
     def exchanged(self, now: Judged) -> Judged:
         """Return the account after each explanation was tried against all others in its place.
@@ -99,9 +118,12 @@ class Search:
             With two explanations or more.
         """
         for number in range(len(now.account.parts)):
-            others = self.extended(self.without(now, number))
-            if others and others[0].evidence < now.evidence - ALIKE:
-                now = others[0]
+            others = self.extended(self.without(now, number))[1:]
+            if others:
+                now, *others = compared([now, *others], self.base)
+                best = ranked(others)[0]
+                if best.evidence < now.evidence - ALIKE:
+                    now = best
         return now
 
     def without(self, now: Judged, number: int) -> Judged:
@@ -115,8 +137,7 @@ class Search:
             Which explanation goes.
         """
         parts = now.account.parts[:number] + now.account.parts[number + 1 :]
-        fewer = account_for(now.shooting, self.base, parts, now.account.fit.starts, TURNS)
-        return judged(now.shooting, self.base, fewer)
+        return Judged(account_for(now.shooting, self.base, parts, now.account.fit.starts, TURNS), now.shooting)
 
     def pruned(self, now: Judged) -> Judged:
         """Return the account without the explanations that do not earn their price and the margin.
@@ -152,21 +173,22 @@ class Search:
             What else stood for the first place, best first.
         """
         rivals: list[Judged] = []
-        first = now.evidence
+        explained = 0.0
         while len(now.account.parts) < most:
-            more = self.extended(now)
+            before, *more = self.extended(now) or [now]
+            more = ranked(more)
             rivals = rivals or more
-            gained = now.evidence - more[0].evidence if more else 0.0
-            if gained < max(MARGIN, MATERIAL * (first - now.evidence)):
+            gained = before.evidence - more[0].evidence if more else 0.0
+            if gained < max(MARGIN, MATERIAL * explained):
                 break
-            now = more[0]
+            now, explained = more[0], max(explained, gained)
             if len(now.account.parts) > 1:
                 now = self.exchanged(now)
         return now, rivals
 
 
 def ranked(accounts: list[Judged]) -> list[Judged]:
-    """Return accounts, the best first; of those that fit alike, the simplest statement first.
+    """Return accounts, the best first; a simpler statement stands before one that is hardly better.
 
     Parameters
     ----------
@@ -176,6 +198,9 @@ def ranked(accounts: list[Judged]) -> list[Judged]:
     accounts = sorted((one for one in accounts if np.isfinite(one.evidence)), key=lambda one: one.evidence)
     if not accounts:
         return accounts
-    alike = [one for one in accounts if one.evidence < accounts[0].evidence + ALIKE]
+    least = accounts[0].evidence
+    simple = [one for one in accounts if one.evidence < least + MARGIN and one.account.size < accounts[0].account.size]
+    first = simple[0] if simple else accounts[0]
+    alike = [one for one in accounts if one.evidence < first.evidence + ALIKE and one.account.size == first.account.size]
     alike.sort(key=lambda one: [PREFERENCE.index(part.candidate.verdict) for part in one.account.parts])
-    return alike + accounts[len(alike) :]
+    return alike + [one for one in accounts if one not in alike]

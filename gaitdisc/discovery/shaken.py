@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.discovery.account import Account
 from gaitdisc.discovery.linearised import linearise, seen_change
+from gaitdisc.discovery.noise import noise_of, white_noise
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.shooting import Shooting, start_basis
 
@@ -67,7 +68,7 @@ def shaken(shooting: Shooting, account: Account, places: tuple[Place, ...]) -> l
     plain = fit.residual[some, :length]
     size = plain.std(axis=(0, 1))
     starts = _raw_slopes(shooting, account)[some, :length] / size[:, None]
-    rival = _autoregressive(shooting, fit.residual, starts * size[:, None], some, length)
+    rival = _autoregressive(fit.residual, starts * size[:, None], some, length)
     found = []
     for number, place in enumerate(places):
         steps = fit.states.shape[1] - 1
@@ -102,10 +103,10 @@ def _best_share(
 
 
 def _autoregressive(
-    shooting: Shooting, residual: NDArray[np.float64], slopes: NDArray[np.float64], some: NDArray[np.intp], length: int
+    residual: NDArray[np.float64], slopes: NDArray[np.float64], some: NDArray[np.intp], length: int
 ) -> float:
     """Return the evidence of the account's own noise, a memory of each sensor, over the same numbers."""
-    noise = shooting.noise
+    noise = noise_of(residual, slopes.shape[-1] / residual.shape[2], white_share=0.0)
     white = noise.whitened(residual[some, :length]).reshape(len(some), -1)
     starts = noise.whitened(slopes).reshape(*white.shape, -1)
     basis = start_basis(starts)
@@ -120,8 +121,6 @@ def _autoregressive(
 
 def _raw_slopes(shooting: Shooting, account: Account) -> NDArray[np.float64]:
     """Return what each start state changes in what is seen (segment, sample, channel, state), unwhitened."""
-    from gaitdisc.discovery.noise import white_noise
-
     plain = shooting.with_noise(white_noise(np.ones(account.fit.residual.shape[2])))
     fit = plain.at(account.machine, (), account.fit.values, account.fit.starts)
     return fit.slopes.reshape(*account.fit.residual.shape, -1)

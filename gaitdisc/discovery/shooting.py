@@ -37,7 +37,7 @@ class Fitted:
     white : ndarray (segment, sample times channel)
         The residual as independent numbers of unit variance.
     slopes : ndarray (segment, sample times channel, state + free)
-        What each start state and each constant would change in `white`; empty where the run failed.
+        What each start state and each constant would change in `white`; zero where a run failed.
     """
 
     free: tuple[str, ...]
@@ -52,6 +52,38 @@ class Fitted:
     def misfit(self) -> float:
         """Sum of squares of `white`: minus twice the log likelihood, up to a constant."""
         return float((self.white**2).sum()) if np.isfinite(self.white).all() else np.inf
+
+    @property
+    def misfits(self) -> NDArray[np.float64]:
+        """The misfit of each segment (segment,); infinite where it failed."""
+        squares = (self.white**2).sum(axis=1)
+        return np.where(np.isfinite(squares), squares, np.inf)
+
+    def where(self, better: NDArray[np.bool_], other: Fitted) -> Fitted:
+        """Return another fit's segments where these are better, and its constants if all are.
+
+        Parameters
+        ----------
+        better : ndarray of bool (segment,)
+            Which.
+        other : Fitted
+            Of the same segments and constants.
+        """
+        if better.all():
+            return other
+        if not better.any():
+            return self
+        parts = (
+            np.where(better.reshape(-1, *[1] * (mine.ndim - 1)), its, mine)
+            for mine, its in (
+                (self.starts, other.starts),
+                (self.states, other.states),
+                (self.residual, other.residual),
+                (self.white, other.white),
+                (self.slopes, other.slopes),
+            )
+        )
+        return Fitted(self.free, self.values, *parts)
 
     @property
     def projected(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -164,10 +196,9 @@ class Shooting:
             many_values[1 + n + place, parameter] += nudges[n + place]
         states, observed = self.run(machine, many_starts, many_values)
         residual = self.seen - observed[0]
-        failed = ~np.isfinite(observed[0]).all()
+        failed = ~np.isfinite(observed[0]).all(axis=(1, 2))
         white = self.whitened(residual)
-        if failed:
-            return Fitted(free, values, starts, states[0], residual, np.full_like(white, np.inf), np.zeros((0, 0, 0)))
+        white[failed] = np.inf
         change = np.moveaxis((observed[1:] - observed[0]) / nudges[:, None, None, None], 0, -1)
         change[np.isnan(self.seen)] = 0.0
         return Fitted(free, values, starts, states[0], residual, white, self.whitened(change))
@@ -190,21 +221,19 @@ class Shooting:
         turns : int
             Most steps.
         """
-        now, damping = self.at(machine, free, values, starts), DAMPING
+        now = self.at(machine, free, values, starts)
+        damping = np.full(len(self.segments), DAMPING)
         for _ in range(turns):
             if not np.isfinite(now.misfit):
                 break
-            moved = None
-            while damping < MOST_DAMPING:
-                step = self.at(machine, free, *_step(now, machine, damping))
-                if step.misfit <= now.misfit:
-                    moved, damping = step, max(damping / 10, 1e-9)
-                    break
-                damping *= 10
-            if moved is None:
-                break
+            step = self.at(machine, free, *_step(now, machine, damping))
+            better = step.misfits <= now.misfits
+            if free:
+                better[:] = step.misfit <= now.misfit
+            moved = now.where(better, step)
+            damping = np.where(better, np.maximum(damping / 10, 1e-9), damping * 10)
             gained, now = now.misfit - moved.misfit, moved
-            if gained < 1e-2 + 1e-6 * now.misfit:
+            if (damping > MOST_DAMPING).all() or (better.any() and gained < 1e-2 + 1e-6 * now.misfit):
                 break
         return now
 
@@ -246,7 +275,7 @@ def without(basis: NDArray[np.float64], columns: NDArray[np.float64]) -> NDArray
     return columns - basis @ (np.swapaxes(basis, 1, 2) @ columns)
 
 
-def _step(now: Fitted, machine: Compiled, damping: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _step(now: Fitted, machine: Compiled, damping: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return (values, starts) one damped Gauss-Newton step on."""
     n = now.starts.shape[1]
     shape, change = now.slopes[..., :n], now.slopes[..., n:]
@@ -258,12 +287,12 @@ def _step(now: Fitted, machine: Compiled, damping: float) -> tuple[NDArray[np.fl
         size = np.linalg.norm(flat, axis=0)
         size[size == 0] = 1.0
         flat = flat / size
-        normal = flat.T @ flat + damping * np.eye(len(now.free))
+        normal = flat.T @ flat + damping.max() * np.eye(len(now.free))
         move = np.linalg.lstsq(normal, flat.T @ white.ravel(), rcond=None)[0] / size
         values[[machine.parameters.index(name) for name in now.free]] += move
         rest = rest - change @ move
     size = np.linalg.norm(shape, axis=1, keepdims=True)
     scaled = shape / np.where(size > 0, size, 1.0)
-    normal = np.swapaxes(scaled, 1, 2) @ scaled + max(damping, 1e-9) * np.eye(n)
+    normal = np.swapaxes(scaled, 1, 2) @ scaled + damping[:, None, None] * np.eye(n)
     move = np.linalg.solve(normal, np.swapaxes(scaled, 1, 2) @ rest[..., None])[..., 0]
     return values, now.starts + move / np.where(size > 0, size, 1.0)[:, 0]
