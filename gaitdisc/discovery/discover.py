@@ -137,7 +137,7 @@ def decided(inquiry: Inquiry, named: Judged, rivals: list[Judged]) -> Judged:
         rival = inquiry.lengthened(one, longer.shooting.segments.length)
         if rival.shooting.segments.length == longer.shooting.segments.length:
             contest.append(rival)
-    return ranked(contest)[0]
+    return ranked(compared(contest, inquiry.search.base))[0]
 
 
 def random_push(inquiry: Inquiry, as_read: Judged) -> Shaken | None:

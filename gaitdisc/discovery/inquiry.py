@@ -18,6 +18,7 @@ from gaitdisc.discovery.places import kinematic_rates, places_of
 from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.segments import Segments, cut_segments
 from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.simulation.drive import Drive
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
@@ -146,6 +147,8 @@ def begin_inquiry(simulation: Simulation, measured: Measured, shapes: tuple[Shap
     shapes : tuple of Shape
         Effects of the user's own, beside the catalogue.
     """
+    if len(measured.trials) == 1:
+        measured = split_in_time(measured)
     machine = compile_simulation(simulation)
     rate_of, places = kinematic_rates(simulation, machine), places_of(simulation, machine)
     rhythm = rhythm_of(measured.observed, measured.drive.rate)
@@ -154,3 +157,29 @@ def begin_inquiry(simulation: Simulation, measured: Measured, shapes: tuple[Shap
     held = max(round(trials / 4), 1)
     guess = guess_states(simulation, measured.observed, measured.drive.rate, rhythm.period, rate_of)
     return Inquiry(search, measured, tuple(range(trials - held)), tuple(range(trials - held, trials)), guess)
+
+
+def split_in_time(measured: Measured) -> Measured:
+    """Return one trial as two: what is learned from, and its last quarter, held out.
+
+    Parameters
+    ----------
+    measured : Measured
+        With one trial.
+    """
+    drive, samples = measured.drive, int(measured.samples[0])
+    cut = samples - samples // 4
+    inputs = [drive.inputs[0, :cut], drive.inputs[0, cut:samples]]
+    observed = np.full((2, cut, measured.observed.shape[2]), np.nan)
+    observed[0] = measured.observed[0, :cut]
+    observed[1, : samples - cut] = measured.observed[0, cut:samples]
+    time0 = [drive.time0[0], drive.time0[0] + cut / drive.rate]
+    name = measured.trials[0]
+    return Measured(
+        Drive.of(inputs, drive.rate, time0),
+        observed,
+        (name, f"{name}, last quarter"),
+        measured.channels,
+        measured.findings,
+        measured.source,
+    )
