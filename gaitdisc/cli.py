@@ -15,6 +15,7 @@ from gaitdisc.commands.ablate import ablate
 from gaitdisc.commands.check import check
 from gaitdisc.commands.compare import compare
 from gaitdisc.commands.demo import demo
+from gaitdisc.commands.discover import discover
 from gaitdisc.commands.exit_codes import REFUSED
 from gaitdisc.commands.export import export
 from gaitdisc.commands.modalities import modalities
@@ -24,7 +25,7 @@ from gaitdisc.commands.run import run
 from gaitdisc.commands.sensitivity import sensitivity
 from gaitdisc.errors import GaitdiscError
 
-COMMANDS = (new, check, compare, run, ablate, modalities, sensitivity, report, export, demo)
+COMMANDS = (new, check, compare, discover, run, ablate, modalities, sensitivity, report, export, demo)
 
 app = typer.Typer(add_completion=False, no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False)
 for _command in COMMANDS:

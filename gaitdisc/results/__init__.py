@@ -1,13 +1,28 @@
 """Results: frozen, with provenance, saved and loaded; never plots, trains or logs."""
 
-from gaitdisc.results.data_quantity import DataQuantity
-from gaitdisc.results.over_participants import OverParticipants
-from gaitdisc.results.pair_test import PairTests
-from gaitdisc.results.participant_response import HeldOut, ParticipantResponse
-from gaitdisc.results.provenance import Provenance
-from gaitdisc.results.response_run import Refusal, ResponseRun
-from gaitdisc.results.walk_summary import WalkSummary
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
+if TYPE_CHECKING:
+    from gaitdisc.results.data_quantity import DataQuantity
+    from gaitdisc.results.over_participants import OverParticipants
+    from gaitdisc.results.pair_test import PairTests
+    from gaitdisc.results.participant_response import HeldOut, ParticipantResponse
+    from gaitdisc.results.provenance import Provenance
+    from gaitdisc.results.response_run import Refusal, ResponseRun
+    from gaitdisc.results.walk_summary import WalkSummary
+
+_HOME = {
+    "DataQuantity": "data_quantity",
+    "HeldOut": "participant_response",
+    "OverParticipants": "over_participants",
+    "PairTests": "pair_test",
+    "ParticipantResponse": "participant_response",
+    "Provenance": "provenance",
+    "Refusal": "response_run",
+    "ResponseRun": "response_run",
+    "WalkSummary": "walk_summary",
+}
 __all__ = [
     "DataQuantity",
     "HeldOut",
@@ -19,3 +34,10 @@ __all__ = [
     "ResponseRun",
     "WalkSummary",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Bring a noun when it is first asked for: most of them bring pandas, which not every command needs."""
+    if name in _HOME:
+        return getattr(import_module(f"gaitdisc.results.{_HOME[name]}"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

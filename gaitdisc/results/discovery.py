@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.recording import Finding
+from gaitdisc.results.provenance import Provenance
 
 VERDICTS = (
     "no_gap",
@@ -135,6 +136,8 @@ class Runs:
         Share of the stride.
     measured, simulated, augmented : ndarray (run, sample, channel)
         [the channel's unit].
+    names : tuple of str
+        Of all trials of the measured data, by their number.
     """
 
     trial: NDArray[np.intp]
@@ -143,6 +146,29 @@ class Runs:
     measured: NDArray[np.float64]
     simulated: NDArray[np.float64]
     augmented: NDArray[np.float64]
+    names: tuple[str, ...] = ()
+
+    def table(self, channels: tuple[str, ...]) -> dict[str, NDArray[Any]]:
+        """Return the runs as columns: run, trial, time, phase, and each channel three times.
+
+        Parameters
+        ----------
+        channels : tuple of str
+            Names of the channels.
+        """
+        runs, samples = self.time.shape
+        trial = np.asarray(self.names)[self.trial] if self.names else self.trial + 1
+        columns = {
+            "run": np.repeat(np.arange(1, runs + 1), samples),
+            "trial": np.repeat(trial, samples),
+            "time": self.time.ravel(),
+        }
+        if self.phase.size:
+            columns["phase"] = self.phase.ravel()
+        for number, channel in enumerate(channels):
+            for word in ("measured", "simulated", "augmented"):
+                columns[f"{channel}_{word}"] = getattr(self, word)[:, :, number].ravel()
+        return columns
 
 
 @dataclass(frozen=True)
@@ -169,8 +195,8 @@ class Discovery:
         Of the held-out trials.
     findings : tuple of Finding
         What the reader must know of the data.
-    settings : mapping
-        What was asked.
+    provenance : Provenance, optional
+        Settings, files and versions.
     """
 
     verdict: str
@@ -184,7 +210,7 @@ class Discovery:
     units: tuple[str, ...]
     runs: Runs
     findings: tuple[Finding, ...] = ()
-    settings: Mapping[str, Any] = field(default_factory=dict)
+    provenance: Provenance | None = None
 
     def __post_init__(self) -> None:
         """Refuse a verdict that the contract does not know."""
@@ -195,13 +221,14 @@ class Discovery:
         """Return what `discovery.json` holds."""
         return {
             "verdict": self.verdict,
-            "sentence": self.sentence,
-            "where": [_place(one) | {"share_of_gap": one.share_of_gap, "phase": list(one.phase), "region": one.region} for one in self.where],
+            "where": [_where(one) for one in self.where],
             "effects": [_effect(one) for one in self.effects],
             "rivals": [_effect(one) | {"tied": one.tied} for one in self.rivals],
             "gap": {"train": _gap(self.train), "held_out": _gap(self.held_out)},
-            "findings": [one.line() for one in self.findings],
-            "settings": dict(self.settings),
+            "sentence": self.sentence,
+            "channels": dict(zip(self.channels, self.units, strict=True)),
+            "findings": [asdict(one) for one in self.findings],
+            "provenance": asdict(self.provenance) if self.provenance else None,
         }
 
 
@@ -209,9 +236,14 @@ def _place(one: Whereabouts | FoundEffect) -> dict[str, str]:
     return {one.kind: one.place}
 
 
+def _where(one: Whereabouts) -> dict[str, Any]:
+    phase = [_number(share) for share in one.phase]
+    return _place(one) | {"share_of_gap": _number(one.share_of_gap), "phase": phase, "region": one.region}
+
+
 def _effect(one: FoundEffect) -> dict[str, Any]:
     estimates = {
-        name: {"value": each.value, "low": each.low, "high": each.high, "unit": each.unit}
+        name: {"value": _number(each.value), "low": _number(each.low), "high": _number(each.high), "unit": each.unit}
         for name, each in one.estimates.items()
     }
     evidence = {"held_out": _number(one.held_out), "bic": _number(one.bic)}
@@ -219,7 +251,8 @@ def _effect(one: FoundEffect) -> dict[str, Any]:
 
 
 def _gap(one: GapSize) -> dict[str, Any]:
-    channels = {name: dict(zip(("before", "after", "noise_floor"), sizes, strict=True)) for name, sizes in one.channels.items()}
+    words = ("before", "after", "noise_floor")
+    channels = {name: dict(zip(words, map(_number, sizes), strict=True)) for name, sizes in one.channels.items()}
     return {
         "before": _number(one.before),
         "after": _number(one.after),

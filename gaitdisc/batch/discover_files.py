@@ -1,0 +1,65 @@
+"""A simulation file and measured data, from their files to what was discovered."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+
+from gaitdisc.discovery.catalogue import read_catalogue
+from gaitdisc.discovery.discover import discover
+from gaitdisc.ingest.file_hash import file_sha256
+from gaitdisc.results.discovery import Discovery
+from gaitdisc.results.provenance import Provenance, installed_versions
+from gaitdisc.simulation.measured_table import read_measured
+from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.simulation.simulation_file import read_simulation
+from gaitdisc.simulation.unit_check import unit_findings
+
+
+def discover_files(
+    simulation: Path, measured: Path, catalogue: Path | None = None, told: Callable[[str], None] = lambda _: None
+) -> tuple[Discovery, Simulation]:
+    """Find what a simulation file lacks against a table of measured trials.
+
+    Parameters
+    ----------
+    simulation : Path
+        Simulation file.
+    measured : Path
+        CSV or Parquet.
+    catalogue : Path, optional
+        Effects of the user's own.
+    told : callable
+        Takes one line about each step.
+
+    Returns
+    -------
+    discovery : Discovery
+        The answer, with what it rests on.
+    augmented : Simulation
+        The simulation with what was found in it.
+
+    Raises
+    ------
+    GaitdiscError
+        If a file cannot be read or does not fit the others, or the simulation as given leaves all bounds.
+    """
+    told(f"reading {simulation.name} and {measured.name}")
+    model = read_simulation(simulation)
+    shapes = read_catalogue(catalogue) if catalogue else ()
+    data = read_measured(measured, model)
+    found, augmented = discover(model, data, shapes, told)
+    files = [simulation, measured, *([catalogue] if catalogue else [])]
+    made = Provenance(
+        {"title": model.title, "trials": len(data.trials), "rate_hz": data.rate, "channels": list(data.channels)},
+        0,
+        {path.name: file_sha256(path) for path in files},
+        installed_versions(),
+        "discovery of missing physics",
+        datetime.now(UTC).isoformat(timespec="seconds"),
+    )
+    findings = (*unit_findings(model), *found.findings)
+    runs = replace(found.runs, names=data.trials)
+    return replace(found, findings=findings, runs=runs, provenance=made), augmented
