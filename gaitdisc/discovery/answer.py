@@ -57,7 +57,15 @@ def answer(
     closed = 1 - (held_out.after**2 - floor_of(held_out)) / max(held_out.before**2 - floor_of(held_out), 1e-12)
     effects = tuple(found_effects(inquiry, now, closed, as_read.evidence - best_evidence(rivals, as_read)))
     if shaking:
-        effects = (FoundEffect(shaking.place.kind, shaking.place.name, "process_noise", "", {"strength": Estimate(shaking.strength, np.nan, np.nan)}),)
+        effects = (
+            FoundEffect(
+                shaking.place.kind,
+                shaking.place.name,
+                "process_noise",
+                "",
+                {"strength": Estimate(shaking.strength, np.nan, np.nan)},
+            ),
+        )
     discovery = Discovery(
         verdict,
         "",
@@ -89,7 +97,7 @@ def augmented_of(base: Simulation, parts: tuple[Part, ...]) -> Simulation:
     return base
 
 
-def floor_of(size) -> float:  # noqa: ANN001
+def floor_of(size) -> float:
     return size.noise_floor**2
 
 
@@ -111,15 +119,10 @@ def found_effects(inquiry: Inquiry, now: Judged, closed: float, gained: float) -
     gained : float
         Fall of the criterion.
     """
-    error = dict(zip(now.account.fit.free, np.sqrt(np.diag(now.account.fit.covariance)), strict=True))
     found = []
     for number, part in enumerate(now.account.parts):
         candidate = part.candidate
-        names = {slot: candidate.place if candidate.verdict == "wrong_parameter" else f"part{number}_{slot}" for slot in candidate.slots}
-        estimates = {
-            slot: Estimate(value, value - NORMAL_95 * error[names[slot]], value + NORMAL_95 * error[names[slot]])
-            for slot, value in part.values.items()
-        }
+        estimates = estimates_of(now.account, number, inquiry.search.base)
         numbers = {slot: f"{value:.6g}" for slot, value in part.values.items()}
         term = candidate.term(numbers) if candidate.verdict == "missing_physics" else ""
         found.append(FoundEffect(candidate.kind, candidate.place, candidate.name, term, estimates, closed, gained))
@@ -179,7 +182,11 @@ def whereabouts(
     share = (before - after) / before if before > 0 else 0.0
     return tuple(
         Whereabouts(
-            part.candidate.kind, part.candidate.place, share / len(now.account.parts), phase_of(inquiry, now, part), region_of(part)
+            part.candidate.kind,
+            part.candidate.place,
+            share / len(now.account.parts),
+            phase_of(inquiry, now, part),
+            region_of(part),
         )
         for part in now.account.parts
     )
@@ -203,7 +210,9 @@ def phase_of(inquiry: Inquiry, now: Judged, part: Part) -> tuple[float, ...]:
     segments, drive = now.shooting.segments, inquiry.measured.drive
     inputs = segments.of(drive.inputs).reshape(-1, len(names))
     states = now.account.fit.states.reshape(len(inputs), -1)
-    time = (drive.time0[segments.trial][:, None] + (segments.begin[:, None] + np.arange(segments.length)) / drive.rate).ravel()
+    time = (
+        drive.time0[segments.trial][:, None] + (segments.begin[:, None] + np.arange(segments.length)) / drive.rate
+    ).ravel()
     term = part.candidate.term({slot: f"{value:.9g}" for slot, value in part.values.items()})
     if "delay(" in term:
         return ()
@@ -242,4 +251,3 @@ def units_of(inquiry: Inquiry) -> tuple[str, ...]:
     """
     units = {state.name: state.unit for state in inquiry.search.base.states}
     return tuple(units.get(text.strip(), "") for _, text in inquiry.search.base.observations)
-

@@ -53,6 +53,8 @@ class Candidate:
         One clause for a reader.
     value : float
         For a wrong parameter, the number in the file.
+    names : mapping of str to str
+        For a missing term, what a person calls its numbers.
     """
 
     verdict: str
@@ -64,6 +66,7 @@ class Candidate:
     role: str = ""
     means: str = ""
     value: float = 0.0
+    names: Mapping[str, str] | None = None
 
     @property
     def slots(self) -> tuple[str, ...]:
@@ -139,10 +142,13 @@ class Candidate:
         """
         pieces = self.pieces_at({slot: numbers[slot] for slot in self.constants or {}})
         return " + ".join(
-            numbers[slot] if piece == "1" else f"{numbers[slot]}*({piece})" for slot, piece in zip(self.slots, pieces, strict=False)
+            numbers[slot] if piece == "1" else f"{numbers[slot]}*({piece})"
+            for slot, piece in zip(self.slots, pieces, strict=False)
         )
 
-    def in_fit(self, simulation: Simulation, tag: str, values: Mapping[str, float]) -> tuple[Simulation, dict[str, str]]:
+    def in_fit(
+        self, simulation: Simulation, tag: str, values: Mapping[str, float]
+    ) -> tuple[Simulation, dict[str, str]]:
         """Return the simulation with this explanation in it and its numbers free.
 
         Parameters
@@ -169,7 +175,9 @@ class Candidate:
         return self.written(simulation, names), names
 
 
-def candidates_of(simulation: Simulation, places: tuple[Place, ...], shapes: tuple[Shape, ...]) -> tuple[Candidate, ...]:
+def candidates_of(
+    simulation: Simulation, places: tuple[Place, ...], shapes: tuple[Shape, ...]
+) -> tuple[Candidate, ...]:
     """List everything that could explain a gap, missing physics beside wrong numbers, inputs and sensors.
 
     Parameters
@@ -183,7 +191,14 @@ def candidates_of(simulation: Simulation, places: tuple[Place, ...], shapes: tup
     """
     used = "\n".join(text for _, text in (*simulation.definitions, *simulation.equations))
     found = [
-        Candidate("wrong_parameter", "parameter", parameter.name, "wrong_parameter", means="a wrong number", value=parameter.value)
+        Candidate(
+            "wrong_parameter",
+            "parameter",
+            parameter.name,
+            "wrong_parameter",
+            means="a wrong number",
+            value=parameter.value,
+        )
         for parameter in simulation.parameters
     ]
     for name in (one.name for one in simulation.inputs):
@@ -197,11 +212,19 @@ def candidates_of(simulation: Simulation, places: tuple[Place, ...], shapes: tup
     has_phase = any(one.name == "phase" for one in simulation.inputs)
     for place in places:
         for shape in shapes:
-            if shape.needs == "angle" and not place.angle or shape.uses_phase and not has_phase:
+            if (shape.needs == "angle" and not place.angle) or (shape.uses_phase and not has_phase):
                 continue
             found += [
                 Candidate(
-                    "missing_physics", place.kind, place.name, shape.name, shape.written(names | {one: f"_{one}" for one in shape.constants}), shape.constants, role, shape.means
+                    "missing_physics",
+                    place.kind,
+                    place.name,
+                    shape.name,
+                    shape.written(names | {one: f"_{one}" for one in shape.constants}),
+                    shape.constants,
+                    role,
+                    shape.means,
+                    names=shape.names,
                 )
                 for role, names in _castings(shape, place)
             ]

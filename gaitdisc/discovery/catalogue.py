@@ -18,7 +18,7 @@ ROLES = ("x", "v", "y", "a", "b")
 GRIDS = ("quantiles of x", "half widths of x", "delays", "frequencies", "phases", "phase widths")
 NEEDS = ("", "angle")
 _NAME = re.compile(r"[a-z_][a-z0-9_]*")
-_ENTRIES = ("name", "pieces", "constants", "needs", "means")
+_ENTRIES = ("name", "pieces", "constants", "needs", "names", "means")
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,9 @@ class Shape:
     needs : str
         What the place must offer: `angle`, or nothing.
     means : str
-        One clause that a person understands.
+        One clause that a person understands; `{x0}` in it is the constant x0.
+    names : mapping of str to str
+        What a person calls its numbers: those of `factor`, `factor_1`, ... and of the constants.
 
     Examples
     --------
@@ -51,6 +53,7 @@ class Shape:
     constants: Mapping[str, str] = field(default_factory=dict)
     needs: str = ""
     means: str = ""
+    names: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def roles(self) -> tuple[str, ...]:
@@ -159,11 +162,26 @@ def _shape(entry: Any, where: str) -> Shape:
         )
     if not isinstance(constants, dict) or not all(grid in GRIDS for grid in constants.values()):
         raise SchemaError(
-            f"a constant's search begins on one of {', '.join(GRIDS)}", f"{where} has {constants!r}", "Choose one of these."
+            f"a constant's search begins on one of {', '.join(GRIDS)}",
+            f"{where} has {constants!r}",
+            "Choose one of these.",
         )
     if entry.get("needs", "") not in NEEDS:
         raise SchemaError('a shape needs "angle" or nothing', f"{where} has {entry['needs']!r}", "Remove the line.")
-    return Shape(name, tuple(pieces), dict(constants), entry.get("needs", ""), str(entry.get("means", name)))
+    names = entry.get("names", {})
+    numbers = ["factor", *(f"factor_{number}" for number in range(1, len(pieces))), *constants]
+    if not isinstance(names, dict) or not set(names) <= set(numbers) or not all(map(_is_name, names.values())):
+        raise SchemaError(
+            f"the names of a shape's numbers are for {', '.join(numbers)}",
+            f"{where} has {names!r}",
+            'Write names = { factor = "stiffness" }.',
+        )
+    means = str(entry.get("means", name.replace("_", " ")))
+    return Shape(name, tuple(pieces), dict(constants), entry.get("needs", ""), means, dict(names))
+
+
+def _is_name(text: Any) -> bool:
+    return isinstance(text, str) and _NAME.fullmatch(text) is not None
 
 
 def _is_number(text: str) -> bool:

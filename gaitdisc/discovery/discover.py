@@ -103,7 +103,11 @@ def judge(inquiry: Inquiry, as_read: Judged) -> Verdict:
         ordered = [one for one in found if explains(inquiry, plain, one, shaking)]
         if shaking and not ordered:
             return Verdict("process_noise", as_read, tuple(rivals), shaking)
-        if shape and found[1] in ordered and found[1].evidence < found[0].evidence - WORTH * (plain.evidence - found[0].evidence) - MARGIN:
+        if (
+            shape
+            and found[1] in ordered
+            and found[1].evidence < found[0].evidence - WORTH * (plain.evidence - found[0].evidence) - MARGIN
+        ):
             return Verdict("unnamed", found[1], (named, *rivals))
     if len(named.account.parts) > MOST_NAMES:
         shape = fitted_shape(as_read, inquiry.search)

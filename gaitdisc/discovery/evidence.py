@@ -57,7 +57,9 @@ class Judged:
         """
         if other.shooting is self.shooting:
             return self
-        return Judged(account_for(other.shooting, base, self.account.parts, self.account.fit.starts, TURNS), other.shooting)
+        return Judged(
+            account_for(other.shooting, base, self.account.parts, self.account.fit.starts, TURNS), other.shooting
+        )
 
 
 def judged(shooting: Shooting, base: Simulation, account: Account, rounds: int = 2) -> Judged:

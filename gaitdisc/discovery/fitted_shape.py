@@ -39,12 +39,15 @@ def shapes_at(place: Place, judged_now: Judged, search: Search) -> list[Candidat
     x, v = place.motions[0]
     axes = [x, v] if v else [x, *place.others[:1]]
     ranges = {axis: _visited(axis, judged_now, search) for axis in axes}
-    shapes = [_bumps(ranges, {axis: FLAT_BUMPS for axis in [one]}) for one in axes]
+    shapes = [_bumps(ranges, dict.fromkeys([one], FLAT_BUMPS)) for one in axes]
     if v:
         speed = max(abs(one) for one in ranges[v])
         name = f"({v})" if " " in v else v
         across = _bumps(ranges, {x: FLAT_BUMPS})
-        shapes += [[f"{piece}*{name}" for piece in across], [f"{piece}*tanh({name}/{SHARE_OF_SPEED * speed:.4g})" for piece in across]]
+        shapes += [
+            [f"{piece}*{name}" for piece in across],
+            [f"{piece}*tanh({name}/{SHARE_OF_SPEED * speed:.4g})" for piece in across],
+        ]
     if len(axes) > 1:
         shapes.append(_bumps(ranges, dict.fromkeys(axes, BUMPS)))
     if any(one.name == "phase" for one in search.base.inputs):
@@ -52,7 +55,16 @@ def shapes_at(place: Place, judged_now: Judged, search: Search) -> list[Candidat
         sharp = (STRIDE_BUMPS / (SHARPNESS * 2 * np.pi)) ** 2 * 2
         shapes.append([f"exp({sharp:.4g}*(cos(6.283185307179586*(phase - {c:.4g})) - 1))" for c in centres])
     return [
-        Candidate("missing_physics", place.kind, place.name, "unnamed", tuple(pieces), None, x, "an effect that has no name here")
+        Candidate(
+            "missing_physics",
+            place.kind,
+            place.name,
+            "unnamed",
+            tuple(pieces),
+            None,
+            x,
+            "an effect that has no name here",
+        )
         for pieces in shapes
     ]
 
@@ -95,7 +107,16 @@ def _thinned(now: Judged, search: Search, account: Account) -> Account:
     if keep.all() or not keep.any():
         return account
     pieces = tuple(piece for piece, stays in zip(part.candidate.pieces, keep, strict=True) if stays)
-    fewer = Candidate("missing_physics", part.candidate.kind, part.candidate.place, "unnamed", pieces, None, part.candidate.role, part.candidate.means)
+    fewer = Candidate(
+        "missing_physics",
+        part.candidate.kind,
+        part.candidate.place,
+        "unnamed",
+        pieces,
+        None,
+        part.candidate.role,
+        part.candidate.means,
+    )
     values = dict(zip(fewer.slots, value[keep].tolist(), strict=True))
     return account_for(now.shooting, search.base, (Part(fewer, values),), account.fit.starts, TURNS)
 

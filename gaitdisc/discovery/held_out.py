@@ -71,9 +71,7 @@ def gap_size(before: Trial, after: Trial, floor: NDArray[np.float64], channels: 
     """
     spread = np.nanstd(after.measured, axis=(0, 1))
     rms = [np.sqrt(np.nanmean(one.fit.residual**2, axis=(0, 1))) for one in (before, after)]
-    sizes = {
-        name: (float(rms[0][i]), float(rms[1][i]), float(floor[i])) for i, name in enumerate(channels)
-    }
+    sizes = {name: (float(rms[0][i]), float(rms[1][i]), float(floor[i])) for i, name in enumerate(channels)}
     whole = [float(np.sqrt(np.mean((one / spread) ** 2))) for one in (*rms, floor)]
     return GapSize(whole[0], whole[1], whole[2], chance(before.misfits - after.misfits), sizes)
 
@@ -123,5 +121,10 @@ def drawn_runs(inquiry: Inquiry, before: Trial, after: Trial, trials: tuple[int,
     time = drive.time0[segments.trial][:, None] + (segments.begin[:, None] + np.arange(length)) / drive.rate
     phase = segments.of(drive.inputs)[:, :, names.index("phase")] if "phase" in names else np.zeros((runs, 0))
     return Runs(
-        segments.trial, time, phase, before.measured, before.measured - before.fit.residual, after.measured - after.fit.residual
+        segments.trial,
+        time,
+        phase,
+        before.measured,
+        before.measured - before.fit.residual,
+        after.measured - after.fit.residual,
     )

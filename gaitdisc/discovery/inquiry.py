@@ -125,7 +125,9 @@ class Inquiry:
             guess = self.guess.with_run(now.shooting.segments, now.account.fit.states)
             samples = min(LENGTHENED * now.shooting.segments.length, longest)
             shooting = self.shooting(self.segments(self.learned, samples / (self.rhythm.period * self.rhythm.rate)))
-            longer = account_for(shooting.with_noise(now.noise), self.search.base, now.account.parts, guess.starts(shooting.segments))
+            longer = account_for(
+                shooting.with_noise(now.noise), self.search.base, now.account.parts, guess.starts(shooting.segments)
+            )
             if not np.isfinite(longer.fit.misfit):
                 break
             longer = judged(shooting.with_past(longer.fit.states), self.search.base, longer)

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.shooting import Fitted, Shooting
 from gaitdisc.simulation.drive import Rows
-from gaitdisc.simulation.running import Compiled, compile_simulation
 from gaitdisc.simulation.parts import Parameter, Term
+from gaitdisc.simulation.running import Compiled, compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
 NUDGE = 1e-5
@@ -149,7 +149,10 @@ def steps_of(
     trial = np.repeat(shooting.segments.trial, steps)
     begin = (shooting.segments.begin[:, None] + np.arange(steps)).ravel()
     rows = Rows(
-        np.tile(trial, versions), np.tile(begin, versions), states.reshape(-1, n), np.repeat(values, segments * steps, axis=0)
+        np.tile(trial, versions),
+        np.tile(begin, versions),
+        states.reshape(-1, n),
+        np.repeat(values, segments * steps, axis=0),
     )
     landed, _ = machine.run(shooting.measured.drive, rows, 1, substeps=shooting.substeps, past=shooting.past)
     return landed[:, 1].reshape(versions, segments, steps, n)
@@ -171,9 +174,7 @@ def pushable(simulation: Simulation, places: tuple[Place, ...]) -> Compiled:
     return compile_simulation(simulation)
 
 
-def seen_change(
-    shooting: Shooting, machine: Compiled, fit: Fitted, change: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def seen_change(shooting: Shooting, machine: Compiled, fit: Fitted, change: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return what changes of state change in the measured channels (segment, sample, channel, candidate).
 
     Parameters
@@ -227,9 +228,7 @@ def observed_of(
     return seen.reshape(versions, len(segments), segments.length, -1)
 
 
-def _seen_late(
-    shooting: Shooting, machine: Compiled, fit: Fitted, change: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _seen_late(shooting: Shooting, machine: Compiled, fit: Fitted, change: NDArray[np.float64]) -> NDArray[np.float64]:
     """As `seen_change`, where what is measured depends on states some time ago: each candidate observed by itself."""
     spans = np.maximum(np.abs(fit.states).max(axis=(0, 1)), 1e-3)
     size = (np.abs(change).max(axis=(0, 1)) / spans[:, None]).max(axis=0)

@@ -105,7 +105,9 @@ def noise_of(residual: NDArray[np.float64], used: float = 0.0, white_share: floa
     for channel in range(channels):
         e = residual[:, :, channel]
         most = min(MOST_LAGS, samples // 4)
-        covariance = np.array([(e[:, : samples - lag] * e[:, lag:]).sum() / e.size for lag in range(most + 1)]) * enlarge
+        covariance = (
+            np.array([(e[:, : samples - lag] * e[:, lag:]).sum() / e.size for lag in range(most + 1)]) * enlarge
+        )
         covariance[0] = max(covariance[0], np.finfo(float).tiny)
         covariance[1:] /= 1 + white_share
         orders = [np.zeros(0)] + [

@@ -122,7 +122,10 @@ class Scorer:
         constants = dict(candidate.constants or {})
         along = self._along([candidate.role])[:, :, 0].ravel() if constants else np.zeros(1)
         return [
-            (_Cell(number, cell, candidate.idle), candidate.pieces_at({slot: f"{value:.9g}" for slot, value in cell.items()}))
+            (
+                _Cell(number, cell, candidate.idle),
+                candidate.pieces_at({slot: f"{value:.9g}" for slot, value in cell.items()}),
+            )
             for cell in cells(constants, along, self.rhythm)
         ]
 
@@ -143,7 +146,9 @@ class Scorer:
     def _white(self, change: NDArray[np.float64]) -> NDArray[np.float64]:
         return self.shooting.whitened(seen_change(self.shooting, self.machine, self.fit, change))
 
-    def _signal_columns(self, line: Linearised, number: int, candidate: Candidate) -> tuple[list[_Cell], NDArray[np.float64]]:
+    def _signal_columns(
+        self, line: Linearised, number: int, candidate: Candidate
+    ) -> tuple[list[_Cell], NDArray[np.float64]]:
         """What a wrong number, input or sensor changes: in each step's landing, and in what is seen."""
         (slot, none), late = next(iter(candidate.idle.items())), candidate.is_late
         simulation, names = candidate.in_fit(self.simulation, "tried", {slot: none})

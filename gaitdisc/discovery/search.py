@@ -70,7 +70,9 @@ class Search:
         scores = sorted(scorer.scores(open_ones), key=lambda one: price * len(one.candidate.slots) - one.gain)
         worth = [one for one in scores if one.gain > price * len(one.candidate.slots)][:REFITTED]
         tried = [
-            account_for(shooting, self.base, (*account.parts, Part(one.candidate, one.values)), account.fit.starts, TURNS)
+            account_for(
+                shooting, self.base, (*account.parts, Part(one.candidate, one.values)), account.fit.starts, TURNS
+            )
             for one in worth
         ]
         tried = sorted((one for one in tried if self.sensible(one)), key=lambda one: one.criterion)[:judge]
@@ -93,9 +95,9 @@ class Search:
                 value = part.values[slot]
                 if kind == "quantiles of x" and not self._visited(account, part.candidate.role, value):
                     return False
-                if kind == "delays" and not 0 < value < self.rhythm.period or kind == "frequencies" and value <= 0:
+                if (kind == "delays" and not 0 < value < self.rhythm.period) or (kind == "frequencies" and value <= 0):
                     return False
-                if kind == "half widths of x" and value <= 0 or kind == "phase widths" and not 0 < value < 1:
+                if (kind == "half widths of x" and value <= 0) or (kind == "phase widths" and not 0 < value < 1):
                     return False
             if part.candidate.is_late and not 0 < part.values["seconds"] < self.rhythm.period:
                 return False
@@ -201,6 +203,8 @@ def ranked(accounts: list[Judged]) -> list[Judged]:
     least = accounts[0].evidence
     simple = [one for one in accounts if one.evidence < least + MARGIN and one.account.size < accounts[0].account.size]
     first = simple[0] if simple else accounts[0]
-    alike = [one for one in accounts if one.evidence < first.evidence + ALIKE and one.account.size == first.account.size]
+    alike = [
+        one for one in accounts if one.evidence < first.evidence + ALIKE and one.account.size == first.account.size
+    ]
     alike.sort(key=lambda one: [PREFERENCE.index(part.candidate.verdict) for part in one.account.parts])
     return alike + [one for one in accounts if one not in alike]

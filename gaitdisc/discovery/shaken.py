@@ -77,7 +77,9 @@ def shaken(shooting: Shooting, account: Account, places: tuple[Place, ...]) -> l
         flat = (seen / size[:, None]).reshape(len(some), -1, length - 1)
         pushes = flat @ np.swapaxes(flat, 1, 2)
         unit = np.trace(pushes, axis1=1, axis2=2).mean() / flat.shape[1]
-        best, share, level = _best_share((plain / size).reshape(len(some), -1), starts.reshape(*flat.shape[:2], -1), pushes / unit)
+        best, share, level = _best_share(
+            (plain / size).reshape(len(some), -1), starts.reshape(*flat.shape[:2], -1), pushes / unit
+        )
         best += 2 * plain.size / plain.shape[2] * float(np.log(size).sum()) + 2 * np.log(plain.size)
         found.append(Shaken(place, best, rival, float(np.sqrt(level * share / unit)), plain.size))
     return sorted(found, key=lambda one: one.evidence)

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from gaitdisc.discovery.noise import Noise
 from gaitdisc.discovery.segments import Segments
-from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.drive import Rows
+from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.running import Compiled
 
 DAMPING = 1e-3
@@ -161,7 +161,9 @@ class Shooting:
             starts.reshape(versions * segments, -1),
             np.repeat(values, segments, axis=0),
         )
-        states, _ = machine.run(self.measured.drive, rows, self.segments.length - 1, substeps=self.substeps, past=self.past)
+        states, _ = machine.run(
+            self.measured.drive, rows, self.segments.length - 1, substeps=self.substeps, past=self.past
+        )
         observed = machine.observe(self.measured.drive, rows, states, past=self.past)
         shape = (versions, segments, self.segments.length)
         return states.reshape(*shape, -1), observed.reshape(*shape, -1)
@@ -171,7 +173,9 @@ class Shooting:
         white = self.noise.whitened(np.nan_to_num(residual, nan=0.0, posinf=0.0, neginf=0.0))
         return white.reshape(white.shape[0], -1, *white.shape[3:])
 
-    def at(self, machine: Compiled, free: tuple[str, ...], values: NDArray[np.float64], starts: NDArray[np.float64]) -> Fitted:
+    def at(
+        self, machine: Compiled, free: tuple[str, ...], values: NDArray[np.float64], starts: NDArray[np.float64]
+    ) -> Fitted:
         """Return the fit at given constants and start states, with its slopes.
 
         Parameters
@@ -204,7 +208,12 @@ class Shooting:
         return Fitted(free, values, starts, states[0], residual, white, self.whitened(change))
 
     def fitted(
-        self, machine: Compiled, free: tuple[str, ...], values: NDArray[np.float64], starts: NDArray[np.float64], turns: int = 12
+        self,
+        machine: Compiled,
+        free: tuple[str, ...],
+        values: NDArray[np.float64],
+        starts: NDArray[np.float64],
+        turns: int = 12,
     ) -> Fitted:
         """Fit constants and start states (Levenberg-Marquardt; the start states of each segment solved for within).
 
@@ -275,7 +284,9 @@ def without(basis: NDArray[np.float64], columns: NDArray[np.float64]) -> NDArray
     return columns - basis @ (np.swapaxes(basis, 1, 2) @ columns)
 
 
-def _step(now: Fitted, machine: Compiled, damping: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _step(
+    now: Fitted, machine: Compiled, damping: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return (values, starts) one damped Gauss-Newton step on."""
     n = now.starts.shape[1]
     shape, change = now.slopes[..., :n], now.slopes[..., n:]

@@ -40,6 +40,8 @@ def whiten(
             for lag in range(order):
                 weight = predictors[order, lag]
                 for column in range(columns):
-                    out[segment, sample, channel, column] -= weight * residual[segment, sample - 1 - lag, channel, column]
+                    out[segment, sample, channel, column] -= (
+                        weight * residual[segment, sample - 1 - lag, channel, column]
+                    )
             for column in range(columns):
                 out[segment, sample, channel, column] /= spread[order]
