@@ -1,0 +1,139 @@
+"""One cell: error signal, fit, augmented model, judgement; method, approach and system are its arguments."""
+
+from __future__ import annotations
+
+import time as clock
+from dataclasses import replace
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from gaitdisc.discrepancy.augmented_run import AugmentedRun, on_states, with_learned_rates
+from gaitdisc.discrepancy.error_signal import Approach, error_samples
+from gaitdisc.discrepancy.methods import Method, MethodSettings, fitted
+from gaitdisc.discrepancy.record import Conditions, Record, recorded
+from gaitdisc.discrepancy.system import System
+from gaitdisc.errors import GaitdiscError
+from gaitdisc.model import Model
+from gaitdisc.regression.sindy import Sindy
+from gaitdisc.results.discrepancy_cell import DiscrepancyCell, PartAccuracy
+
+PUBLISHED_THRESHOLDS = {"dynamics": 0.0095, "state": 0.046}
+
+
+def cell(
+    system: System, method: Method, approach: Approach, conditions: Conditions, settings: MethodSettings | None = None
+) -> DiscrepancyCell:
+    """Learn one error signal by one method, and judge the augmented model.
+
+    Parameters
+    ----------
+    system : System
+        What is known, what is true, what is measured.
+    method : str
+        `sindy`, `dmd`, `gp` or `nn`.
+    approach : str
+        `dynamics` (Eq. 3.4) or `state` (Eq. 3.5).
+    conditions : Conditions
+        Noise, sampling, seed, variant.
+    settings : MethodSettings, optional
+        Of the methods; SINDy's threshold is the published one in the published variant.
+
+    Returns
+    -------
+    DiscrepancyCell
+        With the refusal in words where nothing can be fitted.
+
+    Examples
+    --------
+    >>> from gaitdisc.discrepancy.system import system_of
+    >>> from gaitdisc.simulation.bundled import bundled
+    >>> from gaitdisc.simulation.parts import Term
+    >>> system = system_of(bundled("van_der_pol"), Term("y", "equation", "cubic_stiffness", "-0.01*x**3"))
+    >>> found = cell(system, "sindy", "dynamics", Conditions(duration_s=20.0))
+    >>> found.terms
+    'y: -0.01*x**3'
+    """
+    return cell_of(recorded(system, conditions), method, approach, settings)
+
+
+def cell_of(
+    record: Record, method: Method, approach: Approach, settings: MethodSettings | None = None
+) -> DiscrepancyCell:
+    """Learn one error signal of a record that is there already.
+
+    Parameters
+    ----------
+    record : Record
+        Of a system.
+    method, approach, settings : as for `cell`
+        What is learned, and how.
+    """
+    made, settings = record.conditions, settings or MethodSettings()
+    if made.published and settings.threshold is None:
+        settings = replace(settings, threshold=PUBLISHED_THRESHOLDS[approach])
+    variant = "as published" if made.published else "right"
+    begun = clock.perf_counter()
+    try:
+        with threadpool_limits(1):  # on matrices of this size, and beside other work, threads wait for each other
+            learned = fitted(error_samples(record, approach, method == "dmd"), method, settings, made.seed)
+    except GaitdiscError as error:
+        return DiscrepancyCell(
+            record.system.name, method, approach, variant, made.noise, made.seed, record.system.channels, {},
+            clock.perf_counter() - begun, 0.0, refused=str(error),
+        )  # fmt: skip
+    fit_s, begun = clock.perf_counter() - begun, clock.perf_counter()
+    parts = {name: part(record, learned, approach, name == "forecast") for name in ("reconstruction", "forecast")}
+    return DiscrepancyCell(
+        record.system.name, method, approach, variant, made.noise, made.seed, record.system.channels, parts,
+        fit_s, clock.perf_counter() - begun, _terms(learned),
+    )  # fmt: skip
+
+
+def part(record: Record, learned: Model, approach: Approach, forecast: bool) -> PartAccuracy:
+    """Judge a learned model over the training part or the forecast.
+
+    Parameters
+    ----------
+    record : Record
+        Of a system.
+    learned : Model
+        delta_f or delta.
+    approach : str
+        Which of both it is.
+    forecast : bool
+        The forecast instead of the training part.
+    """
+    system, made = record.system, record.conditions
+    time = record.time[record.split - 1 :] if forecast else record.time[: record.split]
+    start, truth = record.start(forecast), record.target(forecast)
+    known = system.known.run(start[None], made.dt_s, len(time) - 1)[0][:, : len(system.channels)]
+    if approach == "dynamics":
+        found = with_learned_rates(system.known, learned, start, time)
+    else:
+        found = on_states(system, learned, start, time, summed=made.published and isinstance(learned, Sindy))
+    bounded = _bounded(found, time)
+    diverged = None if bounded.diverged_s is None else bounded.diverged_s - float(time[0])
+    return PartAccuracy(time - time[0], truth, known, bounded.values, diverged)
+
+
+def _bounded(run: AugmentedRun, time: np.ndarray) -> AugmentedRun:
+    """Let a correction that left every bound count as diverged from there on, too."""
+    lost = ~np.all(np.abs(run.values) < 1e6, axis=1)
+    if not lost.any():
+        return run
+    first = int(np.argmax(lost))
+    values = np.array(run.values)
+    values[first:] = np.nan
+    return AugmentedRun(values, float(time[max(first - 1, 0)]))
+
+
+def _terms(learned: Model) -> str:
+    if not isinstance(learned, Sindy):
+        return ""
+    said = []
+    for output in learned.outputs:
+        terms = learned.terms(output)
+        if terms:
+            said.append(f"{output}: " + " + ".join(f"{value:.3g}*{term}" for term, value in terms.items()))
+    return "; ".join(said) or "nothing"

@@ -1,0 +1,113 @@
+"""The two error signals of a known model against measurements: in its rates, and in its states."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.discrepancy.record import Record
+from gaitdisc.discrepancy.smoothing import edge_samples
+from gaitdisc.discrepancy.system import Rates
+from gaitdisc.errors import ShapeError
+from gaitdisc.recording import Samples
+
+Approach = Literal["dynamics", "state"]
+APPROACHES: tuple[Approach, ...] = ("dynamics", "state")
+TIME = "t"
+FLOW_STEPS = 8  # of Runge-Kutta, between two samples
+
+
+def error_samples(record: Record, approach: Approach, of_time: bool = False) -> Samples:
+    """Samples of an error signal, that any method is fitted to.
+
+    Parameters
+    ----------
+    record : Record
+        Its training part.
+    approach : str
+        `dynamics`: the deterministic dynamical error at the measured states (Eqs. 3.4, 3.6); `state`: the systematic
+        state-space residual at the known model's states (Eq. 3.5).
+    of_time : bool
+        The input is time instead, for dynamic mode decomposition.
+
+    Raises
+    ------
+    ShapeError
+        If the dynamical error is asked for and not every state is measured.
+
+    Examples
+    --------
+    >>> from gaitdisc.discrepancy.record import Conditions, recorded
+    >>> from gaitdisc.discrepancy.system import system_of
+    >>> from gaitdisc.simulation.bundled import bundled
+    >>> from gaitdisc.simulation.parts import Term
+    >>> pushed = system_of(bundled("van_der_pol"), Term("y", "equation", "constant_force", "0.1"))
+    >>> error_samples(recorded(pushed, Conditions(duration_s=5.0)), "dynamics").y[:, 1].mean().round(2)
+    np.float64(0.1)
+    """
+    x, y, first, last = _dynamics(record) if approach == "dynamics" else _state(record)
+    time = record.time[first : first + len(y)][: last - first]
+    inputs = (TIME,) if of_time else record.system.states
+    outputs = record.system.states if approach == "dynamics" else record.system.channels
+    return Samples(time[:, None] if of_time else x, y, inputs, outputs, time, np.full(len(time), np.nan))
+
+
+def _dynamics(record: Record) -> tuple[NDArray[np.float64], NDArray[np.float64], int, int]:
+    """Return states, error, first and last sample."""
+    system, made = record.system, record.conditions
+    if len(system.channels) < len(system.states):
+        raise ShapeError(
+            f"the dynamical error needs all {len(system.states)} states measured",
+            f"{len(system.channels)} are: {', '.join(system.channels)}",
+            "Learn the residual of what is measured, or use `gaitdisc discover`, which needs no rates.",
+        )
+    y = np.asarray(record.filtered)
+    if made.published:
+        return y, np.gradient(y, made.dt_s, axis=0) - system.known(y), 0, len(y)
+    edge = edge_samples(1.0 / made.dt_s) if made.noise else 0
+    inner = slice(edge + 1, len(y) - edge - 1)
+    error = flow_error(record, y)[inner.start - 1 : inner.stop - 1]
+    return y[inner], error, inner.start, inner.stop
+
+
+def flow_error(record: Record, y: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Rate that the known model lacks, from how far it misses the neighbours of each sample, (sample - 2, state).
+
+    The known model runs from the state at k forwards to k + 1 and backwards to k - 1; half the difference of what it
+    misses there, over the step, is what was missing in its rates at k. Error: of order dt^2 in the *missing* rate,
+    while a central difference has it in the *whole* rate, which for the Lorenz system at 0.01 s is larger than what is
+    to be found.
+
+    Parameters
+    ----------
+    record : Record
+        Whose known model it is.
+    y : ndarray (sample, state)
+        States.
+    """
+    dt, known = record.conditions.dt_s, record.system.known
+    ahead = y[2:] - _flow(known, y[1:-1], dt)
+    behind = y[:-2] - _flow(known, y[1:-1], -dt)
+    return (ahead - behind) / (2 * dt)
+
+
+def _flow(known: Rates, x: NDArray[np.float64], dt_s: float) -> NDArray[np.float64]:
+    """Run all states one sample on, or back, by Runge-Kutta of order 4."""
+    h = dt_s / FLOW_STEPS
+    for _ in range(FLOW_STEPS):
+        one = known(x)
+        two = known(x + 0.5 * h * one)
+        three = known(x + 0.5 * h * two)
+        x = x + h / 6 * (one + 2 * two + 2 * three + known(x + h * three))
+    return x
+
+
+def _state(record: Record) -> tuple[NDArray[np.float64], NDArray[np.float64], int, int]:
+    system, made = record.system, record.conditions
+    run = system.known.run(record.start(forecast=False)[None], made.dt_s, record.split - 1)[0]
+    seen = run[:, : len(system.channels)]
+    edge = edge_samples(1.0 / made.dt_s) if made.noise and not made.published else 0
+    inner = slice(edge, len(run) - edge)
+    return run[inner], (record.filtered - seen)[inner], inner.start, inner.stop

@@ -1,0 +1,92 @@
+"""A learned model laid out as tables of numbers, so that compiled code can evaluate it inside the integrator."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.discrepancy.learned_rates import KERNELS, LAYERS, PRODUCTS, TIMES
+from gaitdisc.errors import TrainingError
+from gaitdisc.model import Model
+from gaitdisc.regression.dmd import Dmd
+from gaitdisc.regression.gaussian_process import GaussianProcess
+from gaitdisc.regression.sindy import Sindy
+
+Tables = tuple[NDArray[np.float64], ...]
+TABLES = 6
+
+
+@dataclass(frozen=True, eq=False)
+class LearnedTerm:
+    """Features and weights.
+
+    Parameters
+    ----------
+    kind : int
+        `PRODUCTS`, `KERNELS`, `LAYERS` or `TIMES`.
+    tables : tuple of ndarray
+        Six matrices.
+    """
+
+    kind: int
+    tables: Tables
+
+
+def learned_term(model: Model, times: NDArray[np.float64]) -> LearnedTerm:
+    """Lay out a learned model.
+
+    Parameters
+    ----------
+    model : Model
+        `Sindy`, `Dmd`, `GaussianProcess`, or the dissertation's network as the trainer gives it.
+    times : ndarray (stage,) [s]
+        Of the integrator's half steps, for a model of time.
+
+    Raises
+    ------
+    TrainingError
+        If the model is of another kind.
+
+    Examples
+    --------
+    >>> from gaitdisc.regression.sindy import library
+    >>> cubic = Sindy(("x",), ("x",), library(1, 3), np.array([[0.0], [0], [0], [0.01]]), 0.005)
+    >>> learned_term(cubic, np.empty(0)).kind == PRODUCTS
+    True
+    """
+    if isinstance(model, Sindy):
+        return LearnedTerm(PRODUCTS, _six(model.powers, model.coefficients))
+    if isinstance(model, GaussianProcess):
+        scale = np.vstack([model.scale.mean, 1 / model.scale.sd])
+        return LearnedTerm(KERNELS, _six(model.centres, model.weights, 1 / model.lengths, scale, model.offset))
+    if isinstance(model, Dmd):
+        return LearnedTerm(TIMES, _six(model(times[:, None])))
+    return LearnedTerm(LAYERS, _six(*_layers(model)))
+
+
+def _layers(model: Model) -> Tables:
+    """Weights with offsets in a last column; the scale of the outputs goes into the readout."""
+    from gaitdisc.networks.trained_network import TrainedNetwork
+
+    if not isinstance(model, TrainedNetwork) or "radial.weight" not in model.weights():
+        raise TrainingError(
+            "a learned term is a Sindy, a Dmd, a GaussianProcess, or a trained FeedForward",
+            f"found {type(model).__name__}",
+            "Fit one of these.",
+        )
+    weights = {name: np.asarray(values, float) for name, values in model.weights().items()}
+    first, second = (np.column_stack([weights[f"{each}.weight"], weights[f"{each}.bias"]]) for each in LAYER_NAMES)
+    size = np.where(model.y_scale.constant, 0.0, model.y_scale.sd)
+    third = weights["readout.weight"] * size[:, None]
+    offset = weights["readout.bias"] * size + model.y_scale.mean
+    return first, second, third, np.vstack([model.x_scale.mean, 1 / model.x_scale.sd]), offset
+
+
+LAYER_NAMES = ("sigmoid", "radial")
+
+
+def _six(*tables: NDArray) -> Tables:
+    full = [np.ascontiguousarray(np.atleast_2d(np.array(table, float))) for table in tables]
+    return tuple(full + [np.zeros((1, 1))] * (TABLES - len(full)))

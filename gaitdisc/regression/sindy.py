@@ -1,0 +1,218 @@
+"""Sparse identification of nonlinear dynamics: a few polynomial terms, each with its coefficient."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.errors import TrainingError
+from gaitdisc.recording import Samples
+from gaitdisc.recording.arrays import read_only
+from gaitdisc.regression.extra import chapter3_library
+
+THRESHOLDS = tuple(10.0**power for power in np.linspace(-3.0, 0.0, 19))  # of the output's size, where none is given
+NEAR_BEST = 0.05  # of the least error on the inner block: the sparsest model so close is taken
+SEAM_S = 0.3  # as Trajectory.split: zero-lag filters look ahead over the seam
+LEAST_BEFORE_INNER = 20
+PASSES = 10  # of thresholding, as the published code
+
+
+@dataclass(frozen=True, eq=False)
+class Sindy:
+    """Sums of products of the inputs; a `gaitdisc.model.Model`.
+
+    Parameters
+    ----------
+    inputs, outputs : tuple of str
+        Names, in order.
+    powers : ndarray of int (term, input)
+        Of each term of the library.
+    coefficients : ndarray (term, output) [output's unit over term's unit]
+        Zero where a term is not in the model.
+    threshold : float
+        Below which coefficients were dropped.
+    """
+
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    powers: NDArray[np.int64]
+    coefficients: NDArray[np.float64]
+    threshold: float
+
+    def __post_init__(self) -> None:
+        """Freeze the numbers."""
+        object.__setattr__(self, "powers", read_only(self.powers, np.int64))
+        object.__setattr__(self, "coefficients", read_only(self.coefficients))
+
+    def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Outputs (sample, output) for inputs (sample, input)."""
+        return products(x, self.powers) @ self.coefficients
+
+    def terms(self, output: str) -> dict[str, float]:
+        """Terms of one output with their coefficients, as a simulation file writes them.
+
+        Parameters
+        ----------
+        output : str
+            Name.
+        """
+        column = self.coefficients[:, self.outputs.index(output)]
+        return {self._written(row): float(column[k]) for k, row in enumerate(self.powers) if column[k]}
+
+    def expression(self, output: str) -> str:
+        """Return one output as an expression that a simulation file understands.
+
+        Parameters
+        ----------
+        output : str
+            Name.
+        """
+        return " + ".join(f"{value:.8g}*{term}" for term, value in self.terms(output).items()) or "0"
+
+    def _written(self, powers: NDArray[np.int64]) -> str:
+        parts = [
+            name if power == 1 else f"{name}**{power}" for name, power in zip(self.inputs, powers, strict=True) if power
+        ]
+        return "*".join(parts) or "1"
+
+
+def fit_sindy(samples: Samples, degree: int = 3, threshold: float | None = None, bags: int = 0, seed: int = 0) -> Sindy:
+    """Fit polynomial terms and drop the small ones, again and again (sequentially thresholded least squares).
+
+    With a threshold given, it acts on the coefficients in their units, as in the published code. Without one, columns
+    and outputs are divided by their size first, and of `THRESHOLDS` the largest is taken whose error on the last 15 %
+    of the samples (contiguous, 0.3 s apart) is within 5 % of the least, or below 1e-6 of the output's variance; an
+    output smaller than a hundredth of the largest one counts as one hundredth of it.
+
+    Parameters
+    ----------
+    samples : Samples
+        Training part only, in order of time.
+    degree : int
+        Highest total power of the library.
+    threshold : float, optional
+        Below which coefficients are dropped [coefficient's unit].
+    bags : int
+        Fits on samples drawn with replacement, whose median is taken; 0 for one plain fit.
+    seed : int
+        Of the draws.
+
+    Returns
+    -------
+    Sindy
+
+    Raises
+    ------
+    TrainingError
+        If the library has more terms than there are samples, if numbers are missing, or pysindy is not installed.
+
+    References
+    ----------
+    Brunton, Proctor, Kutz 2016, PNAS 113:3932; Fasel et al. 2022, Proc. R. Soc. A 478:20210904 for the bags.
+
+    Examples
+    --------
+    >>> t = np.arange(200) / 20
+    >>> x = np.column_stack([np.sin(t), np.cos(2 * t)])
+    >>> s = Samples(x, -0.01 * x[:, :1] ** 3, ("x", "y"), ("v",), t, t)
+    >>> fit_sindy(s, threshold=0.005).expression("v")
+    '-0.01*x**3'
+    """
+    powers = library(len(samples.inputs), degree)
+    if len(samples) < len(powers):
+        raise TrainingError(
+            f"a library of degree {degree} in {len(samples.inputs)} inputs has {len(powers)} terms and needs as many "
+            f"samples",
+            f"there are {len(samples)}, {len(powers) - len(samples)} too few",
+            "Record longer, or lower the degree.",
+        )
+    samples.trainable(len(powers))
+    if threshold is None:
+        return _of_chosen_threshold(samples, powers, bags, seed)
+    found = _thresholded(products(samples.x, powers), samples.y, threshold, bags, seed)
+    return Sindy(samples.inputs, samples.outputs, powers, found, threshold)
+
+
+def _of_chosen_threshold(samples: Samples, powers: NDArray[np.int64], bags: int, seed: int) -> Sindy:
+    before, inner = samples.last_block(0.15, SEAM_S)
+    before.trainable(max(LEAST_BEFORE_INNER, len(powers)))
+    size = np.sqrt(np.mean(samples.y**2, axis=0))
+    size = np.maximum(size, 0.01 * size.max())
+    width = np.sqrt(np.mean(products(samples.x, powers) ** 2, axis=0))
+    width[width == 0] = 1.0
+    column, check = products(before.x, powers) / width, products(inner.x, powers) / width
+    error = np.array([
+        np.mean((check @ _thresholded(column, before.y / size, each, 0, seed) - inner.y / size) ** 2)
+        for each in THRESHOLDS
+    ])  # fmt: skip
+    near = np.flatnonzero(error <= max((1 + NEAR_BEST) * error.min(), 1e-6))
+    threshold = THRESHOLDS[int(near[-1])]
+    found = _thresholded(products(samples.x, powers) / width, samples.y / size, threshold, bags, seed)
+    return Sindy(samples.inputs, samples.outputs, powers, found * size / width[:, None], threshold)
+
+
+def _thresholded(
+    columns: NDArray[np.float64], y: NDArray[np.float64], threshold: float, bags: int, seed: int
+) -> NDArray[np.float64]:
+    """Coefficients (term, output)."""
+    if not bags:
+        return _plain(columns, y, threshold)
+    rng = np.random.default_rng(seed)
+    draws = [rng.integers(len(y), size=len(y)) for _ in range(bags)]
+    middle = np.median([_plain(columns[rows], y[rows], threshold) for rows in draws], axis=0)
+    return np.where(np.abs(middle) < threshold, 0.0, middle)
+
+
+def _plain(columns: NDArray[np.float64], y: NDArray[np.float64], threshold: float) -> NDArray[np.float64]:
+    import warnings
+
+    optimizer = chapter3_library("pysindy").STLSQ(threshold=threshold, alpha=0.0, max_iter=PASSES)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # that nothing is left, which the coefficients say themselves
+        optimizer.fit(columns, y)
+    return np.asarray(optimizer.coef_, float).T
+
+
+def library(inputs: int, degree: int) -> NDArray[np.int64]:
+    """Powers of every product of the inputs up to a degree, (term, input), the constant first.
+
+    Parameters
+    ----------
+    inputs : int
+        How many.
+    degree : int
+        Highest total power.
+
+    Examples
+    --------
+    >>> library(2, 2).tolist()
+    [[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2]]
+    """
+    from itertools import combinations_with_replacement
+
+    rows = [
+        np.bincount(np.array(chosen, int), minlength=inputs)
+        for total in range(degree + 1)
+        for chosen in combinations_with_replacement(range(inputs), total)
+    ]
+    return np.array(rows, np.int64)
+
+
+def products(x: NDArray[np.float64], powers: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Columns of the library, (sample, term).
+
+    Parameters
+    ----------
+    x : ndarray (sample, input)
+        Inputs.
+    powers : ndarray of int (term, input)
+        From `library`.
+    """
+    columns = np.ones((len(x), len(powers)))
+    for k, row in enumerate(powers):
+        for name, power in enumerate(row):
+            if power:
+                columns[:, k] *= x[:, name] ** int(power)
+    return columns

@@ -1,0 +1,175 @@
+"""One cell of chapter 3's grid: a system, a method, an approach and a noise, and how well the augmented model does."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from gaitdisc.recording.arrays import read_only
+
+METHODS = ("sindy", "dmd", "gp", "nn")
+PARTS = ("reconstruction", "forecast")
+
+
+@dataclass(frozen=True, eq=False)
+class PartAccuracy:
+    """Known and augmented model against the truth over one part of a record.
+
+    Parameters
+    ----------
+    time : ndarray (sample,) [s]
+        Since the part's start.
+    truth, known, augmented : ndarray (sample, channel)
+        Noise-free; NaN from where a model diverged.
+    diverged_s : float or None
+        When the augmented model left every bound [s since the part's start].
+    """
+
+    time: NDArray[np.float64]
+    truth: NDArray[np.float64]
+    known: NDArray[np.float64]
+    augmented: NDArray[np.float64]
+    diverged_s: float | None
+
+    def __post_init__(self) -> None:
+        """Freeze the numbers."""
+        for name in ("time", "truth", "known", "augmented"):
+            object.__setattr__(self, name, read_only(getattr(self, name)))
+
+    def rmse(self, model: str, until_s: float | None = None) -> NDArray[np.float64]:
+        """Root mean square error, (channel,) [channel's unit]; NaN if the model diverged before.
+
+        Parameters
+        ----------
+        model : str
+            `known` or `augmented`.
+        until_s : float, optional
+            Horizon [s]; the whole part where absent.
+        """
+        last = len(self.time) if until_s is None else int(np.searchsorted(self.time, until_s + 1e-9, side="right"))
+        return np.sqrt(np.mean((getattr(self, model)[:last] - self.truth[:last]) ** 2, axis=0))
+
+    def accuracy(self, clipped: bool = False, until_s: float | None = None) -> NDArray[np.float64]:
+        """100 (1 - RMSE augmented / RMSE known), (channel,) [%]; NaN if the augmented model diverged.
+
+        Parameters
+        ----------
+        clipped : bool
+            To -100 and 100, as the published figures.
+        until_s : float, optional
+            Horizon [s].
+        """
+        known, augmented = self.rmse("known", until_s), self.rmse("augmented", until_s)
+        with np.errstate(all="ignore"):
+            found = 100 * (1 - augmented / np.where(known > 0, known, np.nan))
+        return np.clip(found, -100, 100) if clipped else found
+
+    def change(self, horizons_s: Sequence[float]) -> NDArray[np.float64]:
+        """Median over channels of the percent change in RMSE within each horizon (Fig. 3.9), (horizon,) [%].
+
+        Parameters
+        ----------
+        horizons_s : sequence of float
+            [s].
+        """
+        return np.array([np.median(self.accuracy(until_s=each)) for each in horizons_s])
+
+    def valid_s(self, model: str, tolerance: float = 0.4) -> float:
+        """Time until the error first exceeds a share of the truth's standard deviation [s].
+
+        Parameters
+        ----------
+        model : str
+            `known` or `augmented`.
+        tolerance : float
+            Root mean square over the channels of error over standard deviation.
+        """
+        error = (getattr(self, model) - self.truth) / self.truth.std(axis=0)
+        beyond = ~(np.sqrt(np.mean(error**2, axis=1)) <= tolerance)
+        return float(self.time[int(np.argmax(beyond))] if beyond.any() else self.time[-1])
+
+    def first_jump_s(self, channel: int = 0) -> float:
+        """Time at which the truth first changes its sign, where an attractor's lobe is left [s].
+
+        Parameters
+        ----------
+        channel : int
+            That changes its sign.
+        """
+        turned = np.sign(self.truth[:, channel]) != np.sign(self.truth[0, channel])
+        return float(self.time[int(np.argmax(turned))] if turned.any() else self.time[-1])
+
+
+@dataclass(frozen=True, eq=False)
+class DiscrepancyCell:
+    """What one method made of one error signal.
+
+    Parameters
+    ----------
+    system, method, approach : str
+        The three arguments.
+    variant : str
+        `right`, or `as published`.
+    noise : float
+        Share of each channel's standard deviation, or its unit in the published variant.
+    seed : int
+        Of noise and fit.
+    channels : tuple of str
+        Names.
+    parts : dict of str to PartAccuracy
+        `reconstruction` and `forecast`; empty where nothing was fitted.
+    fit_s, run_s : float [s]
+        Wall-clock time of fit, and of running the augmented model over both parts.
+    terms : str
+        What was found, for a method that says so.
+    refused : str
+        Why nothing was fitted.
+    """
+
+    system: str
+    method: str
+    approach: str
+    variant: str
+    noise: float
+    seed: int
+    channels: tuple[str, ...]
+    parts: dict[str, PartAccuracy]
+    fit_s: float
+    run_s: float
+    terms: str = ""
+    refused: str = ""
+
+
+def cells_table(cells: Sequence[DiscrepancyCell]) -> pd.DataFrame:
+    """Return the numbers of all cells, one row a cell, part and channel.
+
+    Parameters
+    ----------
+    cells : sequence of DiscrepancyCell
+        Of any systems.
+    """
+    rows = []
+    for cell in cells:
+        head = {
+            "system": cell.system, "method": cell.method, "approach": cell.approach, "variant": cell.variant,
+            "noise": cell.noise, "seed": cell.seed,
+        }  # fmt: skip
+        tail = {"fit_s": cell.fit_s, "run_s": cell.run_s, "terms": cell.terms, "refused": cell.refused}
+        if not cell.parts:
+            rows.append(head | tail)
+        for part, found in cell.parts.items():
+            known, augmented = found.rmse("known"), found.rmse("augmented")
+            accuracy, clipped = found.accuracy(), found.accuracy(clipped=True)
+            for k, channel in enumerate(cell.channels):
+                rows.append(
+                    head
+                    | {"part": part, "channel": channel, "rmse_known": known[k], "rmse_augmented": augmented[k]}
+                    | {"accuracy": accuracy[k], "clipped": clipped[k], "diverged_s": found.diverged_s}
+                    | {"valid_s": found.valid_s("augmented"), "valid_known_s": found.valid_s("known")}
+                    | tail
+                )
+    return pd.DataFrame(rows)
