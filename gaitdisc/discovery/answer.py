@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from gaitdisc.discovery.account import Part
+from gaitdisc.discovery.effect_units import places_unit, unit_of
+from gaitdisc.discovery.estimates import estimates_of
 from gaitdisc.discovery.evidence import Judged
 from gaitdisc.discovery.held_out import drawn_runs, gap_size, runs_of
 from gaitdisc.discovery.inquiry import Inquiry
@@ -14,7 +16,6 @@ from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, Whereab
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.simulation import Simulation
 
-NORMAL_95 = 1.959964
 TIE = 6.0  # fall of the criterion below which two explanations are told apart by nothing
 RIVALS = 6
 HALF = 0.5
@@ -55,7 +56,7 @@ def answer(
         sizes.append(gap_size(before, after, floor, channels))
     train, held_out = sizes
     closed = 1 - (held_out.after**2 - floor_of(held_out)) / max(held_out.before**2 - floor_of(held_out), 1e-12)
-    effects = tuple(found_effects(inquiry, now, closed, as_read.evidence - best_evidence(rivals, as_read)))
+    effects = tuple(found_effects(inquiry, now, closed, max([one.gained for one in rivals], default=0.0)))
     if shaking:
         effects = (
             FoundEffect(
@@ -71,7 +72,7 @@ def answer(
         "",
         whereabouts(inquiry, now, shaking, train.before**2, train.after**2),
         effects,
-        rivals_of(as_read, now, rivals),
+        rivals_of(inquiry, as_read, now, rivals),
         train,
         held_out,
         channels,
@@ -79,7 +80,23 @@ def answer(
         drawn_runs(inquiry, before, after, inquiry.held_out),
         inquiry.measured.findings,
     )
-    return sentence_of(discovery, inquiry), augmented_of(inquiry.search.base, now.account.parts)
+    return sentence_of(discovery, inquiry.search.base, now.account.parts), augmented_of(
+        inquiry.search.base, now.account.parts
+    )
+
+
+def push_of(inquiry: Inquiry, shaking: Shaken) -> Estimate:
+    """Return the standard deviation of a random push, in the unit of its place.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        What was asked.
+    shaking : Shaken
+        The push.
+    """
+    unit = places_unit(inquiry.search.base, shaking.place.kind, shaking.place.name)
+    return Estimate(shaking.strength, np.nan, np.nan, unit)
 
 
 def augmented_of(base: Simulation, parts: tuple[Part, ...]) -> Simulation:
@@ -129,24 +146,26 @@ def found_effects(inquiry: Inquiry, now: Judged, closed: float, gained: float) -
     return found
 
 
-def rivals_of(as_read: Judged, now: Judged, rivals: tuple[Judged, ...]) -> tuple[FoundEffect, ...]:
+def rivals_of(inquiry: Inquiry, as_read: Judged, now: Judged, rivals: tuple[Judged, ...]) -> tuple[FoundEffect, ...]:
     """List what else was weighed for the first place.
 
     Parameters
     ----------
+    inquiry : Inquiry
+        What was asked.
     as_read, now : Judged
         The simulation as read and with what was found.
     rivals : tuple of Judged
         Best first.
     """
     own = {part.candidate.label for part in now.account.parts}
-    best = best_evidence(rivals, as_read)
+    best = max([one.gained for one in rivals], default=0.0)
     listed = []
     for rival in (one for one in rivals if one.account.parts):
         last = rival.account.parts[-1]
         if last.candidate.label in own:
             continue
-        estimates = {slot: Estimate(value, np.nan, np.nan) for slot, value in last.values.items()}
+        estimates = estimates_of(rival.account, len(rival.account.parts) - 1, inquiry.search.base)
         listed.append(
             FoundEffect(
                 last.candidate.kind,
@@ -154,8 +173,8 @@ def rivals_of(as_read: Judged, now: Judged, rivals: tuple[Judged, ...]) -> tuple
                 last.candidate.name,
                 "",
                 estimates,
-                bic=as_read.evidence - rival.evidence,
-                tied=bool(own and rival.evidence - best < TIE),
+                bic=rival.gained,
+                tied=bool(own and best - rival.gained < TIE),
             )
         )
     return tuple(listed[:RIVALS])
@@ -210,9 +229,7 @@ def phase_of(inquiry: Inquiry, now: Judged, part: Part) -> tuple[float, ...]:
     segments, drive = now.shooting.segments, inquiry.measured.drive
     inputs = segments.of(drive.inputs).reshape(-1, len(names))
     states = now.account.fit.states.reshape(len(inputs), -1)
-    time = (
-        drive.time0[segments.trial][:, None] + (segments.begin[:, None] + np.arange(segments.length)) / drive.rate
-    ).ravel()
+    time = (drive.time0[segments.trial][:, None] + segments.samples / drive.rate).ravel()
     term = part.candidate.term({slot: f"{value:.9g}" for slot, value in part.values.items()})
     if "delay(" in term:
         return ()
@@ -242,12 +259,13 @@ def region_of(part: Part) -> str:
 
 
 def units_of(inquiry: Inquiry) -> tuple[str, ...]:
-    """Return the units of the observed channels, where they are states.
+    """Return the units of the observed channels.
 
     Parameters
     ----------
     inquiry : Inquiry
         What was asked.
     """
-    units = {state.name: state.unit for state in inquiry.search.base.states}
-    return tuple(units.get(text.strip(), "") for _, text in inquiry.search.base.observations)
+    base = inquiry.search.base
+    units = {part.name: part.unit for part in (*base.states, *base.inputs, *base.parameters)} | {"t": "s"}
+    return tuple(unit_of(text, units) for _, text in base.observations)

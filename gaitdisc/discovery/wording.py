@@ -2,36 +2,182 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
-from gaitdisc.discovery.inquiry import Inquiry
-from gaitdisc.results.discovery import Discovery
+from gaitdisc.discovery.account import Part
+from gaitdisc.discovery.amounts import amount, brief_text, estimate_text, shown_unit, with_unit
+from gaitdisc.discovery.told_apart import would_tell_apart
+from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, Whereabouts
+from gaitdisc.simulation.simulation import Simulation
+
+DIRECTIONS = re.compile(
+    r"\b(dorsiflexion|plantarflexion|flexion|extension|abduction|adduction|inversion|eversion|pronation|supination|"
+    r"internal rotation|external rotation|tilt|obliquity)\b"
+)
 
 
-def sentence_of(discovery: Discovery, inquiry: Inquiry) -> Discovery:
+def sentence_of(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> Discovery:
     """Return the discovery with its sentence.
 
     Parameters
     ----------
     discovery : Discovery
         Without one.
-    inquiry : Inquiry
-        What was asked.
+    base : Simulation
+        As read.
+    parts : tuple of Part
+        The explanations behind the effects, in their order; none for `no_gap` and `process_noise`.
     """
-    return replace(discovery, sentence=f"{_said(discovery)} {_shown(discovery, inquiry)}".strip())
+    said = [_said(discovery, base, parts), _tied(discovery), _shown(discovery)]
+    return replace(discovery, sentence=" ".join(one for one in said if one))
 
 
-def _said(discovery: Discovery) -> str:
+def spoken(name: str) -> str:
+    """Return an effect's name as it is said.
+
+    Parameters
+    ----------
+    name : str
+        As in discovery.md.
+
+    Examples
+    --------
+    >>> spoken("one_sided_spring"), spoken("coulomb_friction")
+    ('one-sided spring', 'Coulomb friction')
+    """
+    return name.replace("one_sided", "one-sided").replace("coulomb", "Coulomb").replace("_", " ")
+
+
+def at_place(kind: str, place: str) -> str:
+    """Say where something enters.
+
+    Parameters
+    ----------
+    kind, place : str
+        `port` and its name, `equation` and its state, ...
+
+    Examples
+    --------
+    >>> at_place("port", "ankle_moment"), at_place("equation", "v")
+    ('at the ankle_moment port', 'in the equation of v')
+    """
+    if kind == "port":
+        return f"at the {place} port"
+    return f"in the {kind} {place}" if kind != "equation" else f"in the equation of {place}"
+
+
+def _said(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> str:
     if discovery.verdict == "no_gap":
         return "Simulation and data agree to within the noise: nothing is missing that these data could show."
-    names = " and ".join(f"{one.name.replace('_', ' ')} at {one.place}" for one in discovery.effects)
-    return f"{discovery.verdict.replace('_', ' ').capitalize()}: {names}."
+    effects = discovery.effects
+    if discovery.verdict == "process_noise":
+        where = at_place(effects[0].kind, effects[0].place)
+        push = estimate_text(effects[0].estimates["strength"])
+        return f"Random pushes of {push} (standard deviation) come {where}; nothing that repeats itself is missing."
+    if discovery.verdict == "unnamed":
+        return f"{_nameless(effects[0], base, discovery.where)}."
+    said = [_one(effect, part, base, discovery.where) for effect, part in zip(effects, parts, strict=True)]
+    missing = [one for one, part in zip(said, parts, strict=True) if part.candidate.verdict == "missing_physics"]
+    others = [one for one, part in zip(said, parts, strict=True) if part.candidate.verdict != "missing_physics"]
+    lacks = [f"The simulation lacks {'; and '.join(missing)}"] if missing else []
+    return f"{'; besides, '.join([*lacks, *others])}."
 
 
-def _shown(discovery: Discovery, inquiry: Inquiry) -> str:
-    channel = max(discovery.held_out.channels, key=lambda name: discovery.held_out.channels[name][0])
-    before, after, floor = discovery.held_out.channels[channel]
-    unit = dict(zip(discovery.channels, discovery.units, strict=True))[channel]
+def _one(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whereabouts, ...]) -> str:
+    kind = part.candidate.verdict
+    if kind == "missing_physics":
+        return _missing(effect, part, base, where)
+    if kind == "wrong_parameter":
+        estimate = effect.estimates["value"]
+        unit, factor = shown_unit(estimate.unit)
+        given = with_unit(amount(factor * base.values()[effect.place]), unit)
+        return f"the parameter {effect.place} is {estimate_text(estimate)} where the file says {given}"
+    estimate = next(iter(effect.estimates.values()))
+    subject = f"the {'driving signal' if kind == 'input_error' else 'measured'} {effect.place}"
+    return f"{subject} {_signal(effect.name, estimate)}"
+
+
+def _signal(name: str, estimate: Estimate) -> str:
+    """Say what is wrong with a signal."""
+    number = estimate_text(estimate)
+    if name in ("input_delay", "sensor_lag"):
+        return f"{'acts' if name == 'input_delay' else 'is seen'} late by {number}"
+    if name == "input_gain":
+        return f"acts {number} times as strongly as recorded"
+    if name == "sensor_gain":
+        return f"reads {number} times what it should"
+    low = estimate.value < 0
+    size = Estimate(-estimate.value, -estimate.high, -estimate.low, estimate.unit) if low else estimate
+    verb = "reads" if name == "sensor_offset" else "drifts"
+    return f"{verb} {'low' if low else 'high'} by {estimate_text(size)}"
+
+
+def _missing(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whereabouts, ...]) -> str:
+    noun, _, how = (part.candidate.means or spoken(effect.name)).partition(", ")
+    names, left = part.candidate.names or {}, dict(effect.estimates)
+    for slot in part.candidate.constants or {}:
+        if f"{{{slot}}}" in how:
+            how = how.replace(f"{{{slot}}}", _constant(left.pop(names.get(slot, slot)), part, base))
+    many = len(left) > 1
+    numbers = [
+        f"{name.replace('_', ' ')} {estimate_text(one)}" if many else estimate_text(one) for name, one in left.items()
+    ]
+    if len(numbers) > 4:
+        numbers = [f"{len(numbers)} numbers, largest {max(left.items(), key=lambda one: abs(one[1].value))[0]}"]
+    of = (
+        f" of {part.candidate.role}"
+        if part.candidate.role and not how and effect.kind == "port" and " " in part.candidate.role
+        else ""
+    )
+    told = [f"{noun}{of} {at_place(effect.kind, effect.place)}: {', '.join(numbers)}", how, _stride(effect, where)]
+    return ", ".join(one for one in told if one)
+
+
+def _constant(estimate: Estimate, part: Part, base: Simulation) -> str:
+    meaning = {state.name: state.meaning for state in base.states}
+    role = part.candidate.role
+    if estimate.unit in ("s", "1", "rad/s"):
+        return brief_text(estimate)
+    direction = DIRECTIONS.search(meaning.get(role, ""))
+    return f"{brief_text(estimate)} of {direction[0] if direction else role}"
+
+
+def _stride(effect: FoundEffect, where: tuple[Whereabouts, ...]) -> str:
+    phase = next((one.phase for one in where if one.place == effect.place and one.phase), ())
+    return f"seen between {100 * phase[0]:.0f} and {100 * phase[1]:.0f} % of the stride" if phase else ""
+
+
+def _nameless(effect: FoundEffect, base: Simulation, where: tuple[Whereabouts, ...]) -> str:
+    seen = [one for one in base.signals if re.search(rf"\b{re.escape(one)}\b", effect.term)]
+    over = f", a function of {' and '.join(seen)}" if seen else ""
+    stride = _stride(effect, where)
+    acts = f" ({stride})" if stride else ""
+    return (
+        f"Something is missing {at_place(effect.kind, effect.place)} that no effect of the catalogue explains{acts}; "
+        f"a fitted shape{over} stands in for it"
+    )
+
+
+def _tied(discovery: Discovery) -> str:
+    tied = [one for one in discovery.rivals if one.tied]
+    if not tied or not discovery.effects:
+        return ""
+    names = " or ".join(f"{spoken(one.name)} {at_place(one.kind, one.place)}" for one in tied)
+    apart = would_tell_apart(discovery.effects[0].name, tied[0].name)
+    return f"These data cannot tell it from {names}; what would: {apart}."
+
+
+def _shown(discovery: Discovery) -> str:
+    sizes = discovery.held_out.channels
+    if not sizes:
+        return ""
+    channel = max(sizes, key=lambda name: sizes[name][0] / (sizes[name][2] or 1.0))
+    unit, factor = shown_unit(dict(zip(discovery.channels, discovery.units, strict=True))[channel])
+    before, after, floor = (factor * one for one in sizes[channel])
+    of = f" of {channel}" if len(sizes) > 1 else ""
+    noise = f"(noise floor {amount(floor, floor / 10)})"
     if discovery.verdict in ("no_gap", "process_noise"):
-        return f"Held-out error of {channel}: {before:.3g} {unit} (noise floor {floor:.3g})."
-    return f"With it, the held-out error of {channel} falls from {before:.3g} to {after:.3g} {unit} (noise floor {floor:.3g})."
+        return f"Held-out error{of}: {with_unit(amount(before, floor / 10), unit)} {noise}."
+    fall = f"falls from {amount(before, floor / 10)} to {with_unit(amount(after, floor / 10), unit)}"
+    return f"With it, the held-out error{of} {fall} {noise}."

@@ -1,0 +1,140 @@
+"""Estimates: the numbers of an explanation under the names a person gives them, with units, signs and intervals."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.discovery.account import Account, Part
+from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.effect_units import divided, places_unit, unit_of
+from gaitdisc.results.discovery import Estimate
+from gaitdisc.simulation.simulation import Simulation
+
+NORMAL_95 = 1.959964
+RESISTING = ("stiffness", "damping", "drag", "friction")  # positive where they oppose what they see
+NAMES = {"seconds": "delay", "rate": "drift"}  # of the numbers of sensors and inputs
+UNIT_OF_GRID = {"delays": "s", "frequencies": "rad/s", "phases": "1", "phase widths": "1"}
+_WANING = re.compile(r"max\(0, (-|_\w+ - )")  # max(0, x0 - x), max(0, -v)
+_WAVE = re.compile(r"(sin|cos)\((.*)\)")
+
+
+def estimates_of(account: Account, number: int, base: Simulation) -> dict[str, Estimate]:
+    """Return the numbers of one explanation.
+
+    Parameters
+    ----------
+    account : Account
+        Fitted.
+    number : int
+        Which of its explanations.
+    base : Simulation
+        As read; gives the units.
+
+    Returns
+    -------
+    dict of str to Estimate
+        By name: `stiffness`, `engagement`, ... A stiffness, a damping, a drag and a friction are positive where they
+        resist. A sine and a cosine of one argument are an `amplitude` and a `phase`.
+    """
+    part = account.parts[number]
+    candidate = part.candidate
+    own = {
+        slot: candidate.place if candidate.verdict == "wrong_parameter" else f"part{number}_{slot}"
+        for slot in candidate.slots
+    }
+    rows = [account.fit.free.index(own[slot]) for slot in candidate.slots]
+    return named_estimates(part, np.asarray(account.fit.covariance)[np.ix_(rows, rows)], base)
+
+
+def named_estimates(part: Part, covariance: NDArray[np.float64], base: Simulation) -> dict[str, Estimate]:
+    """Return an explanation's numbers under their names.
+
+    Parameters
+    ----------
+    part : Part
+        The explanation.
+    covariance : ndarray (slot, slot)
+        Of its numbers, in the order of its slots; NaN where it is not known.
+    base : Simulation
+        As read.
+    """
+    candidate, slots = part.candidate, part.candidate.slots
+    units, names = slot_units(candidate, base), NAMES | dict(candidate.names or {})
+    found: dict[str, Estimate] = {}
+    number = 0
+    while number < len(slots):
+        slot, pair = slots[number], slots[number : number + 2]
+        if _is_wave(candidate, number):
+            both = np.array([part.values[one] for one in pair])
+            block = covariance[number : number + 2, number : number + 2]
+            for name, value, slope, unit in _wave(both, units[slot]):
+                found[_free_name(name, found)] = _estimate(value, float(slope @ block @ slope), unit)
+            number += 2
+            continue
+        name = names.get(slot, slot)
+        sign = -1 if name in RESISTING and not _waning(candidate) else 1
+        found[_free_name(name, found)] = _estimate(
+            sign * part.values[slot], float(covariance[number, number]), units[slot]
+        )
+        number += 1
+    return found
+
+
+def slot_units(candidate: Candidate, base: Simulation) -> dict[str, str]:
+    """Return the unit of each number of an explanation.
+
+    Parameters
+    ----------
+    candidate : Candidate
+        The explanation.
+    base : Simulation
+        As read.
+    """
+    own = {part.name: part.unit for part in (*base.states, *base.inputs, *base.parameters)} | {"t": "s"}
+    if candidate.verdict == "missing_physics":
+        place = places_unit(base, candidate.kind, candidate.place)
+        position = unit_of(candidate.role, own) if candidate.role else "1"
+        constants = {slot: UNIT_OF_GRID.get(grid, position) for slot, grid in (candidate.constants or {}).items()}
+        known = own | {f"_{slot}": unit for slot, unit in constants.items()}
+        factors = [divided(place, "1" if piece == "1" else unit_of(piece, known)) for piece in candidate.pieces]
+        return dict(zip(candidate.slots, [*factors, *constants.values()], strict=True))
+    (slot,) = candidate.slots
+    if slot in ("gain", "seconds"):
+        return {slot: "1" if slot == "gain" else "s"}
+    if candidate.verdict == "wrong_parameter":
+        return {slot: own[candidate.place]}
+    channel = unit_of(dict(base.observations).get(candidate.place, candidate.place), own)
+    return {slot: divided(channel, "s") if slot == "rate" else channel}
+
+
+def _waning(candidate: Candidate) -> bool:
+    return bool(candidate.pieces and _WANING.match(candidate.pieces[0]))
+
+
+def _is_wave(candidate: Candidate, number: int) -> bool:
+    pair = [_WAVE.fullmatch(piece) for piece in candidate.pieces[number : number + 2]]
+    if len(pair) < 2 or pair[0] is None or pair[1] is None:
+        return False
+    return (pair[0][1], pair[1][1]) == ("sin", "cos") and pair[0][2] == pair[1][2]
+
+
+def _wave(both: NDArray[np.float64], unit: str) -> list[tuple[str, float, NDArray[np.float64], str]]:
+    """Amplitude and phase of a sin + b cos = A sin(. + phase), with their slopes by a and b."""
+    size = float(np.hypot(*both)) or 1e-300
+    return [
+        ("amplitude", float(np.hypot(*both)), both / size, unit),
+        ("phase", float(np.arctan2(both[1], both[0])), np.array([-both[1], both[0]]) / size**2, "rad"),
+    ]
+
+
+def _free_name(name: str, taken: Mapping[str, Estimate]) -> str:
+    return name if name not in taken else next(f"{name}_{n}" for n in range(2, 999) if f"{name}_{n}" not in taken)
+
+
+def _estimate(value: float, variance: float, unit: str) -> Estimate:
+    half = NORMAL_95 * float(np.sqrt(variance)) if variance >= 0 else float("nan")
+    return Estimate(float(value), float(value) - half, float(value) + half, unit)
