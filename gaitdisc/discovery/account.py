@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.shooting import Fitted, Shooting
+from gaitdisc.discovery.fitted import Fitted
+from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.simulation.running import Compiled, compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 

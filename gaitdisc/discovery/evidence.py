@@ -1,8 +1,8 @@
-"""Evidence for an account: its likelihood under noise that is learned from what it leaves, and the price of its numbers."""
+"""Evidence for an account: its likelihood under noise learned from what it leaves, and the price of its numbers."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from gaitdisc.discovery.account import Account, account_for
 from gaitdisc.discovery.noise import Noise, noise_of
@@ -22,10 +22,13 @@ class Judged:
         Fitted under that noise.
     shooting : Shooting
         The segments, with that noise.
+    gained : float
+        Fall of the evidence against the same without its last explanation, under one noise.
     """
 
     account: Account
     shooting: Shooting
+    gained: float = 0.0
 
     @property
     def evidence(self) -> float:
@@ -101,7 +104,7 @@ def compared(accounts: list[Judged], base: Simulation) -> list[Judged]:
     accounts = [one.under(accounts[0], base) for one in accounts]
     for _ in range(len(accounts)):
         best = min(range(len(accounts)), key=lambda number: accounts[number].evidence)
-        own = judged(accounts[best].shooting, base, accounts[best].account)
+        own = replace(judged(accounts[best].shooting, base, accounts[best].account), gained=accounts[best].gained)
         accounts = [own if number == best else one.under(own, base) for number, one in enumerate(accounts)]
         if min(range(len(accounts)), key=lambda number: accounts[number].evidence) == best:
             break

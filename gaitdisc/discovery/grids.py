@@ -98,7 +98,7 @@ def delays(rhythm: Rhythm) -> NDArray[np.float64]:
     rhythm : Rhythm
         The record's times.
     """
-    return np.maximum(DELAYS_PER_PERIOD * rhythm.period, 0.5 / rhythm.rate)
+    return np.maximum(DELAYS_PER_PERIOD * rhythm.period, 0.5 / rhythm.rate).astype(np.float64, copy=False)
 
 
 def cells(constants: dict[str, str], along: NDArray[np.float64], rhythm: Rhythm) -> list[dict[str, float]]:

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.evidence import Judged
+from gaitdisc.discovery.fitted import Fitted
 from gaitdisc.discovery.inquiry import Inquiry
-from gaitdisc.discovery.shooting import Fitted
 from gaitdisc.results.discovery import GapSize, Runs
 
 FLIPS = 9999
@@ -118,7 +118,7 @@ def drawn_runs(inquiry: Inquiry, before: Trial, after: Trial, trials: tuple[int,
     segments = inquiry.segments(trials, periods)
     drive = inquiry.measured.drive
     names = [one.name for one in inquiry.search.base.inputs]
-    time = drive.time0[segments.trial][:, None] + (segments.begin[:, None] + np.arange(length)) / drive.rate
+    time = drive.time0[segments.trial][:, None] + segments.samples / drive.rate
     phase = segments.of(drive.inputs)[:, :, names.index("phase")] if "phase" in names else np.zeros((runs, 0))
     return Runs(
         segments.trial,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,7 +26,7 @@ from gaitdisc.simulation.simulation import Simulation
 FEWEST_SAMPLES = 16  # of a segment
 GROWTH = 5.0  # of a small change of the start, by which a run is cut
 MOST_RUNS = 0.8
-STEPS_TO_TAME = (0.3, 1.0)  # shares of that length, so that each fit begins near its end
+FIRST_SHARE = 0.3  # of that length, is fitted first, so that the fit of the whole begins near its end
 LENGTHENED = 3  # times as long, again and again, while a run stays with the data
 FOLLOWED = 1.3  # times the noise of the shorter runs, beyond which a run does not follow the data
 SUBSTEPS = 2
@@ -88,11 +88,12 @@ class Inquiry:
 
         The runs last one period, or less where a small change of the start grows fast (chaos, a fall).
         """
-        periods, guess = self._tame_periods(), self.guess
-        for share in STEPS_TO_TAME:
-            shooting = self.shooting(self.segments(self.learned, share * periods))
-            account = account_for(shooting, self.search.base, (), guess.starts(shooting.segments))
-            guess = guess.with_run(shooting.segments, account.fit.states)
+        periods = self._tame_periods()
+        first = self.shooting(self.segments(self.learned, FIRST_SHARE * periods))
+        begun = account_for(first, self.search.base, (), self.guess.starts(first.segments))
+        guess = self.guess.with_run(first.segments, begun.fit.states)
+        shooting = self.shooting(self.segments(self.learned, periods))
+        account = account_for(shooting, self.search.base, (), guess.starts(shooting.segments))
         return judged(shooting.with_past(account.fit.states), self.search.base, account)
 
     def _tame_periods(self) -> float:
@@ -130,7 +131,7 @@ class Inquiry:
             )
             if not np.isfinite(longer.fit.misfit):
                 break
-            longer = judged(shooting.with_past(longer.fit.states), self.search.base, longer)
+            longer = replace(judged(shooting.with_past(longer.fit.states), self.search.base, longer), gained=now.gained)
             if (longer.noise.size > FOLLOWED * now.noise.size).any() or not self.search.sensible(longer.account):
                 break
             now = longer

@@ -1,7 +1,7 @@
 """First-order response: what a small effect would change in every segment, without running it.
 
-Along a fitted run the map from one sample to the next is linearised once, x[k+1] = F x[k] + G push[k]; the response to any
-candidate is then a recursion over samples, for hundreds of candidates at once.
+Along a fitted run the map from one sample to the next is linearised once, x[k+1] = F x[k] + G push[k]; the response to
+any candidate is then a recursion over samples, for hundreds of candidates at once.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.discovery.fitted import Fitted
 from gaitdisc.discovery.places import Place
-from gaitdisc.discovery.shooting import Fitted, Shooting
-from gaitdisc.simulation.drive import Rows
+from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.simulation.parts import Parameter, Term
 from gaitdisc.simulation.running import Compiled, compile_simulation
 from gaitdisc.simulation.simulation import Simulation
@@ -117,45 +117,11 @@ def linearise_along(
         states[1 + state, ..., state] += spans[state]
     for place in range(len(places)):
         many[1 + n + place, own + place] = PUSH
-    landed = steps_of(shooting, machine, states, many)
+    landed = shooting.landed(machine, states, many)
     change = landed[1:] - landed[0]
     onward = np.moveaxis(change[:n] / spans[:, None, None, None], 0, -1)
     pushed = np.moveaxis(change[n:] / PUSH, 0, -1)
     return Linearised(onward, pushed, landed[0])
-
-
-def steps_of(
-    shooting: Shooting, machine: Compiled, states: NDArray[np.float64], values: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Run every step of every segment by itself.
-
-    Parameters
-    ----------
-    shooting : Shooting
-        The segments.
-    machine : Compiled
-        The simulation.
-    states : ndarray (version, segment, step, state)
-        Where each step starts.
-    values : ndarray (version, parameter)
-        Parameters of each version.
-
-    Returns
-    -------
-    ndarray (version, segment, step, state)
-        Where each step lands.
-    """
-    versions, segments, steps, n = states.shape
-    trial = np.repeat(shooting.segments.trial, steps)
-    begin = (shooting.segments.begin[:, None] + np.arange(steps)).ravel()
-    rows = Rows(
-        np.tile(trial, versions),
-        np.tile(begin, versions),
-        states.reshape(-1, n),
-        np.repeat(values, segments * steps, axis=0),
-    )
-    landed, _ = machine.run(shooting.measured.drive, rows, 1, substeps=shooting.substeps, past=shooting.past)
-    return landed[:, 1].reshape(versions, segments, steps, n)
 
 
 def pushable(simulation: Simulation, places: tuple[Place, ...]) -> Compiled:
@@ -195,37 +161,9 @@ def seen_change(shooting: Shooting, machine: Compiled, fit: Fitted, change: NDAr
     versions = np.repeat(fit.states[None], n + 1, axis=0)
     for state in range(n):
         versions[1 + state, ..., state] += spans[state]
-    seen = observed_of(shooting, machine, versions, np.repeat(fit.values[None], n + 1, axis=0))
+    seen = shooting.observed(machine, versions, np.repeat(fit.values[None], n + 1, axis=0))
     slopes = np.moveaxis((seen[1:] - seen[0]) / spans[:, None, None, None], 0, -1)
     return slopes @ change
-
-
-def observed_of(
-    shooting: Shooting, machine: Compiled, states: NDArray[np.float64], values: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Return what would be measured along given states (version, segment, sample, channel).
-
-    Parameters
-    ----------
-    shooting : Shooting
-        The segments.
-    machine : Compiled
-        The simulation.
-    states : ndarray (version, segment, sample, state)
-        Its states.
-    values : ndarray (version, parameter)
-        Its parameters.
-    """
-    segments, versions = shooting.segments, len(states)
-    rows = Rows(
-        np.tile(segments.trial, versions),
-        np.tile(segments.begin, versions),
-        states[:, :, 0].reshape(versions * len(segments), -1),
-        np.repeat(values, len(segments), axis=0),
-    )
-    flat = states.reshape(-1, *states.shape[2:])
-    seen = machine.observe(shooting.measured.drive, rows, flat, past=shooting.past)
-    return seen.reshape(versions, len(segments), segments.length, -1)
 
 
 def _seen_late(shooting: Shooting, machine: Compiled, fit: Fitted, change: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -234,5 +172,5 @@ def _seen_late(shooting: Shooting, machine: Compiled, fit: Fitted, change: NDArr
     size = (np.abs(change).max(axis=(0, 1)) / spans[:, None]).max(axis=0)
     nudge = NUDGE / np.maximum(size, 1e-300)
     versions = np.concatenate([fit.states[None], np.moveaxis(change * nudge, -1, 0) + fit.states])
-    seen = observed_of(shooting, machine, versions, np.repeat(fit.values[None], len(versions), axis=0))
+    seen = shooting.observed(machine, versions, np.repeat(fit.values[None], len(versions), axis=0))
     return np.moveaxis(seen[1:] - seen[0], 0, -1) / nudge

@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_toeplitz
 
+from gaitdisc.discovery.whitening import whiten
+
 MOST_LAGS = 16
 MEMORY = 1.03  # in standard deviations before and after the past is taken off
 WHITE_SHARE = 0.05  # of the variance is taken as white: no simulation is right to the last decimal at high frequency
@@ -57,8 +59,6 @@ class Noise:
         residual : ndarray (segment, sample, channel, ...)
             Each segment begins afresh: its first samples are predicted from the few before them.
         """
-        from gaitdisc.discovery.whitening import whiten
-
         wide = np.ascontiguousarray(residual, float).reshape(*residual.shape[:3], -1)
         out = np.empty_like(wide)
         for channel, (predictors, spread) in enumerate(zip(self.predictors, self.spread, strict=True)):
@@ -100,7 +100,7 @@ def noise_of(residual: NDArray[np.float64], used: float = 0.0, white_share: floa
     ((0,), True)
     """
     predictors, spread = [], []
-    segments, samples, channels = residual.shape
+    _, samples, channels = residual.shape
     enlarge = samples / max(samples - used, 1.0)
     for channel in range(channels):
         e = residual[:, :, channel]

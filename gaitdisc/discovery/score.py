@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.fitted import Fitted, start_basis, without
 from gaitdisc.discovery.grids import Rhythm, cells, delays
-from gaitdisc.discovery.linearised import Linearised, linearise, observed_of, seen_change, steps_of
+from gaitdisc.discovery.linearised import Linearised, linearise, seen_change
 from gaitdisc.discovery.places import Place
-from gaitdisc.discovery.shooting import Fitted, Shooting, start_basis, without
+from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.simulation.evaluating import Points, evaluate_many
 from gaitdisc.simulation.running import Compiled, compile_simulation
 from gaitdisc.simulation.simulation import Simulation
@@ -88,15 +89,15 @@ class Scorer:
         basis, known, left = self._explained()
         best: dict[int, Score] = {}
         for some, columns in self._columns(candidates):
-            columns = without(basis, columns).reshape(left.size, -1)
-            columns = columns - known @ (known.T @ columns)
-            for score, number in _gains(columns, left, some, candidates):
+            own = without(basis, columns).reshape(left.size, -1)
+            own -= known @ (known.T @ own)
+            for score, number in _gains(own, left, some, candidates):
                 if number not in best or score.gain > best[number].gain:
                     best[number] = score
         return sorted(best.values(), key=lambda score: -score.gain)
 
     def _explained(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-        """Basis of the start states, basis of the constants already in (number, constant), and what is left (number,)."""
+        """Basis of the start states, basis of the constants already in (number, constant), what is left (number,)."""
         basis = start_basis(self.fit.slopes[..., : self.fit.starts.shape[1]])
         left, slopes = self.fit.projected
         flat = slopes.reshape(left.size, -1)
@@ -135,7 +136,7 @@ class Scorer:
         out = np.zeros((len(segments), segments.length, len(expressions)))
         for trial in np.unique(segments.trial):
             mine = np.flatnonzero(segments.trial == trial)
-            samples = (segments.begin[mine][:, None] + np.arange(segments.length)).ravel()
+            samples = segments.samples[mine].ravel()
             t = drive.time0[trial] + samples / drive.rate
             x = self.fit.states[mine].reshape(len(samples), -1)
             points = Points(t, x, drive.inputs[trial, samples], self.fit.values, rate=drive.rate)
@@ -164,7 +165,7 @@ class Scorer:
         columns = self.shooting.whitened(np.moveaxis(self._seen_over(machine, values, over), 0, -1))
         if candidate.verdict != "sensor_error":
             states = np.repeat(self.fit.states[None, :, :-1], len(tried), axis=0)
-            landed = steps_of(self.shooting, machine, states, values) - line.landed
+            landed = self.shooting.landed(machine, states, values) - line.landed
             columns += self._white(line.of_change(np.moveaxis(landed / over[:, None, None, None], 0, -1)))
         return [_Cell(number, {}, {slot: none}, float(one) if late else 0.0) for one in tried], columns
 
@@ -173,8 +174,8 @@ class Scorer:
     ) -> NDArray[np.float64]:
         """What is seen to change though no state does (version, segment, sample, channel)."""
         states = np.repeat(self.fit.states[None], len(values), axis=0)
-        seen = observed_of(self.shooting, machine, states, values)
-        base = observed_of(self.shooting, self.machine, states[:1], self.fit.values[None])
+        seen = self.shooting.observed(machine, states, values)
+        base = self.shooting.observed(self.machine, states[:1], self.fit.values[None])
         return (seen - base) / over[:, None, None, None]
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import SamplingError
+from gaitdisc.simulation.drive import Rows
 
 
 @dataclass(frozen=True)
@@ -33,7 +34,36 @@ class Segments:
 
     def of(self, records: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the segments of records (trial, sample, ...) as (segment, sample, ...)."""
-        return records[self.trial[:, None], self.begin[:, None] + np.arange(self.length)]
+        return records[self.trial[:, None], self.samples]
+
+    @property
+    def samples(self) -> NDArray[np.intp]:
+        """Number, within its trial, of every sample (segment, sample)."""
+        return self.begin[:, None] + np.arange(self.length)
+
+    @property
+    def steps(self) -> Segments:
+        """Every step of every segment as a segment of its own."""
+        steps = self.length - 1
+        return Segments(np.repeat(self.trial, steps), self.samples[:, :-1].ravel(), 2)
+
+    def rows(self, starts: NDArray[np.float64], values: NDArray[np.float64]) -> Rows:
+        """Return what it takes to run several versions of a simulation over all segments, version by version.
+
+        Parameters
+        ----------
+        starts : ndarray (version, segment, state)
+            Start states.
+        values : ndarray (version, parameter)
+            Parameters.
+        """
+        versions, segments = starts.shape[:2]
+        return Rows(
+            np.tile(self.trial, versions),
+            np.tile(self.begin, versions),
+            starts.reshape(versions * segments, -1),
+            np.repeat(values, segments, axis=0),
+        )
 
 
 def cut_segments(samples: NDArray[np.intp], trials: tuple[int, ...], length: int) -> Segments:

@@ -1,4 +1,4 @@
-"""Process noise: whether what is left looks like a system shaken by something random, rather than a late or smooth sensor."""
+"""Process noise: whether what is left looks like a system that is shaken, rather than a late or smooth sensor."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.account import Account
+from gaitdisc.discovery.fitted import start_basis
 from gaitdisc.discovery.linearised import linearise, seen_change
 from gaitdisc.discovery.noise import noise_of, white_noise
 from gaitdisc.discovery.places import Place
-from gaitdisc.discovery.shooting import Shooting, start_basis
+from gaitdisc.discovery.shooting import Shooting
 
 SHARES = np.logspace(-3, 3, 19)  # of the shaking's variance in what is seen, against the sensor's
 MOST_SEGMENTS = 24

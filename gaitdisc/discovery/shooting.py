@@ -7,101 +7,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.discovery.fitted import Fitted
 from gaitdisc.discovery.noise import Noise
 from gaitdisc.discovery.segments import Segments
-from gaitdisc.simulation.drive import Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.running import Compiled
 
 DAMPING = 1e-3
 MOST_DAMPING = 1e6
 NUDGE = 1e-5
-
-
-@dataclass(frozen=True)
-class Fitted:
-    """A simulation fitted to segments.
-
-    Parameters
-    ----------
-    free : tuple of str
-        The constants that were fitted.
-    values : ndarray (parameter,)
-        Every parameter of the simulation, fitted or not, in its unit.
-    starts : ndarray (segment, state)
-        Start states.
-    states : ndarray (segment, sample, state)
-        The run.
-    residual : ndarray (segment, sample, channel)
-        Measured minus run [the channel's unit].
-    white : ndarray (segment, sample times channel)
-        The residual as independent numbers of unit variance.
-    slopes : ndarray (segment, sample times channel, state + free)
-        What each start state and each constant would change in `white`; zero where a run failed.
-    """
-
-    free: tuple[str, ...]
-    values: NDArray[np.float64]
-    starts: NDArray[np.float64]
-    states: NDArray[np.float64]
-    residual: NDArray[np.float64]
-    white: NDArray[np.float64]
-    slopes: NDArray[np.float64]
-
-    @property
-    def misfit(self) -> float:
-        """Sum of squares of `white`: minus twice the log likelihood, up to a constant."""
-        return float((self.white**2).sum()) if np.isfinite(self.white).all() else np.inf
-
-    @property
-    def misfits(self) -> NDArray[np.float64]:
-        """The misfit of each segment (segment,); infinite where it failed."""
-        squares = (self.white**2).sum(axis=1)
-        return np.where(np.isfinite(squares), squares, np.inf)
-
-    def where(self, better: NDArray[np.bool_], other: Fitted) -> Fitted:
-        """Return another fit's segments where these are better, and its constants if all are.
-
-        Parameters
-        ----------
-        better : ndarray of bool (segment,)
-            Which.
-        other : Fitted
-            Of the same segments and constants.
-        """
-        if better.all():
-            return other
-        if not better.any():
-            return self
-        parts = (
-            np.where(better.reshape(-1, *[1] * (mine.ndim - 1)), its, mine)
-            for mine, its in (
-                (self.starts, other.starts),
-                (self.states, other.states),
-                (self.residual, other.residual),
-                (self.white, other.white),
-                (self.slopes, other.slopes),
-            )
-        )
-        return Fitted(self.free, self.values, *parts)
-
-    @property
-    def projected(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """What the start states cannot explain: of `white` (segment, sample times channel), of the constants' slopes."""
-        n = self.starts.shape[1]
-        basis = start_basis(self.slopes[..., :n])
-        return without(basis, self.white[..., None])[..., 0], without(basis, self.slopes[..., n:])
-
-    @property
-    def covariance(self) -> NDArray[np.float64]:
-        """Covariance of the fitted constants (free, free), from the curvature of the misfit."""
-        if not self.free:
-            return np.zeros((0, 0))
-        _, slopes = self.projected
-        flat = slopes.reshape(-1, len(self.free))
-        size = np.linalg.norm(flat, axis=0)
-        size[size == 0] = 1.0
-        return np.linalg.pinv((flat / size).T @ (flat / size), rcond=1e-12) / np.outer(size, size)
 
 
 @dataclass(frozen=True)
@@ -154,19 +68,46 @@ class Shooting:
         observed : ndarray (version, segment, sample, channel)
             What would be measured.
         """
-        versions, segments = starts.shape[:2]
-        rows = Rows(
-            np.tile(self.segments.trial, versions),
-            np.tile(self.segments.begin, versions),
-            starts.reshape(versions * segments, -1),
-            np.repeat(values, segments, axis=0),
-        )
-        states, _ = machine.run(
-            self.measured.drive, rows, self.segments.length - 1, substeps=self.substeps, past=self.past
-        )
-        observed = machine.observe(self.measured.drive, rows, states, past=self.past)
-        shape = (versions, segments, self.segments.length)
-        return states.reshape(*shape, -1), observed.reshape(*shape, -1)
+        rows, drive = self.segments.rows(starts, values), self.measured.drive
+        states, _ = machine.run(drive, rows, self.segments.length - 1, substeps=self.substeps, past=self.past)
+        states = states.reshape(*starts.shape[:2], self.segments.length, -1)
+        return states, self.observed(machine, states, values)
+
+    def landed(
+        self, machine: Compiled, states: NDArray[np.float64], values: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Run every step of every segment by itself, and return where it lands (version, segment, step, state).
+
+        Parameters
+        ----------
+        machine : Compiled
+            The simulation.
+        states : ndarray (version, segment, step, state)
+            Where each step starts.
+        values : ndarray (version, parameter)
+            Parameters of each version.
+        """
+        rows = self.segments.steps.rows(states.reshape(len(states), -1, states.shape[-1]), values)
+        landed, _ = machine.run(self.measured.drive, rows, 1, substeps=self.substeps, past=self.past)
+        return landed[:, 1].reshape(states.shape)
+
+    def observed(
+        self, machine: Compiled, states: NDArray[np.float64], values: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Return what would be measured along given states (version, segment, sample, channel).
+
+        Parameters
+        ----------
+        machine : Compiled
+            The simulation.
+        states : ndarray (version, segment, sample, state)
+            Its states.
+        values : ndarray (version, parameter)
+            Its parameters.
+        """
+        rows = self.segments.rows(states[:, :, 0], values)
+        seen = machine.observe(self.measured.drive, rows, states.reshape(-1, *states.shape[2:]), past=self.past)
+        return seen.reshape(*states.shape[:3], -1)
 
     def whitened(self, residual: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return (segment, sample, channel, ...) whitened and flat: (segment, sample times channel, ...)."""
@@ -257,31 +198,12 @@ class Shooting:
         if self.past is None:
             return self
         past = self.past.copy()
-        past[self.segments.trial[:, None], self.segments.begin[:, None] + np.arange(self.segments.length)] = states
+        past[self.segments.trial[:, None], self.segments.samples] = states
         return replace(self, past=past)
 
     def with_noise(self, noise: Noise) -> Shooting:
         """Return the same segments, divided by other noise."""
         return replace(self, noise=noise)
-
-
-def start_basis(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return an orthonormal basis, segment by segment, of what the start states can explain.
-
-    Parameters
-    ----------
-    slopes : ndarray (segment, number, state)
-        Slopes of the whitened residual.
-    """
-    size = np.linalg.norm(slopes, axis=1, keepdims=True)
-    basis, triangle = np.linalg.qr(slopes / np.where(size > 0, size, 1.0))
-    weak = np.abs(np.diagonal(triangle, axis1=1, axis2=2)) < 1e-7
-    return basis * ~weak[:, None, :]
-
-
-def without(basis: NDArray[np.float64], columns: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return columns (segment, number, column) less what the basis explains of them."""
-    return columns - basis @ (np.swapaxes(basis, 1, 2) @ columns)
 
 
 def _step(

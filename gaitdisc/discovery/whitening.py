@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from gaitdisc.compiled import compiled
 
-@njit(cache=True, nogil=True)
+
+@compiled(nogil=True)
 def whiten(
     residual: NDArray[np.float64],
     channel: int,
@@ -39,9 +40,8 @@ def whiten(
                 out[segment, sample, channel, column] = residual[segment, sample, channel, column]
             for lag in range(order):
                 weight = predictors[order, lag]
+                before = residual[segment, sample - 1 - lag, channel]
                 for column in range(columns):
-                    out[segment, sample, channel, column] -= (
-                        weight * residual[segment, sample - 1 - lag, channel, column]
-                    )
+                    out[segment, sample, channel, column] -= weight * before[column]
             for column in range(columns):
                 out[segment, sample, channel, column] /= spread[order]

@@ -1,0 +1,113 @@
+"""A simulation fitted to segments, and what the start states explain of its residual."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A simulation fitted to segments.
+
+    Parameters
+    ----------
+    free : tuple of str
+        The constants that were fitted.
+    values : ndarray (parameter,)
+        Every parameter of the simulation, fitted or not, in its unit.
+    starts : ndarray (segment, state)
+        Start states.
+    states : ndarray (segment, sample, state)
+        The run.
+    residual : ndarray (segment, sample, channel)
+        Measured minus run [the channel's unit].
+    white : ndarray (segment, sample times channel)
+        The residual as independent numbers of unit variance.
+    slopes : ndarray (segment, sample times channel, state + free)
+        What each start state and each constant would change in `white`; zero where a run failed.
+    """
+
+    free: tuple[str, ...]
+    values: NDArray[np.float64]
+    starts: NDArray[np.float64]
+    states: NDArray[np.float64]
+    residual: NDArray[np.float64]
+    white: NDArray[np.float64]
+    slopes: NDArray[np.float64]
+
+    @property
+    def misfit(self) -> float:
+        """Sum of squares of `white`: minus twice the log likelihood, up to a constant."""
+        return float((self.white**2).sum()) if np.isfinite(self.white).all() else np.inf
+
+    @property
+    def misfits(self) -> NDArray[np.float64]:
+        """The misfit of each segment (segment,); infinite where it failed."""
+        squares = (self.white**2).sum(axis=1)
+        return np.where(np.isfinite(squares), squares, np.inf)
+
+    def where(self, better: NDArray[np.bool_], other: Fitted) -> Fitted:
+        """Return another fit's segments where these are better, and its constants if all are.
+
+        Parameters
+        ----------
+        better : ndarray of bool (segment,)
+            Which.
+        other : Fitted
+            Of the same segments and constants.
+        """
+        if better.all():
+            return other
+        if not better.any():
+            return self
+        parts = (
+            np.where(better.reshape(-1, *[1] * (mine.ndim - 1)), its, mine)
+            for mine, its in (
+                (self.starts, other.starts),
+                (self.states, other.states),
+                (self.residual, other.residual),
+                (self.white, other.white),
+                (self.slopes, other.slopes),
+            )
+        )
+        return Fitted(self.free, self.values, *parts)
+
+    @property
+    def projected(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """What the start states cannot explain: of `white` (segment, number), and of the constants' slopes."""
+        n = self.starts.shape[1]
+        basis = start_basis(self.slopes[..., :n])
+        return without(basis, self.white[..., None])[..., 0], without(basis, self.slopes[..., n:])
+
+    @property
+    def covariance(self) -> NDArray[np.float64]:
+        """Covariance of the fitted constants (free, free), from the curvature of the misfit."""
+        if not self.free:
+            return np.zeros((0, 0))
+        _, slopes = self.projected
+        flat = slopes.reshape(-1, len(self.free))
+        size = np.linalg.norm(flat, axis=0)
+        size[size == 0] = 1.0
+        return np.linalg.pinv((flat / size).T @ (flat / size), rcond=1e-12) / np.outer(size, size)
+
+
+def start_basis(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return an orthonormal basis, segment by segment, of what the start states can explain.
+
+    Parameters
+    ----------
+    slopes : ndarray (segment, number, state)
+        Slopes of the whitened residual.
+    """
+    size = np.linalg.norm(slopes, axis=1, keepdims=True)
+    basis, triangle = np.linalg.qr(slopes / np.where(size > 0, size, 1.0))
+    weak = np.abs(np.diagonal(triangle, axis1=1, axis2=2)) < 1e-7
+    return basis * ~weak[:, None, :]
+
+
+def without(basis: NDArray[np.float64], columns: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return columns (segment, number, column) less what the basis explains of them."""
+    return columns - basis @ (np.swapaxes(basis, 1, 2) @ columns)
