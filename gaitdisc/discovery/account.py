@@ -52,6 +52,11 @@ class Account:
     fit: Fitted
 
     @property
+    def names(self) -> tuple[dict[str, str], ...]:
+        """For each explanation, slot -> the parameter that it is in the simulation."""
+        return tuple(part.candidate.named(_tag(number)) for number, part in enumerate(self.parts))
+
+    @property
     def size(self) -> int:
         """How many numbers were fitted."""
         return len(self.fit.free)
@@ -74,9 +79,14 @@ def with_parts(base: Simulation, parts: tuple[Part, ...]) -> tuple[Simulation, t
     """
     simulation, names = base, []
     for number, part in enumerate(parts):
-        simulation, slots = part.candidate.in_fit(simulation, f"part{number}", part.values)
+        simulation, slots = part.candidate.in_fit(simulation, _tag(number), part.values)
         names.append(slots)
     return simulation, tuple(names)
+
+
+def _tag(number: int) -> str:
+    """Return what the names of an explanation's parameters begin with."""
+    return f"part{number}"
 
 
 def account_for(

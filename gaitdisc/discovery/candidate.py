@@ -167,12 +167,22 @@ class Candidate:
         names : dict of str to str
             Slot -> parameter.
         """
+        names = self.named(tag)
         if self.verdict == "wrong_parameter":
-            return simulation, {"value": self.place}
-        names = {slot: f"{tag}_{slot}" for slot in self.slots}
+            return simulation, names
         for slot, name in names.items():
             simulation = simulation.with_parameter(Parameter(name, float(values[slot])))
         return self.written(simulation, names), names
+
+    def named(self, tag: str) -> dict[str, str]:
+        """Return the parameter that stands for each slot.
+
+        Parameters
+        ----------
+        tag : str
+            Begins the names of those that are added; a wrong parameter is there already.
+        """
+        return {slot: self.place if self.verdict == "wrong_parameter" else f"{tag}_{slot}" for slot in self.slots}
 
 
 def candidates_of(

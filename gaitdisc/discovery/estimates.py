@@ -40,13 +40,8 @@ def estimates_of(account: Account, number: int, base: Simulation) -> dict[str, E
         By name: `stiffness`, `engagement`, ... A stiffness, a damping, a drag and a friction are positive where they
         resist. A sine and a cosine of one argument are an `amplitude` and a `phase`.
     """
-    part = account.parts[number]
-    candidate = part.candidate
-    own = {
-        slot: candidate.place if candidate.verdict == "wrong_parameter" else f"part{number}_{slot}"
-        for slot in candidate.slots
-    }
-    rows = [account.fit.free.index(own[slot]) for slot in candidate.slots]
+    part, own = account.parts[number], account.names[number]
+    rows = [account.fit.free.index(own[slot]) for slot in part.candidate.slots]
     return named_estimates(part, np.asarray(account.fit.covariance)[np.ix_(rows, rows)], base)
 
 

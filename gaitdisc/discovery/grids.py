@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 QUANTILES = np.linspace(0.04, 0.96, 15)
 HALF_WIDTHS = np.linspace(0.08, 0.92, 9)
 DELAYS_PER_PERIOD = np.linspace(0.02, 0.55, 20)
-PHASES = np.arange(0.0, 1.0, 0.05) + 0.025
+PHASES = np.linspace(0.025, 0.975, 20)
 PHASE_WIDTHS = np.array([0.03, 0.06, 0.12, 0.25])
 MOST_FREQUENCIES = 240
 NOISE_FACTOR = 6.0  # times the median line of the spectrum is taken for noise
@@ -98,7 +98,7 @@ def delays(rhythm: Rhythm) -> NDArray[np.float64]:
     rhythm : Rhythm
         The record's times.
     """
-    return np.maximum(DELAYS_PER_PERIOD * rhythm.period, 0.5 / rhythm.rate).astype(np.float64, copy=False)
+    return np.maximum(DELAYS_PER_PERIOD * rhythm.period, 0.5 / rhythm.rate)
 
 
 def cells(constants: dict[str, str], along: NDArray[np.float64], rhythm: Rhythm) -> list[dict[str, float]]:
