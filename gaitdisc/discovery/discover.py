@@ -96,6 +96,12 @@ def judge(inquiry: Inquiry, as_read: Judged) -> Verdict:
         The simulation as read.
     """
     named, rivals = inquiry.search.grown(as_read, MOST_NAMES + 1)
+    if not named.account.parts and inquiry.is_tame(as_read):
+        longer = inquiry.lengthened(as_read)
+        if longer is not as_read:
+            named, rivals = inquiry.search.grown(longer, MOST_NAMES + 1)
+            as_read = longer if named.account.parts else as_read
+            named = named if named.account.parts else as_read
     if named.noise.remembers:
         shape = fitted_shape(as_read, inquiry.search)
         plain, *found = compared([as_read, named, *([shape] if shape else [])], inquiry.search.base)
@@ -114,13 +120,13 @@ def judge(inquiry: Inquiry, as_read: Judged) -> Verdict:
         return Verdict("unnamed", shape or named, (named, *rivals))
     if not named.account.parts:
         return Verdict("no_gap", as_read, tuple(rivals))
-    longer = decided(inquiry, named, rivals)
+    longer, rivals = decided(inquiry, named, rivals)
     if not proven(inquiry, as_read, longer):
         return Verdict("no_gap", as_read, (named, *rivals))
     return Verdict(longer.account.parts[0].candidate.verdict, longer, tuple(rivals))
 
 
-def decided(inquiry: Inquiry, named: Judged, rivals: list[Judged]) -> Judged:
+def decided(inquiry: Inquiry, named: Judged, rivals: list[Judged]) -> tuple[Judged, list[Judged]]:
     """Return what was named, fitted to long runs; where a rival comes near, the one that long runs prefer.
 
     Parameters
@@ -131,17 +137,24 @@ def decided(inquiry: Inquiry, named: Judged, rivals: list[Judged]) -> Judged:
         What the search let in.
     rivals : list of Judged
         What else stood for the first place.
+
+    Returns
+    -------
+    now : Judged
+        On long runs.
+    rivals : list of Judged
+        All that stood for the first place, best first.
     """
     longer = inquiry.lengthened(named)
     if len(named.account.parts) > 1:
-        return longer
+        return longer, rivals
     near = [one for one in rivals if one is not named and one.evidence < named.evidence + NEAR][:MOST_NEAR]
-    contest = [longer]
-    for one in near:
-        rival = inquiry.lengthened(one, longer.shooting.segments.length)
-        if rival.shooting.segments.length == longer.shooting.segments.length:
-            contest.append(rival)
-    return ranked(compared(contest, inquiry.search.base))[0]
+    near = [inquiry.lengthened(one, longer.shooting.segments.length) for one in near]
+    near = [one for one in near if one.shooting.segments.length == longer.shooting.segments.length]
+    first, *others = ranked(compared([longer, *near], inquiry.search.base))
+    others = [replace(one, gained=first.gained + first.evidence - one.evidence) for one in others]
+    decided_on = {one.labels for one in (first, *others)}
+    return first, [first, *others, *(one for one in rivals if one.labels not in decided_on)]
 
 
 def random_push(inquiry: Inquiry, as_read: Judged) -> Shaken | None:

@@ -28,6 +28,7 @@ GROWTH = 5.0  # of a small change of the start, by which a run is cut
 MOST_RUNS = 0.8
 FIRST_SHARE = 0.3  # of that length, is fitted first, so that the fit of the whole begins near its end
 LENGTHENED = 3  # times as long, again and again, while a run stays with the data
+TAME = 0.8
 FOLLOWED = 1.3  # times the noise of the shorter runs, beyond which a run does not follow the data
 SUBSTEPS = 2
 
@@ -110,6 +111,16 @@ class Inquiry:
             if np.quantile(growth, MOST_RUNS) > GROWTH:
                 return (step + 1) / (self.rhythm.period * self.rhythm.rate)
         return 1.0
+
+    def is_tame(self, now: Judged) -> bool:
+        """Whether runs were cut at a whole period, and not earlier for fear of chaos.
+
+        Parameters
+        ----------
+        now : Judged
+            Fitted to such runs.
+        """
+        return now.shooting.segments.length >= TAME * self.rhythm.period * self.rhythm.rate
 
     def lengthened(self, now: Judged, most: int = 10**9) -> Judged:
         """Return an account fitted to runs as long as it can follow.

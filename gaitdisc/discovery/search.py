@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from gaitdisc.discovery.account import Account, Part, account_for
 from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.catalogue import known_shapes
 from gaitdisc.discovery.evidence import Judged, compared
 from gaitdisc.discovery.grids import Rhythm
 from gaitdisc.discovery.places import Place
@@ -19,11 +20,13 @@ MARGIN = 10.0  # by which the criterion must fall for one more explanation
 MATERIAL = 0.003  # of what is explained already, which one more has to explain
 REFITTED = 14
 JUDGED = 5
+MOST_TURNS = 5  # explanations let in, those that were thrown out again included
 VISITED = (0.01, 0.99)  # quantiles of a state between which a threshold has a meaning
 TURNS = 15
 # Where two explanations fit equally well, the simpler statement first.
 PREFERENCE = ("wrong_parameter", "missing_physics", "input_error", "sensor_error")
 ALIKE = 1.0
+NEARLY = 4.0  # between shapes of one kind: the one that stands first in the catalogue is the simpler
 
 
 @dataclass(frozen=True)
@@ -78,7 +81,8 @@ class Search:
         tried = sorted((one for one in tried if self.sensible(one)), key=lambda one: one.criterion)[:judge]
         if not tried:
             return []
-        return compared([now, *(Judged(one, shooting) for one in tried)], self.base)
+        before, *more = compared([now, *(Judged(one, shooting) for one in tried)], self.base)
+        return [before, *(replace(one, gained=before.evidence - one.evidence) for one in more)]
 
     def sensible(self, account: Account) -> bool:
         """Whether every number of an account lies where it means what its name says.
@@ -141,18 +145,20 @@ class Search:
         parts = now.account.parts[:number] + now.account.parts[number + 1 :]
         return Judged(account_for(now.shooting, self.base, parts, now.account.fit.starts, TURNS), now.shooting)
 
-    def pruned(self, now: Judged) -> Judged:
-        """Return the account without the explanations that do not earn their price and the margin.
+    def pruned(self, now: Judged, worth: float) -> Judged:
+        """Return the account without the explanations that a better choice of the others has made idle.
 
         Parameters
         ----------
         now : Judged
-            A fitted account.
+            With two explanations or more.
+        worth : float
+            By which the evidence must get worse for one to stay.
         """
-        while now.account.parts:
+        while len(now.account.parts) > 1:
             fewer = [self.without(now, number) for number in range(len(now.account.parts))]
             best = min(fewer, key=lambda one: one.evidence)
-            if best.evidence > now.evidence + MARGIN:
+            if best.evidence > now.evidence + worth:
                 break
             now = best
         return now
@@ -175,8 +181,8 @@ class Search:
             What else stood for the first place, best first.
         """
         rivals: list[Judged] = []
-        explained = 0.0
-        while len(now.account.parts) < most:
+        explained, turns = 0.0, 0
+        while len(now.account.parts) < most and turns < MOST_TURNS:
             before, *more = self.extended(now) or [now]
             more = ranked(more)
             rivals = rivals or more
@@ -185,7 +191,8 @@ class Search:
                 break
             now, explained = more[0], max(explained, gained)
             if len(now.account.parts) > 1:
-                now = self.exchanged(now)
+                now = self.pruned(self.exchanged(now), max(MARGIN, MATERIAL * explained))
+            turns += 1
         return now, rivals
 
 
@@ -203,8 +210,14 @@ def ranked(accounts: list[Judged]) -> list[Judged]:
     least = accounts[0].evidence
     simple = [one for one in accounts if one.evidence < least + MARGIN and one.account.size < accounts[0].account.size]
     first = simple[0] if simple else accounts[0]
-    alike = [
-        one for one in accounts if one.evidence < first.evidence + ALIKE and one.account.size == first.account.size
-    ]
-    alike.sort(key=lambda one: [PREFERENCE.index(part.candidate.verdict) for part in one.account.parts])
+    near = [one for one in accounts if one.evidence < first.evidence + NEARLY and one.account.size == first.account.size]
+    order = {shape.name: number for number, shape in reversed(list(enumerate(known_shapes())))}
+    near.sort(key=lambda one: [order.get(part.candidate.name, len(order)) for part in one.account.parts])
+    first = next(one for one in near if _verdicts(one) == _verdicts(first))
+    alike = [one for one in near if abs(one.evidence - first.evidence) < ALIKE]
+    alike.sort(key=lambda one: [PREFERENCE.index(verdict) for verdict in _verdicts(one)])
     return alike + [one for one in accounts if one not in alike]
+
+
+def _verdicts(one: Judged) -> list[str]:
+    return [part.candidate.verdict for part in one.account.parts]
