@@ -33,8 +33,8 @@ class Conditions:
         Share of the record that is learned from.
     published : bool
         As the published code: 4 Hz filter where there is noise, central differences, each forecast starts from the
-        last measured sample, and the truth that it is judged by is run again from there. Otherwise: a cut-off by
-        residual analysis, the flow of the known model in place of a derivative, starts and truth of the trajectory.
+        last measured sample, and the truth that it is judged by is run again from there. Otherwise: a cut-off where
+        the noise begins, the flow of the known model in place of a derivative, starts and truth of the trajectory.
     """
 
     noise: float = 0.0

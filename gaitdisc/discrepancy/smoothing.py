@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import butter, sosfiltfilt
+from scipy.signal import butter, sosfiltfilt, welch
 
 ORDER = 4
 HIGH_BAND = 0.75  # of half the rate: nothing but noise is looked for above
-CUTOFFS = 40
+ABOVE, NEIGHBOURS, MARGIN = 5.0, 5, 1.5
 EDGE_PERIODS = 1.8  # of the cut-off, over which the filter's ends are not to be trusted (as in `signals.butterworth`)
 
 
@@ -22,7 +22,7 @@ def smoothed(values: NDArray[np.float64], rate_hz: float, cutoff_hz: float | Non
     rate_hz : float
         Samples a second.
     cutoff_hz : float, optional
-        -3 dB frequency of one of the two passes; by residual analysis where absent, for each channel.
+        -3 dB frequency of one of the two passes; 1.5 times the highest frequency that stands out of the noise where absent, for each channel.
 
     Examples
     --------
@@ -33,15 +33,16 @@ def smoothed(values: NDArray[np.float64], rate_hz: float, cutoff_hz: float | Non
     """
     columns = []
     for column in np.asarray(values, float).T:
-        cutoff = residual_cutoff_hz(column, rate_hz) if cutoff_hz is None else cutoff_hz
+        cutoff = noise_cutoff_hz(column, rate_hz) if cutoff_hz is None else cutoff_hz
         columns.append(_lowpassed(column, rate_hz, cutoff))
     return np.column_stack(columns)
 
 
-def residual_cutoff_hz(values: NDArray[np.float64], rate_hz: float) -> float:
-    """Lowest cut-off whose residual is no larger than the noise.
+def noise_cutoff_hz(values: NDArray[np.float64], rate_hz: float) -> float:
+    """Half as much again as the highest frequency at which signal stands out of the noise.
 
-    The noise is that above 0.75 of half the rate, taken as white; what a filter removes beyond white noise is signal.
+    The noise's power density is the median of that above 0.75 of half the rate, taken as white; signal stands out where
+    the density, as the mean of five neighbours, is above five times that.
 
     Parameters
     ----------
@@ -52,17 +53,24 @@ def residual_cutoff_hz(values: NDArray[np.float64], rate_hz: float) -> float:
 
     References
     ----------
-    Winter 2009, Biomechanics and Motor Control of Human Movement, section 3.4.4.3: residual analysis, with the line
-    through its straight part replaced by the power above a frequency.
+    Welch 1967, IEEE Trans. Audio Electroacoust. 15:70, with segments of a quarter of the record. It stands for the
+    published code's 4 Hz, which suits neither system: it costs the Lorenz system its turns and leaves the Van der Pol
+    oscillator most of the noise.
+
+    Examples
+    --------
+    >>> t = np.arange(3000) / 100
+    >>> noisy = np.sin(2 * np.pi * 2 * t) + 0.01 * np.random.default_rng(0).standard_normal(3000)
+    >>> bool(2.0 < noise_cutoff_hz(noisy, 100.0) < 6.0)
+    True
     """
-    high = sosfiltfilt(butter(ORDER, HIGH_BAND, "highpass", output="sos"), values - values.mean())
-    noise = float(np.std(high)) / np.sqrt(1 - HIGH_BAND)
-    trials = np.geomspace(rate_hz / 200, 0.45 * rate_hz, CUTOFFS)
-    for cutoff in trials:
-        removed = np.std(values - _lowpassed(values, rate_hz, float(cutoff)))
-        if removed <= 1.01 * noise * np.sqrt(1 - 2 * cutoff / rate_hz):
-            return float(cutoff)
-    return float(trials[-1])
+    length = max(32, len(values) // 4)
+    frequency, density = welch(values, rate_hz, nperseg=min(length, len(values)), detrend="linear")
+    floor = np.median(density[frequency > HIGH_BAND * rate_hz / 2])
+    wide = np.convolve(density, np.ones(NEIGHBOURS) / NEIGHBOURS, mode="same")
+    loud = np.flatnonzero(wide <= ABOVE * floor)
+    highest = frequency[loud[0]] if loud.size else frequency[-1]
+    return float(np.clip(MARGIN * highest, 4 * rate_hz / len(values), 0.45 * rate_hz))
 
 
 def edge_samples(rate_hz: float, cutoff_hz: float = 4.0) -> int:

@@ -13,7 +13,7 @@ from gaitdisc.recording.arrays import read_only
 from gaitdisc.regression.extra import chapter3_library
 
 THRESHOLDS = tuple(10.0**power for power in np.linspace(-3.0, 0.0, 19))  # of the output's size, where none is given
-NEAR_BEST = 0.05  # of the least error on the inner block: the sparsest model so close is taken
+NEAR_BEST = 0.02  # of the least error on the inner block: the sparsest model so close is taken
 SEAM_S = 0.3  # as Trajectory.split: zero-lag filters look ahead over the seam
 LEAST_BEFORE_INNER = 20
 PASSES = 10  # of thresholding, as the published code
@@ -83,7 +83,7 @@ def fit_sindy(samples: Samples, degree: int = 3, threshold: float | None = None,
 
     With a threshold given, it acts on the coefficients in their units, as in the published code. Without one, columns
     and outputs are divided by their size first, and of `THRESHOLDS` the largest is taken whose error on the last 15 %
-    of the samples (contiguous, 0.3 s apart) is within 5 % of the least, or below 1e-6 of the output's variance; an
+    of the samples (contiguous, 0.3 s apart) is within 2 % of the least, or below 1e-6 of the output's variance; an
     output smaller than a hundredth of the largest one counts as one hundredth of it.
 
     Parameters
