@@ -13,7 +13,9 @@ from gaitdisc.commands.options import Quiet
 
 def discover(
     simulation: Annotated[Path, typer.Argument(metavar="SIMULATION", help="A simulation file (TOML).")],
-    measured: Annotated[Path, typer.Argument(metavar="MEASURED", help="Measured trials (CSV or Parquet).")],
+    measured: Annotated[
+        Path | None, typer.Argument(metavar="MEASURED", help="Measured trials (CSV or Parquet).")
+    ] = None,
     out: Annotated[Path, typer.Option(help="Folder of what was found.")] = Path("found"),
     catalogue: Annotated[Path | None, typer.Option(help="Effects of your own, beside those that come along.")] = None,
     draw: Annotated[bool, typer.Option("--report/--no-report", help="Write report.html too.")] = True,
@@ -21,9 +23,16 @@ def discover(
 ) -> None:
     """Find what the simulation lacks, name it, add it, and show the gap shrink on data that were held out."""
     from gaitdisc.batch.discover_files import discover_files
+    from gaitdisc.errors import SchemaError
     from gaitdisc.results.discovery_folder import save_discovery
     from gaitdisc.simulation.writing import write_simulation
 
+    if measured is None:
+        raise SchemaError(
+            "a discovery needs a simulation file and measured trials",
+            f"only {simulation.name} is given",
+            "Name the measured table after it: gaitdisc discover SIMULATION.toml MEASURED.csv.",
+        )
     began = time.perf_counter()
 
     def told(step: str) -> None:
@@ -32,9 +41,14 @@ def discover(
 
     found, augmented = discover_files(simulation, measured, catalogue, told)
     write_simulation(augmented, out / "augmented.toml")
-    page = save_discovery(found, out)
+    place = save_discovery(found, out)
+    if draw:
+        from gaitdisc.report.discovery_page import write_discovery_report
+
+        told("drawing the report")
+        place = write_discovery_report(found, out)
     typer.echo(found.sentence)
     for finding in found.findings:
         if finding.severity != "note":
             typer.echo(finding.line(), err=True)
-    typer.echo(f"report: {page}")
+    typer.echo(f"{'report' if draw else 'found'}: {place}")

@@ -140,7 +140,8 @@ def _constant(estimate: Estimate, part: Part, base: Simulation) -> str:
     if estimate.unit in ("s", "1", "rad/s"):
         return brief_text(estimate)
     direction = DIRECTIONS.search(meaning.get(role, ""))
-    return f"{brief_text(estimate)} of {direction[0] if direction else role}"
+    seen = direction[0] if direction else role.replace(" - ", " minus ")
+    return f"{brief_text(estimate)} of {seen}"
 
 
 def _stride(effect: FoundEffect, where: tuple[Whereabouts, ...]) -> str:

@@ -1,0 +1,232 @@
+"""Measured, simulated and augmented on what was held out: over time, over the stride, and against the state."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from gaitdisc.discovery.amounts import shown_unit
+from gaitdisc.report.figure import Figure, Room, in_style, legend, panels
+from gaitdisc.report.palette import MEASURED, MODELS
+from gaitdisc.results.discovery import Discovery
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+
+SHADE = "#f2b632"  # the gap, as in a comparison of two walks
+MOST_CHANNELS = 4
+SHOWN = 500  # samples of the stretch that is drawn
+STRIDE_BINS, STATE_BINS = 50, 16
+FEWEST = 5  # samples of a bin
+WORDS = ("measured", "simulated", "augmented")
+
+
+@in_style
+def discovery_figures(discovery: Discovery) -> list[Figure]:
+    """Draw a typical stretch over time, the stride where there is a phase, and the gap against each channel.
+
+    Parameters
+    ----------
+    discovery : Discovery
+        What was found.
+    """
+    table = pd.DataFrame(discovery.runs.table(discovery.channels)).dropna()
+    for channel, unit in zip(discovery.channels, discovery.units, strict=True):
+        table[[f"{channel}_{word}" for word in WORDS]] *= shown_unit(unit)[1]
+    figures = [_over_time(discovery, table), _against_state(discovery, table)]
+    if "phase" in table:
+        figures.insert(1, _over_stride(discovery, table))
+    return figures
+
+
+def typical_stretch(gap: NDArray[np.float64], samples: int) -> tuple[int, int]:
+    """Return first and end sample of the stretch whose mean squared gap is the median of all such stretches.
+
+    Parameters
+    ----------
+    gap : ndarray (sample,)
+        Squared gap.
+    samples : int
+        Length of a stretch.
+
+    Examples
+    --------
+    >>> typical_stretch(np.array([9.0, 9, 1, 1, 4, 4]), 2)
+    (4, 6)
+    """
+    begins = np.arange(0, max(len(gap) - samples, 0) + 1, samples)
+    size = np.array([gap[begin : begin + samples].mean() for begin in begins])
+    begin = int(begins[np.argsort(size, kind="stable")[len(size) // 2]])
+    return begin, min(begin + samples, len(gap))
+
+
+def binned(along: NDArray[np.float64], values: NDArray[np.float64], edges: NDArray[np.float64]) -> pd.DataFrame:
+    """Return mean and standard deviation of values in bins, those with too few samples left out.
+
+    Parameters
+    ----------
+    along, values : ndarray (sample,)
+        Where, and what.
+    edges : ndarray (bin + 1,)
+        Ends of the bins.
+    """
+    which = np.clip(np.digitize(along, edges) - 1, 0, len(edges) - 2)
+    groups = pd.Series(values).groupby(which)
+    table = pd.DataFrame({"mean": groups.mean(), "sd": groups.std().fillna(0.0), "n": groups.size()})
+    table.insert(0, "at", ((edges[:-1] + edges[1:]) / 2)[table.index])
+    return table[table["n"] >= FEWEST].reset_index(drop=True)
+
+
+def _drawn_channels(discovery: Discovery) -> list[tuple[str, str, float]]:
+    """Channels with the largest gap against the noise first: name, unit shown, noise floor in that unit."""
+    sizes = discovery.held_out.channels
+    order = sorted(discovery.channels, key=lambda name: -sizes[name][0] / (sizes[name][2] or 1.0))
+    units = dict(zip(discovery.channels, discovery.units, strict=True))
+    return [(name, *_shown(units[name], sizes[name][2])) for name in order[:MOST_CHANNELS]]
+
+
+def _shown(unit: str, floor: float) -> tuple[str, float]:
+    text, factor = shown_unit(unit)
+    return text or "1", factor * floor
+
+
+def _over_time(discovery: Discovery, table: pd.DataFrame) -> Figure:
+    channels = _drawn_channels(discovery)
+    first = channels[0][0]
+    trial = table["trial"].iloc[0]
+    one = table[table["trial"] == trial].reset_index(drop=True)
+    gap = (one[f"{first}_measured"] - one[f"{first}_simulated"]).to_numpy() ** 2
+    begin, end = typical_stretch(gap, min(SHOWN, len(one)))
+    numbers = one.iloc[begin:end]
+    drawn, grid = panels(len(channels), 2, 1.75, Room(left=0.6, across=0.62, down=0.52))
+    for (left, right), (channel, unit, floor) in zip(grid, channels, strict=True):
+        time = numbers["time"].to_numpy()
+        seen, simulated, augmented = (numbers[f"{channel}_{word}"].to_numpy() for word in WORDS)
+        left.fill_between(time, seen, simulated, color=SHADE, alpha=0.55, linewidth=0, zorder=1)
+        left.plot(time, seen, color=MEASURED.colour, linewidth=1.3, zorder=2)
+        _models(left, time, simulated, augmented)
+        left.set_title(channel)
+        left.set_ylabel(f"[{unit}]", labelpad=1)
+        right.axhspan(-2 * floor, 2 * floor, color="#888888", alpha=0.22, linewidth=0)
+        right.fill_between(time, seen - simulated, 0.0, color=SHADE, alpha=0.55, linewidth=0, zorder=1)
+        _models(right, time, seen - simulated, seen - augmented)
+        right.set_title(f"{channel}: what is left")
+        right.set_ylabel(f"[{unit}]", labelpad=1)
+    for axes in grid[-1]:
+        axes.set_xlabel("time [s]", labelpad=1)
+    legend(drawn, _key(measured=True))
+    caption = (
+        f"Trial {trial}, held out: neither searched nor fitted, only the start of each run was found. Left: measured "
+        "(black), simulated as read (orange, dashed), with what was found (green); the gap is shaded. Right: measured "
+        f"minus each; grey band: two standard deviations of the noise. Typical stretch, {len(numbers)} samples."
+    )
+    return Figure("held_out", caption, _alt(discovery), numbers, drawn)
+
+
+def _over_stride(discovery: Discovery, table: pd.DataFrame) -> Figure:
+    channels = _drawn_channels(discovery)
+    edges = np.linspace(0, 100, STRIDE_BINS + 1)
+    percent = 100 * table["phase"].to_numpy()
+    drawn, grid = panels(len(channels), 2, 1.75, Room(left=0.6, across=0.62, down=0.52))
+    kept = []
+    for (left, right), (channel, unit, _) in zip(grid, channels, strict=True):
+        seen = table[f"{channel}_measured"].to_numpy()
+        curves = {word: binned(percent, table[f"{channel}_{word}"].to_numpy(), edges) for word in WORDS}
+        at = curves["measured"]["at"].to_numpy()
+        means = [curves[word]["mean"].to_numpy() for word in WORDS]
+        left.fill_between(at, means[0], means[1], color=SHADE, alpha=0.55, linewidth=0, zorder=1)
+        left.plot(at, means[0], color=MEASURED.colour, linewidth=1.3, zorder=2)
+        _models(left, at, means[1], means[2])
+        gaps = [binned(percent, seen - table[f"{channel}_{word}"].to_numpy(), edges) for word in WORDS[1:]]
+        for gap, look in zip(gaps, (MODELS["nominal"], MODELS["augmented"]), strict=True):
+            low, high = gap["mean"] - gap["sd"], gap["mean"] + gap["sd"]
+            right.fill_between(gap["at"], low, high, color=look.colour, alpha=0.15, linewidth=0)
+        right.axhline(0.0, color="#888888", linewidth=0.6)
+        _models(right, at, gaps[0]["mean"].to_numpy(), gaps[1]["mean"].to_numpy())
+        for axes, title in ((left, channel), (right, f"{channel}: what is left")):
+            axes.set_title(title)
+            axes.set_ylabel(f"[{unit}]", labelpad=1)
+            axes.set_xlim(0, 100)
+            _mark_stride(axes, discovery)
+        kept += [
+            one.assign(channel=channel, unit=unit, what=word)
+            for one, word in zip([*curves.values(), *gaps], [*WORDS, "gap_before", "gap_after"], strict=True)
+        ]
+    for axes in grid[-1]:
+        axes.set_xlabel("stride [%]", labelpad=1)
+    legend(drawn, _key(measured=True))
+    caption = (
+        f"The same over the stride, all {len(table)} held-out samples in {STRIDE_BINS} bins; bands: standard deviation "
+        "in a bin. Bar at the foot: where what was found is at least half as strong as at its strongest."
+    )
+    return Figure("over_stride", caption, _alt(discovery), pd.concat(kept, ignore_index=True), drawn)
+
+
+def _against_state(discovery: Discovery, table: pd.DataFrame) -> Figure:
+    channels = _drawn_channels(discovery)
+    columns = min(len(channels), 3)
+    drawn, grid = panels(-(-len(channels) // columns), columns, 1.75, Room(left=0.6, across=0.62, down=0.62))
+    cells, kept = [axes for row in grid for axes in row], []
+    for axes in cells[len(channels) :]:
+        axes.set_visible(False)
+    for axes, (channel, unit, _) in zip(cells, channels, strict=False):
+        seen = table[f"{channel}_measured"].to_numpy()
+        edges = np.linspace(np.quantile(seen, 0.005), np.quantile(seen, 0.995), STATE_BINS + 1)
+        gaps = [binned(seen, seen - table[f"{channel}_{word}"].to_numpy(), edges) for word in WORDS[1:]]
+        for gap, look, shift in zip(gaps, (MODELS["nominal"], MODELS["augmented"]), (-0.1, 0.1), strict=True):
+            at = gap["at"] + shift * (edges[1] - edges[0])
+            error = gap["sd"].to_numpy()
+            axes.errorbar(
+                at, gap["mean"], error, color=look.colour, marker=look.mark, markersize=3, linewidth=0.9, elinewidth=0.6
+            )
+        axes.axhline(0.0, color="#888888", linewidth=0.6)
+        axes.set_title(f"{channel}: what is left")
+        axes.set_xlabel(f"{channel} [{unit}]", labelpad=1)
+        axes.set_ylabel(f"[{unit}]", labelpad=1)
+        words = ("gap_before", "gap_after")
+        kept += [one.assign(channel=channel, unit=unit, what=word) for one, word in zip(gaps, words, strict=True)]
+    legend(drawn, _key(measured=False))
+    caption = (
+        f"Measured minus simulated against the measured channel, all {len(table)} held-out samples; mean and standard "
+        "deviation in a bin. What is left of a complete model has no shape."
+    )
+    return Figure("against_state", caption, _alt(discovery), pd.concat(kept, ignore_index=True), drawn)
+
+
+def _models(
+    axes: Axes, at: NDArray[np.float64], simulated: NDArray[np.float64], augmented: NDArray[np.float64]
+) -> None:
+    for values, look in ((simulated, MODELS["nominal"]), (augmented, MODELS["augmented"])):
+        axes.plot(at, values, color=look.colour, linestyle=look.line, linewidth=1.1, zorder=3)
+
+
+def _mark_stride(axes: Axes, discovery: Discovery) -> None:
+    for one in discovery.where:
+        if one.phase:
+            ends = [100 * share for share in one.phase]
+            across = axes.get_xaxis_transform()
+            axes.plot(ends, [0.02, 0.02], color="#b06f00", linewidth=2.2, transform=across, solid_capstyle="butt")
+
+
+def _key(measured: bool) -> list[Artist]:
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    nominal, augmented = MODELS["nominal"], MODELS["augmented"]
+    keys: list[Artist] = [
+        Line2D([], [], color=nominal.colour, linestyle=nominal.line, label="simulated as read"),
+        Line2D([], [], color=augmented.colour, linestyle=augmented.line, label="with what was found"),
+    ]
+    if not measured:
+        return keys
+    return [Line2D([], [], color=MEASURED.colour, label="measured"), *keys, Patch(color=SHADE, alpha=0.55, label="gap")]
+
+
+def _alt(discovery: Discovery) -> str:
+    sizes = discovery.held_out.channels.items()
+    told = (f"{name} from {before:.3g} to {after:.3g}, noise {floor:.3g}" for name, (before, after, floor) in sizes)
+    return f"Root mean square of measured minus simulated, before and after: {'; '.join(told)} (units of the file)."

@@ -1,0 +1,90 @@
+"""The page of a discovery: the answer first, then the evidence; self-contained, with every number beside it as CSV."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import gaitdisc
+from gaitdisc.report.discovery_figure import discovery_figures
+from gaitdisc.report.discovery_tables import data_findings, estimates_table, gap_table, rivals_table, where_table
+from gaitdisc.report.figure import save_figure, save_table
+from gaitdisc.report.method import flattened, provenance_rows
+from gaitdisc.report.page import templates
+from gaitdisc.report.tables import pairs_table
+from gaitdisc.results.discovery import Discovery
+from gaitdisc.whole_file import write_whole
+
+VERDICTS = {
+    "no_gap": "no gap: simulation and data agree to within the noise",
+    "missing_physics": "missing physics: a term is missing in the dynamics",
+    "wrong_parameter": "wrong parameter: the structure is right, a number is not",
+    "input_error": "input error: a driving signal is late or scaled",
+    "sensor_error": "sensor error: the state is right, its measurement is not",
+    "wrong_initial_condition": "wrong initial condition: only the start is wrong",
+    "process_noise": "process noise: the system is shaken by something random",
+    "unnamed": "unnamed: a deterministic term is missing, and no known effect explains it",
+}
+METHOD = (
+    "Trials were cut into short runs. Each run's start was found, so that only the dynamics, the inputs and the "
+    "sensors could be wrong; whole trajectories were compared with the measurement, never derivatives of it.",
+    "Every explanation was weighed at every place where it may enter: the effects of the catalogue, and beside them "
+    "wrong parameters, late or scaled inputs, and errors of the sensors. The best were fitted in full, with the "
+    "constants inside them (a threshold, a delay, a frequency).",
+    "Evidence is twice the log likelihood, under noise whose memory was learned from what is left, less the logarithm "
+    "of the number of samples for each number fitted.",
+    "What was found had to make the misfit fall on the held-out data, of which nothing was fitted but the start of "
+    "each run. The intervals follow from the curvature of the likelihood under that noise.",
+    "More than two effects at one time, or what no effect of the catalogue explains, are not named: a shape is fitted "
+    "instead.",
+)
+
+
+def write_discovery_report(discovery: Discovery, folder: Path) -> Path:
+    """Write the report of a discovery: `report.html`, `figures/` and `tables/`.
+
+    Parameters
+    ----------
+    discovery : Discovery
+        What was found; nothing is computed again.
+    folder : Path
+        Where the report goes; made if missing.
+
+    Returns
+    -------
+    Path
+        The page.
+
+    Raises
+    ------
+    WriteError
+        If a file cannot be written; what stood there before still stands.
+    """
+    made = discovery.provenance
+    tables = {
+        "estimates": estimates_table(discovery),
+        "gap": gap_table(discovery),
+        "where": where_table(discovery),
+        "rivals": rivals_table(discovery),
+        "findings": data_findings(discovery),
+    }
+    if made:
+        tables |= {
+            "settings": pairs_table("settings", "What was asked.", ("setting", "value"), flattened(made.settings)),
+            "versions": pairs_table("versions", "Circumstances.", ("what", "value"), provenance_rows(made)),
+            "files": pairs_table(
+                "files", "Files read, with their SHA-256.", ("file", "SHA-256"), [*made.files.items()]
+            ),
+        }
+    for table in tables.values():
+        save_table(table.numbers, folder / "tables" / f"{table.name}.csv")
+    text = templates().get_template("discovery.html.j2").render(
+        discovery=discovery,
+        title=str(made.settings.get("title", "A simulation")) if made else "A simulation",
+        verdict=VERDICTS[discovery.verdict],
+        terms=[effect for effect in discovery.effects if effect.term],
+        figures=[save_figure(figure, folder / "figures") for figure in discovery_figures(discovery)],
+        tables=tables,
+        method=METHOD,
+        version=gaitdisc.__version__,
+    )  # fmt: skip
+    return write_whole(folder / "report.html", text)

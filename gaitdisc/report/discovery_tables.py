@@ -1,0 +1,180 @@
+"""Tables of a discovery: its numbers, where the gap arises, how far it shrank, what else was weighed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import pandas as pd
+
+from gaitdisc.discovery.amounts import amount, estimate_text, shown_unit
+from gaitdisc.discovery.told_apart import would_tell_apart
+from gaitdisc.discovery.wording import at_place, spoken
+from gaitdisc.report.tables import Table
+from gaitdisc.report.wording import counted
+from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect
+
+NONE = "–"
+
+
+def estimates_table(discovery: Discovery) -> Table:
+    """Every number of what was found, with its interval.
+
+    Parameters
+    ----------
+    discovery : Discovery
+        What was found.
+    """
+    rows, records = [], []
+    for effect in discovery.effects:
+        for name, one in effect.estimates.items():
+            number, unit = name.replace("_", " "), "" if one.unit == "1" else one.unit
+            size = (one.high - one.low) / 2
+            written = (f"{amount(each, size)} {unit}".strip() for each in (one.value, one.low, one.high))
+            rows.append((spoken(effect.name), effect.place, number, *written, _degrees(one)))
+            records.append(
+                (effect.name, effect.kind, effect.place, name, one.value, one.low, one.high, one.unit, effect.term)
+            )
+    caption = "What was found, in the units of the simulation file; low and high: 95 % interval."
+    headings = ("effect", "place", "number", "value", "low", "high", "in degrees")
+    columns = ("effect", "kind", "place", "number", "value", "low", "high", "unit", "term")
+    return Table("estimates", caption, headings, tuple(rows), _frame(records, columns))
+
+
+def gap_table(discovery: Discovery) -> Table:
+    """How far the gap shrank, channel by channel, on what was fitted and on what was held out.
+
+    Parameters
+    ----------
+    discovery : Discovery
+        What was found.
+    """
+    rows, records = [], []
+    for data, size in (("held out", discovery.held_out), ("fitted", discovery.train)):
+        for channel, unit in zip(discovery.channels, discovery.units, strict=True):
+            if channel not in size.channels:
+                continue
+            shown, factor = shown_unit(unit)
+            before, after, floor = size.channels[channel]
+            told = [f"{amount(factor * one, factor * floor / 10)} {shown}".strip() for one in (before, after, floor)]
+            rows.append((data, channel, *told, _percent(closed_share(before, after, floor)), _p(size.p)))
+            records.append((data, channel, before, after, floor, unit, closed_share(before, after, floor), size.p))
+    runs = counted(len(discovery.runs.trial), "run")
+    caption = (
+        "Root mean square of measured minus simulated, before and after, and what noise alone would leave. Closed: of "
+        "the squared gap above the noise. p: chance of so great a fall if each run's gain could as well have had the "
+        f"other sign, for all channels of those data together (held out: {runs})."
+    )
+    headings = ("data", "channel", "before", "after", "noise floor", "closed", "p")
+    columns = ("data", "channel", "before", "after", "noise_floor", "unit", "closed", "p")
+    return Table("gap", caption, headings, tuple(rows), _frame(records, columns))
+
+
+def where_table(discovery: Discovery) -> Table:
+    """Where the gap arises: place, share, part of the stride, region of the states.
+
+    Parameters
+    ----------
+    discovery : Discovery
+        What was found.
+    """
+    rows, records = [], []
+    for one in discovery.where:
+        phase = f"{100 * one.phase[0]:.0f} to {100 * one.phase[1]:.0f} %" if one.phase else NONE
+        rows.append((at_place(one.kind, one.place), _percent(one.share_of_gap), phase, one.region or NONE))
+        begin, end = one.phase or (math.nan, math.nan)
+        records.append((one.kind, one.place, one.share_of_gap, begin, end, one.region))
+    caption = "Where the gap arises. Share: of the mean squared gap that goes when the effect is let in there."
+    columns = ("kind", "place", "share_of_gap", "phase_from", "phase_to", "region")
+    return Table(
+        "where", caption, ("place", "share of the gap", "stride", "region"), tuple(rows), _frame(records, columns)
+    )
+
+
+def rivals_table(discovery: Discovery) -> Table:
+    """What else was weighed, best first, and what would tell it from what was named.
+
+    Parameters
+    ----------
+    discovery : Discovery
+        What was found.
+    """
+    rows, records = [], []
+    named = discovery.effects[0].name if discovery.effects else ""
+    for one in discovery.rivals:
+        apart = would_tell_apart(named, one.name) if named else NONE
+        rows.append(
+            (
+                spoken(one.name),
+                at_place(one.kind, one.place),
+                _numbers(one),
+                _bic(one.bic),
+                "yes" if one.tied else "no",
+                apart,
+            )
+        )
+        records.append((one.name, one.kind, one.place, one.bic, one.tied, apart))
+    own = ", ".join(_bic(one.bic) for one in discovery.effects[:1])
+    caption = (
+        f"What else was weighed, {counted(len(rows), 'rival')}, best first. Evidence: fall of the Bayesian criterion "
+        f"from the simulation as read{f' (what was named: {own})' if own else ''}; the larger the better. "
+        "Tied: these data cannot tell it from what was named."
+    )
+    headings = ("rival", "place", "its numbers", "evidence", "tied", "what would tell them apart")
+    columns = ("rival", "kind", "place", "evidence", "tied", "what_would_tell_them_apart")
+    return Table("rivals", caption, headings, tuple(rows), _frame(records, columns))
+
+
+def data_findings(discovery: Discovery) -> Table:
+    """What was seen in the files on the way.
+
+    Parameters
+    ----------
+    discovery : Discovery
+        What was found.
+    """
+    rows = tuple((f.severity, f.file, f.channel, f"{f.kind}: {f.what}", f.spoils) for f in discovery.findings)
+    columns = ("severity", "file", "channel", "what", "spoils")
+    return Table("findings", f"Seen in the files, n = {len(rows)}.", columns, rows, _frame(rows, columns))
+
+
+def closed_share(before: float, after: float, floor: float) -> float:
+    """Return which share of the squared gap above the noise is closed; NaN where there is none.
+
+    Parameters
+    ----------
+    before, after, floor : float
+        Root mean squares.
+
+    Examples
+    --------
+    >>> closed_share(2.0, 1.0, 1.0), round(closed_share(3.0, 1.5, 1.0), 2)
+    (1.0, 0.84)
+    """
+    there = before**2 - floor**2
+    return (before**2 - after**2) / there if there > 0.02 * floor**2 else math.nan
+
+
+def _degrees(one: Estimate) -> str:
+    return estimate_text(one) if shown_unit(one.unit)[1] != 1.0 else ""
+
+
+def _numbers(one: FoundEffect) -> str:
+    told = [f"{name.replace('_', ' ')} {estimate_text(each)}" for name, each in one.estimates.items()]
+    return ", ".join(told[:2]) + (f", and {len(told) - 2} more" if len(told) > 2 else "")
+
+
+def _bic(value: float) -> str:
+    return f"{value:.0f}".replace("-", "−") if math.isfinite(value) else NONE
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.0f} %".replace("-", "−") if math.isfinite(share) else NONE
+
+
+def _p(p: float) -> str:
+    return NONE if not math.isfinite(p) else "< .001" if p < 0.001 else f"{p:.3f}"
+
+
+def _frame(records: Sequence[tuple[object, ...]], columns: Sequence[str]) -> pd.DataFrame:
+    return pd.DataFrame([*records], columns=pd.Index(columns))
