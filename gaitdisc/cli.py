@@ -20,12 +20,13 @@ from gaitdisc.commands.exit_codes import REFUSED
 from gaitdisc.commands.export import export
 from gaitdisc.commands.modalities import modalities
 from gaitdisc.commands.new import new
+from gaitdisc.commands.reconstruct import reconstruct
 from gaitdisc.commands.report import report
 from gaitdisc.commands.run import run
 from gaitdisc.commands.sensitivity import sensitivity
 from gaitdisc.errors import GaitdiscError
 
-COMMANDS = (new, check, compare, discover, run, ablate, modalities, sensitivity, report, export, demo)
+COMMANDS = (new, check, compare, discover, reconstruct, run, ablate, modalities, sensitivity, report, export, demo)
 
 app = typer.Typer(add_completion=False, no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False)
 for _command in COMMANDS:

@@ -1,7 +1,7 @@
 """Colours and line styles: the same thing looks the same in every figure, also in grey print.
 
-Left red, right blue; Nominal orange, Augmented green, Exo grey. Every colour has a line style or a mark of its own, so
-that grey print and colour-blind readers lose nothing.
+Left red, right blue; Nominal orange, Augmented green, Exo grey; SHRED blue, SDN green, linear orange. Every colour has
+a line style or a mark of its own, so that grey print and colour-blind readers lose nothing.
 """
 
 from __future__ import annotations
@@ -33,6 +33,13 @@ MODELS = {
     "nominal": Look("#d97700", (0, (4.0, 1.6)), "o"),
     "augmented": Look("#00875a", "-", "s"),
     "exo": Look("#7a7a7a", (0, (1.2, 1.2)), "^"),
+}
+RECONSTRUCTED = {
+    "shred": Look("#1f4fc8", "-", "o"),
+    "shallow decoder": Look("#00875a", (0, (5.0, 1.5)), "s"),
+    "linear": Look("#d97700", (0, (4.0, 1.6)), "^"),
+    "delay ridge": Look("#7a3fa0", (0, (3.0, 1.0, 1.0, 1.0)), "v"),
+    "fourier ridge": Look("#a8326e", (0, (1.4, 1.0)), "D"),
 }
 SIDES = {
     "l": Look("#c8102e", "-", "v"),

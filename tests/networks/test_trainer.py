@@ -10,6 +10,8 @@ from gaitdisc.errors import TrainingError
 from gaitdisc.networks import trainer
 from gaitdisc.networks.descent import descend
 from gaitdisc.networks.feedforward import FeedForward
+from gaitdisc.networks.schedule import schedule_of
+from gaitdisc.networks.shallow_decoder import ShallowDecoder
 from gaitdisc.networks.trainer import chosen_device, train
 from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.recording import scale_of
@@ -131,3 +133,32 @@ def test_the_gpu_learns_the_same(swing):
     network = train(swing, FeedForward, TrainingSettings(device="cuda")).network
     missed = swing.y - network(swing.x)
     assert np.all(1 - missed.var(axis=0) / swing.y.var(axis=0) > 0.995)
+
+
+def test_a_given_check_part_stops_and_is_never_fitted(swing, quick):
+    part, check = swing.rows(slice(0, 1500)), swing.rows(slice(1550, None))
+    done = train(part, FeedForward, quick, check=check)
+    assert (done.n_training, done.n_inner) == (1500, 450)
+    np.testing.assert_array_equal(done.network.x_scale.mean, scale_of(part.x).mean)
+    scaled = done.network.y_scale.scaled(check.y)
+    missed = np.mean((done.network.y_scale.scaled(done.network(check.x)) - scaled) ** 2)
+    assert missed < 2 * min(done.losses)
+
+
+def test_the_weights_that_did_best_are_restored_when_the_descent_goes_astray(swing):
+    """A copy, not a reference: `best = network.state_dict()` follows the descent, and restoring it restores nothing."""
+    samples = swing.with_outputs(np.random.default_rng(0).normal(size=swing.y.shape))
+    part, check = samples.rows(slice(0, 100)), samples.rows(slice(200, 400))
+    scales = scale_of(part.x), scale_of(part.y)
+    tensors = [
+        tuple(torch.from_numpy(s.scaled(v).astype(np.float32)) for s, v in zip(scales, (p.x, p.y), strict=True))
+        for p in (part, check)
+    ]
+    torch.manual_seed(0)
+    network = ShallowDecoder(3, 2)
+    settings = TrainingSettings(epochs=60, batch=20, decays=(0.0,))
+    done = descend(network, tensors[0], tensors[1], schedule_of(100, 0.0, settings), settings)
+    with torch.no_grad():
+        restored = float(torch.nn.functional.mse_loss(network(tensors[1][0]), tensors[1][1]))
+    assert done.losses[-1] > 1.2 * min(done.losses)  # noise is learnt by heart after the best epoch
+    assert restored == pytest.approx(min(done.losses), rel=1e-6)

@@ -221,3 +221,39 @@ def tested_maker():
 @pytest.fixture(scope="session")
 def tested():
     return make_tested()
+
+
+@pytest.fixture(scope="session")
+def reconstruction():
+    """One sensor `a`, one state `late`, five strides, two models."""
+    from gaitdisc.results.reconstruction import MEASURES, Reconstruction
+
+    whose = pd.DataFrame({"participant": "P01", "model": ["linear", "delay ridge"]})
+    numbers = dict.fromkeys(MEASURES, 0.5) | {"rmse_deg": [4.0, 1.25], "check_loss": [0.9, 0.1]}
+    errors = {
+        "state": "late",
+        "unit": "deg",
+        "rmse": [4.0, 1.25],
+        "low": 1.0,
+        "high": 5.0,
+        "relative_l2": 0.1,
+        "r2": 0.9,
+    }
+    percent = np.tile(np.arange(1.0, 100.0, 2.0), 2)
+    told = {"measured": np.sin(percent / 16), "measured_sd": 0.1, "told": np.sin(percent / 15), "rmse": 0.2}
+    model = np.repeat(["linear", "delay ridge"], 50)
+    curves = pd.DataFrame({"participant": "P01", "model": model, "state": "late", "percent": percent, **told})
+    return Reconstruction(
+        "pair",
+        (Channel("a", "angle", "deg"),),
+        (Channel("late", "angle", "deg"),),
+        "temporal: first 70 % fitted",
+        "25 readings of each sensor, 0.04 s apart",
+        {"linear": "a line", "delay ridge": "a line through the history"},
+        whose.assign(**errors),
+        whose.assign(strides=5, n_fitted=100, **numbers),
+        curves,
+        (),
+        (),
+        Provenance({}, 0, {"a.mot": "0" * 64}, {}, "5.3.3", "2026-01-01T00:00:00+00:00"),
+    )

@@ -1,0 +1,97 @@
+"""Tell the states of a new recording by a saved model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from gaitdisc.errors import SamplingError
+from gaitdisc.ingest.reading import read_trial
+from gaitdisc.ingest.storage import write_storage
+from gaitdisc.recording import Recording
+from gaitdisc.sensing.intervals import LEVEL, coverage
+from gaitdisc.sensing.model_folder import load_model
+from gaitdisc.signals.butterworth import KINEMATICS_HZ, lowpassed
+
+
+@dataclass(frozen=True, eq=False)
+class ToldRecording:
+    """States told of a recording, and how far they are from those that were measured too.
+
+    Parameters
+    ----------
+    states : Recording
+        What the model tells, from the first full window on.
+    path : Path
+        Where it was written.
+    rmse : dict of str to float
+        Of every state that the recording has itself [its unit]; empty where it has sensors alone.
+    coverage : dict of str to float
+        Share of these inside the model's interval.
+    level : float
+        Share that the interval was made for.
+    """
+
+    states: Recording
+    path: Path
+    rmse: dict[str, float]
+    coverage: dict[str, float]
+    level: float
+
+    def lines(self) -> list[str]:
+        """Return what is said of it."""
+        said = [f"{len(self.states.names)} states of {self.states.duration_s:.2f} s: {self.path}"]
+        for channel in self.states.channels:
+            if channel.name in self.rmse:
+                inside = f"{100 * self.coverage[channel.name]:.0f} % inside the {100 * self.level:.0f} % interval"
+                said.append(f"  {channel.name}: RMSE {self.rmse[channel.name]:.3g} {channel.unit}, {inside}")
+        return said
+
+
+def reconstruct_recording(file: Path, model: Path, out: Path, cutoff_hz: float = KINEMATICS_HZ) -> ToldRecording:
+    """Tell the states of one recording, and write them as a `.mot`.
+
+    Parameters
+    ----------
+    file : Path
+        Kinematics that hold at least the sensors.
+    model : Path
+        Folder of a model that `gaitdisc reconstruct` saved.
+    out : Path
+        File to write.
+    cutoff_hz : float
+        -3 dB frequency of one pass of the low-pass; the model's own recordings had the study's.
+
+    Returns
+    -------
+    ToldRecording
+
+    Raises
+    ------
+    GaitdiscError
+        If a file cannot be read, a sensor is missing, or rate or units are others than the model's.
+    """
+    saved, kinematics = load_model(model), read_trial(file).stream("kinematics")
+    what = saved.reconstructor.sensing
+    names = [name for name in (*what.sensors, *what.states) if name in kinematics.names or name in what.sensors]
+    filtered = lowpassed(kinematics.selected(names), cutoff_hz)
+    told = saved(filtered)
+    known = np.isfinite(told.values).all(axis=1)
+    if known.sum() < 2:
+        raise SamplingError(
+            f"states are told from {what.reach_s:.2f} s of readings",
+            f"{file.name} lasts {kinematics.duration_s:.2f} s, and no such stretch of it lacks no value",
+            "Record longer, or fill the gaps.",
+        )
+    first, last = np.flatnonzero(known)[[0, -1]]
+    kept = told.between(float(told.time[first]), float(told.time[last]) + 0.5 / told.rate_hz)
+    write_storage(kept, out)
+    rmse, inside = {}, {}
+    for column, name in enumerate(what.states):
+        if name in filtered.names:
+            error = told[name][known] - filtered[name][known]
+            rmse[name] = float(np.sqrt(np.mean(error**2)))
+            inside[name] = float(coverage(error[:, None], saved.half_widths[column : column + 1])[0])
+    return ToldRecording(kept, out, rmse, inside, LEVEL)

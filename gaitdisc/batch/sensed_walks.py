@@ -1,0 +1,193 @@
+"""The walks of a study as sensing needs them: filtered states on one rate, percent stride, one recording a trial."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel
+from gaitdisc.errors import ChannelError, GaitdiscError, SamplingError
+from gaitdisc.ingest.c3d import C3DReader
+from gaitdisc.ingest.reading import read_planned_trial
+from gaitdisc.ingest.study import UNKNOWN, Models, Participant, Study
+from gaitdisc.processing.process import processed
+from gaitdisc.recording import Finding, Recording, Trial
+from gaitdisc.results import Refusal
+
+EDGE_S = 0.3  # where a zero-lag filter lacks one side
+STATES = (
+    *(f"pelvis_{word}" for word in ("tilt", "list", "rotation", "tx", "ty", "tz")),
+    "lumbar_extension",
+    "lumbar_bending",
+    *(
+        f"{joint}_{side}"
+        for side in "rl"
+        for joint in ("hip_flexion", "hip_adduction", "hip_rotation", "knee_angle", "ankle_angle")
+    ),
+)  # the 18 of section 5.3.3
+STILL = 1e-3  # deg or m: a channel that varies less was locked
+
+
+@dataclass(frozen=True, eq=False)
+class SensedWalk:
+    """One filtered walk.
+
+    Parameters
+    ----------
+    recording : Recording
+        Sensors and states.
+    phi : ndarray (time,) [% stride]
+        Of the study's side.
+    """
+
+    recording: Recording
+    phi: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class SensedWalks:
+    """The walks of all participants, of the same channels at the same rate.
+
+    Parameters
+    ----------
+    people : dict of str to tuple of SensedWalk
+        Pseudonym -> walks; those without any are not among them.
+    channels : tuple of Channel
+        Of every recording, in order: the states, then sensors that are none.
+    refusals : tuple of Refusal
+        Walks that are left out.
+    findings : tuple of Finding
+        States that are left out, and what was seen in the recordings.
+    files : dict of str to str
+        File name -> SHA-256.
+    """
+
+    people: dict[str, tuple[SensedWalk, ...]]
+    channels: tuple[Channel, ...]
+    refusals: tuple[Refusal, ...]
+    findings: tuple[Finding, ...]
+    files: dict[str, str]
+
+    @property
+    def rate_hz(self) -> float:
+        """Samples a second of every recording."""
+        return next(iter(self.people.values()))[0].recording.rate_hz
+
+
+def sensed_walks(study: Study, sensors: Sequence[str], condition: str = "") -> SensedWalks:
+    """Read and process every walk of a study for reconstruction.
+
+    Parameters
+    ----------
+    study : Study
+        Filters, detector and files.
+    sensors : sequence of str
+        Channels of the kinematics that are read; they may be others than the 18 states.
+    condition : str
+        A word of the study's conditions; both where it is empty.
+
+    Returns
+    -------
+    SensedWalks
+
+    Raises
+    ------
+    ChannelError
+        If no walk has the sensors, or nothing but sensors moves.
+    SamplingError
+        If walks differ in rate.
+    """
+    walks: dict[str, list[SensedWalk]] = {}
+    refusals, findings, files = [], [], {}
+    with C3DReader() as reader:
+        for person in study.participants:
+            if person.excluded:
+                refusals.append(Refusal(person.id, "", f"excluded in the study: {person.excluded}"))
+                continue
+            for trial in _trials(study, person, condition, reader, refusals):
+                try:
+                    walk, seen = _sensed(trial, study, sensors)
+                except GaitdiscError as error:
+                    refusals.append(Refusal(person.id, trial.condition, f"{trial.name}: {error}"))
+                    continue
+                walks.setdefault(person.id, []).append(walk)
+                findings += seen
+                files |= {s.source.file: s.source.sha256 for s in trial.streams.values() if s.source.sha256}
+    if not walks:
+        raise ChannelError(
+            "reconstruction needs walks that can be processed",
+            f"all are refused, the first: {refusals[0].reason}" if refusals else "the study has none",
+            "Mend what the sentence names, or choose other sensors.",
+        )
+    channels, left_out = _moving([walk for found in walks.values() for walk in found], sensors)
+    names = [channel.name for channel in channels]
+    people = {
+        name: tuple(replace(walk, recording=walk.recording.selected(names)) for walk in found)
+        for name, found in walks.items()
+    }
+    _refuse_rates(people)
+    return SensedWalks(people, channels, tuple(refusals), (*left_out, *findings), files)
+
+
+def _trials(
+    study: Study, person: Participant, condition: str, reader: C3DReader, refusals: list[Refusal]
+) -> list[Trial]:
+    found = []
+    for planned in person.trials:
+        if planned.condition == UNKNOWN or (condition and planned.condition != condition):
+            continue
+        try:
+            found.append(read_planned_trial(study, person, planned, reader))
+        except GaitdiscError as error:
+            refusals.append(Refusal(person.id, planned.condition, str(error)))
+    return found
+
+
+def _sensed(trial: Trial, study: Study, sensors: Sequence[str]) -> tuple[SensedWalk, list[Finding]]:
+    kinematics = trial.stream("kinematics")
+    for name in sensors:
+        kinematics.index(name)  # refuses a sensor that was not recorded, and names the nearest
+    wanted = dict.fromkeys([*(name for name in STATES if name in kinematics.names), *sensors])
+    legs = [f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle") for side in "rl"]
+    needed = tuple(dict.fromkeys([*wanted, *(name for name in legs if name in kinematics.names)]))
+    walk = processed(trial, study.model_copy(update={"models": Models().model_copy(update={"angles": needed})}))
+    state = walk.state.selected(list(wanted))
+    inner = state.between(state.time[0] + EDGE_S, state.time[-1] - EDGE_S)
+    phi = walk.strides[walk.side].phi(inner.time)
+    return SensedWalk(inner, phi), [finding for finding in walk.findings if finding.severity != "note"]
+
+
+def _moving(walks: Sequence[SensedWalk], sensors: Sequence[str]) -> tuple[tuple[Channel, ...], list[Finding]]:
+    """Channels that every walk has and that move in every walk; a sensor that does not is refused."""
+    first, kept, findings = walks[0].recording, [], []
+    for channel in first.channels:
+        lacking = [w.recording for w in walks if channel.name not in w.recording.names]
+        still = [w.recording for w in walks if w.recording not in lacking and _still(w.recording[channel.name])]
+        if not lacking and not still:
+            kept.append(channel)
+            continue
+        why = f"does not move in {len(still)}" if still else f"is missing in {len(lacking)}"
+        what = f"{channel.name} {why} of {len(walks)} walks"
+        if channel.name in sensors:
+            raise ChannelError("a sensor must move in every walk", what, "Choose another sensor.")
+        findings.append(Finding("note", "left out", "the study", what, "this state is not told", channel.name))
+    return tuple(kept), findings
+
+
+def _still(values: NDArray[np.float64]) -> bool:
+    known = values[np.isfinite(values)]
+    return not len(known) or float(np.std(known)) < STILL
+
+
+def _refuse_rates(people: dict[str, tuple[SensedWalk, ...]]) -> None:
+    rates = {walk.recording.rate_hz: name for name, found in people.items() for walk in found}
+    if len(rates) > 1:
+        (one, first), (other, second) = list(rates.items())[:2]
+        raise SamplingError(
+            "reconstruction needs one rate in all walks",
+            f"{first} was recorded at {one:g} Hz, {second} at {other:g} Hz",
+            "Resample the kinematics onto one rate.",
+        )

@@ -1,0 +1,78 @@
+"""`gaitdisc reconstruct`: the full state from a few sensors and their history."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from gaitdisc.commands.exit_codes import SOME_REFUSED
+from gaitdisc.commands.options import Quiet
+
+if TYPE_CHECKING:
+    from gaitdisc.results.reconstruction import Reconstruction
+
+
+def reconstruct(
+    study: Annotated[Path, typer.Argument(help="The study file or its folder; with --model one recording.")],
+    sensors: Annotated[
+        list[str] | None, typer.Option("--sensors", "-s", help="Channels that are read: a,b,c or repeated.")
+    ] = None,
+    split: Annotated[
+        str, typer.Option(help='temporal, blocked, subject (each person by the others), or "random (leaks)".')
+    ] = "temporal",
+    condition: Annotated[str, typer.Option(help="Walks of this condition alone.")] = "",
+    model: Annotated[
+        Path | None, typer.Option(help="Folder of a model that this command saved: tell the states of a recording.")
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder of the report; by default STUDY/reconstruct.")] = None,
+    quiet: Quiet = False,
+) -> None:
+    """Tell all states from a few sensors, by SHRED and by what it has to beat, judged on walking it never saw."""
+    from gaitdisc.batch.reconstruct_study import ReconstructionSettings, reconstruct_study
+    from gaitdisc.ingest.study_file import load_study
+    from gaitdisc.report.figure import file_names
+    from gaitdisc.report.reconstruction_page import write_reconstruction_report
+    from gaitdisc.results.reconstruction import save_reconstruction
+    from gaitdisc.sensing.model_folder import save_model
+    from gaitdisc.sensing.reconstruct import best_of
+
+    if model is not None:
+        _by_model(study, model, out)
+        return
+    loaded = load_study(study)
+    folder = out or loaded.folder / "reconstruct"
+    settings = ReconstructionSettings(split=split, condition=condition, seed=loaded.models.seed)
+    names = [name for words in sensors or [] for name in words.replace(",", " ").split()]
+    done, people = reconstruct_study(
+        loaded, names, settings, lambda who, _: None if quiet else typer.echo(f"  {who}", err=True)
+    )
+    save_reconstruction(done, folder)
+    page = write_reconstruction_report(done, folder)
+    places = file_names([person.participant for person in people])
+    for person in people:
+        save_model(best_of(person), folder / "models" / places[person.participant])
+    _tell(done, page)
+
+
+def _by_model(recording: Path, model: Path, out: Path | None) -> None:
+    from gaitdisc.batch.reconstruct_recording import reconstruct_recording
+
+    told = reconstruct_recording(recording, model, out or Path(f"{recording.stem}_reconstructed.mot"))
+    for line in told.lines():
+        typer.echo(line)
+
+
+def _tell(done: Reconstruction, page: Path) -> None:
+    from rich.console import Console
+
+    from gaitdisc.report.reconstruction_tables import reconstruction_sentences, reconstruction_text
+
+    typer.echo(" ".join(reconstruction_sentences(done)))
+    Console().print(reconstruction_text(done))
+    for refusal in done.refusals:
+        typer.echo(f"left out: {refusal.participant} {refusal.condition}: {refusal.reason}", err=True)
+    typer.echo(f"report: {page}")
+    if done.refusals:
+        raise typer.Exit(SOME_REFUSED)

@@ -1,0 +1,53 @@
+"""The shallow decoder network: two hidden layers from what is known now to the state, without history."""
+
+from __future__ import annotations
+
+import torch
+from torch import Tensor, nn
+
+
+class ShallowDecoder(nn.Module):
+    """Two layers of rectified linear nodes, and a linear one.
+
+    Parameters
+    ----------
+    inputs, outputs : int
+        Number of inputs and states.
+    first, second : int
+        Nodes of the hidden layers; the code of SHRED has 350 and 400.
+
+    References
+    ----------
+    Erichson et al. 2020, Shallow neural networks for fluid flow reconstruction with limited sensors.
+
+    Examples
+    --------
+    >>> ShallowDecoder(3, 18)(torch.zeros(2, 3)).shape
+    torch.Size([2, 18])
+    """
+
+    def __init__(self, inputs: int, outputs: int, first: int = 128, second: int = 128) -> None:
+        super().__init__()
+        self.first = nn.Linear(inputs, first)
+        self.second = nn.Linear(first, second)
+        self.readout = nn.Linear(second, outputs)
+
+    def features(self, x: Tensor) -> Tensor:
+        """Return what the linear layer reads, (sample, node).
+
+        Parameters
+        ----------
+        x : Tensor (sample, input)
+            Scaled inputs.
+        """
+        return torch.relu(self.second(torch.relu(self.first(x))))
+
+    def forward(self, x: Tensor) -> Tensor:
+        """Scaled states, (sample, state).
+
+        Parameters
+        ----------
+        x : Tensor (sample, input)
+            Scaled inputs.
+        """
+        return self.readout(self.features(x))

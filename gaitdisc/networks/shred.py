@@ -1,0 +1,88 @@
+"""SHRED: a recurrent network reads the sensors' history, a shallow decoder tells the state (section 2.3.5)."""
+
+from __future__ import annotations
+
+from typing import cast
+
+import torch
+from torch import Tensor, nn
+
+from gaitdisc.errors import ShapeError
+from gaitdisc.networks.shallow_decoder import ShallowDecoder
+
+CELLS = {"gru": nn.GRU, "lstm": nn.LSTM}
+AT_ONCE = 8192  # windows that are read side by side; more need more memory and no less time
+
+
+class Shred(nn.Module):
+    """GRU or LSTM over a window, its last hidden state decoded.
+
+    Parameters
+    ----------
+    inputs, outputs : int
+        Numbers of a window (readings times sensors, oldest first), and states.
+    sensors : int
+        Sensors; `inputs` is a multiple of it.
+    nodes : int
+        Of the recurrent cell.
+    layers : int
+        Recurrent layers; the dissertation's code has two of 64.
+    cell : str
+        `gru` or `lstm`.
+
+    Raises
+    ------
+    ShapeError
+        If a window does not hold as many readings of every sensor.
+
+    References
+    ----------
+    Williams, Zahn and Kutz 2024, Sensing with shallow recurrent decoder networks. Its code has two LSTM layers of 64
+    and a decoder of 350 and 400; one GRU layer is the default here, since it learns faster and errs no more.
+
+    Examples
+    --------
+    >>> Shred(75, 18, 3)(torch.zeros(2, 75)).shape
+    torch.Size([2, 18])
+    """
+
+    def __init__(
+        self, inputs: int, outputs: int, sensors: int, nodes: int = 64, layers: int = 1, cell: str = "gru"
+    ) -> None:
+        super().__init__()
+        if inputs % sensors:
+            raise ShapeError(
+                f"a window of {sensors} sensors needs as many readings of each",
+                f"it has {inputs} numbers",
+                "Give the number of sensors that the windows were made with.",
+            )
+        self.sensors = sensors
+        self.recurrent = CELLS[cell](sensors, nodes, layers, batch_first=True)
+        self.decoder = ShallowDecoder(nodes, outputs)
+
+    @property
+    def readout(self) -> nn.Linear:
+        """Last layer, which is linear."""
+        return cast(nn.Linear, self.decoder.readout)
+
+    def features(self, x: Tensor) -> Tensor:
+        """Return what the linear layer reads, (window, node).
+
+        Parameters
+        ----------
+        x : Tensor (window, reading * sensor)
+            Scaled windows.
+        """
+        history = x.reshape(len(x), -1, self.sensors)
+        latest = [self.recurrent(part)[0][:, -1] for part in history.split(AT_ONCE)]
+        return self.decoder.features(torch.cat(latest))
+
+    def forward(self, x: Tensor) -> Tensor:
+        """Scaled states, (window, state).
+
+        Parameters
+        ----------
+        x : Tensor (window, reading * sensor)
+            Scaled windows.
+        """
+        return self.decoder.readout(self.features(x))

@@ -1,0 +1,82 @@
+"""Measured against reconstructed states over the stride."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pandas as pd
+
+from gaitdisc.report.figure import Figure, Room, in_style, legend, panels, sheets
+from gaitdisc.report.palette import MEASURED, RECONSTRUCTED
+from gaitdisc.report.wording import counted, label, unit_text
+from gaitdisc.results.reconstruction import Reconstruction
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+MOST_PANELS = 16
+
+
+@in_style
+def reconstruction_figures(done: Reconstruction, participant: str, name: str) -> list[Figure]:
+    """One panel a state: the mean of what was measured with its spread, and what the models tell.
+
+    Parameters
+    ----------
+    done : Reconstruction
+        The whole result.
+    participant : str
+        Whose judged windows.
+    name : str
+        Participant's part of the file names.
+    """
+    shown = [kind for kind in ("linear", done.recommended, "shred") if kind in done.models]
+    shown = list(dict.fromkeys(shown))
+    curves = done.curves[(done.curves["participant"] == participant) & done.curves["model"].isin(shown)]
+    return [
+        _figure(done, participant, curves[curves["state"].isin([channel.name for channel in part])], f"{name}-{k + 1}")
+        for k, part in enumerate(sheets(list(done.states), MOST_PANELS))
+    ]
+
+
+def _figure(done: Reconstruction, participant: str, numbers: pd.DataFrame, name: str) -> Figure:
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    units = {channel.name: channel.unit for channel in done.states}
+    states, models = list(dict.fromkeys(numbers["state"])), list(dict.fromkeys(numbers["model"]))
+    columns = min(4, len(states))
+    drawn, grid = panels(-(-len(states) // columns), columns, 1.1, Room(left=0.6, across=0.6, down=0.46))
+    cells = [axes for row in grid for axes in row]
+    for axes, state in zip(cells, states, strict=False):
+        _draw(axes, numbers[numbers["state"] == state])
+        axes.set_title(label(state), fontsize=7.4)
+        axes.set_ylabel(f"[{unit_text(units[state])}]", fontsize=6.8, labelpad=1)
+        axes.set_xlim(0, 100)
+        axes.set_xticks([0, 50, 100])
+    for axes in cells[len(states) :]:
+        axes.set_visible(False)
+    for axes in cells[max(0, len(states) - columns) : len(states)]:
+        axes.set_xlabel("stride [%]", labelpad=1)
+    looks = {model: RECONSTRUCTED[model.removesuffix(", calibrated")] for model in models}
+    lines = [Line2D([], [], color=look.colour, linestyle=look.line, label=model) for model, look in looks.items()]
+    legend(drawn, [Patch(color=MEASURED.colour, alpha=0.2, label="measured, mean ± sd"), *lines])
+    strides = int(done.summary.loc[done.summary["participant"] == participant, "strides"].iloc[0])
+    caption = (
+        f"{participant}: states measured and reconstructed over the stride, judged windows alone, n = "
+        f"{counted(strides, 'stride')}. Band: measured, mean ± standard deviation; lines: mean of what each model "
+        f"tells from {counted(len(done.sensors), 'sensor')}. Split: {done.split}."
+    )
+    alt = (
+        f"{counted(len(states), 'state')} of {participant} over the stride, measured, and told by {', '.join(models)}."
+    )
+    return Figure(f"reconstruction-{name}", caption, alt, numbers, drawn)
+
+
+def _draw(axes: Axes, numbers: pd.DataFrame) -> None:
+    for number, (model, rows) in enumerate(numbers.groupby("model", sort=False)):
+        if number == 0:
+            low, high = rows["measured"] - rows["measured_sd"], rows["measured"] + rows["measured_sd"]
+            axes.fill_between(rows["percent"], low, high, color=MEASURED.colour, alpha=0.2, linewidth=0)
+        look = RECONSTRUCTED[str(model).removesuffix(", calibrated")]
+        axes.plot(rows["percent"], rows["told"], color=look.colour, linestyle=look.line, linewidth=1.1)

@@ -1,0 +1,108 @@
+"""The page of a reconstruction: answer, models, states and curves, self-contained, every number beside it as CSV."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pandas as pd
+
+import gaitdisc
+from gaitdisc.report.figure import file_names, save_figure, save_table
+from gaitdisc.report.method import flattened, provenance_rows
+from gaitdisc.report.page import templates
+from gaitdisc.report.reconstruction_figure import reconstruction_figures
+from gaitdisc.report.reconstruction_tables import (
+    models_table,
+    participants_table,
+    reconstruction_sentences,
+    states_table,
+)
+from gaitdisc.report.tables import Table, pairs_table
+from gaitdisc.results.reconstruction import Reconstruction
+from gaitdisc.whole_file import write_whole
+
+MOST_DRAWN = 4  # participants whose curves stand in the page; the numbers of all are in errors.csv and curves.csv
+
+
+def write_reconstruction_report(done: Reconstruction, folder: Path) -> Path:
+    """Write the report of a reconstruction: `report.html`, `figures/` and `tables/`.
+
+    Parameters
+    ----------
+    done : Reconstruction
+        The whole result; nothing is fitted again.
+    folder : Path
+        Where the report goes; made if missing.
+
+    Returns
+    -------
+    Path
+        The page.
+
+    Raises
+    ------
+    WriteError
+        If a file cannot be written; what stood there before still stands.
+    """
+    made = done.provenance
+    tables = {
+        "models": models_table(done),
+        "states": states_table(done),
+        "participants": participants_table(done),
+        "left_out": _left_out(done),
+        "findings": _findings(done),
+        "settings": pairs_table("settings", "Settings.", ("setting", "value"), flattened(made.settings)),
+        "versions": pairs_table("versions", "Circumstances.", ("what", "value"), provenance_rows(made)),
+        "files": pairs_table("files", "Files read, with their SHA-256.", ("file", "SHA-256"), [*made.files.items()]),
+    }
+    for table in tables.values():
+        save_table(table.numbers, folder / "tables" / f"{table.name}.csv")
+    names = file_names(done.participants[:MOST_DRAWN])
+    drawn = [figure for person, name in names.items() for figure in reconstruction_figures(done, person, name)]
+    text = templates().get_template("reconstruction.html.j2").render(
+        done=done,
+        sentences=reconstruction_sentences(done),
+        figures=[save_figure(figure, folder / "figures") for figure in drawn],
+        tables=tables,
+        method=method_sentences(done),
+        undrawn=len(done.participants) - len(names),
+        version=gaitdisc.__version__,
+    )  # fmt: skip
+    return write_whole(folder / "report.html", text)
+
+
+def method_sentences(done: Reconstruction) -> list[str]:
+    """How the numbers were made.
+
+    Parameters
+    ----------
+    done : Reconstruction
+        The whole result.
+    """
+    return [
+        f"A window holds {done.history}; each model tells the states at its last reading (Eqs. 5.1-5.7). No window "
+        f"reaches over a missing value, or from one trial into another.",
+        f"Windows are parted by {done.split}. Scales and weights come from the fitted windows alone; penalties, widths "
+        f"and the epoch whose weights are kept are chosen on the checked ones; errors are of the judged ones, from "
+        f"which the others lie apart by the length of a window and 0.3 s.",
+        "All recordings were low-passed by a filter without lag, which looks ahead: told live, states would come "
+        "later by the filter's reach, or be noisier.",
+        "RMSE is in the state's own unit, its interval by drawing strides with replacement (1,000 times, 95 %); "
+        "angles and positions are never averaged together.",
+        *(f"{name}: {words}." for name, words in done.models.items()),
+    ]
+
+
+def _left_out(done: Reconstruction) -> Table:
+    rows = tuple((r.participant, r.condition or "all", r.reason) for r in done.refusals)
+    columns = ("participant", "walk", "reason")
+    return Table(
+        "left-out", f"Left out, n = {len(rows)}.", columns, rows, pd.DataFrame(rows, columns=pd.Index(columns))
+    )
+
+
+def _findings(done: Reconstruction) -> Table:
+    rows = tuple((f.severity, f.file, f.channel, f"{f.kind}: {f.what}", f.spoils) for f in done.findings)
+    columns = ("severity", "file", "channel", "what was seen", "spoils")
+    caption = f"Findings in the recordings, n = {len(rows)}; windows on plateaus and filled gaps are used as they are."
+    return Table("findings", caption, columns, rows, pd.DataFrame(rows, columns=pd.Index(columns)))

@@ -1,0 +1,154 @@
+"""What a reconstruction found, in tables and in sentences: RMSE, relative L2 and R2, each under its own name."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from gaitdisc.report.tables import Table
+from gaitdisc.report.wording import counted, label, listed, number
+from gaitdisc.results.reconstruction import Reconstruction
+
+if TYPE_CHECKING:
+    import rich.table
+
+NOT_MSE = (
+    "The dissertation calls the norm of the error by the norm of the measured values “MSE” (Eq. 2.21, Table 5.2) and "
+    "prints it in degrees; it has no unit. It is compared with the relative L2 here, and with no number in degrees."
+)
+
+
+def models_table(done: Reconstruction) -> Table:
+    """Every model, over the participants.
+
+    Parameters
+    ----------
+    done : Reconstruction
+        The whole result.
+    """
+    numbers: Any = done.over_participants().rename_axis("model").reset_index()
+    rows = tuple(
+        (
+            f"{row['model']}{' *' if row['model'] == done.recommended else ''}",
+            _spread(row, "rmse_deg", 2),
+            _spread(row, "relative_l2", 3),
+            _plain(row["relative_l2_whole"], 3),
+            _spread(row, "r2", 3),
+            f"{100 * row['coverage']:.0f}",
+            f"{row['seconds']:.2f}",
+        )
+        for _, row in numbers.iterrows()
+    )
+    people = counted(len(done.participants), "participant")
+    caption = (
+        f"Models on the judged windows: mean over n = {people} [95 % interval of the mean], angles that no sensor "
+        f"measures. Split: {done.split}. Relative L2: norm of the error by norm of the measured values about zero; "
+        f"“with sensors”: the sensors counted as states without error, as Table 5.2 does; R²: median of the angles; "
+        f"coverage: share inside an interval that was made for 90 %; seconds: processor time of a fit. * recommended: "
+        f"the cheapest within 2 % of the least error on the windows that models are chosen by."
+    )
+    columns = ("model", "RMSE [deg]", "relative L2 [1]", "with sensors [1]", "R² [1]", "coverage [%]", "fit [s]")
+    return Table("models", caption, columns, rows, numbers)
+
+
+def states_table(done: Reconstruction) -> Table:
+    """RMSE of every state and model, mean over participants, with relative L2 and R2 of the recommended model.
+
+    Parameters
+    ----------
+    done : Reconstruction
+        The whole result.
+    """
+    over: Any = done.over_states()
+    units = {channel.name: channel.unit for channel in done.states}
+    rows = []
+    for state, unit in units.items():
+        best = state, done.recommended
+        errors = [_rmse(over["rmse"][state, model], unit) for model in done.models]
+        rows.append((label(state), unit, *errors, _plain(over["relative_l2"][best], 3), _plain(over["r2"][best], 3)))
+    caption = (
+        f"RMSE of every state [its unit], mean over n = {counted(len(done.participants), 'participant')}; relative L2 "
+        f"and R² of {done.recommended}. Intervals over strides, participant by participant, stand in errors.csv."
+    )
+    columns = ("state", "unit", *done.models, "relative L2", "R²")
+    return Table("states", caption, columns, tuple(rows), over.reset_index())
+
+
+def participants_table(done: Reconstruction) -> Table:
+    """RMSE of the angles for every participant and model.
+
+    Parameters
+    ----------
+    done : Reconstruction
+        The whole result.
+    """
+    wide: Any = done.summary.pivot_table(index="participant", columns="model", values="rmse_deg")[list(done.models)]
+    strides: Any = done.summary.groupby("participant")["strides"].first()
+    rows = tuple(
+        (str(row[0]), str(int(strides[row[0]])), *(_plain(value, 2) for value in row[1:])) for row in wide.itertuples()
+    )
+    caption = "RMSE of the angles that no sensor measures [deg], by participant; strides: those that were judged."
+    return Table("participants", caption, ("participant", "strides", *done.models), rows, done.summary)
+
+
+def reconstruction_sentences(done: Reconstruction) -> list[str]:
+    """What is told from which sensors, how well, by which model, and what history and a network buy.
+
+    Parameters
+    ----------
+    done : Reconstruction
+        The whole result.
+    """
+    best = done.recommended
+    over: Any = done.over_participants()
+    sensors, kinds = listed([label(channel.name) for channel in done.sensors]), list(done.models)
+    row = over.loc[best]
+    sentences = [
+        f"From {sensors} {counted(len(done.states), 'other state')} {'is' if len(done.states) == 1 else 'are'} told "
+        f"with an RMSE of {_plain(row['rmse_deg'], 2)} deg "
+        f"over the angles (relative L2 {_plain(row['relative_l2'], 3)}, median R² {_plain(row['r2'], 2)}; mean of "
+        f"{counted(len(done.participants), 'participant')}) by {best}, which is recommended.",
+    ]
+    compared = [kind for kind in ("shred", "fourier ridge", "delay ridge", "linear") if kind in kinds and kind != best]
+    if compared:
+        words = [f"{kind} {_plain(over.loc[kind, 'rmse_deg'], 2)} deg" for kind in compared]
+        sentences.append(f"Beside it: {listed(words)}.")
+    if "leaks" in done.split:
+        sentences.append("The split leaks: these errors say how well windows are interpolated in time, not more.")
+    if len(done.participants) < 3:
+        sentences.append("The numbers describe these participants and nobody else.")
+    return [*sentences, NOT_MSE]
+
+
+def reconstruction_text(done: Reconstruction) -> rich.table.Table:
+    """Print the models for a terminal of 80 columns.
+
+    Parameters
+    ----------
+    done : Reconstruction
+        The whole result.
+    """
+    from rich import box
+    from rich.table import Table as Printed
+
+    shown = models_table(done)
+    table = Printed(box=box.SIMPLE, show_edge=False, pad_edge=False, padding=(0, 1, 0, 0))
+    chosen = (0, 1, 2, 4, 6)
+    for k in chosen:
+        table.add_column(shown.columns[k], justify="left" if k == 0 else "right")
+    for row in shown.rows:
+        table.add_row(*(row[k] for k in chosen))
+    return table
+
+
+def _spread(row: Any, measure: str, digits: int) -> str:
+    mean, low, high = (float(row[f"{measure}{end}"]) for end in ("", "_low", "_high"))
+    return _plain(mean, digits) + (f" [{_plain(low, digits)}, {_plain(high, digits)}]" if math.isfinite(low) else "")
+
+
+def _plain(value: Any, digits: int) -> str:
+    return number(float(value), digits) if math.isfinite(float(value)) else "–"
+
+
+def _rmse(value: Any, unit: str) -> str:
+    return _plain(value, 4 if unit == "m" else 2)

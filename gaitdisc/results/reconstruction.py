@@ -1,0 +1,132 @@
+"""The result of a reconstruction: errors of every model, state and participant, and curves over the stride."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from gaitdisc.channel import Channel
+from gaitdisc.recording import Finding
+from gaitdisc.results.provenance import Provenance
+from gaitdisc.results.response_run import Refusal
+from gaitdisc.results.unit_folder import save_unit
+
+NAME = "reconstruction.json"
+NEAR = 1.02  # of the least error on the check part: a cheaper model that is within this is recommended instead
+CHEAP_FIRST = ("linear", "delay ridge", "shallow decoder", "fourier ridge", "shred")
+MEASURES = ("rmse_deg", "relative_l2", "r2", "relative_l2_whole", "check_loss", "coverage", "seconds")
+
+
+@dataclass(frozen=True, eq=False)
+class Reconstruction:
+    """All that a report of a reconstruction needs.
+
+    Parameters
+    ----------
+    title : str
+        Of the study.
+    sensors, states : tuple of Channel
+        What was read, and what was told.
+    split : str
+        The rule by which windows were parted, in words.
+    history : str
+        Reach and density of the windows, in words.
+    models : mapping of str to str
+        Name of each model -> what it is.
+    errors : DataFrame
+        participant, model, state, unit, rmse, low, high, relative_l2, r2.
+    summary : DataFrame
+        participant, model, strides, n_fitted, and `MEASURES`.
+    curves : DataFrame
+        participant, model, state, percent, measured, measured_sd, told, rmse.
+    refusals : tuple of Refusal
+        Who is left out, and why.
+    findings : tuple of Finding
+        What a reader must know of the recordings.
+    provenance : Provenance
+        What the result rests on.
+    """
+
+    title: str
+    sensors: tuple[Channel, ...]
+    states: tuple[Channel, ...]
+    split: str
+    history: str
+    models: Mapping[str, str]
+    errors: pd.DataFrame
+    summary: pd.DataFrame
+    curves: pd.DataFrame
+    refusals: tuple[Refusal, ...]
+    findings: tuple[Finding, ...]
+    provenance: Provenance
+
+    @property
+    def participants(self) -> tuple[str, ...]:
+        """Pseudonyms of those in the tables, in order."""
+        return tuple(dict.fromkeys(str(name) for name in self.summary["participant"]))
+
+    @property
+    def recommended(self) -> str:
+        """Model to use: the cheapest of those whose error on the check part is within 2 % of the least.
+
+        The judged part has no say in it.
+        """
+        loss = self.summary.groupby("model")["check_loss"].mean()
+        near = [kind for kind in CHEAP_FIRST if kind in loss.index and np.sqrt(loss[kind] / loss.min()) <= NEAR]
+        return near[0] if near else str(loss.idxmin())
+
+    def over_participants(self) -> pd.DataFrame:
+        """Mean of each measure over participants, and its 95 % interval (Student's t, from three people); by model."""
+        return pd.DataFrame({model: _over(rows) for model, rows in self.summary.groupby("model", sort=False)}).T
+
+    def over_states(self) -> pd.DataFrame:
+        """Mean RMSE, relative L2 and R2 over participants; indexed by state and model."""
+        return self.errors.groupby(["state", "model"], sort=False)[["rmse", "relative_l2", "r2"]].mean()
+
+
+def save_reconstruction(done: Reconstruction, folder: Path) -> None:
+    """Save a reconstruction: `reconstruction.json` and its tables as CSV, every file hashed.
+
+    Parameters
+    ----------
+    done : Reconstruction
+        What to keep.
+    folder : Path
+        Its own folder.
+
+    Raises
+    ------
+    WriteError
+        If a file cannot be written.
+    """
+    data = {
+        "title": done.title,
+        "sensors": [asdict(channel) for channel in done.sensors],
+        "states": [asdict(channel) for channel in done.states],
+        "split": done.split,
+        "history": done.history,
+        "models": dict(done.models),
+        "recommended": done.recommended,
+        "refusals": [asdict(refusal) for refusal in done.refusals],
+        "findings": [asdict(finding) for finding in done.findings],
+        "provenance": asdict(done.provenance),
+    }
+    tables = {"errors.csv": done.errors, "summary.csv": done.summary, "curves.csv": done.curves}
+    save_unit(folder, NAME, data, tables, {})
+
+
+def _over(rows: pd.DataFrame) -> pd.Series:
+    from scipy.stats import t
+
+    n = len(rows)
+    found: dict[str, float] = {"n": n}
+    for measure in MEASURES:
+        values = rows[measure].to_numpy(float)
+        half = t.ppf(0.975, n - 1) * values.std(ddof=1) / np.sqrt(n) if n > 2 else np.nan
+        mean = float(values.mean())
+        found |= {measure: mean, f"{measure}_low": mean - half, f"{measure}_high": mean + half}
+    return pd.Series(found)

@@ -1,0 +1,158 @@
+"""A fitted reconstructor on disk: what it reads and tells, in which units, at which rate; and its weights."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel
+from gaitdisc.errors import SamplingError, SchemaError, UnitError
+from gaitdisc.model import Model
+from gaitdisc.recording import Recording
+from gaitdisc.sensing.reconstructor import Reconstructor, Sensing
+from gaitdisc.sensing.windows import Lags, windows_of
+from gaitdisc.whole_file import write_whole
+
+NAME, WEIGHTS = "model.json", "weights.npz"
+FORMAT = 1
+RATE_TOLERANCE = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class SensingModel:
+    """A reconstructor with the channels it was fitted to.
+
+    Parameters
+    ----------
+    reconstructor : Reconstructor
+        What tells the states.
+    channels : tuple of Channel
+        Of the sensors, then of the states.
+    half_widths : ndarray (state,) [each state's unit]
+        Half width of the 90 % interval, from the windows that the model was chosen by.
+    """
+
+    reconstructor: Reconstructor
+    channels: tuple[Channel, ...]
+    half_widths: NDArray[np.float64]
+
+    def __call__(self, recording: Recording) -> Recording:
+        """States of a new recording that has the sensors, in their units and at the model's rate.
+
+        NaN where the history is not full or holds a missing value. The recording has to be filtered as those were
+        that the model was fitted to.
+        """
+        what = self.reconstructor.sensing
+        if abs(recording.rate_hz / what.rate_hz - 1) > RATE_TOLERANCE:
+            raise SamplingError(
+                f"the model reads its sensors at {what.rate_hz:g} Hz",
+                f"{recording.source.file or 'the recording'} has {recording.rate_hz:g} Hz",
+                "Resample the recording onto this rate.",
+            )
+        for channel in self.channels[: len(what.sensors)]:
+            found = recording.channels[recording.index(channel.name)]
+            if found.unit != channel.unit:
+                raise UnitError(
+                    f"the model reads {channel.name} in {channel.unit}",
+                    f"{recording.source.file or 'the recording'} has it in {found.unit}",
+                    "Name the unit in the study's [channels].",
+                )
+        windows = windows_of(recording, what.sensors, what.sensors, what.lags, np.zeros(len(recording.time)))
+        rows = np.searchsorted(recording.time, windows.time - 1e-9)
+        values = np.full((len(recording.time), len(what.states)), np.nan)
+        values[rows] = self.reconstructor(windows)
+        told = self.channels[len(what.sensors) :]
+        return Recording(recording.time, values, told, recording.subject, recording.condition, recording.source)
+
+
+def save_model(model: SensingModel, folder: Path) -> None:
+    """Save a model: `model.json` and `weights.npz`.
+
+    Parameters
+    ----------
+    model : SensingModel
+        What to keep.
+    folder : Path
+        Its own folder.
+
+    Raises
+    ------
+    WriteError
+        If a file cannot be written.
+    """
+    from gaitdisc.regression.fourier_ridge import FourierRidge
+    from gaitdisc.regression.ridge_file import save_ridge
+
+    done = model.reconstructor
+    folder.mkdir(parents=True, exist_ok=True)
+    if isinstance(done.model, FourierRidge):
+        save_ridge(done.model, folder / WEIGHTS)
+    else:
+        from gaitdisc.networks.trained_network import TrainedNetwork, save_network
+
+        assert isinstance(done.model, TrainedNetwork)  # there is no other kind
+        save_network(done.model, folder / WEIGHTS)
+    data = {
+        "format": FORMAT,
+        "kind": done.kind,
+        "sensing": asdict(done.sensing),
+        "channels": [asdict(channel) for channel in model.channels],
+        "half_widths": model.half_widths.tolist(),
+        "n_fitted": done.n_fitted,
+        "seconds": done.seconds,
+    }
+    write_whole(folder / NAME, json.dumps(data, indent=1))
+
+
+def load_model(folder: Path) -> SensingModel:
+    """Load a model that `save_model` wrote.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the model.
+
+    Returns
+    -------
+    SensingModel
+
+    Raises
+    ------
+    SchemaError
+        If a file is missing, damaged, or of another version.
+    """
+    try:
+        data = json.loads((folder / NAME).read_text(encoding="utf-8"))
+        if data["format"] != FORMAT:
+            raise ValueError(f"it has format {data['format']}, this version reads {FORMAT}")
+        told = data["sensing"]
+        what = Sensing(tuple(told["sensors"]), tuple(told["states"]), Lags(**told["lags"]), told["rate_hz"])
+        channels: Sequence[Channel] = [Channel(**channel) for channel in data["channels"]]
+        half, kind = np.array(data["half_widths"]), data["kind"]
+        numbers = data["n_fitted"], data["seconds"]
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise SchemaError(
+            f"{folder.name}/{NAME} is to be read as a model of gaitdisc",
+            str(error),
+            "Run `gaitdisc reconstruct` again.",
+        ) from error
+    return SensingModel(Reconstructor(kind, what, _weights(kind, what, folder), *numbers), tuple(channels), half)
+
+
+def _weights(kind: str, what: Sensing, folder: Path) -> Model:
+    if "ridge" in kind or kind == "linear":
+        from gaitdisc.regression.ridge_file import load_ridge
+
+        return load_ridge(folder / WEIGHTS)
+    from gaitdisc.networks.shallow_decoder import ShallowDecoder
+    from gaitdisc.networks.shred import Shred
+    from gaitdisc.networks.trained_network import load_network
+
+    build = partial(Shred, sensors=len(what.sensors)) if kind == "shred" else ShallowDecoder
+    return load_network(folder / WEIGHTS, build)

@@ -1,0 +1,194 @@
+"""Models that tell the state from sensors: a network and, beside it, what a network has to beat."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.errors import ChannelError, SchemaError
+from gaitdisc.model import Model
+from gaitdisc.recording import Recording, Samples
+from gaitdisc.sensing.windows import Lags, present, thinned, windows_of
+
+FEATURES = 1000
+MOST_FITTED = 20_000  # windows; beyond it every k-th is fitted
+KINDS = {
+    "linear": "ridge regression on the present readings",
+    "shallow decoder": "two hidden layers on the present readings (SDN)",
+    "delay ridge": "ridge regression on the readings and their history",
+    "fourier ridge": f"ridge regression on {FEATURES} random Fourier features of the readings and their history",
+    "shred": "recurrent network on the readings and their history, shallow decoder (SHRED)",
+}
+STATIC = ("linear", "shallow decoder")
+
+
+@dataclass(frozen=True)
+class Sensing:
+    """What is read, and what is to be told from it.
+
+    Parameters
+    ----------
+    sensors : tuple of str
+        Channels that are read.
+    states : tuple of str
+        Channels that are told, none of them a sensor.
+    lags : Lags
+        Reach and density of the windows.
+    rate_hz : float
+        Samples a second of every recording.
+
+    Raises
+    ------
+    ChannelError
+        If there is no sensor, or no state that is not one.
+
+    Examples
+    --------
+    >>> sensing(("knee_angle_r", "hip_flexion_r"), ("knee_angle_r",), Lags(), 100.0).states
+    ('hip_flexion_r',)
+    """
+
+    sensors: tuple[str, ...]
+    states: tuple[str, ...]
+    lags: Lags
+    rate_hz: float
+
+    @property
+    def reach_s(self) -> float:
+        """From the first reading of a window to its last [s]."""
+        return self.lags.reach / self.rate_hz
+
+    def windows(self, recording: Recording, phi: NDArray[np.float64]) -> Samples:
+        """Windows of a recording, which must have the rate and the units that the sensing was made for.
+
+        Parameters
+        ----------
+        recording : Recording
+            One trial.
+        phi : ndarray (time,) [% stride]
+            Percent stride of its samples.
+        """
+        return windows_of(recording, self.sensors, self.states, self.lags, phi)
+
+
+def sensing(all_states: tuple[str, ...], sensors: tuple[str, ...], lags: Lags, rate_hz: float) -> Sensing:
+    """Tell every state that is not measured by a sensor.
+
+    Parameters
+    ----------
+    all_states : tuple of str
+        Channels that make up the state.
+    sensors : tuple of str
+        Channels that are read; they may be among the states.
+    lags : Lags
+        Reach and density of the windows.
+    rate_hz : float
+        Samples a second.
+
+    Raises
+    ------
+    ChannelError
+        If there is no sensor, one stands twice, or every state is a sensor.
+    """
+    states = tuple(name for name in all_states if name not in sensors)
+    if not sensors or len(set(sensors)) < len(sensors):
+        raise ChannelError(
+            "reconstruction needs sensors, each once",
+            f"found {', '.join(sensors) or 'none'}",
+            "Name channels of the recording with --sensors.",
+        )
+    if not states:
+        raise ChannelError(
+            "reconstruction needs a state that no sensor measures",
+            f"{', '.join(all_states)}: all of them are sensors",
+            "Take a sensor away, or record more channels.",
+        )
+    return Sensing(sensors, states, lags, rate_hz)
+
+
+@dataclass(frozen=True, eq=False)
+class Reconstructor:
+    """A fitted model that tells states from windows.
+
+    Parameters
+    ----------
+    kind : str
+        A word of `KINDS`.
+    sensing : Sensing
+        What it reads and tells.
+    model : Model
+        Takes the present readings where the kind is without history, whole windows otherwise.
+    n_fitted : int
+        Windows it was fitted to.
+    seconds : float
+        Processor time of the fit [s].
+    """
+
+    kind: str
+    sensing: Sensing
+    model: Model
+    n_fitted: int
+    seconds: float
+
+    def __call__(self, windows: Samples) -> NDArray[np.float64]:
+        """States (window, state) told from windows, each in its unit."""
+        seen = present(windows, self.sensing.sensors) if self.kind in STATIC else windows
+        return self.model(seen.x)
+
+
+def fit_reconstructor(kind: str, what: Sensing, training: Samples, check: Samples, seed: int = 0) -> Reconstructor:
+    """Fit one kind of model; scales, penalties and the epoch whose weights stay are chosen without the judged part.
+
+    Parameters
+    ----------
+    kind : str
+        A word of `KINDS`.
+    what : Sensing
+        What is read and told.
+    training, check : Samples
+        Windows to fit, and windows to choose by.
+    seed : int
+        Of every random act.
+
+    Returns
+    -------
+    Reconstructor
+
+    Raises
+    ------
+    SchemaError
+        If there is no such kind.
+    TrainingError
+        If the windows are too few, or an output does not vary.
+    """
+    if kind not in KINDS:
+        raise SchemaError("a reconstruction needs a kind of model", f"{kind!r} is none", f"Use: {', '.join(KINDS)}.")
+    fit = _fit_of(kind, len(what.sensors), seed)
+    training, check = thinned(training, MOST_FITTED), thinned(check, MOST_FITTED)
+    if kind in STATIC:
+        training, check = present(training, what.sensors), present(check, what.sensors)
+    begun = time.process_time()
+    model = fit(training, check)
+    return Reconstructor(kind, what, model, len(training), time.process_time() - begun)
+
+
+def _fit_of(kind: str, sensors: int, seed: int) -> Callable[[Samples, Samples], Model]:
+    from gaitdisc.regression.fourier_ridge import fit_fourier_ridge
+
+    if kind in ("linear", "delay ridge"):
+        return fit_fourier_ridge
+    if kind == "fourier ridge":
+        return partial(fit_fourier_ridge, features=FEATURES, seed=seed)
+    from gaitdisc.networks.shallow_decoder import ShallowDecoder
+    from gaitdisc.networks.shred import Shred
+    from gaitdisc.networks.trainer import train
+    from gaitdisc.networks.training_settings import TrainingSettings
+
+    build = ShallowDecoder if kind == "shallow decoder" else partial(Shred, sensors=sensors)
+    settings = TrainingSettings(epochs=20, batch=128, decays=(0.01,), seed=seed)
+    return lambda training, check: train(training, build, settings, check=check).network

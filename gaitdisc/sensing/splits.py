@@ -1,0 +1,188 @@
+"""Splits: which windows a model is fitted to, which it is chosen by, and which it is judged on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.errors import SamplingError, SchemaError
+from gaitdisc.recording import Samples
+from gaitdisc.sensing.windows import stacked
+
+TRAINING, CHECK, TEST, APART = 0, 1, 2, -1
+SHARES = (0.7, 0.1, 0.2)
+BLOCKS = (TRAINING, TRAINING, TEST, TRAINING, TRAINING, CHECK, TRAINING, TEST, TRAINING, TRAINING)
+SEAM_S = 0.3  # zero-lag filters look ahead and back over a border
+RANDOM = "random (leaks)"
+RULES = {
+    "temporal": "each trial: first 70 % fitted, next 10 % checked, last 20 % judged; no window crosses a border",
+    "blocked": "each trial in ten blocks: seven fitted, one checked, two judged; no window crosses a border",
+    RANDOM: "windows drawn at random: neighbours of every judged window were fitted, so the error is far too small",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Parts:
+    """Windows of the three parts, trial by trial.
+
+    Parameters
+    ----------
+    training, check, test : tuple of Samples
+        One a trial that has windows in that part.
+    rule : str
+        How they were parted, a word of `RULES` or a sentence.
+    """
+
+    training: tuple[Samples, ...]
+    check: tuple[Samples, ...]
+    test: tuple[Samples, ...]
+    rule: str
+
+    def __post_init__(self) -> None:
+        """Refuse a split that leaves a part empty."""
+        for name in ("training", "check", "test"):
+            if not any(len(each) for each in getattr(self, name)):
+                raise SamplingError(
+                    f"the split {self.rule!r} needs windows in all three parts",
+                    f"none is left for {name}: the trials are too short for their windows and the gaps between parts",
+                    "Take a shorter history, or longer trials.",
+                )
+
+    def fitted(self) -> Samples:
+        """Windows that models are fitted to."""
+        return stacked([each for each in self.training if len(each)])
+
+    def checked(self) -> Samples:
+        """Windows that models are chosen by."""
+        return stacked([each for each in self.check if len(each)])
+
+    def judged(self) -> Samples:
+        """Windows that models are judged on."""
+        return stacked([each for each in self.test if len(each)])
+
+
+def split_within(trials: Sequence[Samples], rule: str, reach_s: float, seed: int = 0) -> Parts:
+    """Part the windows of every trial by one rule.
+
+    From the last window of one part to the first of the next lie at least `reach_s` plus 0.3 s, so that no two windows
+    of different parts share a reading, and the filter carries nothing over. The random rule alone leaves no gap.
+
+    Parameters
+    ----------
+    trials : sequence of Samples
+        Windows of each trial, in order of time.
+    rule : str
+        A word of `RULES`.
+    reach_s : float
+        From the first reading of a window to its last [s].
+    seed : int
+        Of the random rule.
+
+    Returns
+    -------
+    Parts
+
+    Raises
+    ------
+    SchemaError
+        If there is no such rule.
+    SamplingError
+        If a part is left without windows.
+
+    Examples
+    --------
+    >>> t = np.arange(6000) / 100
+    >>> parts = split_within([Samples(t[:, None], t[:, None], ("a",), ("b",), t, t)], "temporal", 1.0)
+    >>> parts.fitted().time[[0, -1]].round(1).tolist(), parts.checked().time[[0, -1]].round(1).tolist()
+    ([0.0, 42.0], [43.3, 48.0])
+    """
+    if rule not in RULES:
+        raise SchemaError("a split needs a rule", f"{rule!r} is none", f"Use one of: {', '.join(RULES)}.")
+    rng = np.random.default_rng(seed)
+    labels = [_labels(each, rule, reach_s, rng) for each in trials]
+    training, check, test = (_chosen(trials, labels, part) for part in (TRAINING, CHECK, TEST))
+    return Parts(training, check, test, rule)
+
+
+def split_by_subject(people: Sequence[Sequence[Samples]], judged: int) -> Parts:
+    """Leave one person out: the next one in the list is what models are chosen by, all others are fitted.
+
+    Parameters
+    ----------
+    people : sequence of sequence of Samples
+        Windows of each trial of each person; at least three people.
+    judged : int
+        Place of the person on whom models are judged.
+
+    Returns
+    -------
+    Parts
+
+    Raises
+    ------
+    SamplingError
+        If there are fewer than three people.
+    """
+    if len(people) < 3:
+        raise SamplingError(
+            "a model of a population needs at least three people: to fit, to check, and to judge",
+            f"there are {len(people)}",
+            "Add participants, or fit each of them alone.",
+        )
+    checked = (judged + 1) % len(people)
+    fitted = [trial for k, trials in enumerate(people) if k not in (judged, checked) for trial in trials]
+    return Parts(tuple(fitted), tuple(people[checked]), tuple(people[judged]), "leave one person out")
+
+
+def split_by_trial(trials: Sequence[Samples], judged: Sequence[int], reach_s: float) -> Parts:
+    """Leave whole trials out, such as those of another condition; the last 15 % of each other trial are checked.
+
+    Parameters
+    ----------
+    trials : sequence of Samples
+        Windows of each trial of a person.
+    judged : sequence of int
+        Places of the trials on which models are judged.
+    reach_s : float
+        From the first reading of a window to its last [s].
+
+    Returns
+    -------
+    Parts
+    """
+    others = [each for k, each in enumerate(trials) if k not in judged]
+    labels = [_apart(each.time, np.where(_share(each.time) < 0.85, TRAINING, CHECK), reach_s) for each in others]
+    test = tuple(trials[k] for k in judged)
+    return Parts(_chosen(others, labels, TRAINING), _chosen(others, labels, CHECK), test, "leave trials out")
+
+
+def _labels(samples: Samples, rule: str, reach_s: float, rng: np.random.Generator) -> NDArray[np.int_]:
+    if rule == RANDOM:
+        return rng.choice(3, size=len(samples), p=SHARES)
+    share = _share(samples.time)
+    if rule == "temporal":
+        raw = np.digitize(share, np.cumsum(SHARES[:2]))
+    else:
+        raw = np.array(BLOCKS)[np.minimum((share * len(BLOCKS)).astype(int), len(BLOCKS) - 1)]
+    return _apart(samples.time, raw, reach_s)
+
+
+def _share(time: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Place of each time between the first and the last, 0 to below 1."""
+    return (time - time[0]) / max(time[-1] - time[0], 1e-9) * (1 - 1e-9) if len(time) else time
+
+
+def _apart(time: NDArray[np.float64], raw: NDArray[np.int_], reach_s: float) -> NDArray[np.int_]:
+    """Set windows apart whose readings, or the filter's reach before them, lie in another part."""
+    borders = time[1:][np.diff(raw) != 0]
+    labels = raw.copy()
+    for border in borders:
+        labels[(time >= border - 1e-9) & (time < border + reach_s + SEAM_S - 1e-9)] = APART
+    return labels
+
+
+def _chosen(trials: Sequence[Samples], labels: Sequence[NDArray[np.int_]], part: int) -> tuple[Samples, ...]:
+    return tuple(each.rows(found == part) for each, found in zip(trials, labels, strict=True))

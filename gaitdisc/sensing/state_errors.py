@@ -1,0 +1,186 @@
+"""Errors of a reconstruction, each under its own name: RMSE, relative L2 and R2 are three different things."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel
+from gaitdisc.recording import Samples
+from gaitdisc.statistics.r2 import r2
+
+DRAWS = 1000
+LEVEL = 0.95
+COLUMNS = ("state", "unit", "rmse", "low", "high", "relative_l2", "r2")
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """What was measured and what was told, window by window, with the stride that each belongs to.
+
+    Parameters
+    ----------
+    windows : Samples
+        Judged windows of all trials.
+    stride : ndarray of int (window,)
+        Number of the stride, -1 outside of strides.
+    told : ndarray (window, state)
+        What a model says.
+    """
+
+    windows: Samples
+    stride: NDArray[np.int_]
+    told: NDArray[np.float64]
+
+    @property
+    def strides(self) -> int:
+        """Strides that were judged, in part or whole: the number of independent samples is of this order."""
+        return len(np.unique(self.stride[self.stride >= 0]))
+
+
+def stride_numbers(trials: Sequence[Samples]) -> NDArray[np.int_]:
+    """Number of the stride of each window, counted through all trials.
+
+    Parameters
+    ----------
+    trials : sequence of Samples
+        In the order in which they are stacked.
+
+    Examples
+    --------
+    >>> phi = np.array([90.0, 5.0, 50.0, 2.0, np.nan])
+    >>> s = Samples(phi[:, None], phi[:, None], ("a",), ("b",), np.arange(5.0), phi)
+    >>> stride_numbers([s]).tolist()
+    [0, 1, 1, 2, -1]
+    """
+    numbers, first = [], 0
+    for trial in trials:
+        if not len(trial):
+            continue
+        known = np.isfinite(trial.phi)
+        found = np.full(len(trial), -1)
+        phi, time = trial.phi[known], trial.time[known]
+        new = (np.diff(phi) < 0) | (np.diff(time) > 1.0)
+        found[known] = first + np.concatenate([[0], np.cumsum(new)])[: len(phi)]
+        first = found.max(initial=first - 1) + 1
+        numbers.append(found)
+    return np.concatenate(numbers)
+
+
+def state_errors(judged: Judged, channels: Sequence[Channel], seed: int = 0) -> pd.DataFrame:
+    """Error of every state: RMSE in its unit, relative L2, and R2.
+
+    Parameters
+    ----------
+    judged : Judged
+        What was measured and told.
+    channels : sequence of Channel
+        Of the states, in order.
+    seed : int
+        Of the draws of strides.
+
+    Returns
+    -------
+    DataFrame
+        `COLUMNS`: state, unit, rmse [unit], low and high (95 % interval of the RMSE, strides drawn with replacement;
+        NaN with fewer than three strides), relative_l2 [1] (norm of the error by norm of the measured values about
+        zero, Eq. 2.21, which the dissertation calls MSE), r2 [1] about the mean of the judged part.
+    """
+    measured, error = judged.windows.y, judged.told - judged.windows.y
+    low, high = _interval(error**2, judged.stride, seed)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        relative = np.linalg.norm(error, axis=0) / np.linalg.norm(measured, axis=0)
+    return pd.DataFrame(
+        {
+            "state": [channel.name for channel in channels],
+            "unit": [channel.unit for channel in channels],
+            "rmse": np.sqrt(np.mean(error**2, axis=0)),
+            "low": low,
+            "high": high,
+            "relative_l2": relative,
+            "r2": r2(measured, judged.told),
+        }
+    )
+
+
+def angles_error(judged: Judged, channels: Sequence[Channel], sensors: NDArray[np.float64]) -> dict[str, float]:
+    """One number for all angles that no sensor measures, by each of the three names.
+
+    Parameters
+    ----------
+    judged : Judged
+        What was measured and told.
+    channels : sequence of Channel
+        Of the states, in order.
+    sensors : ndarray (window, sensor) [deg]
+        Readings of those sensors that are angles: they belong to the state, and their error is none.
+
+    Returns
+    -------
+    dict
+        `rmse_deg` (root of the mean square over windows and angles), `relative_l2`, `r2` (median of the angles), and
+        `relative_l2_whole`, in which the sensors count as states without error, as in Table 5.2. NaN without angles.
+    """
+    angles = [k for k, channel in enumerate(channels) if channel.unit == "deg"]
+    if not angles:
+        return dict.fromkeys(("rmse_deg", "relative_l2", "r2", "relative_l2_whole"), float("nan"))
+    measured, told = judged.windows.y[:, angles], judged.told[:, angles]
+    norm = float(np.linalg.norm(told - measured))
+    own, read = float(np.linalg.norm(measured)), float(np.linalg.norm(sensors))
+    return {
+        "rmse_deg": float(np.sqrt(np.mean((told - measured) ** 2))),
+        "relative_l2": norm / own,
+        "r2": float(np.nanmedian(r2(measured, told))),
+        "relative_l2_whole": norm / float(np.hypot(own, read)),
+    }
+
+
+def phase_curves(judged: Judged, states: Sequence[str], points: int = 51) -> pd.DataFrame:
+    """Mean and spread over the stride of what was measured and what was told.
+
+    Parameters
+    ----------
+    judged : Judged
+        What was measured and told.
+    states : sequence of str
+        Names of the states.
+    points : int
+        Bins from 0 to 100 % of the stride.
+
+    Returns
+    -------
+    DataFrame
+        state, percent, measured, measured_sd, told, rmse (of the windows in the bin).
+    """
+    inside = judged.stride >= 0
+    phi, y, told = judged.windows.phi[inside], judged.windows.y[inside], judged.told[inside]
+    edges = np.linspace(0, 100, points + 1)
+    bins = np.clip(np.digitize(phi, edges) - 1, 0, points - 1)
+    rows = []
+    for k in np.unique(bins):
+        here = bins == k
+        for column, state in enumerate(states):
+            m, f = y[here, column], told[here, column]
+            rmse = float(np.sqrt(np.mean((f - m) ** 2)))
+            rows.append((state, float(edges[k] + edges[1] / 2), m.mean(), m.std(), f.mean(), rmse))
+    return pd.DataFrame(rows, columns=pd.Index(["state", "percent", "measured", "measured_sd", "told", "rmse"]))
+
+
+def _interval(
+    squares: NDArray[np.float64], stride: NDArray[np.int_], seed: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Bounds of the root mean square when whole strides are drawn with replacement."""
+    names, index = np.unique(stride, return_inverse=True)
+    sums = np.zeros((len(names), squares.shape[1]))
+    np.add.at(sums, index, squares)
+    counts = np.bincount(index).astype(float)
+    if len(names) < 3:
+        return np.full(squares.shape[1], np.nan), np.full(squares.shape[1], np.nan)
+    drawn = np.random.default_rng(seed).multinomial(len(names), np.full(len(names), 1 / len(names)), DRAWS)
+    means = np.sqrt((drawn @ sums) / (drawn @ counts)[:, None])
+    low, high = np.quantile(means, [(1 - LEVEL) / 2, (1 + LEVEL) / 2], axis=0)
+    return low, high

@@ -1,0 +1,37 @@
+from __future__ import annotations
+
+import pytest
+
+from gaitdisc.batch.reconstruct_recording import reconstruct_recording
+from gaitdisc.batch.reconstruct_study import ReconstructionSettings, reconstruct_study
+from gaitdisc.errors import ChannelError
+from gaitdisc.ingest.reading import read_trial
+from gaitdisc.ingest.storage import write_storage
+from gaitdisc.sensing.model_folder import save_model
+
+
+@pytest.fixture
+def model(study, tmp_path):
+    settings = ReconstructionSettings(kinds=("delay ridge",), condition="nominal")
+    _, people = reconstruct_study(study, ("knee_angle_r", "hip_flexion_r"), settings)
+    save_model(people[0].fitted[0], tmp_path / "model")
+    return tmp_path / "model"
+
+
+def test_states_of_another_walk_are_told_written_and_judged(model, recordings, tmp_path):
+    told = reconstruct_recording(recordings / "P01_nominal.mot", model, tmp_path / "told.mot")
+    assert set(told.rmse) == {"ankle_angle_r", "hip_flexion_l", "knee_angle_l"}
+    assert told.lines()[0].startswith("3 states of 29.")
+    kept = read_trial(tmp_path / "told.mot").stream("kinematics")
+    assert kept.names == told.states.names
+    other = reconstruct_recording(recordings / "P01_exo.mot", model, tmp_path / "exo.mot")
+    assert other.rmse["ankle_angle_r"] > told.rmse["ankle_angle_r"]
+
+
+def test_sensors_alone_are_enough_and_without_one_it_is_refused(model, recordings, tmp_path):
+    kinematics = read_trial(recordings / "P01_nominal.mot").stream("kinematics")
+    write_storage(kinematics.selected(["hip_flexion_r", "knee_angle_r"]), tmp_path / "two.mot")
+    assert reconstruct_recording(tmp_path / "two.mot", model, tmp_path / "told.mot").rmse == {}
+    write_storage(kinematics.selected(["knee_angle_r"]), tmp_path / "one.mot")
+    with pytest.raises(ChannelError, match="'hip_flexion_r' is needed"):
+        reconstruct_recording(tmp_path / "one.mot", model, tmp_path / "told.mot")

@@ -1,0 +1,40 @@
+from typer.testing import CliRunner
+
+from gaitdisc.cli import app
+from gaitdisc.commands.exit_codes import REFUSED
+
+
+def test_a_study_gives_a_sentence_a_table_and_a_report(study, tmp_path):
+    words = ["reconstruct", str(study), "-s", "hip_flexion_r,knee_angle_r", "--out", str(tmp_path), "-q"]
+    done = CliRunner().invoke(app, words)
+    assert done.exit_code == 0, done.output
+    assert done.stdout.startswith("From hip flexion, right and knee angle, right")
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "Relative L2" in page and "MSE (" not in page
+    assert page.index('<h2 id="answer">') < page.index("<figure>") < page.index("How the numbers were made")
+    assert "http" not in page.split("</head>")[1] and "<script" not in page
+    assert (tmp_path / "errors.csv").is_file()
+
+
+def test_a_sensor_that_is_not_there_is_one_sentence(study, called):
+    done = called("reconstruct", study, "-s", "knee_ange_r")
+    assert done.returncode == REFUSED
+    assert "the nearest is 'knee_angle_r'" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_a_model_tells_a_recording(study, recordings, tmp_path, called):
+    words = ["-s", "hip_flexion_r", "-s", "knee_angle_r", "--condition", "natural", "--out", tmp_path, "-q"]
+    assert called("reconstruct", study, *words).returncode == 0
+    [model] = (tmp_path / "models").iterdir()
+    file, out = recordings / "walker1" / "exo.mot", tmp_path / "told.mot"
+    done = called("reconstruct", file, "--model", model, "--out", out)
+    assert done.returncode == 0, done.stderr
+    assert "ankle_angle_r: RMSE" in done.stdout
+    assert out.is_file()
+
+
+def test_without_sensors_it_is_refused(study, called):
+    done = called("reconstruct", study)
+    assert done.returncode == REFUSED
+    assert "reconstruction needs sensors" in done.stderr

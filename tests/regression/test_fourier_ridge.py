@@ -1,0 +1,55 @@
+import numpy as np
+import pytest
+
+from gaitdisc.errors import TrainingError
+from gaitdisc.recording import Samples
+from gaitdisc.regression.fourier_ridge import fit_fourier_ridge
+
+
+def samples(x, y):
+    time = np.arange(len(x)) / 100
+    return Samples(x, y, tuple(f"x{k}" for k in range(x.shape[1])), ("y",), time, time % 1)
+
+
+@pytest.fixture
+def curve():
+    rng = np.random.default_rng(0)
+    x = rng.uniform(-2, 2, (900, 2))
+    return samples(x, (np.sin(2 * x[:, :1]) * x[:, 1:] + 5))
+
+
+def test_without_features_it_is_ridge_regression_with_the_known_solution():
+    rng = np.random.default_rng(1)
+    x = rng.normal(size=(400, 3)) * [1, 10, 0.1] + 3
+    s = samples(x, x @ np.array([[2.0], [-0.5], [40.0]]) + 7)
+    model = fit_fourier_ridge(s.rows(slice(0, 300)), s.rows(slice(300, None)))
+    np.testing.assert_allclose(model(x[300:]), s.y[300:], atol=1e-3)
+    assert model.penalty < 1e-6
+
+
+def test_features_learn_what_a_line_cannot(curve):
+    parts = [curve.rows(part) for part in (slice(0, 600), slice(600, 750), slice(750, None))]
+    line, cosines = (fit_fourier_ridge(*parts[:2], features=n) for n in (0, 300))
+    errors = [np.std(model(parts[2].x) - parts[2].y) for model in (line, cosines)]
+    assert errors[1] < 0.05
+    assert errors[0] > 0.5
+
+
+def test_the_scale_never_sees_the_check_part(curve):
+    part, check = curve.rows(slice(0, 600)), curve.rows(slice(600, None))
+    shifted = samples(check.x + 100, check.y - 50)
+    one, other = (fit_fourier_ridge(part, judged, 20).x_scale.mean for judged in (check, shifted))
+    np.testing.assert_array_equal(one, other)
+
+
+def test_same_seed_same_model_and_a_missing_input_gives_a_missing_output(curve):
+    part, check = curve.rows(slice(0, 600)), curve.rows(slice(600, None))
+    one, same, other = (fit_fourier_ridge(part, check, 50, seed)(check.x) for seed in (0, 0, 1))
+    np.testing.assert_array_equal(one, same)
+    assert not np.array_equal(one, other)
+    assert np.isnan(fit_fourier_ridge(part, check, 50)(np.array([[np.nan, 1.0]]))).all()
+
+
+def test_without_a_check_part(curve):
+    with pytest.raises(TrainingError, match="needs a check part, by which its penalty is chosen"):
+        fit_fourier_ridge(curve, curve.rows(slice(0, 0)))

@@ -1,0 +1,39 @@
+import math
+
+import pytest
+
+from gaitdisc.report.reconstruction_tables import (
+    models_table,
+    participants_table,
+    reconstruction_sentences,
+    reconstruction_text,
+    states_table,
+)
+
+
+def test_every_error_stands_under_its_own_name(reconstruction):
+    table = models_table(reconstruction)
+    assert table.columns[1:5] == ("RMSE [deg]", "relative L2 [1]", "with sensors [1]", "R² [1]")
+    assert table.rows[1][0] == "delay ridge *"
+    assert "MSE" not in " ".join(table.columns).replace("RMSE", "")
+    assert reconstruction_text(reconstruction).row_count == 2
+
+
+def test_states_and_participants(reconstruction):
+    assert [row[1] for row in states_table(reconstruction).rows] == ["deg"]
+    assert participants_table(reconstruction).rows[0][0] == "P01"
+
+
+def test_the_sentences_recommend_and_refuse_the_name(reconstruction):
+    said = reconstruction_sentences(reconstruction)
+    rmse = reconstruction.over_participants().loc["delay ridge", "rmse_deg"]
+    assert math.isfinite(rmse) and f"RMSE of {rmse:.2f} deg" in said[0] and "by delay ridge" in said[0]
+    assert said[1].startswith("Beside it: linear")
+    assert "describe these participants" in said[2]
+    assert "calls the norm" in said[-1]
+
+
+@pytest.mark.parametrize("word", ["random (leaks)"])
+def test_a_split_that_leaks_is_said(reconstruction, word):
+    leaking = type(reconstruction)(**{**vars(reconstruction), "split": word})
+    assert any("The split leaks" in said for said in reconstruction_sentences(leaking))

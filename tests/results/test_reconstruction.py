@@ -1,0 +1,61 @@
+import json
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from gaitdisc.channel import Channel
+from gaitdisc.results import Provenance
+from gaitdisc.results.reconstruction import MEASURES, Reconstruction, save_reconstruction
+
+
+@pytest.fixture
+def done():
+    rows = [
+        {"participant": p, "model": m, "strides": 9, "n_fitted": 100, **dict.fromkeys(MEASURES, value + k)}
+        for k, p in enumerate(("P01", "P02", "P03"))
+        for m, value in (("linear", 8.0), ("fourier ridge", 1.01), ("shred", 1.0))
+    ]
+    errors = pd.DataFrame(
+        {"participant": "P01", "model": ["linear", "shred"], "state": "knee", "unit": "deg", "rmse": [2.0, 1.0],
+         "low": 0.5, "high": 3.0, "relative_l2": 0.1, "r2": 0.9}
+    )  # fmt: skip
+    knee, hip = (Channel(f"{name}_r", "angle", "deg", "r") for name in ("knee_angle", "hip_flexion"))
+    provenance = Provenance({}, 0, {}, {}, "5.3.3", "2026-01-01T00:00:00+00:00")
+    models = {"linear": "a line", "fourier ridge": "cosines", "shred": "a network"}
+    return Reconstruction(
+        "two",
+        (hip,),
+        (knee,),
+        "temporal",
+        "25 readings",
+        models,
+        errors,
+        pd.DataFrame(rows),
+        errors,
+        (),
+        (),
+        provenance,
+    )
+
+
+def test_the_mean_over_participants_has_students_interval(done):
+    over = done.over_participants().loc["shred"]
+    assert over["rmse_deg"] == 2.0
+    assert over["rmse_deg_high"] - over["rmse_deg"] == pytest.approx(4.302653 / np.sqrt(3), rel=1e-6)
+
+
+def test_the_cheaper_model_is_recommended_where_it_errs_no_more_than_two_percent_more(done):
+    assert done.recommended == "fourier ridge"
+    worse = done.summary.assign(
+        check_loss=done.summary["check_loss"] * np.where(done.summary["model"] == "shred", 0.5, 1)
+    )
+    assert type(done)(**{**vars(done), "summary": worse}).recommended == "shred"
+
+
+def test_it_is_saved_with_its_tables(done, tmp_path):
+    save_reconstruction(done, tmp_path)
+    kept = json.loads((tmp_path / "reconstruction.json").read_text())
+    assert kept["recommended"] == "fourier ridge"
+    assert set(kept["sha256"]) == {"errors.csv", "summary.csv", "curves.csv"}
+    assert len(pd.read_csv(tmp_path / "summary.csv")) == 9

@@ -1,0 +1,30 @@
+"""A sensor that wanders at random, and a state: what it read a quarter of a second ago."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.ndimage import gaussian_filter1d
+
+from gaitdisc.channel import Channel
+from gaitdisc.recording import Recording
+from gaitdisc.sensing.reconstructor import sensing
+from gaitdisc.sensing.splits import split_within
+from gaitdisc.sensing.windows import Lags
+
+
+@pytest.fixture(scope="session")
+def pair():
+    noise = np.random.default_rng(0).normal(size=3025)
+    a = gaussian_filter1d(noise, 4.0) * 4
+    values = np.column_stack([a[25:], a[:-25]])
+    channels = (Channel("a", "angle", "deg"), Channel("late", "angle", "deg"))
+    recording = Recording(np.arange(3000) / 100, values, channels, "P01")
+    what = sensing(("a", "late"), ("a",), Lags(11, 5), 100.0)
+    phi = 100 * (recording.time % 1.0)
+    windows = what.windows(recording, phi)
+    return SimpleNamespace(
+        recording=recording, what=what, channels=channels, parts=split_within([windows], "temporal", what.reach_s)
+    )

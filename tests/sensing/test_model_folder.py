@@ -1,0 +1,53 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gaitdisc.channel import Channel
+from gaitdisc.errors import ChannelError, SamplingError, SchemaError, UnitError
+from gaitdisc.recording import Recording
+from gaitdisc.sensing.model_folder import SensingModel, load_model, save_model
+from gaitdisc.sensing.reconstructor import fit_reconstructor
+
+
+@pytest.fixture(scope="module")
+def saved(pair):
+    fitted = fit_reconstructor("delay ridge", pair.what, pair.parts.fitted(), pair.parts.checked())
+    return SensingModel(fitted, pair.channels, np.array([0.5]))
+
+
+def test_a_loaded_model_tells_the_same_of_a_new_recording(pair, saved, tmp_path):
+    save_model(saved, tmp_path / "model")
+    kept = load_model(tmp_path / "model")
+    new = pair.recording.selected(["a"])
+    told = kept(new)
+    np.testing.assert_array_equal(told.values, saved(new).values)
+    reach = pair.what.lags.reach
+    assert np.isnan(told.values[:reach]).all()
+    np.testing.assert_allclose(told["late"][reach:], pair.recording["late"][reach:], atol=0.05)
+    assert (told.names, kept.half_widths.tolist()) == (("late",), [0.5])
+
+
+def test_a_network_is_loaded_with_its_kind(pair, tmp_path):
+    fitted = fit_reconstructor("shallow decoder", pair.what, pair.parts.fitted(), pair.parts.checked())
+    save_model(SensingModel(fitted, pair.channels, np.ones(1)), tmp_path)
+    judged = pair.parts.judged()
+    np.testing.assert_array_equal(load_model(tmp_path).reconstructor(judged), fitted(judged))
+
+
+def test_refusals(pair, saved, tmp_path):
+    r = pair.recording
+    with pytest.raises(SamplingError, match=r"reads its sensors at 100 Hz; the recording has 50 Hz"):
+        saved(replace(r, time=r.time * 2))
+    other = (Channel("a", "angle", "rad"), r.channels[1])
+    with pytest.raises(UnitError, match="the model reads a in deg; the recording has it in rad"):
+        saved(Recording(r.time, r.values, other))
+    with pytest.raises(ChannelError, match="'a' is needed"):
+        saved(r.selected(["late"]))
+    with pytest.raises(SchemaError, match=r"model\.json is to be read as a model of gaitdisc"):
+        load_model(tmp_path / "nothing")
+    save_model(saved, tmp_path)
+    text = (tmp_path / "model.json").read_text().replace('"format": 1', '"format": 9')
+    (tmp_path / "model.json").write_text(text)
+    with pytest.raises(SchemaError, match="it has format 9, this version reads 1"):
+        load_model(tmp_path)

@@ -1,0 +1,41 @@
+import numpy as np
+import pytest
+
+from gaitdisc.errors import ChannelError, SchemaError
+from gaitdisc.sensing.reconstructor import fit_reconstructor, sensing
+from gaitdisc.sensing.windows import Lags, present
+
+
+def test_states_are_what_no_sensor_measures():
+    what = sensing(("a", "b", "c"), ("c", "x"), Lags(26, 4), 100.0)
+    assert what.states == ("a", "b")
+    assert what.reach_s == 1.0
+
+
+def test_refusals(pair):
+    with pytest.raises(ChannelError, match="needs a state that no sensor measures; a: all of them are sensors"):
+        sensing(("a",), ("a",), Lags(), 100.0)
+    with pytest.raises(ChannelError, match="needs sensors, each once; found none"):
+        sensing(("a",), (), Lags(), 100.0)
+    with pytest.raises(ChannelError, match="each once; found a, a"):
+        sensing(("a", "b"), ("a", "a"), Lags(), 100.0)
+    with pytest.raises(SchemaError, match="'forest' is none"):
+        fit_reconstructor("forest", pair.what, pair.parts.fitted(), pair.parts.checked())
+
+
+def test_models_without_history_see_the_present_readings_alone(pair):
+    parts = pair.parts
+    linear = fit_reconstructor("linear", pair.what, parts.fitted(), parts.checked())
+    judged = parts.judged()
+    assert linear.model.inputs == ("a",)
+    np.testing.assert_array_equal(linear(judged), linear.model(present(judged, ("a",)).x))
+
+
+def test_history_tells_a_state_that_lags_behind(pair):
+    parts, errors = pair.parts, {}
+    for kind in ("linear", "delay ridge", "fourier ridge"):
+        done = fit_reconstructor(kind, pair.what, parts.fitted(), parts.checked())
+        errors[kind] = np.sqrt(np.mean((done(parts.judged()) - parts.judged().y) ** 2))
+    assert errors["delay ridge"] < 0.01
+    assert errors["linear"] > 0.5
+    assert errors["fourier ridge"] < 0.02

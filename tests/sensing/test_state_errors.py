@@ -1,0 +1,51 @@
+import numpy as np
+import pytest
+
+from gaitdisc.channel import Channel
+from gaitdisc.recording import Samples
+from gaitdisc.sensing.state_errors import Judged, angles_error, phase_curves, state_errors, stride_numbers
+
+CHANNELS = (Channel("knee_angle_r", "angle", "deg", "r"), Channel("pelvis_tx", "translation", "m"))
+
+
+@pytest.fixture
+def judged():
+    time = np.arange(1000) / 100
+    y = np.column_stack([30 + 10 * np.sin(2 * np.pi * time), 0.1 * np.cos(2 * np.pi * time)])
+    windows = Samples(y, y, ("a", "b"), ("knee_angle_r", "pelvis_tx"), time, 100 * (time % 1))
+    return Judged(windows, stride_numbers([windows]), y + np.array([2.0, -0.05]))
+
+
+def test_each_error_has_its_known_value(judged):
+    found = state_errors(judged, CHANNELS).set_index("state")
+    assert found["rmse"].tolist() == pytest.approx([2.0, 0.05])
+    assert found["unit"].tolist() == ["deg", "m"]
+    assert found["relative_l2"].tolist() == pytest.approx([2 / np.sqrt(950), 0.05 / np.sqrt(0.005)])
+    assert found["r2"].tolist() == pytest.approx([1 - 4 / 50, 0.5])
+    assert found["low"].tolist() == pytest.approx([2.0, 0.05])
+
+
+def test_strides_are_counted_and_are_what_the_interval_draws(judged):
+    assert judged.strides == 10
+    told = judged.windows.y + judged.stride[:, None]
+    found = state_errors(Judged(judged.windows, judged.stride, told), CHANNELS).iloc[0]
+    assert found["rmse"] == pytest.approx(np.sqrt(28.5))
+    assert 3.0 < found["low"] < 4.5
+    assert 6.0 < found["high"] < 7.5
+
+
+def test_degrees_and_metres_are_never_averaged(judged):
+    found = angles_error(judged, CHANNELS, np.full((1000, 1), 30.0))
+    assert found["rmse_deg"] == pytest.approx(2.0)
+    assert found["relative_l2"] == pytest.approx(2 / np.sqrt(950))
+    assert found["relative_l2_whole"] == pytest.approx(2 / np.sqrt(950 + 900))
+    nothing = Judged(judged.windows, judged.stride, judged.told)
+    assert np.isnan(angles_error(nothing, (CHANNELS[1], CHANNELS[1]), np.zeros((1000, 0)))["rmse_deg"])
+
+
+def test_curves_over_the_stride(judged):
+    curves = phase_curves(judged, ("knee_angle_r", "pelvis_tx"), 50)
+    knee = curves[curves["state"] == "knee_angle_r"]
+    assert len(knee) == 50
+    np.testing.assert_allclose(knee["told"] - knee["measured"], 2.0)
+    np.testing.assert_allclose(knee["measured"], 30 + 10 * np.sin(2 * np.pi * knee["percent"] / 100), atol=0.6)
