@@ -1,0 +1,79 @@
+"""`gaitdisc discover` and stock PySINDy on the same blind cases, side by side.
+
+    python benchmarks/discover.py BENCH [OUT] [--seed 21] [--cases 30] [--noise 0.05] [--jobs 2]
+
+BENCH is the folder of make_cases.py and score.py (../shared/bench/hidden_effects), which are run as they are: cases
+are made there, every tool is run as a command on them, and score.py alone reads the answers. PySINDy is not among the
+package's dependencies (pip install pysindy); stock_pysindy.py says what it is given.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+OURS = "gaitdisc discover {simulation} {measured} --out {out} --no-report --quiet"
+THEIRS = (
+    f"{sys.executable} {Path(__file__).with_name('stock_pysindy.py')} {{simulation}} {{measured}} --out {{out}} --how "
+)
+TOOLS = {"gaitdisc": OURS} | {f"PySINDy, {how}": THEIRS + how for how in ("sweep", "ensemble", "weak")}
+LIMIT_S = 300
+
+
+def make(bench: Path, out: Path, seed: int, count: int, noise: float) -> None:
+    """Make the cases, and keep so many of them, evenly from all."""
+    made = [sys.executable, str(bench / "make_cases.py"), str(out), "--seed", str(seed), "--noise", str(noise)]
+    subprocess.run(made, check=True, stdout=subprocess.DEVNULL)
+    cases = sorted(path.name for path in (out / "cases").iterdir())
+    kept = {cases[i] for i in np.linspace(0, len(cases) - 1, min(count, len(cases))).round().astype(int)}
+    for name in set(cases) - kept:
+        shutil.rmtree(out / "cases" / name)
+        shutil.rmtree(out / "truth" / name)
+
+
+def scored(bench: Path, out: Path, command: str, jobs: int) -> pd.DataFrame:
+    """Run one tool over the cases as score.py does, and return its rows."""
+    words = ["--command", command, "--jobs", str(jobs), "--limit", str(LIMIT_S)]
+    subprocess.run([sys.executable, str(bench / "score.py"), str(out), *words], check=True, stdout=subprocess.DEVNULL)
+    return pd.DataFrame(json.loads((out / "score.json").read_text(encoding="utf-8")))
+
+
+def line(name: str, rows: pd.DataFrame) -> dict[str, object]:
+    """What score.py's rows of one tool come to."""
+    nothing = rows[rows["verdict"] == "no_gap"]
+    physics = rows[rows["verdict"] == "missing_physics"]
+    return {
+        "tool": name,
+        "cases": len(rows),
+        "name_and_place_right_%": 100 * rows["right_name"].mean(),
+        "of_missing_physics_%": 100 * physics["right_name"].mean(),
+        "named_where_nothing_is": f"{(~nothing['right_verdict'].astype(bool)).sum()} of {len(nothing)}",
+        "rhs_error_left": pd.to_numeric(rows["rhs"]).median(),
+        "gap_closed": pd.to_numeric(rows["closed"]).median(),
+        "seconds": rows["seconds"].median(),
+    }
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("bench", type=Path)
+    parser.add_argument("out", type=Path, nargs="?", default=Path("blind"))
+    parser.add_argument("--seed", type=int, default=21)
+    parser.add_argument("--cases", type=int, default=30)
+    parser.add_argument("--noise", type=float, default=0.05)
+    parser.add_argument("--jobs", type=int, default=2)
+    asked = parser.parse_args()
+    make(asked.bench, asked.out, asked.seed, asked.cases, asked.noise)
+    lines = []
+    for tool, command in TOOLS.items():
+        rows = scored(asked.bench, asked.out, command, asked.jobs)
+        rows.to_json(asked.out / f"{tool.replace(', ', '-')}.json", orient="records", indent=1)
+        lines.append(line(tool, rows))
+        print(pd.DataFrame(lines).round(3).to_string(index=False), flush=True)

@@ -1,0 +1,144 @@
+"""A participant's Nominal model as a simulation, and the device walk as what was measured: an inquiry from a study."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.batch.participant_unit import processed_walks
+from gaitdisc.errors import SchemaError, StrideError
+from gaitdisc.ingest.study import Study
+from gaitdisc.processing.walk import Walk
+from gaitdisc.simulation.measured import Measured, TrialColumns, measured_of_trials
+from gaitdisc.simulation.parts import Input, Parameter, Port, State
+from gaitdisc.simulation.simulation import Simulation
+
+HARMONICS = 8
+STRIDES = 4  # of one trial of the inquiry
+FEWEST_TRIALS = 4
+
+
+def nominal_inquiry(
+    study: Study, participant: str, joint: str = "ankle_angle", strides: int = STRIDES
+) -> tuple[Simulation, Measured]:
+    """Nominal model of one joint of a participant, and the device walk cut into trials of some strides.
+
+    The model is the Nominal model of chapter 4 in a form that can be read: the joint's acceleration is linear in its
+    angle and its rate and periodic in percent stride, fitted to the Nominal walk by least squares. What differs on the
+    device is therefore an acceleration, not a moment: without moments in the study no inertia is known, and what the
+    person changes on purpose cannot be told from what the device does.
+
+    Parameters
+    ----------
+    study : Study
+        With both walks; its filters and its detector are used.
+    participant : str
+        Pseudonym.
+    joint : str
+        Angle, without its side; the side is that of the study's strides.
+    strides : int
+        In each trial of the inquiry.
+
+    Returns
+    -------
+    simulation : Simulation
+        States theta [rad] and omega [rad/s], input phase, port `acceleration` [rad/s^2].
+    measured : Measured
+        Of the device walk.
+
+    Raises
+    ------
+    SchemaError
+        If a walk is missing or refused.
+    StrideError
+        If there are too few strides in a row.
+    """
+    walks, refusals = processed_walks(study, study.participant(participant))
+    if refusals:
+        raise SchemaError(
+            f"both walks of {participant} are needed",
+            "; ".join(f"{one.condition}: {one.reason}" for one in refusals),
+            "Mend it, or choose another participant.",
+        )
+    nominal, device = walks[study.conditions.nominal], walks[study.conditions.device]
+    name = f"{joint}_{study.strides.side}"
+    return nominal_model(nominal, name), stride_trials(device, name, strides)
+
+
+def nominal_model(walk: Walk, name: str) -> Simulation:
+    """Joint acceleration of a walk, linear in angle and rate and periodic in percent stride.
+
+    Parameters
+    ----------
+    walk : Walk
+        The Nominal one.
+    name : str
+        Of the joint angle.
+    """
+    angle, rate, speedup, phase = _motion(walk, name)
+    known = np.isfinite(np.column_stack([angle, rate, speedup, phase])).all(axis=1)
+    turn = 2 * np.pi * np.outer(phase[known], np.arange(1, HARMONICS + 1))
+    library = np.column_stack([-angle[known], -rate[known], np.ones(known.sum()), np.sin(turn), np.cos(turn)])
+    stiffness, damping, mean, *waves = (float(one) for one in np.linalg.lstsq(library, speedup[known], rcond=None)[0])
+    pieces = [f"{mean:.6g}"]
+    for order in range(HARMONICS):
+        about = f"{2 * np.pi * (order + 1):.9g}*phase"
+        pieces.append(f"{waves[order]:.6g}*sin({about}) + {waves[HARMONICS + order]:.6g}*cos({about})")
+    return Simulation(
+        title=f"{name} of {walk.trial.subject} as in the {walk.trial.condition} walk",
+        states=(State("theta", "rad", meaning=name), State("omega", "rad/s")),
+        inputs=(Input("phase", "1", meaning="percent stride / 100"),),
+        parameters=(Parameter("stiffness", stiffness, "1/s^2"), Parameter("damping", damping, "1/s")),
+        ports=(Port("acceleration", "rad/s^2", meaning="what the device adds, and what the person changes"),),
+        definitions=(("habit", " + ".join(pieces)),),
+        equations=(("theta", "omega"), ("omega", "habit - stiffness*theta - damping*omega + acceleration")),
+        observations=(("theta", "theta"),),
+    )
+
+
+def stride_trials(walk: Walk, name: str, strides: int = STRIDES) -> Measured:
+    """Cut a walk into trials of so many strides in a row.
+
+    Parameters
+    ----------
+    walk : Walk
+        Any.
+    name : str
+        Of the joint angle.
+    strides : int
+        In each trial.
+
+    Raises
+    ------
+    StrideError
+        If there are too few strides in a row.
+    """
+    angle, _, _, phase = _motion(walk, name)
+    time = np.asarray(walk.state.time)
+    own = walk.strides[walk.side]
+    trials: list[TrialColumns] = []
+    first = 0
+    while first + strides <= len(own):
+        last = first + strides - 1
+        inside = (time >= own.start[first]) & (time < own.end[last])
+        if np.isfinite(phase[inside]).all() and np.isfinite(angle[inside]).all():
+            label = str(len(trials) + 1)
+            trials.append(TrialColumns(label, time[inside], phase[inside, None], angle[inside, None]))
+            first = last + 1
+        else:
+            first += 1
+    if len(trials) < FEWEST_TRIALS:
+        raise StrideError(
+            f"an inquiry needs {FEWEST_TRIALS * strides} strides, {strides} in a row at a time",
+            f"{walk.trial.name} has {len(own)}, in a row {len(trials)} times {strides}",
+            "Record longer, or ask for fewer strides in a trial.",
+        )
+    return measured_of_trials(trials, ("phase",), ("theta",), walk.trial.name)
+
+
+def _motion(walk: Walk, name: str) -> tuple[NDArray[np.float64], ...]:
+    """Angle, rate, acceleration [rad, s] and share of the stride, sample by sample."""
+    column = walk.state.names.index(name)
+    trajectory = walk.trajectory
+    motion = (np.radians(each[:, column]) for each in (trajectory.x, trajectory.xdot, trajectory.xddot))
+    return (*motion, np.asarray(trajectory.phi) / 100)

@@ -1,0 +1,109 @@
+"""What a laboratory knows of one ankle of the embedded cohort: its motion, its moments, and with which errors.
+
+The motion is the cohort's recorded angle. Moments are the walk's own with errors of the usual size: a centre of
+pressure that is off by 3 mm moves the moment of inverse dynamics, muscle moments waver by 5 % (plantarflexors, from
+EMG) and by 1.5 N m (all others). They are moments of muscles that no device can enter, as a musculoskeletal estimate
+gives them; EMG envelopes alone would not do, since in the cohort much comes from actuators that no electrode sees.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+from scipy.signal import butter, sosfiltfilt
+
+from gaitdisc.cohort.body import bias, inertia, leg_of
+from gaitdisc.cohort.device import FOOT_KG
+from gaitdisc.cohort.measurement import measured
+from gaitdisc.cohort.muscles import LENGTHENING, activated, strength_of
+from gaitdisc.cohort.person import MUSCLES, Person
+from gaitdisc.cohort.walk import QUICK_HZ, SLOW_HZ, TrueWalk
+from gaitdisc.simulation.measured import Measured, TrialColumns, measured_of_trials
+
+INPUTS = ("reference", "net", "per_kg", "plantarflexors", "others", "phase")
+LOWPASS_HZ, EDGE_S, TRIALS = 10.0, 2.0, 8
+PRESSURE_M, EMG_ERROR, OTHERS_NM = 0.003, 0.05, 1.5
+ERROR_HZ = 6.0
+TRACKED = (800.0, 57.0, 1.0)  # angle, rate and acceleration in the reference, as in tracked_ankle.toml
+ANKLE, SIDE = 2, 0
+Values = NDArray[np.float64]
+
+
+def own_foot_kg(person: Person) -> float:
+    """Mass of foot and device that the laboratory knows of [kg]."""
+    return 0.0145 * person.mass_kg + FOOT_KG
+
+
+def ankle_trials(walk: TrueWalk, emg_late_s: float) -> Measured:
+    """Stretches of a walk, as inputs and observation of tracked_ankle.toml."""
+    rng = np.random.default_rng([walk.seed, 31])
+    trial = measured(walk, walk.person.name, "", emg_late_s).stream("kinematics")
+    angle = np.radians(trial.values[:, trial.names.index("ankle_angle_r")])
+    path = CubicSpline(walk.slow_s, _low(angle))
+    by_emg, per_kg = plantarflexor_moment(walk), moment_per_foot_kg(walk)
+    others = walk.moments[:, SIDE, ANKLE] - walk.person.plantarflexors * by_emg
+    net = walk.moments[:, SIDE, ANKLE] + walk.spring[:, SIDE]
+    net = net - (own_foot_kg(walk.person) + walk.person.foot_kg) * per_kg
+    net = net + PRESSURE_M * _wander(rng, len(net)) * np.interp(walk.slow_s, walk.quick_s, walk.force[:, SIDE, 1])
+    others = others + OTHERS_NM * _wander(rng, len(net))
+    late = np.interp(walk.slow_s - emg_late_s, walk.slow_s, by_emg * (1 + EMG_ERROR * _wander(rng, len(net))))
+    columns = [sum(factor * path(walk.slow_s, order) for order, factor in enumerate(TRACKED))]
+    columns += [_low(one) for one in (net, per_kg, late, others)] + [
+        np.mod(walk.phase[:: round(QUICK_HZ / SLOW_HZ)], 1)
+    ]
+    inner = slice(round(EDGE_S * SLOW_HZ), -round(EDGE_S * SLOW_HZ))
+    inputs, seen = np.column_stack(columns)[inner], angle[inner, None]
+    length = len(inputs) // TRIALS
+    cuts = [slice(n * length, (n + 1) * length) for n in range(TRIALS)]
+    time = np.arange(length) / SLOW_HZ
+    trials = [TrialColumns(str(n + 1), time, inputs[cut], seen[cut]) for n, cut in enumerate(cuts)]
+    return measured_of_trials(trials, INPUTS, ("theta",), walk.person.name)
+
+
+def plantarflexor_moment(walk: TrueWalk) -> Values:
+    """Moment of gastrocnemius and soleus at the strength of the Nominal walk, towards dorsiflexion (time,) [N m]."""
+    reach = strength_of(walk.person.mass_kg).reach
+    rate = np.radians(np.gradient(walk.angles[:, SIDE, 3:], 1 / SLOW_HZ, axis=0))
+    total = np.zeros(len(walk.slow_s))
+    for name in ("emg_gas", "emg_sol"):
+        muscle = MUSCLES.index(name)
+        excitation = walk.excitation[:, SIDE, muscle]
+        active, level = np.empty(len(excitation)), excitation[0]
+        for sample, drive in enumerate(excitation):
+            active[sample] = level
+            level = activated(drive, level, 1 / QUICK_HZ)
+        pull = -rate @ np.sign(reach[muscle, 1:])
+        gain = np.clip(1 + LENGTHENING * pull, 0.7, 1.3)
+        total += reach[muscle, ANKLE] * active[:: round(QUICK_HZ / SLOW_HZ)] * gain
+    return total
+
+
+def moment_per_foot_kg(walk: TrueWalk) -> Values:
+    """What each kg at the foot adds to the ankle's moment, the hip's own acceleration left out (time,) [N m/kg]."""
+    angles, speedup = np.radians(walk.angles[:, SIDE]), np.radians(walk.acceleration[:, SIDE])
+    psi = _segments(angles[:, 0], angles[:, 3], angles[:, 4])
+    turning = np.gradient(psi, 1 / SLOW_HZ, axis=0)
+    faster = _segments(speedup[:, 0], speedup[:, 1], speedup[:, 2])
+    person, found = walk.person, np.zeros(len(psi))
+    for kilograms, sign in ((0.0, -1), (1.0, 1)):
+        leg, m, b = leg_of(person.height_m, person.mass_kg, kilograms), np.zeros((3, 3)), np.zeros(3)
+        for sample in range(len(psi)):
+            inertia(leg, psi[sample], m)
+            bias(leg, psi[sample], turning[sample], 0.0, 0.0, b)
+            found[sample] += sign * (m[ANKLE] @ faster[sample] + b[ANKLE])
+    return found
+
+
+def _segments(hip: Values, knee: Values, ankle: Values) -> Values:
+    return np.column_stack([hip, hip - knee, hip - knee + ankle])
+
+
+def _low(values: Values, cutoff_hz: float = LOWPASS_HZ) -> Values:
+    return sosfiltfilt(butter(4, cutoff_hz, fs=SLOW_HZ, output="sos"), values)
+
+
+def _wander(rng: np.random.Generator, count: int) -> Values:
+    """Error of standard deviation 1 that changes no faster than the filters let through."""
+    slow = _low(rng.normal(size=count), ERROR_HZ)
+    return slow / slow.std()

@@ -1,0 +1,121 @@
+"""Effects hidden in the walks of the embedded cohort: which are named, and how near to the truth.
+
+    python studies/hidden_effects_in_gait.py [OUT.csv] [--quick]
+
+Each of the twelve walks with one thing hidden that the simulation (tracked_ankle.toml) does not know: the spring of the
+exoskeleton, weak plantarflexors, EMG that is 40 ms late, 0.8 kg on the foot, a spring of 0.6 of its moment; and the
+Nominal walk, in which nothing is hidden. Eight stretches of one walk, two of them held out.
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from ankle_records import ankle_trials, own_foot_kg
+
+from gaitdisc.cohort.cohort import the_twelve
+from gaitdisc.cohort.device import STIFFNESS, Spring
+from gaitdisc.cohort.person import Person
+from gaitdisc.cohort.walk import walked
+from gaitdisc.discovery.discover import discover
+from gaitdisc.simulation.simulation_file import read_simulation
+
+MODEL = Path(__file__).with_name("tracked_ankle.toml")
+WALK_S = 24.0
+LATE_S, ADDED_KG, WEAK, SCALED = 0.04, 0.8, 0.75, 0.6
+# what is hidden -> name and place that are right
+RIGHT = {
+    "nothing": ("no_gap", ""),
+    "spring": ("one_sided_spring", "ankle_moment"),
+    "scaled moment": ("one_sided_spring", "ankle_moment"),
+    "weak plantarflexor": ("wrong_parameter", "strength"),
+    "foot mass": ("wrong_parameter", "foot_mass"),
+    "late EMG": ("input_delay", "plantarflexors"),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """What was found.
+
+    Parameters
+    ----------
+    table : DataFrame
+        person, hidden, verdict, named, right, value, low, high, truth, engaged_rad, engaged_truth_rad, phase, and
+        before, after, floor: error of the held-out angle [deg].
+    """
+
+    table: pd.DataFrame
+
+    def summary(self) -> pd.DataFrame:
+        """What is right, and how far off, by what was hidden."""
+        rows = self.table.assign(off=100 * (self.table["value"] / self.table["truth"] - 1).abs())
+        rows["inside"] = (rows["low"] <= rows["truth"]) & (rows["truth"] <= rows["high"])
+        first = rows.groupby("hidden", sort=False)
+        return first.agg(
+            n=("right", "size"),
+            right=("right", "sum"),
+            off_percent=("off", "median"),
+            inside=("inside", "sum"),
+            before_deg=("before", "median"),
+            after_deg=("after", "median"),
+            floor_deg=("floor", "median"),
+        )
+
+
+def run(quick: bool) -> Result:
+    """Hide each effect in each person's walk, and ask what is missing."""
+    people = the_twelve()[:1] if quick else the_twelve()
+    hidden = tuple(RIGHT)[1:2] if quick else tuple(RIGHT)
+    return Result(pd.DataFrame([found_in(person, effect) for person in people for effect in hidden]))
+
+
+def found_in(person: Person, hidden: str) -> dict[str, object]:
+    """One walk, one inquiry: what it says beside what is true."""
+    size = {"spring": 1.0, "scaled moment": SCALED}.get(hidden, 0.0)
+    spring = Spring(STIFFNESS * size) if size else None
+    strength, added = WEAK if hidden == "weak plantarflexor" else 1.0, ADDED_KG if hidden == "foot mass" else 0.0
+    walker = person.adapted_to(spring) if spring else replace(person, plantarflexors=strength, foot_kg=added)
+    walk = walked(walker, spring, WALK_S + 4.0, seed=list(RIGHT).index(hidden))
+    kg = own_foot_kg(person)
+    measured = ankle_trials(walk, LATE_S if hidden == "late EMG" else 0.0)
+    found = discover(read_simulation(MODEL).with_values({"foot_mass": kg}), measured)[0]
+    named = [(each.name, each.place) for each in found.effects]
+    right = found.verdict == "no_gap" if hidden == "nothing" else RIGHT[hidden] in named
+    row: dict[str, object] = {
+        "person": person.name,
+        "hidden": hidden,
+        "verdict": found.verdict,
+        "named": ", ".join(f"{name} at {place}" for name, place in named),
+        "right": right,
+        "alone": right and len(named) <= 1,
+    }
+    truth = {"weak plantarflexor": WEAK, "foot mass": kg + added, "late EMG": -LATE_S}
+    row["truth"] = -np.degrees(STIFFNESS) * size if size else truth.get(hidden, np.nan)
+    effect = next((each for each in found.effects if (each.name, each.place) == RIGHT[hidden]), None)
+    if effect:
+        first = next(iter(effect.estimates.values()))
+        row |= {"value": first.value, "low": first.low, "high": first.high}
+        if "x0" in effect.estimates:
+            row["engaged_rad"] = effect.estimates["x0"].value
+            row["engaged_truth_rad"] = np.radians(person.engaged_deg + person.style.offset_deg[0, 4])
+        row["phase"] = next((each.phase for each in found.where if each.place == effect.place), ())
+    sizes = np.degrees(found.held_out.channels["theta"])
+    return (
+        {"value": np.nan, "low": np.nan, "high": np.nan}
+        | row
+        | dict(zip(("before", "after", "floor"), sizes, strict=True))
+    )
+
+
+if __name__ == "__main__":
+    words = [word for word in sys.argv[1:] if word != "--quick"]
+    result = run("--quick" in sys.argv)
+    print(result.table.round(4).to_string())
+    print(result.summary().round(3).to_string())
+    if words:
+        result.table.to_csv(words[0], index=False)
