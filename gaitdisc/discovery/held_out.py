@@ -57,7 +57,9 @@ def runs_of(inquiry: Inquiry, now: Judged, trials: tuple[int, ...], like: Judged
     return Trial(fit, shooting.seen)
 
 
-def gap_size(before: Trial, after: Trial, floor: NDArray[np.float64], channels: tuple[str, ...]) -> GapSize:
+def gap_size(
+    before: Trial, after: Trial, floor: NDArray[np.float64], channels: tuple[str, ...], block: int
+) -> GapSize:
     """Measure the gap before and after, and the chance of such a fall.
 
     Parameters
@@ -68,12 +70,21 @@ def gap_size(before: Trial, after: Trial, floor: NDArray[np.float64], channels: 
         Standard deviation of the noise [the channel's unit].
     channels : tuple of str
         Names of the channels.
+    block : int
+        Samples that count as one in the chance: about a period, longer than noise remembers.
     """
     spread = np.nanstd(after.measured, axis=(0, 1))
     rms = [np.sqrt(np.nanmean(one.fit.residual**2, axis=(0, 1))) for one in (before, after)]
     sizes = {name: (float(rms[0][i]), float(rms[1][i]), float(floor[i])) for i, name in enumerate(channels)}
     whole = [float(np.sqrt(np.mean((one / spread) ** 2))) for one in (*rms, floor)]
-    return GapSize(whole[0], whole[1], whole[2], chance(before.misfits - after.misfits), sizes)
+    return GapSize(whole[0], whole[1], whole[2], chance(_gains(before, after, floor, block)), sizes)
+
+
+def _gains(before: Trial, after: Trial, floor: NDArray[np.float64], block: int) -> NDArray[np.float64]:
+    """Fall of the squared error, in units of the noise, block by block (block,)."""
+    fall = np.nan_to_num((before.fit.residual**2 - after.fit.residual**2) / floor**2).sum(axis=2)
+    blocks = max(fall.shape[1] // block, 1)
+    return np.array([part.sum() for run in fall for part in np.array_split(run, blocks)])
 
 
 def chance(gains: NDArray[np.float64], seed: int = 0) -> float:
@@ -96,7 +107,7 @@ def chance(gains: NDArray[np.float64], seed: int = 0) -> float:
     n = len(gains)
     if n <= 13:
         signs = 1 - 2 * ((np.arange(2**n)[:, None] >> np.arange(n)) & 1)
-        return float(np.mean(signs @ gains >= gains.sum() * (1 - 1e-12)))
+        return float(np.mean(signs @ gains >= gains.sum() - 1e-12 * np.abs(gains).sum()))
     signs = np.random.default_rng(seed).choice([-1.0, 1.0], (FLIPS, n))
     return float((1 + np.sum(signs @ gains >= gains.sum())) / (FLIPS + 1))
 

@@ -1,0 +1,119 @@
+import numpy as np
+import pytest
+from hidden_in_a_mass import MASS, mass, two_rods
+
+from gaitdisc.discovery.candidate import Candidate, candidates_of
+from gaitdisc.discovery.catalogue import Shape, known_shapes
+from gaitdisc.discovery.places import places_of
+from gaitdisc.simulation.running import compile_simulation
+from gaitdisc.simulation.simulation_file import simulation_of
+
+SPRING = Candidate(
+    "missing_physics", "port", "load", "one_sided_spring", ("max(0, x - _x0)",), {"x0": "quantiles of x"}, "x"
+)
+WAVE = Candidate("missing_physics", "port", "load", "wave", ("sin(_w*t)", "cos(_w*t)"), {"w": "frequencies"}, "x")
+
+
+def _candidates(simulation, shapes=None):
+    places = places_of(simulation, compile_simulation(simulation))
+    return candidates_of(simulation, places, known_shapes() if shapes is None else shapes)
+
+
+def _pieces(simulation, label):
+    return {one.pieces for one in _candidates(simulation) if one.label == label}
+
+
+def test_each_piece_has_a_factor_and_each_constant_a_slot():
+    assert SPRING.slots == ("factor", "x0")
+    assert WAVE.slots == ("factor", "factor_1", "w")
+    assert WAVE.idle == {"factor": 0.0, "factor_1": 0.0}
+
+
+def test_a_term_is_written_with_its_numbers():
+    assert SPRING.term({"factor": "-30", "x0": "-0.2"}) == "-30*(max(0, x - (-0.2)))"
+    assert WAVE.term({"factor": "1", "factor_1": "2", "w": "3"}) == "1*(sin(3*t)) + 2*(cos(3*t))"
+    assert Candidate("missing_physics", "port", "load", "constant_load", ("1",)).term({"factor": "4"}) == "4"
+
+
+def test_numbers_become_parameters_of_the_fit():
+    simulation, names = SPRING.in_fit(mass(), "part0", {"factor": -30.0, "x0": 0.2})
+    assert names == SPRING.named("part0") == {"factor": "part0_factor", "x0": "part0_x0"}
+    assert simulation.values()["part0_factor"] == -30.0
+    assert simulation.effects[-1].term == "part0_factor*(max(0, x - part0_x0))"
+
+
+def test_a_wrong_number_is_a_parameter_already():
+    wrong = Candidate("wrong_parameter", "parameter", "k", "wrong_parameter", value=24.0)
+    assert wrong.in_fit(mass(), "part0", {"value": 30.0}) == (mass(), {"value": "k"})
+    assert wrong.written(mass(), {"value": "31.5"}).values()["k"] == 31.5
+    assert wrong.idle == {"value": 24.0}
+
+
+@pytest.mark.parametrize(
+    ("name", "slot", "number", "seen"),
+    [
+        ("sensor_gain", "gain", "1.2", "1.2*(x)"),
+        ("sensor_offset", "offset", "0.1", "(x) + 0.1"),
+        ("sensor_drift", "rate", "0.02", "(x) + 0.02*t"),
+        ("sensor_lag", "seconds", "0.05", "delay(x, 0.05)"),
+    ],
+)
+def test_a_sensor_error_is_written_into_the_observation(name, slot, number, seen):
+    error = Candidate("sensor_error", "observation", "x", name)
+    assert dict(error.written(mass(), {slot: number}).observations) == {"x": seen}
+
+
+def test_a_lagging_sensor_of_a_sum_sees_every_signal_late():
+    both = mass().with_observation("x", "x + 0.1*v")
+    lag = Candidate("sensor_error", "observation", "x", "sensor_lag")
+    assert dict(lag.written(both, {"seconds": "0.05"}).observations)["x"] == "delay(x, 0.05) + 0.1*delay(v, 0.05)"
+
+
+@pytest.mark.parametrize(("name", "slot"), [("input_gain", "gain"), ("input_delay", "seconds")])
+def test_an_input_error_at_its_idle_value_changes_nothing(name, slot):
+    error = Candidate("input_error", "input", "push", name)
+    idle = compile_simulation(error.written(mass(), {slot: str(error.idle[slot])}))
+    rng, machine = np.random.default_rng(0), compile_simulation(mass())
+    t, x, u = np.zeros(5), rng.normal(size=(5, 2)), rng.normal(size=(5, 1))
+    np.testing.assert_allclose(idle.rates(t, x, u, late=u), machine.rates(t, x, u))
+
+
+def test_everything_that_could_be_wrong_is_listed_once():
+    found = _candidates(mass())
+    assert len({(one.label, one.pieces) for one in found}) == len(found)
+    labels = {one.label for one in found}
+    assert {f"wrong_parameter@{name}" for name in "mkc"} <= labels
+    assert {"input_delay@push", "input_gain@push", "sensor_lag@x", "coulomb_friction@load"} <= labels
+    assert "gravity_moment@load" not in labels  # x is no angle
+    assert "phase_locked_moment@load" not in labels  # there is no stride
+
+
+def test_an_input_that_nothing_uses_is_not_suspected():
+    idle = simulation_of(MASS.replace("[parameters.m]", '[inputs.spare]\nunit = "N"\n[parameters.m]'), "idle.toml")
+    assert not any(one.place == "spare" for one in _candidates(idle))
+
+
+def test_a_stride_brings_effects_that_are_locked_to_it():
+    text = MASS.replace("[parameters.m]", '[inputs.phase]\nunit = "1"\n[parameters.m]')
+    labels = {one.label for one in _candidates(simulation_of(text, "stride.toml"))}
+    assert "phase_locked_moment@load" in labels
+
+
+def test_in_a_chain_a_spring_may_act_on_a_joint_on_their_difference_or_on_the_other():
+    pieces = _pieces(two_rods(), "cubic_stiffness@lower_moment")
+    assert pieces == {("lower**3",), ("(lower - upper)**3",), ("upper**3",)}
+
+
+def test_a_linear_term_in_the_other_state_is_a_coupling_and_nothing_else():
+    assert _pieces(two_rods(), "linear_stiffness@lower_moment") == {("lower",), ("(lower - upper)",)}
+    assert ("upper",) in _pieces(two_rods(), "linear_coupling@lower_moment")
+
+
+def test_gravity_acts_on_the_joint_itself():
+    assert _pieces(two_rods(), "gravity_moment@lower_moment") == {("sin(lower)",), ("cos(lower)",)}
+
+
+def test_a_shape_of_the_users_own_is_one_more_candidate():
+    quintic = Shape("quintic", ("x**5",), means="a very stiff spring")
+    found = [one for one in _candidates(mass(), (*known_shapes(), quintic)) if one.name == "quintic"]
+    assert [(one.label, one.pieces, one.means) for one in found] == [("quintic@load", ("x**5",), "a very stiff spring")]

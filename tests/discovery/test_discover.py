@@ -1,0 +1,135 @@
+"""Each verdict on a mass on a spring in which one thing was hidden; the answers are those that were hidden."""
+
+import numpy as np
+import pytest
+from hidden_in_a_mass import Experiment, mass, record, two_rods, with_load
+
+from gaitdisc.discovery.catalogue import read_catalogue
+from gaitdisc.discovery.discover import discover
+from gaitdisc.simulation.parts import Term
+from gaitdisc.simulation.running import compile_simulation
+
+SEED = 3
+MISSING = {
+    "constant_load": ("1.2", {"load": 1.2}),
+    "cubic_stiffness": ("-14*x**3", {"stiffness": 14.0}),
+    "coulomb_friction": ("-1.5*sign(v)", {"friction": 1.5}),
+    "quadratic_drag": ("-0.7*v*abs(v)", {"drag": 0.7}),
+    "one_sided_spring": ("-30*max(0, x - 0.25)", {"stiffness": 30.0, "engagement": 0.25}),
+    "delayed_feedback": ("-4*delay(x, 0.21)", {"gain": -4.0, "delay": 0.21}),
+    "periodic_forcing": ("2*sin(7.3*t + 0.4)", {"amplitude": 2.0, "frequency": 7.3}),
+}
+
+
+def _found(truth, how=None, shapes=(), nominal=None, seed=SEED):
+    return discover(nominal or mass(), record(truth, seed, how), shapes)
+
+
+def _named(discovery):
+    return discovery.verdict, [(one.name, one.place) for one in discovery.effects]
+
+
+@pytest.mark.parametrize("name", MISSING)
+def test_a_missing_term_is_named_with_its_numbers(name):
+    term, numbers = MISSING[name]
+    discovery, augmented = _found(with_load(term))
+    assert _named(discovery) == ("missing_physics", [(name, "load")])
+    assert augmented.effects[0].name == name
+    estimates = list(discovery.effects[0].estimates.values())
+    for wanted in numbers.values():
+        closest = min(estimates, key=lambda one: abs(one.value - wanted))
+        assert closest.value == pytest.approx(wanted, rel=0.02)
+        assert closest.low - 0.02 * abs(wanted) < wanted < closest.high + 0.02 * abs(wanted)
+    assert discovery.held_out.after < 1.15 * discovery.held_out.noise_floor
+    assert discovery.held_out.p < 0.1
+
+
+@pytest.mark.parametrize(
+    ("truth", "how", "verdict", "name", "place", "value"),
+    [
+        (mass().with_values({"k": 27.0}), None, "wrong_parameter", "wrong_parameter", "k", 27.0),
+        (mass().with_values({"c": 1.6}), None, "wrong_parameter", "wrong_parameter", "c", 1.6),
+        (mass(), Experiment(late=4), "input_error", "input_delay", "push", 0.08),
+        (mass().with_observation("x", "1.3*x"), None, "sensor_error", "sensor_gain", "x", 1.3),
+        (mass().with_observation("x", "x + 0.02*t"), None, "sensor_error", "sensor_drift", "x", 0.02),
+        (mass(), Experiment(shaking=6.0), "process_noise", "process_noise", "load", 6.0),
+    ],
+    ids=["stiffness", "damping", "late input", "gain", "drift", "shaken"],
+)
+def test_what_is_wrong_but_not_missing_is_named(truth, how, verdict, name, place, value):
+    discovery, _ = _found(truth, how)
+    assert discovery.verdict == verdict
+    tied = [(one.name, one.place) for one in discovery.rivals if one.tied]
+    assert (name, place) in [(one.name, one.place) for one in discovery.effects] + tied
+    if (discovery.effects[0].name, discovery.effects[0].place) == (name, place):
+        (estimate,) = discovery.effects[0].estimates.values()
+        assert estimate.value == pytest.approx(value, rel=0.02 if name != "process_noise" else 0.3)
+
+
+@pytest.mark.parametrize("cutoff_hz", [0.0, 6.0], ids=["white", "coloured"])
+@pytest.mark.parametrize("seed", [0, 1])
+def test_nothing_is_named_where_nothing_is_hidden(seed, cutoff_hz):
+    discovery, augmented = _found(mass(), Experiment(cutoff_hz=cutoff_hz), seed=seed)
+    assert _named(discovery) == ("no_gap", [])
+    assert augmented == mass()
+    assert discovery.held_out.before == discovery.held_out.after
+
+
+@pytest.mark.slow
+def test_of_forty_nulls_at_most_two_are_named():
+    how = [Experiment(cutoff_hz=cutoff) for cutoff in (0.0, 6.0)]
+    named = [_named(_found(mass(), how[seed % 2], seed=seed)[0]) for seed in range(100, 140)]
+    assert sum(verdict != "no_gap" for verdict, _ in named) <= 2, named
+
+
+def test_two_effects_are_both_named():
+    truth = with_load("-14*x**3").with_effect(Term("load", "port", "second", "-1.5*sign(v)"))
+    discovery, augmented = _found(truth)
+    verdict, effects = _named(discovery)
+    assert (verdict, set(effects)) == ("missing_physics", {("cubic_stiffness", "load"), ("coulomb_friction", "load")})
+    assert len(augmented.effects) == 2
+
+
+def test_one_trial_is_enough_and_its_last_quarter_proves_it():
+    discovery, _ = _found(with_load("-14*x**3"), Experiment(trials=1, seconds=40.0))
+    assert _named(discovery) == ("missing_physics", [("cubic_stiffness", "load")])
+    assert set(discovery.runs.trial) == {1}
+    assert discovery.runs.time.min() == pytest.approx(30.0, abs=0.1)
+
+
+def test_an_effect_outside_the_catalogue_is_answered_by_a_shape_that_closes_the_gap():
+    discovery, augmented = _found(with_load("-6*exp(-((x - 0.3)/0.2)**2)"), Experiment(trials=6))
+    assert _named(discovery) == ("unnamed", [("unnamed", "load")])
+    size = discovery.held_out
+    closed = 1 - (size.after**2 - size.noise_floor**2) / (size.before**2 - size.noise_floor**2)
+    assert closed > 0.7
+    machine = compile_simulation(augmented)
+    at = np.column_stack([np.linspace(-0.2, 0.7, 40), np.zeros(40)])
+    plain = compile_simulation(mass()).rates(np.zeros(40), at, np.zeros((40, 1)))
+    force = 2.0 * (machine.rates(np.zeros(40), at, np.zeros((40, 1))) - plain)[:, 1]
+    np.testing.assert_allclose(force, -6 * np.exp(-(((at[:, 0] - 0.3) / 0.2) ** 2)), atol=1.8)
+
+
+def test_an_effect_of_the_users_own_is_found_by_its_name(tmp_path):
+    file = tmp_path / "mine.toml"
+    file.write_text(
+        '[[shape]]\nname = "bump"\npieces = ["exp(-((x - c)/0.2)**2)"]\nconstants = { c = "quantiles of x" }'
+    )
+    discovery, augmented = _found(with_load("-6*exp(-((x - 0.3)/0.2)**2)"), shapes=read_catalogue(file))
+    assert _named(discovery) == ("missing_physics", [("bump", "load")])
+    values = [one.value for one in discovery.effects[0].estimates.values()]
+    assert min(abs(value - 0.3) for value in values) < 0.01
+    assert "exp" in augmented.effects[0].term
+
+
+def test_in_a_chain_an_effect_is_named_at_the_joint_where_it_acts():
+    truth = two_rods().with_effect(Term("lower_moment", "port", "hidden", "-6*max(0, lower - 0.1)"))
+    discovery, _ = _found(truth, Experiment(noise=0.01), nominal=two_rods())
+    assert _named(discovery) == ("missing_physics", [("one_sided_spring", "lower_moment")])
+
+
+def test_every_step_is_told():
+    said = []
+    discover(mass(), record(mass(), SEED), told=said.append)
+    assert said[0] == "fitting the simulation as it was read"
+    assert any("weighing" in one and "explanations" in one for one in said)

@@ -1,0 +1,50 @@
+import numpy as np
+import pytest
+
+from gaitdisc.discovery.account import Part, account_for
+from gaitdisc.discovery.evidence import Judged, compared, judged
+
+
+@pytest.fixture(scope="module")
+def with_cubic(inquiry, as_read, cubic):
+    part = Part(cubic, {"factor": -14.0})
+    return Judged(
+        account_for(as_read.shooting, inquiry.search.base, (part,), as_read.account.fit.starts), as_read.shooting
+    )
+
+
+def test_under_its_own_noise_an_account_leaves_numbers_of_unit_variance(inquiry, as_read, with_cubic):
+    own = judged(as_read.shooting, inquiry.search.base, with_cubic.account)
+    fit = own.account.fit
+    used = fit.starts.size + 1
+    assert fit.misfit / (fit.white.size - used) == pytest.approx(1.0, abs=0.1)
+
+
+def test_the_noise_of_the_true_account_is_that_of_the_sensor(inquiry, as_read, with_cubic):
+    own = judged(as_read.shooting, inquiry.search.base, with_cubic.account)
+    hidden = 0.02 * inquiry.measured.observed.std()
+    assert own.noise.size[0] == pytest.approx(hidden, rel=0.1)
+
+
+def test_accounts_are_compared_under_the_noise_that_the_best_leaves(inquiry, as_read, with_cubic):
+    plain, true = compared([as_read, with_cubic], inquiry.search.base)
+    assert plain.noise is true.noise
+    assert true.noise.size[0] < as_read.noise.size[0]
+    assert plain.evidence - true.evidence > 100
+
+
+def test_the_order_in_which_accounts_stand_does_not_decide(inquiry, as_read, with_cubic):
+    plain, true = compared([as_read, with_cubic], inquiry.search.base)
+    true_first, plain_last = compared([with_cubic, as_read], inquiry.search.base)
+    assert true_first.evidence == pytest.approx(true.evidence, rel=1e-3)
+    assert plain_last.evidence == pytest.approx(plain.evidence, rel=0.02)
+
+
+def test_an_account_under_its_own_noise_stays_as_it_is(inquiry, as_read):
+    assert as_read.under(as_read, inquiry.search.base) is as_read
+
+
+def test_labels_name_what_is_in(as_read, with_cubic):
+    assert as_read.labels == ()
+    assert with_cubic.labels == ("cubic_stiffness@load",)
+    assert np.isfinite(with_cubic.evidence)

@@ -1,0 +1,47 @@
+import pytest
+from hidden_in_a_mass import MASS, Experiment, mass, record, with_load
+
+from gaitdisc.discovery.fitted_shape import FLAT_BUMPS, fitted_shape, shapes_at
+from gaitdisc.discovery.inquiry import begin_inquiry
+from gaitdisc.simulation.expression import parsed
+from gaitdisc.simulation.simulation_file import simulation_of
+
+
+@pytest.fixture(scope="module")
+def bumpy():
+    inquiry = begin_inquiry(mass(), record(with_load("-6*exp(-((x - 0.3)/0.2)**2)"), 3, Experiment(trials=6)))
+    return inquiry, inquiry.as_read()
+
+
+def test_shapes_over_place_speed_and_both_are_tried(bumpy):
+    inquiry, now = bumpy
+    shapes = shapes_at(inquiry.search.places[0], now, inquiry.search)
+    assert {one.name for one in shapes} == {"unnamed"}
+    assert len(shapes[0].pieces) == FLAT_BUMPS
+    assert all(parsed(piece) for one in shapes for piece in one.pieces)
+    assert any("x" in one.pieces[0] and "v" in one.pieces[0] for one in shapes)
+
+
+def test_bumps_lie_where_the_run_goes(bumpy):
+    inquiry, now = bumpy
+    first = shapes_at(inquiry.search.places[0], now, inquiry.search)[0]
+    x = now.account.fit.states[..., 0]
+    centres = [float(piece.split(" - ")[1].split("/")[0].strip("()")) for piece in first.pieces]
+    assert x.min() <= min(centres) < 0 < max(centres) <= x.max()
+
+
+def test_where_there_is_a_stride_a_shape_may_be_locked_to_it():
+    strides = simulation_of(MASS.replace("inputs.push", "inputs.phase").replace("(push +", "(phase +"), "stride.toml")
+    inquiry = begin_inquiry(strides, record(mass(), 0, Experiment(2, 4.0)))
+    shapes = shapes_at(inquiry.search.places[0], inquiry.as_read(), inquiry.search)
+    assert any("phase" in one.pieces[0] for one in shapes)
+
+
+def test_a_fitted_shape_closes_a_gap_that_has_no_name(bumpy):
+    inquiry, now = bumpy
+    shape = fitted_shape(now, inquiry.search)
+    assert shape is not None
+    (part,) = shape.account.parts
+    assert (part.candidate.name, part.candidate.place) == ("unnamed", "load")
+    plain = now.under(shape, inquiry.search.base)
+    assert 1 - shape.account.fit.misfit / plain.account.fit.misfit > 0.7

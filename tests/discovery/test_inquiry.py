@@ -1,0 +1,85 @@
+import numpy as np
+import pytest
+from hidden_in_a_mass import Experiment, mass, record, with_load
+
+from gaitdisc.discovery.account import Part, account_for
+from gaitdisc.discovery.catalogue import Shape
+from gaitdisc.discovery.evidence import judged
+from gaitdisc.discovery.inquiry import begin_inquiry, split_in_time
+from gaitdisc.simulation.simulation_file import simulation_of
+
+FALLING = """
+[states.x]
+unit = "m"
+[states.v]
+unit = "m/s"
+[inputs.push]
+unit = "N"
+[ports.load]
+unit = "N"
+[equations]
+x = "v"
+v = "60*x + push + load"
+[observations]
+x = "x"
+"""
+
+
+@pytest.mark.parametrize(("trials", "held"), [(2, (1,)), (4, (3,)), (8, (6, 7))])
+def test_of_four_trials_one_is_held_out(trials, held):
+    inquiry = begin_inquiry(mass(), record(mass(), 0, Experiment(trials, 4.0)))
+    assert inquiry.held_out == held
+    assert inquiry.learned == tuple(range(held[0]))
+
+
+def test_one_trial_is_split_in_time():
+    measured = record(mass(), 0, Experiment(1, 8.0))
+    two = split_in_time(measured)
+    assert two.trials == ("1", "1, last quarter")
+    assert two.samples.tolist() == [300, 100]
+    np.testing.assert_array_equal(two.observed[1, :100], measured.observed[0, 300:])
+    np.testing.assert_array_equal(two.drive.inputs[1, :100], measured.drive.inputs[0, 300:])
+    assert two.time(1)[0] == pytest.approx(measured.time(0)[300])
+    assert np.isnan(two.observed[1, 100:]).all()
+
+
+def test_what_is_learned_and_what_is_held_out_share_no_sample():
+    inquiry = begin_inquiry(mass(), record(mass(), 0, Experiment(1, 8.0)))
+    assert set(inquiry.segments(inquiry.learned).trial).isdisjoint(inquiry.segments(inquiry.held_out).trial)
+
+
+def test_runs_are_about_a_period_long(inquiry):
+    period = inquiry.rhythm.period * inquiry.rhythm.rate
+    assert inquiry.segments(inquiry.learned).length == pytest.approx(period, rel=0.25)
+
+
+def test_runs_are_shorter_where_a_change_of_the_start_grows_fast():
+    unstable = simulation_of(FALLING, "falling.toml")
+    calm = begin_inquiry(mass(), record(mass(), 0, Experiment(4, 6.0)))
+    wild = begin_inquiry(unstable, record(mass(), 0, Experiment(4, 6.0)))
+    assert calm._tame_periods() == 1.0
+    growing = wild._tame_periods() * wild.rhythm.period
+    assert np.cosh(np.sqrt(60) * growing) == pytest.approx(3.0, abs=2.0)
+
+
+def test_as_read_only_the_starts_are_fitted(as_read):
+    assert as_read.account.parts == ()
+    np.testing.assert_array_equal(as_read.account.fit.values, as_read.account.machine.defaults)
+
+
+def test_a_right_account_is_followed_over_half_a_trial_or_more(inquiry, as_read, cubic):
+    part = Part(cubic, {"factor": -14.0})
+    true = account_for(as_read.shooting, inquiry.search.base, (part,), as_read.account.fit.starts)
+    longer = inquiry.lengthened(judged(as_read.shooting, inquiry.search.base, true))
+    assert longer.shooting.segments.length >= inquiry.measured.samples.min() / 2
+    assert longer.account.parts[0].values["factor"] == pytest.approx(-14.0, rel=0.005)
+
+
+def test_no_run_is_longer_than_wanted(inquiry, as_read):
+    length = as_read.shooting.segments.length
+    assert inquiry.lengthened(as_read, 2 * length).shooting.segments.length <= 2 * length
+
+
+def test_shapes_of_the_users_own_are_searched():
+    inquiry = begin_inquiry(mass(), record(with_load("0"), 0, Experiment(2, 4.0)), (Shape("quintic", ("x**5",)),))
+    assert "quintic@load" in {one.label for one in inquiry.search.candidates}

@@ -1,0 +1,68 @@
+import pytest
+from hidden_in_a_mass import MASS, TWO_RODS, mass, two_rods
+
+from gaitdisc.discovery.places import driven_state, kinematic_rates, places_of
+from gaitdisc.simulation.running import compile_simulation
+from gaitdisc.simulation.simulation_file import simulation_of
+
+LORENZ = """
+[states.x]
+[states.y]
+[states.z]
+[equations]
+x = "10*(y - x)"
+y = "x*(28 - z) - y"
+z = "x*y - 2.7*z"
+"""
+
+
+def _places(simulation):
+    return {place.name: place for place in places_of(simulation, compile_simulation(simulation))}
+
+
+def test_a_state_whose_derivative_is_another_state_is_kinematic():
+    rods = two_rods()
+    assert kinematic_rates(rods, compile_simulation(rods)) == {"upper": "upper_rate", "lower": "lower_rate"}
+
+
+def test_a_rate_that_is_scaled_is_not_kinematic():
+    text = MASS.replace('x = "v"', 'x = "2*v"')
+    scaled = simulation_of(text, "scaled.toml")
+    assert kinematic_rates(scaled, compile_simulation(scaled)) == {}
+
+
+def test_a_port_sees_the_motion_that_it_drives():
+    place = _places(mass())["load"]
+    assert (place.kind, place.motions, place.others, place.angle) == ("port", (("x", "v"),), (), False)
+    assert place.products == (("x", "v"),)
+
+
+@pytest.mark.parametrize(("port", "own"), [("upper_moment", "upper"), ("lower_moment", "lower")])
+def test_in_a_chain_each_joint_sees_its_own_angle_first_then_the_difference_then_the_other(port, own):
+    other = "lower" if own == "upper" else "upper"
+    place = _places(two_rods())[port]
+    assert place.angle
+    assert place.motions == (
+        (own, f"{own}_rate"),
+        (f"{own} - {other}", f"{own}_rate - {other}_rate"),
+        (other, f"{other}_rate"),
+    )
+    assert place.others == (other, f"{other}_rate")
+
+
+def test_a_port_with_a_name_of_its_own_drives_what_it_moves_most():
+    renamed = simulation_of(TWO_RODS.replace("lower_moment", "brace"), "renamed.toml")
+    assert driven_state(renamed, compile_simulation(renamed), "brace") == "upper_rate"
+
+
+def test_a_model_without_ports_takes_effects_in_every_equation():
+    places = _places(simulation_of(LORENZ, "lorenz.toml"))
+    assert list(places) == ["x", "y", "z"]
+    assert places["y"].kind == "equation"
+    assert places["y"].motions == (("y", ""),)
+    assert places["y"].others == ("x", "z")
+
+
+def test_a_kinematic_equation_takes_no_effect():
+    portless = MASS.replace('[ports.load]\nunit = "N"\n', "").replace("push + load", "push")
+    assert list(_places(simulation_of(portless, "portless.toml"))) == ["v"]

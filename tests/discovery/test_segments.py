@@ -1,0 +1,52 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gaitdisc.discovery.segments import Segments, cut_segments
+from gaitdisc.errors import SamplingError
+
+
+@given(st.lists(st.integers(4, 300), min_size=1, max_size=5), st.integers(1, 400))
+def test_segments_lie_inside_the_trials_and_never_overlap(samples, length):
+    segments = cut_segments(np.array(samples), tuple(range(len(samples))), length)
+    places = list(zip(np.repeat(segments.trial, segments.length), segments.samples.ravel(), strict=True))
+    assert len(set(places)) == len(places)
+    assert all(sample < samples[trial] for trial, sample in places)
+    assert set(segments.trial) == set(range(len(samples)))
+
+
+def test_the_length_divides_the_shortest_trial_nearly_evenly():
+    segments = cut_segments(np.array([100, 70]), (0, 1), 30)
+    assert segments.length == 35
+    assert segments.begin.tolist() == [0, 35, 0, 35]
+
+
+def test_only_the_trials_that_are_asked_for():
+    assert set(cut_segments(np.array([40, 40, 40]), (2,), 20).trial) == {2}
+
+
+def test_a_trial_of_three_samples_is_refused():
+    with pytest.raises(SamplingError, match=r"at least 4 samples; one has 3. Leave it out."):
+        cut_segments(np.array([50, 3]), (0, 1), 20)
+
+
+def test_records_are_cut_where_the_segments_lie():
+    records = np.arange(20.0).reshape(2, 10, 1)
+    cut = Segments(np.array([0, 1]), np.array([3, 0]), 2).of(records)
+    assert cut[..., 0].tolist() == [[3.0, 4.0], [10.0, 11.0]]
+
+
+def test_every_step_is_a_segment_of_its_own():
+    steps = Segments(np.array([0, 1]), np.array([5, 0]), 3).steps
+    assert (steps.trial.tolist(), steps.begin.tolist(), steps.length) == ([0, 0, 1, 1], [5, 6, 0, 1], 2)
+
+
+def test_rows_are_tiled_version_by_version():
+    segments = Segments(np.array([0, 1]), np.array([5, 7]), 3)
+    starts = np.arange(12.0).reshape(3, 2, 2)
+    rows = segments.rows(starts, np.array([[1.0], [2.0], [3.0]]))
+    assert rows.trial.tolist() == [0, 1] * 3
+    assert rows.begin.tolist() == [5, 7] * 3
+    assert rows.starts.tolist() == starts.reshape(6, 2).tolist()
+    assert np.ravel(rows.values).tolist() == [1.0, 1.0, 2.0, 2.0, 3.0, 3.0]

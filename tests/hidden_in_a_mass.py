@@ -1,0 +1,146 @@
+"""Small systems whose missing effect is known, because it was hidden here: a mass on a spring, two rods in a chain."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import butter, sosfiltfilt
+
+from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.parts import Term
+from gaitdisc.simulation.running import compile_simulation
+from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.simulation.simulation_file import simulation_of
+
+RATE = 50.0
+MASS = """
+title = "A mass on a spring, pushed"
+[states.x]
+unit = "m"
+[states.v]
+unit = "m/s"
+[inputs.push]
+unit = "N"
+[parameters.m]
+value = 2.0
+unit = "kg"
+[parameters.k]
+value = 24.0
+unit = "N/m"
+[parameters.c]
+value = 0.8
+unit = "N s/m"
+[ports.load]
+unit = "N"
+[equations]
+x = "v"
+v = "(push + load - k*x - c*v)/m"
+[observations]
+x = "x"
+"""
+TWO_RODS = """
+title = "Two rods in a chain"
+[states.upper]
+unit = "rad"
+[states.upper_rate]
+unit = "rad/s"
+[states.lower]
+unit = "rad"
+[states.lower_rate]
+unit = "rad/s"
+[parameters.stiffness]
+value = 9.0
+unit = "N m/rad"
+[ports.upper_moment]
+unit = "N m"
+[ports.lower_moment]
+unit = "N m"
+[equations]
+upper = "upper_rate"
+upper_rate = "upper_moment - 3*lower_moment - stiffness*upper - 0.2*upper_rate + 2*(lower - upper)"
+lower = "lower_rate"
+lower_rate = "lower_moment - stiffness*lower - 0.2*lower_rate + 2*(upper - lower)"
+[observations]
+upper = "upper"
+lower = "lower"
+"""
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """How trials are recorded.
+
+    Parameters
+    ----------
+    trials : int
+        How many.
+    seconds : float
+        Length of each.
+    noise : float
+        Standard deviation of the sensor's noise over that of the channel.
+    cutoff_hz : float
+        Of the low-pass filter that colours the noise; 0 leaves it white.
+    late : int
+        Samples by which the recorded push is ahead of the true one.
+    shaking : float
+        Standard deviation of a random push that nobody records [N].
+    """
+
+    trials: int = 4
+    seconds: float = 14.0
+    noise: float = 0.02
+    cutoff_hz: float = 0.0
+    late: int = 0
+    shaking: float = 0.0
+
+
+def mass() -> Simulation:
+    """A mass on a spring, without what is hidden."""
+    return simulation_of(MASS, "mass.toml")
+
+
+def two_rods() -> Simulation:
+    """Two rods, each with a port of its own; the lower port moves the upper rod more than the lower."""
+    return simulation_of(TWO_RODS, "two_rods.toml")
+
+
+def with_load(term: str, name: str = "hidden") -> Simulation:
+    """The mass with an effect on its port."""
+    return mass().with_effect(Term("load", "port", name, term))
+
+
+def record(truth: Simulation, seed: int, how: Experiment | None = None) -> Measured:
+    """Record what a system truly does: pushed by a sum of sines, released from a random state."""
+    how = how or Experiment()
+    rng = np.random.default_rng(seed)
+    samples = round(how.seconds * RATE)
+    t = np.arange(samples + how.late) / RATE
+    pushes = [_push(rng, t)[:, None] if truth.inputs else np.zeros((len(t), 0)) for _ in range(how.trials)]
+    shocks = [rng.normal(0, how.shaking, push.shape) for push in pushes]
+    machine = compile_simulation(truth)
+    starts = rng.normal(0, 0.5, (how.trials, len(machine.states)))
+    rows = Rows(np.arange(how.trials), np.zeros(how.trials, int), starts)
+    drive = Drive.of([(push + shock)[:samples] for push, shock in zip(pushes, shocks, strict=True)], RATE)
+    states, ok = machine.run(drive, rows, samples - 1)
+    assert ok.all()
+    seen = machine.observe(drive, rows, states)
+    error = _noise(rng, seen.shape, how.cutoff_hz) * how.noise * seen.std(axis=(0, 1))
+    names = tuple(str(trial + 1) for trial in range(how.trials))
+    told = Drive.of([push[how.late :] for push in pushes], RATE)
+    return Measured(told, seen + error, names, machine.observed)
+
+
+def _push(rng: np.random.Generator, t: NDArray[np.float64]) -> NDArray[np.float64]:
+    frequencies = rng.uniform(0.15, 1.2, 6)
+    return (rng.uniform(2, 5, 6) * np.sin(2 * np.pi * np.outer(t, frequencies) + rng.uniform(0, 6.3, 6))).sum(axis=1)
+
+
+def _noise(rng: np.random.Generator, shape: tuple[int, ...], cutoff_hz: float) -> NDArray[np.float64]:
+    white = rng.normal(size=shape)
+    if not cutoff_hz:
+        return white
+    slow = sosfiltfilt(butter(4, cutoff_hz, fs=RATE, output="sos"), white, axis=1)
+    return slow / slow.std()
