@@ -50,10 +50,11 @@ def answer(
     """
     channels = tuple(name for name, _ in inquiry.search.base.observations)
     floor = now.noise.size
+    block = int(inquiry.rhythm.period * inquiry.rhythm.rate) + 1
     sizes = []
     for trials in (inquiry.learned, inquiry.held_out):
         before, after = (runs_of(inquiry, one, trials, now) for one in (as_read, now))
-        sizes.append(gap_size(before, after, floor, channels))
+        sizes.append(gap_size(before, after, floor, channels, block))
     train, held_out = sizes
     closed = 1 - (held_out.after**2 - floor_of(held_out)) / max(held_out.before**2 - floor_of(held_out), 1e-12)
     effects = tuple(found_effects(inquiry, now, closed, max([one.gained for one in rivals], default=0.0)))
@@ -116,10 +117,6 @@ def augmented_of(base: Simulation, parts: tuple[Part, ...]) -> Simulation:
 
 def floor_of(size) -> float:
     return size.noise_floor**2
-
-
-def best_evidence(rivals: tuple[Judged, ...], as_read: Judged) -> float:
-    return min([one.evidence for one in rivals], default=as_read.evidence)
 
 
 def found_effects(inquiry: Inquiry, now: Judged, closed: float, gained: float) -> list[FoundEffect]:

@@ -138,4 +138,5 @@ def drawn_runs(inquiry: Inquiry, before: Trial, after: Trial, trials: tuple[int,
         before.measured,
         before.measured - before.fit.residual,
         after.measured - after.fit.residual,
+        inquiry.measured.trials,
     )

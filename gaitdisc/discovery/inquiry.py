@@ -12,7 +12,7 @@ from gaitdisc.discovery.catalogue import Shape, known_shapes
 from gaitdisc.discovery.evidence import Judged, judged
 from gaitdisc.discovery.first_states import StateGuess, guess_states
 from gaitdisc.discovery.grids import Rhythm, rhythm_of
-from gaitdisc.discovery.linearised import linearise_along
+from gaitdisc.discovery.linearised import linearise, linearise_along
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.places import kinematic_rates, places_of
 from gaitdisc.discovery.search import Search
@@ -25,11 +25,11 @@ from gaitdisc.simulation.simulation import Simulation
 
 FEWEST_SAMPLES = 16  # of a segment
 GROWTH = 5.0  # of a small change of the start, by which a run is cut
-MOST_RUNS = 0.8
+WILD = 300.0  # growth at which the likelihood has so many hills that none can be trusted
 FIRST_SHARE = 0.3  # of that length, is fitted first, so that the fit of the whole begins near its end
 LENGTHENED = 3  # times as long, again and again, while a run stays with the data
 TAME = 0.8
-FOLLOWED = 1.3  # times the noise of the shorter runs, beyond which a run does not follow the data
+FOLLOWED = 1.08  # times the noise of the shorter runs, beyond which a run does not follow the data
 SUBSTEPS = 2
 
 
@@ -103,14 +103,8 @@ class Inquiry:
         states = shooting.segments.of(self.guess.states)
         machine = compile_simulation(self.search.base)
         line = linearise_along(shooting, self.search.base, (), states, machine.defaults)
-        scale = np.maximum(states.std(axis=(0, 1)), 1e-9)
-        change = np.repeat(np.eye(len(scale))[None], len(states), axis=0)
-        for step in range(states.shape[1] - 1):
-            change = line.onward[:, step] @ change
-            growth = np.linalg.norm(change * scale / scale[:, None], 2, axis=(1, 2))
-            if np.quantile(growth, MOST_RUNS) > GROWTH:
-                return (step + 1) / (self.rhythm.period * self.rhythm.rate)
-        return 1.0
+        step = line.first_growth(GROWTH, states)
+        return 1.0 if step is None else step / (self.rhythm.period * self.rhythm.rate)
 
     def is_tame(self, now: Judged) -> bool:
         """Whether runs were cut at a whole period, and not earlier for fear of chaos.
@@ -144,6 +138,9 @@ class Inquiry:
                 break
             longer = replace(judged(shooting.with_past(longer.fit.states), self.search.base, longer), gained=now.gained)
             if (longer.noise.size > FOLLOWED * now.noise.size).any() or not self.search.sensible(longer.account):
+                break
+            fit = longer.account.fit
+            if linearise(longer.shooting, longer.account.simulation, (), fit).first_growth(WILD, fit.states) is not None:
                 break
             now = longer
         return now

@@ -20,6 +20,7 @@ from gaitdisc.simulation.simulation import Simulation
 
 NUDGE = 1e-5
 PUSH = 1e-4
+MOST_RUNS = 0.8  # of the segments, in which growth must stay below
 
 
 @dataclass(frozen=True)
@@ -39,6 +40,25 @@ class Linearised:
     onward: NDArray[np.float64]
     pushed: NDArray[np.float64]
     landed: NDArray[np.float64]
+
+    def first_growth(self, factor: float, states: NDArray[np.float64]) -> int | None:
+        """Return the first sample at which a small change of the start has grown so much in a fifth of the segments.
+
+        Parameters
+        ----------
+        factor : float
+            Growth, in units of each state's spread.
+        states : ndarray (segment, sample, state)
+            The run, for that spread.
+        """
+        scale = np.maximum(states.std(axis=(0, 1)), 1e-9)
+        change = np.repeat(np.eye(len(scale))[None], len(states), axis=0)
+        for step in range(states.shape[1] - 1):
+            change = self.onward[:, step] @ change
+            growth = np.linalg.norm(change * scale / scale[:, None], 2, axis=(1, 2))
+            if np.quantile(growth, MOST_RUNS) > factor:
+                return step + 1
+        return None
 
     def of_push(self, place: int, push: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the change of state (segment, sample, state, candidate) that pushes at a place cause.
