@@ -7,6 +7,7 @@ from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 
+from gaitdisc.discovery.blow_up import refuse_blow_up
 from gaitdisc.discovery.catalogue import read_catalogue
 from gaitdisc.discovery.discover import discover
 from gaitdisc.ingest.file_hash import file_sha256
@@ -50,6 +51,7 @@ def discover_files(
     model = read_simulation(simulation)
     shapes = read_catalogue(catalogue) if catalogue else ()
     data = read_measured(measured, model)
+    refuse_blow_up(model, data)
     found, augmented = discover(model, data, shapes, told)
     files = [simulation, measured, *([catalogue] if catalogue else [])]
     made = Provenance(
@@ -61,5 +63,4 @@ def discover_files(
         datetime.now(UTC).isoformat(timespec="seconds"),
     )
     findings = (*unit_findings(model), *found.findings)
-    runs = replace(found.runs, names=data.trials)
-    return replace(found, findings=findings, runs=runs, provenance=made), augmented
+    return replace(found, findings=findings, provenance=made), augmented

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from gaitdisc.commands.options import Quiet
+from gaitdisc.errors import SchemaError
 
 
 def discover(
@@ -22,17 +23,16 @@ def discover(
     quiet: Quiet = False,
 ) -> None:
     """Find what the simulation lacks, name it, add it, and show the gap shrink on data that were held out."""
-    from gaitdisc.batch.discover_files import discover_files
-    from gaitdisc.errors import SchemaError
-    from gaitdisc.results.discovery_folder import save_discovery
-    from gaitdisc.simulation.writing import write_simulation
-
     if measured is None:
         raise SchemaError(
             "a discovery needs a simulation file and measured trials",
             f"only {simulation.name} is given",
             "Name the measured table after it: gaitdisc discover SIMULATION.toml MEASURED.csv.",
         )
+    from gaitdisc.batch.discover_files import discover_files
+    from gaitdisc.results.discovery_folder import save_discovery
+    from gaitdisc.simulation.writing import write_simulation
+
     began = time.perf_counter()
 
     def told(step: str) -> None:

@@ -7,6 +7,8 @@ import re
 
 from gaitdisc.results.discovery import Estimate
 
+LONGEST, FIGURES = 4, 6  # digits behind the point, digits in all
+MINUS = "\N{MINUS SIGN}"
 _RAD = re.compile(r"^rad(?=$|/s)")
 
 
@@ -47,8 +49,11 @@ def amount(value: float, step: float = math.nan) -> str:
         return "not computed"
     size = step if math.isfinite(step) and step > 0 else abs(value) / 100 if value else 1.0
     digits = -math.floor(math.log10(size))
-    text = f"{value:.{digits}f}" if 0 <= digits <= 4 else f"{value:.0f}" if -4 <= digits < 0 else f"{value:.3g}"
-    return text.replace("-", "−")
+    if value and (abs(digits) > LONGEST):
+        figures = max(1, min(math.floor(math.log10(abs(value))) + digits + 1, FIGURES))
+        return f"{value:.{figures}g}".replace("-", MINUS)
+    text = f"{value:.{max(digits, 0)}f}"
+    return text.replace("-", MINUS)
 
 
 def with_unit(value: str, unit: str) -> str:

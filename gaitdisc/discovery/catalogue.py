@@ -13,8 +13,12 @@ from pathlib import Path
 from typing import Any
 
 from gaitdisc.errors import SchemaError
+from gaitdisc.simulation.expression import names as names_in
+from gaitdisc.simulation.expression import parsed
+from gaitdisc.simulation.refusal import SimulationError
 
 ROLES = ("x", "v", "y", "a", "b")
+SIGNALS = ("t", "phase")
 GRIDS = ("quantiles of x", "half widths of x", "delays", "frequencies", "phases", "phase widths")
 NEEDS = ("", "angle")
 _NAME = re.compile(r"[a-z_][a-z0-9_]*")
@@ -30,8 +34,8 @@ class Shape:
     name : str
         The effect's name; several shapes may share one (a spring engaging above or below).
     pieces : tuple of str
-        Expressions of the roles x (a position-like state), v (its rate), y (another state), a and b (two states), of `t`,
-        `phase` and the constants. Each piece has its own factor in the fit.
+        Expressions of the roles x (a position-like state), v (its rate), y (another state), a and b (two states), of
+        `t`, `phase` and the constants. Each piece has its own factor in the fit.
     constants : mapping of str to str
         Unknown numbers inside the shape, and the grid on which the search for each begins.
     needs : str
@@ -97,7 +101,7 @@ def known_shapes() -> tuple[Shape, ...]:
 
 
 def read_catalogue(path: Path | str) -> tuple[Shape, ...]:
-    """Read effects of the user's own, in the form of the package's catalogue.
+    r"""Read effects of the user's own, in the form of the package's catalogue.
 
     Parameters
     ----------
@@ -118,7 +122,7 @@ def read_catalogue(path: Path | str) -> tuple[Shape, ...]:
     --------
     >>> import tempfile
     >>> file = Path(tempfile.mkdtemp()) / "mine.toml"
-    >>> _ = file.write_text('[[shape]]\\nname = "quintic"\\npieces = ["x**5"]\\nmeans = "a very stiff spring"')
+    >>> _ = file.write_text('[[shape]]\nname = "quintic"\npieces = ["x**5"]\nmeans = "a very stiff spring"')
     >>> read_catalogue(file)[0].roles
     ('x',)
     """
@@ -160,6 +164,8 @@ def _shape(entry: Any, where: str) -> Shape:
         raise SchemaError(
             "a shape's pieces are a list of expressions", f"{where} has {pieces!r}", 'Write pieces = ["x**2"].'
         )
+    for piece in pieces:
+        _check_piece(piece, (*ROLES, *SIGNALS, *(constants if isinstance(constants, dict) else ())), where)
     if not isinstance(constants, dict) or not all(grid in GRIDS for grid in constants.values()):
         raise SchemaError(
             f"a constant's search begins on one of {', '.join(GRIDS)}",
@@ -178,6 +184,20 @@ def _shape(entry: Any, where: str) -> Shape:
         )
     means = str(entry.get("means", name.replace("_", " ")))
     return Shape(name, tuple(pieces), dict(constants), entry.get("needs", ""), means, dict(names))
+
+
+def _check_piece(piece: str, known: tuple[str, ...], where: str) -> None:
+    try:
+        written = set(names_in(parsed(piece)))
+    except SimulationError as error:
+        found = f"{where}, piece {piece[:60]!r}: {error.found}"
+        raise SchemaError("a shape's pieces are expressions as in a simulation file", found, error.remedy) from error
+    for name in sorted(written - set(known)):
+        raise SchemaError(
+            f"a shape is written in {', '.join(known)}",
+            f"{where}, piece {piece[:60]!r} has {name!r}",
+            f"If {name} is a number to be found, give it a start: constants = {{ {name} = \"quantiles of x\" }}.",
+        )
 
 
 def _is_name(text: Any) -> bool:

@@ -91,7 +91,7 @@ def _one(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whereab
     if kind == "wrong_parameter":
         estimate = effect.estimates["value"]
         unit, factor = shown_unit(estimate.unit)
-        given = with_unit(amount(factor * base.values()[effect.place]), unit)
+        given = with_unit(f"{factor * base.values()[effect.place]:.6g}", unit)
         return f"the parameter {effect.place} is {estimate_text(estimate)} where the file says {given}"
     estimate = next(iter(effect.estimates.values()))
     subject = f"the {'driving signal' if kind == 'input_error' else 'measured'} {effect.place}"
