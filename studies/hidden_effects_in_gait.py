@@ -95,13 +95,13 @@ def found_in(person: Person, hidden: str) -> dict[str, object]:
         "alone": right and len(named) <= 1,
     }
     truth = {"weak plantarflexor": WEAK, "foot mass": kg + added, "late EMG": -LATE_S}
-    row["truth"] = -np.degrees(STIFFNESS) * size if size else truth.get(hidden, np.nan)
+    row["truth"] = np.degrees(STIFFNESS) * size if size else truth.get(hidden, np.nan)
     effect = next((each for each in found.effects if (each.name, each.place) == RIGHT[hidden]), None)
     if effect:
         first = next(iter(effect.estimates.values()))
         row |= {"value": first.value, "low": first.low, "high": first.high}
-        if "x0" in effect.estimates:
-            row["engaged_rad"] = effect.estimates["x0"].value
+        if "engagement" in effect.estimates:
+            row["engaged_rad"] = effect.estimates["engagement"].value
             row["engaged_truth_rad"] = np.radians(person.engaged_deg + person.style.offset_deg[0, 4])
         row["phase"] = next((each.phase for each in found.where if each.place == effect.place), ())
     sizes = np.degrees(found.held_out.channels["theta"])
