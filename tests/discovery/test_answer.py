@@ -1,0 +1,107 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hidden_in_a_mass import MASS, Experiment, mass, record, with_load
+
+from gaitdisc.discovery.account import Part
+from gaitdisc.discovery.answer import answer, augmented_of, phase_of, region_of, units_of
+from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.evidence import compared
+from gaitdisc.discovery.inquiry import begin_inquiry
+from gaitdisc.simulation.running import compile_simulation
+from gaitdisc.simulation.simulation_file import simulation_of
+
+ABOVE = Candidate(
+    "missing_physics", "port", "load", "one_sided_spring", ("max(0, x - _x0)",), {"x0": "quantiles of x"}, "x"
+)
+BELOW = replace(ABOVE, pieces=("max(0, _x0 - x)",))
+SLACK = replace(
+    ABOVE, name="dead_zone_spring", pieces=("max(0, x - _d) - max(0, -x - _d)",), constants={"d": "half widths of x"}
+)
+
+
+@pytest.fixture(scope="module")
+def answered(inquiry, as_read, named):
+    now, rivals = named
+    plain, *_ = compared([as_read, now], inquiry.search.base)
+    return answer(inquiry, plain, "missing_physics", now, tuple(rivals), None)
+
+
+def test_the_augmented_simulation_has_the_numbers_that_were_found(answered, named):
+    _, augmented = answered
+    value = named[0].account.parts[0].values["factor"]
+    assert augmented.effects[0].term == f"{value:.6g}*(x**3)"
+    assert augmented.parameters == mass().parameters
+
+
+def test_the_augmented_simulation_is_the_true_one_up_to_its_interval(answered):
+    rng = np.random.default_rng(0)
+    at = (np.zeros(50), rng.uniform(-1, 1, (50, 2)), rng.normal(size=(50, 1)))
+    truth, found = (compile_simulation(one).rates(*at) for one in (with_load("-14*x**3"), answered[1]))
+    np.testing.assert_allclose(found, truth, atol=0.1)
+
+
+def test_the_gap_is_the_noise_once_the_effect_is_in(answered):
+    discovery, _ = answered
+    for size in (discovery.train, discovery.held_out):
+        assert size.after == pytest.approx(size.noise_floor, rel=0.1)
+        assert size.before > 3 * size.after
+    assert discovery.effects[0].held_out == pytest.approx(1.0, abs=0.02)
+
+
+def test_the_place_of_the_gap_and_its_share_are_given(answered):
+    (where,) = answered[0].where
+    assert (where.kind, where.place, where.phase) == ("port", "load", ())
+    assert 0.9 < where.share_of_gap <= 1.0
+
+
+def test_what_was_named_is_not_its_own_rival(answered):
+    discovery, _ = answered
+    assert ("cubic_stiffness", "load") not in [(one.name, one.place) for one in discovery.rivals]
+    assert discovery.rivals
+    assert not any(one.tied for one in discovery.rivals if one.name == "linear_stiffness")
+
+
+def test_numbers_are_written_one_explanation_after_the_other():
+    drift = Candidate("sensor_error", "observation", "x", "sensor_drift")
+    augmented = augmented_of(mass(), (Part(ABOVE, {"factor": -30.0, "x0": 0.25}), Part(drift, {"rate": 0.02})))
+    assert augmented.effects[0].term == "-30*(max(0, x - 0.25))"
+    assert dict(augmented.observations)["x"] == "(x) + 0.02*t"
+
+
+@pytest.mark.parametrize(
+    ("candidate", "values", "region"),
+    [
+        (ABOVE, {"factor": -30.0, "x0": 0.25}, "x > 0.25"),
+        (BELOW, {"factor": -30.0, "x0": -0.1}, "x < -0.1"),
+        (SLACK, {"factor": -30.0, "d": 0.4}, "abs(x) > 0.4"),
+        (replace(ABOVE, name="cubic_stiffness", pieces=("x**3",), constants=None), {"factor": 1.0}, ""),
+    ],
+)
+def test_a_region_is_said_where_an_effect_has_one(candidate, values, region):
+    assert region_of(Part(candidate, values)) == region
+
+
+def test_units_are_those_of_what_is_observed(inquiry):
+    assert units_of(inquiry) == ("m",)
+
+
+def test_the_part_of_the_stride_is_where_the_effect_is_half_as_strong_as_at_its_strongest():
+    stride = simulation_of(MASS.replace("[parameters.m]", '[inputs.phase]\nunit = "1"\n[parameters.m]'), "stride.toml")
+    measured = record(mass(), 0, Experiment(2, 10.0))
+    time = np.arange(measured.samples[0]) / measured.rate
+    phase = np.broadcast_to((time % 1.0)[None, :, None], (2, len(time), 1))
+    drive = replace(measured.drive, inputs=np.concatenate([measured.drive.inputs, phase], axis=2))
+    inquiry = begin_inquiry(stride, replace(measured, drive=drive))
+    pulse = Candidate(
+        "missing_physics",
+        "port",
+        "load",
+        "pulse",
+        ("exp(-((phase - _c)/_w)**2)",),
+        {"c": "phases", "w": "phase widths"},
+    )
+    half = 0.1 * np.sqrt(np.log(2))
+    begin, end = phase_of(inquiry, inquiry.as_read(), Part(pulse, {"factor": 3.0, "c": 0.4, "w": 0.1}))
+    assert (begin, end) == pytest.approx((0.4 - half, 0.4 + half), abs=0.03)
