@@ -9,7 +9,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from gaitdisc.discrepancy.augmented_run import AugmentedRun, on_states, with_learned_rates
-from gaitdisc.discrepancy.error_signal import Approach, error_samples
+from gaitdisc.discrepancy.error_signal import Approach, error_samples, refined_samples
 from gaitdisc.discrepancy.methods import Method, MethodSettings, fitted
 from gaitdisc.discrepancy.record import Conditions, Record, recorded
 from gaitdisc.discrepancy.system import System
@@ -76,7 +76,7 @@ def cell_of(
     begun = clock.perf_counter()
     try:
         with threadpool_limits(1):  # on matrices of this size, and beside other work, threads wait for each other
-            learned = fitted(error_samples(record, approach, method == "dmd"), method, settings, made.seed)
+            learned = learned_model(record, method, approach, settings)
     except GaitdiscError as error:
         return DiscrepancyCell(
             record.system.name, method, approach, variant, made.noise, made.seed, record.system.channels, {},
@@ -88,6 +88,21 @@ def cell_of(
         record.system.name, method, approach, variant, made.noise, made.seed, record.system.channels, parts,
         fit_s, clock.perf_counter() - begun, _terms(learned),
     )  # fmt: skip
+
+
+def learned_model(record: Record, method: Method, approach: Approach, settings: MethodSettings) -> Model:
+    """Fit a method to an error signal; the dynamical error is measured a second time with what was learned first.
+
+    Parameters
+    ----------
+    record, method, approach, settings : as for `cell_of`
+        What is learned, and how.
+    """
+    samples = error_samples(record, approach, method == "dmd")
+    learned = fitted(samples, method, settings, record.conditions.seed)
+    if approach == "state" or method == "dmd" or record.conditions.published:
+        return learned
+    return fitted(refined_samples(record, samples, learned), method, settings, record.conditions.seed)
 
 
 def part(record: Record, learned: Model, approach: Approach, forecast: bool) -> PartAccuracy:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
@@ -9,8 +10,8 @@ from numpy.typing import NDArray
 
 from gaitdisc.discrepancy.record import Record
 from gaitdisc.discrepancy.smoothing import edge_samples
-from gaitdisc.discrepancy.system import Rates
 from gaitdisc.errors import ShapeError
+from gaitdisc.model import Model
 from gaitdisc.recording import Samples
 
 Approach = Literal["dynamics", "state"]
@@ -68,11 +69,31 @@ def _dynamics(record: Record) -> tuple[NDArray[np.float64], NDArray[np.float64],
         return y, np.gradient(y, made.dt_s, axis=0) - system.known(y), 0, len(y)
     edge = edge_samples(1.0 / made.dt_s) if made.noise else 0
     inner = slice(edge + 1, len(y) - edge - 1)
-    error = flow_error(record, y)[inner.start - 1 : inner.stop - 1]
+    error = flow_error(system.known, y, made.dt_s)[inner.start - 1 : inner.stop - 1]
     return y[inner], error, inner.start, inner.stop
 
 
-def flow_error(record: Record, y: NDArray[np.float64]) -> NDArray[np.float64]:
+def refined_samples(record: Record, samples: Samples, learned: Model) -> Samples:
+    """Samples of the dynamical error, measured again from the model that was augmented once.
+
+    What the flow misses is then small, and so is the error of order dt^2 that stood in the first samples.
+
+    Parameters
+    ----------
+    record : Record
+        With all states measured.
+    samples : Samples
+        From `error_samples`.
+    learned : Model
+        Fitted to them, of the states.
+    """
+    first = round((samples.time[0] - record.time[0]) / record.conditions.dt_s)
+    y = np.asarray(record.filtered)[first - 1 : first + len(samples) + 1]
+    error = flow_error(lambda x: record.system.known(x) + learned(x), y, record.conditions.dt_s)
+    return samples.with_outputs(error + learned(samples.x))
+
+
+def flow_error(known: Callable, y: NDArray[np.float64], dt_s: float) -> NDArray[np.float64]:
     """Rate that the known model lacks, from how far it misses the neighbours of each sample, (sample - 2, state).
 
     The known model runs from the state at k forwards to k + 1 and backwards to k - 1; half the difference of what it
@@ -82,18 +103,19 @@ def flow_error(record: Record, y: NDArray[np.float64]) -> NDArray[np.float64]:
 
     Parameters
     ----------
-    record : Record
-        Whose known model it is.
+    known : callable
+        Rates (point, state) at states (point, state).
     y : ndarray (sample, state)
         States.
+    dt_s : float
+        Between samples [s].
     """
-    dt, known = record.conditions.dt_s, record.system.known
-    ahead = y[2:] - _flow(known, y[1:-1], dt)
-    behind = y[:-2] - _flow(known, y[1:-1], -dt)
-    return (ahead - behind) / (2 * dt)
+    ahead = y[2:] - _flow(known, y[1:-1], dt_s)
+    behind = y[:-2] - _flow(known, y[1:-1], -dt_s)
+    return (ahead - behind) / (2 * dt_s)
 
 
-def _flow(known: Rates, x: NDArray[np.float64], dt_s: float) -> NDArray[np.float64]:
+def _flow(known: Callable, x: NDArray[np.float64], dt_s: float) -> NDArray[np.float64]:
     """Run all states one sample on, or back, by Runge-Kutta of order 4."""
     h = dt_s / FLOW_STEPS
     for _ in range(FLOW_STEPS):

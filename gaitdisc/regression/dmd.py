@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import SamplingError, TrainingError
-from gaitdisc.recording import Samples
+from gaitdisc.recording import Samples, scale_of
 from gaitdisc.recording.arrays import read_only
 from gaitdisc.regression.extra import chapter3_library
 
@@ -109,7 +109,7 @@ def fit_dmd(samples: Samples, delays: int = DELAYS, rank: int = RANK, bags: int 
             f"there are {len(samples)}, {least - len(samples)} too few",
             "Record longer, or take fewer delays or modes.",
         )
-    samples.trainable(least)
+    _varying(samples).trainable(least)
     steps = np.diff(samples.time)
     if np.ptp(steps) > UNEVEN * steps.mean():
         worst = int(np.argmax(np.abs(steps - np.median(steps))))
@@ -130,6 +130,15 @@ def fit_dmd(samples: Samples, delays: int = DELAYS, rank: int = RANK, bags: int 
     modes = (axes[: len(size)] @ found.modes * size[:, None] * found.amplitudes).T
     spread = np.asarray(found.eigs_std if bags else np.zeros(most), float)
     return Dmd((TIME,), samples.outputs, modes, np.asarray(found.eigs), float(samples.time[0]), spread)
+
+
+def _varying(samples: Samples) -> Samples:
+    """Samples without outputs that stand still, of which a field may have many; all where none moves."""
+    still = scale_of(samples.y).constant
+    if still.all() or not still.any():
+        return samples
+    names = tuple(name for name, rests in zip(samples.outputs, still, strict=True) if not rests)
+    return replace(samples, y=samples.y[:, ~still], outputs=names)
 
 
 def _modes(stacked: NDArray[np.float64], time: NDArray[np.float64], plan: tuple[int, int, int]):  # noqa: ANN202 theirs

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -120,14 +121,14 @@ def fit_sindy(samples: Samples, degree: int = 3, threshold: float | None = None,
     >>> fit_sindy(s, threshold=0.005).expression("v")
     '-0.01*x**3'
     """
-    powers = library(len(samples.inputs), degree)
-    if len(samples) < len(powers):
+    terms = math.comb(len(samples.inputs) + degree, degree)
+    if len(samples) < terms:
         raise TrainingError(
-            f"a library of degree {degree} in {len(samples.inputs)} inputs has {len(powers)} terms and needs as many "
-            f"samples",
-            f"there are {len(samples)}, {len(powers) - len(samples)} too few",
+            f"a library of degree {degree} in {len(samples.inputs)} inputs has {terms} terms and needs as many samples",
+            f"there are {len(samples)}, {terms - len(samples)} too few",
             "Record longer, or lower the degree.",
         )
+    powers = library(len(samples.inputs), degree)
     samples.trainable(len(powers))
     if threshold is None:
         return _of_chosen_threshold(samples, powers, bags, seed)

@@ -1,0 +1,64 @@
+"""Every cell of a system: methods by approaches by noises by seeds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+from gaitdisc.discrepancy.cell import cell_of
+from gaitdisc.discrepancy.error_signal import APPROACHES, Approach
+from gaitdisc.discrepancy.methods import Method, MethodSettings
+from gaitdisc.discrepancy.record import Conditions, recorded
+from gaitdisc.discrepancy.system import System
+from gaitdisc.results.discrepancy_cell import DiscrepancyCell
+
+NOISES = (0.0, 0.001, 0.01, 0.1)
+ALL_METHODS: tuple[Method, ...] = ("sindy", "dmd", "gp", "nn")
+
+
+def grid(
+    system: System,
+    conditions: Conditions,
+    noises: Sequence[float] = NOISES,
+    seeds: Sequence[int] = (0,),
+    chosen: tuple[Sequence[Method], Sequence[Approach]] = (ALL_METHODS, APPROACHES),
+    settings: MethodSettings | None = None,
+    told: Callable[[DiscrepancyCell], None] = lambda _: None,
+) -> tuple[DiscrepancyCell, ...]:
+    """Compute the cells; without noise one seed is enough.
+
+    Parameters
+    ----------
+    system : System
+        What is known, true, measured.
+    conditions : Conditions
+        Sampling and variant; its noise and seed are replaced.
+    noises : sequence of float
+        As `Conditions.noise`.
+    seeds : sequence of int
+        Of noise and fits.
+    chosen : pair of sequences of str
+        Methods and approaches.
+    settings : MethodSettings, optional
+        Of the methods.
+    told : callable
+        Takes each cell when it is done.
+
+    Examples
+    --------
+    >>> from gaitdisc.discrepancy.system import system_of
+    >>> from gaitdisc.simulation.bundled import bundled
+    >>> from gaitdisc.simulation.parts import Term
+    >>> system = system_of(bundled("van_der_pol"), Term("y", "equation", "cubic_stiffness", "-0.01*x**3"))
+    >>> len(grid(system, Conditions(duration_s=20.0), (0.0, 0.001), (0, 1), (("sindy",), ("dynamics",))))
+    3
+    """
+    found = []
+    for noise in noises:
+        for seed in seeds if noise else seeds[:1]:
+            record = recorded(system, replace(conditions, noise=noise, seed=seed))
+            for approach in chosen[1]:
+                for method in chosen[0]:
+                    found.append(cell_of(record, method, approach, settings))
+                    told(found[-1])
+    return tuple(found)

@@ -1,0 +1,124 @@
+"""Which method for which record: the guidelines of section 3.5, answered from measured cells."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+import pandas as pd
+
+from gaitdisc.errors import SchemaError
+from gaitdisc.regression.dmd import DELAYS, RANK
+from gaitdisc.results.discrepancy_cell import DiscrepancyCell, cells_table
+
+Want = Literal["interpretability", "speed", "forecast"]
+WANTS: tuple[Want, ...] = ("interpretability", "speed", "forecast")
+INTERPRETABLE = ("sindy", "dmd")
+NEAR = 5.0  # points of accuracy that the fastest method may lose to the best
+FOUND = Path(__file__).with_name("measured_cells.csv")  # what the studies of chapter 3 measured
+COLUMNS = ("system", "method", "noise", "accuracy", "valid_s", "seconds", "diverged", "seeds")
+
+
+@dataclass(frozen=True, eq=False)
+class Recommendation:
+    """A method and what speaks for it.
+
+    Parameters
+    ----------
+    method : str
+        `sindy`, `dmd`, `gp`, `nn`; empty where none did better than the known model.
+    why : str
+        One or two sentences with the numbers.
+    evidence : DataFrame
+        The measured cells that it rests on, best first: system, method, noise, forecast accuracy [%], valid time [s],
+        seconds.
+    """
+
+    method: str
+    why: str
+    evidence: pd.DataFrame
+
+
+def recommend(
+    noise: float, samples: int, want: Want, chaotic: bool = False, evidence: pd.DataFrame | None = None
+) -> Recommendation:
+    """Recommend a method for learning the missing rates of a known model.
+
+    Parameters
+    ----------
+    noise : float
+        Share of each channel's standard deviation.
+    samples : int
+        Of the training part.
+    want : str
+        `interpretability`: terms or frequencies that a person can read; `speed`: the fastest within 5 points of the
+        best; `forecast`: the best forecast.
+    chaotic : bool
+        Judge by the Lorenz system's valid time instead of the Van der Pol oscillator's accuracy.
+    evidence : DataFrame, optional
+        As `measured_cells` makes it; what the studies of chapter 3 measured where absent.
+
+    Raises
+    ------
+    SchemaError
+        If `want` is another word, or the evidence lacks columns.
+
+    Examples
+    --------
+    >>> recommend(0.001, 3000, "interpretability").method
+    'sindy'
+    """
+    if want not in WANTS:
+        raise SchemaError("a want is one of " + ", ".join(WANTS), f"found {want!r}", "Choose one of them.")
+    table = pd.read_csv(FOUND) if evidence is None else evidence
+    missing = [name for name in COLUMNS if name not in table]
+    if missing:
+        raise SchemaError(
+            "evidence has the columns of measured_cells", f"{', '.join(missing)} missing", "Make it with measured_cells."
+        )
+    table = table[table["system"].str.contains("Lorenz") == chaotic]
+    levels = np.sort(table["noise"].unique())
+    near = float(levels[np.argmin(np.abs(np.log(levels + 1e-4) - np.log(noise + 1e-4)))])
+    by = "valid_s" if chaotic else "accuracy"
+    rows = table[(table["noise"] == near) & (table["diverged"] == 0)].sort_values(by, ascending=False)
+    allowed = rows[rows["method"].isin(INTERPRETABLE)] if want == "interpretability" else rows
+    if samples < DELAYS + 2 * RANK:
+        allowed = allowed[allowed["method"] != "dmd"]
+    better = allowed[allowed["accuracy"] > 0]
+    if not len(better):
+        return Recommendation("", f"At {near:.1%} noise none of the methods forecast better than the known model.", rows)
+    best = better.iloc[0]
+    if want == "speed":
+        close = better[better[by] >= best[by] - (NEAR if by == "accuracy" else NEAR / 100 * best[by])]
+        best = close.sort_values("seconds").iloc[0]
+    why = (
+        f"Measured at {near:.1%} noise on {best['system']}: forecast error {best['accuracy']:.1f} % smaller than the known "
+        f"model's, valid for {best['valid_s']:.1f} s, in {best['seconds']:.1f} s of computing (n = {best['seeds']:.0f} "
+        f"seeds)."
+    )
+    if samples < 1000:
+        why += f" The measurements had 3,001 samples, this record has {samples}: expect less."
+    return Recommendation(str(best["method"]), why, rows.reset_index(drop=True))
+
+
+def measured_cells(cells: Sequence[DiscrepancyCell]) -> pd.DataFrame:
+    """Evidence of a study: medians over channels and seeds of the forecasts with learned rates.
+
+    Parameters
+    ----------
+    cells : sequence of DiscrepancyCell
+        Of the variant done right.
+    """
+    kept = [cell for cell in cells if cell.approach == "dynamics" and cell.variant == "right" and cell.parts]
+    table = cells_table(kept)
+    table = table[table["part"] == "forecast"]
+    table["seconds"] = table["fit_s"] + table["run_s"]
+    table["diverged"] = table["diverged_s"].notna()
+    found = table.groupby(["system", "method", "noise"], sort=False).agg(
+        accuracy=("accuracy", "median"), valid_s=("valid_s", "median"), seconds=("seconds", "median"),
+        diverged=("diverged", "mean"), seeds=("seed", "nunique"),
+    )  # fmt: skip
+    return found.reset_index()

@@ -1,0 +1,236 @@
+"""Figures of chapter 3: errors of known and augmented models, accuracy against noise and horizon, and cost."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from gaitdisc.report.figure import Figure, Room, in_style, legend, panels
+from gaitdisc.report.palette import Look
+from gaitdisc.results.discrepancy_cell import PARTS, DiscrepancyCell, PartAccuracy, cells_table
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+
+METHOD_WORDS = {"sindy": "SINDy", "dmd": "DMD", "gp": "Gaussian process", "nn": "neural network"}
+METHOD_LOOKS = {
+    "sindy": Look("#00875a", "-", "s"),
+    "dmd": Look("#d97700", (0, (4.0, 1.6)), "o"),
+    "gp": Look("#1f4fc8", (0, (1.2, 1.2)), "^"),
+    "nn": Look("#c8102e", (0, (4.0, 1.2, 1.2, 1.2)), "v"),
+}
+KNOWN, AUGMENTED = Look("#1f4fc8", "-", ""), Look("#111111", (0, (4.0, 1.6)), "")
+HORIZONS_S = tuple(np.round(np.geomspace(0.2, 20.0, 40), 2))
+MOST_DRAWN = 1000  # points of a line
+
+
+@in_style
+def error_figure(cells: Sequence[DiscrepancyCell], name: str, source: str, channel: int = 0) -> Figure:
+    """Truth minus known and truth minus augmented, a row a method (Figs. 3.3, 3.4, 3.7, 3.8).
+
+    Parameters
+    ----------
+    cells : sequence of DiscrepancyCell
+        One a method, of one approach.
+    name, source : str
+        Of the files; the figure of the dissertation that it stands for.
+    channel : int
+        Which is drawn.
+    """
+    cells = [cell for cell in cells if cell.parts]
+    drawn, grid = panels(len(cells), 2, 0.95, Room(across=0.5, down=0.3))
+    numbers = []
+    for row, cell in zip(grid, cells, strict=True):
+        for axes, part in zip(row, PARTS, strict=True):
+            numbers.append(_error_lines(axes, cell, part, channel))
+        row[0].set_ylabel(METHOD_WORDS[cell.method])
+    for axes in grid[-1]:
+        axes.set_xlabel("time since the part's start [s]")
+    legend(drawn, _handles({"truth − known": KNOWN, "truth − augmented": AUGMENTED}))
+    caption = (
+        f"{source}. {cells[0].system}, {cells[0].channels[channel]}: reconstruction of the training part, then forecast; "
+        f"approach: {cells[0].approach}; variant: {cells[0].variant}; noise {cells[0].noise:g}."
+    )
+    return Figure(name, caption, f"Error curves of {len(cells)} methods over time", pd.concat(numbers), drawn)
+
+
+def _error_lines(axes: Axes, cell: DiscrepancyCell, part: str, channel: int) -> pd.DataFrame:
+    found = cell.parts[part]
+    some = np.unique(np.linspace(0, len(found.time) - 1, MOST_DRAWN).astype(int))
+    table = pd.DataFrame({"method": cell.method, "part": part, "t_s": found.time[some]})
+    for model, look in (("known", KNOWN), ("augmented", AUGMENTED)):
+        table[model] = (found.truth - getattr(found, model))[some, channel]
+        axes.plot(table["t_s"], table[model], color=look.colour, linestyle=look.line, linewidth=0.8)
+    said = "" if found.diverged_s is None else f", diverged at {found.diverged_s:.2f} s"
+    axes.set_title(f"{METHOD_WORDS[cell.method]}: {part}{said}")
+    return table
+
+
+@in_style
+def system_figure(found: PartAccuracy, channels: Sequence[str], name: str, source: str) -> Figure:
+    """True and known system over time (Figs. 3.2, 3.6).
+
+    Parameters
+    ----------
+    found : PartAccuracy
+        Of any cell.
+    channels : sequence of str
+        Names.
+    name, source : str
+        Of the files; the figure of the dissertation that it stands for.
+    """
+    drawn, grid = panels(len(channels), 1, 1.0, Room())
+    some = np.unique(np.linspace(0, len(found.time) - 1, MOST_DRAWN).astype(int))
+    table = pd.DataFrame({"t_s": found.time[some]})
+    for k, (row, channel) in enumerate(zip(grid, channels, strict=True)):
+        for model, look in (("truth", AUGMENTED), ("known", KNOWN)):
+            table[f"{channel} {model}"] = getattr(found, model)[some, k]
+            row[0].plot(table["t_s"], table[f"{channel} {model}"], color=look.colour, linestyle=look.line, linewidth=0.8)
+        row[0].set_ylabel(channel)
+    grid[-1][0].set_xlabel("time [s]")
+    legend(drawn, _handles({"true": AUGMENTED, "known": KNOWN}))
+    return Figure(name, f"{source}. True and known system from the same start.", "Two curves over time", table, drawn)
+
+
+@in_style
+def accuracy_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) -> Figure:
+    """Clipped accuracy against noise, a row an approach (Figs. 3.5, 3.10, 3.13).
+
+    Parameters
+    ----------
+    cells : sequence of DiscrepancyCell
+        All methods and noises of one system and variant.
+    name, source : str
+        Of the files; the figure of the dissertation that it stands for.
+    """
+    table = cells_table([cell for cell in cells if cell.parts])
+    approaches, noises = list(dict.fromkeys(table["approach"])), sorted(table["noise"].unique())
+    over = table.groupby(["approach", "part", "method", "noise", "seed"], sort=False)["clipped"].median()
+    spread = over.groupby(level=[0, 1, 2, 3]).agg(["median", "min", "max", "count"]).reset_index()
+    drawn, grid = panels(len(approaches), 2, 1.4, Room(across=0.6, down=0.5))
+    methods = list(dict.fromkeys(table["method"]))
+    for row, approach in zip(grid, approaches, strict=True):
+        for axes, part in zip(row, PARTS, strict=True):
+            for k, method in enumerate(methods):
+                rows = spread[(spread["approach"] == approach) & (spread["part"] == part) & (spread["method"] == method)]
+                at = [noises.index(noise) + (k - 1.5) * 0.19 for noise in rows["noise"]]
+                axes.bar(at, rows["median"], 0.17, color=METHOD_LOOKS[method].colour)
+                axes.vlines(at, rows["min"], rows["max"], color="#111111", linewidth=0.7)
+            axes.set_xticks(range(len(noises)), [f"{noise:g}" for noise in noises])
+            axes.set_ylim(-105, 105)
+            axes.axhline(0, color="#111111", linewidth=0.5)
+            axes.set_title(f"{approach}: {part}")
+        row[0].set_ylabel("accuracy [%]")
+    for axes in grid[-1]:
+        axes.set_xlabel("noise [share of each channel’s SD; unit in the published variant]")
+    legend(drawn, _patches({METHOD_WORDS[method]: METHOD_LOOKS[method] for method in methods}))
+    caption = (
+        f"{source}. 100 (1 − RMSE augmented / RMSE known) against the noise-free truth, median of channels, clipped to "
+        f"±100; lines: least to most of n = {int(spread['count'].max())} seeds. A diverged run has no bar."
+    )
+    return Figure(name, caption, "Bars of accuracy against noise, by method", spread, drawn)
+
+
+@in_style
+def horizon_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) -> Figure:
+    """Percent change in RMSE against the forecast horizon, a panel an approach (Fig. 3.9).
+
+    Parameters
+    ----------
+    cells : sequence of DiscrepancyCell
+        Of one noise.
+    name, source : str
+        Of the files; the figure of the dissertation that it stands for.
+    """
+    cells = [cell for cell in cells if cell.parts]
+    approaches = list(dict.fromkeys(cell.approach for cell in cells))
+    drawn, grid = panels(1, len(approaches), 1.8, Room(across=0.6))
+    tables = []
+    for axes, approach in zip(grid[0], approaches, strict=True):
+        for cell in cells:
+            if cell.approach != approach:
+                continue
+            change, look = cell.parts["forecast"].change(HORIZONS_S), METHOD_LOOKS[cell.method]
+            axes.plot(HORIZONS_S, np.clip(change, -100, 100), color=look.colour, linestyle=look.line)
+            row = {"approach": approach, "method": cell.method, "horizon_s": HORIZONS_S, "accuracy": change}
+            tables.append(pd.DataFrame(row))
+        axes.axvline(cells[0].parts["forecast"].first_jump_s(), color="#7a7a7a", linewidth=0.6)
+        axes.set_title(approach)
+        axes.set_xlabel("forecast horizon [s]")
+    grid[0][0].set_ylabel("less RMSE [%]")
+    methods = list(dict.fromkeys(cell.method for cell in cells))
+    legend(drawn, _handles({METHOD_WORDS[method]: METHOD_LOOKS[method] for method in methods}))
+    caption = f"{source}. Median over channels, clipped to ±100; grey: the truth’s first jump. Noise {cells[0].noise:g}."
+    return Figure(name, caption, "Curves of accuracy against horizon", pd.concat(tables), drawn)
+
+
+@in_style
+def cost_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) -> Figure:
+    """Seconds to fit and to run, by method and approach (Fig. 3.11).
+
+    Parameters
+    ----------
+    cells : sequence of DiscrepancyCell
+        Of one system.
+    name, source : str
+        Of the files; the figure of the dissertation that it stands for.
+    """
+    rows = pd.DataFrame(
+        [{"approach": c.approach, "method": c.method, "fit_s": c.fit_s, "run_s": c.run_s} for c in cells if c.parts]
+    )
+    middle = rows.groupby(["approach", "method"], sort=False).median().reset_index()
+    approaches = list(dict.fromkeys(middle["approach"]))
+    drawn, grid = panels(1, len(approaches), 1.6, Room(across=0.6))
+    for axes, approach in zip(grid[0], approaches, strict=True):
+        part = middle[middle["approach"] == approach]
+        axes.bar([METHOD_WORDS[str(m)] for m in part["method"]], part["fit_s"], 0.6, color="#555555")
+        axes.bar([METHOD_WORDS[str(m)] for m in part["method"]], part["run_s"], 0.6, bottom=part["fit_s"], color="#bbbbbb")
+        axes.set_yscale("log")
+        axes.set_title(approach)
+    grid[0][0].set_ylabel("wall-clock time [s]")
+    legend(drawn, _patches({"fit": Look("#555555", "-", ""), "run of both parts": Look("#bbbbbb", "-", "")}))
+    return Figure(name, f"{source}. Median over all noises, on a shared machine.", "Bars of seconds", middle, drawn)
+
+
+@in_style
+def field_figure(found: PartAccuracy, places: Sequence[float], name: str, source: str) -> Figure:
+    """Error of known and augmented model over space and time (Fig. 3.12).
+
+    Parameters
+    ----------
+    found : PartAccuracy
+        Of a field.
+    places : sequence of float
+        Of the channels.
+    name, source : str
+        Of the files; the figure of the dissertation that it stands for.
+    """
+    drawn, grid = panels(1, 2, 2.0, Room(across=0.6))
+    some = np.unique(np.linspace(0, len(found.time) - 1, 200).astype(int))
+    errors = {model: (found.truth - getattr(found, model))[some] for model in ("known", "augmented")}
+    most = float(np.nanmax(np.abs(errors["known"]))) or 1.0
+    for axes, (model, error) in zip(grid[0], errors.items(), strict=True):
+        axes.pcolormesh(places, found.time[some], error, vmin=-most, vmax=most, cmap="RdBu_r", rasterized=True)
+        axes.set_title(f"truth − {model}")
+        axes.set_xlabel("x")
+    grid[0][0].set_ylabel("time [s]")
+    numbers = pd.DataFrame({
+        "t_s": found.time[some], **{f"rmse_{m}": np.sqrt(np.mean(e**2, axis=1)) for m, e in errors.items()},
+    })  # fmt: skip
+    return Figure(name, f"{source}. Colours span ±{most:.3g}.", "Two maps of error over space and time", numbers, drawn)
+
+
+def _handles(looks: dict[str, Look]) -> list[Artist]:
+    from matplotlib.lines import Line2D
+
+    return [Line2D([], [], color=look.colour, linestyle=look.line, label=words) for words, look in looks.items()]
+
+
+def _patches(looks: dict[str, Look]) -> list[Artist]:
+    from matplotlib.patches import Patch
+
+    return [Patch(color=look.colour, label=words) for words, look in looks.items()]
