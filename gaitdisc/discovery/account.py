@@ -29,6 +29,11 @@ class Part:
     candidate: Candidate
     values: dict[str, float]
 
+    @property
+    def written(self) -> dict[str, str]:
+        """Slot -> its number as it is written into a file."""
+        return {slot: f"{value:.6g}" for slot, value in self.values.items()}
+
 
 @dataclass(frozen=True)
 class Account:

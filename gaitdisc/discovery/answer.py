@@ -12,7 +12,7 @@ from gaitdisc.discovery.held_out import drawn_runs, gap_size, runs_of
 from gaitdisc.discovery.inquiry import Inquiry
 from gaitdisc.discovery.shaken import Shaken
 from gaitdisc.discovery.wording import sentence_of
-from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, Whereabouts
+from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, GapSize, Whereabouts
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.simulation import Simulation
 
@@ -56,16 +56,13 @@ def answer(
         before, after = (runs_of(inquiry, one, trials, now) for one in (as_read, now))
         sizes.append(gap_size(before, after, floor, channels, block))
     train, held_out = sizes
-    closed = 1 - (held_out.after**2 - floor_of(held_out)) / max(held_out.before**2 - floor_of(held_out), 1e-12)
-    effects = tuple(found_effects(inquiry, now, closed, max([one.gained for one in rivals], default=0.0)))
+    effects = tuple(
+        found_effects(inquiry, now, closed_share(held_out), max([one.gained for one in rivals], default=0.0))
+    )
     if shaking:
         effects = (
             FoundEffect(
-                shaking.place.kind,
-                shaking.place.name,
-                "process_noise",
-                "",
-                {"strength": Estimate(shaking.strength, np.nan, np.nan)},
+                shaking.place.kind, shaking.place.name, "process_noise", "", {"strength": push_of(inquiry, shaking)}
             ),
         )
     discovery = Discovery(
@@ -73,7 +70,7 @@ def answer(
         "",
         whereabouts(inquiry, now, shaking, train.before**2, train.after**2),
         effects,
-        rivals_of(inquiry, as_read, now, rivals),
+        rivals_of(inquiry, now, rivals),
         train,
         held_out,
         channels,
@@ -111,12 +108,25 @@ def augmented_of(base: Simulation, parts: tuple[Part, ...]) -> Simulation:
         The explanations.
     """
     for part in parts:
-        base = part.candidate.written(base, {slot: f"{value:.6g}" for slot, value in part.values.items()})
+        base = part.candidate.written(base, part.written)
     return base
 
 
-def floor_of(size) -> float:
-    return size.noise_floor**2
+def closed_share(size: GapSize) -> float:
+    """Return the share of a gap's variance above the noise floor that goes.
+
+    Parameters
+    ----------
+    size : GapSize
+        Before and after.
+
+    Examples
+    --------
+    >>> closed_share(GapSize(before=3.0, after=1.0, noise_floor=1.0))
+    1.0
+    """
+    floor = size.noise_floor**2
+    return 1 - (size.after**2 - floor) / max(size.before**2 - floor, 1e-12)
 
 
 def found_effects(inquiry: Inquiry, now: Judged, closed: float, gained: float) -> list[FoundEffect]:
@@ -137,21 +147,20 @@ def found_effects(inquiry: Inquiry, now: Judged, closed: float, gained: float) -
     for number, part in enumerate(now.account.parts):
         candidate = part.candidate
         estimates = estimates_of(now.account, number, inquiry.search.base)
-        numbers = {slot: f"{value:.6g}" for slot, value in part.values.items()}
-        term = candidate.term(numbers) if candidate.verdict == "missing_physics" else ""
+        term = candidate.term(part.written) if candidate.verdict == "missing_physics" else ""
         found.append(FoundEffect(candidate.kind, candidate.place, candidate.name, term, estimates, closed, gained))
     return found
 
 
-def rivals_of(inquiry: Inquiry, as_read: Judged, now: Judged, rivals: tuple[Judged, ...]) -> tuple[FoundEffect, ...]:
+def rivals_of(inquiry: Inquiry, now: Judged, rivals: tuple[Judged, ...]) -> tuple[FoundEffect, ...]:
     """List what else was weighed for the first place.
 
     Parameters
     ----------
     inquiry : Inquiry
         What was asked.
-    as_read, now : Judged
-        The simulation as read and with what was found.
+    now : Judged
+        The simulation with what was found.
     rivals : tuple of Judged
         Best first.
     """

@@ -196,7 +196,7 @@ def _check_piece(piece: str, known: tuple[str, ...], where: str) -> None:
         raise SchemaError(
             f"a shape is written in {', '.join(known)}",
             f"{where}, piece {piece[:60]!r} has {name!r}",
-            f"If {name} is a number to be found, give it a start: constants = {{ {name} = \"quantiles of x\" }}.",
+            f'If {name} is a number to be found, give it a start: constants = {{ {name} = "quantiles of x" }}.',
         )
 
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gaitdisc.discovery.account import Part
 from gaitdisc.discovery.answer import answer
 from gaitdisc.discovery.catalogue import Shape
 from gaitdisc.discovery.evidence import Judged, compared
@@ -202,14 +201,3 @@ def proven(inquiry: Inquiry, as_read: Judged, now: Judged) -> bool:
     like = replace(as_read, shooting=as_read.shooting.with_noise(now.noise))
     before, after = (runs_of(inquiry, one, inquiry.held_out, like) for one in (as_read, now))
     return bool(np.nan_to_num(before.misfits - after.misfits, nan=0.0).sum() > 0)
-
-
-def numbers_of(part: Part) -> dict[str, str]:
-    """Return a part's numbers as they are written into a file.
-
-    Parameters
-    ----------
-    part : Part
-        An explanation with its numbers.
-    """
-    return {slot: f"{value:.6g}" for slot, value in part.values.items()}

@@ -109,5 +109,13 @@ def start_basis(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def without(basis: NDArray[np.float64], columns: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return columns (segment, number, column) less what the basis explains of them."""
+    """Return columns less what a basis explains of them.
+
+    Parameters
+    ----------
+    basis : ndarray (segment, number, state)
+        Orthonormal, from `start_basis`.
+    columns : ndarray (segment, number, column)
+        Whitened.
+    """
     return columns - basis @ (np.swapaxes(basis, 1, 2) @ columns)

@@ -20,7 +20,8 @@ FLAT_BUMPS = 7
 STRIDE_BUMPS = 10
 SHARPNESS = 1.2  # of a bump's width against the distance to the next
 SHARE_OF_SPEED = 0.2  # at which friction that depends on place has risen
-_ONE_BUMP = re.compile(r"exp\(-\(\((\w+|\(.*?\)) - (\S+?)\)/(\S+?)\)\*\*2\)\)(.*)")
+_RISE = re.compile(r"\*tanh\((.+)/(\S+)\)")
+_ONE_BUMP = re.compile(r"exp\(-\(\(\((\w+|\(.*?\)) - (\S+?)\)/(\S+?)\)\*\*2\)\)(.*)")
 SIGNIFICANT = 3.0  # standard errors that a bump must have to stay
 
 
@@ -131,6 +132,12 @@ def _local(now: Judged, search: Search, account: Account) -> list[Account]:
         if not bump:
             continue
         name, centre, width, rest = bump.groups()
+        constants = {"c": "quantiles of x", "w": "half widths of x"}
+        begin = {"factor": part.values[_slot_of(part, piece)], "c": float(centre.strip("()")), "w": float(width) / 2}
+        rise = _RISE.fullmatch(rest)
+        if rise:
+            rest, begin["s"] = f"*tanh({rise[1]}/_s)", float(rise[2]) / 2
+            constants["s"] = "half widths of x"
         shape = f"exp(-((({name} - _c)/_w)**2)){rest}"
         local = Candidate(
             "missing_physics",
@@ -138,11 +145,10 @@ def _local(now: Judged, search: Search, account: Account) -> list[Account]:
             part.candidate.place,
             "unnamed",
             (shape,),
-            {"c": "quantiles of x", "w": "half widths of x"},
+            constants,
             part.candidate.role,
             part.candidate.means,
         )
-        begin = {"factor": part.values[_slot_of(part, piece)], "c": float(centre.strip("()")), "w": float(width) / 2}
         one = account_for(now.shooting, search.base, (Part(local, begin),), now.account.fit.starts, 2 * TURNS)
         if search.sensible(one):
             found.append(one)

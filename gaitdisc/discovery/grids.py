@@ -86,7 +86,7 @@ def grid(kind: str, along: NDArray[np.float64], rhythm: Rhythm) -> NDArray[np.fl
     if kind == "frequencies":
         spacing = np.pi / rhythm.duration
         most = min(MOST_FREQUENCIES, int(10 * np.pi / rhythm.period / spacing) + 8)
-        return spacing * np.arange(2, most + 2)
+        return spacing * np.arange(2, most + 2, dtype=np.float64)
     return PHASES if kind == "phases" else PHASE_WIDTHS
 
 

@@ -57,9 +57,7 @@ def runs_of(inquiry: Inquiry, now: Judged, trials: tuple[int, ...], like: Judged
     return Trial(fit, shooting.seen)
 
 
-def gap_size(
-    before: Trial, after: Trial, floor: NDArray[np.float64], channels: tuple[str, ...], block: int
-) -> GapSize:
+def gap_size(before: Trial, after: Trial, floor: NDArray[np.float64], channels: tuple[str, ...], block: int) -> GapSize:
     """Measure the gap before and after, and the chance of such a fall.
 
     Parameters

@@ -140,7 +140,10 @@ class Inquiry:
             if (longer.noise.size > FOLLOWED * now.noise.size).any() or not self.search.sensible(longer.account):
                 break
             fit = longer.account.fit
-            if linearise(longer.shooting, longer.account.simulation, (), fit).first_growth(WILD, fit.states) is not None:
+            if (
+                linearise(longer.shooting, longer.account.simulation, (), fit).first_growth(WILD, fit.states)
+                is not None
+            ):
                 break
             now = longer
         return now

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gaitdisc.simulation.parts import Term
 from gaitdisc.simulation.running import Compiled, compile_simulation
@@ -61,7 +62,7 @@ def kinematic_rates(simulation: Simulation, machine: Compiled) -> dict[str, str]
     states = [state.name for state in simulation.states]
     rng = np.random.default_rng(0)
     x, u = rng.uniform(0.1, 1.0, (16, len(states))), rng.uniform(0.1, 0.9, (16, len(simulation.inputs)))
-    rates = machine.rates(np.zeros(16), x, u, machine.defaults)
+    rates = _rates(machine, x, u)
     pairs = {}
     for position, name in enumerate(states):
         for rate, other in enumerate(states):
@@ -112,8 +113,14 @@ def driven_state(simulation: Simulation, machine: Compiled, port: str) -> str:
     rng = np.random.default_rng(0)
     x = rng.uniform(-0.3, 0.3, (16, len(simulation.states)))
     u = rng.uniform(0.1, 0.9, (16, len(simulation.inputs)))
-    moved = pushed.rates(np.zeros(16), x, u, pushed.defaults) - machine.rates(np.zeros(16), x, u, machine.defaults)
+    moved = _rates(pushed, x, u) - _rates(machine, x, u)
     return simulation.states[int(np.argmax(np.abs(moved).mean(axis=0)))].name
+
+
+def _rates(machine: Compiled, x: NDArray[np.float64], u: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Rates at points, with nothing coming late."""
+    late = np.zeros((len(x), len(machine.right_hand_side.delays)))
+    return machine.rates(np.zeros(len(x)), x, u, machine.defaults, late)
 
 
 def _place(simulation: Simulation, kind: str, name: str, driven: str, rate_of: dict[str, str]) -> Place:

@@ -17,7 +17,7 @@ from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.simulation import Simulation
 
 MARGIN = 10.0  # by which the criterion must fall for one more explanation
-MATERIAL = 0.003  # of what is explained already, which one more has to explain
+MATERIAL = 0.01  # of what is explained already, which one more has to explain
 REFITTED = 14
 JUDGED = 5
 MOST_TURNS = 5  # explanations let in, those that were thrown out again included
@@ -210,7 +210,9 @@ def ranked(accounts: list[Judged]) -> list[Judged]:
     least = accounts[0].evidence
     simple = [one for one in accounts if one.evidence < least + MARGIN and one.account.size < accounts[0].account.size]
     first = simple[0] if simple else accounts[0]
-    near = [one for one in accounts if one.evidence < first.evidence + NEARLY and one.account.size == first.account.size]
+    near = [
+        one for one in accounts if one.evidence < first.evidence + NEARLY and one.account.size == first.account.size
+    ]
     order = {shape.name: number for number, shape in reversed(list(enumerate(known_shapes())))}
     near.sort(key=lambda one: [order.get(part.candidate.name, len(order)) for part in one.account.parts])
     first = next(one for one in near if _verdicts(one) == _verdicts(first))

@@ -33,7 +33,13 @@ class Segments:
         return len(self.begin)
 
     def of(self, records: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the segments of records (trial, sample, ...) as (segment, sample, ...)."""
+        """Return the segments of records (segment, sample, ...).
+
+        Parameters
+        ----------
+        records : ndarray (trial, sample, ...)
+            Of every trial.
+        """
         return records[self.trial[:, None], self.samples]
 
     @property

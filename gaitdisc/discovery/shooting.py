@@ -110,7 +110,13 @@ class Shooting:
         return seen.reshape(*states.shape[:3], -1)
 
     def whitened(self, residual: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return (segment, sample, channel, ...) whitened and flat: (segment, sample times channel, ...)."""
+        """Return residuals whitened and flat (segment, sample times channel, ...); what is not finite counts as none.
+
+        Parameters
+        ----------
+        residual : ndarray (segment, sample, channel, ...)
+            [the channel's unit].
+        """
         white = self.noise.whitened(np.nan_to_num(residual, nan=0.0, posinf=0.0, neginf=0.0))
         return white.reshape(white.shape[0], -1, *white.shape[3:])
 
@@ -202,7 +208,13 @@ class Shooting:
         return replace(self, past=past)
 
     def with_noise(self, noise: Noise) -> Shooting:
-        """Return the same segments, divided by other noise."""
+        """Return the same segments, divided by other noise.
+
+        Parameters
+        ----------
+        noise : Noise
+            Of every channel.
+        """
         return replace(self, noise=noise)
 
 

@@ -52,7 +52,7 @@ def test_the_truth_leaves_the_noise_and_nothing_else(inquiry, runs):
     size = gap_size(before, after, floor, ("x",), 50)
     assert size.after < 1.1 * size.noise_floor < 0.5 * size.before
     assert size.channels["x"][1] == pytest.approx(float(np.sqrt((after.fit.residual**2).mean())))
-    assert size.p == chance(before.misfits - after.misfits)
+    assert size.p == chance(((before.fit.residual**2 - after.fit.residual**2) / floor**2).sum(axis=(1, 2)))
     assert size.before == pytest.approx(size.channels["x"][0] / after.measured.std())
 
 
@@ -68,3 +68,9 @@ def test_runs_are_drawn_at_their_own_times(inquiry, runs):
 def test_misfits_are_those_of_the_fit(runs):
     before, _ = runs
     assert replace(before).misfits.sum() == pytest.approx(before.fit.misfit)
+
+
+def test_a_long_run_counts_as_many_blocks(runs):
+    before, after = runs
+    whole, in_two = (gap_size(before, after, np.array([0.01]), ("x",), before.measured.shape[1] // n) for n in (1, 2))
+    assert in_two.p < whole.p
