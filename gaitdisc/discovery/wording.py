@@ -81,7 +81,8 @@ def _said(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> st
     missing = [one for one, part in zip(said, parts, strict=True) if part.candidate.verdict == "missing_physics"]
     others = [one for one, part in zip(said, parts, strict=True) if part.candidate.verdict != "missing_physics"]
     lacks = [f"The simulation lacks {'; and '.join(missing)}"] if missing else []
-    return f"{'; besides, '.join([*lacks, *others])}."
+    whole = "; besides, ".join([*lacks, *others])
+    return f"{whole[:1].upper()}{whole[1:]}."
 
 
 def _one(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whereabouts, ...]) -> str:
@@ -151,7 +152,7 @@ def _stride(effect: FoundEffect, where: tuple[Whereabouts, ...]) -> str:
 
 def _nameless(effect: FoundEffect, base: Simulation, where: tuple[Whereabouts, ...]) -> str:
     seen = [one for one in base.signals if re.search(rf"\b{re.escape(one)}\b", effect.term)]
-    over = f", a function of {' and '.join(seen)}" if seen else ""
+    over = f", a function of {' and '.join(seen)}," if seen else ""
     stride = _stride(effect, where)
     acts = f" ({stride})" if stride else ""
     return (

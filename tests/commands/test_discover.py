@@ -1,0 +1,165 @@
+"""`gaitdisc discover` end to end on a spring that truly has dry friction; and every refusal's words."""
+
+import json
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from gaitdisc.cli import app
+from gaitdisc.commands.exit_codes import REFUSED
+from gaitdisc.errors import GaitdiscError
+from gaitdisc.simulation.simulation_file import read_simulation
+
+SPRING = """title = "Spring"
+[states.x]
+unit = "m"
+[states.v]
+unit = "m/s"
+[parameters.k]
+value = 4.0
+unit = "1/s^2"
+[parameters.b]
+value = 0.1
+unit = "1/s"
+[equations]
+x = "v"
+v = "-k*x - b*v"
+[observations]
+x = "x"
+"""
+FRICTION = 0.4  # m/s^2
+RATE, SUBSTEPS = 50.0, 20
+
+
+def rows(trials=4, samples=400):
+    rng = np.random.default_rng(0)
+    told = []
+    for trial in range(1, trials + 1):
+        x, v = rng.uniform(0.5, 1.2) * (-1) ** trial, 0.0
+        for sample in range(samples):
+            told.append((trial, sample / RATE, x + 0.005 * rng.standard_normal()))
+            for _ in range(SUBSTEPS):
+                v += (-4.0 * x - 0.1 * v - FRICTION * np.sign(v)) / RATE / SUBSTEPS
+                x += v / RATE / SUBSTEPS
+    return told
+
+
+def write(path, table, head="trial,time,x"):
+    path.write_text("\n".join([head, *(",".join(f"{cell:.7g}" for cell in row) for row in table)]) + "\n")
+
+
+@pytest.fixture(scope="module")
+def lab(tmp_path_factory):
+    """Return a folder with good and bad simulations, and good and bad data."""
+    folder = tmp_path_factory.mktemp("lab")
+    right = "-k*x - b*v"
+    bad = {
+        "good": right,
+        "power": "-k*x - b*v^2",
+        "unknown": "-kk*x - b*v",
+        "wild": "900*k*x + 40*v*abs(v)",
+        "hostile": f"__import__('os').system('touch {folder}/owned')",
+        "tower": "9**9**9**9*x",
+        "deep": "(" * 5000 + "x" + ")" * 5000,
+    }
+    for name, expression in bad.items():
+        (folder / f"{name}.toml").write_text(SPRING.replace(right, expression))
+    port = '[ports.push]\nunit = "N"\n[equations]'
+    (folder / "port.toml").write_text(SPRING.replace("[equations]", port))
+    (folder / "broken.toml").write_text(SPRING.replace("[equations]", "[equations"))
+    (folder / "shape.toml").write_text('[[shape]]\nname = "mine"\npieces = ["import os"]\n')
+    table = rows()
+    write(folder / "good.csv", table)
+    write(folder / "column.csv", table, "trial,time,y")
+    write(folder / "short.csv", [row for row in table if row[1] < 0.2])
+    write(folder / "constant.csv", [(*row[:2], 1.0) for row in table])
+    write(folder / "nan.csv", [*table[:7], (1, 7 / RATE, float("nan")), *table[8:]])
+    return folder
+
+
+def refusal(lab, *words):
+    """Return the words of a refusal; the command line prints them and exits (tests/test_cli.py)."""
+    done = CliRunner().invoke(app, ["discover", *(str(lab / word) for word in words), "--out", str(lab / "none")])
+    assert isinstance(done.exception, GaitdiscError), done.exception
+    assert not (lab / "none").exists()
+    return str(done.exception)
+
+
+def test_the_sentence_the_files_and_the_report(lab, tmp_path):
+    words = [str(lab / "good.toml"), str(lab / "good.csv"), "--out", str(tmp_path)]
+    done = CliRunner().invoke(app, ["discover", *words])
+    assert done.exit_code == 0, done.output
+    sentence = done.stdout.splitlines()[0]
+    assert sentence.startswith("The simulation lacks dry (Coulomb) friction in the equation of v: 0.40")
+    assert "the held-out error falls from" in sentence
+    found = json.loads((tmp_path / "discovery.json").read_text(encoding="utf-8"))
+    assert found["sentence"] == sentence
+    friction = found["effects"][0]["estimates"]["friction"]
+    assert friction["value"] == pytest.approx(FRICTION, rel=0.02)
+    assert friction["unit"] == "m/s^2"
+    assert read_simulation(tmp_path / "augmented.toml").effects[0].name == "coulomb_friction"
+    assert sentence[:40] in (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "weighing" in done.stderr
+
+
+def test_without_a_report_and_without_progress(lab, tmp_path):
+    words = [str(lab / "good.toml"), str(lab / "good.csv"), "--out", str(tmp_path), "--no-report", "-q"]
+    done = CliRunner().invoke(app, ["discover", *words])
+    assert done.exit_code == 0, done.output
+    assert done.stderr == ""
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["augmented.toml", "discovery.json", "held_out.csv"]
+
+
+@pytest.mark.parametrize(
+    ("simulation", "said"),
+    [
+        ("power", "power.toml, line 14, [equations] v: an expression is arithmetic on names; at column 11"),
+        ("unknown", "found the unknown name 'kk'. Did you mean 'k'?"),
+        ("port", "port.toml, line 12, [ports] push: a port stands in an equation or a definition"),
+        ("broken", "broken.toml is to be a TOML file; Expected ']'"),
+        ("absent", "a simulation is read from a TOML file; absent.toml: No such file"),
+        ("wild", "'Spring' leaves it in trial 1 after t = "),
+        ("hostile", "hostile.toml, line 14, [equations] v: an expression is arithmetic on names"),
+        ("tower", "a simulation stays finite"),
+        ("deep", "deep.toml, line 14, [equations] v"),
+    ],
+)
+def test_simulations_that_are_refused(lab, simulation, said):
+    assert said in refusal(lab, f"{simulation}.toml", "good.csv")
+    assert not (lab / "owned").exists()
+
+
+def test_a_simulation_that_blows_up_names_the_parameter(lab):
+    assert "Check 'k', on which its rate depends most" in refusal(lab, "wild.toml", "good.csv")
+
+
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        ("column", "the simulation needs a measured column 'x'; column.csv has trial, time, y."),
+        ("short", "a trial has 20 samples or more; short.csv, trial '1' has 10."),
+        ("constant", "an observed channel varies: 'x'; constant.csv has 1 in every sample."),
+        ("nan", "nan.csv, line 9 (trial '1'), column 'x' has an empty cell."),
+        ("absent", "measured data are read from a table; absent.csv: No such file"),
+    ],
+)
+def test_data_that_are_refused(lab, data, said):
+    assert said in refusal(lab, "good.toml", f"{data}.csv")
+
+
+def test_one_file_is_not_enough(lab):
+    assert "only good.toml is given. Name the measured table after it" in refusal(lab, "good.toml")
+
+
+def test_a_catalogue_that_does_not_parse(lab):
+    words = [str(lab / name) for name in ("good.toml", "good.csv")]
+    done = CliRunner().invoke(app, ["discover", *words, "--catalogue", str(lab / "shape.toml")])
+    assert "shape.toml, shape 1, piece 'import os'" in str(done.exception)
+
+
+def test_a_refusal_is_a_sentence_and_never_a_traceback(called, lab):
+    done = called("discover", lab / "hostile.toml", lab / "good.csv", "--out", lab / "none")
+    assert done.returncode == REFUSED
+    assert "Traceback" not in done.stderr
+    assert done.stderr.count("SchemaError: ") == 1

@@ -1,0 +1,44 @@
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gaitdisc.discovery.effect_units import divided, places_unit, unit_of
+from gaitdisc.simulation.bundled import bundled
+from gaitdisc.simulation.unit_factor import unit_factor
+
+UNITS = ("N m", "N", "rad", "rad/s", "m/s", "kg m^2", "1", "N m s/rad", "1/s")
+
+
+@pytest.mark.parametrize(
+    ("expression", "unit"),
+    [
+        ("x", "rad"),
+        ("x**3", "rad^3"),
+        ("v*abs(v)", "rad^2/s^2"),
+        ("sign(v)", "1"),
+        ("sin(x)", "1"),
+        ("delay(v, 0.1)", "rad/s"),
+        ("max(0, x - 0.03)", "rad"),
+        ("v/x", "1/s"),
+        ("-x", "rad"),
+        ("sqrt(x)", "rad^0.5"),
+        ("3", "1"),
+    ],
+)
+def test_units_follow_the_expression(expression, unit):
+    assert unit_of(expression, {"x": "rad", "v": "rad/s"}) == unit
+
+
+def test_a_unit_that_nobody_knows_is_kept_as_a_word():
+    assert divided("furlong", "s") == "furlong/s"
+
+
+@given(st.sampled_from(UNITS), st.sampled_from(UNITS))
+def test_dividing_agrees_with_the_units_of_the_simulation_file(unit, by):
+    told = divided(divided(unit, by), divided("1", by))
+    assert unit_factor(told, unit) == pytest.approx(1.0)
+
+
+def test_what_is_added_to_an_equation_is_a_rate():
+    pendulum = bundled("pendulum")
+    assert places_unit(pendulum, "equation", "omega") == "rad/s^2"

@@ -1,0 +1,74 @@
+import numpy as np
+import pytest
+from hidden_in_a_mass import mass
+
+from gaitdisc.discovery.account import Part
+from gaitdisc.discovery.candidate import Candidate, candidates_of
+from gaitdisc.discovery.catalogue import Shape, known_shapes
+from gaitdisc.discovery.estimates import NORMAL_95, named_estimates, slot_units
+from gaitdisc.discovery.places import places_of
+from gaitdisc.simulation.running import compile_simulation
+
+
+@pytest.fixture(scope="module")
+def candidates():
+    base = mass()
+    own = Shape("stick", ("x/(1 + x**2)",), names={"factor": "stiffness"})
+    return candidates_of(base, places_of(base, compile_simulation(base)), (*known_shapes(), own))
+
+
+def named(candidates, label, values, piece=""):
+    found = next(one for one in candidates if one.label == label and piece in str(one.pieces))
+    slots = dict(zip(found.slots, values, strict=True))
+    return named_estimates(Part(found, slots), np.diag([0.01] * len(values)), mass())
+
+
+def test_a_stiffness_is_positive_where_it_resists_above_and_below(candidates):
+    above = named(candidates, "one_sided_spring@load", [-286.0, 0.1], "x - _x0")
+    below = named(candidates, "one_sided_spring@load", [286.0, -0.1], "_x0 - x")
+    assert above["stiffness"].value == below["stiffness"].value == 286.0
+    assert (above["stiffness"].unit, above["engagement"].unit) == ("N/m", "m")
+    assert above["engagement"].value == 0.1
+
+
+def test_intervals_are_two_standard_errors_and_follow_the_sign(candidates):
+    friction = named(candidates, "coulomb_friction@load", [-3.0])["friction"]
+    assert (friction.low, friction.high) == pytest.approx((3 - NORMAL_95 / 10, 3 + NORMAL_95 / 10))
+    assert friction.unit == "N"
+
+
+@pytest.mark.parametrize(
+    ("label", "values", "name", "unit", "value"),
+    [
+        ("viscous_damping@load", [-2.0], "damping", "N s/m", 2.0),
+        ("quadratic_drag@load", [-2.0], "drag", "N s^2/m^2", 2.0),
+        ("cubic_stiffness@load", [-2.0], "stiffness", "N/m^3", 2.0),
+        ("constant_load@load", [-2.0], "load", "N", -2.0),
+        ("wrong_parameter@c", [0.9], "value", "N s/m", 0.9),
+        ("input_delay@push", [0.03], "delay", "s", 0.03),
+        ("input_gain@push", [1.2], "gain", "1", 1.2),
+        ("sensor_offset@x", [0.1], "offset", "m", 0.1),
+        ("sensor_drift@x", [0.1], "drift", "m/s", 0.1),
+        ("stick@load", [-2.0], "stiffness", "N m", 2.0),
+    ],
+)
+def test_each_number_has_its_name_unit_and_sign(candidates, label, values, name, unit, value):
+    (told,) = named(candidates, label, values).items()
+    assert told[0] == name
+    assert (told[1].unit, told[1].value) == (unit, value)
+
+
+def test_a_sine_and_a_cosine_are_an_amplitude_and_a_phase(candidates):
+    wave = named(candidates, "periodic_forcing@load", [3.0, 4.0, 2.5])
+    assert list(wave) == ["amplitude", "phase", "frequency"]
+    assert wave["amplitude"].value == 5.0
+    assert wave["amplitude"].high - 5.0 == pytest.approx(NORMAL_95 * 0.1)
+    assert wave["phase"].value == pytest.approx(np.arctan2(4, 3))
+    assert wave["frequency"].unit == "rad/s"
+
+
+def test_numbers_of_one_name_stay_apart():
+    bumps = Candidate("missing_physics", "port", "load", "unnamed", ("exp(-x**2)", "exp(-(x - 1)**2)"))
+    told = named_estimates(Part(bumps, {"factor": 1.0, "factor_1": 2.0}), np.eye(2), mass())
+    assert [one.value for one in told.values()] == [1.0, 2.0]
+    assert slot_units(bumps, mass()) == {"factor": "N", "factor_1": "N"}

@@ -1,0 +1,20 @@
+import pytest
+
+from gaitdisc.discovery.told_apart import would_tell_apart
+
+
+@pytest.mark.parametrize(
+    ("name", "other", "recording"),
+    [
+        ("one_sided_spring", "cubic_stiffness", "wider range"),
+        ("coulomb_friction", "viscous_damping", "different speeds"),
+        ("input_delay", "sensor_lag", "sharp push"),
+        ("periodic_forcing", "one_sided_spring", "another cadence"),
+        ("wrong_parameter", "input_gain", "drive switched off"),
+        ("my_own", "cubic_stiffness", "longer trials"),
+        ("one_sided_spring", "one_sided_spring", "two places"),
+    ],
+)
+def test_a_recording_is_named_whichever_comes_first(name, other, recording):
+    assert recording in would_tell_apart(name, other)
+    assert would_tell_apart(name, other) == would_tell_apart(other, name)

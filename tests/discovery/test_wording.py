@@ -1,0 +1,117 @@
+from dataclasses import replace
+
+import pytest
+from hidden_in_a_mass import mass
+from manufactured_discovery import CUBIC, SPRING, manufactured
+
+from gaitdisc.discovery.account import Part
+from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.catalogue import known_shapes
+from gaitdisc.discovery.wording import at_place, sentence_of, spoken
+from gaitdisc.results.discovery import Estimate, FoundEffect, GapSize, Whereabouts
+from gaitdisc.simulation.bundled import bundled
+
+SHAPE = next(one for one in known_shapes() if one.name == "one_sided_spring")
+ENGAGED = Candidate(
+    "missing_physics",
+    "port",
+    "ankle_moment",
+    "one_sided_spring",
+    ("max(0, theta - _x0)",),
+    {"x0": "quantiles of x"},
+    "theta",
+    SHAPE.means,
+    names=SHAPE.names,
+)
+SHOWN = " With it, the held-out error falls from 3.09 to 0.60 deg (noise floor 0.50)."
+
+
+def sentence(base=None, parts=(ENGAGED,), **changes):
+    made = sentence_of(manufactured(**changes), base or bundled("ankle"), tuple(Part(one, {}) for one in parts))
+    return made.sentence
+
+
+def test_the_issues_own_sentence():
+    assert sentence() == (
+        "The simulation lacks a one-sided spring at the ankle_moment port: 286 N m/rad (95 % 279-293), engaging above "
+        "2.0 deg of dorsiflexion, seen between 12 and 55 % of the stride." + SHOWN
+    )
+
+
+def test_no_gap_says_what_is_left():
+    told = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=())
+    assert told.startswith("Simulation and data agree to within the noise")
+    assert told.endswith("Held-out error: 3.09 deg (noise floor 0.50).")
+
+
+def test_two_effects_are_both_told():
+    friction = FoundEffect("port", "load", "coulomb_friction", "", {"friction": Estimate(3.0, 2.8, 3.2, "N m")})
+    other = Candidate("missing_physics", "port", "load", "coulomb_friction", means="dry (Coulomb) friction")
+    told = sentence(parts=(ENGAGED, other), effects=(SPRING, friction))
+    assert "of the stride; and dry (Coulomb) friction at the load port: 3.0 N m (95 % 2.8-3.2)." in told
+
+
+def test_a_wrong_parameter_is_told_beside_the_files_number():
+    effect = FoundEffect("parameter", "k", "wrong_parameter", "", {"value": Estimate(31.2, 30.8, 31.6, "N/m")})
+    part = Candidate("wrong_parameter", "parameter", "k", "wrong_parameter", value=24.0)
+    told = sentence(mass(), (part,), verdict="wrong_parameter", effects=(effect,), where=())
+    assert told.startswith("The parameter k is 31.2 N/m (95 % 30.8-31.6) where the file says 24 N/m.")
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "number", "told"),
+    [
+        ("input_error", "input_delay", Estimate(0.04, 0.03, 0.05, "s"), "driving signal x acts late by 0.04 s"),
+        ("input_error", "input_gain", Estimate(1.2, 1.1, 1.3, "1"), "x acts 1.2 (95 % 1.1-1.3) times as strongly"),
+        (
+            "sensor_error",
+            "sensor_gain",
+            Estimate(1.2, 1.1, 1.3, "1"),
+            "x reads 1.2 (95 % 1.1-1.3) times what it should",
+        ),
+        ("sensor_error", "sensor_offset", Estimate(-0.2, -0.3, -0.1, "m"), "x reads low by 0.2 m (95 % 0.1-0.3)"),
+        ("sensor_error", "sensor_drift", Estimate(0.2, 0.1, 0.3, "m/s"), "measured x drifts high by 0.2 m/s"),
+        ("sensor_error", "sensor_lag", Estimate(0.04, 0.03, 0.05, "s"), "measured x is seen late by 0.04 s"),
+    ],
+)
+def test_signals(kind, name, number, told):
+    effect = FoundEffect("observation", "x", name, "", {"number": number})
+    made = sentence(mass(), (Candidate(kind, "observation", "x", name),), verdict=kind, effects=(effect,), where=())
+    assert made.startswith("The ")
+    assert told in made
+
+
+def test_random_pushes():
+    push = FoundEffect(
+        "equation", "v", "process_noise", "", {"strength": Estimate(3.0, float("nan"), float("nan"), "N")}
+    )
+    told = sentence(mass(), (), verdict="process_noise", effects=(push,), where=(Whereabouts("equation", "v", 1.0),))
+    assert told.startswith(
+        "Random pushes of 3.00 N (standard deviation) come in the equation of v; nothing that repeats"
+    )
+
+
+def test_a_shape_without_a_name_says_over_which_states():
+    shape = FoundEffect("port", "load", "unnamed", "2*exp(-x**2)*v", {})
+    told = sentence(mass(), (), verdict="unnamed", effects=(shape,), where=())
+    assert "at the load port that no effect of the catalogue explains" in told
+    assert "a fitted shape, a function of x and v, stands in for it." in told
+
+
+def test_a_tie_is_told_with_what_would_tell_them_apart():
+    told = sentence(rivals=(replace(CUBIC, tied=True),))
+    assert (
+        "These data cannot tell it from cubic stiffness at the ankle_moment port; what would: movement through a wider "
+        "range, to both sides of rest." in told
+    )
+
+
+def test_of_several_channels_the_one_with_the_clearest_gap_is_told():
+    size = GapSize(1, 1, 1, 0.1, {"x": (1.0, 0.9, 0.9), "y": (0.5, 0.1, 0.1)})
+    told = sentence(held_out=size, channels=("x", "y"), units=("m", "m"))
+    assert "the held-out error of y falls from 0.50 to 0.10 m" in told
+
+
+def test_places_and_names_as_they_are_said():
+    assert at_place("observation", "x") == "in the observation x"
+    assert spoken("viscous_damping") == "viscous damping"
