@@ -3,7 +3,7 @@
     python studies/ch3_burgers.py [FOLDER] [--quick]
 
 The text has eps 0.01 and a pulse exp(+(x+2)^2), which is 10^43 high at the edge and cannot run; the published code has
-eps 0.1 and exp(-(x+2)^2). Its forecast improvement is the absolute *mean* error, not the root mean square, of a forecast
+eps 0.1 and exp(-(x+2)^2). Its forecast improvement is of the absolute *mean* error, not the root mean square, of a run
 in which the pulse starts anew at 30 s while DMD's clock runs on: computed here as published, and right.
 """
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from gaitdisc.discrepancy.recommend import measured_cells
 from gaitdisc.report.block import Block
 from gaitdisc.report.discrepancy_figure import (
     METHOD_WORDS,
@@ -19,6 +20,7 @@ from gaitdisc.report.discrepancy_figure import (
 )
 from gaitdisc.report.discrepancy_page import write_blocks
 from gaitdisc.report.discrepancy_tables import as_markdown, grid_table, statements_table
+from gaitdisc.report.figure import save_table
 from gaitdisc.report.tables import Table
 from gaitdisc.results.discrepancy_cell import DiscrepancyCell
 from gaitdisc.whole_file import write_whole
@@ -26,8 +28,8 @@ from gaitdisc.whole_file import write_whole
 Cells = Mapping[str, tuple[DiscrepancyCell, ...]]
 Stated = tuple[str, str, str, float]  # where, statement, approach, noise
 ARTEFACT = (
-    "As published, SINDy's map for the residual is integrated as if it gave a rate, from zero, and added; the map itself "
-    "is evaluated in the cells done right. That is why the chapter finds that SINDy learns nothing of the residual."
+    "As published, SINDy's map for the residual is integrated as if it gave a rate, from zero, and added; the map "
+    "itself is evaluated in the cells done right. That is why the chapter finds that SINDy learns nothing of the residual."
 )
 
 
@@ -135,4 +137,7 @@ def written(cells: Cells, blocks: Sequence[Block], title: str, folder: Path) -> 
     tables = tuple(table for block in blocks for table in block.tables)
     text = "\n\n".join(f"{block.heading}\n\n{as_markdown(t)}" for block in blocks for t in block.tables)
     write_whole(folder / "tables.md", text + "\n")
+    measured = [cell for found in cells.values() for cell in found if cell.approach == "dynamics"]
+    if measured:
+        save_table(measured_cells(measured), folder / "measured_cells.csv")
     return Result(cells, tables, page)

@@ -2,8 +2,8 @@
 
     python studies/ch3_van_der_pol.py [FOLDER] [--quick]
 
-The text starts at (0.1, 5) and hides -eps x^3, the published code starts at (0.1, 0.1) and hides +0.01 x^3; the text gives
-no mu, the code 0.5. Both run, each as published (absolute noise, 4 Hz filter, central differences, tuned thresholds,
+The text starts at (0.1, 5) and hides -eps x^3, the published code starts at (0.1, 0.1) and hides +0.01 x^3; the text
+gives no mu, the code 0.5. Both run, each as published (absolute noise, 4 Hz filter, central differences, tuned thresholds,
 SINDy's residual integrated) and done right. DMD forecasts here because the limit cycle makes the discrepancy periodic
 in time; it knows nothing of the state.
 """
@@ -25,7 +25,7 @@ from gaitdisc.simulation.parts import Term
 SEEDS = (0, 1, 2)
 FIGURES = {"system": "Fig. 3.2", "dynamics": "Fig. 3.3", "state": "Fig. 3.4", "noise": "Fig. 3.5", "cost": "Fig. 3.11"}
 STATED = (
-    ("Fig. 3.3", "dynamics: no error remains in reconstruction and forecast, all four methods, no noise", "dynamics", 0.0),
+    ("Fig. 3.3", "dynamics: no error remains, all four methods, no noise", "dynamics", 0.0),
     ("Fig. 3.5", "dynamics: all four forecast at low noise (0.1 %)", "dynamics", 0.001),
     ("Fig. 3.5", "dynamics: all four forecast at medium noise (1 %)", "dynamics", 0.01),
     ("Fig. 3.5", "dynamics: SINDy gains but is not sparse at high noise (10 %)", "dynamics", 0.1),

@@ -1,4 +1,4 @@
-"""Learned terms inside the integrator: every model of chapter 3 as features and weights, without a Python call a step."""
+"""Learned terms inside the integrator: every model as features and weights, without a Python call a step."""
 
 from __future__ import annotations
 

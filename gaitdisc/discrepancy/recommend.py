@@ -77,7 +77,9 @@ def recommend(
     missing = [name for name in COLUMNS if name not in table]
     if missing:
         raise SchemaError(
-            "evidence has the columns of measured_cells", f"{', '.join(missing)} missing", "Make it with measured_cells."
+            "evidence has the columns of measured_cells",
+            f"{', '.join(missing)} missing",
+            "Make it with measured_cells.",
         )
     table = table[table["system"].str.contains("Lorenz") == chaotic]
     levels = np.sort(table["noise"].unique())
@@ -89,15 +91,17 @@ def recommend(
         allowed = allowed[allowed["method"] != "dmd"]
     better = allowed[allowed["accuracy"] > 0]
     if not len(better):
-        return Recommendation("", f"At {near:.1%} noise none of the methods forecast better than the known model.", rows)
+        return Recommendation(
+            "", f"At {near:.1%} noise none of the methods forecast better than the known model.", rows
+        )
     best = better.iloc[0]
     if want == "speed":
         close = better[better[by] >= best[by] - (NEAR if by == "accuracy" else NEAR / 100 * best[by])]
         best = close.sort_values("seconds").iloc[0]
     why = (
-        f"Measured at {near:.1%} noise on {best['system']}: forecast error {best['accuracy']:.1f} % smaller than the known "
-        f"model's, valid for {best['valid_s']:.1f} s, in {best['seconds']:.1f} s of computing (n = {best['seeds']:.0f} "
-        f"seeds)."
+        f"Measured at {near:.1%} noise on {best['system']}: forecast error {best['accuracy']:.1f} % smaller than the "
+        f"known model's, valid for {best['valid_s']:.1f} s, in {best['seconds']:.1f} s of computing "
+        f"(n = {best['seeds']:.0f} seeds)."
     )
     if samples < 1000:
         why += f" The measurements had 3,001 samples, this record has {samples}: expect less."

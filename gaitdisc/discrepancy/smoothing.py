@@ -22,7 +22,7 @@ def smoothed(values: NDArray[np.float64], rate_hz: float, cutoff_hz: float | Non
     rate_hz : float
         Samples a second.
     cutoff_hz : float, optional
-        -3 dB frequency of one of the two passes; 1.5 times the highest frequency that stands out of the noise where absent, for each channel.
+        -3 dB frequency of one of the two passes; where absent, `noise_cutoff_hz` of each channel.
 
     Examples
     --------

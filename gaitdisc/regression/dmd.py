@@ -122,7 +122,9 @@ def fit_dmd(samples: Samples, delays: int = DELAYS, rank: int = RANK, bags: int 
     size[size == 0] = 1.0
     count = len(samples) - delays + 1
     stacked = np.concatenate([samples.y[k : k + count].T / size[:, None] for k in range(delays)])
-    values, axes = np.linalg.eigh(stacked @ stacked.T)  # of some hundred rows: the singular value decomposition's left side
+    values, axes = np.linalg.eigh(
+        stacked @ stacked.T
+    )  # of some hundred rows: the singular value decomposition's left side
     most = min(rank, int(np.sum(values > SMALLEST * values[-1])))
     axes = axes[:, ::-1][:, :most]
     some = np.unique(np.linspace(0, count - 1, min(MOST_COLUMNS, count)).astype(int))
@@ -141,7 +143,7 @@ def _varying(samples: Samples) -> Samples:
     return replace(samples, y=samples.y[:, ~still], outputs=names)
 
 
-def _modes(stacked: NDArray[np.float64], time: NDArray[np.float64], plan: tuple[int, int, int]):  # noqa: ANN202 theirs
+def _modes(stacked: NDArray[np.float64], time: NDArray[np.float64], plan: tuple[int, int, int]):
     import contextlib
     import io
     import warnings

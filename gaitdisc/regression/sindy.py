@@ -15,6 +15,8 @@ from gaitdisc.regression.extra import chapter3_library
 
 THRESHOLDS = tuple(10.0**power for power in np.linspace(-3.0, 0.0, 19))  # of the output's size, where none is given
 NEAR_BEST = 0.02  # of the least error on the inner block: the sparsest model so close is taken
+GOOD_ENOUGH = 1e-4  # of the outputs' mean square: a hundredth of their size
+SMALL = 0.05  # of the largest output: a smaller one is weighed as if it were so large
 SEAM_S = 0.3  # as Trajectory.split: zero-lag filters look ahead over the seam
 LEAST_BEFORE_INNER = 20
 PASSES = 10  # of thresholding, as the published code
@@ -84,8 +86,8 @@ def fit_sindy(samples: Samples, degree: int = 3, threshold: float | None = None,
 
     With a threshold given, it acts on the coefficients in their units, as in the published code. Without one, columns
     and outputs are divided by their size first, and of `THRESHOLDS` the largest is taken whose error on the last 15 %
-    of the samples (contiguous, 0.3 s apart) is within 2 % of the least, or below 1e-6 of the output's variance; an
-    output smaller than a hundredth of the largest one counts as one hundredth of it.
+    of the samples (contiguous, 0.3 s apart) is within 2 % of the least, or below 1e-4 of the outputs'
+    mean square; an output smaller than a twentieth of the largest one is weighed as a twentieth of it.
 
     Parameters
     ----------
@@ -140,7 +142,7 @@ def _of_chosen_threshold(samples: Samples, powers: NDArray[np.int64], bags: int,
     before, inner = samples.last_block(0.15, SEAM_S)
     before.trainable(max(LEAST_BEFORE_INNER, len(powers)))
     size = np.sqrt(np.mean(samples.y**2, axis=0))
-    size = np.maximum(size, 0.01 * size.max())
+    size = np.maximum(size, SMALL * size.max())
     width = np.sqrt(np.mean(products(samples.x, powers) ** 2, axis=0))
     width[width == 0] = 1.0
     column, check = products(before.x, powers) / width, products(inner.x, powers) / width
@@ -148,7 +150,7 @@ def _of_chosen_threshold(samples: Samples, powers: NDArray[np.int64], bags: int,
         np.mean((check @ _thresholded(column, before.y / size, each, 0, seed) - inner.y / size) ** 2)
         for each in THRESHOLDS
     ])  # fmt: skip
-    near = np.flatnonzero(error <= max((1 + NEAR_BEST) * error.min(), 1e-6))
+    near = np.flatnonzero(error <= max((1 + NEAR_BEST) * error.min(), GOOD_ENOUGH))
     threshold = THRESHOLDS[int(near[-1])]
     found = _thresholded(products(samples.x, powers) / width, samples.y / size, threshold, bags, seed)
     return Sindy(samples.inputs, samples.outputs, powers, found * size / width[:, None], threshold)

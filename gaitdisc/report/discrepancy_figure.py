@@ -42,7 +42,7 @@ def error_figure(cells: Sequence[DiscrepancyCell], name: str, source: str, chann
         Which is drawn.
     """
     cells = [cell for cell in cells if cell.parts]
-    drawn, grid = panels(len(cells), 2, 0.95, Room(across=0.5, down=0.3))
+    drawn, grid = panels(len(cells), 2, 0.95, Room(across=0.5, down=0.5))
     numbers = []
     for row, cell in zip(grid, cells, strict=True):
         for axes, part in zip(row, PARTS, strict=True):
@@ -52,7 +52,7 @@ def error_figure(cells: Sequence[DiscrepancyCell], name: str, source: str, chann
         axes.set_xlabel("time since the part's start [s]")
     legend(drawn, _handles({"truth − known": KNOWN, "truth − augmented": AUGMENTED}))
     caption = (
-        f"{source}. {cells[0].system}, {cells[0].channels[channel]}: reconstruction of the training part, then forecast; "
+        f"{source}. {cells[0].system}, {cells[0].channels[channel]}: reconstruction of the training part, forecast; "
         f"approach: {cells[0].approach}; variant: {cells[0].variant}; noise {cells[0].noise:g}."
     )
     return Figure(name, caption, f"Error curves of {len(cells)} methods over time", pd.concat(numbers), drawn)
@@ -89,7 +89,9 @@ def system_figure(found: PartAccuracy, channels: Sequence[str], name: str, sourc
     for k, (row, channel) in enumerate(zip(grid, channels, strict=True)):
         for model, look in (("truth", AUGMENTED), ("known", KNOWN)):
             table[f"{channel} {model}"] = getattr(found, model)[some, k]
-            row[0].plot(table["t_s"], table[f"{channel} {model}"], color=look.colour, linestyle=look.line, linewidth=0.8)
+            row[0].plot(
+                table["t_s"], table[f"{channel} {model}"], color=look.colour, linestyle=look.line, linewidth=0.8
+            )
         row[0].set_ylabel(channel)
     grid[-1][0].set_xlabel("time [s]")
     legend(drawn, _handles({"true": AUGMENTED, "known": KNOWN}))
@@ -116,7 +118,9 @@ def accuracy_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) ->
     for row, approach in zip(grid, approaches, strict=True):
         for axes, part in zip(row, PARTS, strict=True):
             for k, method in enumerate(methods):
-                rows = spread[(spread["approach"] == approach) & (spread["part"] == part) & (spread["method"] == method)]
+                rows = spread[
+                    (spread["approach"] == approach) & (spread["part"] == part) & (spread["method"] == method)
+                ]
                 at = [noises.index(noise) + (k - 1.5) * 0.19 for noise in rows["noise"]]
                 axes.bar(at, rows["median"], 0.17, color=METHOD_LOOKS[method].colour)
                 axes.vlines(at, rows["min"], rows["max"], color="#111111", linewidth=0.7)
@@ -164,7 +168,9 @@ def horizon_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) -> 
     grid[0][0].set_ylabel("less RMSE [%]")
     methods = list(dict.fromkeys(cell.method for cell in cells))
     legend(drawn, _handles({METHOD_WORDS[method]: METHOD_LOOKS[method] for method in methods}))
-    caption = f"{source}. Median over channels, clipped to ±100; grey: the truth’s first jump. Noise {cells[0].noise:g}."
+    caption = (
+        f"{source}. Median over channels, clipped to ±100; grey: the truth’s first jump. Noise {cells[0].noise:g}."
+    )
     return Figure(name, caption, "Curves of accuracy against horizon", pd.concat(tables), drawn)
 
 
@@ -188,7 +194,9 @@ def cost_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) -> Fig
     for axes, approach in zip(grid[0], approaches, strict=True):
         part = middle[middle["approach"] == approach]
         axes.bar([METHOD_WORDS[str(m)] for m in part["method"]], part["fit_s"], 0.6, color="#555555")
-        axes.bar([METHOD_WORDS[str(m)] for m in part["method"]], part["run_s"], 0.6, bottom=part["fit_s"], color="#bbbbbb")
+        axes.bar(
+            [METHOD_WORDS[str(m)] for m in part["method"]], part["run_s"], 0.6, bottom=part["fit_s"], color="#bbbbbb"
+        )
         axes.set_yscale("log")
         axes.set_title(approach)
     grid[0][0].set_ylabel("wall-clock time [s]")

@@ -1,4 +1,4 @@
-"""The page of a study of chapter 3: sentences, figures and tables, self-contained, with every number beside it as CSV."""
+"""The page of a study of chapter 3: sentences, figures and tables, self-contained, with every number as CSV."""
 
 from __future__ import annotations
 

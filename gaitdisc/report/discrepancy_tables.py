@@ -67,7 +67,7 @@ def _median(values: list[float], form: str) -> str:
 
 
 def _short(text: str) -> str:
-    return text if len(text) <= MOST_TERMS else f"{text[:MOST_TERMS]}… ({text.count('*') } products)"
+    return text if len(text) <= MOST_TERMS else f"{text[:MOST_TERMS]}… ({text.count('*')} products)"
 
 
 def statements_table(statements: Sequence[tuple[str, str, str]], name: str) -> Table:
@@ -101,4 +101,6 @@ def as_markdown(table: Table) -> str:
     | 3.4 | a | b |
     """
     rows = ["| " + " | ".join(table.columns) + " |", "|" + "---|" * len(table.columns)]
-    return "\n".join([*rows, *("| " + " | ".join(cell.replace("\n", " ") for cell in row) + " |" for row in table.rows)])
+    return "\n".join(
+        [*rows, *("| " + " | ".join(cell.replace("\n", " ") for cell in row) + " |" for row in table.rows)]
+    )

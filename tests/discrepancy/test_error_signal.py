@@ -1,0 +1,37 @@
+import numpy as np
+import pytest
+
+from gaitdisc.discrepancy.error_signal import error_samples, refined_samples
+from gaitdisc.discrepancy.record import Conditions, recorded
+from gaitdisc.discrepancy.system import system_of
+from gaitdisc.errors import ShapeError
+from gaitdisc.regression.sindy import fit_sindy
+from gaitdisc.simulation.bundled import bundled
+
+
+def test_the_dynamical_error_is_the_hidden_term(quiet):
+    samples = error_samples(quiet, "dynamics")
+    assert np.abs(samples.y[:, 1] + 0.01 * samples.x[:, 0] ** 3).max() < 1e-4
+    assert samples.time[0] == pytest.approx(0.01)
+
+
+def test_the_flow_errs_less_than_a_central_difference_and_less_again_when_refined(lorenz):
+    worst = []
+    for published in (True, False):
+        record = recorded(lorenz, Conditions(duration_s=10.0, published=published))
+        samples = error_samples(record, "dynamics")
+        worst.append(np.abs(samples.y[5:-5, 0] - 0.01 * samples.x[5:-5, 0] ** 3).max())
+    again = refined_samples(record, samples, fit_sindy(samples))
+    worst.append(np.abs(again.y[5:-5, 0] - 0.01 * again.x[5:-5, 0] ** 3).max())
+    assert worst[0] > 2 * worst[1] > 4 * worst[2]
+
+
+def test_the_residual_is_what_the_known_model_misses(quiet):
+    samples = error_samples(quiet, "state")
+    assert np.allclose(samples.x + samples.y, quiet.truth[: quiet.split])
+
+
+def test_rates_of_states_that_are_not_measured_are_refused():
+    record = recorded(system_of(bundled("mass_spring_damper"), gain=(1.01,)), Conditions(duration_s=5.0))
+    with pytest.raises(ShapeError, match="needs all 2 states measured; 1 are: x"):
+        error_samples(record, "dynamics")

@@ -1,0 +1,21 @@
+import numpy as np
+import pytest
+
+from gaitdisc.discrepancy.error_signal import error_samples
+from gaitdisc.discrepancy.learned_rates import learned_rate
+from gaitdisc.discrepancy.learned_term import learned_term
+from gaitdisc.discrepancy.methods import MethodSettings, fitted
+from gaitdisc.networks.training_settings import TrainingSettings
+
+
+@pytest.mark.parametrize("method", ["sindy", "gp", "nn", "dmd"])
+def test_compiled_code_gives_the_numbers_of_the_model(quiet, method):
+    samples = error_samples(quiet, "dynamics", of_time=method == "dmd")
+    settings = MethodSettings(training=TrainingSettings(epochs=2, decays=(0.1,)))
+    model = fitted(samples, method, settings)
+    points = samples.x[::300]
+    term = learned_term(model, points[:, 0])
+    found = np.empty((len(points), 2))
+    for place, point in enumerate(points):
+        learned_rate(term.kind, term.tables, place, np.resize(point, 2), found[place])
+    assert np.allclose(found, model(points), atol=1e-5 * np.abs(samples.y).max())

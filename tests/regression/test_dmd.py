@@ -1,0 +1,45 @@
+import numpy as np
+import pytest
+
+from gaitdisc.errors import SamplingError
+from gaitdisc.recording import Samples
+from gaitdisc.regression.dmd import fit_dmd
+
+
+def samples(y, dt=0.01):
+    time = dt * np.arange(len(y)) + 3.0
+    return Samples(time[:, None], y, ("t",), tuple("abc"[: y.shape[1]]), time, np.full(len(y), np.nan))
+
+
+def test_two_oscillations_go_on_as_they_were():
+    time = 3.0 + np.arange(900) / 100
+    y = np.column_stack([np.sin(4 * time) + 0.3 * np.cos(11 * time), np.exp(-0.1 * time) * np.sin(4 * time + 1)])
+    model = fit_dmd(samples(y[:600]), delays=40, rank=6)
+    assert np.abs(model(time[600:, None]) - y[600:]).max() < 1e-3
+    assert model.eigenvalues.real.max() <= 1e-9
+
+
+def test_bags_tell_the_spread_of_the_eigenvalues():
+    time = np.arange(400) / 100
+    y = np.sin(6 * time)[:, None] + 0.01 * np.random.default_rng(0).standard_normal((400, 1))
+    model = fit_dmd(samples(y), delays=20, rank=2, bags=5)
+    assert np.abs(np.sort(model.eigenvalues.imag) - [-6, 6]).max() < 0.1
+    assert 0 < model.spread.max() < 1
+
+
+def test_a_record_too_short_for_the_delays_says_by_how_much():
+    with pytest.raises(SamplingError, match="15 modes with 100 delays need 130 samples; there are 90, 40 too few"):
+        fit_dmd(samples(np.random.default_rng(0).standard_normal((90, 1))))
+
+
+def test_a_gap_in_time_is_refused():
+    whole = samples(np.sin(np.arange(300.0))[:, None])
+    keep = np.ones(300, bool)
+    keep[150] = False
+    with pytest.raises(SamplingError, match=r"even in time; the step after 4.49 s is 0.02 s"):
+        fit_dmd(whole.rows(keep), delays=20, rank=2)
+
+
+def test_an_output_that_stands_still_stays_still():
+    y = np.column_stack([np.sin(np.arange(300) / 20), np.zeros(300)])
+    assert np.abs(fit_dmd(samples(y), delays=10, rank=2)(np.array([[4.0]]))[0, 1]) < 1e-12
