@@ -211,7 +211,7 @@ def ranked(accounts: list[Judged]) -> list[Judged]:
     simple = [one for one in accounts if one.evidence < least + MARGIN and one.account.size < accounts[0].account.size]
     first = simple[0] if simple else accounts[0]
     near = [
-        one for one in accounts if one.evidence < first.evidence + NEARLY and one.account.size == first.account.size
+        one for one in accounts if one.evidence <= first.evidence + NEARLY and one.account.size == first.account.size
     ]
     order = {shape.name: number for number, shape in reversed(list(enumerate(known_shapes())))}
     near.sort(key=lambda one: [order.get(part.candidate.name, len(order)) for part in one.account.parts])

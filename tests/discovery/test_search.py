@@ -109,3 +109,8 @@ def test_of_equals_a_wrong_number_stands_before_a_missing_term_and_a_sensor_last
 def test_accounts_that_failed_are_not_ranked(as_read):
     failed = replace(as_read.account.fit, white=as_read.account.fit.white * float("inf"))
     assert ranked([replace(as_read, account=replace(as_read.account, fit=failed))]) == []
+
+
+def test_accounts_that_are_all_hopeless_are_ranked_as_well(as_read):
+    hopeless = [_judged(as_read, one, 1e20, 1) for one in (DAMPER, SPRING)]
+    assert len(ranked(hopeless)) == 2
