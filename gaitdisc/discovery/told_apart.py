@@ -27,6 +27,11 @@ WITHIN = (
     (SENSORS, "a calibration of the sensor against a known movement"),
 )
 BETWEEN = (
+    (
+        frozenset({"wrong_parameter"}),
+        SPRINGS | LOSSES | {"linear_coupling", "constant_load"},
+        "a measurement of the parameter itself, since both may write the same term",
+    ),
     (SPRINGS, LOSSES, "slow movement through the whole range, where only a spring is left"),
     (CLOCKED, SPRINGS | LOSSES | LATE, "the same movement at another cadence"),
     (SENSORS, frozenset({"wrong_parameter", "input_gain"}), "a calibration of the sensor against a known movement"),

@@ -116,6 +116,8 @@ def _signal(name: str, estimate: Estimate) -> str:
 
 def _missing(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whereabouts, ...]) -> str:
     noun, _, how = (part.candidate.means or spoken(effect.name)).partition(", ")
+    if effect.name.endswith("_coupling"):
+        noun = f"{noun} ({part.candidate.pieces[0]})"
     names, left = part.candidate.names or {}, dict(effect.estimates)
     for slot in part.candidate.constants or {}:
         if f"{{{slot}}}" in how:

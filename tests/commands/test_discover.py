@@ -163,3 +163,12 @@ def test_a_refusal_is_a_sentence_and_never_a_traceback(called, lab):
     assert done.returncode == REFUSED
     assert "Traceback" not in done.stderr
     assert done.stderr.count("SchemaError: ") == 1
+
+
+def test_of_one_trial_it_says_what_cannot_be_held_out(lab, tmp_path):
+    write(lab / "one.csv", rows(1))
+    words = [str(lab / "good.toml"), str(lab / "one.csv"), "--out", str(tmp_path), "--no-report"]
+    done = CliRunner().invoke(app, ["discover", *words])
+    assert done.exit_code == 0, done.output
+    assert "warning: one.csv: one trial: trial '1' is the only one (400 samples)" in done.stderr
+    assert "only a later part of this one can be held out" in done.stderr

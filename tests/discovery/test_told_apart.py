@@ -11,6 +11,7 @@ from gaitdisc.discovery.told_apart import would_tell_apart
         ("input_delay", "sensor_lag", "sharp push"),
         ("periodic_forcing", "one_sided_spring", "another cadence"),
         ("wrong_parameter", "input_gain", "drive switched off"),
+        ("wrong_parameter", "viscous_damping", "measurement of the parameter itself"),
         ("my_own", "cubic_stiffness", "longer trials"),
         ("one_sided_spring", "one_sided_spring", "two places"),
     ],

@@ -38,6 +38,13 @@ def test_the_issues_own_sentence():
     )
 
 
+def test_a_coupling_says_to_what():
+    effect = FoundEffect("equation", "v", "linear_coupling", "", {"coupling": Estimate(0.2, 0.1, 0.3, "1/s^2")})
+    part = Candidate("missing_physics", "equation", "v", "linear_coupling", ("x",), means="a linear coupling", role="x")
+    told = sentence(mass(), (part,), effects=(effect,), where=())
+    assert told.startswith("The simulation lacks a linear coupling (x) in the equation of v: 0.2 1/s^2 (95 % 0.1-0.3).")
+
+
 def test_no_gap_says_what_is_left():
     told = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=())
     assert told.startswith("Simulation and data agree to within the noise")
