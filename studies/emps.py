@@ -60,7 +60,7 @@ def run(quick: bool, data: Path) -> Result:
     measured = stretches(data / "DATA_EMPS.mat", simulation)
     inquiry = begin_inquiry(simulation, measured)
     as_read = inquiry.as_read()
-    first = inquiry.search.extended(as_read)[0]
+    first, _ = inquiry.search.grown(as_read, 1)
     part = first.account.parts[0]
     runs = {"held-out stretches": free_runs(inquiry, inquiry.held_out, as_read, first)}
     if (data / "DATA_EMPS_PULSES.mat").exists():
