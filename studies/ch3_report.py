@@ -29,7 +29,7 @@ Cells = Mapping[str, tuple[DiscrepancyCell, ...]]
 Stated = tuple[str, str, str, float]  # where, statement, approach, noise
 ARTEFACT = (
     "As published, SINDy's map for the residual is integrated as if it gave a rate, from zero, and added; the map "
-    "itself is evaluated in the cells done right. That is why the chapter finds that SINDy learns nothing of the residual."
+    "itself is evaluated in the cells done right. That is why the chapter finds that SINDy learns no residual."
 )
 
 
@@ -112,7 +112,7 @@ def _accuracy(cells: Sequence[DiscrepancyCell]) -> str:
         return "not fitted" if cells else ""
     words = []
     for part in ("forecast", "reconstruction"):
-        lost = [c.parts[part].diverged_s for c in fitted if c.parts[part].diverged_s is not None]
+        lost = [t for c in fitted if (t := c.parts[part].diverged_s) is not None]
         middle = np.nanmedian([np.median(c.parts[part].accuracy()) for c in fitted]) if not lost else 0.0
         words.append(f"diverged at {min(lost):.2f} s" if lost else f"{middle:.1f}")
     return f"{words[0]} ({words[1]})"
@@ -137,7 +137,9 @@ def written(cells: Cells, blocks: Sequence[Block], title: str, folder: Path) -> 
     tables = tuple(table for block in blocks for table in block.tables)
     text = "\n\n".join(f"{block.heading}\n\n{as_markdown(t)}" for block in blocks for t in block.tables)
     write_whole(folder / "tables.md", text + "\n")
-    measured = [cell for found in cells.values() for cell in found if cell.approach == "dynamics"]
+    measured = [
+        cell for name, found in cells.items() for cell in found if "dt" not in name and cell.approach == "dynamics"
+    ]
     if measured:
         save_table(measured_cells(measured), folder / "measured_cells.csv")
     return Result(cells, tables, page)

@@ -102,7 +102,11 @@ def learned_model(record: Record, method: Method, approach: Approach, settings: 
     learned = fitted(samples, method, settings, record.conditions.seed)
     if approach == "state" or method == "dmd" or record.conditions.published:
         return learned
-    return fitted(refined_samples(record, samples, learned), method, settings, record.conditions.seed)
+    with np.errstate(all="ignore"):
+        refined = refined_samples(record, samples, learned)
+    if not np.isfinite(refined.y).all():
+        return learned  # it drives the states out of every bound within a sample; the run will say when
+    return fitted(refined, method, settings, record.conditions.seed)
 
 
 def part(record: Record, learned: Model, approach: Approach, forecast: bool) -> PartAccuracy:

@@ -151,8 +151,8 @@ def recorded(system: System, conditions: Conditions) -> Record:
     clean = truth @ system.observation.T
     size = conditions.noise * (np.ones(clean.shape[1]) if conditions.absolute else clean.std(axis=0))
     measured = clean + size * np.random.default_rng(conditions.seed).standard_normal(clean.shape)
-    time = conditions.dt_s * np.arange(steps + 1)
+    time = conditions.dt_s * np.arange(steps + 1.0)
     training = measured[:split]
     if conditions.noise:
         training = smoothed(training, 1.0 / conditions.dt_s, 4.0 if conditions.published else None)
-    return Record(system, conditions, time, truth, measured, training, split)
+    return Record(system, conditions, np.asarray(time, float), truth, measured, training, split)

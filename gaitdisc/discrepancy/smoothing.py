@@ -68,8 +68,8 @@ def noise_cutoff_hz(values: NDArray[np.float64], rate_hz: float) -> float:
     frequency, density = welch(values, rate_hz, nperseg=min(length, len(values)), detrend="linear")
     floor = np.median(density[frequency > HIGH_BAND * rate_hz / 2])
     wide = np.convolve(density, np.ones(NEIGHBOURS) / NEIGHBOURS, mode="same")
-    loud = np.flatnonzero(wide <= ABOVE * floor)
-    highest = frequency[loud[0]] if loud.size else frequency[-1]
+    loud = np.flatnonzero(wide > ABOVE * floor)
+    highest = frequency[loud[-1]] if loud.size else 0.0
     return float(np.clip(MARGIN * highest, 4 * rate_hz / len(values), 0.45 * rate_hz))
 
 

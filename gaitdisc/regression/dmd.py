@@ -130,7 +130,7 @@ def fit_dmd(samples: Samples, delays: int = DELAYS, rank: int = RANK, bags: int 
     some = np.unique(np.linspace(0, count - 1, min(MOST_COLUMNS, count)).astype(int))
     found = _modes(axes.T @ stacked[:, some], samples.time[some] - samples.time[0], (most, bags, seed))
     modes = (axes[: len(size)] @ found.modes * size[:, None] * found.amplitudes).T
-    spread = np.asarray(found.eigs_std if bags else np.zeros(most), float)
+    spread = np.asarray(found.eigenvalues_std if bags else np.zeros(most), float)
     return Dmd((TIME,), samples.outputs, modes, np.asarray(found.eigs), float(samples.time[0]), spread)
 
 

@@ -144,12 +144,12 @@ def _likeliest(x: NDArray[np.float64], y: NDArray[np.float64]) -> tuple[float, N
     from sklearn.gaussian_process import GaussianProcessRegressor
     from sklearn.gaussian_process.kernels import RBF, ConstantKernel, WhiteKernel
 
-    start = np.ones(x.shape[1])
-    kernel = ConstantKernel(1.0, (1e-3, 1e6)) * RBF(start, (1e-2, 1e3)) + WhiteKernel(1e-2, (1e-10, 1e1))
+    shape = RBF(np.ones(x.shape[1]), (1e-2, 1e3))  # type: ignore[arg-type]
+    kernel = ConstantKernel(1.0, (1e-3, 1e6)) * shape + WhiteKernel(1e-2, (1e-10, 1e1))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of length scales at their bounds, which are as good as without end
         fit = GaussianProcessRegressor(kernel, alpha=1e-10).fit(x, y)
-    size, *lengths, noise = np.exp(fit.kernel_.theta)
+    size, *lengths, noise = np.exp(getattr(fit.kernel_, "theta"))  # noqa: B009 unknown to its types
     return float(size), np.array(lengths), float(noise)
 
 

@@ -13,7 +13,7 @@ from gaitdisc.recording import Samples
 from gaitdisc.recording.arrays import read_only
 from gaitdisc.regression.extra import chapter3_library
 
-THRESHOLDS = tuple(10.0**power for power in np.linspace(-3.0, 0.0, 19))  # of the output's size, where none is given
+THRESHOLDS = tuple(10.0**power for power in np.linspace(-3.0, -0.5, 16))  # of the output's size, where none is given
 NEAR_BEST = 0.02  # of the least error on the inner block: the sparsest model so close is taken
 GOOD_ENOUGH = 1e-4  # of the outputs' mean square: a hundredth of their size
 SMALL = 0.05  # of the largest output: a smaller one is weighed as if it were so large

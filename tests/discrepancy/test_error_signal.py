@@ -23,7 +23,7 @@ def test_the_flow_errs_less_than_a_central_difference_and_less_again_when_refine
         worst.append(np.abs(samples.y[5:-5, 0] - 0.01 * samples.x[5:-5, 0] ** 3).max())
     again = refined_samples(record, samples, fit_sindy(samples))
     worst.append(np.abs(again.y[5:-5, 0] - 0.01 * again.x[5:-5, 0] ** 3).max())
-    assert worst[0] > 2 * worst[1] > 4 * worst[2]
+    assert worst[0] > 1.5 * worst[1] > 15 * worst[2]
 
 
 def test_the_residual_is_what_the_known_model_misses(quiet):

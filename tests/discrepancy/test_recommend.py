@@ -1,8 +1,8 @@
 import pandas as pd
 import pytest
 
-from gaitdisc.discrepancy.recommend import COLUMNS, measured_cells, recommend
 from gaitdisc.discrepancy.cell import cell_of
+from gaitdisc.discrepancy.recommend import COLUMNS, measured_cells, recommend
 from gaitdisc.errors import SchemaError
 
 ROWS = [

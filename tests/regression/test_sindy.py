@@ -31,7 +31,7 @@ def test_bags_drop_what_only_some_draws_see():
 
 def test_a_library_larger_than_the_data_says_by_how_much():
     x = RNG.standard_normal((30, 2))
-    with pytest.raises(TrainingError, match="degree 9 in 2 inputs has 55 terms.*there are 30, 25 too few"):
+    with pytest.raises(TrainingError, match=r"degree 9 in 2 inputs has 55 terms.*there are 30, 25 too few"):
         fit_sindy(samples(x, x), degree=9)
 
 

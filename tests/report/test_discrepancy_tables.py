@@ -1,0 +1,31 @@
+import numpy as np
+
+from gaitdisc.report.discrepancy_tables import as_markdown, grid_table
+from gaitdisc.results.discrepancy_cell import PARTS, DiscrepancyCell, PartAccuracy
+
+TIME = np.arange(301) / 10
+TRUTH = np.sin(TIME)[:, None]
+
+
+def cell(augmented, diverged, seed=0):
+    names = dict.fromkeys(PARTS, PartAccuracy(TIME, TRUTH, TRUTH + 0.2, augmented, diverged))
+    return DiscrepancyCell("s", "gp", "state", "right", 0.1, seed, ("x",), names, 1.0, 0.1)
+
+
+def test_a_cell_that_diverged_is_a_time_and_never_a_number():
+    lost = np.where(TIME[:, None] > 3, np.nan, TRUTH)
+    table = grid_table([cell(lost, 3.0), cell(TRUTH + 0.1, None, seed=1)], "t")
+    assert table.rows[0][5] == "diverged at 3.00 s (1 of 2 seeds)"
+
+
+def test_a_cell_is_its_accuracy_and_a_table_is_markdown():
+    table = grid_table([cell(TRUTH + 0.1, None)], "t")
+    assert table.rows[0][5] == "50.0"
+    assert as_markdown(table).count("\n") == 2
+
+
+def test_what_was_refused_says_so():
+    refused = DiscrepancyCell("s", "gp", "state", "right", 0.1, 0, ("x",), {}, 1.0, 0.0, refused="40 too few")
+    row = grid_table([refused], "t").rows[0]
+    assert row[4] == "not fitted"
+    assert row[-1] == "40 too few"
