@@ -14,6 +14,7 @@ import argparse
 import json
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pysindy as ps
@@ -60,7 +61,7 @@ def trials_of(simulation: Simulation, measured: Measured) -> list[Trial]:
     """States by smoothed finite differences, PySINDy's own; an unmeasured rate is the slope of its position."""
     names = [state.name for state in simulation.states]
     rate_of = kinematic_rates(simulation, compile_simulation(simulation))
-    slope = ps.SmoothedFiniteDifference()
+    slope: Any = ps.SmoothedFiniteDifference()
     found = []
     for number in range(len(measured.trials)):
         time, count = measured.time(number), int(measured.samples[number])
@@ -147,7 +148,7 @@ def selected(library: Values, target: Values, how: str) -> Values:
     columns, aim = library / sizes, target / size
     best, least = np.zeros(library.shape[1]), len(aim) * np.log((aim**2).mean())
     for threshold in THRESHOLDS:
-        optimizer = ps.STLSQ(threshold=threshold, alpha=1e-6)
+        optimizer: Any = ps.STLSQ(threshold=threshold, alpha=1e-6)
         if how == "ensemble":
             optimizer = ps.EnsembleOptimizer(optimizer, bagging=True, n_models=BAGS)
         optimizer.fit(columns, aim[:, None])

@@ -7,12 +7,15 @@ from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 
+from gaitdisc.batch.nominal_model import nominal_inquiry
 from gaitdisc.discovery.blow_up import refuse_blow_up
 from gaitdisc.discovery.catalogue import read_catalogue
 from gaitdisc.discovery.discover import discover
 from gaitdisc.ingest.file_hash import file_sha256
+from gaitdisc.ingest.study_file import load_study
 from gaitdisc.results.discovery import Discovery
 from gaitdisc.results.provenance import Provenance, installed_versions
+from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.measured_table import read_measured
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.simulation_file import read_simulation
@@ -49,11 +52,52 @@ def discover_files(
     """
     told(f"reading {simulation.name} and {measured.name}")
     model = read_simulation(simulation)
-    shapes = read_catalogue(catalogue) if catalogue else ()
     data = read_measured(measured, model)
+    files = [simulation, measured, *([catalogue] if catalogue else [])]
+    return _discovered(model, data, catalogue, files, told)
+
+
+def discover_study(
+    study: Path, participant: str, catalogue: Path | None = None, told: Callable[[str], None] = lambda _: None
+) -> tuple[Discovery, Simulation]:
+    """Find what a participant's Nominal model lacks on the device walk.
+
+    Parameters
+    ----------
+    study : Path
+        Study folder.
+    participant : str
+        Pseudonym.
+    catalogue : Path, optional
+        Effects of the user's own.
+    told : callable
+        Takes one line about each step.
+
+    Returns
+    -------
+    discovery : Discovery
+        The answer, with what it rests on.
+    augmented : Simulation
+        The Nominal model with what was found in it.
+
+    Raises
+    ------
+    GaitdiscError
+        If the study cannot be read, or a walk of the participant is missing or refused.
+    """
+    told(f"reading both walks of {participant} and fitting the Nominal model")
+    read = load_study(study)
+    model, data = nominal_inquiry(read, participant)
+    walks = [read.path_of(file) for trial in read.participant(participant).trials for file in trial.files]
+    return _discovered(model, data, catalogue, [*walks, *([catalogue] if catalogue else [])], told)
+
+
+def _discovered(
+    model: Simulation, data: Measured, catalogue: Path | None, files: list[Path], told: Callable[[str], None]
+) -> tuple[Discovery, Simulation]:
+    shapes = read_catalogue(catalogue) if catalogue else ()
     refuse_blow_up(model, data)
     found, augmented = discover(model, data, shapes, told)
-    files = [simulation, measured, *([catalogue] if catalogue else [])]
     made = Provenance(
         {"title": model.title, "trials": len(data.trials), "rate_hz": data.rate, "channels": list(data.channels)},
         0,

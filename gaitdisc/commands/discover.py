@@ -13,23 +13,31 @@ from gaitdisc.errors import SchemaError
 
 
 def discover(
-    simulation: Annotated[Path, typer.Argument(metavar="SIMULATION", help="A simulation file (TOML).")],
+    simulation: Annotated[
+        Path,
+        typer.Argument(metavar="SIMULATION", help="A simulation file (TOML), or a study folder with --participant."),
+    ],
     measured: Annotated[
         Path | None, typer.Argument(metavar="MEASURED", help="Measured trials (CSV or Parquet).")
     ] = None,
     out: Annotated[Path, typer.Option(help="Folder of what was found.")] = Path("found"),
+    participant: Annotated[
+        str,
+        typer.Option(help="Of a study: the Nominal walk's model is the simulation, the device walk what is measured."),
+    ] = "",
     catalogue: Annotated[Path | None, typer.Option(help="Effects of your own, beside those that come along.")] = None,
     draw: Annotated[bool, typer.Option("--report/--no-report", help="Write report.html too.")] = True,
     quiet: Quiet = False,
 ) -> None:
     """Find what the simulation lacks, name it, add it, and show the gap shrink on data that were held out."""
-    if measured is None:
+    if measured is None and not participant:
         raise SchemaError(
-            "a discovery needs a simulation file and measured trials",
+            "a discovery needs a simulation file and measured trials, or a study and one of its participants",
             f"only {simulation.name} is given",
-            "Name the measured table after it: gaitdisc discover SIMULATION.toml MEASURED.csv.",
+            "Name the measured table after it: gaitdisc discover SIMULATION.toml MEASURED.csv. "
+            "Of a study, add --participant.",
         )
-    from gaitdisc.batch.discover_files import discover_files
+    from gaitdisc.batch.discover_files import discover_files, discover_study
     from gaitdisc.results.discovery_folder import save_discovery
     from gaitdisc.simulation.writing import write_simulation
 
@@ -39,7 +47,10 @@ def discover(
         if not quiet:
             typer.echo(f"{time.perf_counter() - began:6.1f} s  {step}", err=True)
 
-    found, augmented = discover_files(simulation, measured, catalogue, told)
+    if measured is None:
+        found, augmented = discover_study(simulation, participant, catalogue, told)
+    else:
+        found, augmented = discover_files(simulation, measured, catalogue, told)
     write_simulation(augmented, out / "augmented.toml")
     place = save_discovery(found, out)
     if draw:

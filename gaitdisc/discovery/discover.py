@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -15,7 +15,9 @@ from gaitdisc.discovery.held_out import runs_of
 from gaitdisc.discovery.inquiry import Inquiry, begin_inquiry
 from gaitdisc.discovery.search import MARGIN, ranked
 from gaitdisc.discovery.shaken import Shaken, shaken
-from gaitdisc.results.discovery import Discovery
+from gaitdisc.discovery.wording import sentence_of
+from gaitdisc.discovery.wrong_start import begun_at, wrong_starts
+from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, Whereabouts
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
 
@@ -41,12 +43,15 @@ class Verdict:
         What else was weighed, best first.
     shaking : Shaken or None
         For process noise: where, and how strong.
+    starts : dict of str to Estimate
+        For wrong initial conditions: where the trials begin.
     """
 
     word: str
     account: Judged
     rivals: tuple[Judged, ...]
     shaking: Shaken | None = None
+    starts: dict[str, Estimate] = field(default_factory=dict)
 
 
 def discover(
@@ -81,7 +86,16 @@ def discover(
     told(f"weighing {len(inquiry.search.candidates)} explanations")
     verdict = judge(inquiry, as_read)
     told("showing it on what was held out")
-    return answer(inquiry, as_read, verdict.word, verdict.account, verdict.rivals, verdict.shaking)
+    found, augmented = answer(inquiry, as_read, verdict.word, verdict.account, verdict.rivals, verdict.shaking)
+    if not verdict.starts:
+        return found, augmented
+    effects = tuple(
+        FoundEffect("state", name, "wrong_initial_condition", "", {"initial": start})
+        for name, start in verdict.starts.items()
+    )
+    where = tuple(Whereabouts("state", name, float("nan")) for name in verdict.starts)
+    found = sentence_of(replace(found, effects=effects, where=where), simulation, ())
+    return found, begun_at(simulation, verdict.starts)
 
 
 def judge(inquiry: Inquiry, as_read: Judged) -> Verdict:
@@ -118,7 +132,8 @@ def judge(inquiry: Inquiry, as_read: Judged) -> Verdict:
         shape = fitted_shape(as_read, inquiry.search)
         return Verdict("unnamed", shape or named, (named, *rivals))
     if not named.account.parts:
-        return Verdict("no_gap", as_read, tuple(rivals))
+        wrong = wrong_starts(inquiry.search.base, as_read)
+        return Verdict("wrong_initial_condition" if wrong else "no_gap", as_read, tuple(rivals), starts=wrong)
     longer, rivals = decided(inquiry, named, rivals)
     if not proven(inquiry, as_read, longer):
         return Verdict("no_gap", as_read, (named, *rivals))

@@ -55,8 +55,10 @@ class Linearised:
         change = np.repeat(np.eye(len(scale))[None], len(states), axis=0)
         for step in range(states.shape[1] - 1):
             change = self.onward[:, step] @ change
-            growth = np.linalg.norm(change * scale / scale[:, None], 2, axis=(1, 2))
-            if np.quantile(growth, MOST_RUNS) > factor:
+            finite = np.asarray(np.isfinite(change).all(axis=(1, 2)))
+            scaled = np.where(finite[:, None, None], change * scale / scale[:, None], 0.0)
+            growth = np.where(finite, np.linalg.norm(scaled, 2, axis=(1, 2)), np.inf)
+            if np.quantile(growth, MOST_RUNS, method="lower") > factor:
                 return step + 1
         return None
 

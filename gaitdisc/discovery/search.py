@@ -25,6 +25,7 @@ VISITED = (0.01, 0.99)  # quantiles of a state between which a threshold has a m
 TURNS = 15
 # Where two explanations fit equally well, the simpler statement first.
 PREFERENCE = ("wrong_parameter", "missing_physics", "input_error", "sensor_error")
+CERTAIN = 2.5  # standard errors
 ALIKE = 1.0
 NEARLY = 4.0  # between shapes of one kind: the one that stands first in the catalogue is the simpler
 
@@ -78,7 +79,9 @@ class Search:
             )
             for one in worth
         ]
-        tried = sorted((one for one in tried if self.sensible(one)), key=lambda one: one.criterion)[:judge]
+        tried = sorted(
+            (one for one in tried if self.sensible(one) and _certain(one, -1)), key=lambda one: one.criterion
+        )[:judge]
         if not tried:
             return []
         before, *more = compared([now, *(Judged(one, shooting) for one in tried)], self.base)
@@ -189,9 +192,12 @@ class Search:
             gained = before.evidence - more[0].evidence if more else 0.0
             if gained < max(MARGIN, MATERIAL * explained):
                 break
-            now, explained = more[0], max(explained, gained)
-            if len(now.account.parts) > 1:
-                now = self.pruned(self.exchanged(now), max(MARGIN, MATERIAL * explained))
+            explained, better = max(explained, gained), more[0]
+            if len(better.account.parts) > 1:
+                better = self.pruned(self.exchanged(better), max(MARGIN, MATERIAL * explained))
+            if not _certain(better.account):
+                break
+            now = better
             turns += 1
         return now, rivals
 
@@ -219,6 +225,17 @@ def ranked(accounts: list[Judged]) -> list[Judged]:
     alike = [one for one in near if abs(one.evidence - first.evidence) < ALIKE]
     alike.sort(key=lambda one: [PREFERENCE.index(verdict) for verdict in _verdicts(one)])
     return alike + [one for one in accounts if one not in alike]
+
+
+def _certain(account: Account, first: int = 0) -> bool:
+    """Whether no explanation from `first` on could as well be idle, its number lost in its error."""
+    errors = dict(zip(account.fit.free, np.sqrt(np.diag(account.fit.covariance)), strict=True))
+    return all(
+        abs(part.values[slot] - none) > CERTAIN * errors[names[slot]]
+        for part, names in list(zip(account.parts, account.names, strict=True))[first:]
+        if len(part.candidate.idle) == 1
+        for slot, none in part.candidate.idle.items()
+    )
 
 
 def _verdicts(one: Judged) -> list[str]:

@@ -27,7 +27,7 @@ def sentence_of(discovery: Discovery, base: Simulation, parts: tuple[Part, ...])
     base : Simulation
         As read.
     parts : tuple of Part
-        The explanations behind the effects, in their order; none for `no_gap` and `process_noise`.
+        The explanations behind the effects, in their order; none for verdicts without a term, number or signal.
     """
     said = [_said(discovery, base, parts), _tied(discovery), _shown(discovery)]
     return replace(discovery, sentence=" ".join(one for one in said if one))
@@ -75,6 +75,9 @@ def _said(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> st
         where = at_place(effects[0].kind, effects[0].place)
         push = estimate_text(effects[0].estimates["strength"])
         return f"Random pushes of {push} (standard deviation) come {where}; nothing that repeats itself is missing."
+    if discovery.verdict == "wrong_initial_condition":
+        starts = " and ".join(f"{one.place} at {estimate_text(one.estimates['initial'])}" for one in effects)
+        return f"Only the start is wrong: the trials begin with {starts}; the dynamics agree to within the noise."
     if discovery.verdict == "unnamed":
         return f"{_nameless(effects[0], base, discovery.where)}."
     said = [_one(effect, part, base, discovery.where) for effect, part in zip(effects, parts, strict=True)]
@@ -181,7 +184,7 @@ def _shown(discovery: Discovery) -> str:
     before, after, floor = (factor * one for one in sizes[channel])
     of = f" of {channel}" if len(sizes) > 1 else ""
     noise = f"(noise floor {amount(floor, floor / 10)})"
-    if discovery.verdict in ("no_gap", "process_noise"):
+    if discovery.verdict in ("no_gap", "process_noise", "wrong_initial_condition"):
         return f"Held-out error{of}: {with_unit(amount(before, floor / 10), unit)} {noise}."
     fall = f"falls from {amount(before, floor / 10)} to {with_unit(amount(after, floor / 10), unit)}"
     return f"With it, the held-out error{of} {fall} {noise}."

@@ -40,7 +40,7 @@ def input_families(inputs: Sequence[str]) -> dict[str, tuple[str, ...]]:
 
     Examples
     --------
-    >>> input_families(("knee_angle_r", "emg_sol_r", "d(knee_angle_r)/dt", "d(emg_sol_r)/dt", "phi"))["emg_sol"]
+    >>> input_families(("knee_angle_r", "emg_sol_r", "emg_gas_r", "d(emg_sol_r)/dt", "phi"))["emg_sol"]
     ('emg_sol_r', 'd(emg_sol_r)/dt')
     """
     channels = {name: _channel(name) for name in inputs if name != PHASE}

@@ -1,0 +1,60 @@
+"""Wrong starts: states whose `initial` in the file is not where the trials begin."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from gaitdisc.discovery.evidence import Judged
+from gaitdisc.results.discovery import Estimate
+from gaitdisc.simulation.simulation import Simulation
+
+NORMAL_95 = 1.959964
+WRONG = 5.0  # standard errors from the file's number
+
+
+def wrong_starts(simulation: Simulation, as_read: Judged) -> dict[str, Estimate]:
+    """Find the states that begin elsewhere than the file says.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        As read; states without `initial` are not looked at.
+    as_read : Judged
+        The same, fitted with start states of its own.
+
+    Returns
+    -------
+    dict of str to Estimate
+        State -> where the trials begin on average, weighted by how well each tells, with its 95 % interval.
+    """
+    fit, segments = as_read.account.fit, as_read.shooting.segments
+    first = np.flatnonzero(segments.begin == 0)
+    slopes = fit.slopes[first][..., : fit.starts.shape[1]]
+    variance = np.stack([np.diag(np.linalg.pinv(one.T @ one)) for one in slopes])
+    weight = 1 / np.maximum(variance, 1e-300)
+    mean = (weight * fit.starts[first]).sum(axis=0) / weight.sum(axis=0)
+    error = np.sqrt(1 / weight.sum(axis=0))
+    return {
+        state.name: Estimate(float(at), float(at - NORMAL_95 * off), float(at + NORMAL_95 * off), state.unit)
+        for state, at, off in zip(simulation.states, mean, error, strict=True)
+        if state.initial is not None and abs(at - state.initial) > WRONG * off
+    }
+
+
+def begun_at(simulation: Simulation, starts: dict[str, Estimate]) -> Simulation:
+    """Return the simulation with other starts.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        As read.
+    starts : dict of str to Estimate
+        By state.
+    """
+    states = (
+        replace(state, initial=float(f"{starts[state.name].value:.6g}")) if state.name in starts else state
+        for state in simulation.states
+    )
+    return replace(simulation, states=tuple(states))
