@@ -11,7 +11,9 @@ from gaitdisc.discovery.evidence import Judged
 from gaitdisc.discovery.held_out import drawn_runs, gap_size, runs_of
 from gaitdisc.discovery.inquiry import Inquiry
 from gaitdisc.discovery.shaken import Shaken
+from gaitdisc.discovery.verdict import Verdict
 from gaitdisc.discovery.wording import sentence_of
+from gaitdisc.discovery.wrong_start import begun_at
 from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, GapSize, Whereabouts
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.simulation import Simulation
@@ -21,9 +23,7 @@ RIVALS = 6
 HALF = 0.5
 
 
-def answer(
-    inquiry: Inquiry, as_read: Judged, verdict: str, now: Judged, rivals: tuple[Judged, ...], shaking: Shaken | None
-) -> tuple[Discovery, Simulation]:
+def answer(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> tuple[Discovery, Simulation]:
     """Write down what an inquiry came to.
 
     Parameters
@@ -32,14 +32,8 @@ def answer(
         What was asked.
     as_read : Judged
         The simulation as read.
-    verdict : str
-        One of the contract's.
-    now : Judged
-        The simulation with what was found in it.
-    rivals : tuple of Judged
-        What else was weighed, best first.
-    shaking : Shaken or None
-        For process noise.
+    verdict : Verdict
+        What the search came to.
 
     Returns
     -------
@@ -48,29 +42,20 @@ def answer(
     augmented : Simulation
         The simulation with what was found, its numbers written in.
     """
-    channels = tuple(name for name, _ in inquiry.search.base.observations)
-    floor = now.noise.size
+    now, base = verdict.account, inquiry.search.base
+    channels = tuple(name for name, _ in base.observations)
     block = int(inquiry.rhythm.period * inquiry.rhythm.rate) + 1
     sizes = []
     for trials in (inquiry.learned, inquiry.held_out):
         before, after = (runs_of(inquiry, one, trials, now) for one in (as_read, now))
-        sizes.append(gap_size(before, after, floor, channels, block))
+        sizes.append(gap_size(before, after, now.noise.size, channels, block))
     train, held_out = sizes
-    effects = tuple(
-        found_effects(inquiry, now, closed_share(held_out), max([one.gained for one in rivals], default=0.0))
-    )
-    if shaking:
-        effects = (
-            FoundEffect(
-                shaking.place.kind, shaking.place.name, "process_noise", "", {"strength": push_of(inquiry, shaking)}
-            ),
-        )
     discovery = Discovery(
-        verdict,
+        verdict.word,
         "",
-        whereabouts(inquiry, now, shaking, train.before**2, train.after**2),
-        effects,
-        rivals_of(inquiry, now, rivals),
+        whereabouts(inquiry, verdict, train),
+        effects_of(inquiry, verdict, closed_share(held_out)),
+        rivals_of(inquiry, now, verdict.rivals),
         train,
         held_out,
         channels,
@@ -78,9 +63,32 @@ def answer(
         drawn_runs(inquiry, before, after, inquiry.held_out),
         inquiry.measured.findings,
     )
-    return sentence_of(discovery, inquiry.search.base, now.account.parts), augmented_of(
-        inquiry.search.base, now.account.parts
-    )
+    augmented = begun_at(augmented_of(base, now.account.parts), verdict.starts)
+    return sentence_of(discovery, base, now.account.parts), augmented
+
+
+def effects_of(inquiry: Inquiry, verdict: Verdict, closed: float) -> tuple[FoundEffect, ...]:
+    """List what was found: a random push, wrong starts, or the explanations that were let in.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        What was asked.
+    verdict : Verdict
+        What the search came to.
+    closed : float
+        Share of the held-out gap that is closed.
+    """
+    if verdict.shaking:
+        place, push = verdict.shaking.place, push_of(inquiry, verdict.shaking)
+        return (FoundEffect(place.kind, place.name, "process_noise", "", {"strength": push}),)
+    if verdict.starts:
+        return tuple(
+            FoundEffect("state", name, "wrong_initial_condition", "", {"initial": start})
+            for name, start in verdict.starts.items()
+        )
+    gained = max([one.gained for one in verdict.rivals], default=0.0)
+    return tuple(found_effects(inquiry, verdict.account, closed, gained))
 
 
 def push_of(inquiry: Inquiry, shaking: Shaken) -> Estimate:
@@ -186,25 +194,24 @@ def rivals_of(inquiry: Inquiry, now: Judged, rivals: tuple[Judged, ...]) -> tupl
     return tuple(listed[:RIVALS])
 
 
-def whereabouts(
-    inquiry: Inquiry, now: Judged, shaking: Shaken | None, before: float, after: float
-) -> tuple[Whereabouts, ...]:
+def whereabouts(inquiry: Inquiry, verdict: Verdict, train: GapSize) -> tuple[Whereabouts, ...]:
     """Say where the gap arises.
 
     Parameters
     ----------
     inquiry : Inquiry
         What was asked.
-    now : Judged
-        The account.
-    shaking : Shaken or None
-        For process noise.
-    before, after : float
-        Mean squared gap, as shares of the channels' variance.
+    verdict : Verdict
+        What the search came to.
+    train : GapSize
+        The gap before and after on the trials that were learned from.
     """
-    if shaking:
-        return (Whereabouts(shaking.place.kind, shaking.place.name, float("nan")),)
-    share = (before - after) / before if before > 0 else 0.0
+    if verdict.shaking:
+        return (Whereabouts(verdict.shaking.place.kind, verdict.shaking.place.name, float("nan")),)
+    if verdict.starts:
+        return tuple(Whereabouts("state", name, float("nan")) for name in verdict.starts)
+    now = verdict.account
+    share = (train.before**2 - train.after**2) / train.before**2 if train.before > 0 else 0.0
     return tuple(
         Whereabouts(
             part.candidate.kind,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -15,9 +15,9 @@ from gaitdisc.discovery.held_out import runs_of
 from gaitdisc.discovery.inquiry import Inquiry, begin_inquiry
 from gaitdisc.discovery.search import MARGIN, ranked
 from gaitdisc.discovery.shaken import Shaken, shaken
-from gaitdisc.discovery.wording import sentence_of
-from gaitdisc.discovery.wrong_start import begun_at, wrong_starts
-from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, Whereabouts
+from gaitdisc.discovery.verdict import Verdict
+from gaitdisc.discovery.wrong_start import wrong_starts
+from gaitdisc.results.discovery import Discovery
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
 
@@ -27,31 +27,6 @@ MOST_NEAR = 4
 REPEATS = 0.2  # of the misfit, which something that repeats itself has to take away where random pushes would do
 PUSHED = 0.03  # by which random pushes must be likelier than a sensor's own memory, for each number
 WORTH = 0.05  # of what was named, which a shape without a name must explain beyond it
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """What the search came to.
-
-    Parameters
-    ----------
-    word : str
-        One of the contract's verdicts.
-    account : Judged
-        The simulation with what was found in it.
-    rivals : tuple of Judged
-        What else was weighed, best first.
-    shaking : Shaken or None
-        For process noise: where, and how strong.
-    starts : dict of str to Estimate
-        For wrong initial conditions: where the trials begin.
-    """
-
-    word: str
-    account: Judged
-    rivals: tuple[Judged, ...]
-    shaking: Shaken | None = None
-    starts: dict[str, Estimate] = field(default_factory=dict)
 
 
 def discover(
@@ -86,16 +61,7 @@ def discover(
     told(f"weighing {len(inquiry.search.candidates)} explanations")
     verdict = judge(inquiry, as_read)
     told("showing it on what was held out")
-    found, augmented = answer(inquiry, as_read, verdict.word, verdict.account, verdict.rivals, verdict.shaking)
-    if not verdict.starts:
-        return found, augmented
-    effects = tuple(
-        FoundEffect("state", name, "wrong_initial_condition", "", {"initial": start})
-        for name, start in verdict.starts.items()
-    )
-    where = tuple(Whereabouts("state", name, float("nan")) for name in verdict.starts)
-    found = sentence_of(replace(found, effects=effects, where=where), simulation, ())
-    return found, begun_at(simulation, verdict.starts)
+    return answer(inquiry, as_read, verdict)
 
 
 def judge(inquiry: Inquiry, as_read: Judged) -> Verdict:
@@ -108,28 +74,13 @@ def judge(inquiry: Inquiry, as_read: Judged) -> Verdict:
     as_read : Judged
         The simulation as read.
     """
-    named, rivals = inquiry.search.grown(as_read, MOST_NAMES + 1)
-    if not named.account.parts and inquiry.is_tame(as_read):
-        longer = inquiry.lengthened(as_read)
-        if longer is not as_read:
-            named, rivals = inquiry.search.grown(longer, MOST_NAMES + 1)
-            as_read = longer if named.account.parts else as_read
-            named = named if named.account.parts else as_read
-    if named.noise.remembers:
-        shape = fitted_shape(as_read, inquiry.search)
-        plain, *found = compared([as_read, named, *([shape] if shape else [])], inquiry.search.base)
-        shaking = random_push(inquiry, as_read)
-        ordered = [one for one in found if explains(inquiry, plain, one, shaking)]
-        if shaking and not ordered:
-            return Verdict("process_noise", as_read, tuple(rivals), shaking)
-        if (
-            shape
-            and found[1] in ordered
-            and found[1].evidence < found[0].evidence - WORTH * (plain.evidence - found[0].evidence) - MARGIN
-        ):
-            return Verdict("unnamed", found[1], (named, *rivals))
-    if len(named.account.parts) > MOST_NAMES:
-        shape = fitted_shape(as_read, inquiry.search)
+    as_read, named, rivals = searched(inquiry, as_read)
+    many = len(named.account.parts) > MOST_NAMES
+    shape = fitted_shape(as_read, inquiry.search) if many or named.noise.remembers else None
+    remembered = weighed_with_memory(inquiry, as_read, named, shape, rivals) if named.noise.remembers else None
+    if remembered:
+        return remembered
+    if many:
         return Verdict("unnamed", shape or named, (named, *rivals))
     if not named.account.parts:
         wrong = wrong_starts(inquiry.search.base, as_read)
@@ -138,6 +89,60 @@ def judge(inquiry: Inquiry, as_read: Judged) -> Verdict:
     if not proven(inquiry, as_read, longer):
         return Verdict("no_gap", as_read, (named, *rivals))
     return Verdict(longer.account.parts[0].candidate.verdict, longer, tuple(rivals))
+
+
+def searched(inquiry: Inquiry, as_read: Judged) -> tuple[Judged, Judged, list[Judged]]:
+    """Search on short runs, and on longer ones where these show nothing and the system is not chaotic.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        What is asked.
+    as_read : Judged
+        The simulation as read, on short runs.
+
+    Returns
+    -------
+    as_read, named : Judged
+        The simulation as read and with what was let in, on the same runs.
+    rivals : list of Judged
+        What else stood for the first place, best first.
+    """
+    named, rivals = inquiry.search.grown(as_read, MOST_NAMES + 1)
+    if named.account.parts or not inquiry.is_tame(as_read):
+        return as_read, named, rivals
+    longer = inquiry.lengthened(as_read)
+    if longer is as_read:
+        return as_read, named, rivals
+    named, rivals = inquiry.search.grown(longer, MOST_NAMES + 1)
+    return (longer, named, rivals) if named.account.parts else (as_read, as_read, rivals)
+
+
+def weighed_with_memory(
+    inquiry: Inquiry, as_read: Judged, named: Judged, shape: Judged | None, rivals: list[Judged]
+) -> Verdict | None:
+    """Return a verdict where what is left remembers its past, and random pushes or a shape explain it better.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        What is asked.
+    as_read, named : Judged
+        The simulation as read and with what the search let in.
+    shape : Judged or None
+        With a fitted shape.
+    rivals : list of Judged
+        What else stood for the first place.
+    """
+    plain, *found = compared([as_read, named, *([shape] if shape else [])], inquiry.search.base)
+    shaking = random_push(inquiry, as_read)
+    ordered = [one for one in found if explains(inquiry, plain, one, shaking)]
+    if shaking and not ordered:
+        return Verdict("process_noise", as_read, tuple(rivals), shaking)
+    worth = WORTH * (plain.evidence - found[0].evidence) + MARGIN
+    if shape and found[1] in ordered and found[1].evidence < found[0].evidence - worth:
+        return Verdict("unnamed", found[1], (named, *rivals))
+    return None
 
 
 def decided(inquiry: Inquiry, named: Judged, rivals: list[Judged]) -> tuple[Judged, list[Judged]]:

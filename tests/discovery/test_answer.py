@@ -9,6 +9,7 @@ from gaitdisc.discovery.answer import answer, augmented_of, phase_of, region_of,
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.evidence import compared
 from gaitdisc.discovery.inquiry import begin_inquiry
+from gaitdisc.discovery.verdict import Verdict
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import simulation_of
 
@@ -25,7 +26,7 @@ SLACK = replace(
 def answered(inquiry, as_read, named):
     now, rivals = named
     plain, *_ = compared([as_read, now], inquiry.search.base)
-    return answer(inquiry, plain, "missing_physics", now, tuple(rivals), None)
+    return answer(inquiry, plain, Verdict("missing_physics", now, tuple(rivals)))
 
 
 def test_the_augmented_simulation_has_the_numbers_that_were_found(answered, named):

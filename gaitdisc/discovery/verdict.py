@@ -1,0 +1,34 @@
+"""A verdict: what a search came to, before its numbers are written down."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from gaitdisc.discovery.evidence import Judged
+from gaitdisc.discovery.shaken import Shaken
+from gaitdisc.results.discovery import Estimate
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What the search came to.
+
+    Parameters
+    ----------
+    word : str
+        One of the contract's verdicts.
+    account : Judged
+        The simulation with what was found in it.
+    rivals : tuple of Judged
+        What else was weighed, best first.
+    shaking : Shaken or None
+        For process noise: where, and how strong.
+    starts : dict of str to Estimate
+        For wrong initial conditions: where the trials begin.
+    """
+
+    word: str
+    account: Judged
+    rivals: tuple[Judged, ...]
+    shaking: Shaken | None = None
+    starts: dict[str, Estimate] = field(default_factory=dict)
