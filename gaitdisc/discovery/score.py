@@ -108,9 +108,11 @@ class Scorer:
     def _columns(self, candidates: tuple[Candidate, ...]) -> Iterator[tuple[list[_Cell], NDArray[np.float64]]]:
         """Yield cells and what each of their slots would change, whitened (segment, number, column)."""
         line = linearise(self.shooting, self.simulation, self.places, self.fit)
+        roles = sorted({one.role for one in candidates if one.constants})
+        along = dict(zip(roles, np.moveaxis(self._along(roles), -1, 0), strict=True))
         for number, place in enumerate(self.places):
             here = [i for i, one in enumerate(candidates) if (one.kind, one.place) == (place.kind, place.name)]
-            jobs = [(cell, pieces) for i in here for cell, pieces in self._cells(i, candidates[i])]
+            jobs = [(cell, pieces) for i in here for cell, pieces in self._cells(i, candidates[i], along)]
             for first in range(0, len(jobs), AT_ONCE):
                 some = jobs[first : first + AT_ONCE]
                 push = self._along([piece for _, pieces in some for piece in pieces])
@@ -119,15 +121,17 @@ class Scorer:
             if one.verdict != "missing_physics" and _fits_beside(one, self.simulation):
                 yield self._signal_columns(line, i, one)
 
-    def _cells(self, number: int, candidate: Candidate) -> list[tuple[_Cell, tuple[str, ...]]]:
+    def _cells(
+        self, number: int, candidate: Candidate, along: dict[str, NDArray[np.float64]]
+    ) -> list[tuple[_Cell, tuple[str, ...]]]:
         constants = dict(candidate.constants or {})
-        along = self._along([candidate.role])[:, :, 0].ravel() if constants else np.zeros(1)
+        x = along[candidate.role].ravel() if constants else np.zeros(1)
         return [
             (
                 _Cell(number, cell, candidate.idle),
                 candidate.pieces_at({slot: f"{value:.9g}" for slot, value in cell.items()}),
             )
-            for cell in cells(constants, along, self.rhythm)
+            for cell in cells(constants, x, self.rhythm)
         ]
 
     def _along(self, expressions: list[str]) -> NDArray[np.float64]:

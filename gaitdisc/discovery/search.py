@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,6 +22,12 @@ MATERIAL = 0.01  # of what is explained already, which one more has to explain
 REFITTED = 14
 JUDGED = 5
 MOST_TURNS = 5  # explanations let in, those that were thrown out again included
+LIMITS = {
+    "half widths of x": (0.0, np.inf),
+    "frequencies": (0.0, np.inf),
+    "phases": (-np.inf, np.inf),
+    "phase widths": (0.0, 1.0),
+}
 VISITED = (0.01, 0.99)  # quantiles of a state between which a threshold has a meaning
 TURNS = 15
 # Where two explanations fit equally well, the simpler statement first.
@@ -95,28 +102,30 @@ class Search:
         account : Account
             A fitted one.
         """
-        if not np.isfinite(account.fit.misfit):
-            return False
+        return bool(np.isfinite(account.fit.misfit)) and all(
+            low < value < high for value, (low, high) in self._limits(account)
+        )
+
+    def _limits(self, account: Account) -> Iterator[tuple[float, tuple[float, float]]]:
+        """Yield each constant of an account, and between which limits it means what its name says."""
         for part in account.parts:
             for slot, kind in (part.candidate.constants or {}).items():
-                value = part.values[slot]
-                if kind == "quantiles of x" and not self._visited(account, part.candidate.role, value):
-                    return False
-                if (kind == "delays" and not 0 < value < self.rhythm.period) or (kind == "frequencies" and value <= 0):
-                    return False
-                if (kind == "half widths of x" and value <= 0) or (kind == "phase widths" and not 0 < value < 1):
-                    return False
-            if part.candidate.is_late and not 0 < part.values["seconds"] < self.rhythm.period:
-                return False
-        return True
+                if kind == "quantiles of x":
+                    yield part.values[slot], self._visited(account, part.candidate.role)
+                elif kind == "delays":
+                    yield part.values[slot], (0.0, self.rhythm.period)
+                else:
+                    yield part.values[slot], LIMITS[kind]
+            if part.candidate.is_late:
+                yield part.values["seconds"], (0.0, self.rhythm.period)
 
-    def _visited(self, account: Account, role: str, value: float) -> bool:
-        """Whether a threshold lies where the run goes: beyond, a one-sided spring is a linear one, or nothing."""
+    def _visited(self, account: Account, role: str) -> tuple[float, float]:
+        """Return where the run goes: a threshold beyond makes a one-sided spring a linear one, or nothing."""
         states = account.fit.states.reshape(-1, account.fit.starts.shape[1])
         nothing = np.zeros((len(states), len(self.base.inputs)))
         along = evaluate(self.base, role, Points(np.zeros(len(states)), states, nothing))
         low, high = np.quantile(along, VISITED)
-        return bool(low < value < high)
+        return float(low), float(high)
 
     def exchanged(self, now: Judged) -> Judged:
         """Return the account after each explanation was tried against all others in its place.
