@@ -40,7 +40,7 @@ def told(since):
 
 from gaitdisc.batch.run_study import run_study
 from gaitdisc.ingest.study_file import load_study
-from gaitdisc.report.page import write_report
+from gaitdisc.report.response_page import write_report
 folder = Path(sys.argv[1])
 study = load_study(folder)
 since = told((time.perf_counter(), 0.0))

@@ -19,7 +19,7 @@ from gaitdisc.discrepancy.grid import NOISES, grid
 from gaitdisc.discrepancy.record import Conditions
 from gaitdisc.discrepancy.system import System, system_of
 from gaitdisc.report.block import Block
-from gaitdisc.report.tables import Table
+from gaitdisc.report.table import Table
 from gaitdisc.simulation.bundled import bundled
 from gaitdisc.simulation.parts import Term
 

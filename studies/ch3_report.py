@@ -20,8 +20,7 @@ from gaitdisc.report.discrepancy_figure import (
 )
 from gaitdisc.report.discrepancy_page import write_blocks
 from gaitdisc.report.discrepancy_tables import as_markdown, grid_table, statements_table
-from gaitdisc.report.figure import save_table
-from gaitdisc.report.tables import Table
+from gaitdisc.report.table import Table, save_table
 from gaitdisc.results.discrepancy_cell import DiscrepancyCell
 from gaitdisc.whole_file import write_whole
 

@@ -22,7 +22,7 @@ from gaitdisc.batch.ablate_study import ablate_study
 from gaitdisc.batch.demonstration import write_demonstration
 from gaitdisc.batch.workers import Workers
 from gaitdisc.ingest.study_file import load_study
-from gaitdisc.report.page import write_report
+from gaitdisc.report.response_page import write_report
 from gaitdisc.results import ResponseRun
 
 WALK_S, PEOPLE = 240.0, 12

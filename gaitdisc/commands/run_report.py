@@ -40,7 +40,7 @@ def report_on(work: Callable[[Told], ResponseRun], study: Study, folder: Path, q
     """
     from rich.console import Console
 
-    from gaitdisc.report.page import write_report
+    from gaitdisc.report.response_page import write_report
     from gaitdisc.report.text import r2_text
 
     started = time.perf_counter()

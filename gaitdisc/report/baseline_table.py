@@ -6,7 +6,7 @@ import math
 
 import pandas as pd
 
-from gaitdisc.report.tables import Table
+from gaitdisc.report.table import Table
 from gaitdisc.report.wording import MODEL_WORDS, counted, label, listed, number
 from gaitdisc.results import ResponseRun
 

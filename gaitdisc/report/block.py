@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from gaitdisc.report.figure import Figure, SavedFigure, save_figure, save_table
-from gaitdisc.report.tables import Table
+from gaitdisc.report.figure import Figure, SavedFigure, save_figure
+from gaitdisc.report.table import Table, save_tables
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +68,5 @@ def save_block(block: Block, folder: Path) -> SavedBlock:
         Folder of the report.
     """
     figures = tuple(save_figure(figure, folder / "figures") for figure in block.figures)
-    for table in block.tables:
-        save_table(table.numbers, folder / "tables" / f"{table.name}.csv")
+    save_tables(block.tables, folder)
     return SavedBlock(block.anchor, block.heading, block.sentences, figures, block.tables)

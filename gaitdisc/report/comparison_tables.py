@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pandas as pd
 
-from gaitdisc.report.tables import Table
+from gaitdisc.report.table import Table
 from gaitdisc.report.wording import MODEL_WORDS, counted, label, listed, number
 from gaitdisc.results import PairTests, ResponseRun
 from gaitdisc.results.pair_test import FAMILIES, PAIRS

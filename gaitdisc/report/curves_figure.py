@@ -9,8 +9,9 @@ import pandas as pd
 
 from gaitdisc.channel import side_of
 from gaitdisc.recording import PERCENT
-from gaitdisc.report.figure import Figure, Room, in_style, legend, panels, sheets
+from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import SIDES, WITHOUT_DEVICE
+from gaitdisc.report.panels import Room, in_style, legend, panels, sheets
 from gaitdisc.report.wording import counted, label, sideless, unit_text, upwards
 from gaitdisc.results import ResponseRun, WalkSummary
 

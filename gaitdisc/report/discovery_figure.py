@@ -9,8 +9,9 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.amounts import shown_unit
-from gaitdisc.report.figure import Figure, Room, in_style, legend, panels
+from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import MEASURED, MODELS
+from gaitdisc.report.panels import Room, in_style, legend, panels
 from gaitdisc.results.discovery import Discovery
 
 if TYPE_CHECKING:

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import gaitdisc
 from gaitdisc.report.discovery_figure import discovery_figures
 from gaitdisc.report.discovery_tables import data_findings, estimates_table, gap_table, rivals_table, where_table
-from gaitdisc.report.figure import save_figure, save_table
-from gaitdisc.report.method import flattened, provenance_rows
-from gaitdisc.report.page import templates
-from gaitdisc.report.tables import pairs_table
+from gaitdisc.report.figure import save_figure
+from gaitdisc.report.page import write_page
+from gaitdisc.report.provenance_tables import provenance_tables
+from gaitdisc.report.table import save_tables
 from gaitdisc.results.discovery import Discovery
-from gaitdisc.whole_file import write_whole
 
 VERDICTS = {
     "no_gap": "no gap: simulation and data agree to within the noise",
@@ -68,23 +66,15 @@ def write_discovery_report(discovery: Discovery, folder: Path) -> Path:
         "findings": data_findings(discovery),
     }
     if made:
-        tables |= {
-            "settings": pairs_table("settings", "What was asked.", ("setting", "value"), flattened(made.settings)),
-            "versions": pairs_table("versions", "Circumstances.", ("what", "value"), provenance_rows(made)),
-            "files": pairs_table(
-                "files", "Files read, with their SHA-256.", ("file", "SHA-256"), [*made.files.items()]
-            ),
-        }
-    for table in tables.values():
-        save_table(table.numbers, folder / "tables" / f"{table.name}.csv")
-    text = templates().get_template("discovery.html.j2").render(
-        discovery=discovery,
-        title=str(made.settings.get("title", "A simulation")) if made else "A simulation",
-        verdict=VERDICTS[discovery.verdict],
-        terms=[effect for effect in discovery.effects if effect.term],
-        figures=[save_figure(figure, folder / "figures") for figure in discovery_figures(discovery)],
-        tables=tables,
-        method=METHOD,
-        version=gaitdisc.__version__,
-    )  # fmt: skip
-    return write_whole(folder / "report.html", text)
+        tables |= provenance_tables(made)
+    save_tables(tables.values(), folder)
+    shown = {
+        "discovery": discovery,
+        "title": str(made.settings.get("title", "A simulation")) if made else "A simulation",
+        "verdict": VERDICTS[discovery.verdict],
+        "terms": [effect for effect in discovery.effects if effect.term],
+        "figures": [save_figure(figure, folder / "figures") for figure in discovery_figures(discovery)],
+        "tables": tables,
+        "method": METHOD,
+    }
+    return write_page("discovery", shown, folder)

@@ -10,7 +10,7 @@ import pandas as pd
 from gaitdisc.discovery.amounts import amount, estimate_text, shown_unit
 from gaitdisc.discovery.told_apart import would_tell_apart
 from gaitdisc.discovery.wording import at_place, spoken
-from gaitdisc.report.tables import Table
+from gaitdisc.report.table import Table
 from gaitdisc.report.wording import counted
 from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect
 

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from gaitdisc.report.figure import Figure, Room, in_style, legend, panels
+from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import Look
+from gaitdisc.report.panels import Room, in_style, legend, panels
 from gaitdisc.results.discrepancy_cell import PARTS, DiscrepancyCell, PartAccuracy, cells_table
 
 if TYPE_CHECKING:

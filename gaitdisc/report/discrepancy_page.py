@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-import gaitdisc
 from gaitdisc.report.block import Block, save_block
-from gaitdisc.report.page import templates
-from gaitdisc.whole_file import write_whole
+from gaitdisc.report.page import write_page
 
 
 def write_blocks(title: str, about: str, blocks: Sequence[Block], folder: Path) -> Path:
@@ -29,7 +27,4 @@ def write_blocks(title: str, about: str, blocks: Sequence[Block], folder: Path) 
         If a file cannot be written.
     """
     saved = [save_block(block, folder) for block in blocks]
-    text = templates().get_template("discrepancy.html.j2").render(
-        title=title, about=about, blocks=saved, version=gaitdisc.__version__
-    )  # fmt: skip
-    return write_whole(folder / "report.html", text)
+    return write_page("discrepancy", {"title": title, "about": about, "blocks": saved}, folder)

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.report.discrepancy_figure import METHOD_WORDS
-from gaitdisc.report.tables import Table
+from gaitdisc.report.table import Table
 from gaitdisc.results.discrepancy_cell import DiscrepancyCell, PartAccuracy, cells_table
 
 MOST_TERMS = 110  # characters

@@ -8,8 +8,9 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.channel import side_of
-from gaitdisc.report.figure import Figure, Room, in_style, legend, panels, sheets
+from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import MEASURED, MODELS, SIDES
+from gaitdisc.report.panels import Room, in_style, legend, panels, sheets
 from gaitdisc.report.r2_summary import r2_by_variable
 from gaitdisc.report.wording import MODEL_WORDS, counted, label, number, unit_text, upwards
 from gaitdisc.results import ParticipantResponse

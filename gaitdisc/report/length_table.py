@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pandas as pd
 
-from gaitdisc.report.tables import Table
+from gaitdisc.report.table import Table
 from gaitdisc.report.wording import counted, label, number
 from gaitdisc.results import ResponseRun
 from gaitdisc.results.over_participants import WHOLE

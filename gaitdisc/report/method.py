@@ -1,13 +1,12 @@
-"""How the numbers were made, in sentences with the equations, and what they rest on."""
+"""How the numbers of a run were made, in sentences with the equations."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
-from typing import Any
 
+from gaitdisc.report.provenance_tables import flattened
 from gaitdisc.report.r2_summary import held_out_text
-from gaitdisc.results import Provenance, ResponseRun
+from gaitdisc.results import ResponseRun
 
 _FILTER_WORDS = ("filter", "cutoff", "low_pass", "high_pass", "lowpass", "highpass", "order", "envelope", "band")
 
@@ -33,52 +32,6 @@ def method_sentences(run: ResponseRun) -> list[str]:
         f"variance, 0 no better than the mean, and a negative number worse.",
         f"{_filter_sentence(run)} A filter alone makes part of a second derivative predictable "
         f"from the signal itself; the null says how much: R² of band-limited noise that was filtered in the same way.",
-    ]
-
-
-def flattened(settings: Mapping[str, Any], prefix: str = "") -> list[tuple[str, str]]:
-    """Settings as rows of dotted name and value; of files the name alone, without the folders of this machine.
-
-    Parameters
-    ----------
-    settings : mapping
-        May hold mappings.
-    prefix : str
-        Name of what holds these settings.
-
-    Examples
-    --------
-    >>> flattened({"seed": 1, "filters": {"cutoff_hz": 6.0}})
-    [('seed', '1'), ('filters.cutoff_hz', '6.0')]
-    """
-    rows: list[tuple[str, str]] = []
-    for key, value in settings.items():
-        name = f"{prefix}{key}"
-        if isinstance(value, Mapping):
-            rows.extend(flattened(value, f"{name}."))
-        elif isinstance(value, list | tuple) and any(isinstance(item, Mapping) for item in value):
-            rows.extend(flattened({str(number + 1): item for number, item in enumerate(value)}, f"{name}."))
-        elif isinstance(value, list | tuple):
-            items = [re.split(r"[\\/]", str(item))[-1] if key == "files" else str(item) for item in value]
-            rows.append((name, ", ".join(items)))
-        else:
-            rows.append((name, str(value)))
-    return rows
-
-
-def provenance_rows(provenance: Provenance) -> list[tuple[str, str]]:
-    """Circumstances of the run: section, date, seed, versions.
-
-    Parameters
-    ----------
-    provenance : Provenance
-        Of the run.
-    """
-    return [
-        ("follows section", provenance.section),
-        ("computed", provenance.created),
-        ("seed", str(provenance.seed)),
-        *((f"version of {name}", value) for name, value in provenance.versions.items()),
     ]
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from gaitdisc.report.figure import Figure, Room, in_style, legend, panels
+from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import MODELS
-from gaitdisc.report.tables import Table
+from gaitdisc.report.panels import Room, in_style, legend, panels
+from gaitdisc.report.table import Table
 from gaitdisc.report.wording import MODEL_WORDS, counted, label, listed, number
 from gaitdisc.results.variants import VariantRun
 

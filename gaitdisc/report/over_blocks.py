@@ -9,7 +9,7 @@ from gaitdisc.report.block import Block
 from gaitdisc.report.length_table import length_sentences, length_table
 from gaitdisc.report.quantity_figure import quantity_figure, quantity_sentences
 from gaitdisc.report.reduction_figure import reduction_figure, reduction_sentences, reduction_table
-from gaitdisc.report.tables import Table
+from gaitdisc.report.table import Table
 from gaitdisc.results import ResponseRun
 
 Item = TypeVar("Item")

@@ -1,91 +1,30 @@
-"""The report: one self-contained page, with every figure and table beside it as files."""
+"""A page of the report: one file that needs nothing but itself, made of a template and what it shows."""
 
 from __future__ import annotations
 
-import os
 import re
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import gaitdisc
-from gaitdisc.report.block import save_block
-from gaitdisc.report.comparison_figure import comparison_figures
-from gaitdisc.report.comparison_tables import comparison_sentences, comparison_tables
-from gaitdisc.report.curves_figure import curves_figures
-from gaitdisc.report.figure import LARGEST_INLINE_SVG, Figure, SavedFigure, file_names, save_figure, save_table
-from gaitdisc.report.held_out_figure import held_out_figures
-from gaitdisc.report.method import flattened, method_sentences, provenance_rows
-from gaitdisc.report.over_blocks import over_blocks
-from gaitdisc.report.r2_figure import r2_figures
-from gaitdisc.report.r2_tables import not_computed, participants_table, r2_table, study_r2_table
-from gaitdisc.report.residual_figure import residual_figures
-from gaitdisc.report.sentences import participant_sentences, study_sentences
-from gaitdisc.report.strides_figure import strides_figure
-from gaitdisc.report.tables import (
-    Table,
-    dropped_table,
-    findings_table,
-    fits_table,
-    pairs_table,
-    refusals_table,
-    walks_table,
-)
-from gaitdisc.results import ResponseRun
-from gaitdisc.whole_file import whole_file
+from gaitdisc.whole_file import write_whole
 
 if TYPE_CHECKING:
     import jinja2
 
-INLINE_BYTES = 4_000_000  # of all figures together, about; beyond it they are shown as pictures
-FIGURES_A_PERSON = 5
-MOST_PROCESSES = 4  # that draw; each holds some 400 MB
-MOST_OPEN = 2  # with more participants than this, the first screen is brief and their sections are folded
 
-
-@dataclass(frozen=True, eq=False)
-class Section:
-    """What the page shows of one participant.
+def write_page(template: str, shown: Mapping[str, Any], folder: Path) -> Path:
+    """Write `report.html` of a folder.
 
     Parameters
     ----------
-    participant : str
-        Pseudonym.
-    anchor : str
-        Where the page links to.
-    sentences : list of str
-        The answer for this participant; empty where there is no response.
-    r2 : Table or None
-        R2 by variable.
-    reasons : list of str
-        Why some numbers were not computed.
-    dropped : Table or None
-        Dropped strides by reason.
-    figures : dict of str to list of SavedFigure
-        By subject: `held_out`, `residual`, `curves`, `strides`.
-    """
-
-    participant: str
-    anchor: str
-    sentences: list[str]
-    r2: Table | None
-    reasons: list[str]
-    dropped: Table | None
-    figures: dict[str, list[SavedFigure]]
-
-
-def write_report(run: ResponseRun, folder: Path) -> Path:
-    """Write the report of a run: `report.html`, `figures/` and `tables/`.
-
-    The page needs nothing but itself: figures are inside it, no script, nothing from a network. Beside every figure
-    lies a CSV with the numbers drawn. Writing the same run again gives the same bytes.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        The whole result; nothing is fitted again.
+    template : str
+        Name of a template of `report/templates/`, without endings.
+    shown : mapping
+        What the template names, but for the version of this package.
     folder : Path
-        Where the report goes; made if missing.
+        Where the page goes; made if missing.
 
     Returns
     -------
@@ -95,106 +34,13 @@ def write_report(run: ResponseRun, folder: Path) -> Path:
     Raises
     ------
     WriteError
-        If a file cannot be written; what stood there before still stands.
+        If the file cannot be written; what stood there before still stands.
     """
-    people = list(dict.fromkeys([*(r.participant for r in run.responses), *(w.subject for w in run.walks)]))
-    names = file_names(people)
-    sections = _sections(run, names, folder)
-    overview = [save_figure(figure, folder / "figures") for figure in (r2_figures(run) if run.responses else [])]
-    compared = [save_figure(figure, folder / "figures") for figure in comparison_figures(run)]
-    pair_tables = comparison_tables(run)
-    blocks = [save_block(block, folder) for block in over_blocks(run)]
-    tables = {
-        "refusals": refusals_table(run),
-        "walks": walks_table(run),
-        "findings": findings_table(run),
-        "fits": fits_table(run),
-        **({"people": participants_table(run), "study": study_r2_table(run)} if len(run.responses) > 1 else {}),
-        **_provenance_tables(run),
-    }
-    for table in (*tables.values(), *pair_tables):
-        save_table(table.numbers, folder / "tables" / f"{table.name}.csv")
-    save_table(run.r2_table(), folder / "tables" / "r2.csv")
-    text = templates().get_template("report.html.j2").render(
-        run=run,
-        study=study_sentences(run),
-        sections=sections,
-        overview=overview,
-        comparison={"sentences": comparison_sentences(run), "figures": compared, "tables": pair_tables},
-        blocks=blocks,
-        tables=tables,
-        method=method_sentences(run),
-        headline=1 if not run.responses else 0 if len(run.responses) == 1 else 2,
-        briefly=len(sections) > MOST_OPEN,
-        version=gaitdisc.__version__,
-    )  # fmt: skip
-    page = folder / "report.html"
-    with whole_file(page) as part:
-        part.write_text(text, encoding="utf-8", newline="\n")
-    return page
+    text = _templates().get_template(f"{template}.html.j2").render(version=gaitdisc.__version__, **shown)
+    return write_whole(folder / "report.html", text)
 
 
-def _sections(run: ResponseRun, names: dict[str, str], folder: Path) -> list[Section]:
-    """Drawing takes seconds a participant: with more than two of them they are drawn side by side."""
-    limit = min(LARGEST_INLINE_SVG, INLINE_BYTES // (FIGURES_A_PERSON * max(1, len(run.responses))))
-    alone = [(_of_one(run, person), person, name, folder, limit) for person, name in names.items()]
-    processes = min(os.cpu_count() or 1, MOST_PROCESSES, len(alone))
-    if len(alone) <= MOST_OPEN or processes < 2:
-        return [_section(*each) for each in alone]
-    from joblib import Parallel, delayed
-
-    drawn = Parallel(n_jobs=processes, backend="loky", inner_max_num_threads=1)(delayed(_section)(*a) for a in alone)
-    return [section for section in drawn if section is not None]
-
-
-def _of_one(run: ResponseRun, person: str) -> ResponseRun:
-    return replace(
-        run,
-        walks=tuple(walk for walk in run.walks if walk.subject == person),
-        responses=tuple(response for response in run.responses if response.participant == person),
-        tests=None,
-        quantities=(),
-        over=None,
-    )
-
-
-def _section(run: ResponseRun, person: str, name: str, folder: Path, limit: int) -> Section:
-    response = next(iter(run.responses), None)
-    strides = strides_figure(run, person, name)
-    drawn: dict[str, list[Figure]] = {
-        "held_out": held_out_figures(response, name) if response else [],
-        "residual": residual_figures(response, name) if response else [],
-        "curves": curves_figures(run, person, name),
-        "strides": [strides] if strides else [],
-    }
-    r2, dropped = (r2_table(response, name) if response else None), dropped_table(run, person, name)
-    for table in (r2, dropped):
-        if table is not None:
-            save_table(table.numbers, folder / "tables" / f"{table.name}.csv")
-    return Section(
-        person,
-        f"participant-{name}",
-        participant_sentences(response) if response else [],
-        r2,
-        not_computed(run, response) if response else [],
-        dropped,
-        {subject: [save_figure(f, folder / "figures", limit) for f in figures] for subject, figures in drawn.items()},
-    )
-
-
-def _provenance_tables(run: ResponseRun) -> dict[str, Table]:
-    made = run.provenance
-    files = sorted(made.files.items())
-    return {
-        "settings": pairs_table(
-            "settings", "Settings, with all defaults.", ("setting", "value"), flattened(made.settings)
-        ),
-        "versions": pairs_table("versions", "Circumstances of the run.", ("what", "value"), provenance_rows(made)),
-        "files": pairs_table("files", f"Files read, n = {len(files)}, with their SHA-256.", ("file", "SHA-256"), files),
-    }
-
-
-def templates() -> jinja2.Environment:
+def _templates() -> jinja2.Environment:
     """Templates of the pages, with the filter that binds numbers to their units."""
     import jinja2
 

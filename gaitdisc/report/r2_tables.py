@@ -14,7 +14,7 @@ from gaitdisc.report.r2_summary import (
     sample_counts,
     variables,
 )
-from gaitdisc.report.tables import Table
+from gaitdisc.report.table import Table
 from gaitdisc.report.wording import counted, label, number, unit_text
 from gaitdisc.results import ParticipantResponse, ResponseRun
 

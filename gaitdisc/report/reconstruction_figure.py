@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
-from gaitdisc.report.figure import Figure, Room, in_style, legend, panels, sheets
+from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import MEASURED, RECONSTRUCTED
+from gaitdisc.report.panels import Room, in_style, legend, panels, sheets
 from gaitdisc.report.wording import counted, label, unit_text
 from gaitdisc.results.reconstruction import Reconstruction
 

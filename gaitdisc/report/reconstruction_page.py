@@ -6,10 +6,9 @@ from pathlib import Path
 
 import pandas as pd
 
-import gaitdisc
-from gaitdisc.report.figure import file_names, save_figure, save_table
-from gaitdisc.report.method import flattened, provenance_rows
-from gaitdisc.report.page import templates
+from gaitdisc.report.figure import file_names, save_figure
+from gaitdisc.report.page import write_page
+from gaitdisc.report.provenance_tables import provenance_tables
 from gaitdisc.report.reconstruction_figure import reconstruction_figures
 from gaitdisc.report.reconstruction_tables import (
     models_table,
@@ -17,9 +16,8 @@ from gaitdisc.report.reconstruction_tables import (
     reconstruction_sentences,
     states_table,
 )
-from gaitdisc.report.tables import Table, pairs_table
+from gaitdisc.report.table import Table, save_tables
 from gaitdisc.results.reconstruction import Reconstruction
-from gaitdisc.whole_file import write_whole
 
 MOST_DRAWN = 4  # participants whose curves stand in the page; the numbers of all are in errors.csv and curves.csv
 
@@ -44,31 +42,26 @@ def write_reconstruction_report(done: Reconstruction, folder: Path) -> Path:
     WriteError
         If a file cannot be written; what stood there before still stands.
     """
-    made = done.provenance
     tables = {
         "models": models_table(done),
         "states": states_table(done),
         "participants": participants_table(done),
         "left_out": _left_out(done),
         "findings": _findings(done),
-        "settings": pairs_table("settings", "Settings.", ("setting", "value"), flattened(made.settings)),
-        "versions": pairs_table("versions", "Circumstances.", ("what", "value"), provenance_rows(made)),
-        "files": pairs_table("files", "Files read, with their SHA-256.", ("file", "SHA-256"), [*made.files.items()]),
+        **provenance_tables(done.provenance),
     }
-    for table in tables.values():
-        save_table(table.numbers, folder / "tables" / f"{table.name}.csv")
+    save_tables(tables.values(), folder)
     names = file_names(done.participants[:MOST_DRAWN])
     drawn = [figure for person, name in names.items() for figure in reconstruction_figures(done, person, name)]
-    text = templates().get_template("reconstruction.html.j2").render(
-        done=done,
-        sentences=reconstruction_sentences(done),
-        figures=[save_figure(figure, folder / "figures") for figure in drawn],
-        tables=tables,
-        method=method_sentences(done),
-        undrawn=len(done.participants) - len(names),
-        version=gaitdisc.__version__,
-    )  # fmt: skip
-    return write_whole(folder / "report.html", text)
+    shown = {
+        "done": done,
+        "sentences": reconstruction_sentences(done),
+        "figures": [save_figure(figure, folder / "figures") for figure in drawn],
+        "tables": tables,
+        "method": method_sentences(done),
+        "undrawn": len(done.participants) - len(names),
+    }
+    return write_page("reconstruction", shown, folder)
 
 
 def method_sentences(done: Reconstruction) -> list[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from gaitdisc.report.tables import Table
+from gaitdisc.report.table import Table
 from gaitdisc.report.wording import counted, label, listed, number
 from gaitdisc.results.reconstruction import Reconstruction
 

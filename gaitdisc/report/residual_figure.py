@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import side_of
 from gaitdisc.recording import PERCENT
-from gaitdisc.report.figure import Figure, Room, in_style, panels, sheets
+from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import MODELS, SIDES
+from gaitdisc.report.panels import Room, in_style, panels, sheets
 from gaitdisc.report.wording import MODEL_WORDS, counted, label, unit_text, upwards
 from gaitdisc.results import ParticipantResponse
 from gaitdisc.statistics.stride_residuals import LEAST_STRIDES, StrideMean, mean_over_strides

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from gaitdisc.report.tables import Table
+from gaitdisc.report.table import Table
 from gaitdisc.report.wording import counted, number
 from gaitdisc.results.variants import VariantRun
 

@@ -10,8 +10,9 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.report.curves_figure import WALKS, walk_of
-from gaitdisc.report.figure import Figure, Room, in_style, legend, panels
+from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import DROPPED, KEPT, SIDES
+from gaitdisc.report.panels import Room, in_style, legend, panels
 from gaitdisc.report.wording import SIDE_WORDS, counted, listed
 from gaitdisc.results import ResponseRun
 

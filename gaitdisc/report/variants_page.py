@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from gaitdisc.report.figure import save_figure, save_table
+from gaitdisc.report.figure import save_figure
 from gaitdisc.report.modalities_figure import modalities_figure, modalities_sentences, modalities_table
-from gaitdisc.report.page import templates
+from gaitdisc.report.page import write_page
 from gaitdisc.report.sensitivity_table import sensitivity_sentences, sensitivity_table
-from gaitdisc.report.tables import Table
+from gaitdisc.report.table import Table, save_table, save_tables
 from gaitdisc.results.variants import VariantRun
-from gaitdisc.whole_file import whole_file
 
 HEADINGS = {
     "modalities": "Which inputs carry the response",
@@ -40,20 +39,16 @@ def write_variants(run: VariantRun, folder: Path) -> Path:
     """
     figure = modalities_figure(run) if run.question == "modalities" else None
     tables = variant_tables(run)
-    for table in tables:
-        save_table(table.numbers, folder / "tables" / f"{table.name}.csv")
+    save_tables(tables, folder)
     save_table(run.r2_table(), folder / "tables" / "r2.csv")
-    text = templates().get_template("variants.html.j2").render(
-        run=run,
-        heading=HEADINGS[run.question],
-        sentences=variant_sentences(run),
-        figures=[save_figure(figure, folder / "figures")] if figure else [],
-        tables=tables,
-    )  # fmt: skip
-    page = folder / "report.html"
-    with whole_file(page) as part:
-        part.write_text(text, encoding="utf-8", newline="\n")
-    return page
+    shown = {
+        "run": run,
+        "heading": HEADINGS[run.question],
+        "sentences": variant_sentences(run),
+        "figures": [save_figure(figure, folder / "figures")] if figure else [],
+        "tables": tables,
+    }
+    return write_page("variants", shown, folder)
 
 
 def variant_tables(run: VariantRun) -> list[Table]:

@@ -1,7 +1,7 @@
 import pandas as pd
 
 from gaitdisc.report.block import Block, save_block
-from gaitdisc.report.tables import Table
+from gaitdisc.report.table import Table
 
 
 def test_a_block_lies_on_disk_as_it_is_shown(tmp_path):

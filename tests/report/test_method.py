@@ -1,6 +1,6 @@
 from dataclasses import replace
 
-from gaitdisc.report.method import flattened, method_sentences, provenance_rows
+from gaitdisc.report.method import method_sentences
 
 
 def test_five_sentences_name_the_equations(run):
@@ -28,16 +28,3 @@ def test_other_settings_are_said_as_they_are(run):
     assert method_sentences(other)[-1].startswith("Filters as the settings state them: low_pass_hz = 6. ")
     none = replace(run, provenance=replace(run.provenance, settings={}))
     assert method_sentences(none)[-1].startswith("The settings of the run name no filter. ")
-
-
-def test_settings_become_rows():
-    settings = {"a": {"b": [1, 2], "c": None}, "d": [{"e": 1}, {"e": 2}]}
-    files = ["/home/someone/a.mot", "C:\\Users\\someone\\b.mot"]
-    assert flattened({"files": files}) == [("files", "a.mot, b.mot")]
-    assert flattened(settings) == [("a.b", "1, 2"), ("a.c", "None"), ("d.1.e", "1"), ("d.2.e", "2")]
-
-
-def test_provenance(run):
-    rows = dict(provenance_rows(run.provenance))
-    assert rows["follows section"] == "4.2"
-    assert rows["version of numpy"] == "2.4.6"

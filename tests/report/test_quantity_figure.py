@@ -3,8 +3,8 @@ from dataclasses import replace
 import pandas as pd
 import pytest
 
-from gaitdisc.report.page import write_report
 from gaitdisc.report.quantity_figure import quantity_figure, quantity_numbers, quantity_sentences
+from gaitdisc.report.response_page import write_report
 from gaitdisc.results import DataQuantity
 from gaitdisc.results.data_quantity import QUANTITY_COLUMNS
 

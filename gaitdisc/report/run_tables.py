@@ -1,46 +1,13 @@
-"""Tables of the report: the cells as they are read, and the numbers behind them."""
+"""Tables of a run: walks, refusals, findings, dropped strides, fits."""
 
 from __future__ import annotations
-
-from collections.abc import Sequence
-from dataclasses import dataclass
 
 import pandas as pd
 
 from gaitdisc.report.strides_figure import reason_kind, stride_numbers
+from gaitdisc.report.table import Table
 from gaitdisc.report.wording import LIGHTS, MODEL_WORDS, SIDE_WORDS
 from gaitdisc.results import ResponseRun
-
-
-@dataclass(frozen=True, eq=False)
-class Table:
-    """A table as it is printed.
-
-    Parameters
-    ----------
-    name : str
-        Name of the CSV, without ending.
-    caption : str
-        What it shows, with n, unit and split where there are numbers.
-    columns : tuple of str
-        Headings.
-    rows : tuple of tuple of str
-        Cells.
-    numbers : DataFrame
-        What the CSV holds.
-    groups : tuple of (str, int)
-        Headings above the headings, with the number of columns that each spans.
-    summary : bool
-        The last row sums up the others.
-    """
-
-    name: str
-    caption: str
-    columns: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    numbers: pd.DataFrame
-    groups: tuple[tuple[str, int], ...] = ()
-    summary: bool = False
 
 
 def walks_table(run: ResponseRun) -> Table:
@@ -175,24 +142,6 @@ def fits_table(run: ResponseRun) -> Table:
         f"part of the training samples; no held-out sample was used."
     )
     return Table("fits", caption, headings, tuple(rows), numbers)
-
-
-def pairs_table(name: str, caption: str, headings: tuple[str, str], pairs: Sequence[tuple[str, str]]) -> Table:
-    """Table of names and values, such as settings, versions and hashes.
-
-    Parameters
-    ----------
-    name : str
-        Name of the CSV.
-    caption : str
-        What it shows.
-    headings : (str, str)
-        Of the two columns.
-    pairs : sequence of (str, str)
-        The rows.
-    """
-    rows = tuple((str(key), str(value)) for key, value in pairs)
-    return Table(name, caption, headings, rows, pd.DataFrame(rows, columns=pd.Index(headings)))
 
 
 def _plain(value: object) -> str:

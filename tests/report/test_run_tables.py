@@ -3,14 +3,7 @@ from dataclasses import replace
 import pytest
 
 from gaitdisc.report.r2_tables import study_r2_table
-from gaitdisc.report.tables import (
-    dropped_table,
-    findings_table,
-    fits_table,
-    pairs_table,
-    refusals_table,
-    walks_table,
-)
+from gaitdisc.report.run_tables import dropped_table, findings_table, fits_table, refusals_table, walks_table
 
 OUTPUTS = ("hip_flexion_r", "ankle_angle_l")
 
@@ -41,10 +34,6 @@ def test_fits(run_maker):
     assert table.rows[0] == ("P01", "Nominal", "network", "0.1", "40", "5214", "782")
     assert "n = 6" in table.caption
     assert fits_table(run_maker(0)).rows == ()
-
-
-def test_pairs():
-    assert pairs_table("files", "Files.", ("file", "SHA-256"), [("a.c3d", "ff")]).rows == (("a.c3d", "ff"),)
 
 
 @pytest.mark.parametrize("participants", [1, 2])

@@ -1,0 +1,152 @@
+"""Panels in rows and columns, drawn in the report's own style."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ParamSpec, TypeVar
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import matplotlib.figure
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+
+STYLE = {
+    "svg.hashsalt": "gaitdisc",
+    "svg.fonttype": "none",
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans", "Arial", "Helvetica", "sans-serif"],
+    "font.size": 8.0,
+    "text.parse_math": False,
+    "axes.titlesize": 8.0,
+    "axes.titley": 1.0,  # no title looks for its place among the ticks, which costs a tenth of the drawing
+    "axes.labelsize": 7.5,
+    "xtick.labelsize": 7.0,
+    "ytick.labelsize": 7.0,
+    "legend.fontsize": 8.0,
+    "legend.frameon": False,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.linewidth": 0.6,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "axes.formatter.useoffset": False,
+    "axes.unicode_minus": True,
+    "path.simplify_threshold": 0.2,
+}
+WIDTH = 8.0  # inch; as wide as the text of the page
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+Arguments = ParamSpec("Arguments")
+
+
+@dataclass(frozen=True)
+class Room:
+    """Room around and between panels.
+
+    Parameters
+    ----------
+    left, right, top, bottom : float
+        Margins of the figure [inch]; the legend stands in the top margin.
+    across, down : float
+        Between two columns, between two rows [inch].
+    """
+
+    left: float = 0.75
+    right: float = 0.12
+    top: float = 0.55
+    bottom: float = 0.45
+    across: float = 0.75
+    down: float = 0.42
+
+
+def panels(rows: int, columns: int, height: float, room: Room) -> tuple[matplotlib.figure.Figure, list[list[Axes]]]:
+    """Empty panels of equal size, in rows and columns.
+
+    Parameters
+    ----------
+    rows, columns : int
+        How many.
+    height : float
+        Of one panel [inch].
+    room : Room
+        Around and between the panels.
+    """
+    from matplotlib.figure import Figure as Drawing
+
+    whole = room.top + rows * height + (rows - 1) * room.down + room.bottom
+    width = (WIDTH - room.left - room.right - (columns - 1) * room.across) / columns
+    drawn = Drawing(figsize=(WIDTH, whole))
+    grid = [
+        [
+            drawn.add_axes(
+                (
+                    (room.left + column * (width + room.across)) / WIDTH,
+                    1 - (room.top + row * (height + room.down) + height) / whole,
+                    width / WIDTH,
+                    height / whole,
+                )
+            )
+            for column in range(columns)
+        ]
+        for row in range(rows)
+    ]
+    return drawn, grid
+
+
+def legend(drawn: matplotlib.figure.Figure, handles: Sequence[Artist]) -> None:
+    """One legend above all panels.
+
+    Parameters
+    ----------
+    drawn : matplotlib.figure.Figure
+        Receives the legend.
+    handles : sequence of Artist
+        What is explained, each with its label.
+    """
+    drawn.legend(handles=list(handles), loc="upper center", ncols=len(handles), bbox_to_anchor=(0.5, 1.0))
+
+
+def in_style(draw: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
+    """Let a function draw in the report's style, whatever the user's own style is.
+
+    Parameters
+    ----------
+    draw : callable
+        Draws figures.
+    """
+
+    @functools.wraps(draw)
+    def styled(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Result:
+        import matplotlib as mpl
+
+        with mpl.rc_context():
+            mpl.rcdefaults()
+            mpl.rcParams.update(STYLE)  # type: ignore[arg-type]
+            return draw(*args, **kwargs)
+
+    return styled
+
+
+def sheets(items: Sequence[Item], most: int) -> list[list[Item]]:
+    """Split what would make too long a figure into parts of nearly equal length.
+
+    Parameters
+    ----------
+    items : sequence
+        In order.
+    most : int
+        Longest part.
+
+    Examples
+    --------
+    >>> sheets("abcdefghij", 8)
+    [['a', 'b', 'c', 'd', 'e'], ['f', 'g', 'h', 'i', 'j']]
+    """
+    if not items:
+        return []
+    count = -(-len(items) // most)
+    return [[items[i] for i in part] for part in np.array_split(np.arange(len(items)), count)]

@@ -1,0 +1,163 @@
+"""The page of a run: one self-contained page, with every figure and table beside it as files."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from gaitdisc.report.block import save_block
+from gaitdisc.report.comparison_figure import comparison_figures
+from gaitdisc.report.comparison_tables import comparison_sentences, comparison_tables
+from gaitdisc.report.curves_figure import curves_figures
+from gaitdisc.report.figure import LARGEST_INLINE_SVG, Figure, SavedFigure, file_names, save_figure
+from gaitdisc.report.held_out_figure import held_out_figures
+from gaitdisc.report.method import method_sentences
+from gaitdisc.report.over_blocks import over_blocks
+from gaitdisc.report.page import write_page
+from gaitdisc.report.provenance_tables import provenance_tables
+from gaitdisc.report.r2_figure import r2_figures
+from gaitdisc.report.r2_tables import not_computed, participants_table, r2_table, study_r2_table
+from gaitdisc.report.residual_figure import residual_figures
+from gaitdisc.report.run_tables import dropped_table, findings_table, fits_table, refusals_table, walks_table
+from gaitdisc.report.sentences import participant_sentences, study_sentences
+from gaitdisc.report.strides_figure import strides_figure
+from gaitdisc.report.table import Table, save_table, save_tables
+from gaitdisc.results import ResponseRun
+
+INLINE_BYTES = 4_000_000  # of all figures together, about; beyond it they are shown as pictures
+FIGURES_A_PERSON = 5
+MOST_PROCESSES = 4  # that draw; each holds some 400 MB
+MOST_OPEN = 2  # with more participants than this, the first screen is brief and their sections are folded
+
+
+@dataclass(frozen=True, eq=False)
+class Section:
+    """What the page shows of one participant.
+
+    Parameters
+    ----------
+    participant : str
+        Pseudonym.
+    anchor : str
+        Where the page links to.
+    sentences : list of str
+        The answer for this participant; empty where there is no response.
+    r2 : Table or None
+        R2 by variable.
+    reasons : list of str
+        Why some numbers were not computed.
+    dropped : Table or None
+        Dropped strides by reason.
+    figures : dict of str to list of SavedFigure
+        By subject: `held_out`, `residual`, `curves`, `strides`.
+    """
+
+    participant: str
+    anchor: str
+    sentences: list[str]
+    r2: Table | None
+    reasons: list[str]
+    dropped: Table | None
+    figures: dict[str, list[SavedFigure]]
+
+
+def write_report(run: ResponseRun, folder: Path) -> Path:
+    """Write the report of a run: `report.html`, `figures/` and `tables/`.
+
+    The page needs nothing but itself: figures are inside it, no script, nothing from a network. Beside every figure
+    lies a CSV with the numbers drawn. Writing the same run again gives the same bytes.
+
+    Parameters
+    ----------
+    run : ResponseRun
+        The whole result; nothing is fitted again.
+    folder : Path
+        Where the report goes; made if missing.
+
+    Returns
+    -------
+    Path
+        The page.
+
+    Raises
+    ------
+    WriteError
+        If a file cannot be written; what stood there before still stands.
+    """
+    people = list(dict.fromkeys([*(r.participant for r in run.responses), *(w.subject for w in run.walks)]))
+    names = file_names(people)
+    sections = _sections(run, names, folder)
+    overview = [save_figure(figure, folder / "figures") for figure in (r2_figures(run) if run.responses else [])]
+    compared = [save_figure(figure, folder / "figures") for figure in comparison_figures(run)]
+    pair_tables = comparison_tables(run)
+    blocks = [save_block(block, folder) for block in over_blocks(run)]
+    tables = {
+        "refusals": refusals_table(run),
+        "walks": walks_table(run),
+        "findings": findings_table(run),
+        "fits": fits_table(run),
+        **({"people": participants_table(run), "study": study_r2_table(run)} if len(run.responses) > 1 else {}),
+        **provenance_tables(run.provenance),
+    }
+    save_tables((*tables.values(), *pair_tables), folder)
+    save_table(run.r2_table(), folder / "tables" / "r2.csv")
+    shown = {
+        "run": run,
+        "study": study_sentences(run),
+        "sections": sections,
+        "overview": overview,
+        "comparison": {"sentences": comparison_sentences(run), "figures": compared, "tables": pair_tables},
+        "blocks": blocks,
+        "tables": tables,
+        "method": method_sentences(run),
+        "headline": 1 if not run.responses else 0 if len(run.responses) == 1 else 2,
+        "briefly": len(sections) > MOST_OPEN,
+    }
+    return write_page("report", shown, folder)
+
+
+def _sections(run: ResponseRun, names: dict[str, str], folder: Path) -> list[Section]:
+    """Drawing takes seconds a participant: with more than two of them they are drawn side by side."""
+    limit = min(LARGEST_INLINE_SVG, INLINE_BYTES // (FIGURES_A_PERSON * max(1, len(run.responses))))
+    alone = [(_of_one(run, person), person, name, folder, limit) for person, name in names.items()]
+    processes = min(os.cpu_count() or 1, MOST_PROCESSES, len(alone))
+    if len(alone) <= MOST_OPEN or processes < 2:
+        return [_section(*each) for each in alone]
+    from joblib import Parallel, delayed
+
+    drawn = Parallel(n_jobs=processes, backend="loky", inner_max_num_threads=1)(delayed(_section)(*a) for a in alone)
+    return [section for section in drawn if section is not None]
+
+
+def _of_one(run: ResponseRun, person: str) -> ResponseRun:
+    return replace(
+        run,
+        walks=tuple(walk for walk in run.walks if walk.subject == person),
+        responses=tuple(response for response in run.responses if response.participant == person),
+        tests=None,
+        quantities=(),
+        over=None,
+    )
+
+
+def _section(run: ResponseRun, person: str, name: str, folder: Path, limit: int) -> Section:
+    response = next(iter(run.responses), None)
+    strides = strides_figure(run, person, name)
+    drawn: dict[str, list[Figure]] = {
+        "held_out": held_out_figures(response, name) if response else [],
+        "residual": residual_figures(response, name) if response else [],
+        "curves": curves_figures(run, person, name),
+        "strides": [strides] if strides else [],
+    }
+    r2, dropped = (r2_table(response, name) if response else None), dropped_table(run, person, name)
+    save_tables((table for table in (r2, dropped) if table is not None), folder)
+    return Section(
+        person,
+        f"participant-{name}",
+        participant_sentences(response) if response else [],
+        r2,
+        not_computed(run, response) if response else [],
+        dropped,
+        {subject: [save_figure(f, folder / "figures", limit) for f in figures] for subject, figures in drawn.items()},
+    )

@@ -1,0 +1,88 @@
+"""A table of the report: the cells as they are read, and the numbers behind them, which lie beside the page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import pandas as pd
+
+from gaitdisc.whole_file import whole_file
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """A table as it is printed.
+
+    Parameters
+    ----------
+    name : str
+        Name of the CSV, without ending.
+    caption : str
+        What it shows, with n, unit and split where there are numbers.
+    columns : tuple of str
+        Headings.
+    rows : tuple of tuple of str
+        Cells.
+    numbers : DataFrame
+        What the CSV holds.
+    groups : tuple of (str, int)
+        Headings above the headings, with the number of columns that each spans.
+    summary : bool
+        The last row sums up the others.
+    """
+
+    name: str
+    caption: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    numbers: pd.DataFrame
+    groups: tuple[tuple[str, int], ...] = ()
+    summary: bool = False
+
+
+def pairs_table(name: str, caption: str, headings: tuple[str, str], pairs: Sequence[tuple[str, str]]) -> Table:
+    """Table of names and values, such as settings, versions and hashes.
+
+    Parameters
+    ----------
+    name : str
+        Name of the CSV.
+    caption : str
+        What it shows.
+    headings : (str, str)
+        Of the two columns.
+    pairs : sequence of (str, str)
+        The rows.
+    """
+    rows = tuple((str(key), str(value)) for key, value in pairs)
+    return Table(name, caption, headings, rows, pd.DataFrame(rows, columns=pd.Index(headings)))
+
+
+def save_tables(tables: Iterable[Table], folder: Path) -> None:
+    """Write the numbers of tables into the folder `tables/` of a report, each as CSV of its name.
+
+    Parameters
+    ----------
+    tables : iterable of Table
+        What to save.
+    folder : Path
+        Folder of the report.
+    """
+    for table in tables:
+        save_table(table.numbers, folder / "tables" / f"{table.name}.csv")
+
+
+def save_table(table: pd.DataFrame, path: Path) -> None:
+    """Write a table as CSV, whole, with the same bytes for the same numbers.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Its index is not written.
+    path : Path
+        File to write.
+    """
+    with whole_file(path) as part:
+        table.to_csv(part, index=False, lineterminator="\n", float_format="%.8g")

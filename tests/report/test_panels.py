@@ -1,0 +1,27 @@
+import pytest
+
+from gaitdisc.report.panels import WIDTH, Room, in_style, panels, sheets
+
+
+def test_panels_have_their_size_and_do_not_overlap():
+    drawn, grid = panels(2, 3, 1.0, Room(left=0.7, right=0.1, top=0.5, bottom=0.4, across=0.6, down=0.3))
+    boxes = [[axes.get_position() for axes in row] for row in grid]
+    height = drawn.get_figheight()
+    assert height == pytest.approx(0.5 + 2 * 1.0 + 0.3 + 0.4)
+    assert boxes[0][0].height * height == pytest.approx(1.0)
+    assert (boxes[0][1].x0 - boxes[0][0].x1) * WIDTH == pytest.approx(0.6)
+    assert (boxes[0][0].y0 - boxes[1][0].y1) * height == pytest.approx(0.3)
+    assert boxes[1][2].x1 * WIDTH == pytest.approx(WIDTH - 0.1)
+
+
+def test_sheets_are_of_nearly_equal_length():
+    assert [len(part) for part in sheets(range(25), 12)] == [9, 8, 8]
+    assert sheets([], 3) == []
+
+
+def test_the_users_own_style_does_not_leak_in_or_out():
+    import matplotlib as mpl
+
+    with mpl.rc_context({"lines.linewidth": 17.0}):
+        assert in_style(lambda: mpl.rcParams["lines.linewidth"])() == mpl.rcParamsDefault["lines.linewidth"]
+        assert mpl.rcParams["lines.linewidth"] == 17.0

@@ -1,0 +1,151 @@
+import base64
+import re
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from gaitdisc.errors import GaitdiscError
+from gaitdisc.report import write_report
+from gaitdisc.results import Refusal
+
+OUTPUTS = ("hip_flexion_r", "ankle_angle_l")
+
+
+@pytest.fixture(scope="session")
+def page(run, tmp_path_factory):
+    return write_report(run, tmp_path_factory.mktemp("report"))
+
+
+def test_the_answer_comes_first(page):
+    text = page.read_text(encoding="utf-8")
+    order = ["Research use, not a medical device", "<h1>", "Left out: 1", "In P01, the Nominal model explains", "<img"]
+    places = [text.index(words) for words in order]
+    assert places == sorted(places)
+    assert "strides need initial contacts of both feet" in text
+    assert "amber: warnings" in text
+
+
+def test_the_page_needs_nothing_but_itself(page):
+    text = page.read_text(encoding="utf-8")
+    assert not re.search(r"(https?:)?//[a-z]", text)
+    assert "<script" not in text
+    assert "default-src 'none'" in text
+    assert set(re.findall(r'(?:src|href)="([^"#]{1,10})', text)) == {"data:image"}
+    for encoded in re.findall(r"data:image/svg\+xml;base64,([^\"]+)", text):
+        svg = base64.b64decode(encoded).decode()
+        outside = re.findall(r'(?:href|src)="([^#][^"]{0,12})|url\((?!#)', svg)
+        assert set(outside) <= {"data:image/p"}
+
+
+def test_every_figure_has_caption_alt_and_files(page):
+    text = page.read_text(encoding="utf-8")
+    figures = re.findall(
+        r'<figure>\s*<img src="[^"]+" alt="([^"]*)"[^>]*>\s*<figcaption>(.*?)</figcaption>', text, re.S
+    )
+    assert len(figures) == len(list((page.parent / "figures").glob("*.svg"))) == 5
+    for alt, caption in figures:
+        assert len(alt) > 40
+        assert re.search(r"n = \d", caption)
+        assert "split" in caption
+        name = re.search(r"figures/([\w-]+)\.csv", caption).group(1)
+        for ending in ("svg", "png", "csv"):
+            assert (page.parent / "figures" / f"{name}.{ending}").stat().st_size > 0
+        assert len(pd.read_csv(page.parent / "figures" / f"{name}.csv"))
+    for name in re.findall(r"tables/([\w-]+)\.csv", text):
+        assert (page.parent / "tables" / f"{name}.csv").is_file()
+
+
+def test_the_whole_r2_table_lies_beside_the_page(page, run):
+    written = pd.read_csv(page.parent / "tables" / "r2.csv", keep_default_na=False, na_values=[""])
+    pd.testing.assert_frame_equal(written, run.r2_table(), check_dtype=False, rtol=1e-7)
+
+
+def test_writing_again_gives_the_same_bytes(page, run, tmp_path):
+    write_report(run, tmp_path)
+    files = sorted(path.relative_to(tmp_path) for path in tmp_path.rglob("*") if path.is_file())
+    assert len(files) > 20
+    for file in files:
+        assert (tmp_path / file).read_bytes() == (page.parent / file).read_bytes(), file
+
+
+def test_hostile_words_are_only_words(run_maker, tmp_path):
+    evil = '<script>alert(1)</script> $\\frac{x}$ "quoted" {{ 7 * 7 }}'
+    run = run_maker(outputs=("hip_flexion_r",), title=evil, refusals=(Refusal(evil, evil, evil),))
+    walks = tuple(replace(walk, subject=evil) for walk in run.walks)
+    run = replace(run, nominal="natural", walks=walks, responses=(replace(run.responses[0], participant=evil),))
+    text = write_report(run, tmp_path).read_text(encoding="utf-8")
+    assert "<script" not in text
+    assert "&lt;script&gt;alert(1)" in text
+    assert "{{ 7 * 7 }}" in text
+    assert all(path.parent == tmp_path / "figures" for path in (tmp_path / "figures").iterdir())
+
+
+def test_everybody_refused(run_maker, refusal, tmp_path):
+    text = write_report(run_maker(0, refusals=(refusal,)), tmp_path).read_text(encoding="utf-8")
+    assert "No participant could be analysed" in text
+    assert "strides need initial contacts of both feet" in text
+    assert "<img" not in text
+
+
+def test_walks_without_a_response_are_still_shown(run_maker, refusal, tmp_path):
+    run = replace(run_maker(outputs=("hip_flexion_r",), refusals=(refusal,)), responses=())
+    text = write_report(run, tmp_path).read_text(encoding="utf-8")
+    assert "No model was fitted for this participant" in text
+    assert text.count("<img") == 2
+
+
+def test_several_participants_are_folded_and_none_is_lost(run_maker, tmp_path):
+    text = write_report(run_maker(3, outputs=("hip_flexion_r",)), tmp_path).read_text(encoding="utf-8")
+    assert text.count("<summary>Tables and figures of P0") == 3
+    assert "3 participants were analysed" in text
+    assert all(f"In P0{i}, the Nominal model" in text for i in (1, 2, 3))
+    assert (tmp_path / "tables" / "r2-study.csv").is_file()
+
+
+def test_numbers_that_were_not_computed(run_maker, tmp_path):
+    run = run_maker(outputs=OUTPUTS)
+    run.responses[0].r2["r2"] = np.nan
+    text = write_report(run, tmp_path).read_text(encoding="utf-8")
+    assert "not computed" in text
+    assert ">nan<" not in text.lower()
+
+
+def test_a_place_that_cannot_be_written_is_said(run, tmp_path):
+    (tmp_path / "report").write_text("a file stands where the folder shall be")
+    with pytest.raises(GaitdiscError, match="to be written whole"):
+        write_report(run, tmp_path / "report")
+
+
+def test_the_paired_tests_have_their_section_and_the_same_bytes(tested_maker, tmp_path):
+    run = tested_maker(6, ("hip_flexion_r",))
+    text = write_report(run, tmp_path / "a").read_text(encoding="utf-8")
+    assert text.index("What the models explain") < text.index("Which model explains more") < text.index(">P01</h2>")
+    assert "tables/tests-augmented-exo.csv" in text
+    assert "figures/comparison.csv" in text
+    write_report(run, tmp_path / "b")
+    for file in ("report.html", "figures/comparison.svg", "tables/tests-nominal-exo.csv", "tables/tests-families.csv"):
+        assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes()
+
+
+def test_too_few_for_a_test_is_said(tested_maker, tmp_path):
+    text = write_report(tested_maker(2, ("hip_flexion_r",)), tmp_path).read_text(encoding="utf-8")
+    assert "2 participants are too few for a test: the smallest p is 0.5" in text
+    assert "figures/comparison.csv" not in text
+
+
+def test_a_run_of_before_there_were_tests_has_no_such_section(run_maker, tmp_path):
+    text = write_report(run_maker(2, outputs=("hip_flexion_r",)), tmp_path).read_text(encoding="utf-8")
+    assert "Which model explains more" not in text
+
+
+def test_participants_drawn_side_by_side_are_those_drawn_alone(run_maker, tmp_path):
+    run = run_maker(3, outputs=("hip_flexion_r",))
+    write_report(run, tmp_path / "all")
+    first = replace(run, walks=run.walks[:2], responses=run.responses[:1])
+    write_report(first, tmp_path / "one")
+    alone = sorted(path for path in (tmp_path / "one" / "figures").iterdir() if "P01" in path.name)
+    assert len(alone) >= 4 * 3
+    for path in alone:
+        assert path.read_bytes() == (tmp_path / "all" / "figures" / path.name).read_bytes()
