@@ -10,10 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 from gaitdisc.simulation.at_points import at_points, leaf_columns
 from gaitdisc.simulation.delays import before_rows, linear_in_rows
 from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.simulation.machine import BOUND
 from gaitdisc.simulation.python_simulation import PythonSimulation, called
 from gaitdisc.simulation.running import SUBSTEPS, Compiled, compile_simulation
-
-BOUND = 1e6  # a state beyond has diverged
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.errors import SamplingError
+from gaitdisc.simulation.machine import BOUND
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
@@ -101,8 +102,8 @@ def solve(
 
 
 def _beyond(_t: float, x: NDArray[np.float64]) -> float:
-    """Fall through zero where a state passes 1e6."""
-    return float(1e6 - np.max(np.abs(x))) if np.all(np.isfinite(x)) else -1.0
+    """Fall through zero where a state passes the bound."""
+    return float(BOUND - np.max(np.abs(x))) if np.all(np.isfinite(x)) else -1.0
 
 
 setattr(_beyond, "terminal", True)  # noqa: B010 the way in which solve_ivp is told
