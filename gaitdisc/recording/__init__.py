@@ -1,5 +1,6 @@
 """The nouns that everything else speaks of: recordings, trials, strides, trajectories, samples, findings."""
 
+from gaitdisc.recording.field import Axis, Field
 from gaitdisc.recording.finding import Finding
 from gaitdisc.recording.recording import Recording, Source
 from gaitdisc.recording.samples import Samples
@@ -10,8 +11,10 @@ from gaitdisc.recording.trial import Event, Trial
 
 __all__ = [
     "PERCENT",
+    "Axis",
     "DroppedStride",
     "Event",
+    "Field",
     "Finding",
     "Recording",
     "Samples",

@@ -1,0 +1,240 @@
+"""A field over time: one or more quantities at every point of a grid, snapshot after snapshot."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.errors import ChannelError, SamplingError, ShapeError
+from gaitdisc.recording.arrays import read_only
+from gaitdisc.recording.recording import Source
+
+STEP_TOLERANCE = 0.01  # of the usual step; months are not evenly long in every calendar
+
+
+@dataclass(frozen=True, eq=False)
+class Axis:
+    """Coordinates along one axis of a grid.
+
+    Parameters
+    ----------
+    name : str
+        `lat`, `lon`, `x`.
+    coordinates : ndarray (node,) [unit]
+        Increasing or decreasing all along.
+    unit : str
+        As shown; never converted.
+
+    Raises
+    ------
+    ShapeError
+        If the coordinates do not go one way.
+
+    Examples
+    --------
+    >>> Axis("lon", np.array([0.0, 2.0, 4.0]), "deg").step
+    2.0
+    """
+
+    name: str
+    coordinates: NDArray[np.float64]
+    unit: str = "1"
+
+    def __post_init__(self) -> None:
+        """Refuse an axis that turns back."""
+        object.__setattr__(self, "coordinates", read_only(self.coordinates))
+        steps = np.diff(self.coordinates)
+        if self.coordinates.ndim != 1 or not len(self.coordinates) or not (np.all(steps > 0) or np.all(steps < 0)):
+            raise ShapeError(
+                "an axis of a field needs coordinates that increase, or decrease, all along",
+                f"axis {self.name!r} has {np.size(self.coordinates)} that do not",
+                "Sort the grid along this axis.",
+            )
+
+    @property
+    def step(self) -> float:
+        """Typical distance of two nodes [unit]; infinite for a single node."""
+        return float(np.median(np.abs(np.diff(self.coordinates)))) if len(self.coordinates) > 1 else float("inf")
+
+
+@dataclass(frozen=True, eq=False)
+class Field:
+    """Quantities at the points of a grid over time; arrays are read-only, time is the first axis.
+
+    Parameters
+    ----------
+    time : ndarray (time,) [time_unit]
+        Of the snapshots, evenly spaced, increasing.
+    values : ndarray (time, point, quantity) [each quantity's unit]
+        At the points where `mask` holds, in the grid's order (last axis fastest); finite. Kept in single precision.
+    axes : tuple of Axis
+        Of the grid.
+    mask : ndarray of bool, shape of the grid
+        True at the points of the field, False outside it, as on land.
+    quantities, units : tuple of str
+        What is measured, and in which unit.
+    time_unit : str
+        `month`, `week`, `s`.
+    source : Source
+        File, hash and reader.
+
+    Raises
+    ------
+    ShapeError
+        If the arrays do not fit together, no point is left, or a value is missing.
+    SamplingError
+        If time does not advance evenly (a step differs from the usual one by more than 1 %).
+
+    Examples
+    --------
+    >>> axes = (Axis("lat", np.array([0.0, 1.0])), Axis("lon", np.array([5.0, 6.0])))
+    >>> mask = np.array([[True, False], [True, True]])
+    >>> sea = Field(np.arange(4.0), np.ones((4, 3, 1)), axes, mask, ("sst",), ("degC",), "week")
+    >>> sea.points, sea.places.tolist()
+    (3, [[0.0, 5.0], [1.0, 5.0], [1.0, 6.0]])
+    """
+
+    time: NDArray[np.float64]
+    values: NDArray[np.float32]
+    axes: tuple[Axis, ...]
+    mask: NDArray[np.bool_]
+    quantities: tuple[str, ...]
+    units: tuple[str, ...]
+    time_unit: str = "s"
+    source: Source = field(default_factory=Source)
+
+    def __post_init__(self) -> None:
+        """Check shapes, time and values once; nothing below checks them again."""
+        time, values, mask = (
+            read_only(self.time),
+            read_only(self.values, np.float32),
+            read_only(self.mask, bool),
+        )
+        grid = tuple(len(axis.coordinates) for axis in self.axes)
+        if mask.shape != grid or not mask.any():
+            raise ShapeError(
+                f"a field needs a mask of the shape of its grid, {grid}, that leaves a point",
+                f"found {mask.shape} with {int(mask.sum())} points",
+                "Give one truth value a node of the grid.",
+            )
+        wanted = (len(time), int(mask.sum()), len(self.quantities))
+        if values.shape != wanted or len(self.units) != len(self.quantities):
+            raise ShapeError(
+                f"a field needs values of shape (time, point, quantity), here {wanted}, and a unit for each quantity",
+                f"found {values.shape} and {len(self.units)} units",
+                "Put time first, then the points of the mask, then the quantities.",
+            )
+        self._refuse_uneven(time)
+        for name, value in (("time", time), ("values", values), ("mask", mask)):
+            object.__setattr__(self, name, value)
+        self._refuse_missing()
+
+    def _refuse_uneven(self, time: NDArray[np.float64]) -> None:
+        steps = np.diff(time)
+        usual = float(np.median(steps)) if len(steps) else 1.0
+        uneven = (steps <= 0) | (np.abs(steps - usual) > STEP_TOLERANCE * usual)
+        if uneven.any():
+            first = int(np.argmax(uneven))
+            raise SamplingError(
+                "snapshots of a field need times that advance evenly, since windows count snapshots",
+                f"{self.source.file or 'the field'}: snapshot {first + 2} comes {steps[first]:g} {self.time_unit} "
+                f"after the one before, usually {usual:g}",
+                "Sort the snapshots, or fill what is missing in between.",
+            )
+
+    def _refuse_missing(self) -> None:
+        missing = np.count_nonzero(~np.isfinite(self.values))
+        if missing:
+            snapshot, point, quantity = (int(k) for k in np.argwhere(~np.isfinite(self.values))[0])
+            raise ShapeError(
+                "a field needs a finite value at each of its points",
+                f"{self.source.file or 'the field'} lacks {missing} values, the first of {self.quantities[quantity]} "
+                f"at {self.place_words(point)} in snapshot {snapshot + 1}",
+                "Mask the points that are not always measured, or fill them.",
+            )
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    @property
+    def points(self) -> int:
+        """Points of the grid that belong to the field."""
+        return int(self.mask.sum())
+
+    @property
+    def nodes(self) -> NDArray[np.intp]:
+        """Place of every point in the grid, (point, axis), counted from 0."""
+        return np.argwhere(self.mask)
+
+    @property
+    def places(self) -> NDArray[np.float64]:
+        """Coordinates of every point, (point, axis) [each axis's unit]."""
+        nodes = self.nodes
+        return np.column_stack([axis.coordinates[nodes[:, k]] for k, axis in enumerate(self.axes)])
+
+    @property
+    def number_at(self) -> NDArray[np.intp]:
+        """Number of the point at every node of the grid, -1 where the field is not."""
+        numbers = np.full(self.mask.shape, -1)
+        numbers[self.mask] = np.arange(self.points)
+        return numbers
+
+    def place_words(self, point: int) -> str:
+        """Coordinates of a point in words.
+
+        Parameters
+        ----------
+        point : int
+            Its number.
+        """
+        place = self.places[point]
+        return ", ".join(f"{axis.name} {value:g} {axis.unit}" for axis, value in zip(self.axes, place, strict=True))
+
+    def snapshots(self, chosen: slice | NDArray[np.intp]) -> Field:
+        """Keep some snapshots.
+
+        Parameters
+        ----------
+        chosen : slice or ndarray of int
+            Snapshots to keep, in order of time.
+        """
+        return replace(self, time=self.time[chosen], values=self.values[chosen])
+
+    def selected(self, quantities: Sequence[str]) -> Field:
+        """Keep some quantities, in the order asked for.
+
+        Parameters
+        ----------
+        quantities : sequence of str
+            Names.
+
+        Raises
+        ------
+        ChannelError
+            If the field does not have one.
+        """
+        absent = [name for name in quantities if name not in self.quantities]
+        if absent or not quantities:
+            raise ChannelError(
+                f"the field has the quantities {', '.join(self.quantities)}",
+                f"asked for {', '.join(absent) or 'none'}",
+                "Name some of them.",
+            )
+        columns = [self.quantities.index(name) for name in quantities]
+        units = tuple(self.units[k] for k in columns)
+        return replace(self, values=self.values[:, :, columns], quantities=tuple(quantities), units=units)
+
+    def on_grid(self, values: NDArray[np.floating]) -> NDArray[np.float64]:
+        """Values of one snapshot and quantity on the grid, NaN where the field is not.
+
+        Parameters
+        ----------
+        values : ndarray (point,)
+            Of one quantity.
+        """
+        grid = np.full(self.mask.shape, np.nan)
+        grid[self.mask] = values
+        return grid
