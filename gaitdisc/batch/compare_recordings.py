@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from gaitdisc.batch.participant_unit import processed_walks
+from gaitdisc.batch.processed_walks import processed_walks
 from gaitdisc.discovery.compare import compare_people, compare_walks
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.reading import read_trial

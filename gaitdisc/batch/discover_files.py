@@ -7,12 +7,10 @@ from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 
-from gaitdisc.batch.nominal_model import nominal_inquiry
 from gaitdisc.discovery.blow_up import refuse_blow_up
 from gaitdisc.discovery.catalogue import read_catalogue
 from gaitdisc.discovery.discover import discover
 from gaitdisc.ingest.file_hash import file_sha256
-from gaitdisc.ingest.study_file import load_study
 from gaitdisc.results.discovery import Discovery
 from gaitdisc.results.provenance import Provenance, installed_versions
 from gaitdisc.simulation.measured import Measured
@@ -85,6 +83,10 @@ def discover_study(
     GaitdiscError
         If the study cannot be read, or a walk of the participant is missing or refused.
     """
+    # imported here: a simulation file needs no filters and no pandas
+    from gaitdisc.batch.nominal_model import nominal_inquiry
+    from gaitdisc.ingest.study_file import load_study
+
     told(f"reading both walks of {participant} and fitting the Nominal model")
     read = load_study(study)
     model, data = nominal_inquiry(read, participant)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.batch.participant_unit import processed_walks
+from gaitdisc.batch.processed_walks import processed_walks
 from gaitdisc.errors import SchemaError, StrideError
 from gaitdisc.ingest.study import Study
 from gaitdisc.processing.walk import Walk

@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
+from gaitdisc.batch.processed_walks import walks_and_errors
+from gaitdisc.batch.unit_key import response_key, unit_keys
 from gaitdisc.errors import GaitdiscError, ReadError, SchemaError
-from gaitdisc.ingest.c3d import C3DReader
-from gaitdisc.ingest.file_hash import file_sha256
-from gaitdisc.ingest.reading import read_planned_trial
-from gaitdisc.ingest.study import Participant, PlannedTrial, Study
+from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.networks.training_settings import TrainingSettings
-from gaitdisc.processing.filter_null import filter_null
-from gaitdisc.processing.process import is_raw, processed
+from gaitdisc.processing.filter_null import filter_null_of
 from gaitdisc.processing.walk import Walk
 from gaitdisc.response.fit_response import ResponseSettings, fit_response
-from gaitdisc.response.samples import gait_samples
 from gaitdisc.results import ParticipantResponse, Refusal, WalkSummary
-from gaitdisc.results.provenance import code_sha256
 from gaitdisc.results.store import (
     load_refused,
     load_response,
@@ -92,7 +86,7 @@ def computed_unit(study: Study, participant: Participant, folder: Path, progress
     stored = _stored(participant, keys, folder)
     if stored is not None:
         return stored
-    walks, errors = _walks_and_errors(study, participant)
+    walks, errors = walks_and_errors(study, participant)
     for word, walk in walks.items():
         save_walk(walk.summary(), _walk_folder(folder, participant, word), keys[word])
     if not errors:
@@ -108,51 +102,6 @@ def computed_unit(study: Study, participant: Participant, folder: Path, progress
     if not any(isinstance(error, ReadError) for error in errors.values()):  # that may be readable another time
         save_refused(refusals, tuple(walks), folder / "refused" / participant.id, response_key(keys))
     return ParticipantUnit(_loaded(walks, participant, folder), None, refusals, response_key(keys))
-
-
-def unit_keys(study: Study, participant: Participant) -> dict[str, str]:
-    """Key of each of the two walks of a complete participant, by condition.
-
-    Parameters
-    ----------
-    study : Study
-        Settings.
-    participant : Participant
-        With one trial of each condition.
-    """
-    both = (study.conditions.nominal, study.conditions.device)
-    return {word: unit_key(study, participant.trials_of(word)[0]) for word in both}
-
-
-def response_key(keys: Mapping[str, str]) -> str:
-    """Key of what is fitted to both walks.
-
-    Parameters
-    ----------
-    keys : mapping of str to str
-        From `unit_keys`.
-    """
-    return hashlib.sha256("".join(keys.values()).encode()).hexdigest()
-
-
-def unit_key(study: Study, trial: PlannedTrial) -> str:
-    """Hash of all that decides a walk's numbers: bytes of its files, settings, and the package's own code.
-
-    Parameters
-    ----------
-    study : Study
-        Settings.
-    trial : PlannedTrial
-        Files and crop.
-    """
-    settings = study.model_dump(mode="json", exclude={"participants", "title"})
-    parts = [code_sha256(), json.dumps(settings, sort_keys=True), trial.model_dump_json(exclude={"files"})]
-    for file in trial.files:
-        try:
-            parts.append(file_sha256(study.path_of(file)))
-        except OSError as error:
-            parts.append(f"{file}: {error.strerror}")
-    return hashlib.sha256("\n".join(parts).encode()).hexdigest()
 
 
 def response_settings(study: Study) -> ResponseSettings:
@@ -182,39 +131,8 @@ def _incomplete(study: Study, participant: Participant) -> str:
     return f"{needed}; {participant.id} has {found}{unused}. Correct the conditions in [[participants.trials]]."
 
 
-def processed_walks(study: Study, participant: Participant) -> tuple[dict[str, Walk], tuple[Refusal, ...]]:
-    """Both walks of a complete participant, by condition, and why one could not be processed.
-
-    Parameters
-    ----------
-    study : Study
-        Settings.
-    participant : Participant
-        With one trial of each condition.
-    """
-    walks, errors = _walks_and_errors(study, participant)
-    return walks, tuple(Refusal(participant.id, word, str(error)) for word, error in errors.items())
-
-
-def _walks_and_errors(study: Study, participant: Participant) -> tuple[dict[str, Walk], dict[str, GaitdiscError]]:
-    walks, errors = {}, {}
-    with C3DReader() as reader:  # starts its process at the first C3D file, one for both walks
-        for word in (study.conditions.nominal, study.conditions.device):
-            try:
-                walks[word] = _walk(study, participant, participant.trials_of(word)[0], reader)
-            except GaitdiscError as error:
-                errors[word] = error
-    return walks, errors
-
-
 def _after_processing(progress: Progress, share: float) -> None:
     progress(SHARE_OF_PROCESSING + (1 - SHARE_OF_PROCESSING) * share)
-
-
-def _walk(study: Study, participant: Participant, planned: PlannedTrial, reader: C3DReader) -> Walk:
-    walk = processed(read_planned_trial(study, participant, planned, reader), study)
-    left_away = gait_samples(walk.trajectory, study.models.outputs)[1].finding()
-    return replace(walk, findings=(*walk.findings, left_away))
 
 
 def _fitted(
@@ -222,9 +140,7 @@ def _fitted(
 ) -> ParticipantResponse:
     nominal, exo = walks[study.conditions.nominal], walks[study.conditions.device]
     settings = response_settings(study)
-    emg = exo.trial.streams.get("emg")
-    emg_hz = emg.rate_hz if emg is not None and is_raw(emg) else None
-    null = filter_null(exo.state.channels, study.filters, exo.state.rate_hz, emg_hz)
+    null = filter_null_of(exo, study.filters)
     response = fit_response(nominal.trajectory, exo.trajectory, settings, null, progress)
     return replace(response, participant=participant.id)
 

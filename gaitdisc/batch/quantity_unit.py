@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from gaitdisc.batch.participant_unit import processed_walks, response_key, response_settings, unit_keys
+from gaitdisc.batch.participant_unit import response_settings
+from gaitdisc.batch.processed_walks import processed_walks
+from gaitdisc.batch.unit_key import response_key, unit_keys
 from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.response.data_quantity import fit_data_quantity

@@ -9,13 +9,15 @@ from pathlib import Path
 
 import pandas as pd
 
-from gaitdisc.batch.participant_unit import processed_walks, response_key, response_settings, unit_keys
+from gaitdisc.batch.participant_unit import response_settings
+from gaitdisc.batch.processed_walks import processed_walks
+from gaitdisc.batch.unit_key import response_key, unit_keys
 from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Participant, Study
-from gaitdisc.processing.filter_null import filter_null
-from gaitdisc.processing.process import is_raw, processed
+from gaitdisc.processing.filter_null import filter_null_of
+from gaitdisc.processing.process import processed
 from gaitdisc.recording import Trajectory, Trial
 from gaitdisc.response.data_quantity import shortened
 from gaitdisc.response.fit_response import ResponseSettings, fit_response, held_out_part
@@ -113,9 +115,7 @@ def _under(study: Study, trials: Mapping[str, Trial], setting: Setting, told: Pr
     filtered = study.model_copy(update={"filters": study.filters.model_copy(update=cut_offs)})
     nominal, exo = (processed(trials[word], filtered) for word in _words(study))
     fits = response_settings(study)
-    emg = exo.trial.streams.get("emg")
-    emg_hz = emg.rate_hz if emg is not None and is_raw(emg) else None
-    null = filter_null(exo.state.channels, filtered.filters, exo.state.rate_hz, emg_hz)
+    null = filter_null_of(exo, filtered.filters)
     less_nominal, less_exo = (_first_share(walk.trajectory, fits, setting.share) for walk in (nominal, exo))
     found = fit_response(less_nominal, less_exo, fits, null, told).r2
     return found[found["walk"] == "exo"]

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.ingest.study import Filters
+from gaitdisc.processing.process import is_raw
+from gaitdisc.processing.walk import Walk
 from gaitdisc.recording import Recording
 from gaitdisc.recording.strides import interpolated
 from gaitdisc.signals.butterworth import lowpassed
@@ -60,6 +62,26 @@ def filter_null(
         of_emg = partial(_emg, filters=filters, rate_hz=rate_hz, base_hz=kinematics_hz, raw=emg_hz is not None)
         reached["emg"] = simulate_null(of_emg, round(NOISE_S * rate_hz), WALKS).r2
     return {channel.name: reached["emg" if channel.quantity == "emg" else "angle"] for channel in channels}
+
+
+def filter_null_of(walk: Walk, filters: Filters) -> dict[str, float]:
+    """R2 that noise reaches through the filters of one walk, at the rates it was measured with.
+
+    Parameters
+    ----------
+    walk : Walk
+        Whether its EMG is raw or holds envelopes is seen from the EMG.
+    filters : Filters
+        Of the study.
+
+    Returns
+    -------
+    dict of str to float
+        Of every channel, as `filter_null`.
+    """
+    emg = walk.trial.streams.get("emg")
+    emg_hz = emg.rate_hz if emg is not None and is_raw(emg) else None
+    return filter_null(walk.state.channels, filters, walk.state.rate_hz, emg_hz)
 
 
 def _angles(noise: NDArray[np.float64], filters: Filters, rate_hz: float) -> Differentiated:

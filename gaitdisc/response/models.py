@@ -9,8 +9,6 @@ from functools import partial
 
 from gaitdisc.errors import TrainingError
 from gaitdisc.model import Augmented, Model, augment
-from gaitdisc.networks.feedforward import FeedForward
-from gaitdisc.networks.trainer import train
 from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.recording import Samples
 from gaitdisc.regression.ridge import fit_ridge
@@ -135,6 +133,9 @@ def fit_network(
     progress : callable, optional
         Called with the fraction done.
     """
+    from gaitdisc.networks.feedforward import FeedForward  # brings torch, which takes two seconds
+    from gaitdisc.networks.trainer import train
+
     done = train(samples, FeedForward, settings, progress)
     return Fit(done.network, done.decay, len(done.losses), done.n_training, done.n_inner, done.seconds)
 

@@ -3,7 +3,7 @@ import pytest
 
 from gaitdisc.batch.demonstration import write_demonstration
 from gaitdisc.batch.nominal_model import nominal_inquiry, nominal_model, stride_trials
-from gaitdisc.batch.participant_unit import processed_walks
+from gaitdisc.batch.processed_walks import processed_walks
 from gaitdisc.errors import StrideError
 from gaitdisc.simulation.running import compile_simulation
 

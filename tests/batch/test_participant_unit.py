@@ -1,9 +1,6 @@
-import shutil
-
 import pytest
 
-from gaitdisc.batch.participant_unit import computed_unit, unit_key
-from gaitdisc.ingest.study import Filters, PlannedTrial
+from gaitdisc.batch.participant_unit import computed_unit
 
 
 def alone(study, **changes):
@@ -49,16 +46,3 @@ def test_a_held_out_part_longer_than_the_trial_is_refused(study, tmp_path):
     unit = computed_unit(study.model_copy(update={"held_out": held}), study.participants[0], tmp_path, lambda _: None)
     assert "holding out the last 60 s" in unit.refusals[0].reason
     assert len(unit.walks) == 2
-
-
-def test_the_key_follows_bytes_and_settings_not_names(study, tmp_path):
-    planned = study.participants[0].trials[0]
-    key = unit_key(study, planned)
-    assert unit_key(study.model_copy(update={"title": "another"}), planned) == key
-    assert unit_key(study.model_copy(update={"filters": Filters(kinematics_hz=8.0)}), planned) != key
-    shutil.copy(study.path_of(planned.files[0]), tmp_path / "copy.mot")
-    copied = PlannedTrial(condition="nominal", files=(str(tmp_path / "copy.mot"),))
-    assert unit_key(study, copied) == key
-    with (tmp_path / "copy.mot").open("a") as file:
-        file.write(" ")
-    assert unit_key(study, copied) != key

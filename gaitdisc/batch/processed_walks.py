@@ -1,0 +1,54 @@
+"""Both walks of a participant, from the study's files to filtered, stride-cut walks."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from gaitdisc.errors import GaitdiscError
+from gaitdisc.ingest.c3d import C3DReader
+from gaitdisc.ingest.reading import read_planned_trial
+from gaitdisc.ingest.study import Participant, PlannedTrial, Study
+from gaitdisc.processing.process import processed
+from gaitdisc.processing.walk import Walk
+from gaitdisc.response.samples import gait_samples
+from gaitdisc.results import Refusal
+
+
+def processed_walks(study: Study, participant: Participant) -> tuple[dict[str, Walk], tuple[Refusal, ...]]:
+    """Both walks of a complete participant, by condition, and why one could not be processed.
+
+    Parameters
+    ----------
+    study : Study
+        Settings.
+    participant : Participant
+        With one trial of each condition.
+    """
+    walks, errors = walks_and_errors(study, participant)
+    return walks, tuple(Refusal(participant.id, word, str(error)) for word, error in errors.items())
+
+
+def walks_and_errors(study: Study, participant: Participant) -> tuple[dict[str, Walk], dict[str, GaitdiscError]]:
+    """Both walks of a complete participant, by condition, and the error of one that could not be processed.
+
+    Parameters
+    ----------
+    study : Study
+        Settings.
+    participant : Participant
+        With one trial of each condition.
+    """
+    walks, errors = {}, {}
+    with C3DReader() as reader:  # starts its process at the first C3D file, one for both walks
+        for word in (study.conditions.nominal, study.conditions.device):
+            try:
+                walks[word] = _walk(study, participant, participant.trials_of(word)[0], reader)
+            except GaitdiscError as error:
+                errors[word] = error
+    return walks, errors
+
+
+def _walk(study: Study, participant: Participant, planned: PlannedTrial, reader: C3DReader) -> Walk:
+    walk = processed(read_planned_trial(study, participant, planned, reader), study)
+    left_away = gait_samples(walk.trajectory, study.models.outputs)[1].finding()
+    return replace(walk, findings=(*walk.findings, left_away))
