@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import savgol_filter
 
 from gaitdisc.discovery.segments import Segments
+from gaitdisc.signals.local_polynomial import savgol_filter
 from gaitdisc.simulation.simulation import Simulation
 
 SHARE_OF_PERIOD = 0.2
