@@ -29,6 +29,9 @@ class Shred(nn.Module):
         Recurrent layers; the dissertation's code has two of 64.
     cell : str
         `gru` or `lstm`.
+    masked : bool
+        Whether readings may be missing (NaN): the network then reads 0, the mean, in their place, and beside every
+        reading whether it is missing.
 
     Raises
     ------
@@ -47,7 +50,14 @@ class Shred(nn.Module):
     """
 
     def __init__(
-        self, inputs: int, outputs: int, sensors: int, nodes: int = 64, layers: int = 1, cell: str = "gru"
+        self,
+        inputs: int,
+        outputs: int,
+        sensors: int,
+        nodes: int = 64,
+        layers: int = 1,
+        cell: str = "gru",
+        masked: bool = False,
     ) -> None:
         super().__init__()
         if inputs % sensors:
@@ -56,8 +66,8 @@ class Shred(nn.Module):
                 f"it has {inputs} numbers",
                 "Give the number of sensors that the windows were made with.",
             )
-        self.sensors = sensors
-        self.recurrent = CELLS[cell](sensors, nodes, layers, batch_first=True)
+        self.sensors, self.cell, self.masked = sensors, cell, masked
+        self.recurrent = CELLS[cell](2 * sensors if masked else sensors, nodes, layers, batch_first=True)
         self.decoder = ShallowDecoder(nodes, outputs)
 
     @property
@@ -74,6 +84,9 @@ class Shred(nn.Module):
             Scaled windows.
         """
         history = x.reshape(len(x), -1, self.sensors)
+        if self.masked:
+            missing = history.isnan()
+            history = torch.cat([history.masked_fill(missing, 0.0), missing.to(history.dtype)], dim=2)
         latest = [self.recurrent(part)[0][:, -1] for part in history.split(AT_ONCE)]
         return self.decoder.features(torch.cat(latest))
 

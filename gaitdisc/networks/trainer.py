@@ -111,9 +111,9 @@ def train(
     """
     begun = time.perf_counter()
     settings, progress = settings or TrainingSettings(), progress or (lambda _: None)
-    samples.trainable(LEAST_SAMPLES)
+    samples.trainable(LEAST_SAMPLES, settings.missing_inputs)
     before, inner = samples.last_block(settings.inner_share, SEAM_S) if check is None else (samples, check)
-    before.trainable(LEAST_BEFORE_INNER)
+    before.trainable(LEAST_BEFORE_INNER, settings.missing_inputs)
     device = chosen_device(settings.device)
     x_scale, y_scale = scale_of(before.x), scale_of(before.y)
     part, judged, whole = (_tensors(s, x_scale, y_scale, device) for s in (before, inner, samples))

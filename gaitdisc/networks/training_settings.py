@@ -34,6 +34,8 @@ class TrainingSettings:
     arithmetic : str
         `auto` computes the dissertation's network on the CPU by compiled code, with torch's numbers to rounding, and
         everything else by torch; `torch` computes everything by torch.
+    missing_inputs : bool
+        Whether inputs may be missing (NaN); the network has to know what to do with them, as `Shred` with `masked`.
 
     Raises
     ------
@@ -55,6 +57,7 @@ class TrainingSettings:
     device: str = "cpu"
     threads: int = 1
     arithmetic: str = "auto"
+    missing_inputs: bool = False
 
     def __post_init__(self) -> None:
         """Refuse settings that train nothing."""

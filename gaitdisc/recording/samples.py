@@ -118,13 +118,15 @@ class Samples:
             before = before.rows(before.time < last.time[0] - seam_s)
         return before, last
 
-    def trainable(self, least: int) -> Samples:
+    def trainable(self, least: int, missing_inputs: bool = False) -> Samples:
         """Return the same samples, or refuse to fit anything to them.
 
         Parameters
         ----------
         least : int
             Samples that the fit needs.
+        missing_inputs : bool
+            Whether the fit can do with inputs that are NaN.
 
         Raises
         ------
@@ -139,7 +141,7 @@ class Samples:
                 "Record longer, or use fewer channels; the findings say which samples were left away.",
             )
         for names, values in ((self.inputs, self.x), (self.outputs, self.y)):
-            bad = ~np.isfinite(values)
+            bad = np.isinf(values) if missing_inputs and values is self.x else ~np.isfinite(values)
             if bad.any():
                 row, column = (int(k) for k in np.argwhere(bad)[0])
                 raise TrainingError(

@@ -66,7 +66,7 @@ def scale_of(values: NDArray[np.float64]) -> Scale:
     Parameters
     ----------
     values : ndarray (sample, column) [each column's unit]
-        Finite.
+        Finite, or NaN where a value is missing; a column that is missing throughout is constant.
 
     Examples
     --------
@@ -74,6 +74,9 @@ def scale_of(values: NDArray[np.float64]) -> Scale:
     >>> scale.mean, scale.sd, scale.constant
     (array([1., 7.]), array([ 1., inf]), array([False,  True]))
     """
-    sd = values.std(axis=0)
-    still = sd <= ABSOLUTE_FLOOR + RELATIVE_FLOOR * np.abs(values).max(axis=0, initial=0.0)
-    return Scale(values.mean(axis=0), np.where(still, np.inf, sd))
+    mean, sd = values.mean(axis=0), values.std(axis=0)
+    for column in np.flatnonzero(np.isnan(mean)):
+        known = values[~np.isnan(values[:, column]), column]
+        mean[column], sd[column] = (known.mean(), known.std()) if len(known) else (0.0, 0.0)
+    still = sd <= ABSOLUTE_FLOOR + RELATIVE_FLOOR * np.nanmax(np.abs(values), axis=0, initial=0.0)
+    return Scale(mean, np.where(still, np.inf, sd))

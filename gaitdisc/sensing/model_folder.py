@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError, SchemaError, UnitError
-from gaitdisc.model import Model
 from gaitdisc.recording import Recording
-from gaitdisc.sensing.reconstructor import Reconstructor, Sensing
+from gaitdisc.sensing.missing import filled
+from gaitdisc.sensing.reconstructor import MASKED, Reconstructor, ScaledModel, Sensing
 from gaitdisc.sensing.windows import Lags, windows_of
 from gaitdisc.whole_file import write_whole
 
@@ -42,11 +42,12 @@ class SensingModel:
     channels: tuple[Channel, ...]
     half_widths: NDArray[np.float64]
 
-    def __call__(self, recording: Recording) -> Recording:
+    def __call__(self, recording: Recording, missing: str = "none") -> Recording:
         """States of a new recording that has the sensors, in their units and at the model's rate.
 
-        NaN where the history is not full or holds a missing value. The recording has to be filtered as those were
-        that the model was fitted to.
+        NaN where the history is not full, or holds a missing value; `missing`, a word of
+        `gaitdisc.sensing.missing.WAYS`, may say what stands for it, and a model that is told of missing values needs
+        nothing. The recording has to be filtered as those were that the model was fitted to.
         """
         what = self.reconstructor.sensing
         if abs(recording.rate_hz / what.rate_hz - 1) > RATE_TOLERANCE:
@@ -63,7 +64,10 @@ class SensingModel:
                     f"{recording.source.file or 'the recording'} has it in {found.unit}",
                     "Name the unit in the study's [channels].",
                 )
-        windows = windows_of(recording, what.sensors, what.sensors, what.lags, np.zeros(len(recording.time)))
+        read = filled(recording.selected(what.sensors), what.sensors, missing, self.reconstructor.sensor_means)
+        windows = windows_of(
+            read, what.sensors, (), what.lags, np.zeros(len(read.time)), self.reconstructor.kind == MASKED
+        )
         rows = np.searchsorted(recording.time, windows.time - 1e-9)
         values = np.full((len(recording.time), len(what.states)), np.nan)
         values[rows] = self.reconstructor(windows)
@@ -145,7 +149,7 @@ def load_model(folder: Path) -> SensingModel:
     return SensingModel(Reconstructor(kind, what, _weights(kind, what, folder), *numbers), tuple(channels), half)
 
 
-def _weights(kind: str, what: Sensing, folder: Path) -> Model:
+def _weights(kind: str, what: Sensing, folder: Path) -> ScaledModel:
     if "ridge" in kind or kind == "linear":
         from gaitdisc.regression.ridge_file import load_ridge
 
@@ -154,5 +158,6 @@ def _weights(kind: str, what: Sensing, folder: Path) -> Model:
     from gaitdisc.networks.shred import Shred
     from gaitdisc.networks.trained_network import load_network
 
-    build = partial(Shred, sensors=len(what.sensors)) if kind == "shred" else ShallowDecoder
+    shred = partial(Shred, sensors=len(what.sensors), masked=kind == MASKED)
+    build = ShallowDecoder if kind == "shallow decoder" else shred
     return load_network(folder / WEIGHTS, build)

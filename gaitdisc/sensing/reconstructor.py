@@ -6,13 +6,15 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, SchemaError
 from gaitdisc.model import Model
-from gaitdisc.recording import Recording, Samples
+from gaitdisc.recording import Recording, Samples, Scale
+from gaitdisc.sensing.missing import hidden
 from gaitdisc.sensing.windows import Lags, present, thinned, windows_of
 
 FEATURES = 1000
@@ -24,7 +26,18 @@ KINDS = {
     "fourier ridge": f"ridge regression on {FEATURES} random Fourier features of the readings and their history",
     "shred": "recurrent network on the readings and their history, shallow decoder (SHRED)",
 }
+MASKED = "masked shred"
+ON_REQUEST = {MASKED: "SHRED that is told which readings are missing, fitted with a part of them hidden"}
 STATIC = ("linear", "shallow decoder")
+
+
+class ScaledModel(Model, Protocol):
+    """A model that keeps the scale of its inputs in the training part."""
+
+    @property
+    def x_scale(self) -> Scale:
+        """Of every input."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -36,7 +49,7 @@ class Sensing:
     sensors : tuple of str
         Channels that are read.
     states : tuple of str
-        Channels that are told, none of them a sensor.
+        Channels that are told; none of them is a sensor, unless the future is told.
     lags : Lags
         Reach and density of the windows.
     rate_hz : float
@@ -60,10 +73,10 @@ class Sensing:
 
     @property
     def reach_s(self) -> float:
-        """From the first reading of a window to its last [s]."""
-        return self.lags.reach / self.rate_hz
+        """From the first reading of a window to the state that is told from it [s]."""
+        return (self.lags.reach + self.lags.ahead) / self.rate_hz
 
-    def windows(self, recording: Recording, phi: NDArray[np.float64]) -> Samples:
+    def windows(self, recording: Recording, phi: NDArray[np.float64], missing: bool = False) -> Samples:
         """Windows of a recording, which must have the rate and the units that the sensing was made for.
 
         Parameters
@@ -72,12 +85,14 @@ class Sensing:
             One trial.
         phi : ndarray (time,) [% stride]
             Percent stride of its samples.
+        missing : bool
+            Whether windows are kept whose readings are missing in part (NaN).
         """
-        return windows_of(recording, self.sensors, self.states, self.lags, phi)
+        return windows_of(recording, self.sensors, self.states, self.lags, phi, missing)
 
 
 def sensing(all_states: tuple[str, ...], sensors: tuple[str, ...], lags: Lags, rate_hz: float) -> Sensing:
-    """Tell every state that is not measured by a sensor.
+    """Tell every state that is not measured by a sensor, or the future of every state.
 
     Parameters
     ----------
@@ -95,7 +110,7 @@ def sensing(all_states: tuple[str, ...], sensors: tuple[str, ...], lags: Lags, r
     ChannelError
         If there is no sensor, one stands twice, or every state is a sensor.
     """
-    states = tuple(name for name in all_states if name not in sensors)
+    states = all_states if lags.ahead else tuple(name for name in all_states if name not in sensors)
     if not sensors or len(set(sensors)) < len(sensors):
         raise ChannelError(
             "reconstruction needs sensors, each once",
@@ -118,10 +133,10 @@ class Reconstructor:
     Parameters
     ----------
     kind : str
-        A word of `KINDS`.
+        A word of `KINDS` or `ON_REQUEST`.
     sensing : Sensing
         What it reads and tells.
-    model : Model
+    model : ScaledModel
         Takes the present readings where the kind is without history, whole windows otherwise.
     n_fitted : int
         Windows it was fitted to.
@@ -131,9 +146,14 @@ class Reconstructor:
 
     kind: str
     sensing: Sensing
-    model: Model
+    model: ScaledModel
     n_fitted: int
     seconds: float
+
+    @property
+    def sensor_means(self) -> NDArray[np.float64]:
+        """Mean reading of each sensor in the training part, (sensor,) [each sensor's unit]."""
+        return self.model.x_scale.mean[-len(self.sensing.sensors) :]
 
     def __call__(self, windows: Samples) -> NDArray[np.float64]:
         """States (window, state) told from windows, each in its unit."""
@@ -147,11 +167,11 @@ def fit_reconstructor(kind: str, what: Sensing, training: Samples, check: Sample
     Parameters
     ----------
     kind : str
-        A word of `KINDS`.
+        A word of `KINDS` or `ON_REQUEST`.
     what : Sensing
         What is read and told.
     training, check : Samples
-        Windows to fit, and windows to choose by.
+        Windows to fit, and windows to choose by; readings may be missing for the kind that is told of it.
     seed : int
         Of every random act.
 
@@ -166,18 +186,21 @@ def fit_reconstructor(kind: str, what: Sensing, training: Samples, check: Sample
     TrainingError
         If the windows are too few, or an output does not vary.
     """
-    if kind not in KINDS:
-        raise SchemaError("a reconstruction needs a kind of model", f"{kind!r} is none", f"Use: {', '.join(KINDS)}.")
+    if kind not in (*KINDS, *ON_REQUEST):
+        known = ", ".join((*KINDS, *ON_REQUEST))
+        raise SchemaError("a reconstruction needs a kind of model", f"{kind!r} is none", f"Use: {known}.")
     fit = _fit_of(kind, len(what.sensors), seed)
     training, check = thinned(training, MOST_FITTED), thinned(check, MOST_FITTED)
     if kind in STATIC:
         training, check = present(training, what.sensors), present(check, what.sensors)
+    if kind == MASKED:
+        training, check = hidden(training, len(what.sensors), seed), hidden(check, len(what.sensors), seed + 1)
     begun = time.process_time()
     model = fit(training, check)
     return Reconstructor(kind, what, model, len(training), time.process_time() - begun)
 
 
-def _fit_of(kind: str, sensors: int, seed: int) -> Callable[[Samples, Samples], Model]:
+def _fit_of(kind: str, sensors: int, seed: int) -> Callable[[Samples, Samples], ScaledModel]:
     from gaitdisc.regression.fourier_ridge import fit_fourier_ridge
 
     if kind in ("linear", "delay ridge"):
@@ -189,6 +212,7 @@ def _fit_of(kind: str, sensors: int, seed: int) -> Callable[[Samples, Samples], 
     from gaitdisc.networks.trainer import train
     from gaitdisc.networks.training_settings import TrainingSettings
 
-    build = ShallowDecoder if kind == "shallow decoder" else partial(Shred, sensors=sensors)
-    settings = TrainingSettings(epochs=20, batch=128, decays=(0.01,), seed=seed)
+    masked = kind == MASKED
+    build = ShallowDecoder if kind == "shallow decoder" else partial(Shred, sensors=sensors, masked=masked)
+    settings = TrainingSettings(epochs=20, batch=128, decays=(0.01,), seed=seed, missing_inputs=masked)
     return lambda training, check: train(training, build, settings, check=check).network

@@ -2,21 +2,37 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.errors import ShapeError
-from gaitdisc.recording import Samples
-from gaitdisc.sensing.reconstructor import Reconstructor
+from gaitdisc.sensing.missing import refuse_unknown
+from gaitdisc.sensing.reconstructor import MASKED, STATIC, Reconstructor
+
+if TYPE_CHECKING:
+    from gaitdisc.networks.carried_windows import CarriedWindows
 
 
 class Stream:
-    """Keeps the last readings, and tells the states each time a new one comes; the same numbers as over a recording.
+    """Tells the states each time a new reading comes; the same numbers as over a recording.
+
+    A recurrent network carries the states of the windows under way from one reading to the next
+    (`gaitdisc.networks.carried_windows`); every other model reads the last readings, which are kept.
 
     Parameters
     ----------
     reconstructor : Reconstructor
         What tells the states.
+    missing : str
+        A word of `gaitdisc.sensing.missing.WAYS`: what stands for a reading that is missing, unless the model was
+        fitted to be told of it.
+
+    Raises
+    ------
+    SchemaError
+        If there is no such way.
 
     Examples
     --------
@@ -25,20 +41,18 @@ class Stream:
     array([...])
     """
 
-    def __init__(self, reconstructor: Reconstructor) -> None:
-        self._reconstructor = reconstructor
-        what = reconstructor.sensing
-        self._readings = np.full((what.lags.reach + 1, len(what.sensors)), np.nan)
-        self._rows = np.arange(what.lags.count) * what.lags.spacing
-        first = np.zeros(1)
-        names = tuple(f"{k}" for k in range(what.lags.count * len(what.sensors)))
-        self._frame = (names, np.zeros((1, len(what.states))), first)
+    def __init__(self, reconstructor: Reconstructor, missing: str = "none") -> None:
+        refuse_unknown(missing)
+        self._sensors = reconstructor.sensing.sensors
+        self._told = _told_by(reconstructor)
+        self._missing = missing
+        self._stands = reconstructor.sensor_means
 
     def update(self, reading: ArrayLike) -> NDArray[np.float64]:
         """States at the time of a new reading, (state,) [each state's unit].
 
-        NaN until the history is full, and while it holds a missing reading that the model needs: a value that was
-        never measured is not made up.
+        NaN until the history is full, and while it holds a missing reading that the model needs: unless the stream was
+        told what to put in its place, a value that was never measured is not made up.
 
         Parameters
         ----------
@@ -51,15 +65,41 @@ class Stream:
             If there are not as many values as sensors.
         """
         new = np.asarray(reading, float)
-        what = self._reconstructor.sensing
-        if new.shape != (len(what.sensors),):
+        if new.shape != (len(self._sensors),):
             raise ShapeError(
-                f"a reading needs one value for each of {', '.join(what.sensors)}",
+                f"a reading needs one value for each of {', '.join(self._sensors)}",
                 f"found an array of shape {new.shape}",
                 "Give them in this order, NaN where a sensor dropped out.",
             )
+        if self._missing != "none":
+            new = np.where(np.isfinite(new), new, self._stands)
+        if self._missing == "last":
+            self._stands = new
+        return self._told.update(new)
+
+
+class _LastReadings:
+    """The last readings, and what a model tells of them."""
+
+    def __init__(self, reconstructor: Reconstructor) -> None:
+        what = reconstructor.sensing
+        lags = what.lags.static() if reconstructor.kind in STATIC else what.lags
+        self._model = reconstructor.model
+        self._readings = np.full((lags.reach + 1, len(what.sensors)), np.nan)
+        self._rows = np.arange(lags.count) * lags.spacing
+
+    def update(self, reading: NDArray[np.float64]) -> NDArray[np.float64]:
         self._readings[:-1] = self._readings[1:]
-        self._readings[-1] = new
-        names, states, time = self._frame
-        window = self._readings[self._rows].reshape(1, -1)
-        return self._reconstructor(Samples(window, states, names, what.states, time, time))[0]
+        self._readings[-1] = reading
+        return self._model(self._readings[self._rows].reshape(1, -1))[0]
+
+
+def _told_by(reconstructor: Reconstructor) -> _LastReadings | CarriedWindows:
+    if reconstructor.kind not in ("shred", MASKED):
+        return _LastReadings(reconstructor)
+    from gaitdisc.networks.carried_windows import CarriedWindows
+    from gaitdisc.networks.trained_network import TrainedNetwork
+
+    assert isinstance(reconstructor.model, TrainedNetwork)  # what that kind is fitted as
+    lags = reconstructor.sensing.lags
+    return CarriedWindows(reconstructor.model, lags.count, lags.spacing)

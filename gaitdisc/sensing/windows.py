@@ -22,11 +22,13 @@ class Lags:
         Readings of each sensor in a window, the present one included.
     spacing : int
         Samples from one reading to the next; 6 Hz kinematics at 100 Hz lose nothing at 4.
+    ahead : int
+        Samples from the last reading to the state that is told: 0 tells the present, more of them forecast.
 
     Raises
     ------
     ShapeError
-        If one of them is below 1.
+        If one of the first two is below 1, or the last below 0.
 
     Examples
     --------
@@ -36,13 +38,14 @@ class Lags:
 
     count: int = 25
     spacing: int = 4
+    ahead: int = 0
 
     def __post_init__(self) -> None:
         """Refuse a window without a reading."""
-        if self.count < 1 or self.spacing < 1:
+        if self.count < 1 or self.spacing < 1 or self.ahead < 0:
             raise ShapeError(
-                "a window needs at least one reading, and lags at least one sample apart",
-                f"found {self.count} readings, {self.spacing} samples apart",
+                "a window needs at least one reading, lags at least one sample apart, and a state that is not past",
+                f"found {self.count} readings, {self.spacing} samples apart, {self.ahead} ahead",
                 "Correct the lags.",
             )
 
@@ -57,9 +60,14 @@ class Lags:
 
 
 def windows_of(
-    recording: Recording, sensors: Sequence[str], states: Sequence[str], lags: Lags, phi: NDArray[np.float64]
+    recording: Recording,
+    sensors: Sequence[str],
+    states: Sequence[str],
+    lags: Lags,
+    phi: NDArray[np.float64],
+    missing: bool = False,
 ) -> Samples:
-    """Every window of one recording; none reaches beyond its start or over a missing value.
+    """Every window of one recording; none reaches beyond its start, nor over a missing value unless that is asked for.
 
     Parameters
     ----------
@@ -71,12 +79,14 @@ def windows_of(
         Reach and density of the windows.
     phi : ndarray (time,) [% stride]
         Percent stride of every sample of the recording.
+    missing : bool
+        Whether windows are kept whose readings are missing in part (NaN); the states must be there.
 
     Returns
     -------
     Samples
-        x (window, reading * sensor), oldest reading first, sensors side by side; y the states at the last reading.
-        Windows that lack a value are not among them.
+        x (window, reading * sensor), oldest reading first, sensors side by side; y, time and phi those of the state
+        that is told, at the last reading or `lags.ahead` samples later. Windows that lack a value are not among them.
 
     Raises
     ------
@@ -95,22 +105,24 @@ def windows_of(
     ([[0.0, 1.0], [1.0, 2.0], [2.0, 3.0]], [10.0, 20.0, 30.0], ('a 0.10 s ago', 'a'))
     """
     read, told = recording.selected(sensors).values, recording.selected(states).values
-    if len(read) <= lags.reach:
+    if len(read) <= lags.reach + lags.ahead:
+        forth = f" and {lags.ahead / recording.rate_hz:.2f} s ahead" if lags.ahead else ""
         raise SamplingError(
-            f"a window reaches back {lags.reach / recording.rate_hz:.2f} s",
+            f"a window reaches back {lags.reach / recording.rate_hz:.2f} s{forth}",
             f"{recording.source.file or 'the recording'} lasts {recording.duration_s:.2f} s",
             "Take fewer lags, or a longer trial.",
         )
-    last = np.arange(lags.reach, len(read))
+    last = np.arange(lags.reach, len(read) - lags.ahead)
     rows = last[:, None] + (np.arange(lags.count) - lags.count + 1) * lags.spacing
     x = read[rows].reshape(len(last), -1)
-    whole = np.isfinite(x).all(axis=1) & np.isfinite(told[last]).all(axis=1)
+    known = np.isfinite(x)
+    whole = (known.any(axis=1) if missing else known.all(axis=1)) & np.isfinite(told[last + lags.ahead]).all(axis=1)
     names = tuple(
         sensor if ago == 0 else f"{sensor} {ago * lags.spacing / recording.rate_hz:.2f} s ago"
         for ago in range(lags.count - 1, -1, -1)
         for sensor in sensors
     )
-    kept = last[whole]
+    kept = last[whole] + lags.ahead
     return Samples(
         x[whole], told[kept], names, tuple(states), recording.time[kept], np.asarray(phi)[kept], recording.subject
     )

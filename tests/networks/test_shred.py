@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import torch
 
-from gaitdisc.errors import ShapeError
+from gaitdisc.errors import ShapeError, TrainingError
 from gaitdisc.networks import shred
 from gaitdisc.networks.shred import Shred
 from gaitdisc.networks.trained_network import load_network, save_network
@@ -61,3 +61,31 @@ def test_it_learns_what_needs_history_and_is_loaded_as_it_was_saved(echo, tmp_pa
 def test_a_window_that_lacks_a_reading():
     with pytest.raises(ShapeError, match="as many readings of each; it has 7 numbers"):
         Shred(7, 2, 2)
+
+
+def test_a_masked_network_reads_the_mean_and_that_it_is_none():
+    torch.manual_seed(0)
+    network, x = Shred(6, 2, 2, masked=True), torch.rand(4, 6)
+    lost = x.clone()
+    lost[:, 3] = torch.nan
+    mean = torch.where(lost.isnan(), 0.0, lost)
+    assert network(lost).isfinite().all()
+    assert not torch.allclose(network(lost), network(mean))  # a value of 0 is not a missing one
+    assert Shred(6, 2, 2)(lost).isnan().all()
+
+
+def test_missing_readings_in_training(echo):
+    rng = np.random.default_rng(0)
+    holes = Samples(
+        np.where(rng.random(echo.x.shape) < 0.3, np.nan, echo.x),
+        *(getattr(echo, n) for n in ("y", "inputs", "outputs", "time", "phi")),
+    )
+    build = partial(BUILD, masked=True)
+    settings = TrainingSettings(epochs=1, batch=64, decays=(0.0,), missing_inputs=True)
+    done = train(holes.rows(slice(0, 500)), build, settings, check=holes.rows(slice(510, 600)))
+    told = done.network(holes.x[610:])
+    there = np.isfinite(holes.x[610:, 0])
+    error = (told - echo.y[610:])[:, 0] ** 2
+    assert np.mean(error[there]) < 0.3 < np.mean(error[~there])
+    with pytest.raises(TrainingError, match="needs finite numbers"):
+        train(holes.rows(slice(0, 500)), build, TrainingSettings(epochs=1))

@@ -26,3 +26,11 @@ def test_small_units_are_not_taken_for_constant():
 
 def test_numbers_are_frozen():
     assert not scale_of(np.arange(4.0)[:, None]).mean.flags.writeable
+
+
+def test_missing_values_take_no_part():
+    values = np.array([[1.0, np.nan, 5.0], [np.nan, np.nan, 7.0], [3.0, np.nan, 6.0]])
+    scale = scale_of(values)
+    np.testing.assert_array_equal(scale.mean, [2.0, 0.0, 6.0])
+    assert scale.sd[0] == 1.0
+    assert scale.constant.tolist() == [False, True, False]

@@ -6,11 +6,14 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import torch
 from scipy.ndimage import gaussian_filter1d
 
 from gaitdisc.channel import Channel
-from gaitdisc.recording import Recording
-from gaitdisc.sensing.reconstructor import sensing
+from gaitdisc.networks.shred import Shred
+from gaitdisc.networks.trained_network import TrainedNetwork
+from gaitdisc.recording import Recording, scale_of
+from gaitdisc.sensing.reconstructor import MASKED, Reconstructor, sensing
 from gaitdisc.sensing.splits import split_within
 from gaitdisc.sensing.windows import Lags
 
@@ -28,3 +31,17 @@ def pair():
     return SimpleNamespace(
         recording=recording, what=what, channels=channels, parts=split_within([windows], "temporal", what.reach_s)
     )
+
+
+@pytest.fixture
+def untrained(pair):
+    """A network of a kind as it is before the first step: what carries it need not know what it has learnt."""
+
+    def made(kind):
+        torch.manual_seed(0)
+        seen = pair.parts.fitted()
+        network = Shred(len(seen.inputs), len(seen.outputs), 1, masked=kind == MASKED)
+        scaled = TrainedNetwork(seen.inputs, seen.outputs, scale_of(seen.x), scale_of(seen.y), network)
+        return Reconstructor(kind, pair.what, scaled, len(seen), 0.0)
+
+    return made

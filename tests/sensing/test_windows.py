@@ -55,10 +55,33 @@ def test_present_readings_and_every_third_window():
     assert thinned(made, 100).x.shape == made.x.shape
 
 
+def test_windows_that_lack_readings_are_kept_on_request():
+    recording = counting()
+    values = recording.values.copy()
+    values[10:15, 0] = np.nan
+    values[25, 2] = np.nan
+    made = windows_of(recording.with_values(values), ["a"], ["c"], Lags(3, 2), np.zeros(30), missing=True)
+    assert set((made.y[:, 0] / 1000).astype(int)) == set(range(4, 30)) - {14, 25}  # 14 has no reading at all
+    assert np.isnan(made.x).any()
+
+
+@given(st.integers(0, 5))
+def test_a_window_may_tell_the_future(ahead):
+    made = windows_of(counting(), ["a"], ["a", "c"], Lags(3, 2, ahead), np.arange(30.0))
+    assert len(made) == 30 - 4 - ahead
+    np.testing.assert_array_equal(made.y[:, 0] - made.x[:, -1], ahead)
+    np.testing.assert_allclose(made.time * 100, made.y[:, 0])
+    np.testing.assert_array_equal(made.phi, made.y[:, 0])
+
+
 def test_refusals():
     with pytest.raises(SamplingError, match=r"reaches back 0\.40 s; the recording lasts 0\.30 s"):
         windows_of(counting(), ["a"], ["c"], Lags(11, 4), np.zeros(30))
     with pytest.raises(ChannelError, match="'d' is needed"):
         windows_of(counting(), ["d"], ["c"], Lags(2, 1), np.zeros(30))
-    with pytest.raises(ShapeError, match="found 0 readings, 4 samples apart"):
+    with pytest.raises(SamplingError, match=r"reaches back 0\.20 s and 0\.10 s ahead; the recording lasts 0\.30 s"):
+        windows_of(counting(), ["a"], ["c"], Lags(6, 4, 10), np.zeros(30))
+    with pytest.raises(ShapeError, match="found 0 readings, 4 samples apart, 0 ahead"):
         Lags(0, 4)
+    with pytest.raises(ShapeError, match=r"a state that is not past; .* -1 ahead"):
+        Lags(1, 4, -1)

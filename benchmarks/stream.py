@@ -1,0 +1,66 @@
+"""One sample streamed: how long `Stream.update` takes for each kind of model, beside torch called on the window.
+
+    python benchmarks/stream.py [--samples 5000]
+
+Real walks (treadmill_walk_ik, three sensors, 15 states, 25 readings 0.04 s apart).
+Calls are timed one by one, on one thread; beside them stands the largest difference between what is streamed and what
+is told over the recording, in standard deviations of the state (torch computes the networks in float32).
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import time
+from collections.abc import Callable, Iterable
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import numpy as np
+from numpy.typing import NDArray
+from sensing_walks import treadmill_walks
+
+from gaitdisc.sensing.reconstructor import KINDS, fit_reconstructor
+from gaitdisc.sensing.splits import split_within
+from gaitdisc.sensing.stream import Stream
+from gaitdisc.sensing.windows import windows_of
+
+GOAL_MS = 0.2
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--samples", type=int, default=5000)
+    count = parser.parse_args().samples
+    [person] = treadmill_walks()
+    [walks] = person.walks.people.values()
+    what = person.what
+    parts = split_within([what.windows(w.recording, w.phi) for w in walks], "temporal", what.reach_s)
+    recording = walks[0].recording
+    readings = np.resize(recording.selected(what.sensors).values, (count, len(what.sensors)))
+    windows = windows_of(recording, what.sensors, what.states, what.lags, walks[0].phi)
+    sd = windows.y.std(axis=0)
+    print(f"{'model':<18}{'median ms':>10}{'99 % ms':>10}{'torch ms':>10}  largest difference [sd]")
+    for kind in KINDS:
+        done = fit_reconstructor(kind, what, parts.fitted(), parts.checked())
+        stream = Stream(done)
+        told = np.array([stream.update(reading) for reading in readings[: len(recording.time)]])
+        apart = np.abs(told[what.lags.reach :] - done(windows)) / sd
+        each = timed(stream.update, readings)
+        whole = timed(done, [windows.rows(slice(row, row + 1)) for row in range(200)])
+        line = f"{kind:<18}{np.median(each):>10.3f}{np.quantile(each, 0.99):>10.3f}{np.median(whole):>10.3f}"
+        print(f"{line}  {apart.max():.1e}{'' if np.median(each) <= GOAL_MS else '  goal missed'}")
+
+
+def timed(call: Callable, given: Iterable) -> NDArray[np.float64]:
+    """Milliseconds of each call."""
+    found = []
+    for one in given:
+        begun = time.perf_counter()
+        call(one)
+        found.append(1e3 * (time.perf_counter() - begun))
+    return np.array(found)
+
+
+if __name__ == "__main__":
+    main()

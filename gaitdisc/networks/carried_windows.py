@@ -1,0 +1,128 @@
+"""SHRED read live: every window that is under way carries its state, and none is read again."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.networks.recurrent_steps import decoded, gru_step, lstm_step
+from gaitdisc.networks.shred import Shred
+from gaitdisc.networks.trained_network import TrainedNetwork
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class RecurrentWeights:
+    """Weights of a `Shred` in double precision, as `recurrent_steps` takes them.
+
+    Parameters
+    ----------
+    cell : str
+        `gru` or `lstm`.
+    layers : tuple of ((ndarray, ndarray), (ndarray, ndarray))
+        Weights (input, gate * node) and (node, gate * node), and offsets, of each recurrent layer.
+    decoder : (three of ndarray (input, output), three of ndarray (output,))
+        Weights and offsets of the decoder.
+    masked : bool
+        Whether the network reads beside each value that it is missing.
+    """
+
+    cell: str
+    layers: tuple[tuple[tuple[Array, Array], tuple[Array, Array]], ...]
+    decoder: tuple[tuple[Array, Array, Array], tuple[Array, Array, Array]]
+    masked: bool
+
+    @property
+    def nodes(self) -> int:
+        """Nodes of a recurrent layer."""
+        return len(self.layers[0][0][1])
+
+
+def recurrent_weights(network: TrainedNetwork) -> RecurrentWeights:
+    """Weights of a trained `Shred`.
+
+    Parameters
+    ----------
+    network : TrainedNetwork
+        Whose torch module is a `Shred`.
+    """
+    shred = network.network
+    assert isinstance(shred, Shred)  # nothing else is asked for
+    found = {name: np.ascontiguousarray(values.T, float) for name, values in network.weights().items()}
+    layers = tuple(
+        (
+            (found[f"recurrent.weight_ih_l{k}"], found[f"recurrent.weight_hh_l{k}"]),
+            (found[f"recurrent.bias_ih_l{k}"], found[f"recurrent.bias_hh_l{k}"]),
+        )
+        for k in range(shred.recurrent.num_layers)
+    )
+    weights, offsets = (
+        (found[f"decoder.first.{what}"], found[f"decoder.second.{what}"], found[f"decoder.readout.{what}"])
+        for what in ("weight", "bias")
+    )
+    return RecurrentWeights(shred.cell, layers, (weights, offsets), shred.masked)
+
+
+class CarriedWindows:
+    """Every window that is under way, one reading further at each call; tells what the torch network tells.
+
+    A window has `count` readings, `spacing` samples apart, and begins with a state of zero. At any time one window of
+    each age is under way in each of `spacing` phases. A new reading belongs to those of one phase: all of them go one
+    step as one matrix product, the oldest is then whole and is decoded, and a new one begins. The products are as many
+    as in one window that is read again, but side by side, where that would be `count` of them one after the other.
+
+    A reading that is NaN makes every window NaN that holds it, unless the network was made for that (`masked`).
+
+    Parameters
+    ----------
+    network : TrainedNetwork
+        Whose torch module is a `Shred`.
+    count, spacing : int
+        Readings of a window, and samples from one to the next.
+
+    Examples
+    --------
+    >>> CarriedWindows(network, 25, 4).update(np.array([12.1, 30.4, -3.3]))  # doctest: +SKIP
+    array([nan, ...])
+    """
+
+    def __init__(self, network: TrainedNetwork, count: int, spacing: int) -> None:
+        self._weights = recurrent_weights(network)
+        self._mean = network.x_scale.mean.reshape(count, -1)
+        self._sd = network.x_scale.sd.reshape(count, -1)
+        self._y_scale = network.y_scale
+        # (phase, layer, age, node): the state of a window that has `age` readings, before the next one
+        shape = (spacing, len(self._weights.layers), count, self._weights.nodes)
+        self._states, self._cells = (np.full(shape, np.nan) for _ in range(2))
+        self._states[:, :, 0] = self._cells[:, :, 0] = 0.0
+        self._silent = np.zeros(spacing, int)  # readings of a phase since one that was known
+        self._phase = 0
+
+    def update(self, reading: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Outputs (output,) of the window that ends with a new reading; NaN until there is a whole one.
+
+        Parameters
+        ----------
+        reading : ndarray (sensor,) [each sensor's unit]
+            Taken one sample after the one before.
+        """
+        read = (reading - self._mean) / self._sd
+        if self._weights.masked:
+            missing = np.isnan(read)
+            self._silent[self._phase] = self._silent[self._phase] + 1 if np.isnan(reading).all() else 0
+            read = np.hstack([np.where(missing, 0.0, read), missing])
+        for layer, (weights, offsets) in enumerate(self._weights.layers):
+            states, cells = self._states[self._phase, layer], self._cells[self._phase, layer]
+            if self._weights.cell == "gru":
+                read = gru_step(read, states, weights, offsets)
+            else:
+                read, kept = lstm_step(read, (states, cells), weights, offsets)
+                cells[1:] = kept[:-1]
+            states[1:] = read[:-1]
+        if self._silent[self._phase] >= len(self._mean):
+            read = np.full_like(read, np.nan)  # no reading at all: a state that nothing tells of
+        self._phase = (self._phase + 1) % len(self._states)
+        return self._y_scale.unscaled(decoded(read[-1], *self._weights.decoder))

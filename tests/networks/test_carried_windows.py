@@ -1,0 +1,73 @@
+import numpy as np
+import pytest
+import torch
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gaitdisc.networks.carried_windows import CarriedWindows
+from gaitdisc.networks.shred import Shred
+from gaitdisc.networks.trained_network import TrainedNetwork
+from gaitdisc.recording import scale_of
+
+
+def untrained(count, sensors, **options):
+    torch.manual_seed(0)
+    rng = np.random.default_rng(0)
+    x, y = rng.normal(30, 20, (60, count * sensors)), rng.normal(-5, 10, (60, 4))
+    names = tuple(f"x{k}" for k in range(count * sensors)), tuple(f"y{k}" for k in range(4))
+    return TrainedNetwork(*names, scale_of(x), scale_of(y), Shred(count * sensors, 4, sensors, nodes=6, **options))
+
+
+def read_whole(readings, count, spacing):
+    last = np.arange((count - 1) * spacing, len(readings))
+    rows = last[:, None] + (np.arange(count) - count + 1) * spacing
+    return readings[rows].reshape(len(last), -1)
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(1, 7), st.integers(1, 4), st.integers(1, 3), st.sampled_from(["gru", "lstm"]), st.integers(1, 2))
+def test_it_tells_what_the_torch_network_tells(count, spacing, sensors, cell, layers):
+    network = untrained(count, sensors, cell=cell, layers=layers)
+    readings = np.random.default_rng(1).normal(30, 20, ((count - 1) * spacing + 9, sensors))
+    carried = CarriedWindows(network, count, spacing)
+    told = np.array([carried.update(reading) for reading in readings])
+    reach = (count - 1) * spacing
+    assert np.isnan(told[:reach]).all()
+    windows = read_whole(readings, count, spacing)
+    np.testing.assert_allclose(told[reach:] / 10, network(windows) / 10, atol=1e-6)  # float32; 10 is the sd
+    exact = network.network.double()(torch.from_numpy(network.x_scale.scaled(windows)))
+    np.testing.assert_allclose(told[reach:], network.y_scale.unscaled(exact.detach().numpy()), rtol=1e-12, atol=1e-12)
+
+
+def test_a_missing_reading_spoils_the_windows_that_hold_it_and_no_other():
+    carried = CarriedWindows(untrained(3, 1), 3, 2)
+    for value in range(10):
+        carried.update(np.array([float(value)]))
+    spoilt = [bool(np.isnan(carried.update(np.array([np.nan if k == 0 else 1.0]))).all()) for k in range(7)]
+    assert spoilt == [True, False, True, False, True, False, False]
+
+
+@pytest.mark.parametrize("cell", ["gru", "lstm"])
+def test_an_input_that_did_not_vary_weighs_nothing(cell):
+    network = untrained(2, 2, cell=cell)
+    x = np.random.default_rng(0).normal(size=(40, 4))
+    x[:, [1, 3]] = 7.0
+    still = TrainedNetwork(network.inputs, network.outputs, scale_of(x), network.y_scale, network.network)
+    one, other = CarriedWindows(still, 2, 1), CarriedWindows(still, 2, 1)
+    for value in range(3):
+        a, b = one.update(np.array([value, 7.0])), other.update(np.array([value, -100.0]))
+    np.testing.assert_array_equal(a, b)
+
+
+def test_a_masked_network_tells_on_while_readings_are_missing():
+    network = untrained(3, 2, masked=True)
+    readings = np.random.default_rng(1).normal(30, 20, (40, 2))
+    readings[5:20, 0] = np.nan
+    readings[10:30, 1] = np.nan
+    carried = CarriedWindows(network, 3, 2)
+    told = np.array([carried.update(reading) for reading in readings])[4:]
+    windows = read_whole(readings, 3, 2)
+    silent = np.isnan(windows).all(axis=1)
+    assert silent.sum() == 6
+    assert (np.isnan(told).all(axis=1) == silent).all()
+    np.testing.assert_allclose(told[~silent], network(windows)[~silent], atol=1e-5)
