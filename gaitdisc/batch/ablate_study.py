@@ -15,7 +15,7 @@ from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.response.data_quantity import LENGTHS_S
 from gaitdisc.response.over_participants import compare_participants
 from gaitdisc.results import DataQuantity, Refusal, ResponseRun
-from gaitdisc.results.store import save_run
+from gaitdisc.results.run_store import save_run
 
 
 def ablate_study(

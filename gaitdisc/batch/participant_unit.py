@@ -16,15 +16,8 @@ from gaitdisc.processing.filter_null import filter_null_of
 from gaitdisc.processing.walk import Walk
 from gaitdisc.response.fit_response import ResponseSettings, fit_response
 from gaitdisc.results import ParticipantResponse, Refusal, WalkSummary
-from gaitdisc.results.store import (
-    load_refused,
-    load_response,
-    load_walk,
-    save_refused,
-    save_response,
-    save_walk,
-    unit_name,
-)
+from gaitdisc.results.response_store import load_refused, load_response, save_refused, save_response
+from gaitdisc.results.walk_store import load_walk, save_walk, unit_name
 
 Progress = Callable[[float], None]
 SHARE_OF_PROCESSING = 0.1

@@ -12,7 +12,7 @@ from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.response.data_quantity import fit_data_quantity
 from gaitdisc.results import DataQuantity, ParticipantResponse, Refusal
-from gaitdisc.results.store import load_quantity, load_response, save_quantity
+from gaitdisc.results.response_store import load_quantity, load_response, save_quantity
 
 
 def computed_quantity(

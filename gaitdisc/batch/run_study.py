@@ -17,7 +17,7 @@ from gaitdisc.response.comparison import compare_models
 from gaitdisc.response.over_participants import compare_participants
 from gaitdisc.results import DataQuantity, Provenance, ResponseRun
 from gaitdisc.results.provenance import installed_versions
-from gaitdisc.results.store import save_run
+from gaitdisc.results.run_store import save_run
 
 SECTION = "4.2, Eqs. 4.1-4.5"
 Told = Callable[[str, float], None]

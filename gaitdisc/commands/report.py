@@ -11,7 +11,7 @@ import typer
 def report(run_folder: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a run.")]) -> None:
     """Draw the report of a run again, without fitting."""
     from gaitdisc.report.response_page import write_report
-    from gaitdisc.results.store import load_run
+    from gaitdisc.results.run_store import load_run
 
     page = write_report(load_run(run_folder), run_folder / "report")
     typer.echo(f"report: {page}")

@@ -11,7 +11,7 @@ import pandas as pd
 from gaitdisc.channel import side_of
 from gaitdisc.report.curves_figure import sides_together
 from gaitdisc.report.figure import Figure
-from gaitdisc.report.mismatch_sentences import spoken
+from gaitdisc.report.gap_wording import spoken
 from gaitdisc.report.palette import SIDES, WITHOUT_DEVICE
 from gaitdisc.report.panels import Room, in_style, legend, panels, sheets
 from gaitdisc.report.wording import counted, label, unit_text, upwards

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
-from gaitdisc.report.mismatch_sentences import amount, spoken, with_unit
+from gaitdisc.report.gap_wording import amount, spoken, with_unit
 from gaitdisc.report.table import Table
 from gaitdisc.report.wording import counted
 from gaitdisc.results.mismatch import Mismatch

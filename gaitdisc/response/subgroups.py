@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gaitdisc.errors import ComparisonError
 from gaitdisc.results import ParticipantResponse
 from gaitdisc.results.over_participants import RESPONDER_COLUMNS, no_rows
-from gaitdisc.statistics.clusters import FEWEST, Groups, find_groups
+from gaitdisc.statistics.groups import FEWEST, Groups, find_groups
 
 
 def responder_table(responses: Sequence[ParticipantResponse], seed: int = 0) -> tuple[pd.DataFrame, str]:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.integrate import trapezoid
 
 from gaitdisc.errors import ComparisonError, ShapeError
+from gaitdisc.statistics.permutation import USUAL, PermutationPlan, sign_flips
 
 FEWEST_IN_ONE = 6  # 2^5 sign flips, of which the smallest p is 1/32
 FEWEST_IN_EACH = 6  # fewer departures hold the level no longer
@@ -79,28 +80,6 @@ class ClusterTest:
     alpha: float
 
 
-@dataclass(frozen=True)
-class PermutationPlan:
-    """How a permutation test is run.
-
-    Parameters
-    ----------
-    alpha : float
-        Chance of a false alarm anywhere in the stride and in any channel.
-    permutations : int
-        Most of them; where there are no more, all are taken.
-    seed : int
-        Of those drawn.
-    """
-
-    alpha: float = 0.05
-    permutations: int = 2000
-    seed: int = 0
-
-
-USUAL = PermutationPlan()
-
-
 def one_sample_test(
     curves: NDArray[np.float64],
     plan: PermutationPlan = USUAL,
@@ -155,7 +134,7 @@ def one_sample_test(
 
     mean = curves.mean(axis=0)
     error = np.sqrt(curves.var(axis=0, ddof=1) / n + least.reshape(shape))
-    return _tested(mean / error, error, t_of, _signs(n, plan), plan, worth)
+    return _tested(mean / error, error, t_of, sign_flips(n, plan), plan, worth)
 
 
 def two_sample_test(
@@ -189,7 +168,7 @@ def two_sample_test(
     ShapeError
         If the curves are not (unit, phase, channel), differ in phase or channel, or a value is missing.
     ComparisonError
-        If a set has fewer than four units, or there are so few permutations that none could be significant.
+        If a set has fewer than six units, or there are so few permutations that none could be significant.
 
     References
     ----------
@@ -227,7 +206,7 @@ def two_sample_test(
     difference = first.mean(axis=0) - second.mean(axis=0)
     variance = first.var(axis=0, ddof=1) / len(first) + second.var(axis=0, ddof=1) / len(second)
     error = np.sqrt(variance + least.reshape(shape))
-    return _tested(difference / error, error, t_of, _signs(len(first) + len(second), plan), plan, worth)
+    return _tested(difference / error, error, t_of, sign_flips(len(first) + len(second), plan), plan, worth)
 
 
 def _tested(
@@ -274,19 +253,6 @@ def _parts(drawn: NDArray[np.float64], size: int) -> Iterator[NDArray[np.float64
         yield drawn[start : start + step]
 
 
-def _signs(n: int, plan: PermutationPlan) -> tuple[NDArray[np.float64], bool]:
-    """One row a permutation, and whether these are all; with all signs turned |t| is the same, so one stays."""
-    exact = 2 ** (n - 1) <= plan.permutations
-    if exact:
-        turned = (np.arange(1, 2 ** (n - 1))[:, None] >> np.arange(n - 1)) & 1
-    else:
-        turned = np.random.default_rng(plan.seed).integers(0, 2, (plan.permutations - 1, n - 1))
-    _check_count(len(turned) + 1, plan)
-    signs = np.ones((len(turned), n))
-    signs[:, 1:] -= 2.0 * turned
-    return signs, exact
-
-
 def _least_error(curves: NDArray[np.float64], n: int) -> NDArray[np.float64]:
     """Square of the smallest standard error that is more than rounding, (phase x channel,)."""
     spread = np.maximum((curves**2).mean(axis=(0, 1)), np.finfo(float).tiny)
@@ -306,13 +272,4 @@ def _check(curves: NDArray[np.float64], fewest: int) -> None:
             f"a permutation test at the 5 % level needs {fewest} units or more in a set",
             f"found {len(curves)}",
             "Record more strides or people; with fewer, no result could be significant.",
-        )
-
-
-def _check_count(count: int, plan: PermutationPlan) -> None:
-    if plan.alpha * count < 1:
-        raise ComparisonError(
-            f"a permutation test at level {plan.alpha:g} needs {int(np.ceil(1 / plan.alpha))} permutations or more",
-            f"there are {count}",
-            "Raise the number of permutations, or the level.",
         )

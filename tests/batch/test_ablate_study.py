@@ -1,6 +1,6 @@
 from gaitdisc.batch.ablate_study import ablate_study
 from gaitdisc.batch.run_study import run_study
-from gaitdisc.results.store import load_run
+from gaitdisc.results.run_store import load_run
 
 
 def test_a_run_keeps_what_ablate_added(study, tmp_path):

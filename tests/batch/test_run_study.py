@@ -11,7 +11,7 @@ import pytest
 from gaitdisc.batch.run_study import run_study
 from gaitdisc.batch.workers import Workers
 from gaitdisc.ingest.study_file import write_study
-from gaitdisc.results.store import load_run
+from gaitdisc.results.run_store import load_run
 
 
 @pytest.fixture(scope="module")

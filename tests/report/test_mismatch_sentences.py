@@ -3,12 +3,11 @@ from dataclasses import replace
 
 import numpy as np
 import pandas as pd
-import pytest
 
 from gaitdisc.channel import Channel
 from gaitdisc.discovery.compare import compare_walks
 from gaitdisc.recording import PERCENT
-from gaitdisc.report.mismatch_sentences import direction_words, method_sentences, mismatch_sentences
+from gaitdisc.report.mismatch_sentences import method_sentences, mismatch_sentences
 from gaitdisc.results import WalkSummary
 from gaitdisc.results.walk_summary import STRIDE_COLUMNS
 
@@ -52,16 +51,3 @@ def test_the_method_says_what_p_speaks_of():
     said = " ".join(method_sentences(compare_walks(one, walk("measured", 7))))
     assert "sim has 1 stride and was taken as a curve without spread; 20 strides of measured" in said
     assert "p speaks of these two recordings alone" in said
-
-
-@pytest.mark.parametrize(
-    ("name", "gap", "unit", "words"),
-    [
-        ("knee_angle_l", 3.0, "deg", "the left knee is up to 3.0 deg more flexed"),
-        ("hip_rotation_r", -2.0, "deg", "the right hip is up to 2.0 deg more externally rotated"),
-        ("emg_sol_r", 0.00012, "V", "right EMG soleus is up to 0.00012 V higher"),
-        ("ankle_angle_r_moment", -12.0, "N m", "right ankle angle moment is up to 12.0 N m lower"),
-    ],
-)
-def test_directions(name, gap, unit, words):
-    assert direction_words(name, gap, unit) == words

@@ -3,7 +3,7 @@ import pytest
 
 from gaitdisc.errors import SchemaError
 from gaitdisc.results.data_quantity import QUANTITY_COLUMNS, DataQuantity
-from gaitdisc.results.store import load_quantity, save_quantity
+from gaitdisc.results.response_store import load_quantity, save_quantity
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ import pytest
 from gaitdisc.errors import SchemaError
 from gaitdisc.results import on_disk
 from gaitdisc.results.on_disk import lies_on_disk
-from gaitdisc.results.store import load_response, save_response
+from gaitdisc.results.response_store import load_response, save_response
 
 
 @pytest.fixture

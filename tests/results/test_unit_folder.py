@@ -3,7 +3,8 @@ import json
 import pytest
 
 from gaitdisc.errors import SchemaError
-from gaitdisc.results.store import load_response, load_run, save_response
+from gaitdisc.results.response_store import load_response, save_response
+from gaitdisc.results.run_store import load_run
 
 
 @pytest.mark.parametrize("file", ["r2.csv", "arrays.npz"])

@@ -6,7 +6,8 @@ from scipy import stats
 from scipy.ndimage import gaussian_filter1d
 
 from gaitdisc.errors import ComparisonError, ShapeError
-from gaitdisc.statistics.cluster_test import PermutationPlan, one_sample_test, two_sample_test
+from gaitdisc.statistics.cluster_test import one_sample_test, two_sample_test
+from gaitdisc.statistics.permutation import PermutationPlan
 from gaitdisc.statistics.stride_blocks import block_length, block_means, block_worth, stride_correlation
 
 FEW = PermutationPlan(permutations=300)

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from gaitdisc.statistics.cluster_test import PermutationPlan, one_sample_test, two_sample_test
+from gaitdisc.statistics.cluster_test import one_sample_test, two_sample_test
+from gaitdisc.statistics.permutation import PermutationPlan
 
 spm1d = pytest.importorskip("spm1d")
 EDGE = (

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gaitdisc.errors import ComparisonError
-from gaitdisc.statistics.clusters import adjusted_rand, best_cut, find_groups, mean_silhouette
+from gaitdisc.statistics.groups import adjusted_rand, best_cut, find_groups, mean_silhouette
 
 
 def groups_of(sizes, apart, features=5, seed=0):

@@ -1,0 +1,85 @@
+"""Saving and loading of results: JSON for what is named, CSV for tables, NPZ for arrays; every file hashed.
+
+A run is a folder::
+
+    run.json                       title, conditions, refusals, provenance, which units there are
+    walks/<person>-<condition>/    walk.json  strides.csv  arrays.npz
+    responses/<person>/            response.json  r2.csv  fits.csv  arrays.npz
+    refused/<person>/              refused.json
+    tests/                         tests.json  tests.csv  families.csv
+    over/                          over.json  lengths.csv  reductions.csv  reduction_tests.csv  ...
+    quantities/<person>/           quantity.json  quantity.csv
+
+A unit (one walk, one response) is complete when its JSON file stands, because that is written last and holds the hashes
+of the others. A damaged unit is told by its hash and computed again.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+
+from gaitdisc.results.comparison_store import load_over, load_tests, save_over, save_tests
+from gaitdisc.results.provenance import Provenance
+from gaitdisc.results.response_run import Refusal, ResponseRun
+from gaitdisc.results.response_store import load_quantity, load_response
+from gaitdisc.results.unit_folder import FORMAT, json_text, read_json
+from gaitdisc.results.walk_store import load_walk, unit_name
+from gaitdisc.whole_file import write_whole
+
+
+def save_run(run: ResponseRun, folder: Path) -> None:
+    """Save what a run is, beside the units that were saved as they were computed.
+
+    Parameters
+    ----------
+    run : ResponseRun
+        The whole result.
+    folder : Path
+        Folder of the run.
+    """
+    data = {
+        "format": FORMAT,
+        "title": run.title,
+        "conditions": {"nominal": run.nominal, "exo": run.exo},
+        "walks": [unit_name(walk.subject, walk.condition) for walk in run.walks],
+        "responses": [response.participant for response in run.responses],
+        "refusals": [asdict(refusal) for refusal in run.refusals],
+        "provenance": asdict(run.provenance),
+        "tests": run.tests is not None,
+        "quantities": [quantity.participant for quantity in run.quantities],
+        "over": run.over is not None,
+    }
+    if run.tests is not None:
+        save_tests(run.tests, folder / "tests")
+    if run.over is not None:
+        save_over(run.over, folder / "over")
+    write_whole(folder / "run.json", json_text(data))
+
+
+def load_run(folder: Path) -> ResponseRun:
+    """Load a run with all its units.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder that `gaitdisc run` wrote.
+
+    Raises
+    ------
+    SchemaError
+        If the folder holds no finished run, or a unit of it is missing or damaged.
+    """
+    data = read_json(folder / "run.json")
+    return ResponseRun(
+        data["title"],
+        data["conditions"]["nominal"],
+        data["conditions"]["exo"],
+        tuple(load_walk(folder / "walks" / name)[0] for name in data["walks"]),
+        tuple(load_response(folder / "responses" / name)[0] for name in data["responses"]),
+        tuple(Refusal(**refusal) for refusal in data["refusals"]),
+        Provenance(**data["provenance"]),
+        load_tests(folder / "tests") if data.get("tests") else None,
+        tuple(load_quantity(folder / "quantities" / name)[0] for name in data.get("quantities", ())),
+        load_over(folder / "over") if data.get("over") else None,
+    )

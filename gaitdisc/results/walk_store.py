@@ -1,0 +1,99 @@
+"""Saving and loading of a walk: the folder `walks/<person>-<condition>/` of a run."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel
+from gaitdisc.recording import Finding
+from gaitdisc.results.on_disk import Arrays
+from gaitdisc.results.unit_folder import load_unit, save_unit
+from gaitdisc.results.walk_summary import WalkSummary
+
+
+def save_walk(walk: WalkSummary, folder: Path, key: str) -> None:
+    """Save one walk.
+
+    Parameters
+    ----------
+    walk : WalkSummary
+        What to keep.
+    folder : Path
+        Folder of this walk alone.
+    key : str
+        What the walk was computed from: a hash of files and settings.
+    """
+    save_unit(
+        folder,
+        "walk.json",
+        {
+            "key": key,
+            "subject": walk.subject,
+            "condition": walk.condition,
+            "duration_s": walk.duration_s,
+            "rate_hz": walk.rate_hz,
+            "detector": walk.detector,
+            "channels": [asdict(channel) for channel in walk.channels],
+            "findings": [asdict(finding) for finding in walk.findings],
+            "files": dict(walk.files),
+        },
+        {"strides.csv": walk.strides},
+        {"curves": walk.curves},
+    )
+
+
+def load_walk(folder: Path) -> tuple[WalkSummary, str]:
+    """Load one walk, and the key it was computed from.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder that `save_walk` wrote.
+
+    Raises
+    ------
+    SchemaError
+        If a file is missing, damaged or of another format.
+    """
+    data, tables, arrays = load_unit(folder, "walk.json")
+    strides = tables["strides.csv"]
+    strides["reason"] = strides["reason"].astype(object).fillna("").astype(str)
+    findings = tuple(Finding(**{**f, "spans": tuple(tuple(span) for span in f["spans"])}) for f in data["findings"])
+    walk = WalkSummary(
+        data["subject"],
+        data["condition"],
+        data["duration_s"],
+        data["rate_hz"],
+        data["detector"],
+        tuple(Channel(**channel) for channel in data["channels"]),
+        arrays.later(_curves),
+        strides,
+        findings,
+        data["files"],
+    )
+    return walk, data["key"]
+
+
+def unit_name(subject: str, condition: str) -> str:
+    """Folder name of a walk: letters, digits, `-` and `_` only.
+
+    Parameters
+    ----------
+    subject, condition : str
+        Pseudonym and condition.
+
+    Examples
+    --------
+    >>> unit_name("P01", "no spring")
+    'P01-no_spring'
+    """
+    text = f"{subject}-{condition}"
+    return "".join(letter if letter.isalnum() or letter in "-_" else "_" for letter in text)
+
+
+def _curves(arrays: Arrays) -> NDArray[np.float64]:
+    return arrays["curves"]

@@ -1,0 +1,48 @@
+import json
+from dataclasses import replace
+
+import pandas as pd
+import pytest
+
+from gaitdisc.errors import SchemaError
+from gaitdisc.results.response_store import save_response
+from gaitdisc.results.run_store import load_run, save_run
+from gaitdisc.results.walk_store import save_walk, unit_name
+
+
+def test_a_run_comes_back_as_it_was(run, tmp_path):
+    save_walk(run.walks[0], tmp_path / "walks" / unit_name("P01", "exo"), "key")
+    save_response(run.responses[0], tmp_path / "responses" / "P01", "key")
+    save_run(run, tmp_path)
+    loaded = load_run(tmp_path)
+    assert (loaded.title, loaded.refusals, loaded.provenance) == (run.title, run.refusals, run.provenance)
+    pd.testing.assert_frame_equal(loaded.r2_table(), run.r2_table())
+
+
+@pytest.fixture
+def saved(run, pair_tests, tmp_path):
+    save_walk(run.walks[0], tmp_path / "walks" / unit_name("P01", "exo"), "key")
+    save_response(run.responses[0], tmp_path / "responses" / "P01", "key")
+    save_run(replace(run, tests=pair_tests), tmp_path)
+    return tmp_path
+
+
+def test_the_paired_tests_come_back_as_they_were(saved, pair_tests):
+    loaded = load_run(saved).tests
+    assert (loaded.participants, loaded.alpha, loaded.level, loaded.too_few) == (11, 0.05, 0.95, "")
+    pd.testing.assert_frame_equal(loaded.tests, pair_tests.tests)
+    pd.testing.assert_frame_equal(loaded.families, pair_tests.families)
+
+
+def test_a_run_of_before_there_were_tests_is_still_read(saved):
+    data = json.loads((saved / "run.json").read_text(encoding="utf-8"))
+    del data["tests"]
+    (saved / "run.json").write_text(json.dumps(data), encoding="utf-8")
+    assert load_run(saved).tests is None
+
+
+def test_tests_that_were_changed_by_hand_are_told(saved):
+    file = saved / "tests" / "tests.csv"
+    file.write_text(file.read_text().replace("0.05", "0.99"))
+    with pytest.raises(SchemaError, match=r"tests/tests\.csv is changed since it was saved"):
+        load_run(saved)
