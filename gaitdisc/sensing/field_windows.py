@@ -1,0 +1,113 @@
+"""Windows of what sensors on a route read, each of them to tell the whole field at its last reading."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.errors import SamplingError
+from gaitdisc.recording import Field, Samples
+from gaitdisc.sensing.modes import Modes
+from gaitdisc.sensing.routes import Route
+from gaitdisc.sensing.splits import Parts
+from gaitdisc.sensing.windows import Lags
+
+
+def reading_names(field: Field, route: Route, positions: bool = False) -> tuple[str, ...]:
+    """Names of what one window holds for each of its times.
+
+    Parameters
+    ----------
+    field : Field
+        To be read.
+    route : Route
+        Where the sensors are.
+    positions : bool
+        Whether each sensor tells where it is, beside what it reads.
+    """
+    told = field.quantities + (tuple(axis.name for axis in field.axes) if positions else ())
+    return tuple(f"{name} of sensor {k + 1}" for k in range(route.sensors) for name in told)
+
+
+def field_windows(field: Field, route: Route, lags: Lags, positions: bool = False) -> Samples:
+    """Every window along a field's whole time, still without outputs: those are modes of the part that is fitted.
+
+    Parameters
+    ----------
+    field : Field
+        To be read.
+    route : Route
+        Where the sensors are.
+    lags : Lags
+        Readings of a window, and snapshots from one to the next.
+    positions : bool
+        Whether each sensor's place stands beside its reading: what a path never seen in training needs.
+
+    Returns
+    -------
+    Samples
+        x (window, reading * sensor), oldest first; no outputs; time in snapshots, counted from 0.
+
+    Raises
+    ------
+    SamplingError
+        If the field has fewer snapshots than a window spans.
+    """
+    if len(field) <= lags.reach:
+        raise SamplingError(
+            f"a window reaches back {lags.reach} snapshots",
+            f"{field.source.file or 'the field'} has {len(field)}",
+            "Take fewer lags, or a longer field.",
+        )
+    told = route.readings(field)
+    if positions:
+        told = np.concatenate([told, route.places(field)], axis=2)
+    told = told.reshape(len(field), -1)
+    last = np.arange(lags.reach, len(field))
+    rows = last[:, None] + (np.arange(lags.count) - lags.count + 1) * lags.spacing
+    names = reading_names(field, route, positions)
+    inputs = tuple(
+        name if ago == 0 else f"{name} {ago * lags.spacing} {field.time_unit} ago"
+        for ago in range(lags.count - 1, -1, -1)
+        for name in names
+    )
+    x, none = told[rows].reshape(len(last), -1), np.zeros((len(last), 0))
+    return Samples(x, none, inputs, (), last.astype(float), np.zeros(len(last)))
+
+
+def snapshots_of(windows: Samples) -> NDArray[np.intp]:
+    """Number of the snapshot that each window is to tell, (window,).
+
+    Parameters
+    ----------
+    windows : Samples
+        From `field_windows`.
+    """
+    return np.rint(windows.time).astype(int)
+
+
+def with_coefficients(parts: Parts, field: Field, modes: Modes) -> tuple[Samples, Samples, Samples]:
+    """Windows to fit, to choose by and to judge on, with the modes' coefficients as outputs.
+
+    Parameters
+    ----------
+    parts : Parts
+        Of `field_windows`.
+    field : Field
+        Of the same snapshots.
+    modes : Modes
+        Fitted to snapshots of the training part.
+    """
+    coefficients = modes.coefficients(field.values)
+    return (
+        _targeted(parts.fitted(), coefficients, modes.names),
+        _targeted(parts.checked(), coefficients, modes.names),
+        _targeted(parts.judged(), coefficients, modes.names),
+    )
+
+
+def _targeted(windows: Samples, coefficients: NDArray[np.float64], names: Sequence[str]) -> Samples:
+    return replace(windows, y=coefficients[snapshots_of(windows)], outputs=tuple(names))

@@ -1,0 +1,184 @@
+"""A field by few numbers: its proper orthogonal modes, as many as hold a share of its energy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.errors import TrainingError
+
+ENERGY = 0.99
+COLUMNS_AT_ONCE = 20_000
+LEAST = 1e-12  # of the largest energy: modes below it are rounding
+
+
+@dataclass(frozen=True, eq=False)
+class Modes:
+    """An orthonormal basis of a field's fluctuations.
+
+    The basis spans the leading proper orthogonal modes, and is turned within their span so that every coefficient has
+    the same variance in training. A fit that scales each of its outputs, as all fits here do, then weighs errors by
+    their energy; on the modes themselves it would take the last, faintest one for as important as the first.
+
+    Parameters
+    ----------
+    mean : ndarray (point, quantity) [each quantity's unit]
+        Of the training snapshots.
+    spread : ndarray (quantity,) [each quantity's unit]
+        Root mean square fluctuation over points and training snapshots; energies of quantities are compared by it.
+    basis : ndarray (point * quantity, mode)
+        Orthonormal.
+    energies : ndarray (snapshot,)
+        Share of the energy in each proper orthogonal mode, all of them, decreasing.
+    """
+
+    mean: NDArray[np.float32]
+    spread: NDArray[np.float32]
+    basis: NDArray[np.float32]
+    energies: NDArray[np.float64]
+
+    @property
+    def count(self) -> int:
+        """Modes that are kept."""
+        return self.basis.shape[1]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the coefficients."""
+        return tuple(f"mode {k + 1}" for k in range(self.count))
+
+    def coefficients(self, values: NDArray[np.floating]) -> NDArray[np.float64]:
+        """Coefficients of snapshots, (snapshot, mode).
+
+        Parameters
+        ----------
+        values : ndarray (snapshot, point, quantity) [each quantity's unit]
+            Of the field.
+        """
+        scaled = (values - self.mean) / self.spread
+        return (scaled.reshape(len(values), -1) @ self.basis).astype(float)
+
+    def fields(self, coefficients: NDArray[np.floating]) -> NDArray[np.float32]:
+        """Snapshots from coefficients, (snapshot, point, quantity) [each quantity's unit].
+
+        Parameters
+        ----------
+        coefficients : ndarray (snapshot, mode)
+            As `coefficients` gives them.
+        """
+        scaled = coefficients.astype(np.float32) @ self.basis.T
+        return scaled.reshape(len(coefficients), *self.mean.shape) * self.spread + self.mean
+
+
+def fit_modes(values: NDArray[np.floating], energy: float = ENERGY, most: int | None = None) -> Modes:
+    """Proper orthogonal modes of training snapshots, by their products with each other (method of snapshots).
+
+    Parameters
+    ----------
+    values : ndarray (snapshot, point, quantity) [each quantity's unit]
+        Training snapshots only.
+    energy : float
+        Share of the energy that is kept, above 0, at most 1.
+    most : int, optional
+        Modes that are kept at most.
+
+    Returns
+    -------
+    Modes
+
+    Raises
+    ------
+    TrainingError
+        If there are fewer than two snapshots, one quantity does not vary, or the share is out of range.
+
+    References
+    ----------
+    Sirovich 1987, Turbulence and the dynamics of coherent structures (method of snapshots).
+
+    Examples
+    --------
+    >>> t = np.linspace(0, 6.28, 50)[:, None]
+    >>> wave = (np.sin(t) * np.array([1.0, 2.0, 0.0]) + np.cos(t) * np.array([0.0, 0.0, 1.0]))[:, :, None]
+    >>> modes = fit_modes(wave, 1.0)
+    >>> modes.count, bool(np.allclose(modes.fields(modes.coefficients(wave)), wave, atol=1e-6))
+    (2, True)
+    """
+    if len(values) < 2 or not 0 < energy <= 1:
+        raise TrainingError(
+            "modes of a field need two snapshots or more, and a share of the energy above 0 and at most 1",
+            f"found {len(values)} snapshots, and the share {energy:g}",
+            "Give more snapshots, or a share such as 0.99.",
+        )
+    mean = values.mean(axis=0, dtype=float).astype(np.float32)
+    fluctuation = values - mean
+    spread = np.sqrt(np.mean(fluctuation**2, axis=(0, 1), dtype=float)).astype(np.float32)
+    if not (spread > 0).all():
+        raise TrainingError(
+            "modes of a field need quantities that vary",
+            f"quantity {int(np.argmin(spread)) + 1} is the same in all {len(values)} snapshots",
+            "Leave this quantity away.",
+        )
+    scaled = (fluctuation / spread).reshape(len(values), -1)
+    found, vectors = np.linalg.eigh(_products(scaled))
+    found, vectors = found[::-1], vectors[:, ::-1]
+    kept = found > LEAST * found[0]
+    shares = np.where(kept, found, 0.0) / found[kept].sum()
+    count = min(int(np.searchsorted(np.cumsum(shares), energy - 1e-9)) + 1, int(kept.sum()), most or len(found))
+    weights = vectors[:, :count] / np.sqrt(found[:count]) @ evening_rotation(found[:count])
+    return Modes(mean, spread, scaled.T @ weights.astype(np.float32), shares)
+
+
+def evening_rotation(variances: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Rotation after which uncorrelated coefficients of these variances all have their mean variance.
+
+    Each plane rotation sets one diagonal element of the covariance to the mean; there is one that does, as long as one
+    element lies above the mean and one below.
+
+    Parameters
+    ----------
+    variances : ndarray (mode,)
+        Of the coefficients.
+
+    Returns
+    -------
+    ndarray (mode, mode)
+        Orthogonal; its columns are the new coefficients' weights.
+
+    References
+    ----------
+    Horn 1954, Doubly stochastic matrices and the diagonal of a rotation matrix.
+
+    Examples
+    --------
+    >>> turn = evening_rotation(np.array([5.0, 3.0, 1.0]))
+    >>> np.diag(turn.T @ np.diag([5.0, 3.0, 1.0]) @ turn).round(6)
+    array([3., 3., 3.])
+    """
+    count, mean = len(variances), float(np.mean(variances))
+    covariance, turn, left = np.diag(variances.astype(float)), np.eye(count), list(range(count))
+    for _ in range(count - 1):
+        diagonal = covariance[left, left]
+        i, j = left[int(diagonal.argmax())], left[int(diagonal.argmin())]
+        above, below, between = covariance[i, i] - mean, covariance[j, j] - mean, covariance[i, j]
+        if above <= 1e-12 * mean or below >= -1e-12 * mean:
+            break
+        tangent = (-between - np.sqrt(between**2 - above * below)) / below
+        cosine = 1 / np.hypot(1.0, tangent)
+        plane = np.array([[cosine, -tangent * cosine], [tangent * cosine, cosine]])
+        pair = [i, j]
+        covariance[:, pair] = covariance[:, pair] @ plane
+        covariance[pair] = plane.T @ covariance[pair]
+        turn[:, pair] = turn[:, pair] @ plane
+        left.remove(i)
+    return turn
+
+
+def _products(scaled: NDArray[np.floating]) -> NDArray[np.float64]:
+    """Products of all snapshots with each other in double precision, (snapshot, snapshot), a part at a time."""
+    total = np.zeros((len(scaled), len(scaled)))
+    for first in range(0, scaled.shape[1], COLUMNS_AT_ONCE):
+        part = scaled[:, first : first + COLUMNS_AT_ONCE].astype(float)
+        total += part @ part.T
+    return total

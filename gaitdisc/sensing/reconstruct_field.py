@@ -1,0 +1,219 @@
+"""Tell a whole field from sensors on a route: every kind of model beside its floor and its ceiling."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.recording import Field, Samples
+from gaitdisc.results.field_cell import FieldCell, error_counts
+from gaitdisc.sensing.field_windows import field_windows, reading_names, snapshots_of, with_coefficients
+from gaitdisc.sensing.modes import ENERGY, Modes, fit_modes
+from gaitdisc.sensing.reconstructor import KINDS, Sensing, fit_reconstructor
+from gaitdisc.sensing.routes import Route
+from gaitdisc.sensing.splits import split_within
+from gaitdisc.sensing.windows import Lags
+
+MEAN, SEASON, CEILING = "mean (no sensor)", "season (no sensor)", "POD ceiling"
+
+
+@dataclass(frozen=True)
+class FieldTask:
+    """What is the same for every route and model of a study.
+
+    Parameters
+    ----------
+    name : str
+        Of the field.
+    lags : Lags
+        Readings of a window, and snapshots from one to the next.
+    rule : str
+        Split, a word of `gaitdisc.sensing.splits.RULES`.
+    energy : float
+        Share of the training snapshots' energy that the modes keep.
+    season : int
+        Snapshots of a year, whose mean course is a floor of its own; 0 where there is none.
+    positions : bool
+        Whether each sensor tells where it is.
+    seed : int
+        Of every random act.
+    """
+
+    name: str
+    lags: Lags
+    rule: str = "temporal"
+    energy: float = ENERGY
+    season: int = 0
+    positions: bool = False
+    seed: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """Windows of the three parts and the modes that they tell.
+
+    Parameters
+    ----------
+    training, check, test : Samples
+        Their outputs are the modes' coefficients.
+    modes : Modes
+        Of the training part's snapshots alone.
+    what : Sensing
+        What is read and told.
+    """
+
+    training: Samples
+    check: Samples
+    test: Samples
+    modes: Modes
+    what: Sensing
+
+
+def prepare(field: Field, route: Route, task: FieldTask) -> Prepared:
+    """Cut windows, part them, and fit the modes to the part that models are fitted to.
+
+    Parameters
+    ----------
+    field : Field
+        To be told.
+    route : Route
+        Where the sensors are.
+    task : FieldTask
+        Lags, split, share of the energy.
+
+    Raises
+    ------
+    SamplingError
+        If a window is longer than the field, or a part is left without windows.
+    """
+    windows = field_windows(field, route, task.lags, task.positions)
+    parts = split_within([windows], task.rule, task.lags.reach, task.seed)
+    modes = fit_modes(field.values[snapshots_of(parts.fitted())], task.energy)
+    names = reading_names(field, route, task.positions)
+    return Prepared(*with_coefficients(parts, field, modes), modes, Sensing(names, modes.names, task.lags, 1.0))
+
+
+def reconstruct_field(
+    field: Field,
+    route: Route,
+    task: FieldTask,
+    kinds: Sequence[str] = tuple(KINDS),
+    floors: bool = True,
+) -> list[FieldCell]:
+    """Fit every kind of model and judge it on the test part, in the field's own unit at every point.
+
+    Parameters
+    ----------
+    field : Field
+        To be told.
+    route : Route
+        Where the sensors are.
+    task : FieldTask
+        Lags, split, share of the energy, seed.
+    kinds : sequence of str
+        Words of `gaitdisc.sensing.reconstructor.KINDS`.
+    floors : bool
+        Whether what needs no sensor is judged too (the training part's mean, its mean season), and the ceiling: the
+        test part projected onto the training part's modes, which no model that tells those modes can beat.
+
+    Returns
+    -------
+    list of FieldCell
+        One a model and quantity.
+
+    Raises
+    ------
+    SamplingError
+        If a window is longer than the field, or a part is left without windows.
+    TrainingError
+        If the windows are too few.
+    """
+    ready = prepare(field, route, task)
+    cells = []
+    for model, told in (_floors(field, ready, task) if floors else {}).items():
+        cells += field_cells(field, ready, Label(task.name, route.name, task.rule, model, task.seed), told)
+    for kind in kinds:
+        done = fit_reconstructor(kind, ready.what, ready.training, ready.check, task.seed)
+        label = Label(task.name, route.name, task.rule, kind, task.seed)
+        cells += field_cells(field, ready, label, ready.modes.fields(done(ready.test)), done.seconds)
+    return cells
+
+
+class Label(NamedTuple):
+    """Which cell it is.
+
+    Parameters
+    ----------
+    field, route, split, model : str
+        What was varied.
+    run : int
+        Seed.
+    """
+
+    field: str
+    route: str
+    split: str
+    model: str
+    run: int
+
+
+def field_cells(
+    field: Field, ready: Prepared, label: Label, told: NDArray[np.float32], seconds: float = 0.0
+) -> list[FieldCell]:
+    """Judge what was told of the test part, a cell for each quantity.
+
+    Parameters
+    ----------
+    field : Field
+        That was to be told.
+    ready : Prepared
+        Its test part is judged.
+    label : Label
+        Which cell it is.
+    told : ndarray (window, point, quantity) [each quantity's unit]
+        The field at each window of the test part.
+    seconds : float [s]
+        Processor time of the fit.
+    """
+    rows, cells = snapshots_of(ready.test), []
+    for k, quantity in enumerate(field.quantities):
+        y = field.values[rows, :, k].astype(float)
+        error = told[:, :, k] - y
+        square, bias = float(np.mean(error**2)), float(np.mean(error))
+        about = float(np.mean((y - ready.modes.mean[:, k]) ** 2))
+        cells.append(
+            FieldCell(
+                field=label.field,
+                quantity=quantity,
+                unit=field.units[k],
+                route=label.route,
+                split=label.split,
+                model=label.model,
+                relative_l2=float(np.sqrt(square / np.mean(y**2))),
+                rmse=float(np.sqrt(square)),
+                bias=bias,
+                sd=float(np.sqrt(max(square - bias**2, 0.0))),
+                r2=1 - square / about,
+                fitted=len(ready.training),
+                judged=len(rows),
+                seconds=seconds,
+                run=label.run,
+                errors=error_counts(error, float(np.std(y))),
+            )
+        )
+    return cells
+
+
+def _floors(field: Field, ready: Prepared, task: FieldTask) -> dict[str, NDArray[np.float32]]:
+    rows, fitted = snapshots_of(ready.test), snapshots_of(ready.training)
+    found = {MEAN: np.broadcast_to(ready.modes.mean, (len(rows), *ready.modes.mean.shape))}
+    if task.season:
+        of_year = [field.values[fitted[fitted % task.season == k]] for k in range(task.season)]
+        course = np.stack([part.mean(axis=0) if len(part) else ready.modes.mean for part in of_year])
+        found[SEASON] = course[rows % task.season]
+    found[CEILING] = ready.modes.fields(ready.test.y)
+    return found

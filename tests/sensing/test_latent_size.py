@@ -1,0 +1,15 @@
+from manufactured_field import travelling_wave
+
+from gaitdisc.sensing.latent_size import latent_sizes
+from gaitdisc.sensing.reconstruct_field import FieldTask
+from gaitdisc.sensing.routes import fixed
+from gaitdisc.sensing.windows import Lags
+
+
+def test_four_modes_need_more_than_one_node():
+    wave = travelling_wave(200)
+    found = latent_sizes(wave, fixed(wave, [30]), FieldTask("wave", Lags(3, 6), energy=0.999), (1, 8), epochs=5)
+    assert found["nodes"].tolist() == [1, 8]
+    assert found["r2"].iloc[1] > found["r2"].iloc[0]
+    assert found["energy_left"].iloc[0] > 0.05
+    assert found["energy_left"].iloc[1] < 1e-6
