@@ -14,8 +14,8 @@ from gaitdisc.ingest.study import Study
 from gaitdisc.recording import Samples
 from gaitdisc.results import Provenance, Refusal
 from gaitdisc.results.provenance import installed_versions
-from gaitdisc.results.reconstruction import Reconstruction
-from gaitdisc.sensing.reconstruct import CALIBRATED, PersonReconstruction, reconstruct
+from gaitdisc.results.reconstruction import CALIBRATED, Reconstruction
+from gaitdisc.sensing.reconstruct import PersonReconstruction, reconstruct
 from gaitdisc.sensing.reconstructor import KINDS, Sensing, sensing
 from gaitdisc.sensing.splits import RULES, Parts, split_by_subject, split_within
 from gaitdisc.sensing.windows import Lags
@@ -136,7 +136,7 @@ def _result(
     )
     if settings.split == SUBJECT:
         models |= {
-            CALIBRATED.format(kind): f"the same, offsets of the states taken from {CALIBRATION_STRIDES} strides"
+            CALIBRATED.format(kind): f"the same, corrected for the person by {CALIBRATION_STRIDES} strides"
             for kind in settings.kinds
         }
     created = datetime.now(UTC).isoformat(timespec="seconds")

@@ -17,6 +17,7 @@ from gaitdisc.results.unit_folder import save_unit
 
 NAME = "reconstruction.json"
 NEAR = 1.02  # of the least error on the check part: a cheaper model that is within this is recommended instead
+CALIBRATED = "{}, calibrated"  # name of a model that is corrected for the person who is judged
 CHEAP_FIRST = ("linear", "delay ridge", "shallow decoder", "fourier ridge", "shred")
 MEASURES = ("rmse_deg", "relative_l2", "r2", "relative_l2_whole", "check_loss", "coverage", "seconds")
 
@@ -73,9 +74,10 @@ class Reconstruction:
     def recommended(self) -> str:
         """Model to use: the cheapest of those whose error on the check part is within 2 % of the least.
 
-        The judged part has no say in it.
+        The judged part has no say in it. A calibrated model is recommended by what it is without.
         """
-        loss = self.summary.groupby("model")["check_loss"].mean()
+        every = self.summary.groupby("model")["check_loss"].mean()
+        loss = every[[model for model in every.index if not model.endswith(CALIBRATED.format(""))]]
         near = [kind for kind in CHEAP_FIRST if kind in loss.index and np.sqrt(loss[kind] / loss.min()) <= NEAR]
         return near[0] if near else str(loss.idxmin())
 

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Samples
+from gaitdisc.results.reconstruction import CALIBRATED
+from gaitdisc.sensing.calibration import calibrated, first_strides, rehearsed
 from gaitdisc.sensing.intervals import coverage, half_widths
 from gaitdisc.sensing.model_folder import SensingModel
 from gaitdisc.sensing.reconstructor import KINDS, Sensing, fit_reconstructor
 from gaitdisc.sensing.splits import Parts
 from gaitdisc.sensing.state_errors import Judged, angles_error, phase_curves, state_errors, stride_numbers
-
-CALIBRATED = "{}, calibrated"
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,8 +67,8 @@ def reconstruct(
     seed : int
         Of every random act.
     calibration : int
-        Strides of the test part, its first ones, from which the offset of each state is taken for models named
-        `..., calibrated`; these strides are not judged, whether a model is calibrated or not. 0 for none.
+        Strides of the test part, its first ones, on which models named `..., calibrated` are corrected for the person;
+        windows that share a reading with them are not judged, whether a model is calibrated or not. 0 for none.
 
     Returns
     -------
@@ -77,20 +77,21 @@ def reconstruct(
     training, check, test = parts.fitted(), parts.checked(), parts.judged()
     stride = stride_numbers(parts.test)
     own = channels[len(what.sensors) :]
-    first = (stride >= 0) & (stride < calibration)
-    judged_rows = stride >= calibration if calibration else np.ones(len(test), bool)
+    first = first_strides(parts.test, calibration, what.reach_s) if calibration else None
+    judged_rows = np.ones(len(test), bool) if first is None else first.rest
     fitted, errors, summary, curves = [], [], [], []
     for kind in kinds:
         done = fit_reconstructor(kind, what, training, check, seed)
         missed = done(check) - check.y
         fitted.append(SensingModel(done, tuple(channels), half_widths(missed)))
-        told = done(test)
-        named = {kind: told}
-        if calibration:
-            named[CALIBRATED.format(kind)] = told + (test.y - told)[first].mean(axis=0)
-        for name, values in named.items():
-            judged = Judged(test.rows(judged_rows), stride[judged_rows], values[judged_rows])
-            row = _summary(judged, channels, what) | _checked(missed, fitted[-1].half_widths, training, judged)
+        named = {kind: (done(test), missed)}
+        if first is not None:
+            rehearsal = rehearsed(done, parts.check, calibration)
+            told = calibrated(done, first.strides, rehearsal.penalty)(test)
+            named[CALIBRATED.format(kind)] = told, rehearsal.missed
+        for name, (told, missed) in named.items():
+            judged = Judged(test.rows(judged_rows), stride[judged_rows], told[judged_rows])
+            row = _summary(judged, channels, what) | _checked(missed, half_widths(missed), training, judged)
             summary.append({"participant": participant, "model": name, "n_fitted": done.n_fitted, **row,
                             "seconds": done.seconds})  # fmt: skip
             errors.append(state_errors(judged, own, seed).assign(participant=participant, model=name))

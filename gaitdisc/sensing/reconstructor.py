@@ -32,11 +32,16 @@ STATIC = ("linear", "shallow decoder")
 
 
 class ScaledModel(Model, Protocol):
-    """A model that keeps the scale of its inputs in the training part."""
+    """A model that keeps the scales of its inputs and outputs in the training part."""
 
     @property
     def x_scale(self) -> Scale:
         """Of every input."""
+        ...
+
+    @property
+    def y_scale(self) -> Scale:
+        """Of every state."""
         ...
 
 
