@@ -19,7 +19,7 @@ from gaitdisc.report.discrepancy_figure import (
     system_figure,
 )
 from gaitdisc.report.discrepancy_page import write_blocks
-from gaitdisc.report.discrepancy_tables import as_markdown, grid_table, statements_table
+from gaitdisc.report.discrepancy_tables import as_markdown, grid_table, spread_words, statements_table
 from gaitdisc.report.table import Table, save_table
 from gaitdisc.results.discrepancy_cell import DiscrepancyCell
 from gaitdisc.whole_file import write_whole
@@ -85,7 +85,7 @@ def blocks_of(cells: Cells, figures: Mapping[str, str], stated: Sequence[Stated]
 
 
 def answered(cells: Cells, approach: str, noise: float) -> str:
-    """Median forecast (reconstruction) accuracy of each method, by variant.
+    """Forecast (reconstruction) accuracy of each method, by variant: median and range over seeds.
 
     Parameters
     ----------
@@ -112,8 +112,8 @@ def _accuracy(cells: Sequence[DiscrepancyCell]) -> str:
     words = []
     for part in ("forecast", "reconstruction"):
         lost = [t for c in fitted if (t := c.parts[part].diverged_s) is not None]
-        middle = np.nanmedian([np.median(c.parts[part].accuracy()) for c in fitted]) if not lost else 0.0
-        words.append(f"diverged at {min(lost):.2f} s" if lost else f"{middle:.1f}")
+        said = spread_words(np.array([np.median(c.parts[part].accuracy()) for c in fitted]))
+        words.append(f"diverged at t = {min(lost):.2f} s ({len(lost)} of {len(cells)} seeds)" if lost else said)
     return f"{words[0]} ({words[1]})"
 
 

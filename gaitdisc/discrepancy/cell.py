@@ -10,7 +10,7 @@ from threadpoolctl import threadpool_limits
 
 from gaitdisc.discrepancy.augmented_run import AugmentedRun, on_states, with_learned_rates
 from gaitdisc.discrepancy.error_signal import Approach, error_samples, refined_samples
-from gaitdisc.discrepancy.methods import Method, MethodSettings, fitted
+from gaitdisc.discrepancy.methods import OF_TIME, Method, MethodSettings, fitted
 from gaitdisc.discrepancy.record import Conditions, Record, recorded
 from gaitdisc.discrepancy.system import System
 from gaitdisc.errors import GaitdiscError
@@ -31,7 +31,7 @@ def cell(
     system : System
         What is known, what is true, what is measured.
     method : str
-        `sindy`, `dmd`, `gp` or `nn`.
+        `sindy`, `dmd`, `bopdmd`, `gp` or `nn`.
     approach : str
         `dynamics` (Eq. 3.4) or `state` (Eq. 3.5).
     conditions : Conditions
@@ -73,20 +73,20 @@ def cell_of(
     if made.published and settings.threshold is None:
         settings = replace(settings, threshold=PUBLISHED_THRESHOLDS[approach])
     variant = "as published" if made.published else "right"
-    begun = clock.perf_counter()
+    begun = clock.process_time()
     try:
         with threadpool_limits(1):  # on matrices of this size, and beside other work, threads wait for each other
             learned = learned_model(record, method, approach, settings)
     except GaitdiscError as error:
         return DiscrepancyCell(
             record.system.name, method, approach, variant, made.noise, made.seed, record.system.channels, {},
-            clock.perf_counter() - begun, 0.0, refused=str(error),
+            clock.process_time() - begun, 0.0, refused=str(error),
         )  # fmt: skip
-    fit_s, begun = clock.perf_counter() - begun, clock.perf_counter()
+    fit_s, begun = clock.process_time() - begun, clock.process_time()
     parts = {name: part(record, learned, approach, name == "forecast") for name in ("reconstruction", "forecast")}
     return DiscrepancyCell(
         record.system.name, method, approach, variant, made.noise, made.seed, record.system.channels, parts,
-        fit_s, clock.perf_counter() - begun, _terms(learned),
+        fit_s, clock.process_time() - begun, _terms(learned),
     )  # fmt: skip
 
 
@@ -98,9 +98,9 @@ def learned_model(record: Record, method: Method, approach: Approach, settings: 
     record, method, approach, settings : as for `cell_of`
         What is learned, and how.
     """
-    samples = error_samples(record, approach, method == "dmd")
+    samples = error_samples(record, approach, method in OF_TIME)
     learned = fitted(samples, method, settings, record.conditions.seed)
-    if approach == "state" or method == "dmd" or record.conditions.published:
+    if approach == "state" or method in OF_TIME or record.conditions.published:
         return learned
     with np.errstate(all="ignore"):
         refined = refined_samples(record, samples, learned)

@@ -13,7 +13,8 @@ from gaitdisc.discrepancy.system import System
 from gaitdisc.results.discrepancy_cell import DiscrepancyCell
 
 NOISES = (0.0, 0.001, 0.01, 0.1)
-ALL_METHODS: tuple[Method, ...] = ("sindy", "dmd", "gp", "nn")
+WARMING = 300  # samples
+ALL_METHODS: tuple[Method, ...] = ("sindy", "dmd", "bopdmd", "gp", "nn")
 
 
 def grid(
@@ -26,6 +27,8 @@ def grid(
     told: Callable[[DiscrepancyCell], None] = lambda _: None,
 ) -> tuple[DiscrepancyCell, ...]:
     """Compute the cells; without noise one seed is enough.
+
+    Before the first, each method is fitted to a short record, so that no cell's seconds hold importing and compiling.
 
     Parameters
     ----------
@@ -53,6 +56,7 @@ def grid(
     >>> len(grid(system, Conditions(duration_s=20.0), (0.0, 0.001), (0, 1), (("sindy",), ("dynamics",))))
     3
     """
+    _warmed(system, conditions, chosen, settings)
     found = []
     for noise in noises:
         for seed in seeds if noise else seeds[:1]:
@@ -62,3 +66,14 @@ def grid(
                     found.append(cell_of(record, method, approach, settings))
                     told(found[-1])
     return tuple(found)
+
+
+def _warmed(
+    system: System,
+    conditions: Conditions,
+    chosen: tuple[Sequence[Method], Sequence[Approach]],
+    settings: MethodSettings | None,
+) -> None:
+    short = recorded(system, replace(conditions, noise=0.0, duration_s=WARMING * conditions.dt_s))
+    for method in chosen[0]:
+        cell_of(short, method, chosen[1][0], settings)

@@ -75,22 +75,25 @@ def _kernels(tables, x, out):
 @compiled(error_model="numpy", fastmath=True)
 def _layers(tables, x, out):
     first, second, third, scale, offset = tables[0], tables[1], tables[2], tables[3], tables[4]
-    nodes, n = second.shape[0], x.size
+    nodes, n = second.shape[1] - 1, x.size
+    networks = second.shape[0] // nodes  # one for all outputs, or one for each
     sigmoid = np.empty(nodes)
-    for k in range(nodes):
-        total = first[k, n]
-        for j in range(n):
-            total += first[k, j] * (x[j] - scale[0, j]) * scale[1, j]
-        sigmoid[k] = 1.0 / (1.0 + exponential(-total))
     for o in range(out.size):
         out[o] = offset[0, o]
-    for k in range(nodes):
-        total = second[k, nodes]
-        for j in range(nodes):
-            total += second[k, j] * sigmoid[j]
-        radial = exponential(-total * total)
-        for o in range(out.size):
-            out[o] += third[o, k] * radial
+    for each in range(networks):
+        low, high = (0, out.size) if networks == 1 else (each, each + 1)
+        for k in range(nodes):
+            total = first[each * nodes + k, n]
+            for j in range(n):
+                total += first[each * nodes + k, j] * (x[j] - scale[0, j]) * scale[1, j]
+            sigmoid[k] = 1.0 / (1.0 + exponential(-total))
+        for k in range(nodes):
+            total = second[each * nodes + k, nodes]
+            for j in range(nodes):
+                total += second[each * nodes + k, j] * sigmoid[j]
+            radial = exponential(-total * total)
+            for o in range(low, high):
+                out[o] += third[o, k] * radial
 
 
 @compiled

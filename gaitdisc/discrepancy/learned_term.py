@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.discrepancy.by_output import ByOutput
 from gaitdisc.discrepancy.learned_rates import KERNELS, LAYERS, PRODUCTS, TIMES
 from gaitdisc.errors import TrainingError
 from gaitdisc.model import Model
@@ -40,7 +41,7 @@ def learned_term(model: Model, times: NDArray[np.float64]) -> LearnedTerm:
     Parameters
     ----------
     model : Model
-        `Sindy`, `Dmd`, `GaussianProcess`, or the dissertation's network as the trainer gives it.
+        `Sindy`, `Dmd`, `GaussianProcess`, or the dissertation's network as the trainer gives it, one or by output.
     times : ndarray (stage,) [s]
         Of the integrator's half steps, for a model of time.
 
@@ -67,21 +68,26 @@ def learned_term(model: Model, times: NDArray[np.float64]) -> LearnedTerm:
 
 
 def _layers(model: Model) -> Tables:
-    """Weights with offsets in a last column; the scale of the outputs goes into the readout."""
+    """Weights with offsets in a last column, network under network; the scale of the outputs goes into the readout."""
     from gaitdisc.networks.trained_network import TrainedNetwork
 
-    if not isinstance(model, TrainedNetwork) or "radial.weight" not in model.weights():
-        raise TrainingError(
-            "a learned term is a Sindy, a Dmd, a GaussianProcess, or a trained FeedForward",
-            f"found {type(model).__name__}",
-            "Fit one of these.",
-        )
-    weights = {name: np.asarray(values, float) for name, values in model.weights().items()}
-    first, second = (np.column_stack([weights[f"{each}.weight"], weights[f"{each}.bias"]]) for each in LAYER_NAMES)
-    size = np.where(model.y_scale.constant, 0.0, model.y_scale.sd)
-    third = weights["readout.weight"] * size[:, None]
-    offset = weights["readout.bias"] * size + model.y_scale.mean
-    return first, second, third, np.vstack([model.x_scale.mean, 1 / model.x_scale.sd]), offset
+    networks = model.models if isinstance(model, ByOutput) else (model,)
+    first, second, third, offset, scale = [], [], [], [], np.empty((2, 0))
+    for network in networks:
+        if not isinstance(network, TrainedNetwork) or "radial.weight" not in network.weights():
+            raise TrainingError(
+                "a learned term is a Sindy, a Dmd, a GaussianProcess, or trained FeedForwards",
+                f"found {type(network).__name__}",
+                "Fit one of these.",
+            )
+        weights = {name: np.asarray(values, float) for name, values in network.weights().items()}
+        for rows, each in zip((first, second), LAYER_NAMES, strict=True):
+            rows.append(np.column_stack([weights[f"{each}.weight"], weights[f"{each}.bias"]]))
+        size = np.where(network.y_scale.constant, 0.0, network.y_scale.sd)
+        third.append(weights["readout.weight"] * size[:, None])
+        offset.append(weights["readout.bias"] * size + network.y_scale.mean)
+        scale = np.vstack([network.x_scale.mean, 1 / network.x_scale.sd])  # all have seen the same inputs
+    return np.vstack(first), np.vstack(second), np.vstack(third), scale, np.concatenate(offset)
 
 
 LAYER_NAMES = ("sigmoid", "radial")

@@ -17,16 +17,24 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
-METHOD_WORDS = {"sindy": "SINDy", "dmd": "DMD", "gp": "Gaussian process", "nn": "neural network"}
+METHOD_WORDS = {
+    "sindy": "SINDy",
+    "dmd": "DMD",
+    "bopdmd": "BOP-DMD",
+    "gp": "Gaussian process",
+    "nn": "neural network",
+}
 METHOD_LOOKS = {
     "sindy": Look("#00875a", "-", "s"),
     "dmd": Look("#d97700", (0, (4.0, 1.6)), "o"),
+    "bopdmd": Look("#7a3fa0", (0, (3.0, 1.0, 1.0, 1.0)), "D"),
     "gp": Look("#1f4fc8", (0, (1.2, 1.2)), "^"),
     "nn": Look("#c8102e", (0, (4.0, 1.2, 1.2, 1.2)), "v"),
 }
 KNOWN, AUGMENTED = Look("#1f4fc8", "-", ""), Look("#111111", (0, (4.0, 1.6)), "")
 HORIZONS_S = tuple(np.round(np.geomspace(0.2, 20.0, 40), 2))
 MOST_DRAWN = 1000  # points of a line
+BAR = 0.16  # of the distance between two noises, for one method
 
 
 @in_style
@@ -66,7 +74,7 @@ def _error_lines(axes: Axes, cell: DiscrepancyCell, part: str, channel: int) -> 
     for model, look in (("known", KNOWN), ("augmented", AUGMENTED)):
         table[model] = (found.truth - getattr(found, model))[some, channel]
         axes.plot(table["t_s"], table[model], color=look.colour, linestyle=look.line, linewidth=0.8)
-    said = "" if found.diverged_s is None else f", diverged at {found.diverged_s:.2f} s"
+    said = "" if found.diverged_s is None else f", diverged at t = {found.diverged_s:.2f} s"
     axes.set_title(f"{METHOD_WORDS[cell.method]}: {part}{said}")
     return table
 
@@ -113,7 +121,10 @@ def accuracy_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) ->
     table = cells_table([cell for cell in cells if cell.parts])
     approaches, noises = list(dict.fromkeys(table["approach"])), sorted(table["noise"].unique())
     over = table.groupby(["approach", "part", "method", "noise", "seed"], sort=False)["clipped"].median()
-    spread = over.groupby(level=[0, 1, 2, 3]).agg(["median", "min", "max", "count"]).reset_index()
+    spread = over.groupby(level=[0, 1, 2, 3]).agg(["median", "min", "max", "size"])
+    spread["diverged_s"] = table.groupby(["approach", "part", "method", "noise"])["diverged_s"].min()
+    spread.loc[spread["diverged_s"].notna(), ["median", "min", "max"]] = np.nan  # a time, and never a number
+    spread = spread.reset_index()
     drawn, grid = panels(len(approaches), 2, 1.4, Room(across=0.6, down=0.5))
     methods = list(dict.fromkeys(table["method"]))
     for row, approach in zip(grid, approaches, strict=True):
@@ -122,9 +133,11 @@ def accuracy_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) ->
                 rows = spread[
                     (spread["approach"] == approach) & (spread["part"] == part) & (spread["method"] == method)
                 ]
-                at = [noises.index(noise) + (k - 1.5) * 0.19 for noise in rows["noise"]]
-                axes.bar(at, rows["median"], 0.17, color=METHOD_LOOKS[method].colour)
+                at = [noises.index(noise) + (k - (len(methods) - 1) / 2) * BAR for noise in rows["noise"]]
+                axes.bar(at, rows["median"], 0.9 * BAR, color=METHOD_LOOKS[method].colour)
                 axes.vlines(at, rows["min"], rows["max"], color="#111111", linewidth=0.7)
+                lost = [place for place, time in zip(at, rows["diverged_s"], strict=True) if np.isfinite(time)]
+                axes.plot(lost, [-97.0] * len(lost), "x", color=METHOD_LOOKS[method].colour, markersize=4)
             axes.set_xticks(range(len(noises)), [f"{noise:g}" for noise in noises])
             axes.set_ylim(-105, 105)
             axes.axhline(0, color="#111111", linewidth=0.5)
@@ -135,7 +148,7 @@ def accuracy_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) ->
     legend(drawn, _patches({METHOD_WORDS[method]: METHOD_LOOKS[method] for method in methods}))
     caption = (
         f"{source}. 100 (1 − RMSE augmented / RMSE known) against the noise-free truth, median of channels, clipped to "
-        f"±100; lines: least to most of n = {int(spread['count'].max())} seeds. A diverged run has no bar."
+        f"±100; lines: least to most of n = {int(spread['size'].max())} seeds. ×: diverged, in one seed at least."
     )
     return Figure(name, caption, "Bars of accuracy against noise, by method", spread, drawn)
 
@@ -202,7 +215,13 @@ def cost_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) -> Fig
         axes.set_title(approach)
     grid[0][0].set_ylabel("wall-clock time [s]")
     legend(drawn, _patches({"fit": Look("#555555", "-", ""), "run of both parts": Look("#bbbbbb", "-", "")}))
-    return Figure(name, f"{source}. Median over all noises, on a shared machine.", "Bars of seconds", middle, drawn)
+    return Figure(
+        name,
+        f"{source}. Seconds of a core: fit (dark), and run of both parts (light); median over noises and seeds.",
+        "Bars of seconds",
+        middle,
+        drawn,
+    )
 
 
 @in_style

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-import math
+import re
 from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from gaitdisc.report.discrepancy_figure import METHOD_WORDS
 from gaitdisc.report.table import Table
 from gaitdisc.results.discrepancy_cell import DiscrepancyCell, PartAccuracy, cells_table
 
 MOST_TERMS = 110  # characters
+COEFFICIENT = r"(?<![*\w.])-?[0-9.]+(e[-+]?[0-9]+)?\*"  # of a term, but no power
+MOST_CHANNELS = 4  # that are told one by one
 
 
 def grid_table(cells: Sequence[DiscrepancyCell], name: str) -> Table:
@@ -32,38 +35,70 @@ def grid_table(cells: Sequence[DiscrepancyCell], name: str) -> Table:
     for (variant, approach, method, noise), found in groups.items():
         parts = [[c.parts[part] for c in found if c.parts] for part in ("reconstruction", "forecast")]
         rows.append((
-            variant, approach, METHOD_WORDS[method], f"{noise:g}", *(_cell(each) for each in parts),
+            variant, approach, METHOD_WORDS[method], f"{noise:g}", *(_cell(each, len(found)) for each in parts),
             _median([p.valid_s("augmented") for p in parts[1]], "{:.1f}"),
             _median([p.valid_s("known") for p in parts[1]], "{:.1f}"),
             f"{np.median([c.fit_s for c in found]):.1f}", f"{np.median([c.run_s for c in found]):.1f}",
-            found[0].refused or _short(found[0].terms),
+            _found(found),
         ))  # fmt: skip
     columns = (
         "variant", "approach", "method", "noise", "reconstruction [%]", "forecast [%]", "valid [s]", "known valid [s]",
-        "fit [s]", "run [s]", "found (first seed)",
+        "fit [s]", "run [s]", "found",
     )  # fmt: skip
     caption = (
-        "100 (1 − RMSE augmented / RMSE known) by channel, unclipped, against the noise-free truth; median of "
-        f"n = {max(len(found) for found in groups.values())} seeds at most. Valid: until the error passes 0.4 standard "
-        "deviations."
+        "100 (1 − RMSE augmented / RMSE known) by channel, unclipped, against the noise-free truth: median and "
+        f"[least, greatest] of n = {max(len(found) for found in groups.values())} seeds; without noise there is one. "
+        "Valid: until the error passes 0.4 standard deviations, median. Seconds of a core. "
+        "Found: terms of the first seed."
     )
     return Table(name, caption, columns, tuple(rows), cells_table(cells))
 
 
-def _cell(parts: list[PartAccuracy]) -> str:
+def _cell(parts: list[PartAccuracy], asked: int) -> str:
+    """Say median and range over the seeds, by channel; when it diverged, and in how many seeds, instead of a number."""
     if not parts:
         return "not fitted"
     diverged = [part.diverged_s for part in parts if part.diverged_s is not None]
     if diverged:
-        return f"diverged at {min(diverged):.2f} s" + (f" ({len(diverged)} of {len(parts)} seeds)" * (len(parts) > 1))
-    accuracy = np.median([part.accuracy() for part in parts], axis=0)
-    if len(accuracy) > 4:
-        return f"{np.median(accuracy):.1f} (median of {len(accuracy)})"
-    return "; ".join(f"{value:.1f}" if math.isfinite(value) else "nothing to mend" for value in accuracy)
+        return f"diverged at t = {min(diverged):.2f} s" + (f" ({len(diverged)} of {asked} seeds)" * (asked > 1))
+    accuracy = np.array([part.accuracy() for part in parts])
+    many = accuracy.shape[1] > MOST_CHANNELS
+    columns = [np.median(accuracy, axis=1)] if many else list(accuracy.T)
+    said = "; ".join(spread_words(column) for column in columns)
+    said += f" (median of {accuracy.shape[1]})" if many else ""
+    return said if len(parts) == asked else f"{said} ({len(parts)} of {asked} seeds)"
+
+
+def spread_words(values: NDArray[np.float64]) -> str:
+    """Median, and least and greatest where there are several.
+
+    Parameters
+    ----------
+    values : ndarray (seed,)
+        [%].
+
+    Examples
+    --------
+    >>> spread_words(np.array([99.5])), spread_words(np.array([-3.0, 4.0, 1.0]))
+    ('99.5', '1.0 [-3.0, 4.0]')
+    """
+    if not np.isfinite(values).all():
+        return "nothing to mend"
+    middle = f"{np.median(values):.1f}"
+    return middle if len(values) == 1 else f"{middle} [{values.min():.1f}, {values.max():.1f}]"
 
 
 def _median(values: list[float], form: str) -> str:
     return form.format(float(np.median(values))) if values else ""
+
+
+def _found(cells: list[DiscrepancyCell]) -> str:
+    refused = [cell.refused for cell in cells if cell.refused]
+    if refused:
+        return refused[0] + (f" ({len(refused)} of {len(cells)} seeds)" * (len(cells) > 1))
+    kinds = [re.sub(COEFFICIENT, "", cell.terms) for cell in cells]
+    same = f" (the same terms in {kinds.count(kinds[0])} of {len(cells)} seeds)" * (len(cells) > 1)
+    return _short(cells[0].terms) + same if cells[0].terms else ""
 
 
 def _short(text: str) -> str:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.recording.arrays import read_only
 
-METHODS = ("sindy", "dmd", "gp", "nn")
+METHODS = ("sindy", "dmd", "bopdmd", "gp", "nn")
 PARTS = ("reconstruction", "forecast")
 
 
@@ -123,7 +123,7 @@ class DiscrepancyCell:
     parts : dict of str to PartAccuracy
         `reconstruction` and `forecast`; empty where nothing was fitted.
     fit_s, run_s : float [s]
-        Wall-clock time of fit, and of running the augmented model over both parts.
+        Of a core, to fit, and to run the augmented model over both parts.
     terms : str
         What was found, for a method that says so.
     refused : str

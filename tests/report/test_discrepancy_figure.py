@@ -41,4 +41,17 @@ def test_a_run_that_diverged_is_said_in_its_title():
     values = np.where(TIME[:, None] > 3, np.nan, TRUTH)
     names = dict.fromkeys(PARTS, PartAccuracy(TIME, TRUTH, TRUTH + 0.2, values, 3.0))
     cell = DiscrepancyCell("s", "gp", "state", "right", 0.0, 0, ("x", "y"), names, 1.0, 0.1)
-    assert "diverged at 3.00 s" in error_figure([cell], "a", "Fig. 3.4").drawn.axes[0].get_title()
+    assert "diverged at t = 3.00 s" in error_figure([cell], "a", "Fig. 3.4").drawn.axes[0].get_title()
+
+
+def test_bars_of_seeds_of_which_one_diverged_are_a_cross_and_no_number():
+    values = np.where(TIME[:, None] > 3, np.nan, TRUTH)
+    parts = [PartAccuracy(TIME, TRUTH, TRUTH + 0.2, v, d) for v, d in ((values, 3.0), (TRUTH + 0.1, None))]
+    some = [
+        DiscrepancyCell("s", "gp", "state", "right", 0.0, seed, ("x", "y"), dict.fromkeys(PARTS, part), 1.0, 0.1)
+        for seed, part in enumerate(parts)
+    ]
+    figure = accuracy_figure(some, "b", "Fig. 3.4")
+    assert figure.numbers["median"].isna().all()
+    assert figure.numbers["diverged_s"].tolist() == [3.0, 3.0]
+    assert [len(line.get_xdata()) for line in figure.drawn.axes[0].lines if line.get_marker() == "x"] == [1]
