@@ -1,0 +1,108 @@
+"""What the field studies of chapter 5 have in common: their result, and how it is written."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from gaitdisc.recording import Field
+from gaitdisc.report.block import Block
+from gaitdisc.report.discrepancy_page import write_blocks
+from gaitdisc.report.discrepancy_tables import as_markdown
+from gaitdisc.report.table import Table
+from gaitdisc.results.field_cell import FieldCell
+from gaitdisc.sensing.field_windows import snapshots_of
+from gaitdisc.sensing.reconstruct_field import FieldTask, prepare
+from gaitdisc.sensing.reconstructor import fit_reconstructor
+from gaitdisc.sensing.routes import Route, fixed_at_random, random_walk
+from gaitdisc.sensing.unseen_path import unseen_path
+from gaitdisc.whole_file import write_whole
+
+FIELDS = Path(os.environ.get("GAITDISC_DATA", Path(__file__).parents[2] / "shared" / "data")) / "fields"
+WALKS = 12  # fitted, before one that never was
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """A field study of chapter 5.
+
+    Parameters
+    ----------
+    cells : tuple of FieldCell
+        Every route, split, model, quantity and run.
+    tables : tuple of Table
+        Of the page.
+    page : Path
+        The report.
+    """
+
+    cells: tuple[FieldCell, ...]
+    tables: tuple[Table, ...]
+    page: Path
+
+
+def maps_told(field: Field, route: Route, task: FieldTask, kind: str, rules: Sequence[str]) -> dict:
+    """One snapshot of the judged part as measured, and as told, under each split.
+
+    Parameters
+    ----------
+    field : Field
+        To be told.
+    route : Route
+        Where the sensors are.
+    task : FieldTask
+        Lags, seed.
+    kind : str
+        Of the model.
+    rules : sequence of str
+        Splits.
+    """
+    shown = {}
+    for rule in rules:
+        ready = prepare(field, route, replace(task, rule=rule))
+        fitted = fit_reconstructor(kind, ready.what, ready.training, ready.check, task.seed)
+        middle = ready.test.rows(slice(len(ready.test) // 2, len(ready.test) // 2 + 1))
+        snapshot = int(snapshots_of(middle)[0])
+        shown[f"measured, {field.time_unit} {snapshot + 1}"] = field.values[snapshot, :, 0]
+        shown[f"told by {kind}, {rule}"] = ready.modes.fields(fitted(middle))[0, :, 0]
+    return shown
+
+
+def unseen_walks(field: Field, task: FieldTask, kinds: Sequence[str]) -> list[FieldCell]:
+    """Random walks from starts all over the field: one that was never fitted, told after one and after twelve others.
+
+    Parameters
+    ----------
+    field : Field
+        To be told.
+    task : FieldTask
+        Lags, split, seed.
+    kinds : sequence of str
+        Of the models.
+    """
+    starts = fixed_at_random(field, WALKS + 1, 0).points[0]
+    unseen, *walks = [random_walk(field, 100 + k, start=int(start)) for k, start in enumerate(starts)]
+    return unseen_path(field, walks, unseen, task, kinds)
+
+
+def written(cells: Sequence[FieldCell], blocks: Sequence[Block], title: str, folder: Path) -> Result:
+    """Write page, figures, tables, and all tables once more as Markdown.
+
+    Parameters
+    ----------
+    cells : sequence of FieldCell
+        What was found.
+    blocks : sequence of Block
+        Of the page.
+    title : str
+        Of the page.
+    folder : Path
+        Where it goes.
+    """
+    page = write_blocks(title, "Ebers 2023, chapter 5, on fields that can be had.", blocks, folder)
+    tables = tuple(table for block in blocks for table in block.tables)
+    text = "\n\n".join(f"{block.heading}\n\n{as_markdown(t)}" for block in blocks for t in block.tables)
+    write_whole(folder / "tables.md", text + "\n")
+    return Result(tuple(cells), tables, page)

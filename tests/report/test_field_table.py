@@ -1,0 +1,26 @@
+from dataclasses import replace
+
+import numpy as np
+
+from gaitdisc.report.field_table import field_table
+from gaitdisc.results.field_cell import FieldCell, error_counts
+
+COUNTS = error_counts(np.zeros(3), 1.0)
+FIRST = FieldCell(
+    "sea", "sst", "degC", "1 fixed", "temporal", "linear", 0.8, 0.52, 0, 1, 0.3, 100, 20, 1.0, 0, COUNTS
+)  # fmt: skip
+
+
+def test_a_row_a_route_and_a_star_for_the_least():
+    cells = [
+        replace(FIRST, model="POD ceiling", relative_l2=0.2), FIRST, replace(FIRST, model="shred", relative_l2=0.7),
+        replace(FIRST, route="3 fixed", relative_l2=0.5), replace(FIRST, route="3 fixed", model="shred"),
+    ]  # fmt: skip
+    table = field_table(cells, "t", {("1 fixed", "temporal"): 0.0481})
+    assert table.columns == ("route", "linear", "shred", "printed")
+    assert table.groups == (("", 1), ("temporal", 3))
+    assert table.rows[0] == ("1 fixed", "0.800 (0.52; 0.30)", "0.700* (0.52; 0.30)", "0.0481")
+    assert table.rows[1] == ("3 fixed", "0.500* (0.52; 0.30)", "0.800 (0.52; 0.30)", "")
+    assert "Bounds: temporal, POD ceiling: 0.200 (0.52; 0.30)." in table.caption
+    assert "Judged snapshots: temporal 20." in table.caption
+    assert len(table.numbers) == 5
