@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 from gaitdisc.batch.quantity_unit import computed_quantity
 from gaitdisc.batch.run_lock import run_lock
-from gaitdisc.batch.run_study import Told, run_study
-from gaitdisc.batch.workers import Workers, computed_side_by_side
-from gaitdisc.ingest.study import Participant, Study
+from gaitdisc.batch.run_study import run_study
+from gaitdisc.batch.workers import Told, Workers, computed_units
+from gaitdisc.ingest.study import Study
 from gaitdisc.response.data_quantity import LENGTHS_S
 from gaitdisc.response.over_participants import compare_participants
 from gaitdisc.results import DataQuantity, Refusal, ResponseRun
@@ -59,7 +59,8 @@ def ablate_study(
     run = run_study(study, folder, workers)
     with run_lock(folder):
         people = [study.participant(response.participant) for response in run.responses]
-        found = list(_quantities(study, people, folder, (lengths_s, part), workers, told))
+        compute = partial(computed_quantity, study, folder=folder.absolute(), lengths_s=lengths_s, part=part)
+        found = list(computed_units(workers, compute, people, told))
         quantities = tuple(each for each in found if isinstance(each, DataQuantity))
         run = replace(
             run,
@@ -69,29 +70,3 @@ def ablate_study(
         )
         save_run(run, folder)
     return run
-
-
-def _quantities(
-    study: Study,
-    people: Sequence[Participant],
-    folder: Path,
-    asked: tuple[Sequence[float], str],
-    workers: Workers,
-    told: Told,
-) -> Iterator[DataQuantity | Refusal]:
-    if workers.here:
-        for person in people:
-            yield computed_quantity(study, person, folder, *asked, partial(told, person.id))
-            told(person.id, 1.0)
-        return
-    compute = partial(_computed_untold, study, folder.absolute(), asked)
-    for person, quantity in computed_side_by_side(workers, compute, people):
-        told(person.id, 1.0)
-        yield quantity
-
-
-def _computed_untold(
-    study: Study, folder: Path, asked: tuple[Sequence[float], str], person: Participant
-) -> DataQuantity | Refusal:
-    """Progress within a participant does not cross the border of a process."""
-    return computed_quantity(study, person, folder, *asked, lambda _: None)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
 from datetime import UTC, datetime
 from functools import partial
@@ -11,8 +11,8 @@ from pathlib import Path
 from gaitdisc.batch.participant_unit import ParticipantUnit, computed_unit, response_settings
 from gaitdisc.batch.quantity_unit import stored_quantity
 from gaitdisc.batch.run_lock import run_lock
-from gaitdisc.batch.workers import Workers, computed_side_by_side
-from gaitdisc.ingest.study import Participant, Study
+from gaitdisc.batch.workers import Told, Workers, computed_units
+from gaitdisc.ingest.study import Study
 from gaitdisc.response.comparison import compare_models
 from gaitdisc.response.over_participants import compare_participants
 from gaitdisc.results import DataQuantity, Provenance, ResponseRun
@@ -20,7 +20,6 @@ from gaitdisc.results.provenance import installed_versions
 from gaitdisc.results.run_store import save_run
 
 SECTION = "4.2, Eqs. 4.1-4.5"
-Told = Callable[[str, float], None]
 
 
 def run_study(
@@ -58,7 +57,8 @@ def run_study(
         If the cluster cannot be reached.
     """
     with run_lock(folder):
-        units = list(_units(study, folder, workers or Workers(), told))
+        compute = partial(computed_unit, study, folder=folder.absolute())
+        units = list(computed_units(workers or Workers(), compute, study.participants, told))
         responses = tuple(unit.response for unit in units if unit.response is not None)
         quantities = _stored_quantities(study, units, folder)
         run = ResponseRun(
@@ -77,18 +77,6 @@ def run_study(
     return run
 
 
-def _units(study: Study, folder: Path, workers: Workers, told: Told) -> Iterator[ParticipantUnit]:
-    if workers.here:
-        for person in study.participants:
-            yield computed_unit(study, person, folder, partial(told, person.id))
-            told(person.id, 1.0)
-        return
-    compute = partial(_computed_untold, study, folder.absolute())
-    for person, unit in computed_side_by_side(workers, compute, study.participants):
-        told(person.id, 1.0)
-        yield unit
-
-
 def _stored_quantities(study: Study, units: Sequence[ParticipantUnit], folder: Path) -> tuple[DataQuantity, ...]:
     whole = [(unit.response.participant, unit.key) for unit in units if unit.response is not None]
     found = (stored_quantity(study.participant(name), folder, key) for name, key in whole)
@@ -100,8 +88,3 @@ def _provenance(study: Study, units: Sequence[ParticipantUnit]) -> Provenance:
     created = datetime.now(UTC).isoformat(timespec="seconds")
     settings = {**study.model_dump(mode="json"), "fits": asdict(response_settings(study))}
     return Provenance(settings, study.models.seed, files, installed_versions(), SECTION, created)
-
-
-def _computed_untold(study: Study, folder: Path, person: Participant) -> ParticipantUnit:
-    """Progress within a participant does not cross the border of a process."""
-    return computed_unit(study, person, folder, lambda _: None)

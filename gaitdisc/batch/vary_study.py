@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
 from gaitdisc.batch.run_lock import run_lock
-from gaitdisc.batch.run_study import Told, run_study
+from gaitdisc.batch.run_study import run_study
 from gaitdisc.batch.variant_unit import computed_variants
-from gaitdisc.batch.workers import Workers, computed_side_by_side
+from gaitdisc.batch.workers import Told, Workers, computed_units
 from gaitdisc.errors import SchemaError
-from gaitdisc.ingest.study import Participant, Study
+from gaitdisc.ingest.study import Study
 from gaitdisc.response.modalities import compare_modalities
 from gaitdisc.response.sensitivity import compare_settings
-from gaitdisc.results import Refusal
+from gaitdisc.results import Refusal, ResponseRun
+from gaitdisc.results.variant_store import save_variant_run
 from gaitdisc.results.variants import QUESTIONS, VariantRun, Variants
 
 
@@ -43,7 +44,7 @@ def vary_study(
     Returns
     -------
     VariantRun
-        Whoever had to be refused is in `refusals`.
+        Also saved in the folder of the question; whoever had to be refused is in `refusals`.
 
     Raises
     ------
@@ -60,7 +61,14 @@ def vary_study(
     run = run_study(study, folder, workers)
     with run_lock(folder):
         asked = [study.participant(response.participant) for response in run.responses]
-        found = list(_people(study, asked, folder, question, workers, told))
+        compute = partial(computed_variants, study, folder=folder.absolute(), question=question)
+        found = list(computed_units(workers, compute, asked, told))
+        varied = _varied(run, question, found)
+        save_variant_run(varied, folder / question)
+    return varied
+
+
+def _varied(run: ResponseRun, question: str, found: Sequence[Variants | Refusal]) -> VariantRun:
     people = tuple(each for each in found if isinstance(each, Variants))
     lengths = [response.held_out_s for response in run.responses] or [0.0]
     return VariantRun(
@@ -72,22 +80,3 @@ def vary_study(
         (*run.refusals, *(each for each in found if isinstance(each, Refusal))),
         (min(lengths), max(lengths)),
     )
-
-
-def _people(
-    study: Study, asked: Sequence[Participant], folder: Path, question: str, workers: Workers, told: Told
-) -> Iterator[Variants | Refusal]:
-    if workers.here:
-        for person in asked:
-            yield computed_variants(study, person, folder, question, partial(told, person.id))
-            told(person.id, 1.0)
-        return
-    compute = partial(_computed_untold, study, folder.absolute(), question)
-    for person, variants in computed_side_by_side(workers, compute, asked):
-        told(person.id, 1.0)
-        yield variants
-
-
-def _computed_untold(study: Study, folder: Path, question: str, person: Participant) -> Variants | Refusal:
-    """Progress within a participant does not cross the border of a process."""
-    return computed_variants(study, person, folder, question, lambda _: None)

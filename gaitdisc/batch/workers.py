@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, TypeVar
 
 from gaitdisc.errors import GaitdiscError
+from gaitdisc.ingest.study import Participant
 
+Told = Callable[[str, float], None]
 Unit = TypeVar("Unit")
 Person = TypeVar("Person")
 CONNECT_S = 20.0
@@ -38,6 +41,50 @@ class Workers:
     def here(self) -> bool:
         """Whether everything is done in this process, where progress within a participant can be told."""
         return self.jobs == 1 and not self.cluster
+
+
+def computed_units(
+    workers: Workers, compute: Callable[..., Unit], people: Sequence[Participant], told: Told
+) -> Iterator[Unit]:
+    """Compute one unit a participant where it shall be done, in order.
+
+    Parameters
+    ----------
+    workers : Workers
+        Where.
+    compute : callable
+        Takes `participant` and `progress`, which is called with the fraction done; can be sent to another process.
+    people : sequence of Participant
+        Who.
+    told : callable
+        Called with a participant's pseudonym and the fraction done; progress within a participant is told only where
+        everything is done in this process.
+
+    Yields
+    ------
+    unit
+
+    Raises
+    ------
+    ClusterError
+        As `computed_side_by_side`.
+    """
+    if workers.here:
+        for person in people:
+            yield compute(participant=person, progress=partial(told, person.id))
+            told(person.id, 1.0)
+        return
+    for person, unit in computed_side_by_side(workers, partial(_untold, compute), people):
+        told(person.id, 1.0)
+        yield unit
+
+
+def _untold(compute: Callable[..., Unit], person: Participant) -> Unit:
+    return compute(participant=person, progress=_nobody)
+
+
+def _nobody(_fraction: float) -> None:
+    """Progress within a participant does not cross the border of a process."""
 
 
 def computed_side_by_side(

@@ -1,4 +1,4 @@
-"""`gaitdisc report`: the report of a run, drawn again."""
+"""`gaitdisc report`: the pages of a run, drawn again."""
 
 from __future__ import annotations
 
@@ -9,9 +9,16 @@ import typer
 
 
 def report(run_folder: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a run.")]) -> None:
-    """Draw the report of a run again, without fitting."""
+    """Draw the report of a run again, and those of modalities and sensitivity where it has them, without fitting."""
     from gaitdisc.report.response_page import write_report
+    from gaitdisc.report.variants_page import write_variants
     from gaitdisc.results.run_store import load_run
+    from gaitdisc.results.variant_store import load_variant_run
+    from gaitdisc.results.variants import QUESTIONS
 
     page = write_report(load_run(run_folder), run_folder / "report")
     typer.echo(f"report: {page}")
+    for question in QUESTIONS:
+        folder = run_folder / question
+        if (folder / "variant_run.json").is_file():
+            typer.echo(f"{question}: {write_variants(load_variant_run(folder), folder)}")

@@ -12,7 +12,7 @@ import typer
 from gaitdisc.commands.exit_codes import REFUSED, SOME_REFUSED, STOPPED
 
 if TYPE_CHECKING:
-    from gaitdisc.batch.run_study import Told
+    from gaitdisc.batch.workers import Told
     from gaitdisc.ingest.study import Study
     from gaitdisc.results import ResponseRun
 

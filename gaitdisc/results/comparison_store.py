@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pandas as pd
-
 from gaitdisc.results.over_participants import OverParticipants
 from gaitdisc.results.pair_test import PairTests
-from gaitdisc.results.unit_folder import load_unit, save_unit
+from gaitdisc.results.unit_folder import load_unit, save_unit, with_words
 
 
 def save_tests(tests: PairTests, folder: Path) -> None:
@@ -49,7 +47,7 @@ def load_tests(folder: Path) -> PairTests:
         data["alpha"],
         data["level"],
         data["too_few"],
-        _with_words(tables["tests.csv"]),
+        with_words(tables["tests.csv"], "left_out"),
         tables["families.csv"],
     )
 
@@ -82,12 +80,5 @@ def load_over(folder: Path) -> OverParticipants:
         If a file is missing, damaged or of another format.
     """
     data, files, _ = load_unit(folder, "over.json")
-    tables = {file.removesuffix(".csv"): _with_words(table) for file, table in files.items()}
+    tables = {file.removesuffix(".csv"): with_words(table, "left_out") for file, table in files.items()}
     return OverParticipants(**tables, lengths_said=data["lengths_said"], responders_said=data["responders_said"])
-
-
-def _with_words(table: pd.DataFrame) -> pd.DataFrame:
-    """An empty word comes back from a CSV as a missing number."""
-    if "left_out" in table:
-        table["left_out"] = table["left_out"].astype(object).fillna("").astype(str)
-    return table

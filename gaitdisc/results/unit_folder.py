@@ -99,6 +99,21 @@ def load_unit(folder: Path, name: str) -> Unit:
     return data, tables, StoredArrays(folder / "arrays.npz", data["sha256"].get("arrays.npz", ""))
 
 
+def with_words(table: pd.DataFrame, column: str) -> pd.DataFrame:
+    """Table in which an empty word is an empty word again, and not the missing number that a CSV makes of it.
+
+    Parameters
+    ----------
+    table : DataFrame
+        From `load_unit`; changed in place.
+    column : str
+        Of words; where the table has none of that name, nothing is changed.
+    """
+    if column in table:
+        table[column] = table[column].astype(object).fillna("").astype(str)
+    return table
+
+
 def read_json(path: Path) -> dict[str, Any]:
     """Read a JSON file of a run and hold it against the schema.
 

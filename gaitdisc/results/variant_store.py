@@ -1,11 +1,13 @@
-"""Saving and loading of one participant's variants: `RUN/<question>/people/<person>/`."""
+"""Saving and loading of variants: `RUN/<question>/`, and in it `people/<person>/` of each participant."""
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 
-from gaitdisc.results.unit_folder import load_unit, save_unit
-from gaitdisc.results.variants import Variants
+from gaitdisc.results.response_run import Refusal
+from gaitdisc.results.unit_folder import load_unit, save_unit, with_words
+from gaitdisc.results.variants import VariantRun, Variants
 
 
 def save_variants(variants: Variants, folder: Path, key: str) -> None:
@@ -45,3 +47,49 @@ def load_variants(folder: Path) -> tuple[Variants, str]:
     data, tables, _ = load_unit(folder, "variants.json")
     left_away = {str(row["variant"]): str(row["reason"]) for row in data["left_away"]}
     return Variants(data["participant"], data["question"], tables["variants.csv"], left_away), data["key"]
+
+
+def save_variant_run(run: VariantRun, folder: Path) -> None:
+    """Save what was found over the participants, beside theirs, which were saved as they were computed.
+
+    Parameters
+    ----------
+    run : VariantRun
+        The whole result.
+    folder : Path
+        Folder of the question.
+    """
+    data = {
+        "title": run.title,
+        "exo": run.exo,
+        "question": run.question,
+        "people": [each.participant for each in run.people],
+        "refusals": [asdict(refusal) for refusal in run.refusals],
+        "held_out_s": list(run.held_out_s),
+    }
+    save_unit(folder, "variant_run.json", data, {"tests.csv": run.tests}, {})
+
+
+def load_variant_run(folder: Path) -> VariantRun:
+    """Load what was found over the participants.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of a question.
+
+    Raises
+    ------
+    SchemaError
+        If a file is missing, damaged or of another format.
+    """
+    data, tables, _ = load_unit(folder, "variant_run.json")
+    return VariantRun(
+        data["title"],
+        data["exo"],
+        data["question"],
+        tuple(load_variants(folder / "people" / name)[0] for name in data["people"]),
+        with_words(tables["tests.csv"], "left_out"),
+        tuple(Refusal(**refusal) for refusal in data["refusals"]),
+        (data["held_out_s"][0], data["held_out_s"][1]),
+    )

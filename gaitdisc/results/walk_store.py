@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Finding
 from gaitdisc.results.on_disk import Arrays
-from gaitdisc.results.unit_folder import load_unit, save_unit
+from gaitdisc.results.unit_folder import load_unit, save_unit, with_words
 from gaitdisc.results.walk_summary import WalkSummary
 
 
@@ -60,8 +60,7 @@ def load_walk(folder: Path) -> tuple[WalkSummary, str]:
         If a file is missing, damaged or of another format.
     """
     data, tables, arrays = load_unit(folder, "walk.json")
-    strides = tables["strides.csv"]
-    strides["reason"] = strides["reason"].astype(object).fillna("").astype(str)
+    strides = with_words(tables["strides.csv"], "reason")
     findings = tuple(Finding(**{**f, "spans": tuple(tuple(span) for span in f["spans"])}) for f in data["findings"])
     walk = WalkSummary(
         data["subject"],

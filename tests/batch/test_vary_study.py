@@ -3,6 +3,7 @@ import pytest
 from gaitdisc.batch.vary_study import vary_study
 from gaitdisc.batch.workers import Workers
 from gaitdisc.errors import SchemaError
+from gaitdisc.results.variant_store import load_variant_run
 
 
 def test_every_participant_of_the_run_is_varied(study, tmp_path):
@@ -12,6 +13,8 @@ def test_every_participant_of_the_run_is_varied(study, tmp_path):
     assert [who for who, share in told if share == 1.0][-1] == "P02"
     assert run.held_out_s == pytest.approx((3.75, 3.75), abs=0.02)
     assert len(run.tests) == 0  # two people carry no test
+    kept = load_variant_run(tmp_path / "modalities")
+    assert kept.r2_table().equals(run.r2_table())
     beside = vary_study(study, tmp_path, "modalities", Workers(jobs=2))
     assert beside.r2_table().equals(vary_study(study, tmp_path, "modalities").r2_table())
 

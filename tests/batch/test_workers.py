@@ -6,13 +6,18 @@ import pandas as pd
 import pytest
 
 from gaitdisc.batch.run_study import run_study
-from gaitdisc.batch.workers import ClusterError, Workers, computed_side_by_side
+from gaitdisc.batch.workers import ClusterError, Workers, computed_side_by_side, computed_units
 
 distributed = pytest.importorskip("distributed", reason="the extra 'cluster' is not installed")
 
 
 def squared(number):
     return number * number
+
+
+def named_after_half(*, participant, progress):
+    progress(0.5)
+    return participant.id
 
 
 def dies_once(folder, number):
@@ -45,6 +50,17 @@ def test_here_is_one_process():
 
 def test_processes_beside_this_one_keep_the_order():
     assert list(computed_side_by_side(Workers(jobs=2), squared, [3, 1, 2])) == [(3, 9), (1, 1), (2, 4)]
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_units_come_in_order_and_everybody_is_told(study, jobs):
+    told = []
+    found = computed_units(
+        Workers(jobs=jobs), named_after_half, study.participants, lambda who, share: told.append((who, share))
+    )
+    assert list(found) == ["P01", "P02"]
+    halves = [("P01", 0.5), ("P01", 1.0), ("P02", 0.5), ("P02", 1.0)]
+    assert told == (halves if jobs == 1 else halves[1::2])
 
 
 def test_a_worker_that_is_killed_in_the_middle_costs_nothing(cluster, tmp_path):

@@ -4,3 +4,9 @@ def test_modalities(study, called):
     assert (study / "run" / "modalities" / "report.html").is_file()
     assert (study / "run" / "modalities" / "tables" / "r2.csv").is_file()
     assert "1 participants" in done.stdout
+    page = study / "run" / "modalities" / "report.html"
+    first = page.read_bytes()
+    page.unlink()
+    again = called("report", study / "run")
+    assert again.returncode == 0, again.stderr
+    assert page.read_bytes() == first

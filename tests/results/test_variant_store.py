@@ -2,8 +2,9 @@ import pandas as pd
 import pytest
 
 from gaitdisc.errors import SchemaError
-from gaitdisc.results.variant_store import load_variants, save_variants
-from gaitdisc.results.variants import VARIANT_COLUMNS, Variants
+from gaitdisc.results import Refusal
+from gaitdisc.results.variant_store import load_variant_run, load_variants, save_variant_run, save_variants
+from gaitdisc.results.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, VariantRun, Variants
 
 TABLE = pd.DataFrame(
     [("EMG", "knee_angle_r", "exo", "network", 0.1 + 0.2, 99), ("EMG", "knee_angle_r", "exo", "ridge", -3.5, 99)],
@@ -29,3 +30,16 @@ def test_a_damaged_table_is_told(tmp_path):
 def test_an_empty_folder_holds_none(tmp_path):
     with pytest.raises(SchemaError, match="missing"):
         load_variants(tmp_path)
+
+
+def test_what_was_found_over_the_participants_is_loaded(tmp_path):
+    person = Variants("P01", "modalities", TABLE, {})
+    save_variants(person, tmp_path / "people" / "P01", "key")
+    tests = pd.DataFrame(columns=pd.Index(VARIANT_TEST_COLUMNS))
+    refusals = (Refusal("P02", "", "excluded in the study: ill"),)
+    save_variant_run(VariantRun("two", "exo", "modalities", (person,), tests, refusals, (3.75, 7.5)), tmp_path)
+    found = load_variant_run(tmp_path)
+    assert (found.title, found.exo, found.question, found.held_out_s) == ("two", "exo", "modalities", (3.75, 7.5))
+    assert found.refusals == refusals
+    assert (len(found.tests), tuple(found.tests.columns)) == (0, VARIANT_TEST_COLUMNS)
+    assert found.r2_table()["participant"].tolist() == ["P01", "P01"]
