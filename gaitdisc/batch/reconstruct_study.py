@@ -9,6 +9,7 @@ from datetime import UTC, datetime
 import pandas as pd
 
 from gaitdisc.batch.sensed_walks import SensedWalks, sensed_walks
+from gaitdisc.batch.target_walks import STATES
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.study import Study
 from gaitdisc.recording import Samples
@@ -39,6 +40,8 @@ class ReconstructionSettings:
         Words of `gaitdisc.sensing.reconstructor.KINDS`.
     condition : str
         Walks of this condition alone; of both where it is empty.
+    targets : str
+        What is told: `states`, or a word of `gaitdisc.batch.target_walks.TARGETS`.
     seed : int
         Of every random act.
     """
@@ -48,6 +51,7 @@ class ReconstructionSettings:
     spacing_s: float = 0.04
     kinds: tuple[str, ...] = tuple(KINDS)
     condition: str = ""
+    targets: str = STATES
     seed: int = 0
 
     def lags(self, rate_hz: float) -> Lags:
@@ -91,7 +95,7 @@ def reconstruct_study(
         If no participant can be reconstructed.
     """
     settings = settings or ReconstructionSettings()
-    walks = sensed_walks(study, sensors, settings.condition)
+    walks = sensed_walks(study, sensors, settings.condition, settings.targets)
     names = tuple(channel.name for channel in walks.channels)
     what = sensing(names, tuple(sensors), settings.lags(walks.rate_hz), walks.rate_hz)
     by_name = {channel.name: channel for channel in walks.channels}

@@ -8,8 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.batch.target_walks import STATES as STATE_TARGETS
+from gaitdisc.batch.target_walks import refuse_unknown, target_walk
 from gaitdisc.channel import Channel
-from gaitdisc.errors import ChannelError, GaitdiscError, SamplingError
+from gaitdisc.errors import ChannelError, GaitdiscError, SamplingError, UnitError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import UNKNOWN, Models, Participant, Study
@@ -28,7 +30,8 @@ STATES = (
         for joint in ("hip_flexion", "hip_adduction", "hip_rotation", "knee_angle", "ankle_angle")
     ),
 )  # the 18 of section 5.3.3
-STILL = 1e-3  # deg or m: a channel that varies less was locked
+STILL = {"deg": 1e-3, "m": 1e-3}  # a channel that varies less was locked
+STILL_OTHERWISE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +80,9 @@ class SensedWalks:
         return next(iter(self.people.values()))[0].recording.rate_hz
 
 
-def sensed_walks(study: Study, sensors: Sequence[str], condition: str = "") -> SensedWalks:
+def sensed_walks(
+    study: Study, sensors: Sequence[str], condition: str = "", targets: str = STATE_TARGETS
+) -> SensedWalks:
     """Read and process every walk of a study for reconstruction.
 
     Parameters
@@ -88,6 +93,8 @@ def sensed_walks(study: Study, sensors: Sequence[str], condition: str = "") -> S
         Channels of the kinematics that are read; they may be others than the 18 states.
     condition : str
         A word of the study's conditions; both where it is empty.
+    targets : str
+        What is told: `states`, or a word of `gaitdisc.batch.target_walks.TARGETS`.
 
     Returns
     -------
@@ -95,11 +102,16 @@ def sensed_walks(study: Study, sensors: Sequence[str], condition: str = "") -> S
 
     Raises
     ------
+    SchemaError
+        If there is no such word.
     ChannelError
         If no walk has the sensors, or nothing but sensors moves.
     SamplingError
         If walks differ in rate.
+    UnitError
+        If a channel has one unit in one walk and another in another.
     """
+    refuse_unknown(targets)
     walks: dict[str, list[SensedWalk]] = {}
     refusals, findings, files = [], [], {}
     with C3DReader() as reader:
@@ -109,7 +121,7 @@ def sensed_walks(study: Study, sensors: Sequence[str], condition: str = "") -> S
                 continue
             for trial in _trials(study, person, condition, reader, refusals):
                 try:
-                    walk, seen = _sensed(trial, study, sensors)
+                    walk, seen = _sensed(trial, study, sensors, targets)
                 except GaitdiscError as error:
                     refusals.append(Refusal(person.id, trial.condition, f"{trial.name}: {error}"))
                     continue
@@ -122,6 +134,7 @@ def sensed_walks(study: Study, sensors: Sequence[str], condition: str = "") -> S
             f"all are refused, the first: {refusals[0].reason}" if refusals else "the study has none",
             "Mend what the sentence names, or choose other sensors.",
         )
+    _refuse_units([walk for found in walks.values() for walk in found])
     channels, left_out = _moving([walk for found in walks.values() for walk in found], sensors)
     names = [channel.name for channel in channels]
     people = {
@@ -146,7 +159,11 @@ def _trials(
     return found
 
 
-def _sensed(trial: Trial, study: Study, sensors: Sequence[str]) -> tuple[SensedWalk, list[Finding]]:
+def _sensed(trial: Trial, study: Study, sensors: Sequence[str], targets: str) -> tuple[SensedWalk, list[Finding]]:
+    if targets != STATE_TARGETS:
+        both, strides, seen = target_walk(trial, study, sensors, targets)
+        kept = both.between(both.time[0] + EDGE_S, both.time[-1] - EDGE_S)
+        return SensedWalk(kept, strides.phi(kept.time)), seen
     kinematics = trial.stream("kinematics")
     for name in sensors:
         kinematics.index(name)  # refuses a sensor that was not recorded, and names the nearest
@@ -165,7 +182,8 @@ def _moving(walks: Sequence[SensedWalk], sensors: Sequence[str]) -> tuple[tuple[
     first, kept, findings = walks[0].recording, [], []
     for channel in first.channels:
         lacking = [w.recording for w in walks if channel.name not in w.recording.names]
-        still = [w.recording for w in walks if w.recording not in lacking and _still(w.recording[channel.name])]
+        least = STILL.get(channel.unit, STILL_OTHERWISE)
+        still = [w.recording for w in walks if w.recording not in lacking and _still(w.recording[channel.name], least)]
         if not lacking and not still:
             kept.append(channel)
             continue
@@ -177,9 +195,23 @@ def _moving(walks: Sequence[SensedWalk], sensors: Sequence[str]) -> tuple[tuple[
     return tuple(kept), findings
 
 
-def _still(values: NDArray[np.float64]) -> bool:
+def _still(values: NDArray[np.float64], least: float) -> bool:
     known = values[np.isfinite(values)]
-    return not len(known) or float(np.std(known)) < STILL
+    return not len(known) or float(np.std(known)) < least
+
+
+def _refuse_units(walks: Sequence[SensedWalk]) -> None:
+    first: dict[str, tuple[str, str]] = {}
+    for walk in walks:
+        file = walk.recording.source.file or walk.recording.subject
+        for channel in walk.recording.channels:
+            unit, where = first.setdefault(channel.name, (channel.unit, file))
+            if unit != channel.unit:
+                raise UnitError(
+                    f"reconstruction needs {channel.name} in one unit in all walks",
+                    f"{where} has it in {unit!r}, {file} in {channel.unit!r}",
+                    "Name the unit in the study's [channels], or leave the walks of one unit out.",
+                )
 
 
 def _refuse_rates(people: dict[str, tuple[SensedWalk, ...]]) -> None:

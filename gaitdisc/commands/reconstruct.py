@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from gaitdisc.results.reconstruction import Reconstruction
 
 
-def reconstruct(
+def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     study: Annotated[Path, typer.Argument(help="The study file or its folder; with --model one recording.")],
     sensors: Annotated[
         list[str] | None, typer.Option("--sensors", "-s", help="Channels that are read: a,b,c or repeated.")
@@ -23,6 +23,7 @@ def reconstruct(
         str, typer.Option(help='temporal, blocked, subject (each person by the others), or "random (leaks)".')
     ] = "temporal",
     condition: Annotated[str, typer.Option(help="Walks of this condition alone.")] = "",
+    targets: Annotated[str, typer.Option(help="What is told: states, emg, forces or moments.")] = "states",
     model: Annotated[
         Path | None, typer.Option(help="Folder of a model that this command saved: tell the states of a recording.")
     ] = None,
@@ -43,7 +44,7 @@ def reconstruct(
         return
     loaded = load_study(study)
     folder = out or loaded.folder / "reconstruct"
-    settings = ReconstructionSettings(split=split, condition=condition, seed=loaded.models.seed)
+    settings = ReconstructionSettings(split=split, condition=condition, targets=targets, seed=loaded.models.seed)
     names = [name for words in sensors or [] for name in words.replace(",", " ").split()]
     done, people = reconstruct_study(
         loaded, names, settings, lambda who, _: None if quiet else typer.echo(f"  {who}", err=True)

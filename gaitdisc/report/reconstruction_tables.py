@@ -82,12 +82,16 @@ def participants_table(done: Reconstruction) -> Table:
     done : Reconstruction
         The whole result.
     """
-    wide: Any = done.summary.pivot_table(index="participant", columns="model", values="rmse_deg")[list(done.models)]
+    angles = _has_angles(done)
+    measure = "rmse_deg" if angles else "relative_l2"
+    wide: Any = done.summary.pivot_table(index="participant", columns="model", values=measure)[list(done.models)]
     strides: Any = done.summary.groupby("participant")["strides"].first()
     rows = tuple(
-        (str(row[0]), str(int(strides[row[0]])), *(_plain(value, 2) for value in row[1:])) for row in wide.itertuples()
+        (str(row[0]), str(int(strides[row[0]])), *(_plain(value, 2 if angles else 3) for value in row[1:]))
+        for row in wide.itertuples()
     )
-    caption = "RMSE of the angles that no sensor measures [deg], by participant; strides: those that were judged."
+    what = "RMSE of the angles that no sensor measures [deg]" if angles else "Relative L2 of all that is told [1]"
+    caption = f"{what}, by participant; strides: those that were judged."
     return Table("participants", caption, ("participant", "strides", *done.models), rows, done.summary)
 
 
@@ -103,21 +107,24 @@ def reconstruction_sentences(done: Reconstruction) -> list[str]:
     over: Any = done.over_participants()
     sensors, kinds = listed([label(channel.name) for channel in done.sensors]), list(done.models)
     row = over.loc[best]
+    angles = _has_angles(done)
+    rmse = f"an RMSE of {_plain(row['rmse_deg'], 2)} deg over the angles and " if angles else ""
+    what = counted(len(done.states), "other state") if angles else _quantities(done)
     sentences = [
-        f"From {sensors} {counted(len(done.states), 'other state')} {'is' if len(done.states) == 1 else 'are'} told "
-        f"with an RMSE of {_plain(row['rmse_deg'], 2)} deg "
-        f"over the angles (relative L2 {_plain(row['relative_l2'], 3)}, median R² {_plain(row['r2'], 2)}; mean of "
+        f"From {sensors} {what} {'is' if len(done.states) == 1 else 'are'} told with {rmse}a relative L2 of "
+        f"{_plain(row['relative_l2'], 3)} (median R² {_plain(row['r2'], 2)}; mean of "
         f"{counted(len(done.participants), 'participant')}) by {best}, which is recommended.",
     ]
     compared = [kind for kind in ("shred", "fourier ridge", "delay ridge", "linear") if kind in kinds and kind != best]
     if compared:
-        words = [f"{kind} {_plain(over.loc[kind, 'rmse_deg'], 2)} deg" for kind in compared]
+        measure, digits, unit = ("rmse_deg", 2, " deg") if angles else ("relative_l2", 3, "")
+        words = [f"{kind} {_plain(over.loc[kind, measure], digits)}{unit}" for kind in compared]
         sentences.append(f"Beside it: {listed(words)}.")
     if "leaks" in done.split:
         sentences.append("The split leaks: these errors say how well windows are interpolated in time, not more.")
     if len(done.participants) < 3:
         sentences.append("The numbers describe these participants and nobody else.")
-    return [*sentences, NOT_MSE]
+    return [*sentences, NOT_MSE] if angles else sentences
 
 
 def reconstruction_text(done: Reconstruction) -> rich.table.Table:
@@ -139,6 +146,15 @@ def reconstruction_text(done: Reconstruction) -> rich.table.Table:
     for row in shown.rows:
         table.add_row(*(row[k] for k in chosen))
     return table
+
+
+def _has_angles(done: Reconstruction) -> bool:
+    return any(channel.unit == "deg" for channel in done.states)
+
+
+def _quantities(done: Reconstruction) -> str:
+    units = listed(list(dict.fromkeys(channel.unit for channel in done.states)))
+    return f"{counted(len(done.states), 'channel')} [{units}]"
 
 
 def _spread(row: Any, measure: str, digits: int) -> str:

@@ -18,6 +18,7 @@ from gaitdisc.sensing.model_folder import SensingModel
 from gaitdisc.sensing.reconstructor import KINDS, Sensing, fit_reconstructor
 from gaitdisc.sensing.splits import Parts
 from gaitdisc.sensing.state_errors import Judged, angles_error, phase_curves, state_errors, stride_numbers
+from gaitdisc.statistics.r2 import r2
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +107,17 @@ def _summary(judged: Judged, channels: Sequence[Channel], what: Sensing) -> dict
     count = len(what.sensors)
     angles = [k for k, channel in enumerate(channels[:count]) if channel.unit == "deg"]
     readings = judged.windows.x[:, -count:][:, angles]
-    return {"strides": judged.strides, **angles_error(judged, channels[count:], readings)}
+    errors = angles_error(judged, channels[count:], readings)
+    if len({channel.unit for channel in channels[count:]}) == 1 and channels[-1].unit != "deg":
+        errors |= _alike(judged)
+    return {"strides": judged.strides, **errors}
+
+
+def _alike(judged: Judged) -> dict[str, float]:
+    """Errors without unit of states that are no angles but all of one unit: muscles, forces, moments."""
+    measured = judged.windows.y
+    relative = float(np.linalg.norm(judged.told - measured) / np.linalg.norm(measured))
+    return {"relative_l2": relative, "r2": float(np.nanmedian(r2(measured, judged.told)))}
 
 
 def _checked(

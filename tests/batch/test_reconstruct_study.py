@@ -2,8 +2,10 @@ from __future__ import annotations
 
 import pytest
 
+from gaitdisc.batch.demonstration import write_demonstration
 from gaitdisc.batch.reconstruct_study import ReconstructionSettings, reconstruct_study
 from gaitdisc.errors import SamplingError
+from gaitdisc.report.reconstruction_tables import reconstruction_sentences
 
 KINDS = ("linear", "delay ridge")
 
@@ -28,3 +30,15 @@ def test_a_history_longer_than_the_trial(study):
     settings = ReconstructionSettings(history_s=40.0, kinds=KINDS)
     with pytest.raises(SamplingError, match=r"a window reaches back 39\.96 s; .* lasts 29\."):
         reconstruct_study(study, ("knee_angle_r",), settings)
+
+
+def test_forces_are_told_in_newtons_and_no_number_is_in_degrees(tmp_path):
+    study = write_demonstration(tmp_path, 30.0, 1)
+    settings = ReconstructionSettings(kinds=KINDS, condition="nominal", targets="forces")
+    done, _ = reconstruct_study(study, ("hip_flexion_r", "knee_angle_r"), settings)
+    assert set(done.errors["unit"]) == {"N"}
+    assert done.summary["rmse_deg"].isna().all()
+    over = done.over_participants()["relative_l2"]
+    assert over["delay ridge"] < 0.5 * over["linear"]
+    said = " ".join(reconstruction_sentences(done))
+    assert "4 channels [N] are told with a relative L2 of 0." in said and "deg" not in said
