@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 import socket
@@ -21,7 +20,7 @@ def run_lock(folder: Path) -> Iterator[None]:
 
     The system itself frees the lock of a process that ends, however it ends; that a number of a process is given to
     another afterwards, as in a container that is started again, does no harm. Between machines that share a disk such
-    locks are not to be relied on: a lock file of another machine is believed.
+    locks are not to be relied on: a lock file of another machine is believed. POSIX only: Windows has no such lock.
 
     Parameters
     ----------
@@ -31,7 +30,7 @@ def run_lock(folder: Path) -> Iterator[None]:
     Raises
     ------
     WriteError
-        If another living process works in the folder, or the folder cannot be written.
+        If another living process works in the folder, the folder cannot be written, or the system is Windows.
 
     Examples
     --------
@@ -59,6 +58,14 @@ def run_lock(folder: Path) -> Iterator[None]:
 
 def _taken(path: Path) -> int:
     """Open and locked lock file, which says who holds it."""
+    try:
+        import fcntl
+    except ImportError:
+        raise WriteError(
+            "a run needs the file locks of a POSIX system, which go when their process goes",
+            f"this system is {os.name!r}",
+            "Run it on Linux, macOS or the Windows Subsystem for Linux; check, compare, discover and export take no lock.",
+        ) from None
     while True:
         handle = os.open(path, os.O_CREAT | os.O_RDWR)
         try:

@@ -80,3 +80,11 @@ def test_what_a_killed_run_left_unfinished_is_cleared_away(tmp_path):
     (unit / "r2.csv").write_text("whole")
     with run_lock(tmp_path):
         assert [file.name for file in unit.iterdir()] == ["r2.csv"]
+
+
+def test_a_system_without_such_locks_is_told_so(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "fcntl", None)
+    said = r"locks of a POSIX system.*'posix'.*Windows Subsystem for Linux"
+    with pytest.raises(WriteError, match=said), run_lock(tmp_path):
+        pass
+    assert not (tmp_path / ".lock").exists()
