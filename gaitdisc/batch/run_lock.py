@@ -64,7 +64,7 @@ def _taken(path: Path) -> int:
         raise WriteError(
             "a run needs the file locks of a POSIX system, which go when their process goes",
             f"this system is {os.name!r}",
-            "Run it on Linux, macOS or the Windows Subsystem for Linux; check, compare, discover and export take no lock.",
+            "Use Linux, macOS or the Windows Subsystem for Linux; check, compare, discover and export take no lock.",
         ) from None
     while True:
         handle = os.open(path, os.O_CREAT | os.O_RDWR)
