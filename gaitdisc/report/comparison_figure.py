@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
+from gaitdisc.report.box import draw_box
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import MODELS
 from gaitdisc.report.panels import Room, in_style, legend, panels, sheets
@@ -82,19 +83,7 @@ def _draw_boxes(axes: Axes, rows: pd.DataFrame, place: int) -> None:
         values = rows.loc[rows["model"] == model, "r2"].dropna().to_numpy()
         if not len(values):
             continue
-        line = {"color": look.colour, "linewidth": 1.0}
-        axes.boxplot(
-            [values],
-            positions=[x],
-            widths=0.2,
-            whis=(0, 100),
-            showfliers=False,
-            manage_ticks=False,
-            boxprops=line,
-            whiskerprops=line,
-            capprops=line,
-            medianprops={"color": look.colour, "linewidth": 2.2},
-        )
+        draw_box(axes, values, x, look.colour)
         axes.plot(np.full(len(values), x), values, look.mark, color=look.colour, ms=2.0, mew=0, zorder=3)
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
+from gaitdisc.report.box import draw_box
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import MODELS, NULL
 from gaitdisc.report.panels import Room, in_style, legend, panels, sheets
@@ -106,29 +107,12 @@ def _draw_variable(axes: Axes, rows: pd.DataFrame, row: int, low: float) -> None
             middle = float(np.median(ridge))
             axes.plot([max(middle, low)], [y], look.mark, mfc="none", mec=look.colour, mew=1.1, ms=6.5, clip_on=False)
         if len(network) >= FEWEST_FOR_BOXES:
-            _draw_box(axes, network, y, look.colour)
+            draw_box(axes, network, y, look.colour, "horizontal")
         small = 2.2 if len(network) >= FEWEST_FOR_BOXES else 4.6
         shown = np.maximum(network, low)
         axes.plot(shown, np.full(len(shown), y), look.mark, color=look.colour, ms=small, mew=0, clip_on=False, zorder=3)
         for value in network[network < low]:
             axes.annotate(f"◂ {number(value)}", (low, y), (5, 0), textcoords="offset points", va="center", fontsize=6.5)
-
-
-def _draw_box(axes: Axes, values: np.ndarray, y: float, colour: str) -> None:
-    line = {"color": colour, "linewidth": 0.9}
-    axes.boxplot(
-        [values],
-        positions=[y],
-        orientation="horizontal",
-        widths=0.2,
-        whis=(0, 100),
-        showfliers=False,
-        manage_ticks=False,
-        boxprops=line,
-        whiskerprops=line,
-        capprops=line,
-        medianprops={"color": colour, "linewidth": 2.0},
-    )
 
 
 def _key(people: int, null: bool) -> list[Line2D]:
