@@ -11,7 +11,7 @@ PACKAGE = Path(gaitdisc.__file__).parent
 FLOORS = (
     ("errors", "units", "channel", "whole_file", "compiled"),
     ("recording", "model"),
-    ("ingest", "signals", "simulation", "cohort", "regression", "networks", "statistics", "results"),
+    ("ingest", "signals", "simulation", "cohort", "regression", "networks", "statistics", "results", "turbulence"),
     ("processing", "discrepancy", "discovery", "sensing", "response"),
     ("batch", "report"),
     ("commands",),
