@@ -1,0 +1,53 @@
+"""Two files to try `gaitdisc discover` on: a simulation of an ankle, and a walk with a spring that it does not know of.
+
+    python studies/hidden_spring.py OUT
+    gaitdisc discover OUT/ankle.toml OUT/walk.csv --out OUT/found
+
+One person of the embedded cohort walks 24 s on the exoskeleton, 286.5 N m/rad on each ankle, one-sided, measured with
+the errors of `ankle_records.py`. The simulation is `tracked_ankle.toml` with the foot's mass of that person.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from ankle_records import INPUTS, ankle_trials, own_foot_kg
+
+from gaitdisc.cohort.cohort import the_twelve
+from gaitdisc.cohort.device import STIFFNESS, Spring
+from gaitdisc.cohort.walk import walked
+from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.simulation_file import read_simulation
+from gaitdisc.simulation.writing import write_simulation
+
+MODEL = Path(__file__).with_name("tracked_ankle.toml")
+WALK_S, STARTING_S = 24.0, 4.0
+
+
+def run(folder: Path) -> tuple[Path, Path]:
+    """Write `ankle.toml` and `walk.csv` into the folder."""
+    person, spring = the_twelve()[0], Spring(STIFFNESS)
+    walk = walked(person.adapted_to(spring), spring, WALK_S + STARTING_S, seed=1)
+    simulation = read_simulation(MODEL).with_values({"foot_mass": own_foot_kg(person)})
+    write_simulation(simulation, folder / "ankle.toml")
+    table_of(ankle_trials(walk, 0.0)).to_csv(folder / "walk.csv", index=False, float_format="%.6g")
+    return folder / "ankle.toml", folder / "walk.csv"
+
+
+def table_of(measured: Measured) -> pd.DataFrame:
+    """Measured trials as the table that `gaitdisc discover` reads."""
+    tables = []
+    for number, trial in enumerate(measured.trials):
+        count = int(measured.drive.samples[number])
+        time, inputs = np.arange(count) / measured.rate, measured.drive.inputs[number, :count]
+        values = np.column_stack([time, inputs, measured.observed[number, :count]])
+        names = ["time", *INPUTS, *measured.channels]
+        tables.append(pd.DataFrame(values, columns=pd.Index(names)).assign(trial=trial))
+    return pd.concat(tables, ignore_index=True)
+
+
+if __name__ == "__main__":
+    print(*run(Path(sys.argv[1])))
