@@ -4,20 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
-from gaitdisc.recording import Samples
 from gaitdisc.results.reconstruction import CALIBRATED
 from gaitdisc.sensing.calibration import calibrated, first_strides, rehearsed
+from gaitdisc.sensing.forecast import PERSISTENCE, PHASE_AVERAGE, persistence, phase_average
 from gaitdisc.sensing.intervals import coverage, half_widths
 from gaitdisc.sensing.model_folder import SensingModel
-from gaitdisc.sensing.reconstructor import KINDS, Sensing, fit_reconstructor
+from gaitdisc.sensing.reconstructor import KINDS, Reconstructor, Sensing, fit_reconstructor
 from gaitdisc.sensing.splits import Parts
 from gaitdisc.sensing.state_errors import Judged, angles_error, phase_curves, state_errors, stride_numbers
+from gaitdisc.sensing.windows import stacked
 from gaitdisc.statistics.r2 import r2
 
 
@@ -51,7 +53,7 @@ def reconstruct(
     seed: int = 0,
     calibration: int = 0,
 ) -> PersonReconstruction:
-    """Fit every kind of model and judge it on the test part.
+    """Fit every kind of model and judge it on the test part; a forecast has its two baselines beside it.
 
     Parameters
     ----------
@@ -75,37 +77,86 @@ def reconstruct(
     -------
     PersonReconstruction
     """
-    training, check, test = parts.fitted(), parts.checked(), parts.judged()
+    test, own = parts.judged(), channels[len(what.sensors) :]
     stride = stride_numbers(parts.test)
-    own = channels[len(what.sensors) :]
-    first = first_strides(parts.test, calibration, what.reach_s) if calibration else None
-    judged_rows = np.ones(len(test), bool) if first is None else first.rest
-    fitted, errors, summary, curves = [], [], [], []
-    for kind in kinds:
-        done = fit_reconstructor(kind, what, training, check, seed)
-        missed = done(check) - check.y
-        fitted.append(SensingModel(done, tuple(channels), half_widths(missed)))
-        named = {kind: (done(test), missed)}
-        if first is not None:
-            rehearsal = rehearsed(done, parts.check, calibration)
-            told = calibrated(done, first.strides, rehearsal.penalty)(test)
-            named[CALIBRATED.format(kind)] = told, rehearsal.missed
-        for name, (told, missed) in named.items():
-            judged = Judged(test.rows(judged_rows), stride[judged_rows], told[judged_rows])
-            row = _summary(judged, channels, what) | _checked(missed, half_widths(missed), training, judged)
-            summary.append({"participant": participant, "model": name, "n_fitted": done.n_fitted, **row,
-                            "seconds": done.seconds})  # fmt: skip
-            errors.append(state_errors(judged, own, seed).assign(participant=participant, model=name))
-            curves.append(phase_curves(judged, what.states).assign(participant=participant, model=name))
+    fitted, accounts, judged_rows = _fitted(parts, what, kinds, seed, calibration)
+    accounts += _baselines(parts, what) if what.lags.ahead else []
+    judged_rows &= np.isfinite(np.hstack([account.told for account in accounts])).all(axis=1)
+    spread, errors, summary, curves = parts.fitted().y.std(axis=0), [], [], []
+    for account in accounts:
+        judged = Judged(test.rows(judged_rows), stride[judged_rows], account.told[judged_rows])
+        row = _summary(judged, channels, what) | account.checked(spread, judged)
+        summary.append({"participant": participant, "model": account.model, "n_fitted": account.n_fitted, **row,
+                        "seconds": account.seconds})  # fmt: skip
+        errors.append(state_errors(judged, own, seed).assign(participant=participant, model=account.model))
+        curves.append(phase_curves(judged, what.states).assign(participant=participant, model=account.model))
     order = ["participant", "model"]
     tables = (pd.concat(part, ignore_index=True) for part in (errors, curves))
     errors_table, curves_table = (table[[*order, *(c for c in table if c not in order)]] for table in tables)
-    return PersonReconstruction(participant, errors_table, pd.DataFrame(summary), curves_table, tuple(fitted))
+    models = tuple(SensingModel(done, tuple(channels), half_widths(missed)) for done, missed in fitted)
+    return PersonReconstruction(participant, errors_table, pd.DataFrame(summary), curves_table, models)
+
+
+@dataclass(frozen=True, eq=False)
+class _Account:
+    """What one model tells of the judged part, and its errors on the check part."""
+
+    model: str
+    told: NDArray[np.float64]
+    missed: NDArray[np.float64]
+    n_fitted: int = 0
+    seconds: float = 0.0
+
+    def checked(self, spread: NDArray[np.float64], judged: Judged) -> dict[str, float]:
+        """Loss by which models are chosen, and how often the interval that the check part gives holds."""
+        inside = coverage(judged.told - judged.windows.y, half_widths(self.missed))
+        return {"check_loss": float(np.mean((self.missed / spread) ** 2)), "coverage": float(np.mean(inside))}
+
+
+Fitted = tuple[Reconstructor, NDArray[np.float64]]  # and its errors on the check part
+
+
+def _fitted(
+    parts: Parts, what: Sensing, kinds: Sequence[str], seed: int, calibration: int
+) -> tuple[list[Fitted], list[_Account], NDArray[np.bool_]]:
+    """Every kind of model, what it tells as it is and calibrated, and which windows may be judged."""
+    training, check, test = parts.fitted(), parts.checked(), parts.judged()
+    first = first_strides(parts.test, calibration, what.reach_s) if calibration else None
+    fitted, accounts = [], []
+    for kind in kinds:
+        done = fit_reconstructor(kind, what, training, check, seed)
+        missed = done(check) - check.y
+        fitted.append((done, missed))
+        accounts.append(_Account(kind, done(test), missed, done.n_fitted, done.seconds))
+        if first is not None:
+            rehearsal = rehearsed(done, parts.check, calibration)
+            told = calibrated(done, first.strides, rehearsal.penalty)(test)
+            name = CALIBRATED.format(kind)
+            accounts.append(_Account(name, told, rehearsal.missed, done.n_fitted, done.seconds))
+    return fitted, accounts, np.ones(len(test), bool) if first is None else first.rest
+
+
+def _baselines(parts: Parts, what: Sensing) -> list[_Account]:
+    """What a forecast has to beat.
+
+    Errors are those on the fitted and the checked part: the latter alone may be shorter than the time ahead.
+    """
+    ahead_s, average = what.lags.ahead / what.rate_hz, phase_average(parts.training)
+    known = [trial for trial in (*parts.training, *parts.check) if len(trial)]
+    found = []
+    for name, told in (
+        (PERSISTENCE, partial(persistence, ahead_s=ahead_s)),
+        (PHASE_AVERAGE, partial(average.told, ahead_s=ahead_s)),
+    ):
+        missed = told(known) - stacked(known).y
+        found.append(_Account(name, told(parts.test), missed[np.isfinite(missed).all(axis=1)]))
+    return found
 
 
 def _summary(judged: Judged, channels: Sequence[Channel], what: Sensing) -> dict[str, float]:
     count = len(what.sensors)
-    angles = [k for k, channel in enumerate(channels[:count]) if channel.unit == "deg"]
+    read = channels[:count] if not what.lags.ahead else ()  # the future of a sensor is told, not read
+    angles = [k for k, channel in enumerate(read) if channel.unit == "deg"]
     readings = judged.windows.x[:, -count:][:, angles]
     errors = angles_error(judged, channels[count:], readings)
     if len({channel.unit for channel in channels[count:]}) == 1 and channels[-1].unit != "deg":
@@ -118,15 +169,6 @@ def _alike(judged: Judged) -> dict[str, float]:
     measured = judged.windows.y
     relative = float(np.linalg.norm(judged.told - measured) / np.linalg.norm(measured))
     return {"relative_l2": relative, "r2": float(np.nanmedian(r2(measured, judged.told)))}
-
-
-def _checked(
-    missed: NDArray[np.float64], half: NDArray[np.float64], training: Samples, judged: Judged
-) -> dict[str, float]:
-    """Loss by which models are chosen, and how often the interval that the check part gives holds."""
-    spread = training.y.std(axis=0)
-    inside = coverage(judged.told - judged.windows.y, half)
-    return {"check_loss": float(np.mean((missed / spread) ** 2)), "coverage": float(np.mean(inside))}
 
 
 def best_of(done: PersonReconstruction) -> SensingModel:

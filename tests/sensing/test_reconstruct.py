@@ -2,6 +2,9 @@ import numpy as np
 import pytest
 
 from gaitdisc.sensing.reconstruct import best_of, reconstruct
+from gaitdisc.sensing.reconstructor import sensing
+from gaitdisc.sensing.splits import split_within
+from gaitdisc.sensing.windows import Lags
 
 KINDS = ("linear", "delay ridge")
 
@@ -32,3 +35,18 @@ def test_calibration_takes_an_offset_away_and_is_not_judged_on_its_own_strides(p
     assert rmse["delay ridge, calibrated"] < 0.01
     whole = len(np.unique(np.floor(parts.judged().time)))
     assert done.summary["strides"].tolist() == [whole - 2, whole - 2]
+
+
+def test_a_forecast_stands_beside_persistence_and_the_mean_stride(pair):
+    what = sensing(("a", "late"), ("a",), Lags(11, 5, 10), 100.0)
+    windows = what.windows(pair.recording, 100 * (pair.recording.time % 1.0))
+    parts = split_within([windows], "temporal", what.reach_s)
+    a, late = pair.channels
+    done = reconstruct("P01", parts, what, (a, a, late), ("delay ridge",))
+    assert done.summary["model"].tolist() == ["delay ridge", "persistence", "phase average"]
+    rmse = done.errors.set_index(["model", "state"])["rmse"]
+    assert rmse["delay ridge", "late"] < 0.05  # 0.15 s ago it was read
+    assert rmse["delay ridge", "a"] > 0.5  # noise has no future
+    assert rmse["persistence", "late"] > 0.5 and rmse["phase average", "late"] > 0.5
+    assert len(done.fitted) == 1
+    assert done.summary["relative_l2_whole"].tolist() == done.summary["relative_l2"].tolist()
