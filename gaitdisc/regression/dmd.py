@@ -54,8 +54,9 @@ class Dmd:
         object.__setattr__(self, "spread", read_only(self.spread))
 
     def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Outputs (sample, output) for times (sample, 1) [s]."""
-        return np.real(np.exp(np.outer(np.asarray(x)[:, 0] - self.start, self.eigenvalues)) @ self.modes)
+        """Outputs (sample, output) for times (sample, 1) [s]; before the start, where what dies out explodes, held."""
+        since = np.maximum(np.asarray(x)[:, 0] - self.start, 0.0)
+        return np.real(np.exp(np.outer(since, self.eigenvalues)) @ self.modes)
 
 
 def fit_dmd(samples: Samples, delays: int = DELAYS, rank: int = RANK, bags: int = 0, seed: int = 0) -> Dmd:

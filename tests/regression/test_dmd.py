@@ -43,3 +43,10 @@ def test_a_gap_in_time_is_refused():
 def test_an_output_that_stands_still_stays_still():
     y = np.column_stack([np.sin(np.arange(300) / 20), np.zeros(300)])
     assert np.abs(fit_dmd(samples(y), delays=10, rank=2)(np.array([[4.0]]))[0, 1]) < 1e-12
+
+
+def test_before_its_start_a_mode_that_dies_out_is_held_and_does_not_explode():
+    t = 1.0 + np.arange(300) / 100
+    s = Samples(t[:, None], np.exp(-8.0 * t)[:, None], ("t",), ("a",), t, t)
+    found = fit_dmd(s, delays=20, rank=1)
+    assert found(np.array([[0.0]])) == pytest.approx(found(np.array([[1.0]])))
