@@ -27,7 +27,7 @@ from gaitdisc.report.field_maps_figure import maps_figure, routes_figure
 from gaitdisc.report.field_table import field_table
 from gaitdisc.results.field_cell import FieldCell
 from gaitdisc.sensing.latent_size import latent_sizes
-from gaitdisc.sensing.reconstruct_field import FieldTask, reconstruct_field
+from gaitdisc.sensing.reconstruct_field import FieldTask, reconstruct_field, targets_of
 from gaitdisc.sensing.reconstructor import KINDS
 from gaitdisc.sensing.routes import Route, circuit, fixed_at_random, joined
 from gaitdisc.sensing.splits import RANDOM
@@ -90,9 +90,10 @@ def run(quick: bool = False, folder: Path = Path("ch5_sea_surface")) -> Result:
     for number, (field, task, region) in enumerate(fields(), 1):
         cells: list[FieldCell] = []
         routes = routes_of(field, task.season, region)
+        targets = {rule: targets_of(field, replace(task, rule=rule)) for rule in SPLITS}
         for route in routes:
             for rule in SPLITS:
-                cells += reconstruct_field(field, route, replace(task, rule=rule), kinds)
+                cells += reconstruct_field(field, route, replace(task, rule=rule), kinds, True, targets[rule])
                 print(f"{task.name}: {route.name}, {rule}: {cells[-1].model} R2 {cells[-1].r2:.3f}", flush=True)
         paths = {route.name: route.places(field)[: task.season, 0] for route in routes[1:5]}
         shown = [cell for cell in cells if (cell.quantity, cell.model) == (field.quantities[0], kinds[-1])]

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from gaitdisc.report.table import Table
 from gaitdisc.results.field_cell import FieldCell, field_cells_table
 
@@ -68,3 +70,36 @@ def _cell(cell: FieldCell | None, least: float = 0.0) -> str:
 def _judged(cells: Sequence[FieldCell], split: str) -> str:
     counts = sorted({cell.judged for cell in cells if cell.split == split})
     return str(counts[0]) if len(counts) == 1 else f"{counts[0]} to {counts[-1]}"
+
+
+def medians_table(cells: Sequence[FieldCell], name: str) -> Table:
+    """Median and range over runs of every route, split and model.
+
+    Parameters
+    ----------
+    cells : sequence of FieldCell
+        Of one field and quantity, several runs each.
+    name : str
+        Of the CSV.
+    """
+    groups: dict[tuple[str, str, str], list[FieldCell]] = {}
+    for cell in cells:
+        route = "" if _is_bound(cell.model) else cell.route
+        groups.setdefault((cell.split, cell.model, route), []).append(cell)
+    rows = []
+    for (split, model, route), found in groups.items():
+        some = found if route else found[:1]
+        errors, r2 = [cell.relative_l2 for cell in some], [cell.r2 for cell in some]
+        rows.append((
+            split, model, route, str(len(some)), f"{np.median(errors):.3f}", f"{min(errors):.3f} to {max(errors):.3f}",
+            f"{np.median(r2):.3f}", f"{np.median([c.bias for c in some]):+.4f}",
+            f"{np.median([c.sd for c in some]):.4f}", f"{np.median([c.seconds for c in some]):.1f}",
+        ))  # fmt: skip
+    first = cells[0]
+    caption = (
+        f"{first.field}, {first.quantity} [{first.unit}]: medians over runs; relative L2 error about zero with its "
+        "range, R2 about the training part's mean, mean and standard deviation of told minus measured, processor time "
+        "of a fit."
+    )
+    columns = ("split", "model", "sensor", "n", "relative L2", "range", "R2", "bias", "sd", "fit [s]")
+    return Table(name, caption, columns, tuple(rows), field_cells_table(cells))

@@ -10,9 +10,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import SamplingError
 from gaitdisc.recording import Field, Samples
-from gaitdisc.sensing.modes import Modes
 from gaitdisc.sensing.routes import Route
-from gaitdisc.sensing.splits import Parts
 from gaitdisc.sensing.windows import Lags
 
 
@@ -89,25 +87,16 @@ def snapshots_of(windows: Samples) -> NDArray[np.intp]:
     return np.rint(windows.time).astype(int)
 
 
-def with_coefficients(parts: Parts, field: Field, modes: Modes) -> tuple[Samples, Samples, Samples]:
-    """Windows to fit, to choose by and to judge on, with the modes' coefficients as outputs.
+def with_coefficients(windows: Samples, coefficients: NDArray[np.float64], names: Sequence[str]) -> Samples:
+    """Windows with the modes' coefficients of their snapshots as outputs.
 
     Parameters
     ----------
-    parts : Parts
-        Of `field_windows`.
-    field : Field
-        Of the same snapshots.
-    modes : Modes
-        Fitted to snapshots of the training part.
+    windows : Samples
+        From `field_windows`.
+    coefficients : ndarray (snapshot, mode)
+        Of all snapshots of the field.
+    names : sequence of str
+        Of the coefficients.
     """
-    coefficients = modes.coefficients(field.values)
-    return (
-        _targeted(parts.fitted(), coefficients, modes.names),
-        _targeted(parts.checked(), coefficients, modes.names),
-        _targeted(parts.judged(), coefficients, modes.names),
-    )
-
-
-def _targeted(windows: Samples, coefficients: NDArray[np.float64], names: Sequence[str]) -> Samples:
     return replace(windows, y=coefficients[snapshots_of(windows)], outputs=tuple(names))

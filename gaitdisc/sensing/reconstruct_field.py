@@ -14,10 +14,11 @@ from gaitdisc.results.field_cell import FieldCell, error_counts
 from gaitdisc.sensing.field_windows import field_windows, reading_names, snapshots_of, with_coefficients
 from gaitdisc.sensing.modes import ENERGY, Modes, fit_modes
 from gaitdisc.sensing.reconstructor import KINDS, Sensing, fit_reconstructor
-from gaitdisc.sensing.routes import Route
-from gaitdisc.sensing.splits import split_within
+from gaitdisc.sensing.routes import Route, fixed
+from gaitdisc.sensing.splits import Parts, split_within
 from gaitdisc.sensing.windows import Lags
 
+SPLIT_SEED = 0  # windows drawn at random are the same ones in every run and for every route
 MEAN, SEASON, CEILING = "mean (no sensor)", "season (no sensor)", "POD ceiling"
 
 
@@ -40,7 +41,7 @@ class FieldTask:
     positions : bool
         Whether each sensor tells where it is.
     seed : int
-        Of every random act.
+        Of every fit.
     """
 
     name: str
@@ -73,8 +74,39 @@ class Prepared:
     what: Sensing
 
 
-def prepare(field: Field, route: Route, task: FieldTask) -> Prepared:
-    """Cut windows, part them, and fit the modes to the part that models are fitted to.
+@dataclass(frozen=True, eq=False)
+class Targets:
+    """What is told of a field, the same for every route of a task.
+
+    Parameters
+    ----------
+    modes : Modes
+        Of the training part's snapshots alone.
+    coefficients : ndarray (snapshot, mode)
+        Of all snapshots.
+    """
+
+    modes: Modes
+    coefficients: NDArray[np.float64]
+
+
+def targets_of(field: Field, task: FieldTask) -> Targets:
+    """Fit the modes to the part that models are fitted to; which part that is depends on times alone, not on a route.
+
+    Parameters
+    ----------
+    field : Field
+        To be told.
+    task : FieldTask
+        Lags, split, share of the energy.
+    """
+    parts = _parts(field, fixed(field, [0]), task)
+    modes = fit_modes(field.values[snapshots_of(parts.fitted())], task.energy)
+    return Targets(modes, modes.coefficients(field.values))
+
+
+def prepare(field: Field, route: Route, task: FieldTask, targets: Targets | None = None) -> Prepared:
+    """Cut windows, part them, and set what they are to tell beside them.
 
     Parameters
     ----------
@@ -84,17 +116,25 @@ def prepare(field: Field, route: Route, task: FieldTask) -> Prepared:
         Where the sensors are.
     task : FieldTask
         Lags, split, share of the energy.
+    targets : Targets, optional
+        From `targets_of` with the same field and task; computed without.
 
     Raises
     ------
     SamplingError
         If a window is longer than the field, or a part is left without windows.
     """
-    windows = field_windows(field, route, task.lags, task.positions)
-    parts = split_within([windows], task.rule, task.lags.reach, task.seed)
-    modes = fit_modes(field.values[snapshots_of(parts.fitted())], task.energy)
+    parts = _parts(field, route, task)
+    told = targets or targets_of(field, task)
     names = reading_names(field, route, task.positions)
-    return Prepared(*with_coefficients(parts, field, modes), modes, Sensing(names, modes.names, task.lags, 1.0))
+    training, check, test = (with_coefficients(each, told.coefficients, told.modes.names)
+             for each in (parts.fitted(), parts.checked(), parts.judged()))  # fmt: skip
+    return Prepared(training, check, test, told.modes, Sensing(names, told.modes.names, task.lags, 1.0))
+
+
+def _parts(field: Field, route: Route, task: FieldTask) -> Parts:
+    windows = field_windows(field, route, task.lags, task.positions)
+    return split_within([windows], task.rule, task.lags.reach, SPLIT_SEED)
 
 
 def reconstruct_field(
@@ -103,6 +143,7 @@ def reconstruct_field(
     task: FieldTask,
     kinds: Sequence[str] = tuple(KINDS),
     floors: bool = True,
+    targets: Targets | None = None,
 ) -> list[FieldCell]:
     """Fit every kind of model and judge it on the test part, in the field's own unit at every point.
 
@@ -119,6 +160,8 @@ def reconstruct_field(
     floors : bool
         Whether what needs no sensor is judged too (the training part's mean, its mean season), and the ceiling: the
         test part projected onto the training part's modes, which no model that tells those modes can beat.
+    targets : Targets, optional
+        From `targets_of` with the same field and task; computed without.
 
     Returns
     -------
@@ -132,7 +175,7 @@ def reconstruct_field(
     TrainingError
         If the windows are too few.
     """
-    ready = prepare(field, route, task)
+    ready = prepare(field, route, task, targets)
     cells = []
     for model, told in (_floors(field, ready, task) if floors else {}).items():
         cells += field_cells(field, ready, Label(task.name, route.name, task.rule, model, task.seed), told)

@@ -8,7 +8,7 @@ from dataclasses import replace
 from gaitdisc.errors import ChannelError
 from gaitdisc.recording import Field
 from gaitdisc.results.field_cell import FieldCell
-from gaitdisc.sensing.reconstruct_field import FieldTask, Label, field_cells, prepare
+from gaitdisc.sensing.reconstruct_field import FieldTask, Label, field_cells, prepare, targets_of
 from gaitdisc.sensing.reconstructor import fit_reconstructor
 from gaitdisc.sensing.routes import Route
 from gaitdisc.sensing.windows import stacked
@@ -56,13 +56,13 @@ def unseen_path(
             f"found {len(routes)} paths, with {counts} sensors",
             "Give more paths, alike in their sensors.",
         )
-    cells = []
+    cells, targets = [], targets_of(field, task)
     many = len(routes)
     for fitted, placed in ((ALONE, False), (MANY.format(many), False), (MANY_PLACED.format(many), True)):
         asked = replace(task, positions=placed)
-        ready = [prepare(field, route, asked) for route in (routes[:1] if fitted == ALONE else routes)]
+        ready = [prepare(field, route, asked, targets) for route in (routes[:1] if fitted == ALONE else routes)]
         training, check = stacked([each.training for each in ready]), stacked([each.check for each in ready])
-        judged = {OTHER: replace(prepare(field, unseen, asked), training=training)}
+        judged = {OTHER: replace(prepare(field, unseen, asked, targets), training=training)}
         if fitted == ALONE:
             judged = {OWN: ready[0]} | judged
         for kind in kinds:

@@ -96,10 +96,10 @@ class Stepper:
         if not self.power:
             return np.zeros((), u.dtype)
         there = float(self.box.energy(u)[self._forced].sum(dtype=float))
-        return np.where(self._forced, u, 0) * u.real.dtype.type(self.power / (2 * there))
+        return np.where(self._forced, u * (self.power / (2 * there)), 0).astype(u.dtype, copy=False)
 
 
 def _curl(box: Box, u: Modes) -> Modes:
     k = box.k
     curl = [k[(i + 1) % 3] * u[(i + 2) % 3] - k[(i + 2) % 3] * u[(i + 1) % 3] for i in range(3)]
-    return (1j * np.stack(curl)).astype(u.dtype, copy=False)
+    return np.stack(curl) * u.dtype.type(1j)

@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from gaitdisc.report.field_table import field_table
+from gaitdisc.report.field_table import field_table, medians_table
 from gaitdisc.results.field_cell import FieldCell, error_counts
 
 COUNTS = error_counts(np.zeros(3), 1.0)
@@ -24,3 +24,13 @@ def test_a_row_a_route_and_a_star_for_the_least():
     assert "Bounds: temporal, POD ceiling: 0.200 (0.52; 0.30)." in table.caption
     assert "Judged snapshots: temporal 20." in table.caption
     assert len(table.numbers) == 5
+
+
+def test_medians_over_runs_with_their_range():
+    runs = [replace(FIRST, run=k, relative_l2=0.1 * k, seconds=2.0) for k in (1, 2, 6)]
+    ceiling = replace(FIRST, model="POD ceiling", relative_l2=0.05)
+    table = medians_table([ceiling, ceiling, *runs], "m")
+    assert table.rows[0][:6] == ("temporal", "POD ceiling", "", "1", "0.050", "0.050 to 0.050")
+    assert table.rows[1] == (
+        "temporal", "linear", "1 fixed", "3", "0.200", "0.100 to 0.600", "0.300", "+0.0000", "1.0000", "2.0"
+    )  # fmt: skip

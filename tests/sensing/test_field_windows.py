@@ -31,7 +31,10 @@ def test_a_window_holds_what_the_route_reads_oldest_first():
 def test_outputs_are_the_coefficients_of_the_snapshot_itself():
     parts = split_within([field_windows(WAVE, ROUTE, Lags(3, 2))], "temporal", 4)
     modes = fit_modes(WAVE.values[snapshots_of(parts.fitted())], 0.999)
-    training, check, test = with_coefficients(parts, WAVE, modes)
+    coefficients = modes.coefficients(WAVE.values)
+    training, check, test = (
+        with_coefficients(each, coefficients, modes.names) for each in (parts.fitted(), parts.checked(), parts.judged())
+    )
     rows = snapshots_of(test)
     np.testing.assert_allclose(modes.fields(test.y), WAVE.values[rows], atol=0.1)
     assert training.outputs == modes.names
