@@ -1,0 +1,89 @@
+"""C3D files that are broken in a thousand ways: each is read as it stands or refused in words, and nothing is harmed."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+import numpy as np
+import pytest
+
+from gaitdisc.errors import GaitdiscError, ReadError
+from gaitdisc.ingest.c3d import C3DReader
+
+SAMPLES = "c3d_reader_samples"
+
+
+def _damaged(content: bytes, rng: np.random.Generator):
+    """(kind, bytes) of many ways in which a file can be broken."""
+    data = (content[16] + 256 * content[17] - 1) * 512
+    for size in sorted({0, 1, 100, 512, 513, data - 1, data, data + 1, *rng.integers(2, len(content) - 400, 80)}):
+        yield "truncated", content[:size]
+    for place in range(24):
+        for value in (0, 1, 127, 128, 255):
+            yield "header", content[:place] + bytes([value]) + content[place + 1 :]
+    for _ in range(250):
+        broken = bytearray(content)
+        for place in rng.integers(512, data, rng.integers(1, 5)):
+            broken[place] = rng.choice([0, 1, 127, 128, 255, *rng.integers(0, 256, 3)])
+        yield "parameters", bytes(broken)
+
+
+def _memory_bytes() -> int:
+    return int(open("/proc/self/statm").read().split()[1]) * os.sysconf("SC_PAGE_SIZE")  # noqa: PTH123
+
+
+def test_corrupted_files_harm_nobody(tmp_path, write_c3d, some_points, some_analog, monkeypatch):
+    monkeypatch.setattr("gaitdisc.ingest.reader_process.SECONDS_AT_LEAST", 3.0)
+    parameters = {
+        ("TRIAL", "ACTUAL_START_FIELD"): [1.0, 0.0],
+        ("TRIAL", "ACTUAL_END_FIELD"): [50.0, 0.0],
+        ("EVENT", "USED"): [1],
+        ("EVENT", "LABELS"): ["Foot Strike"],
+        ("EVENT", "CONTEXTS"): ["Left"],
+        ("EVENT", "TIMES"): np.array([[0.0], [0.1]]),
+    }
+    plates = {
+        ("FORCE_PLATFORM", "USED"): [1],
+        ("FORCE_PLATFORM", "TYPE"): [2],
+        ("FORCE_PLATFORM", "ZERO"): [1, 10],
+        ("FORCE_PLATFORM", "CHANNEL"): np.arange(1.0, 7)[:, None],
+        ("FORCE_PLATFORM", "CORNERS"): np.array([[[600, 0, 0], [0, 0, 0], [0, 400, 0], [600, 400, 0.0]]]).T,
+        ("FORCE_PLATFORM", "ORIGIN"): np.array([[0, 0, -40.0]]).T,
+        ("ANALOG", "UNITS"): ["N", "N", "N", "Nmm", "Nmm", "Nmm", "V", "V"],
+    }
+    plain = write_c3d(tmp_path / "plain.c3d", some_points, some_analog).read_bytes()
+    forces = 300 * np.vstack([some_analog, some_analog])
+    rich = write_c3d(tmp_path / "rich.c3d", some_points, forces, parameters | plates).read_bytes()
+    rng = np.random.default_rng(20)
+    path = tmp_path / "broken.c3d"
+    read, refused, before = 0, 0, None
+    with C3DReader() as reader:
+        for base in (plain, rich):
+            for kind, content in _damaged(base, rng):
+                path.write_bytes(content)
+                try:
+                    trial = reader.read(path)
+                except GaitdiscError as error:
+                    refused += 1
+                    assert "Traceback" not in str(error)
+                else:
+                    read += 1
+                    assert kind != "truncated"
+                    assert trial.streams
+                if before is None and read + refused == 50 and sys.platform == "linux":
+                    before = _memory_bytes()
+    assert read + refused >= 800
+    assert refused > 200
+    if before is not None:
+        assert _memory_bytes() - before < 50 * 2**20
+
+
+def test_no_truncated_real_trial_is_accepted(gait_data, tmp_path, reader):
+    path = tmp_path / "part.c3d"
+    for name in ("c3d_org_sample01/Eb015pi", "c3d_org_sample02/pc_real", "gait/Gait", "gait/1123x01EMG"):
+        content = (gait_data / SAMPLES / f"{name}.c3d").read_bytes()
+        for share in np.linspace(0.02, 0.98, 25):
+            path.write_bytes(content[: int(share * len(content))])
+            with pytest.raises(ReadError):
+                reader.read(path)
