@@ -1,4 +1,4 @@
-"""C3D files that are broken in a thousand ways: each is read as it stands or refused in words, and nothing is harmed."""
+"""C3D files that are broken in a thousand ways: each is read as it stands or refused in words; nothing is harmed."""
 
 from __future__ import annotations
 
