@@ -8,21 +8,26 @@ from datetime import UTC, datetime
 
 import pandas as pd
 
-from gaitdisc.batch.sensed_walks import SensedWalks, sensed_walks
+from gaitdisc.batch.sensed_walks import SensedWalk, SensedWalks, sensed_walks
 from gaitdisc.batch.target_walks import STATES
-from gaitdisc.errors import GaitdiscError
+from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.ingest.study import Study
 from gaitdisc.recording import Samples
 from gaitdisc.results import Provenance, Refusal
 from gaitdisc.results.provenance import installed_versions
 from gaitdisc.results.reconstruction import CALIBRATED, Reconstruction
+from gaitdisc.sensing.forecast import BASELINES
 from gaitdisc.sensing.reconstruct import PersonReconstruction, reconstruct
-from gaitdisc.sensing.reconstructor import KINDS, Sensing, sensing
-from gaitdisc.sensing.splits import RULES, Parts, split_by_subject, split_within
+from gaitdisc.sensing.reconstructor import KINDS, ON_REQUEST, Sensing, sensing
+from gaitdisc.sensing.splits import RULES, Parts, split_by_subject, split_by_trial, split_within
 from gaitdisc.sensing.windows import Lags
 
 SECTION = "5.3.3, Table 5.2"
-SUBJECT = "subject"
+SUBJECT, CONDITION = "subject", "condition"
+ACROSS = {
+    SUBJECT: "each person by models of the others; the next in the list is who they are chosen by",
+    CONDITION: "walks of one condition judged by models of the person's other walks, the last 15 % of each checked",
+}
 CALIBRATION_STRIDES = 10
 
 
@@ -33,15 +38,17 @@ class ReconstructionSettings:
     Parameters
     ----------
     split : str
-        A word of `gaitdisc.sensing.splits.RULES`, or `subject`: each person from the others' walks.
+        A word of `gaitdisc.sensing.splits.RULES` or of `ACROSS`.
     history_s, spacing_s : float
         Reach of a window, and time from one reading to the next [s].
     kinds : tuple of str
-        Words of `gaitdisc.sensing.reconstructor.KINDS`.
+        Words of `gaitdisc.sensing.reconstructor.KINDS` or `ON_REQUEST`.
     condition : str
-        Walks of this condition alone; of both where it is empty.
+        Walks of this condition alone, of both where it is empty; with the split `condition`, those that are judged.
     targets : str
         What is told: `states`, or a word of `gaitdisc.batch.target_walks.TARGETS`.
+    ahead_s : float
+        How far ahead of the last reading the states are told [s]; 0 tells the present.
     seed : int
         Of every random act.
     """
@@ -52,7 +59,13 @@ class ReconstructionSettings:
     kinds: tuple[str, ...] = tuple(KINDS)
     condition: str = ""
     targets: str = STATES
+    ahead_s: float = 0.0
     seed: int = 0
+
+    @property
+    def condition_read(self) -> str:
+        """Condition to which reading is limited; empty for none."""
+        return "" if self.split == CONDITION else self.condition
 
     def lags(self, rate_hz: float) -> Lags:
         """Return the windows for a rate.
@@ -62,7 +75,8 @@ class ReconstructionSettings:
         rate_hz : float
             Samples a second.
         """
-        return Lags(max(1, round(self.history_s / self.spacing_s)), max(1, round(self.spacing_s * rate_hz)))
+        count, spacing = round(self.history_s / self.spacing_s), round(self.spacing_s * rate_hz)
+        return Lags(max(1, count), max(1, spacing), round(self.ahead_s * rate_hz))
 
 
 def reconstruct_study(
@@ -95,7 +109,7 @@ def reconstruct_study(
         If no participant can be reconstructed.
     """
     settings = settings or ReconstructionSettings()
-    walks = sensed_walks(study, sensors, settings.condition, settings.targets)
+    walks = sensed_walks(study, sensors, settings.condition_read, settings.targets)
     names = tuple(channel.name for channel in walks.channels)
     what = sensing(names, tuple(sensors), settings.lags(walks.rate_hz), walks.rate_hz)
     by_name = {channel.name: channel for channel in walks.channels}
@@ -108,7 +122,7 @@ def reconstruct_study(
     refused: GaitdiscError | None = None
     for person in windows:
         try:
-            parts = _parts(windows, person, what, settings)
+            parts = parts_of(walks, windows, person, settings)
             done.append(reconstruct(person, parts, what, channels, settings.kinds, settings.seed, calibration))
         except GaitdiscError as error:
             refusals.append(Refusal(person, "", str(error)))
@@ -119,10 +133,45 @@ def reconstruct_study(
     return _result(study, walks, what, settings, done, refusals), done
 
 
-def _parts(windows: dict[str, list[Samples]], person: str, what: Sensing, settings: ReconstructionSettings) -> Parts:
+def parts_of(
+    walks: SensedWalks, windows: dict[str, list[Samples]], person: str, settings: ReconstructionSettings
+) -> Parts:
+    """Windows to fit, to choose by and to judge on, for one person.
+
+    Parameters
+    ----------
+    walks : SensedWalks
+        Of all people.
+    windows : dict of str to list of Samples
+        Of each walk of each person.
+    person : str
+        On whom models are judged.
+    settings : ReconstructionSettings
+        With the split.
+
+    Raises
+    ------
+    SchemaError
+        If a split across conditions lacks a condition, or the person the walks for it.
+    """
+    reach_s = settings.lags(walks.rate_hz).reach / walks.rate_hz
     if settings.split == SUBJECT:
         return split_by_subject(list(windows.values()), list(windows).index(person))
-    return split_within(windows[person], settings.split, what.reach_s, settings.seed)
+    if settings.split == CONDITION:
+        return split_by_trial(windows[person], _judged(walks.people[person], person, settings.condition), reach_s)
+    return split_within(windows[person], settings.split, reach_s, settings.seed)
+
+
+def _judged(walks: Sequence[SensedWalk], person: str, condition: str) -> list[int]:
+    words = [walk.recording.condition for walk in walks]
+    judged = [k for k, word in enumerate(words) if word == condition]
+    if not judged or len(judged) == len(words):
+        raise SchemaError(
+            "a split across conditions needs walks of the condition that is judged, and others to fit",
+            f"--condition is {condition!r}, {person} has {', '.join(sorted(set(words)))}",
+            "Name a condition with --condition, or take another split.",
+        )
+    return judged
 
 
 def _result(
@@ -134,15 +183,15 @@ def _result(
     refusals: Sequence[Refusal],
 ) -> Reconstruction:
     by_name = {channel.name: channel for channel in walks.channels}
-    models = {kind: KINDS[kind] for kind in settings.kinds}
-    rule = RULES.get(
-        settings.split, "each person by models of the others; the next in the list is who they are chosen by"
-    )
+    models = {kind: (KINDS | ON_REQUEST)[kind] for kind in settings.kinds}
+    rule = (RULES | ACROSS)[settings.split]
     if settings.split == SUBJECT:
         models |= {
             CALIBRATED.format(kind): f"the same, corrected for the person by {CALIBRATION_STRIDES} strides"
             for kind in settings.kinds
         }
+    if what.lags.ahead:
+        models |= BASELINES
     created = datetime.now(UTC).isoformat(timespec="seconds")
     used = {
         **study.model_dump(mode="json", include={"filters", "strides", "conditions"}),
@@ -153,7 +202,8 @@ def _result(
         tuple(by_name[name] for name in what.sensors),
         tuple(by_name[name] for name in what.states),
         f"{settings.split}: {rule}",
-        f"{what.lags.count} readings of each sensor, {what.lags.spacing / what.rate_hz:.2f} s apart",
+        f"{what.lags.count} readings of each sensor, {what.lags.spacing / what.rate_hz:.2f} s apart"
+        + (f"; states {what.lags.ahead / what.rate_hz:.2f} s after the last of them" if what.lags.ahead else ""),
         models,
         *(
             pd.concat([getattr(each, name) for each in done], ignore_index=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -19,11 +20,19 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     sensors: Annotated[
         list[str] | None, typer.Option("--sensors", "-s", help="Channels that are read: a,b,c or repeated.")
     ] = None,
+    search: Annotated[
+        int,
+        typer.Option(help="Search the best sets of up to so many sensors; without --sensors the smallest that does."),
+    ] = 0,
     split: Annotated[
-        str, typer.Option(help='temporal, blocked, subject (each person by the others), or "random (leaks)".')
+        str, typer.Option(help='temporal, blocked, subject, condition (each by the others), or "random (leaks)".')
     ] = "temporal",
-    condition: Annotated[str, typer.Option(help="Walks of this condition alone.")] = "",
+    condition: Annotated[
+        str, typer.Option(help="Walks of this condition alone; with --split condition those that are judged.")
+    ] = "",
     targets: Annotated[str, typer.Option(help="What is told: states, emg, forces or moments.")] = "states",
+    ahead: Annotated[float, typer.Option(min=0.0, help="Tell the states so many seconds ahead.")] = 0.0,
+    kinds: Annotated[str, typer.Option(help='As in "delay ridge,masked shred"; by default five kinds of model.')] = "",
     model: Annotated[
         Path | None, typer.Option(help="Folder of a model that this command saved: tell the states of a recording.")
     ] = None,
@@ -32,23 +41,32 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
 ) -> None:
     """Tell all states from a few sensors, by SHRED and by what it has to beat, judged on walking it never saw."""
     from gaitdisc.batch.reconstruct_study import ReconstructionSettings, reconstruct_study
+    from gaitdisc.batch.search_study import search_study
     from gaitdisc.ingest.study_file import load_study
     from gaitdisc.report.figure import file_names
     from gaitdisc.report.reconstruction_page import write_reconstruction_report
-    from gaitdisc.results.reconstruction import save_reconstruction
+    from gaitdisc.results.reconstruction import enough_sensors, save_reconstruction
     from gaitdisc.sensing.model_folder import save_model
     from gaitdisc.sensing.reconstruct import best_of
+    from gaitdisc.sensing.reconstructor import KINDS
 
     if model is not None:
         _by_model(study, model, out)
         return
     loaded = load_study(study)
     folder = out or loaded.folder / "reconstruct"
-    settings = ReconstructionSettings(split=split, condition=condition, targets=targets, seed=loaded.models.seed)
+    chosen = tuple(kind.strip() for kind in kinds.split(",")) if kinds else tuple(KINDS)
+    settings = ReconstructionSettings(
+        split=split, condition=condition, targets=targets, ahead_s=ahead, kinds=chosen, seed=loaded.models.seed
+    )
     names = [name for words in sensors or [] for name in words.replace(",", " ").split()]
+    found = search_study(loaded, search, settings) if search else None
+    if found is not None and not names:
+        names = str(found["names"].iloc[enough_sensors(found)]).split(", ")
     done, people = reconstruct_study(
         loaded, names, settings, lambda who, _: None if quiet else typer.echo(f"  {who}", err=True)
     )
+    done = replace(done, search=found)
     save_reconstruction(done, folder)
     page = write_reconstruction_report(done, folder)
     places = file_names([person.participant for person in people])

@@ -16,6 +16,7 @@ from gaitdisc.report.reconstruction_tables import (
     reconstruction_sentences,
     states_table,
 )
+from gaitdisc.report.search_table import search_table
 from gaitdisc.report.table import Table, save_tables
 from gaitdisc.results.reconstruction import Reconstruction
 
@@ -45,6 +46,7 @@ def write_reconstruction_report(done: Reconstruction, folder: Path) -> Path:
     tables = {
         "models": models_table(done),
         "states": states_table(done),
+        **({"search": search_table(done.search)} if done.search is not None else {}),
         "participants": participants_table(done),
         "left_out": _left_out(done),
         "findings": _findings(done),

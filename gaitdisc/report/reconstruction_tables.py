@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+from gaitdisc.report.search_table import search_sentences
 from gaitdisc.report.table import Table
 from gaitdisc.report.wording import counted, label, listed, number
-from gaitdisc.results.reconstruction import Reconstruction
+from gaitdisc.results.reconstruction import CALIBRATED, Reconstruction
 
 if TYPE_CHECKING:
     import rich.table
@@ -109,7 +110,8 @@ def reconstruction_sentences(done: Reconstruction) -> list[str]:
     row = over.loc[best]
     angles = _has_angles(done)
     rmse = f"an RMSE of {_plain(row['rmse_deg'], 2)} deg over the angles and " if angles else ""
-    what = counted(len(done.states), "other state") if angles else _quantities(done)
+    noun = "future state" if set(done.sensors) & set(done.states) else "other state"
+    what = counted(len(done.states), noun) if angles else _quantities(done)
     sentences = [
         f"From {sensors} {what} {'is' if len(done.states) == 1 else 'are'} told with {rmse}a relative L2 of "
         f"{_plain(row['relative_l2'], 3)} (median R² {_plain(row['r2'], 2)}; mean of "
@@ -120,11 +122,38 @@ def reconstruction_sentences(done: Reconstruction) -> list[str]:
         measure, digits, unit = ("rmse_deg", 2, " deg") if angles else ("relative_l2", 3, "")
         words = [f"{kind} {_plain(over.loc[kind, measure], digits)}{unit}" for kind in compared]
         sentences.append(f"Beside it: {listed(words)}.")
+    sentences += _won(done, best, "rmse_deg" if angles else "relative_l2")
+    sentences += _after_calibration(done, best) if angles else []
+    sentences += search_sentences(done.search) if done.search is not None else []
     if "leaks" in done.split:
         sentences.append("The split leaks: these errors say how well windows are interpolated in time, not more.")
     if len(done.participants) < 3:
         sentences.append("The numbers describe these participants and nobody else.")
     return [*sentences, NOT_MSE] if angles else sentences
+
+
+def _won(done: Reconstruction, best: str, measure: str) -> list[str]:
+    """In how many participants the recommended model errs least, and who else does."""
+    wide: Any = done.summary.pivot_table(index="participant", columns="model", values=measure)
+    least = wide[[model for model in wide.columns if not model.endswith(CALIBRATED.format(""))]].idxmin(axis=1)
+    people, own = len(least), int((least == best).sum())
+    if people < 2:
+        return []
+    if own == people:
+        return [f"It errs least in every one of {people} participants."]
+    others = [f"{model} in {count}" for model, count in least[least != best].value_counts().items()]
+    return [f"It errs least in {own} of {people} participants, {listed(others)}."]
+
+
+def _after_calibration(done: Reconstruction, best: str) -> list[str]:
+    if CALIBRATED.format(best) not in done.models:
+        return []
+    over: Any = done.over_participants()["rmse_deg"]
+    before, after = float(over[best]), float(over[CALIBRATED.format(best)])
+    return [
+        f"Corrected by a few strides of the person whose states are known, it errs by {_plain(after, 2)} instead of "
+        f"{_plain(before, 2)} deg ({100 * (after / before - 1):+.0f} %)."
+    ]
 
 
 def reconstruction_text(done: Reconstruction) -> rich.table.Table:

@@ -17,6 +17,7 @@ from gaitdisc.results.unit_folder import save_unit
 
 NAME = "reconstruction.json"
 NEAR = 1.02  # of the least error on the check part: a cheaper model that is within this is recommended instead
+WORTH = 0.1  # of the root mean squared error, which one more sensor must take off
 CALIBRATED = "{}, calibrated"  # name of a model that is corrected for the person who is judged
 CHEAP_FIRST = ("linear", "delay ridge", "shallow decoder", "fourier ridge", "shred")
 MEASURES = ("rmse_deg", "relative_l2", "r2", "relative_l2_whole", "check_loss", "coverage", "seconds")
@@ -50,6 +51,8 @@ class Reconstruction:
         What a reader must know of the recordings.
     provenance : Provenance
         What the result rests on.
+    search : DataFrame, optional
+        Best set of sensors of every size, where they were searched: sensors, names, loss, rmse_deg, fits, seconds.
     """
 
     title: str
@@ -64,6 +67,7 @@ class Reconstruction:
     refusals: tuple[Refusal, ...]
     findings: tuple[Finding, ...]
     provenance: Provenance
+    search: pd.DataFrame | None = None
 
     @property
     def participants(self) -> tuple[str, ...]:
@@ -88,6 +92,24 @@ class Reconstruction:
     def over_states(self) -> pd.DataFrame:
         """Mean RMSE, relative L2 and R2 over participants; indexed by state and model."""
         return self.errors.groupby(["state", "model"], sort=False)[["rmse", "relative_l2", "r2"]].mean()
+
+
+def enough_sensors(found: pd.DataFrame) -> int:
+    """Row of the smallest set of sensors that one more improves by less than a tenth.
+
+    Parameters
+    ----------
+    found : DataFrame
+        `search` of a reconstruction, one row a size.
+
+    Examples
+    --------
+    >>> enough_sensors(pd.DataFrame({"loss": [1.0, 0.5, 0.49]}))
+    1
+    """
+    root = np.sqrt(found["loss"].to_numpy(float))
+    worth = root[1:] < (1 - WORTH) * root[:-1]
+    return int(np.argmin(worth)) if not worth.all() else len(root) - 1
 
 
 def save_reconstruction(done: Reconstruction, folder: Path) -> None:
@@ -118,6 +140,8 @@ def save_reconstruction(done: Reconstruction, folder: Path) -> None:
         "provenance": asdict(done.provenance),
     }
     tables = {"errors.csv": done.errors, "summary.csv": done.summary, "curves.csv": done.curves}
+    if done.search is not None:
+        tables["search.csv"] = done.search
     save_unit(folder, NAME, data, tables, {})
 
 

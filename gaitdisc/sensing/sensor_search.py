@@ -1,80 +1,152 @@
-"""How many sensors are enough, and which: add the one that helps most, again and again."""
+"""How many sensors are enough, and which: every set of up to three, then the one that helps most, again and again."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
-from gaitdisc.recording import Samples
-from gaitdisc.regression.fourier_ridge import fit_fourier_ridge
+from gaitdisc.errors import ChannelError
+from gaitdisc.recording import Samples, scale_of
 from gaitdisc.sensing.splits import Parts
+from gaitdisc.sensing.windows import thinned
+
+PENALTIES = tuple(10.0**power for power in range(-7, 1))
+WHOLE_SEARCH = 3  # sensors; all sets of up to so many are tried, and beyond it one is added at a time
+MOST_WINDOWS = 20_000
+COLUMNS = ("sensors", "names", "loss", "rmse_deg", "fits", "seconds")
 
 
-def search_sensors(parts: Parts, channels: Sequence[Channel], most: int = 4) -> pd.DataFrame:
-    """Choose sensors one by one by the error of ridge regression on their history, on the check part.
+def search_sensors(people: Sequence[Parts], channels: Sequence[Channel], most: int = 4) -> pd.DataFrame:
+    """Find the sensors from whose history ridge regression tells all other states best, for all people together.
 
-    Sensors are chosen by what they add to those that were chosen before them, which need not be the best set of that
-    size. The judged part has no say; its error stands beside the choice.
+    Where there are angles, they alone are candidates and states: translations are not what a worn sensor measures.
+    Sets are chosen on the check parts; the judged parts have no say, their error stands beside the choice. Each set
+    costs no pass over the windows: the mean products of all channels' histories are computed once for each person.
 
     Parameters
     ----------
-    parts : Parts
+    people : sequence of Parts
         Windows in which every candidate is read, and every state told: candidates and states are the same channels.
     channels : sequence of Channel
         Of the candidates, in the order of the windows.
     most : int
-        Sensors to choose.
+        Sensors of the largest set.
 
     Returns
     -------
     DataFrame
-        One row a step: `sensors` (how many), `added` (the name), `loss` (mean squared error of the scaled states on
-        the check part, those read counted as exact), `rmse_deg` (on the judged part, angles that no sensor measures),
-        `fits` (models fitted in this step: the cost).
+        One row a size: `sensors` (how many), `names` (of the best set, joined by ", "), `loss` (mean squared error of
+        all angles on the check parts, sensors counted as exact [deg2]; of the scaled states where there is no angle),
+        `rmse_deg` (on the judged parts, angles that no sensor measures; mean over people), `fits` and `seconds`
+        (regressions and processor time for this size).
+
+    Raises
+    ------
+    ChannelError
+        If there are fewer than two channels, or no sensor is asked for.
 
     Examples
     --------
-    >>> search_sensors(parts, channels, 2)["added"].tolist()  # doctest: +SKIP
-    ['ankle_angle_l', 'hip_flexion_r']
+    >>> search_sensors([parts], channels, 2)["names"].tolist()  # doctest: +SKIP
+    ['knee_angle_l', 'hip_adduction_r, knee_angle_l']
     """
-    training, check, test = parts.fitted(), parts.checked(), parts.judged()
-    spread, chosen, rows = training.y.std(axis=0), [], []
-    for step in range(min(most, len(channels) - 1)):
-        candidates = [k for k in range(len(channels)) if k not in chosen]
-        losses = [_loss(training, check, [*chosen, k], len(channels), spread) for k in candidates]
-        chosen.append(candidates[int(np.argmin(losses))])
-        told, rest = _told(training, check, test, chosen, len(channels))
-        angles = [column for column, k in enumerate(rest) if channels[k].unit == "deg"]
-        error = (told - test.y[:, rest])[:, angles]
-        rmse = float(np.sqrt(np.mean(error**2))) if angles else float("nan")
-        rows.append((step + 1, channels[chosen[-1]].name, min(losses), rmse, len(candidates)))
-    return pd.DataFrame(rows, columns=pd.Index(["sensors", "added", "loss", "rmse_deg", "fits"]))
+    if most < 1 or len(channels) < 2:
+        raise ChannelError(
+            "a search needs at least one sensor, and two channels to choose from",
+            f"{most} are asked for, among {len(channels)} channels",
+            "Give --search 1 or more, and recordings with more channels.",
+        )
+    begun = time.process_time()
+    angles = [k for k, channel in enumerate(channels) if channel.unit == "deg"]
+    kept = tuple(angles) if len(angles) > 1 else tuple(range(len(channels)))
+    products = [_products(parts, kept, bool(angles)) for parts in people]
+    rows, best = [], ()
+    for size in range(1, min(most, len(kept) - 1) + 1):
+        losses = {chosen: _loss(products, chosen) for chosen in _sets(size, kept, best)}
+        best = min(losses, key=lambda chosen: losses[chosen])
+        names = ", ".join(channels[k].name for k in best)
+        now = time.process_time()
+        rows.append(
+            (
+                size,
+                names,
+                losses[best],
+                _rmse(products, best) if angles else float("nan"),
+                len(losses) * len(people),
+                now - begun,
+            )
+        )
+        begun = now
+    return pd.DataFrame(rows, columns=pd.Index(COLUMNS))
 
 
-def _loss(training: Samples, check: Samples, read: list[int], count: int, spread: np.ndarray) -> float:
-    told, rest = _told(training, check, check, read, count)
-    return float(np.sum(np.mean(((told - check.y[:, rest]) / spread[rest]) ** 2, axis=0)) / count)
+Chosen = tuple[int, ...]
+Part = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]  # x x, x y, y y
 
 
-def _told(
-    training: Samples, check: Samples, asked: Samples, read: list[int], count: int
-) -> tuple[np.ndarray, list[int]]:
-    """What a model on some sensors tells of the other states, and which these are."""
-    rest = [k for k in range(count) if k not in read]
-    model = fit_fourier_ridge(_of(training, read, rest, count), _of(check, read, rest, count))
-    return model(_of(asked, read, rest, count).x), rest
+@dataclass(frozen=True, eq=False)
+class _Products:
+    """Mean products of one person's scaled readings and states in the three parts: all that ridge regression needs."""
+
+    fitted: Part
+    checked: Part
+    judged: Part
+    weights: NDArray[np.float64]
+    kept: Chosen
 
 
-def _of(samples: Samples, read: list[int], rest: list[int], count: int) -> Samples:
-    columns = [k for k in range(samples.x.shape[1]) if k % count in read]
-    return replace(
-        samples,
-        x=samples.x[:, columns],
-        y=samples.y[:, rest],
-        inputs=tuple(samples.inputs[k] for k in columns),
-        outputs=tuple(samples.outputs[k] for k in rest),
+def _products(parts: Parts, kept: Chosen, in_deg: bool) -> _Products:
+    training = thinned(parts.fitted(), MOST_WINDOWS)
+    x_scale, y_scale = scale_of(training.x), scale_of(training.y)
+
+    def of(samples: Samples) -> Part:
+        some = thinned(samples, MOST_WINDOWS)
+        x, y = x_scale.scaled(some.x), y_scale.scaled(some.y)
+        return x.T @ x / len(x), x.T @ y / len(x), np.mean(y**2, axis=0)
+
+    weights = y_scale.sd**2 if in_deg else np.ones(len(y_scale.sd))
+    return _Products(of(training), of(parts.checked()), of(parts.judged()), weights, kept)
+
+
+def _sets(size: int, kept: Chosen, best: Chosen) -> Iterator[Chosen]:
+    if size <= WHOLE_SEARCH:
+        yield from combinations(kept, size)
+        return
+    yield from (tuple(sorted((*best, k))) for k in kept if k not in best)
+
+
+def _loss(products: Sequence[_Products], chosen: Chosen) -> float:
+    return float(np.mean([_errors(each, chosen)[0].sum() / len(each.kept) for each in products]))
+
+
+def _rmse(products: Sequence[_Products], chosen: Chosen) -> float:
+    return float(np.mean([np.sqrt(np.mean(_errors(each, chosen)[1])) for each in products]))
+
+
+def _errors(products: _Products, chosen: Chosen) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Mean squared error of each state that no sensor measures, on the check and on the judged part."""
+    count = len(products.weights)
+    columns = np.flatnonzero(np.isin(np.arange(len(products.fitted[0])) % count, chosen))
+    rest = np.setdiff1d(products.kept, chosen)
+    fitted, checked, judged = (
+        (x_x[np.ix_(columns, columns)], x_y[np.ix_(columns, rest)], y_y[rest])
+        for x_x, x_y, y_y in (products.fitted, products.checked, products.judged)
     )
+    values, vectors = np.linalg.eigh(fitted[0])
+    turned = vectors.T @ fitted[1]
+    weights = [vectors @ (turned / (np.maximum(values, 0.0)[:, None] + penalty)) for penalty in PENALTIES]
+    losses = [_squared(checked, each) * products.weights[rest] for each in weights]
+    best = int(np.argmin([each.sum() for each in losses]))
+    return losses[best], _squared(judged, weights[best]) * products.weights[rest]
+
+
+def _squared(part: Part, weights: NDArray[np.float64]) -> NDArray[np.float64]:
+    x_x, x_y, y_y = part
+    return y_y - 2 * np.sum(weights * x_y, axis=0) + np.sum(weights * (x_x @ weights), axis=0)

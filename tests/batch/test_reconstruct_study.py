@@ -4,7 +4,7 @@ import pytest
 
 from gaitdisc.batch.demonstration import write_demonstration
 from gaitdisc.batch.reconstruct_study import ReconstructionSettings, reconstruct_study
-from gaitdisc.errors import SamplingError
+from gaitdisc.errors import SamplingError, SchemaError
 from gaitdisc.report.reconstruction_tables import reconstruction_sentences
 
 KINDS = ("linear", "delay ridge")
@@ -42,3 +42,28 @@ def test_forces_are_told_in_newtons_and_no_number_is_in_degrees(tmp_path):
     assert over["delay ridge"] < 0.5 * over["linear"]
     said = " ".join(reconstruction_sentences(done))
     assert "4 channels [N] are told with a relative L2 of 0." in said and "deg" not in said
+
+
+def test_one_condition_is_told_from_the_other(study):
+    settings = ReconstructionSettings(split="condition", condition="exo", kinds=KINDS)
+    done, _ = reconstruct_study(study, ("knee_angle_r",), settings)
+    within, _ = reconstruct_study(study, ("knee_angle_r",), ReconstructionSettings(kinds=KINDS))
+    assert done.split.startswith("condition: walks of one condition judged")
+    assert done.over_participants()["rmse_deg"]["delay ridge"] > within.over_participants()["rmse_deg"]["delay ridge"]
+
+
+def test_a_split_across_conditions_needs_the_one_that_is_judged(study):
+    settings = ReconstructionSettings(split="condition", kinds=KINDS)
+    with pytest.raises(
+        SchemaError, match=r"needs walks of the condition that is judged.*--condition is ''.* exo, nominal"
+    ):
+        reconstruct_study(study, ("knee_angle_r",), settings)
+
+
+def test_states_ahead_of_the_last_reading(study):
+    done, people = reconstruct_study(study, ("knee_angle_r",), ReconstructionSettings(kinds=KINDS, ahead_s=0.1))
+    assert "knee_angle_r" in set(done.errors["state"])
+    assert {"persistence", "phase average"} < set(done.models)
+    assert done.history.endswith("states 0.10 s after the last of them")
+    assert people[0].fitted[0].reconstructor.sensing.lags.ahead == 10
+    assert "future states are told" in reconstruction_sentences(done)[0]

@@ -1,5 +1,7 @@
 import math
+from dataclasses import replace
 
+import pandas as pd
 import pytest
 
 from gaitdisc.report.reconstruction_tables import (
@@ -37,3 +39,22 @@ def test_the_sentences_recommend_and_refuse_the_name(reconstruction):
 def test_a_split_that_leaks_is_said(reconstruction, word):
     leaking = type(reconstruction)(**{**vars(reconstruction), "split": word})
     assert any("The split leaks" in said for said in reconstruction_sentences(leaking))
+
+
+def test_who_errs_least_in_whom_is_said(reconstruction):
+    second = reconstruction.summary.assign(participant="P02", rmse_deg=[1.0, 1.25])
+    both = replace(reconstruction, summary=pd.concat([reconstruction.summary, second]))
+    assert "It errs least in 1 of 2 participants, linear in 1." in reconstruction_sentences(both)
+    alike = replace(both, summary=pd.concat([reconstruction.summary, second.assign(rmse_deg=[4.0, 1.0])]))
+    assert "It errs least in every one of 2 participants." in reconstruction_sentences(alike)
+
+
+def test_what_calibration_brings_is_said(reconstruction):
+    more = reconstruction.summary[1:].assign(model="delay ridge, calibrated", rmse_deg=0.625)
+    with_it = replace(
+        reconstruction,
+        summary=pd.concat([reconstruction.summary, more]),
+        models={**reconstruction.models, "delay ridge, calibrated": "the same, corrected"},
+    )
+    [said] = [s for s in reconstruction_sentences(with_it) if s.startswith("Corrected")]
+    assert said.endswith("it errs by 0.62 instead of 1.25 deg (-50 %).")

@@ -1,4 +1,5 @@
 import json
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -6,7 +7,7 @@ import pytest
 
 from gaitdisc.channel import Channel
 from gaitdisc.results import Provenance
-from gaitdisc.results.reconstruction import MEASURES, Reconstruction, save_reconstruction
+from gaitdisc.results.reconstruction import MEASURES, Reconstruction, enough_sensors, save_reconstruction
 
 
 @pytest.fixture
@@ -59,3 +60,19 @@ def test_it_is_saved_with_its_tables(done, tmp_path):
     assert kept["recommended"] == "fourier ridge"
     assert set(kept["sha256"]) == {"errors.csv", "summary.csv", "curves.csv"}
     assert len(pd.read_csv(tmp_path / "summary.csv")) == 9
+
+
+@pytest.mark.parametrize(("losses", "row"), [([1.0, 0.5, 0.49], 1), ([1.0, 0.95], 0), ([1.0, 0.5, 0.2], 2), ([1.0], 0)])
+def test_enough_is_where_one_more_takes_less_than_a_tenth_off(losses, row):
+    assert enough_sensors(pd.DataFrame({"loss": losses})) == row
+
+
+def test_a_calibrated_model_does_not_decide_which_is_recommended(done):
+    better = done.summary[done.summary["model"] == "linear"].assign(model="linear, calibrated", check_loss=0.001)
+    both = replace(done, summary=pd.concat([done.summary, better]))
+    assert both.recommended == done.recommended
+
+
+def test_a_search_is_saved_with_the_rest(done, tmp_path):
+    save_reconstruction(replace(done, search=pd.DataFrame({"sensors": [1], "names": ["a"]})), tmp_path)
+    assert (tmp_path / "search.csv").read_text().splitlines() == ["sensors,names", "1,a"]

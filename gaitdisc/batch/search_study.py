@@ -1,0 +1,43 @@
+"""Search the sensors of a study: how many are enough for all its participants, and which."""
+
+from __future__ import annotations
+
+import pandas as pd
+
+from gaitdisc.batch.reconstruct_study import ReconstructionSettings, parts_of
+from gaitdisc.batch.sensed_walks import sensed_walks
+from gaitdisc.ingest.study import Study
+from gaitdisc.sensing.sensor_search import search_sensors
+from gaitdisc.sensing.windows import windows_of
+
+
+def search_study(study: Study, most: int, settings: ReconstructionSettings | None = None) -> pd.DataFrame:
+    """Find the best sets of sensors among the states of a study, for all participants together.
+
+    Parameters
+    ----------
+    study : Study
+        Who walked, in which files.
+    most : int
+        Sensors of the largest set.
+    settings : ReconstructionSettings, optional
+        Split, history and condition; the defaults without.
+
+    Returns
+    -------
+    DataFrame
+        As of `gaitdisc.sensing.sensor_search.search_sensors`.
+
+    Raises
+    ------
+    GaitdiscError
+        If no walk can be processed, or none can be parted.
+    """
+    settings = settings or ReconstructionSettings()
+    walks = sensed_walks(study, (), settings.condition_read)
+    names, lags = [channel.name for channel in walks.channels], settings.lags(walks.rate_hz)
+    windows = {
+        person: [windows_of(walk.recording, names, names, lags, walk.phi) for walk in found]
+        for person, found in walks.people.items()
+    }
+    return search_sensors([parts_of(walks, windows, person, settings) for person in windows], walks.channels, most)
