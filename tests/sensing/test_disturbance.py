@@ -1,0 +1,35 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from gaitdisc.sensing.disturbance import NOISES, SHARES, against_missing, against_noise, noisy
+
+KINDS = ("linear", "delay ridge")
+
+
+@pytest.fixture
+def walks(pair):
+    return [(pair.recording, 100 * (pair.recording.time % 1.0))]
+
+
+def test_noise_is_on_the_sensors_alone_and_of_the_size_that_is_asked_for(pair):
+    more = noisy(pair.recording, ("a",), 0.05, seed=1).values - pair.recording.values
+    assert more[:, 0].std() == pytest.approx(0.05 * pair.recording["a"].std(), rel=0.05)
+    assert not more[:, 1].any()
+
+
+def test_the_error_grows_with_noise_and_history_is_worth_less(pair, walks):
+    found = against_noise(walks, pair.what, pair.channels[1:], KINDS).pivot_table("rmse_deg", "level", "model")
+    assert found.index.tolist() == list(NOISES)
+    assert found["delay ridge"].is_monotonic_increasing
+    assert found["delay ridge"].iloc[0] < 0.01
+    # one reading tells the state: its noise is all there is
+    assert found["delay ridge"].iloc[-1] == pytest.approx(0.1 * pair.recording["a"].std(), rel=0.3)
+
+
+def test_the_error_grows_with_missing_readings(pair, walks):
+    found = against_missing(walks, pair.what, pair.channels[1:], KINDS).pivot_table("rmse_deg", "level", "model")
+    assert found.index.tolist() == list(SHARES)
+    assert found["delay ridge"].is_monotonic_increasing
+    assert np.isfinite(found.to_numpy()).all()
