@@ -121,7 +121,7 @@ def latent_figure(found: pd.DataFrame, name: str, source: str) -> Figure:
     name, source : str
         Of the files; the figure of the dissertation that it stands for.
     """
-    drawn, ((left, right),) = panels(1, 2, 2.1, Room(across=0.8))
+    drawn, ((left, right),) = panels(1, 2, 2.1, Room(across=0.8, top=0.2))
     splits = list(dict.fromkeys(found["split"]))
     for split, look in zip(splits, (RECONSTRUCTED["shred"], RECONSTRUCTED["delay ridge"]), strict=False):
         some = found[found["split"] == split]

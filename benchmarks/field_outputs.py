@@ -1,0 +1,156 @@
+"""SHRED with 125,000 outputs: raw points against modes of the field, per epoch, in memory, and in error.
+
+    python benchmarks/field_outputs.py FOLDER [--epochs 30] [--text-epochs 3] [--energy 0.99]
+
+The flow: forced isotropic turbulence in a box of 50 x 50 x 50 nodes (computed once into FOLDER/flow), 1,257 snapshots,
+one fixed sensor, windows drawn at random (they leak; both sides alike). Each training runs in a process of its own on
+one thread, so that its peak memory is its own; the same steps, batches and learning rates on both sides.
+
+ours: one GRU of 64 and a decoder of 128 and 128, 13 readings 8 snapshots apart. text: two LSTM layers of 64 and a
+decoder of 350 and 400, 100 readings, as the dissertation has it, for its cost alone.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import re
+import subprocess
+import sys
+import time
+from functools import partial
+from pathlib import Path
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import numpy as np
+
+from gaitdisc.sensing.reconstruct_field import FieldTask, prepare
+from gaitdisc.sensing.routes import fixed_at_random
+from gaitdisc.sensing.splits import RANDOM
+from gaitdisc.sensing.windows import Lags
+from gaitdisc.turbulence.isotropic import FlowSettings, record_turbulence
+
+FLOW = FlowSettings(nodes=50, cut=50, spin_up=800)
+LAGS = {"ours": Lags(13, 8), "text": Lags(100, 1)}
+BATCH, RATE, DECAY = 64, 3e-3, 0.01
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description="125,000 outputs: raw points against modes.")
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--epochs", type=int, default=30)
+    parser.add_argument("--text-epochs", type=int, default=3)
+    parser.add_argument("--energy", type=float, default=0.99)
+    parser.add_argument("--one", nargs=2, metavar=("NETWORK", "TARGETS"))
+    asked = parser.parse_args()
+    if asked.one:
+        network, targets = asked.one
+        epochs = asked.epochs if network == "ours" else asked.text_epochs
+        print(json.dumps(trained(asked.folder, network, targets, epochs)))
+        return
+    for network in LAGS:
+        write_parts(asked.folder, network, asked.energy)
+    print("| network | targets | outputs | weights | s an epoch | peak beyond libraries [MB] | relative L2, judged |")
+    print("|---|---|---|---|---|---|---|")
+    found = {}
+    for network in LAGS:
+        for targets in ("raw", "modes"):
+            command = [sys.executable, *sys.argv, "--one", network, targets]
+            said = subprocess.run(command, stdout=subprocess.PIPE, check=True)
+            row = found[network, targets] = json.loads(said.stdout)
+            print(f"| {network} | {targets} | {row['outputs']} | {row['weights']:,} | {row['epoch_s']:.3f} | "
+                  f"{row['peak_mb']:.0f} | {row['relative_l2']:.4f} |", flush=True)  # fmt: skip
+        raw, modes = found[network, "raw"], found[network, "modes"]
+        ratio = {name: raw[name] / modes[name] for name in ("epoch_s", "peak_mb", "relative_l2")}
+        print(f"{network}: modes {ratio['epoch_s']:.1f} times cheaper an epoch, {ratio['peak_mb']:.1f} times less "
+              f"memory, error {1 / ratio['relative_l2']:.4f} of raw; modes fitted once in {modes['modes_s']:.1f} s")  # fmt: skip
+
+
+def write_parts(folder: Path, network: str, energy: float) -> None:
+    """Windows, raw targets and modes of one network, for the processes that train."""
+    flow, _ = record_turbulence(FLOW, folder / "flow")
+    begun = time.process_time()
+    ready = prepare(flow, fixed_at_random(flow, 1, 0), FieldTask("flow", LAGS[network], RANDOM, energy))
+    seconds = time.process_time() - begun
+    rows = [np.rint(part.time).astype(int) for part in (ready.training, ready.test)]
+    x_mean, x_sd = ready.training.x.mean(), ready.training.x.std()
+    told = {"modes_s": seconds, "mean": ready.modes.mean, "spread": ready.modes.spread}
+    parts = {"training": (ready.training.x - x_mean) / x_sd, "test": (ready.test.x - x_mean) / x_sd}
+    np.savez(folder / f"{network}-windows.npz", test_rows=rows[1], **told, **parts)
+    np.savez(folder / f"{network}-modes.npz", basis=ready.modes.basis, y=ready.training.y)
+    np.save(folder / f"{network}-raw.npy", ((flow.values[rows[0]] - ready.modes.mean) / ready.modes.spread)[:, :, 0])
+
+
+def trained(folder: Path, network: str, targets: str, epochs: int) -> dict[str, float]:
+    """Train on one kind of targets and judge in the field."""
+    import torch
+
+    from gaitdisc.networks.schedule import schedule_of
+    from gaitdisc.networks.torch_steps import TorchSteps
+    from gaitdisc.networks.training_settings import TrainingSettings
+
+    torch.set_num_threads(1)
+    torch.manual_seed(0)
+    before = peak_mb()
+    windows = np.load(folder / f"{network}-windows.npz")
+    raw = targets == "raw"
+    y = np.load(folder / f"{network}-raw.npy") if raw else np.load(folder / f"{network}-modes.npz")["y"]
+    sd = 1.0 if raw else float(np.sqrt(np.mean(y**2)))
+    y = y if raw else (y / sd).astype(np.float32)
+    x, y = torch.from_numpy(windows["training"].astype(np.float32)), torch.from_numpy(y)
+    model = built(network, x.shape[1], y.shape[1])
+    settings = TrainingSettings(epochs=epochs, batch=BATCH, learning_rate=RATE)
+    rates = schedule_of(len(x), DECAY, settings).rates
+    steps = TorchSteps(model, (x, y), (x[:1], y[:1]), schedule_of(len(x), DECAY, settings))
+    order, seconds = torch.Generator().manual_seed(0), []
+    for epoch in range(epochs):
+        begun = time.process_time()
+        steps.epoch(torch.randperm(len(x), generator=order), rates[epoch * len(rates) // epochs])
+        seconds.append(time.process_time() - begun)
+    peak = peak_mb() - before
+    model.eval()
+    with torch.no_grad():
+        told = model(torch.from_numpy(windows["test"].astype(np.float32))).numpy() * sd
+    told = told if raw else told @ np.load(folder / f"{network}-modes.npz")["basis"].T
+    truth = np.load(folder / "flow" / "u.npy", mmap_mode="r")[windows["test_rows"]]
+    error = told * windows["spread"][0] + windows["mean"][:, 0] - truth
+    return {
+        "outputs": y.shape[1], "weights": sum(p.numel() for p in model.parameters()),
+        "epoch_s": float(np.median(seconds)), "peak_mb": peak, "modes_s": float(windows["modes_s"]),
+        "relative_l2": float(np.linalg.norm(error) / np.linalg.norm(truth)),
+    }  # fmt: skip
+
+
+def peak_mb() -> float:
+    """Largest resident memory of this process so far; getrusage would count the parent's."""
+    found = re.search(r"VmHWM:\s+(\d+) kB", Path("/proc/self/status").read_text())
+    assert found is not None  # Linux tells it
+    return int(found.group(1)) / 1024
+
+
+def built(network: str, inputs: int, outputs: int):
+    """Network by its name."""
+    from torch import nn
+
+    from gaitdisc.networks.shallow_decoder import ShallowDecoder
+    from gaitdisc.networks.shred import Shred
+
+    if network == "ours":
+        return partial(Shred, sensors=1)(inputs, outputs)
+
+    class AsInTheText(nn.Module):
+        def __init__(self) -> None:
+            super().__init__()
+            self.recurrent = nn.LSTM(1, 64, 2, batch_first=True)
+            self.decoder = ShallowDecoder(64, outputs, 350, 400)
+
+        def forward(self, x):
+            return self.decoder(self.recurrent(x[:, :, None])[0][:, -1])
+
+    return AsInTheText()
+
+
+if __name__ == "__main__":
+    main()
