@@ -86,7 +86,7 @@ def cell_of(
     parts = {name: part(record, learned, approach, name == "forecast") for name in ("reconstruction", "forecast")}
     return DiscrepancyCell(
         record.system.name, method, approach, variant, made.noise, made.seed, record.system.channels, parts,
-        fit_s, clock.process_time() - begun, _terms(learned),
+        fit_s, clock.process_time() - begun, terms_of(learned),
     )  # fmt: skip
 
 
@@ -147,7 +147,14 @@ def _bounded(run: AugmentedRun, time: np.ndarray) -> AugmentedRun:
     return AugmentedRun(values, float(time[max(first - 1, 0)]))
 
 
-def _terms(learned: Model) -> str:
+def terms_of(learned: Model) -> str:
+    """Terms of a learned model with their coefficients, by output; empty for a method that has none to tell.
+
+    Parameters
+    ----------
+    learned : Model
+        Of any method.
+    """
     if not isinstance(learned, Sindy):
         return ""
     said = []

@@ -89,6 +89,8 @@ class Record:
         forecast : bool
             At the end of the training part instead of its beginning.
         """
+        if not forecast and self.system.assumed is not None:
+            return self.system.assumed
         sample = self.split - 1 if forecast else 0
         complete = len(self.system.channels) == len(self.system.states)
         return self.filtered[sample] if self.conditions.published and complete else self.truth[sample]

@@ -52,6 +52,8 @@ class System:
         Where both begin.
     observation : ndarray (channel, state)
         C of Eq. 3.15; the channels are the first states.
+    assumed : ndarray (state,), optional
+        Where the known model is thought to begin, if that is wrong.
     """
 
     name: str
@@ -60,6 +62,7 @@ class System:
     true: Rates
     start: NDArray[np.float64]
     observation: NDArray[np.float64]
+    assumed: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
         """Freeze the numbers."""

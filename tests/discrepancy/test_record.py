@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -23,3 +25,11 @@ def test_the_published_variant_starts_and_judges_from_the_last_measured_sample(v
 def test_a_record_too_short_says_by_how_much(van_der_pol):
     with pytest.raises(SamplingError, match=r"needs 60 samples; 0.5 s at 0.01 s give 31, 29 too few"):
         recorded(van_der_pol, Conditions(duration_s=0.5))
+
+
+def test_a_start_that_is_assumed_wrongly_is_the_known_models_and_not_the_forecasts(van_der_pol):
+    wrong = replace(van_der_pol, assumed=np.array([0.6, 4.0]))
+    record = recorded(wrong, Conditions(duration_s=5.0))
+    assert record.start(forecast=False).tolist() == [0.6, 4.0]
+    assert np.array_equal(record.start(forecast=True), record.truth[record.split - 1])
+    assert record.truth[0].tolist() == [0.1, 5.0]

@@ -1,0 +1,104 @@
+"""Who names the hidden effect, and at which noise: `gaitdisc discover` beside the methods of chapter 3.
+
+    python studies/ch3_who_names.py [FOLDER] [--quick]
+
+SINDy answers with terms, dynamic mode decomposition with a curve of time, Gaussian process and network with a curve of
+the states; `discover` with a name, a number and its interval. All learn from the same samples, the first 60 %, and
+forecast the rest. Below stand what section 3.5 leaves open: one state measured, a wrong parameter, a wrong start,
+random pushes.
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from ch3_report import Result, written
+
+from gaitdisc.batch.discover_answer import discover_answer
+from gaitdisc.discrepancy.grid import NOISES
+from gaitdisc.discrepancy.hidden_effect import HiddenEffect, method_answer
+from gaitdisc.discrepancy.known_rates import KnownRates
+from gaitdisc.discrepancy.methods import Method
+from gaitdisc.discrepancy.record import Conditions, recorded
+from gaitdisc.discrepancy.shaken_rates import ShakenRates
+from gaitdisc.discrepancy.system import system_of
+from gaitdisc.report.block import Block
+from gaitdisc.report.naming_figure import naming_figure
+from gaitdisc.report.naming_table import naming_table
+from gaitdisc.results.naming import Naming
+from gaitdisc.simulation.bundled import bundled
+from gaitdisc.simulation.parts import Term
+
+SEEDS = (0, 1, 2)
+NAMING: tuple[Method, ...] = ("sindy",)
+METHODS: tuple[Method, ...] = (*NAMING, "dmd", "gp", "nn")  # a curve is no name whatever the seed: one is enough
+MU, START, PUSH = 0.55, (0.6, 4.0), 0.02  # where 0.5 and (0.1, 5) are thought; and 1/s per sqrt(s)
+CUBIC = ("y", "cubic_stiffness")
+
+
+def cases(seed: int = 0) -> tuple[HiddenEffect, ...]:
+    """Every case.
+
+    Parameters
+    ----------
+    seed : int
+        Of random pushes.
+    """
+    text, code, lorenz = bundled("van_der_pol"), bundled("van_der_pol_published"), bundled("lorenz")
+    minus, plus = (Term("y", "equation", "cubic_stiffness", f"{eps}*x**3") for eps in (-0.01, 0.01))
+    free = bundled("mass_spring_damper")
+    by_text = system_of(free.with_effect(Term("force", "port", "cubic", "x**3")), gain=(1.01,))
+    by_code = system_of(free.with_effect(Term("v", "equation", "cubic", "x**3")), gain=(1.1,))
+    hidden, alike = system_of(text, minus), system_of(text)
+    begun = replace(system_of(text, start=START), assumed=alike.start)
+    shaken, both = (replace(s, true=ShakenRates(s.true, (0.0, PUSH), seed)) for s in (alike, hidden))
+    cubic, gain = {"y": {"x**3": -0.01}}, ("x", "sensor_gain")
+    damping = {"y": {"y": MU - 0.5, "x**2*y": 0.5 - MU}}
+    mu = replace(alike, true=KnownRates(text.with_values({"mu": MU})))
+    fast, slow = system_of(lorenz, Term("x", "equation", "cubic", "0.01*x**3")), system_of(lorenz)
+    only = replace(hidden, observation=np.eye(2)[:1])
+    return (
+        HiddenEffect("Van der Pol, text", "−0.01 x³", hidden, CUBIC, 0.01, cubic),
+        HiddenEffect("Van der Pol, code", "+0.01 x³", system_of(code, plus), CUBIC, -0.01, {"y": {"x**3": 0.01}}),
+        HiddenEffect("Lorenz", "+0.01 x³", fast, ("x", CUBIC[1]), -0.01, {"x": {"x**3": 0.01}}),
+        HiddenEffect("biased mass, code", "gain 1.1", by_code, gain, 1.1, {"x": {"x": 0.1}}, "state", 20.0),
+        HiddenEffect("biased mass, text", "gain 1.01", by_text, gain, 1.01, {"x": {"x": 0.01}}, "state", 20.0),
+        HiddenEffect("Van der Pol, nothing hidden", "", alike),
+        HiddenEffect("Lorenz, nothing hidden", "", slow),
+        HiddenEffect("only x measured", "−0.01 x³", only, CUBIC, 0.01, cubic),
+        HiddenEffect("only x measured, residual", "−0.01 x³", only, CUBIC, 0.01, cubic, "state"),
+        HiddenEffect("wrong parameter", f"mu {MU} for 0.5", mu, ("mu", "wrong_parameter"), MU, damping),
+        HiddenEffect("wrong start", "start of x, y", begun, ("x", "wrong_initial_condition"), START[0], {}, "state"),
+        HiddenEffect("random pushes", "pushes of y", shaken, ("y", "process_noise")),
+        HiddenEffect("random pushes and a cubic", "−0.01 x³", both, CUBIC, 0.01, cubic),
+    )  # fmt: skip
+
+
+def run(quick: bool = False, folder: Path = Path("ch3_who_names")) -> Result:
+    """Ask everybody about every case.
+
+    Parameters
+    ----------
+    quick : bool
+        Two noises, one seed.
+    folder : Path
+        Where the report goes.
+    """
+    noises, seeds = (NOISES[1:3], SEEDS[:1]) if quick else (NOISES, SEEDS)
+    found: list[Naming] = []
+    for noise in noises:
+        for seed in seeds if noise else seeds[:1]:
+            for hidden in cases(seed):
+                record = recorded(hidden.system, Conditions(noise, seed, duration_s=hidden.duration_s))
+                asked = METHODS if seed == seeds[0] else NAMING
+                found += [discover_answer(hidden, record), *(method_answer(hidden, record, each) for each in asked)]
+    block = Block("names", "Who names it", (), (naming_figure(found, "names"),), (naming_table(found, "names"),))
+    return written({}, [block], "Who names the hidden effect, sections 3.4 and 3.5", folder)
+
+
+if __name__ == "__main__":
+    words = [word for word in sys.argv[1:] if word != "--quick"]
+    print(run("--quick" in sys.argv, *map(Path, words[:1])).page)

@@ -1,0 +1,40 @@
+from dataclasses import replace
+
+import pytest
+
+from gaitdisc.batch.discover_answer import discover_answer
+from gaitdisc.discrepancy.burgers import burgers
+from gaitdisc.discrepancy.hidden_effect import HiddenEffect
+from gaitdisc.discrepancy.record import Conditions, recorded
+from gaitdisc.discrepancy.system import system_of
+from gaitdisc.errors import ShapeError
+from gaitdisc.simulation.bundled import bundled
+from gaitdisc.simulation.parts import Term
+
+
+@pytest.fixture(scope="module")
+def hidden():
+    system = system_of(bundled("van_der_pol"), Term("y", "equation", "cubic_stiffness", "-0.01*x**3"))
+    return HiddenEffect("van der Pol", "−0.01 x³", system, ("y", "cubic_stiffness"), 0.01, duration_s=20.0)
+
+
+def test_the_name_the_number_and_the_forecast(hidden):
+    record = recorded(hidden.system, Conditions(0.01, duration_s=20.0))
+    found = discover_answer(hidden, record)
+    assert (found.tool, found.answer) == ("discover", "named")
+    assert found.amount == pytest.approx(1.0, abs=0.02)
+    assert found.accuracy > 95
+    assert "cube of displacement" in found.said
+    assert discover_answer(replace(hidden, effect=("x", "offset")), record).answer == "wrong name"
+
+
+def test_nothing_hidden_is_told(hidden):
+    alike = HiddenEffect("van der Pol", "", system_of(bundled("van_der_pol")), duration_s=20.0)
+    assert discover_answer(alike, recorded(alike.system, Conditions(0.01, duration_s=20.0))).right
+
+
+def test_a_field_without_a_simulation_file_is_refused(hidden):
+    field = replace(hidden, system=burgers(0.1))
+    record = recorded(field.system, Conditions(duration_s=2.0))
+    with pytest.raises(ShapeError, match="is known as BurgersRates"):
+        discover_answer(field, record)
