@@ -13,13 +13,14 @@ LEVEL = 0.9
 def half_widths(errors: NDArray[np.float64], level: float = LEVEL) -> NDArray[np.float64]:
     """Half width of the interval of every state: the split conformal quantile of the absolute errors.
 
-    With n independent errors the interval covers a further one with a probability of at least `level`. Windows of one
-    walk depend on each other, and the gait may drift: the coverage is therefore measured, not promised.
+    With n independent errors, the one of rank (n + 1) `level` covers a further error with a probability of `level`.
+    Windows of one walk are not independent: the rank is taken for as many errors as theirs are worth
+    (`effective_number`). The gait may drift all the same: the coverage is measured, not promised.
 
     Parameters
     ----------
     errors : ndarray (window, state) [each state's unit]
-        Of a model on the check part.
+        Of a model on windows that it was not fitted to, in order of time.
     level : float
         Wanted coverage, between 0 and 1.
 
@@ -34,23 +35,53 @@ def half_widths(errors: NDArray[np.float64], level: float = LEVEL) -> NDArray[np
 
     References
     ----------
-    Vovk, Gammerman and Shafer 2005, Algorithmic learning in a random world; Lei et al. 2018 (split conformal).
+    Vovk, Gammerman and Shafer 2005, Algorithmic learning in a random world; Lei et al. 2018 (split conformal). The
+    effective number is our addition: without it the 90 % interval of walks of 60 s covered 86 %.
 
     Examples
     --------
-    >>> half_widths(np.arange(-9.0, 10.0)[:, None], 0.9)
+    >>> half_widths(np.tile([1.0, -2.0, 3.0, -4.0, 5.0, -6.0, 7.0, -8.0, 9.0], 3)[:, None], 0.9)
     array([9.])
     """
-    n = len(errors)
-    rank = int(np.ceil((n + 1) * level - 1e-9))
-    if rank > n:
+    n, sizes = len(errors), np.sort(np.abs(errors), axis=0)
+    if int(np.ceil((n + 1) * level - 1e-9)) > n:
         least = int(np.ceil(level / (1 - level) - 1e-9))
         raise SamplingError(
             f"an interval of {100 * level:g} % needs at least {least} checked windows",
             f"there are {n}",
             "Record longer, or take a lower level.",
         )
-    return np.sort(np.abs(errors), axis=0)[rank - 1]
+    ranks = np.ceil(n * level * (1 + 1 / effective_number(errors)) - 1e-9).astype(int)
+    return sizes[np.minimum(ranks, n) - 1, np.arange(sizes.shape[1])]
+
+
+def effective_number(errors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Independent errors that those of every state are worth, (state,): between 1 and their number.
+
+    The number of windows by the integrated autocorrelation of the absolute errors, summed up to its first zero.
+
+    Parameters
+    ----------
+    errors : ndarray (window, state) [each state's unit]
+        In order of time.
+
+    References
+    ----------
+    Sokal 1997, Monte Carlo methods in statistical mechanics (integrated autocorrelation time).
+
+    Examples
+    --------
+    >>> errors = np.random.default_rng(0).normal(size=(400, 1))
+    >>> bool(300 < effective_number(np.repeat(errors, 10, axis=0))[0] < 500)
+    True
+    """
+    n = len(errors)
+    sizes = np.abs(errors) - np.abs(errors).mean(axis=0)
+    spectrum = np.abs(np.fft.rfft(sizes, 2 * n, axis=0)) ** 2
+    products = np.fft.irfft(spectrum, axis=0)[:n]
+    rho = products / np.where(products[0] > 0, products[0], 1.0)
+    before_zero = np.logical_and.accumulate(rho[1:] > 0, axis=0)
+    return np.clip(n / (1 + 2 * (rho[1:] * before_zero).sum(axis=0)), 1.0, n)
 
 
 def coverage(errors: NDArray[np.float64], half: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.results.reconstruction import CALIBRATED
 from gaitdisc.sensing.calibration import calibrated, first_strides, rehearsed
+from gaitdisc.sensing.crossed import crossed_widths
 from gaitdisc.sensing.forecast import PERSISTENCE, PHASE_AVERAGE, persistence, phase_average
 from gaitdisc.sensing.intervals import coverage, half_widths
 from gaitdisc.sensing.model_folder import SensingModel
 from gaitdisc.sensing.reconstructor import KINDS, Reconstructor, Sensing, fit_reconstructor
-from gaitdisc.sensing.splits import Parts
+from gaitdisc.sensing.splits import PERSON_OUT, Parts
 from gaitdisc.sensing.state_errors import Judged, angles_error, phase_curves, state_errors, stride_numbers
 from gaitdisc.sensing.windows import stacked
 from gaitdisc.statistics.r2 import r2
@@ -93,27 +94,28 @@ def reconstruct(
     order = ["participant", "model"]
     tables = (pd.concat(part, ignore_index=True) for part in (errors, curves))
     errors_table, curves_table = (table[[*order, *(c for c in table if c not in order)]] for table in tables)
-    models = tuple(SensingModel(done, tuple(channels), half_widths(missed)) for done, missed in fitted)
+    models = tuple(SensingModel(done, tuple(channels), half) for done, half in fitted)
     return PersonReconstruction(participant, errors_table, pd.DataFrame(summary), curves_table, models)
 
 
 @dataclass(frozen=True, eq=False)
 class _Account:
-    """What one model tells of the judged part, and its errors on the check part."""
+    """What one model tells of the judged part, its errors on the check part, and its interval."""
 
     model: str
     told: NDArray[np.float64]
     missed: NDArray[np.float64]
+    half_widths: NDArray[np.float64]
     n_fitted: int = 0
     seconds: float = 0.0
 
     def checked(self, spread: NDArray[np.float64], judged: Judged) -> dict[str, float]:
         """Loss by which models are chosen, and how often the interval that the check part gives holds."""
-        inside = coverage(judged.told - judged.windows.y, half_widths(self.missed))
+        inside = coverage(judged.told - judged.windows.y, self.half_widths)
         return {"check_loss": float(np.mean((self.missed / spread) ** 2)), "coverage": float(np.mean(inside))}
 
 
-Fitted = tuple[Reconstructor, NDArray[np.float64]]  # and its errors on the check part
+Fitted = tuple[Reconstructor, NDArray[np.float64]]  # and the half widths of its interval
 
 
 def _fitted(
@@ -126,13 +128,16 @@ def _fitted(
     for kind in kinds:
         done = fit_reconstructor(kind, what, training, check, seed)
         missed = done(check) - check.y
-        fitted.append((done, missed))
-        accounts.append(_Account(kind, done(test), missed, done.n_fitted, done.seconds))
+        alone = parts.rule != PERSON_OUT
+        half = half_widths(missed) if alone else crossed_widths(kind, what, parts, missed, seed)
+        fitted.append((done, half))
+        accounts.append(_Account(kind, done(test), missed, half, done.n_fitted, done.seconds))
         if first is not None:
             rehearsal = rehearsed(done, parts.check, calibration)
             told = calibrated(done, first.strides, rehearsal.penalty)(test)
             name = CALIBRATED.format(kind)
-            accounts.append(_Account(name, told, rehearsal.missed, done.n_fitted, done.seconds))
+            half = half_widths(rehearsal.missed)
+            accounts.append(_Account(name, told, rehearsal.missed, half, done.n_fitted, done.seconds))
     return fitted, accounts, np.ones(len(test), bool) if first is None else first.rest
 
 
@@ -149,7 +154,8 @@ def _baselines(parts: Parts, what: Sensing) -> list[_Account]:
         (PHASE_AVERAGE, partial(average.told, ahead_s=ahead_s)),
     ):
         missed = told(known) - stacked(known).y
-        found.append(_Account(name, told(parts.test), missed[np.isfinite(missed).all(axis=1)]))
+        missed = missed[np.isfinite(missed).all(axis=1)]
+        found.append(_Account(name, told(parts.test), missed, half_widths(missed)))
     return found
 
 

@@ -15,6 +15,7 @@ from gaitdisc.sensing.windows import stacked
 TRAINING, CHECK, TEST, APART = 0, 1, 2, -1
 SHARES = (0.7, 0.1, 0.2)
 BLOCKS = (TRAINING, TRAINING, TEST, TRAINING, TRAINING, CHECK, TRAINING, TEST, TRAINING, TRAINING)
+PERSON_OUT = "leave one person out"
 SEAM_S = 0.3  # zero-lag filters look ahead and back over a border
 RANDOM = "random (leaks)"
 RULES = {
@@ -134,7 +135,7 @@ def split_by_subject(people: Sequence[Sequence[Samples]], judged: int) -> Parts:
         )
     checked = (judged + 1) % len(people)
     fitted = [trial for k, trials in enumerate(people) if k not in (judged, checked) for trial in trials]
-    return Parts(tuple(fitted), tuple(people[checked]), tuple(people[judged]), "leave one person out")
+    return Parts(tuple(fitted), tuple(people[checked]), tuple(people[judged]), PERSON_OUT)
 
 
 def split_by_trial(trials: Sequence[Samples], judged: Sequence[int], reach_s: float) -> Parts:

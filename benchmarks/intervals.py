@@ -1,0 +1,67 @@
+"""Share of judged states inside the 90 % interval: temporal split, and one person left out.
+
+    python benchmarks/intervals.py treadmill|cohort [--people 12] [--split temporal|subject] [--kinds "delay ridge,..."]
+
+Mean over all told states and people, and the least and largest of the people; `plain` is the split conformal quantile
+that takes every window for an independent one, and for a person left out the checked person alone.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import numpy as np
+from numpy.typing import NDArray
+from sensing_walks import Person, cohort_walks, treadmill_walks
+
+from gaitdisc.recording import Samples
+from gaitdisc.sensing.crossed import crossed_widths
+from gaitdisc.sensing.intervals import LEVEL, coverage, half_widths
+from gaitdisc.sensing.reconstructor import fit_reconstructor
+from gaitdisc.sensing.splits import PERSON_OUT, Parts, split_by_subject, split_within
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("walks", choices=("treadmill", "cohort"))
+    parser.add_argument("--people", type=int, default=12)
+    parser.add_argument("--split", choices=("temporal", "subject"), default="temporal")
+    parser.add_argument("--kinds", default="linear,delay ridge,fourier ridge")
+    parser.add_argument("--every", type=int, default=1, help="judge every so manieth person")
+    given = parser.parse_args()
+    people = treadmill_walks() if given.walks == "treadmill" else cohort_walks(given.people)
+    windows = [[p.what.windows(w.recording, w.phi) for w in p.walks.people[p.name]] for p in people]
+    for kind in given.kinds.split(","):
+        judged = range(0, len(people), given.every)
+        found = np.array([shares(kind, people[k], parts_of(windows, k, given.split)) for k in judged])
+        said = [f"{name} {100 * v.mean():.1f} % ({100 * v.min():.0f} to {100 * v.max():.0f})"
+                for name, v in zip(("plain", "ours"), found.T, strict=True)]  # fmt: skip
+        print(f"{given.walks}, {given.split}, {kind}: {', '.join(said)}", flush=True)
+
+
+def parts_of(windows: list[list[Samples]], judged: int, split: str) -> Parts:
+    """Parts of one person's windows, or of everybody's."""
+    if split == "subject":
+        return split_by_subject(windows, judged)
+    return split_within(windows[judged], split, 1.0)
+
+
+def shares(kind: str, person: Person, parts: Parts) -> tuple[float, float]:
+    """Coverage of the plain interval and of ours."""
+    what, check, test = person.what, parts.checked(), parts.judged()
+    done = fit_reconstructor(kind, what, parts.fitted(), check)
+    missed, errors = done(check) - check.y, done(test) - test.y
+    half = crossed_widths(kind, what, parts, missed) if parts.rule == PERSON_OUT else half_widths(missed)
+    return float(coverage(errors, plain(missed)).mean()), float(coverage(errors, half).mean())
+
+
+def plain(missed: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Quantile of the absolute errors, every one of them counted."""
+    return np.sort(np.abs(missed), axis=0)[int(np.ceil((len(missed) + 1) * LEVEL)) - 1]
+
+
+if __name__ == "__main__":
+    main()
