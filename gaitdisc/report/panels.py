@@ -110,6 +110,22 @@ def legend(drawn: matplotlib.figure.Figure, handles: Sequence[Artist]) -> None:
     drawn.legend(handles=list(handles), loc="upper center", ncols=len(handles), bbox_to_anchor=(0.5, 1.0))
 
 
+def decades(axes: Axes) -> None:
+    """Make the vertical axis logarithmic, with plain numbers at 1, 2 and 5 of every decade.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        With values above zero.
+    """
+    from matplotlib.ticker import LogLocator, NullFormatter
+
+    axes.set_yscale("log")
+    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    axes.yaxis.set_minor_formatter(NullFormatter())
+
+
 def in_style(draw: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
     """Let a function draw in the report's style, whatever the user's own style is.
 

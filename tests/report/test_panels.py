@@ -1,6 +1,6 @@
 import pytest
 
-from gaitdisc.report.panels import WIDTH, Room, in_style, panels, sheets
+from gaitdisc.report.panels import WIDTH, Room, decades, in_style, panels, sheets
 
 
 def test_panels_have_their_size_and_do_not_overlap():
@@ -12,6 +12,15 @@ def test_panels_have_their_size_and_do_not_overlap():
     assert (boxes[0][1].x0 - boxes[0][0].x1) * WIDTH == pytest.approx(0.6)
     assert (boxes[0][0].y0 - boxes[1][0].y1) * height == pytest.approx(0.3)
     assert boxes[1][2].x1 * WIDTH == pytest.approx(WIDTH - 0.1)
+
+
+def test_a_logarithmic_axis_has_plain_numbers():
+    drawn, [[axes]] = panels(1, 1, 1.0, Room())
+    axes.plot([0, 1], [0.3, 30.0])
+    decades(axes)
+    drawn.canvas.draw()
+    shown = [label.get_text() for label in axes.get_yticklabels()]
+    assert {"0.5", "1", "2", "5", "10"} <= set(shown)
 
 
 def test_sheets_are_of_nearly_equal_length():

@@ -1,0 +1,69 @@
+"""Error of every model by sensor set: a box over participants and states, angles and translations apart (Fig. 5.4)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from gaitdisc.report.box import draw_box
+from gaitdisc.report.figure import Figure
+from gaitdisc.report.palette import RECONSTRUCTED
+from gaitdisc.report.panels import Room, decades, in_style, legend, panels
+from gaitdisc.report.wording import counted, listed, unit_text
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+STEP, PITCH = 0.23, 1.4  # from one box to the next, and from one sensor set to the next
+
+
+@in_style
+def sensor_sets_figure(errors: pd.DataFrame, data: str, name: str, rule: str) -> Figure:
+    """One panel a unit, one group of boxes a sensor set, one box a model.
+
+    Parameters
+    ----------
+    errors : DataFrame
+        `errors` of reconstructions, with a column `sensors`.
+    data : str
+        What was recorded, for the caption.
+    name : str
+        Of the files.
+    rule : str
+        The split, for the caption.
+    """
+    from matplotlib.lines import Line2D
+
+    shown = errors[errors["model"].isin(list(RECONSTRUCTED))]
+    units = [unit for unit in ("deg", "m") if (shown["unit"] == unit).any()]
+    models = [model for model in RECONSTRUCTED if (shown["model"] == model).any()]
+    drawn, grid = panels(1, len(units), 2.3, Room(left=0.6, across=0.7, bottom=0.5))
+    for axes, unit in zip(grid[0], units, strict=True):
+        _draw(axes, shown[shown["unit"] == unit], models)
+        axes.set_ylabel(f"RMSE of a state [{unit_text(unit)}]")
+    legend(drawn, [Line2D([], [], color=RECONSTRUCTED[model].colour, label=model) for model in models])
+    people = shown["participant"].nunique()
+    caption = (
+        f"{data}, n = {counted(people, 'participant')}: RMSE of every state that no sensor measures, by sensor set and "
+        f"model; a box over participants and states, median and quartiles, whiskers to the smallest and the largest. "
+        f"Split: {rule}. Note the logarithmic axis, and that angles and translations have one each."
+    )
+    alt = f"Boxes of the error of {listed(models)} for {counted(shown['sensors'].nunique(), 'sensor set')}."
+    kept = ["sensors", "participant", "model", "state", "unit", "rmse"]
+    return Figure(name, caption, alt, shown[kept], drawn)
+
+
+def _draw(axes: Axes, errors: pd.DataFrame, models: list[str]) -> None:
+    sets = list(dict.fromkeys(errors["sensors"]))
+    for place, sensors in enumerate(sets):
+        for number, model in enumerate(models):
+            rows = errors[(errors["sensors"] == sensors) & (errors["model"] == model)]
+            values = rows["rmse"].to_numpy(float)
+            if np.isfinite(values).any():
+                at = PITCH * place + STEP * (number - (len(models) - 1) / 2)
+                draw_box(axes, values[np.isfinite(values)], at, RECONSTRUCTED[model].colour)
+    decades(axes)
+    axes.set_xticks([PITCH * place for place in range(len(sets))], sets)
+    axes.set_xlim(-PITCH / 2, PITCH * (len(sets) - 0.5))

@@ -1,0 +1,117 @@
+"""Section 5.3.3, individual models: 18 states from a few sensors of the same person, Table 5.2 above and Fig. 5.4.
+
+    python studies/ch5_gait_individual.py [FOLDER] [DATA] [--quick]
+
+The embedded cohort (12 people, 60 s, ten angles: it has no pelvis, so the two "random" sensor sets are none of its),
+one person's twelve treadmill walks (18 states) and two runners (18 states). Linear, SDN and SHRED as in the table;
+beside them what it lacks, ridge on delays and ridge on random Fourier features. The split is temporal with a gap; for
+one person of each kind, windows drawn at random stand beside it, which leak. Then noise, and lost readings.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+import pandas as pd
+from ch5_gait import PELVIS, SENSORS, Result, cell, cohort, exotendon, printed, treadmill
+
+from gaitdisc.batch.reconstruct_study import ReconstructionSettings
+from gaitdisc.batch.sensed_walks import sensed_walks
+from gaitdisc.ingest.study import Study
+from gaitdisc.report.block import Block
+from gaitdisc.report.discrepancy_page import write_blocks
+from gaitdisc.report.disturbance_figure import disturbance_figure
+from gaitdisc.report.sensor_sets_figure import sensor_sets_figure
+from gaitdisc.report.sensor_sets_table import sensor_sets_table
+from gaitdisc.report.table import save_table
+from gaitdisc.sensing.disturbance import against_missing, against_noise
+from gaitdisc.sensing.reconstructor import KINDS, MASKED, sensing
+from gaitdisc.sensing.splits import RANDOM, RULES
+
+SAGITTAL = "3 sagittal"
+QUICK_KINDS = ("linear", "delay ridge", "fourier ridge")
+DATA = Path(os.environ.get("GAITDISC_DATA", Path(__file__).parents[2] / "shared" / "data")) / "gait"
+
+
+def run(quick: bool = False, folder: Path = Path("ch5_individual"), data: Path = DATA) -> Result:
+    """Reconstruct everybody from own walks, with every sensor set, and write the page.
+
+    Parameters
+    ----------
+    quick : bool
+        One person of the cohort, 30 s, no network.
+    folder : Path
+        Where recordings, cells and report go; what is there is not computed again.
+    data : Path
+        Folder of the real gait recordings; those that are absent are left out.
+    """
+    kinds = QUICK_KINDS if quick else tuple(KINDS)
+    walks = studies(quick, folder, data)
+    blocks, summaries = [], []
+    for name, study in walks.items():
+        settings = ReconstructionSettings(kinds=kinds, condition="nominal" if name == "cohort" else "")
+        sets = [words for words in SENSORS if name != "cohort" or words not in PELVIS]
+        cells = [cell(study, words, settings, folder / name / words.replace(" ", "_")) for words in sets]
+        summaries += [found["summary"].assign(data=name) for found in cells]
+        errors = pd.concat([found["errors"] for found in cells])
+        blocks.append(Block(name, study.title, (), (sensor_sets_figure(errors, study.title, name, "temporal"),)))
+    table = pd.concat(summaries, ignore_index=True)
+    first = Block(
+        "sets", "Table 5.2", (), tables=(sensor_sets_table(table, printed("individual"), "sets", "temporal"),)
+    )
+    blocks = [first, *blocks, leaks(walks, kinds, folder), disturbed(walks["cohort"], kinds, folder)]
+    page = write_blocks("Individual models, section 5.3.3", "Ebers 2023, chapter 5, computed anew.", blocks, folder)
+    return Result(table, page)
+
+
+def studies(quick: bool, folder: Path, data: Path) -> Mapping[str, Study]:
+    """Who walked, by name."""
+    if quick:
+        return {"cohort": cohort(folder / "recordings", 1, 30.0)}
+    found = {"cohort": cohort(folder / "recordings")}
+    if data.is_dir():
+        found |= {"treadmill_walk_ik": treadmill(data, folder / "treadmill"), "exotendon_run": exotendon(data)}
+    return found
+
+
+def leaks(walks: Mapping[str, Study], kinds: tuple[str, ...], folder: Path) -> Block:
+    """The split that leaks beside the honest ones, for the first person of the cohort and the one of the treadmill."""
+    found = []
+    for name, study in walks.items():
+        if name == "exotendon_run":
+            continue
+        one = study.model_copy(update={"participants": study.participants[:1]}).placed(study.folder)
+        for rule in RULES:
+            settings = ReconstructionSettings(split=rule, kinds=kinds, condition="nominal" if name == "cohort" else "")
+            place = folder / "splits" / name / rule.split()[0]
+            found.append(cell(one, SAGITTAL, settings, place)["summary"].assign(data=f"{name}, {rule}"))
+    nothing = pd.DataFrame(columns=pd.Index(["sensors", "model", "mean", "sd"]))
+    rule = f"as named; {RANDOM}: {RULES[RANDOM]}"
+    return Block("splits", "The split", (), tables=(sensor_sets_table(pd.concat(found), nothing, "splits", rule),))
+
+
+def disturbed(study: Study, kinds: tuple[str, ...], folder: Path) -> Block:
+    """Noise and missing readings, for the first person of the cohort."""
+    file = folder / "disturbed.csv"
+    person = study.participants[0].id
+    if not file.exists():
+        walks = sensed_walks(study, SENSORS[SAGITTAL], "nominal")
+        names = tuple(channel.name for channel in walks.channels)
+        what = sensing(names, SENSORS[SAGITTAL], ReconstructionSettings().lags(walks.rate_hz), walks.rate_hz)
+        channels = [channel for channel in walks.channels if channel.name in what.states]
+        own = [(walk.recording, walk.phi) for walk in walks.people[person]]
+        masked = (MASKED,) if "shred" in kinds else ()
+        missing = against_missing(own, what, channels, (*kinds, *masked))
+        save_table(pd.concat([against_noise(own, what, channels, kinds), missing]), file)
+    figure = disturbance_figure(pd.read_csv(file), f"{person}, {SAGITTAL} sensors", "disturbed")
+    return Block("disturbed", "Noise and missing readings", (), (figure,))
+
+
+if __name__ == "__main__":
+    words = [word for word in sys.argv[1:] if word != "--quick"]
+    result = run("--quick" in sys.argv, *map(Path, words[:2]))
+    print(result.table.groupby(["data", "sensors", "model"], sort=False)[["rmse_deg", "relative_l2_whole"]].mean())
+    print(result.page)

@@ -1,0 +1,99 @@
+"""Section 5.3.3, population models: the states of a person whom no model saw, Table 5.2 below and Fig. 5.5.
+
+    python studies/ch5_gait_population.py [FOLDER] [DATA] [--quick] [--without-networks]
+
+The embedded cohort, each of its twelve people told by models of ten others (the next in the list is who the models are
+chosen by), and then corrected by ten strides of which the states are known. There are no real recordings of three
+people in the same task here: of the two runners one is told in each condition by what was learnt in the other.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+import pandas as pd
+from ch5_gait import PELVIS, SENSORS, Result, cell, cohort, exotendon, printed
+
+from gaitdisc.batch.reconstruct_study import CONDITION, SUBJECT, ReconstructionSettings
+from gaitdisc.report.block import Block
+from gaitdisc.report.discrepancy_page import write_blocks
+from gaitdisc.report.sensor_sets_figure import sensor_sets_figure
+from gaitdisc.report.sensor_sets_table import sensor_sets_table
+from gaitdisc.results.reconstruction import CALIBRATED
+from gaitdisc.sensing.reconstructor import KINDS
+
+WITHOUT = ("linear", "delay ridge", "fourier ridge")
+RULE = "one person left out"
+DATA = Path(os.environ.get("GAITDISC_DATA", Path(__file__).parents[2] / "shared" / "data")) / "gait"
+
+
+def run(
+    quick: bool = False, folder: Path = Path("ch5_population"), data: Path = DATA, kinds: tuple[str, ...] = tuple(KINDS)
+) -> Result:
+    """Reconstruct everybody by models of the others, before and after ten strides, and write the page.
+
+    Parameters
+    ----------
+    quick : bool
+        Four people of the cohort, 30 s, no network.
+    folder : Path
+        Where recordings, cells and report go; what is there is not computed again.
+    data : Path
+        Folder of the real gait recordings; those that are absent are left out.
+    kinds : tuple of str
+        Words of `gaitdisc.sensing.reconstructor.KINDS`.
+    """
+    kinds = WITHOUT if quick else kinds
+    study = cohort(folder / "recordings", 4, 30.0) if quick else cohort(folder / "recordings")
+    settings = ReconstructionSettings(split=SUBJECT, condition="nominal", kinds=kinds)
+    sets = [words for words in SENSORS if words not in PELVIS]
+    cells = [cell(study, words, settings, folder / "cohort" / words.replace(" ", "_")) for words in sets]
+    table = pd.concat([found["summary"].assign(data="cohort") for found in cells], ignore_index=True)
+    errors = pd.concat([found["errors"] for found in cells])
+    figure = sensor_sets_figure(errors, study.title, "population", RULE)
+    numbers = sensor_sets_table(table, printed("population"), "population", RULE)
+    blocks = [
+        Block("population", "Table 5.2", tuple(calibration_sentences(table)), (figure,), (numbers,)),
+        *([across(data, kinds, folder)] if data.is_dir() and not quick else []),
+    ]
+    page = write_blocks("Population models, section 5.3.3", "Ebers 2023, chapter 5, computed anew.", blocks, folder)
+    return Result(table, page)
+
+
+def calibration_sentences(table: pd.DataFrame) -> list[str]:
+    """What ten strides of a new person take off the error, by model and sensor set."""
+    said = []
+    for sensors, own in table.groupby("sensors", sort=False):
+        rmse = own.groupby("model")["rmse_deg"].mean()
+        pairs = [(model, CALIBRATED.format(model)) for model in KINDS if CALIBRATED.format(model) in rmse]
+        words = [
+            f"{model} {rmse[model]:.2f} to {rmse[after]:.2f} deg ({100 * (rmse[after] / rmse[model] - 1):+.0f} %)"
+            for model, after in pairs
+        ]
+        said.append(f"{sensors}, by ten strides: {', '.join(words)}.")
+    return said
+
+
+def across(data: Path, kinds: tuple[str, ...], folder: Path) -> Block:
+    """One runner, without and with the device, each told by models of the other condition."""
+    study = exotendon(data)
+    one = study.model_copy(update={"participants": study.participants[:1]}).placed(study.folder)
+    found = []
+    for word in ("natural", "exotendon"):
+        settings = ReconstructionSettings(split=CONDITION, condition=word, kinds=kinds)
+        for sensors in SENSORS:
+            place = folder / "exotendon_run" / word / sensors.replace(" ", "_")
+            found.append(cell(one, sensors, settings, place)["summary"].assign(data=f"exotendon_run, {word} judged"))
+    nothing = pd.DataFrame(columns=pd.Index(["sensors", "model", "mean", "sd"]))
+    table = sensor_sets_table(pd.concat(found), nothing, "conditions", "fitted to the other condition")
+    return Block("conditions", "Another condition", (), tables=(table,))
+
+
+if __name__ == "__main__":
+    words = [word for word in sys.argv[1:] if not word.startswith("--")]
+    places = dict(zip(("folder", "data"), map(Path, words[:2]), strict=False))
+    result = run("--quick" in sys.argv, kinds=WITHOUT if "--without-networks" in sys.argv else tuple(KINDS), **places)
+    print(result.table.groupby(["data", "sensors", "model"], sort=False)[["rmse_deg", "relative_l2_whole"]].mean())
+    print(result.page)
