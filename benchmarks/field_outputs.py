@@ -65,7 +65,8 @@ def main() -> None:
         raw, modes = found[network, "raw"], found[network, "modes"]
         ratio = {name: raw[name] / modes[name] for name in ("epoch_s", "peak_mb", "relative_l2")}
         print(f"{network}: modes {ratio['epoch_s']:.1f} times cheaper an epoch, {ratio['peak_mb']:.1f} times less "
-              f"memory, error {1 / ratio['relative_l2']:.4f} of raw; modes fitted once in {modes['modes_s']:.1f} s")  # fmt: skip
+              f"memory, error {1 / ratio['relative_l2']:.4f} of raw; modes fitted once in "
+              f"{modes['modes_s']:.1f} s")  # fmt: skip
 
 
 def write_parts(folder: Path, network: str, energy: float) -> None:
@@ -76,11 +77,14 @@ def write_parts(folder: Path, network: str, energy: float) -> None:
     seconds = time.process_time() - begun
     rows = [np.rint(part.time).astype(int) for part in (ready.training, ready.test)]
     x_mean, x_sd = ready.training.x.mean(), ready.training.x.std()
-    told = {"modes_s": seconds, "mean": ready.modes.mean, "spread": ready.modes.spread}
+    told = {"modes_s": seconds, "mean": ready.targets.modes.mean, "spread": ready.targets.modes.spread}
     parts = {"training": (ready.training.x - x_mean) / x_sd, "test": (ready.test.x - x_mean) / x_sd}
     np.savez(folder / f"{network}-windows.npz", test_rows=rows[1], **told, **parts)
-    np.savez(folder / f"{network}-modes.npz", basis=ready.modes.basis, y=ready.training.y)
-    np.save(folder / f"{network}-raw.npy", ((flow.values[rows[0]] - ready.modes.mean) / ready.modes.spread)[:, :, 0])
+    np.savez(folder / f"{network}-modes.npz", basis=ready.targets.modes.basis, y=ready.training.y)
+    np.save(
+        folder / f"{network}-raw.npy",
+        ((flow.values[rows[0]] - ready.targets.modes.mean) / ready.targets.modes.spread)[:, :, 0],
+    )
 
 
 def trained(folder: Path, network: str, targets: str, epochs: int) -> dict[str, float]:

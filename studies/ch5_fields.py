@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from gaitdisc.ingest.monthly_fields import read_navy_winds, read_sst_pacific
+from gaitdisc.ingest.sea_surface import read_oisst, read_sst_mat
 from gaitdisc.recording import Field
 from gaitdisc.report.block import Block
 from gaitdisc.report.discrepancy_page import write_blocks
@@ -14,10 +16,11 @@ from gaitdisc.report.discrepancy_tables import as_markdown
 from gaitdisc.report.table import Table
 from gaitdisc.results.field_cell import FieldCell
 from gaitdisc.sensing.field_windows import snapshots_of
-from gaitdisc.sensing.reconstruct_field import FieldTask, prepare
+from gaitdisc.sensing.reconstruct_field import FieldTask, prepare, reconstruct_field, targets_of
 from gaitdisc.sensing.reconstructor import fit_reconstructor
 from gaitdisc.sensing.routes import Route, fixed_at_random, random_walk
 from gaitdisc.sensing.unseen_path import unseen_path
+from gaitdisc.sensing.windows import Lags
 from gaitdisc.whole_file import write_whole
 
 FIELDS = Path(os.environ.get("GAITDISC_DATA", Path(__file__).parents[2] / "shared" / "data")) / "fields"
@@ -43,6 +46,20 @@ class Result:
     page: Path
 
 
+def fields() -> Iterator[tuple[Field, FieldTask, str]]:
+    """Every field that is there, its task, and whose circuits it has."""
+    noaa = FIELDS / "noaa"
+    if (noaa / "sst.wkmean.1990-present.nc").exists():
+        sst = read_oisst(noaa / "sst.wkmean.1990-present.nc", noaa / "lsmask.nc")
+        yield sst, FieldTask("NOAA weekly temperature", Lags(52, 1), season=52), "globe"
+    if (noaa / "SST_data.mat").exists():
+        yield read_sst_mat(noaa / "SST_data.mat"), FieldTask("SST_data.mat", Lags(52, 1), season=52), "globe"
+    sst = read_sst_pacific(FIELDS / "sst_pacific" / "sst_pacific_monthly_1970_2003.npz")
+    yield sst, FieldTask("Pacific temperature anomaly", Lags(12, 1), season=12), "pacific"
+    winds = read_navy_winds(FIELDS / "navy_winds" / "monthly_navy_winds.npz")
+    yield winds, FieldTask("winds of the globe", Lags(7, 1), season=12), "globe"
+
+
 def maps_told(field: Field, route: Route, task: FieldTask, kind: str, rules: Sequence[str]) -> dict:
     """One snapshot of the judged part as measured, and as told, under each split.
 
@@ -66,8 +83,31 @@ def maps_told(field: Field, route: Route, task: FieldTask, kind: str, rules: Seq
         middle = ready.test.rows(slice(len(ready.test) // 2, len(ready.test) // 2 + 1))
         snapshot = int(snapshots_of(middle)[0])
         shown[f"measured, {field.time_unit} {snapshot + 1}"] = field.values[snapshot, :, 0]
-        shown[f"told by {kind}, {rule}"] = ready.modes.fields(fitted(middle))[0, :, 0]
+        shown[f"told by {kind}, {rule}"] = ready.targets.fields(fitted(middle), middle)[0, :, 0]
     return shown
+
+
+def on_departures(field: Field, routes: Sequence[Route], task: FieldTask, rules: Sequence[str]) -> list[FieldCell]:
+    """Every route again, with readings and field taken as departures from the season: the cheap models.
+
+    Parameters
+    ----------
+    field : Field
+        To be told.
+    routes : sequence of Route
+        Where the sensors are.
+    task : FieldTask
+        Lags, season, seed.
+    rules : sequence of str
+        Splits.
+    """
+    cells: list[FieldCell] = []
+    for rule in rules:
+        asked = replace(task, rule=rule, departures=True)
+        targets = targets_of(field, asked)
+        for route in routes:
+            cells += reconstruct_field(field, route, asked, ("linear", "delay ridge"), False, targets)
+    return cells
 
 
 def unseen_walks(field: Field, task: FieldTask, kinds: Sequence[str]) -> list[FieldCell]:
@@ -84,7 +124,8 @@ def unseen_walks(field: Field, task: FieldTask, kinds: Sequence[str]) -> list[Fi
     """
     starts = fixed_at_random(field, WALKS + 1, 0).points[0]
     unseen, *walks = [random_walk(field, 100 + k, start=int(start)) for k, start in enumerate(starts)]
-    return unseen_path(field, walks, unseen, task, kinds)
+    apart = unseen_path(field, walks, unseen, replace(task, departures=True), ("delay ridge",))
+    return unseen_path(field, walks, unseen, task, kinds) + apart
 
 
 def written(cells: Sequence[FieldCell], blocks: Sequence[Block], title: str, folder: Path) -> Result:

@@ -11,15 +11,12 @@ from __future__ import annotations
 
 import sys
 import tomllib
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import pandas as pd
-from ch5_fields import FIELDS, Result, maps_told, unseen_walks, written
+from ch5_fields import Result, fields, maps_told, on_departures, unseen_walks, written
 
-from gaitdisc.ingest.monthly_fields import read_navy_winds, read_sst_pacific
-from gaitdisc.ingest.sea_surface import read_oisst, read_sst_mat
 from gaitdisc.recording import Field
 from gaitdisc.report.block import Block
 from gaitdisc.report.field_errors_figure import histograms_figure, latent_figure
@@ -27,11 +24,10 @@ from gaitdisc.report.field_maps_figure import maps_figure, routes_figure
 from gaitdisc.report.field_table import field_table
 from gaitdisc.results.field_cell import FieldCell
 from gaitdisc.sensing.latent_size import latent_sizes
-from gaitdisc.sensing.reconstruct_field import FieldTask, reconstruct_field, targets_of
+from gaitdisc.sensing.reconstruct_field import reconstruct_field, targets_of
 from gaitdisc.sensing.reconstructor import KINDS
 from gaitdisc.sensing.routes import Route, circuit, fixed_at_random, joined
 from gaitdisc.sensing.splits import RANDOM
-from gaitdisc.sensing.windows import Lags
 
 SPLITS = (RANDOM, "temporal")
 WRITTEN_DOWN = tomllib.loads(Path(__file__).with_name("ch5_fields.toml").read_text(encoding="utf-8"))
@@ -42,20 +38,6 @@ PRINTED = (
     "is the printed 0.028. Ours are anomalies and winds, whose norm is their own spread: the sizes are not comparable, "
     "the step from random to temporal is."
 )
-
-
-def fields() -> Iterator[tuple[Field, FieldTask, str]]:
-    """Every field that is there, its task, and whose circuits it has."""
-    noaa = FIELDS / "noaa"
-    if (noaa / "sst.wkmean.1990-present.nc").exists():
-        sst = read_oisst(noaa / "sst.wkmean.1990-present.nc", noaa / "lsmask.nc")
-        yield sst, FieldTask("NOAA weekly temperature", Lags(52, 1), season=52), "globe"
-    if (noaa / "SST_data.mat").exists():
-        yield read_sst_mat(noaa / "SST_data.mat"), FieldTask("SST_data.mat", Lags(52, 1), season=52), "globe"
-    sst = read_sst_pacific(FIELDS / "sst_pacific" / "sst_pacific_monthly_1970_2003.npz")
-    yield sst, FieldTask("Pacific temperature anomaly", Lags(12, 1), season=12), "pacific"
-    winds = read_navy_winds(FIELDS / "navy_winds" / "monthly_navy_winds.npz")
-    yield winds, FieldTask("winds of the globe", Lags(7, 1), season=12), "globe"
 
 
 def routes_of(field: Field, period: int, region: str) -> list[Route]:
@@ -107,16 +89,19 @@ def run(quick: bool = False, folder: Path = Path("ch5_sea_surface")) -> Result:
         if not quick and region == "pacific":
             sizes = pd.concat([latent_sizes(field, routes[0], replace(task, rule=rule)) for rule in SPLITS])
             drawn.append(latent_figure(sizes, f"latent-{number}", "As Fig. 5.1, right"))
-        unseen = unseen_walks(field, task, kinds if quick else kinds[2:])
-        table = WRITTEN_DOWN["table_5_1"]
-        beside = {(r.name, rule): table[rule][k] for k, r in enumerate(routes) for rule in SPLITS}
+        apart, unseen = on_departures(field, routes, task, SPLITS), unseen_walks(field, task, kinds[-3:])
+        beside = {(r.name, s): WRITTEN_DOWN["table_5_1"][s][k] for k, r in enumerate(routes) for s in SPLITS}
         tables = [
             field_table([cell for cell in some if cell.quantity == quantity], f"{word}-{number}-{quantity}", printed)
-            for word, some, printed in (("routes", cells, beside), ("unseen", unseen, None))
+            for word, some, printed in (
+                ("routes", cells, beside),
+                ("departures", apart, None),
+                ("unseen", unseen, None),
+            )
             for quantity in field.quantities
         ]
         blocks.append(Block(f"field-{number}", task.name, (), tuple(drawn), tuple(tables)))
-        every += [*cells, *unseen]
+        every += [*cells, *apart, *unseen]
     return written(every, blocks, "Sea surface, section 5.3.2", folder)
 
 

@@ -73,7 +73,7 @@ def run(quick: bool = False, folder: Path = Path("ch5_turbulence"), models: int 
         middle = ready.test.rows(slice(len(ready.test) // 2, len(ready.test) // 2 + 1))
         snapshot = int(snapshots_of(middle)[0])
         shown[f"flow, snapshot {snapshot + 1}, {rule}"] = flow.values[snapshot, :, 0]
-        shown[f"its POD ceiling, {rule}"] = targets.modes.fields(middle.y)[0, :, 0]
+        shown[f"its POD ceiling, {rule}"] = targets.fields(middle.y, middle)[0, :, 0]
     best = [cell for cell in cells if cell.model == kinds[-1]]
     ceilings = {cell.split: cell.relative_l2 for cell in cells if cell.model == CEILING}
     drawn = (

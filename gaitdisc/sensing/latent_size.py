@@ -54,7 +54,7 @@ def latent_sizes(
         build = partial(Shred, sensors=len(ready.what.sensors), nodes=nodes)
         model = train(ready.training, build, settings, check=ready.check).network
         label = Label(task.name, route.name, task.rule, f"shred {nodes}", task.seed)
-        left = float(1 - np.sum(ready.modes.energies[:nodes]))
-        for cell in field_cells(field, ready, label, ready.modes.fields(model(ready.test.x))):
+        left = float(1 - np.sum(ready.targets.modes.energies[:nodes]))
+        for cell in field_cells(field, ready, label, ready.targets.fields(model(ready.test.x), ready.test)):
             rows.append((nodes, task.rule, cell.quantity, cell.relative_l2, cell.r2, left))
     return pd.DataFrame(rows, columns=pd.Index(list(COLUMNS)))

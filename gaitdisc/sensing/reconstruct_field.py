@@ -15,6 +15,7 @@ from gaitdisc.sensing.field_windows import field_windows, reading_names, snapsho
 from gaitdisc.sensing.modes import ENERGY, Modes, fit_modes
 from gaitdisc.sensing.reconstructor import KINDS, Sensing, fit_reconstructor
 from gaitdisc.sensing.routes import Route, fixed
+from gaitdisc.sensing.season import Season, season_of
 from gaitdisc.sensing.splits import Parts, split_within
 from gaitdisc.sensing.windows import Lags
 
@@ -40,6 +41,9 @@ class FieldTask:
         Snapshots of a year, whose mean course is a floor of its own; 0 where there is none.
     positions : bool
         Whether each sensor tells where it is.
+    departures : bool
+        Whether sensors read, and models tell, departures from the training part's mean at the place and time of year:
+        what a reading means then depends less on where the sensor is. The season is added to what is told.
     seed : int
         Of every fit.
     """
@@ -50,7 +54,49 @@ class FieldTask:
     energy: float = ENERGY
     season: int = 0
     positions: bool = False
+    departures: bool = False
     seed: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Targets:
+    """What is told of a field, the same for every route of a task.
+
+    Parameters
+    ----------
+    read : Field
+        What sensors read: the field itself, or its departures.
+    modes : Modes
+        Of the training part's snapshots alone.
+    coefficients : ndarray (snapshot, mode)
+        Of all snapshots.
+    mean : ndarray (point, quantity) [each quantity's unit]
+        Of the training part's snapshots.
+    season : Season
+        Of the training part's snapshots.
+    departures : bool
+        Whether modes and readings are of departures from the season.
+    """
+
+    read: Field
+    modes: Modes
+    coefficients: NDArray[np.float64]
+    mean: NDArray[np.float32]
+    season: Season
+    departures: bool
+
+    def fields(self, coefficients: NDArray[np.float64], windows: Samples) -> NDArray[np.float32]:
+        """Field at each window, (window, point, quantity) [each quantity's unit].
+
+        Parameters
+        ----------
+        coefficients : ndarray (window, mode)
+            Told.
+        windows : Samples
+            At which times they were told.
+        """
+        told = self.modes.fields(coefficients)
+        return told + self.season.at(snapshots_of(windows)) if self.departures else told
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,8 +107,8 @@ class Prepared:
     ----------
     training, check, test : Samples
         Their outputs are the modes' coefficients.
-    modes : Modes
-        Of the training part's snapshots alone.
+    targets : Targets
+        What the outputs stand for.
     what : Sensing
         What is read and told.
     """
@@ -70,24 +116,8 @@ class Prepared:
     training: Samples
     check: Samples
     test: Samples
-    modes: Modes
+    targets: Targets
     what: Sensing
-
-
-@dataclass(frozen=True, eq=False)
-class Targets:
-    """What is told of a field, the same for every route of a task.
-
-    Parameters
-    ----------
-    modes : Modes
-        Of the training part's snapshots alone.
-    coefficients : ndarray (snapshot, mode)
-        Of all snapshots.
-    """
-
-    modes: Modes
-    coefficients: NDArray[np.float64]
 
 
 def targets_of(field: Field, task: FieldTask) -> Targets:
@@ -101,8 +131,12 @@ def targets_of(field: Field, task: FieldTask) -> Targets:
         Lags, split, share of the energy.
     """
     parts = _parts(field, fixed(field, [0]), task)
-    modes = fit_modes(field.values[snapshots_of(parts.fitted())], task.energy)
-    return Targets(modes, modes.coefficients(field.values))
+    fitted = snapshots_of(parts.fitted())
+    season = season_of(field, fitted, task.season)
+    read = season.departures(field) if task.departures else field
+    modes = fit_modes(read.values[fitted], task.energy)
+    mean = season_of(field, fitted, 0).course[0]
+    return Targets(read, modes, modes.coefficients(read.values), mean, season, task.departures)
 
 
 def prepare(field: Field, route: Route, task: FieldTask, targets: Targets | None = None) -> Prepared:
@@ -124,12 +158,12 @@ def prepare(field: Field, route: Route, task: FieldTask, targets: Targets | None
     SamplingError
         If a window is longer than the field, or a part is left without windows.
     """
-    parts = _parts(field, route, task)
     told = targets or targets_of(field, task)
+    parts = _parts(told.read, route, task)
     names = reading_names(field, route, task.positions)
     training, check, test = (with_coefficients(each, told.coefficients, told.modes.names)
              for each in (parts.fitted(), parts.checked(), parts.judged()))  # fmt: skip
-    return Prepared(training, check, test, told.modes, Sensing(names, told.modes.names, task.lags, 1.0))
+    return Prepared(training, check, test, told, Sensing(names, told.modes.names, task.lags, 1.0))
 
 
 def _parts(field: Field, route: Route, task: FieldTask) -> Parts:
@@ -177,12 +211,13 @@ def reconstruct_field(
     """
     ready = prepare(field, route, task, targets)
     cells = []
-    for model, told in (_floors(field, ready, task) if floors else {}).items():
+    for model, told in (_floors(ready, task) if floors else {}).items():
         cells += field_cells(field, ready, Label(task.name, route.name, task.rule, model, task.seed), told)
     for kind in kinds:
         done = fit_reconstructor(kind, ready.what, ready.training, ready.check, task.seed)
-        label = Label(task.name, route.name, task.rule, kind, task.seed)
-        cells += field_cells(field, ready, label, ready.modes.fields(done(ready.test)), done.seconds)
+        named = f"{kind}, departures" if task.departures else kind
+        label = Label(task.name, route.name, task.rule, named, task.seed)
+        cells += field_cells(field, ready, label, ready.targets.fields(done(ready.test), ready.test), done.seconds)
     return cells
 
 
@@ -227,7 +262,7 @@ def field_cells(
         y = field.values[rows, :, k].astype(float)
         error = told[:, :, k] - y
         square, bias = float(np.mean(error**2)), float(np.mean(error))
-        about = float(np.mean((y - ready.modes.mean[:, k]) ** 2))
+        about = float(np.mean((y - ready.targets.mean[:, k]) ** 2))
         cells.append(
             FieldCell(
                 field=label.field,
@@ -251,12 +286,10 @@ def field_cells(
     return cells
 
 
-def _floors(field: Field, ready: Prepared, task: FieldTask) -> dict[str, NDArray[np.float32]]:
-    rows, fitted = snapshots_of(ready.test), snapshots_of(ready.training)
-    found = {MEAN: np.broadcast_to(ready.modes.mean, (len(rows), *ready.modes.mean.shape))}
+def _floors(ready: Prepared, task: FieldTask) -> dict[str, NDArray[np.float32]]:
+    rows, told = snapshots_of(ready.test), ready.targets
+    found = {MEAN: np.broadcast_to(told.mean, (len(rows), *told.mean.shape))}
     if task.season:
-        of_year = [field.values[fitted[fitted % task.season == k]] for k in range(task.season)]
-        course = np.stack([part.mean(axis=0) if len(part) else ready.modes.mean for part in of_year])
-        found[SEASON] = course[rows % task.season]
-    found[CEILING] = ready.modes.fields(ready.test.y)
+        found[SEASON] = told.season.at(rows)
+    found[CEILING] = told.fields(ready.test.y, ready.test)
     return found

@@ -68,6 +68,7 @@ def unseen_path(
         for kind in kinds:
             done = fit_reconstructor(kind, ready[0].what, training, check, task.seed)
             for where, each in judged.items():
-                label = Label(task.name, f"{where}; {fitted}", task.rule, kind, task.seed)
-                cells += field_cells(field, each, label, each.modes.fields(done(each.test)), done.seconds)
+                named = f"{kind}, departures" if task.departures else kind
+                label = Label(task.name, f"{where}; {fitted}", task.rule, named, task.seed)
+                cells += field_cells(field, each, label, each.targets.fields(done(each.test), each.test), done.seconds)
     return cells

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from manufactured_field import travelling_wave
@@ -40,7 +42,7 @@ def test_a_network_tells_it_too():
 
 def test_modes_and_windows_of_the_judged_part_take_no_part():
     ready = prepare(WAVE, fixed(WAVE, [30]), TASK)
-    np.testing.assert_allclose(ready.modes.mean, WAVE.values[snapshots_of(ready.training)].mean(axis=0), atol=1e-5)
+    np.testing.assert_allclose(ready.targets.mean, WAVE.values[snapshots_of(ready.training)].mean(axis=0), atol=1e-5)
     assert snapshots_of(ready.test)[0] - snapshots_of(ready.check)[-1] > TASK.lags.reach
     leaky = prepare(WAVE, fixed(WAVE, [30]), FieldTask("wave", Lags(8, 3), RANDOM))
     assert np.abs(snapshots_of(leaky.test)[:, None] - snapshots_of(leaky.training)).min() == 1
@@ -53,3 +55,19 @@ def test_errors_are_of_each_quantity_in_its_unit():
     cells = field_cells(field, ready, Label("wave", "r", "temporal", "m", 0), told)
     np.testing.assert_allclose([(cell.rmse, cell.bias) for cell in cells], [(0.1, 0.1), (0.3, 0.3)], rtol=1e-5)
     assert [(cell.quantity, cell.unit) for cell in cells] == [("h", "m"), ("g", "m")]
+
+
+def test_departures_are_told_about_the_season_and_judged_with_it():
+    """A season twice as strong as the waves, another mean at each point: only departures are linear in the readings."""
+    t = np.arange(400)
+    year = 2 * np.sin(2 * np.pi * (t % 12) / 12)[:, None, None] + np.linspace(-9, 9, WAVE.points)[None, :, None]
+    field = type(WAVE)(WAVE.time, WAVE.values + year, WAVE.axes, WAVE.mask, ("h",), ("m",))
+    around = circuit(field, [(-2.0, 4.0), (-2.0, 16.0)], 12, "out and back")
+    task = FieldTask("year", Lags(8, 3), energy=0.9999, season=12)
+    plain, apart = (
+        {cell.model: cell for cell in reconstruct(field, around, each, ("delay ridge",))}
+        for each in (task, replace(task, departures=True))
+    )
+    assert apart["delay ridge, departures"].r2 > plain["delay ridge"].r2
+    assert apart[SEASON].r2 == plain[SEASON].r2
+    assert apart[CEILING].r2 > 0.999
