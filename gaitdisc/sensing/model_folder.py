@@ -15,7 +15,17 @@ from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError, SchemaError, UnitError
 from gaitdisc.recording import Recording
 from gaitdisc.sensing.missing import filled
-from gaitdisc.sensing.reconstructor import MASKED, Reconstructor, ScaledModel, Sensing
+from gaitdisc.sensing.reconstructor import (
+    ENSEMBLE,
+    KINDS,
+    MASKED,
+    MEMBERS,
+    ON_REQUEST,
+    STATIC,
+    Reconstructor,
+    ScaledModel,
+    Sensing,
+)
 from gaitdisc.sensing.windows import Lags, windows_of
 from gaitdisc.whole_file import write_whole
 
@@ -98,10 +108,14 @@ def save_model(model: SensingModel, folder: Path) -> None:
     if isinstance(done.model, FourierRidge):
         save_ridge(done.model, folder / WEIGHTS)
     else:
+        from gaitdisc.networks.ensemble import Ensemble, save_ensemble
         from gaitdisc.networks.trained_network import TrainedNetwork, save_network
 
-        assert isinstance(done.model, TrainedNetwork)  # there is no other kind
-        save_network(done.model, folder / WEIGHTS)
+        if isinstance(done.model, Ensemble):
+            save_ensemble(done.model, folder / WEIGHTS)
+        else:
+            assert isinstance(done.model, TrainedNetwork)  # there is no other kind
+            save_network(done.model, folder / WEIGHTS)
     data = {
         "format": FORMAT,
         "kind": done.kind,
@@ -140,13 +154,36 @@ def load_model(folder: Path) -> SensingModel:
         channels: Sequence[Channel] = [Channel(**channel) for channel in data["channels"]]
         half, kind = np.array(data["half_widths"]), data["kind"]
         numbers = data["n_fitted"], data["seconds"]
+        _refuse_parts(kind, what, channels, half)
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise SchemaError(
             f"{folder.name}/{NAME} is to be read as a model of gaitdisc",
-            str(error),
+            f"it lacks {error}" if isinstance(error, KeyError) else str(error),
             "Run `gaitdisc reconstruct` again.",
         ) from error
-    return SensingModel(Reconstructor(kind, what, _weights(kind, what, folder), *numbers), tuple(channels), half)
+    weights = _weights(kind, what, folder)
+    _refuse_others(weights, kind, what, folder)
+    return SensingModel(Reconstructor(kind, what, weights, *numbers), tuple(channels), half)
+
+
+def _refuse_parts(kind: str, what: Sensing, channels: Sequence[Channel], half: NDArray[np.float64]) -> None:
+    if kind not in (*KINDS, *ON_REQUEST):
+        raise ValueError(f"it is a {kind!r}, which this version does not know")
+    if tuple(channel.name for channel in channels) != (*what.sensors, *what.states):
+        raise ValueError("its channels are others than its sensors and states")
+    if half.shape != (len(what.states),):
+        raise ValueError(f"it has {half.size} half widths for {len(what.states)} states")
+
+
+def _refuse_others(weights: ScaledModel, kind: str, what: Sensing, folder: Path) -> None:
+    readings = 1 if kind in STATIC else what.lags.count
+    if weights.outputs != what.states or len(weights.inputs) != readings * len(what.sensors):
+        raise SchemaError(
+            f"{folder.name}/{WEIGHTS} is to be read with {folder.name}/{NAME}",
+            f"the weights read {len(weights.inputs)} numbers and tell {', '.join(weights.outputs[:3])}, the model has "
+            f"{readings * len(what.sensors)} and {', '.join(what.states[:3])}",
+            "Both files belong to one model: copy them together, or run `gaitdisc reconstruct` again.",
+        )
 
 
 def _weights(kind: str, what: Sensing, folder: Path) -> ScaledModel:
@@ -154,10 +191,14 @@ def _weights(kind: str, what: Sensing, folder: Path) -> ScaledModel:
         from gaitdisc.regression.ridge_file import load_ridge
 
         return load_ridge(folder / WEIGHTS)
+    from gaitdisc.networks.ensemble import Ensemble, member_path
     from gaitdisc.networks.shallow_decoder import ShallowDecoder
     from gaitdisc.networks.shred import Shred
     from gaitdisc.networks.trained_network import load_network
 
     shred = partial(Shred, sensors=len(what.sensors), masked=kind == MASKED)
     build = ShallowDecoder if kind == "shallow decoder" else shred
+    if kind == ENSEMBLE:
+        paths = [member_path(folder / WEIGHTS, number) for number in range(1, MEMBERS + 1)]
+        return Ensemble(tuple(load_network(path, build) for path in paths))
     return load_network(folder / WEIGHTS, build)

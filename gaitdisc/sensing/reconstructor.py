@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Protocol
 
@@ -27,7 +27,11 @@ KINDS = {
     "shred": "recurrent network on the readings and their history, shallow decoder (SHRED)",
 }
 MASKED = "masked shred"
-ON_REQUEST = {MASKED: "SHRED that is told which readings are missing, fitted with a part of them hidden"}
+ENSEMBLE, MEMBERS = "shred ensemble", 5
+ON_REQUEST = {
+    MASKED: "SHRED that is told which readings are missing, fitted with a part of them hidden",
+    ENSEMBLE: f"mean of SHRED from {MEMBERS} seeds",
+}
 STATIC = ("linear", "shallow decoder")
 
 
@@ -212,6 +216,7 @@ def _fit_of(kind: str, sensors: int, seed: int) -> Callable[[Samples, Samples], 
         return fit_fourier_ridge
     if kind == "fourier ridge":
         return partial(fit_fourier_ridge, features=FEATURES, seed=seed)
+    from gaitdisc.networks.ensemble import Ensemble
     from gaitdisc.networks.shallow_decoder import ShallowDecoder
     from gaitdisc.networks.shred import Shred
     from gaitdisc.networks.trainer import train
@@ -220,4 +225,7 @@ def _fit_of(kind: str, sensors: int, seed: int) -> Callable[[Samples, Samples], 
     masked = kind == MASKED
     build = ShallowDecoder if kind == "shallow decoder" else partial(Shred, sensors=sensors, masked=masked)
     settings = TrainingSettings(epochs=20, batch=128, decays=(0.01,), seed=seed, missing_inputs=masked)
+    if kind == ENSEMBLE:
+        each = [replace(settings, seed=seed + k) for k in range(MEMBERS)]
+        return lambda training, check: Ensemble(tuple(train(training, build, s, check=check).network for s in each))
     return lambda training, check: train(training, build, settings, check=check).network

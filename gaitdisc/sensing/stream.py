@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.errors import ShapeError
 from gaitdisc.sensing.missing import refuse_unknown
-from gaitdisc.sensing.reconstructor import MASKED, STATIC, Reconstructor
+from gaitdisc.sensing.reconstructor import ENSEMBLE, MASKED, STATIC, Reconstructor
 
 if TYPE_CHECKING:
     from gaitdisc.networks.carried_windows import CarriedWindows
@@ -94,12 +95,25 @@ class _LastReadings:
         return self._model(self._readings[self._rows].reshape(1, -1))[0]
 
 
-def _told_by(reconstructor: Reconstructor) -> _LastReadings | CarriedWindows:
-    if reconstructor.kind not in ("shred", MASKED):
+class _Mean:
+    """Mean of what several carried networks tell."""
+
+    def __init__(self, members: Sequence[CarriedWindows]) -> None:
+        self._members = members
+
+    def update(self, reading: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.mean([member.update(reading) for member in self._members], axis=0)
+
+
+def _told_by(reconstructor: Reconstructor) -> _LastReadings | _Mean | CarriedWindows:
+    if reconstructor.kind not in ("shred", MASKED, ENSEMBLE):
         return _LastReadings(reconstructor)
     from gaitdisc.networks.carried_windows import CarriedWindows
+    from gaitdisc.networks.ensemble import Ensemble
     from gaitdisc.networks.trained_network import TrainedNetwork
 
-    assert isinstance(reconstructor.model, TrainedNetwork)  # what that kind is fitted as
-    lags = reconstructor.sensing.lags
-    return CarriedWindows(reconstructor.model, lags.count, lags.spacing)
+    lags, model = reconstructor.sensing.lags, reconstructor.model
+    if isinstance(model, Ensemble):
+        return _Mean([CarriedWindows(member, lags.count, lags.spacing) for member in model.members])
+    assert isinstance(model, TrainedNetwork)  # what the other two are fitted as
+    return CarriedWindows(model, lags.count, lags.spacing)

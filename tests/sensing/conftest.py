@@ -10,10 +10,11 @@ import torch
 from scipy.ndimage import gaussian_filter1d
 
 from gaitdisc.channel import Channel
+from gaitdisc.networks.ensemble import Ensemble
 from gaitdisc.networks.shred import Shred
 from gaitdisc.networks.trained_network import TrainedNetwork
 from gaitdisc.recording import Recording, scale_of
-from gaitdisc.sensing.reconstructor import MASKED, Reconstructor, sensing
+from gaitdisc.sensing.reconstructor import ENSEMBLE, MASKED, MEMBERS, Reconstructor, sensing
 from gaitdisc.sensing.splits import split_within
 from gaitdisc.sensing.windows import Lags
 
@@ -40,8 +41,13 @@ def untrained(pair):
     def made(kind):
         torch.manual_seed(0)
         seen = pair.parts.fitted()
-        network = Shred(len(seen.inputs), len(seen.outputs), 1, masked=kind == MASKED)
-        scaled = TrainedNetwork(seen.inputs, seen.outputs, scale_of(seen.x), scale_of(seen.y), network)
-        return Reconstructor(kind, pair.what, scaled, len(seen), 0.0)
+        networks = [
+            Shred(len(seen.inputs), len(seen.outputs), 1, masked=kind == MASKED)
+            for _ in range(MEMBERS if kind == ENSEMBLE else 1)
+        ]
+        scales = scale_of(seen.x), scale_of(seen.y)
+        members = tuple(TrainedNetwork(seen.inputs, seen.outputs, *scales, network) for network in networks)
+        model = Ensemble(members) if kind == ENSEMBLE else members[0]
+        return Reconstructor(kind, pair.what, model, len(seen), 0.0)
 
     return made

@@ -51,3 +51,60 @@ def test_refusals(pair, saved, tmp_path):
     (tmp_path / "model.json").write_text(text)
     with pytest.raises(SchemaError, match="it has format 9, this version reads 1"):
         load_model(tmp_path)
+
+
+@pytest.mark.parametrize("kind", ["shred", "masked shred", "shred ensemble"])
+def test_every_recurrent_network_is_loaded_as_it_was(pair, untrained, tmp_path, kind):
+    done = untrained(kind)
+    save_model(SensingModel(done, pair.channels, np.ones(1)), tmp_path)
+    judged = pair.parts.judged()
+    np.testing.assert_array_equal(load_model(tmp_path).reconstructor(judged), done(judged))
+
+
+def test_the_order_of_channels_in_a_recording_does_not_matter(pair, saved):
+    turned = pair.recording.selected(["late", "a"])
+    np.testing.assert_array_equal(saved(turned).values, saved(pair.recording).values)
+
+
+def changed(folder, old, new):
+    text = (folder / "model.json").read_text()
+    assert old in text
+    (folder / "model.json").write_text(text.replace(old, new))
+
+
+def test_damaged_and_foreign_files(pair, saved, untrained, tmp_path):
+    save_model(saved, tmp_path)
+    whole = (tmp_path / "weights.npz").read_bytes()
+    (tmp_path / "weights.npz").write_bytes(whole[: len(whole) // 2])
+    with pytest.raises(SchemaError, match=r"weights\.npz is to be read as a ridge regression of gaitdisc; .*Fit the"):
+        load_model(tmp_path)
+    (tmp_path / "weights.npz").unlink()
+    with pytest.raises(SchemaError, match=r"weights\.npz is to be read as a ridge regression of gaitdisc"):
+        load_model(tmp_path)
+    static = fit_reconstructor("linear", pair.what, pair.parts.fitted(), pair.parts.checked())
+    save_model(SensingModel(static, pair.channels, np.ones(1)), tmp_path / "static")
+    (tmp_path / "weights.npz").write_bytes((tmp_path / "static" / "weights.npz").read_bytes())
+    with pytest.raises(
+        SchemaError, match=r"the weights read 1 numbers and tell late, the model has 11 and late.*Both f"
+    ):
+        load_model(tmp_path)
+    (tmp_path / "model.json").write_text("{")
+    with pytest.raises(SchemaError, match=r"model\.json is to be read as a model of gaitdisc; Expecting property name"):
+        load_model(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('"delay ridge"', '"forest"', "it is a 'forest', which this version does not know"),
+        ('"half_widths": [\n  0.5', '"half_widths": [\n  0.5, 0.5', "it has 2 half widths for 1 states"),
+        ('"name": "late"', '"name": "later"', "its channels are others than its sensors and states"),
+        ('"kind"', '"sort"', "it lacks 'kind'"),
+        ('"spacing": 5', '"spacing": 0', "a window needs at least one reading"),
+    ],
+)
+def test_a_model_file_that_was_changed(saved, tmp_path, old, new, said):
+    save_model(saved, tmp_path)
+    changed(tmp_path, old, new)
+    with pytest.raises(SchemaError, match=said):
+        load_model(tmp_path)

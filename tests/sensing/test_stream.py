@@ -15,15 +15,15 @@ def fitted(pair):
     return {kind: fit_reconstructor(kind, pair.what, pair.parts.fitted(), pair.parts.checked()) for kind in RIDGES}
 
 
-@pytest.mark.parametrize("kind", [*RIDGES, "shred"])
+@pytest.mark.parametrize("kind", [*RIDGES, "shred", "shred ensemble"])
 def test_a_stream_tells_what_the_recording_tells(pair, fitted, untrained, kind):
-    done = untrained(kind) if kind == "shred" else fitted[kind]
+    done = fitted[kind] if kind in RIDGES else untrained(kind)
     stream = Stream(done)
     told = np.array([stream.update(row) for row in pair.recording.selected(["a"]).values[:120]])
     windows = pair.what.windows(pair.recording, np.zeros(3000))
     reach = pair.what.lags.reach
     wanted = done(windows)[: 120 - reach]
-    np.testing.assert_allclose(told[reach:], wanted, rtol=1e-6 if kind == "shred" else 1e-9)
+    np.testing.assert_allclose(told[reach:], wanted, rtol=1e-9 if kind in RIDGES else 1e-6)
     assert np.isnan(told[:reach]).all() == (kind not in STATIC)
 
 

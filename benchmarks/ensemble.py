@@ -1,0 +1,60 @@
+"""SHRED from five seeds: error of one and of their mean, coverage, and whether their spread tells where the error is.
+
+    python benchmarks/ensemble.py treadmill|cohort [--people 3]
+
+Temporal split, angles that no sensor measures. The rank correlation is of the spread among the members and the absolute
+error of their mean, over windows, mean over states.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import numpy as np
+from scipy.stats import spearmanr
+from sensing_walks import Person, cohort_walks, treadmill_walks
+
+from gaitdisc.networks.ensemble import Ensemble
+from gaitdisc.sensing.intervals import coverage, half_widths
+from gaitdisc.sensing.reconstructor import ENSEMBLE, fit_reconstructor
+from gaitdisc.sensing.splits import split_within
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("walks", choices=("treadmill", "cohort"))
+    parser.add_argument("--people", type=int, default=3)
+    given = parser.parse_args()
+    for person in treadmill_walks() if given.walks == "treadmill" else cohort_walks(given.people):
+        print(line(person), flush=True)
+
+
+def line(person: Person) -> str:
+    """What is found for one person."""
+    what = person.what
+    windows = [what.windows(walk.recording, walk.phi) for walk in person.walks.people[person.name]]
+    parts = split_within(windows, "temporal", what.reach_s)
+    check, test = parts.checked(), parts.judged()
+    done = fit_reconstructor(ENSEMBLE, what, parts.fitted(), check)
+    ridge = fit_reconstructor("fourier ridge", what, parts.fitted(), check)
+    assert isinstance(done.model, Ensemble)
+    angles = [k for k, channel in enumerate(person.channels[len(what.sensors) :]) if channel.unit == "deg"]
+    errors = (done(test) - test.y)[:, angles]
+    single = [np.sqrt(np.mean((member(test.x) - test.y)[:, angles] ** 2)) for member in done.model.members]
+    other = np.sqrt(np.mean((ridge(test) - test.y)[:, angles] ** 2))
+    spread = done.model.spread(test.x)[:, angles]
+    ranks = [spearmanr(spread[:, k], np.abs(errors[:, k])).statistic for k in range(len(angles))]
+    inside = coverage(errors, half_widths((done(check) - check.y)[:, angles])).mean()
+    return (
+        f"{person.name}: one {np.mean(single):.2f} ({min(single):.2f} to {max(single):.2f}), mean of five "
+        f"{np.sqrt(np.mean(errors**2)):.2f}, fourier ridge {other:.2f} deg; inside {100 * inside:.0f} %; spread "
+        f"{np.sqrt(np.mean(spread**2)):.2f} deg, rank correlation with the error {np.mean(ranks):.2f}; "
+        f"{done.seconds:.0f} s"
+    )
+
+
+if __name__ == "__main__":
+    main()
