@@ -27,4 +27,6 @@ def new(
     write_study(draft, file)
     for note in notes:
         typer.echo(f"  {note}")
-    typer.echo(f"{file} written: {len(draft.participants)} participants. Read it, then: gaitdisc check {study}")
+    count = len(draft.participants)
+    people = "1 participant" if count == 1 else f"{count} participants"
+    typer.echo(f"{file} written: {people}. Read it, then: gaitdisc check {study}")

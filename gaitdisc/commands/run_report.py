@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -14,7 +14,7 @@ from gaitdisc.commands.exit_codes import REFUSED, SOME_REFUSED, STOPPED
 if TYPE_CHECKING:
     from gaitdisc.batch.workers import Told
     from gaitdisc.ingest.study import Study
-    from gaitdisc.results import ResponseRun
+    from gaitdisc.results import Refusal, ResponseRun
 
 Result = TypeVar("Result")
 
@@ -44,23 +44,67 @@ def report_on(work: Callable[[Told], ResponseRun], study: Study, folder: Path, q
     from gaitdisc.report.text import r2_text
 
     started = time.perf_counter()
-    try:
-        done = work(lambda *_: None) if quiet else with_progress(work, [person.id for person in study.participants])
-    except KeyboardInterrupt:
-        typer.echo("Stopped. What was finished is kept; the same command goes on from there.", err=True)
-        raise typer.Exit(STOPPED) from None
+    done = worked(work, [person.id for person in study.participants], quiet)
     page = write_report(done, folder / "report")
     if done.responses:
         Console().print(r2_text(done))
-    for refusal in done.refusals:
-        who = " ".join(part for part in (refusal.participant, refusal.condition) if part)
-        typer.echo(f"refused: {who}: {refusal.reason}", err=True)
     for quantity in done.quantities:
         for length_s, reason in quantity.left_away.items():
             typer.echo(f"left out: {quantity.participant}, training length {length_s:g} s: {reason}", err=True)
-    typer.echo(f"{len(done.responses)} participants in {time.perf_counter() - started:.0f} s. report: {page}")
-    if done.refusals:
-        raise typer.Exit(SOME_REFUSED if done.responses else REFUSED)
+    end(done.refusals, len(done.responses), page, time.perf_counter() - started)
+
+
+def worked(work: Callable[[Told], Result], people: list[str], quiet: bool) -> Result:
+    """Do the work, with a bar that counts participants unless it shall be quiet.
+
+    Parameters
+    ----------
+    work : callable
+        Called with what it shall tell its progress to.
+    people : list of str
+        Pseudonyms.
+    quiet : bool
+        No progress.
+
+    Raises
+    ------
+    typer.Exit
+        With the exit code, if the person at the keyboard stopped it.
+    """
+    try:
+        return work(lambda *_: None) if quiet else with_progress(work, people)
+    except KeyboardInterrupt:
+        typer.echo("Stopped. What was finished is kept; the same command goes on from there.", err=True)
+        raise typer.Exit(STOPPED) from None
+
+
+def end(refusals: Sequence[Refusal], count: int, page: Path, seconds: float) -> None:
+    """Say who was refused, how many were done and where the report is.
+
+    Parameters
+    ----------
+    refusals : sequence of Refusal
+        Everybody left out.
+    count : int
+        Participants that were done.
+    page : Path
+        The report.
+    seconds : float
+        That it took [s].
+
+    Raises
+    ------
+    typer.Exit
+        With the exit code, if some or all participants were refused.
+    """
+    from gaitdisc.report.wording import counted
+
+    for refusal in refusals:
+        who = " ".join(part for part in (refusal.participant, refusal.condition) if part)
+        typer.echo(f"refused: {who}: {refusal.reason}", err=True)
+    typer.echo(f"{counted(count, 'participant')} in {seconds:.0f} s. report: {page}")
+    if refusals:
+        raise typer.Exit(SOME_REFUSED if count else REFUSED)
 
 
 def with_progress(work: Callable[[Told], Result], people: list[str]) -> Result:

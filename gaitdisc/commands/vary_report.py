@@ -7,8 +7,7 @@ from pathlib import Path
 
 import typer
 
-from gaitdisc.commands.exit_codes import REFUSED, SOME_REFUSED, STOPPED
-from gaitdisc.commands.run_report import with_progress
+from gaitdisc.commands.run_report import end, worked
 
 
 def vary(place: Path, out: Path | None, question: str, workers: tuple[int, str], quiet: bool) -> None:
@@ -40,20 +39,8 @@ def vary(place: Path, out: Path | None, question: str, workers: tuple[int, str],
     study = load_study(place)
     folder, started, side_by_side = out or study.folder / "run", time.perf_counter(), Workers(*workers)
     people = [person.id for person in study.participants]
-    try:
-        if quiet:
-            done = vary_study(study, folder, question, side_by_side)
-        else:
-            done = with_progress(lambda told: vary_study(study, folder, question, side_by_side, told), people)
-    except KeyboardInterrupt:
-        typer.echo("Stopped. What was finished is kept; the same command goes on from there.", err=True)
-        raise typer.Exit(STOPPED) from None
+    done = worked(lambda told: vary_study(study, folder, question, side_by_side, told), people, quiet)
     page = write_variants(done, folder / question)
     for sentence in variant_sentences(done):
         typer.echo(sentence)
-    for refusal in done.refusals:
-        who = " ".join(part for part in (refusal.participant, refusal.condition) if part)
-        typer.echo(f"refused: {who}: {refusal.reason}", err=True)
-    typer.echo(f"{len(done.people)} participants in {time.perf_counter() - started:.0f} s. report: {page}")
-    if done.refusals:
-        raise typer.Exit(SOME_REFUSED if done.people else REFUSED)
+    end(done.refusals, len(done.people), page, time.perf_counter() - started)

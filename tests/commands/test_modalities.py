@@ -3,7 +3,7 @@ def test_modalities(study, called):
     assert done.returncode == 0, done.stderr
     assert (study / "run" / "modalities" / "report.html").is_file()
     assert (study / "run" / "modalities" / "tables" / "r2.csv").is_file()
-    assert "1 participants" in done.stdout
+    assert "1 participant in" in done.stdout
     page = study / "run" / "modalities" / "report.html"
     first = page.read_bytes()
     page.unlink()

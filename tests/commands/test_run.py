@@ -18,7 +18,7 @@ def test_the_batch_goes_on_past_a_broken_file(study, recordings, tmp_path, calle
     assert done.returncode == SOME_REFUSED, done.stderr
     assert "refused: P02 exo:" in done.stderr
     assert "broken.mot" in done.stderr
-    assert "1 participants" in done.stdout
+    assert "1 participant in" in done.stdout
     checked = called("check", folder)
     assert checked.returncode == SOME_REFUSED
     assert "Traceback" not in checked.stderr

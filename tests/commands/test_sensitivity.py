@@ -3,4 +3,4 @@ def test_sensitivity(study, called):
     assert done.returncode == 0, done.stderr
     assert (study / "run" / "sensitivity" / "report.html").is_file()
     assert (study / "run" / "sensitivity" / "tables" / "r2.csv").is_file()
-    assert "1 participants" in done.stdout
+    assert "1 participant in" in done.stdout
