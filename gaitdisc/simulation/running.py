@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from gaitdisc.errors import ShapeError
 from gaitdisc.recording.arrays import read_only
 from gaitdisc.simulation.at_points import at_points, leaf_columns
+from gaitdisc.simulation.delays import delayed_in_rows
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.expression import Number, Operation, Tree, parsed
 from gaitdisc.simulation.program import Program, compiled_program
@@ -145,8 +146,6 @@ class Compiled:
         -------
         ndarray (row, step, observed)
         """
-        from gaitdisc.simulation.delays import delayed_in_rows
-
         place, _, values = self._rows(drive, rows)
         count, steps, n = states.shape
         sample = place[:, 1, None] + np.arange(steps)
