@@ -15,7 +15,8 @@ from pathlib import Path
 
 from ch3_report import Result, blocks_of, written
 
-from gaitdisc.discrepancy.grid import NOISES, grid
+from gaitdisc.discrepancy.error_signal import APPROACHES
+from gaitdisc.discrepancy.grid import ALL_METHODS, NOISES, grid
 from gaitdisc.discrepancy.record import Conditions
 from gaitdisc.discrepancy.system import System, system_of
 from gaitdisc.results.discrepancy_cell import DiscrepancyCell
@@ -23,6 +24,7 @@ from gaitdisc.simulation.bundled import bundled
 from gaitdisc.simulation.parts import Term
 
 SEEDS = (0, 1, 2)
+SHORT_S = 10.0  # of which 601 samples are learned from
 FIGURES = {"system": "Fig. 3.2", "dynamics": "Fig. 3.3", "state": "Fig. 3.4", "noise": "Fig. 3.5", "cost": "Fig. 3.11"}
 STATED = (
     ("Fig. 3.3", "dynamics: no error remains, all four methods, no noise", "dynamics", 0.0),
@@ -57,7 +59,12 @@ def run(quick: bool = False, folder: Path = Path("ch3_van_der_pol")) -> Result:
         cells[f"{variant}, done right"] = grid(system, Conditions(duration_s=duration_s), noises, seeds)
         published = Conditions(duration_s=duration_s, published=True, absolute=True)
         cells[f"{variant}, as published"] = grid(system, published, noises, seeds)
-    return written(cells, blocks_of(cells, FIGURES, STATED), "Van der Pol oscillator, section 3.4.1", folder)
+    if not quick:
+        short = Conditions(duration_s=SHORT_S)
+        chosen = (ALL_METHODS, APPROACHES[:1])
+        cells["text, done right, 10 s"] = grid(systems()["text"], short, noises, seeds, chosen)
+    drawn = {f"{variant}, done right": system for variant, system in systems().items()}
+    return written(cells, blocks_of(cells, FIGURES, STATED, drawn), "Van der Pol oscillator, section 3.4.1", folder)
 
 
 if __name__ == "__main__":

@@ -10,16 +10,20 @@ from typing import Literal
 import numpy as np
 import pandas as pd
 
+from gaitdisc.discrepancy.methods import OF_TIME
 from gaitdisc.errors import SchemaError
 from gaitdisc.regression.dmd import DELAYS, RANK
 from gaitdisc.results.discrepancy_cell import DiscrepancyCell, cells_table
 
 Want = Literal["interpretability", "speed", "forecast"]
 WANTS: tuple[Want, ...] = ("interpretability", "speed", "forecast")
-INTERPRETABLE = ("sindy", "dmd")
+INTERPRETABLE = ("sindy", *OF_TIME)
+BEYOND = 2.0  # times as many samples as were measured, or as few: said
 NEAR = 5.0  # points of accuracy that the fastest method may lose to the best
 FOUND = Path(__file__).with_name("measured_cells.csv")  # what the studies of chapter 3 measured
-COLUMNS = ("system", "method", "noise", "accuracy", "valid_s", "seconds", "diverged", "seeds")
+COLUMNS = (
+    "system", "method", "noise", "samples", "accuracy", "least", "greatest", "valid_s", "seconds", "diverged", "seeds"
+)  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,12 +33,12 @@ class Recommendation:
     Parameters
     ----------
     method : str
-        `sindy`, `dmd`, `gp`, `nn`; empty where none did better than the known model.
+        `sindy`, `dmd`, `bopdmd`, `gp`, `nn`; empty where none did better than the known model.
     why : str
         One or two sentences with the numbers.
     evidence : DataFrame
-        The measured cells that it rests on, best first: system, method, noise, forecast accuracy [%], valid time [s],
-        seconds.
+        The measured cells that it rests on, best first: system, method, noise, samples learned from, forecast accuracy
+        with the least and greatest of the seeds [%], valid time [s], seconds.
     """
 
     method: str
@@ -46,6 +50,9 @@ def recommend(
     noise: float, samples: int, want: Want, chaotic: bool = False, evidence: pd.DataFrame | None = None
 ) -> Recommendation:
     """Recommend a method for learning the missing rates of a known model.
+
+    The measured cells nearest in noise, then in samples, decide; a method counts by the system on which it did worst,
+    and not at all where it diverged.
 
     Parameters
     ----------
@@ -84,32 +91,40 @@ def recommend(
     table = table[table["system"].str.contains("Lorenz") == chaotic]
     levels = np.sort(table["noise"].unique())
     near = float(levels[np.argmin(np.abs(np.log(levels + 1e-4) - np.log(noise + 1e-4)))])
+    table = table[table["noise"] == near]
+    lengths = np.sort(table["samples"].unique())
+    length = int(lengths[np.argmin(np.abs(np.log(lengths / samples)))])
     by = "valid_s" if chaotic else "accuracy"
-    rows = table[(table["noise"] == near) & (table["diverged"] == 0)].sort_values(by, ascending=False)
-    allowed = rows[rows["method"].isin(INTERPRETABLE)] if want == "interpretability" else rows
+    table = table[table["samples"] == length]
+    lost = table.loc[table["diverged"] > 0, "method"]
+    rows = table[~table["method"].isin(lost)].sort_values(by, ascending=False)
+    worst = rows.groupby("method", sort=False).tail(1)  # of the systems that were measured
+    allowed = worst[worst["method"].isin(INTERPRETABLE)] if want == "interpretability" else worst
     if samples < DELAYS + 2 * RANK:
-        allowed = allowed[allowed["method"] != "dmd"]
+        allowed = allowed[~allowed["method"].isin(OF_TIME)]
     better = allowed[allowed["accuracy"] > 0]
     if not len(better):
         return Recommendation(
-            "", f"At {near:.1%} noise none of the methods forecast better than the known model.", rows
+            "",
+            f"At {near:.1%} noise and {length:,} samples none of the methods forecast better than the known model.",
+            rows,
         )
     best = better.iloc[0]
     if want == "speed":
         close = better[better[by] >= best[by] - (NEAR if by == "accuracy" else NEAR / 100 * best[by])]
         best = close.sort_values("seconds").iloc[0]
     why = (
-        f"Measured at {near:.1%} noise on {best['system']}: forecast error {best['accuracy']:.1f} % smaller than the "
-        f"known model's, valid for {best['valid_s']:.1f} s, in {best['seconds']:.1f} s of computing "
-        f"(n = {best['seeds']:.0f} seeds)."
+        f"Measured at {near:.1%} noise and {length:,} samples on {best['system']}: forecast error "
+        f"{best['accuracy']:.1f} % smaller than the known model's ({best['least']:.1f} to {best['greatest']:.1f} %, "
+        f"n = {best['seeds']:.0f} seeds), valid for {best['valid_s']:.1f} s, in {best['seconds']:.1f} s of a core."
     )
-    if samples < 1000:
-        why += f" The measurements had 3,001 samples, this record has {samples}: expect less."
+    if not 1 / BEYOND <= samples / length <= BEYOND:
+        why += f" This record has {samples:,} samples: there it was not measured."
     return Recommendation(str(best["method"]), why, rows.reset_index(drop=True))
 
 
 def measured_cells(cells: Sequence[DiscrepancyCell]) -> pd.DataFrame:
-    """Evidence of a study: medians over channels and seeds of the forecasts with learned rates.
+    """Evidence of a study: forecasts with learned rates, medians over channels, then over seeds with their range.
 
     Parameters
     ----------
@@ -121,8 +136,14 @@ def measured_cells(cells: Sequence[DiscrepancyCell]) -> pd.DataFrame:
     table = table[table["part"] == "forecast"]
     table["seconds"] = table["fit_s"] + table["run_s"]
     table["diverged"] = table["diverged_s"].notna()
-    found = table.groupby(["system", "method", "noise"], sort=False).agg(
+    keys = ["system", "method", "noise", "samples"]
+    seeds = table.groupby([*keys, "seed"], sort=False).agg(
         accuracy=("accuracy", "median"), valid_s=("valid_s", "median"), seconds=("seconds", "median"),
-        diverged=("diverged", "mean"), seeds=("seed", "nunique"),
+        diverged=("diverged", "max"),
     )  # fmt: skip
-    return found.reset_index()
+    found = seeds.groupby(level=keys, sort=False).agg(
+        accuracy=("accuracy", "median"), least=("accuracy", "min"), greatest=("accuracy", "max"),
+        valid_s=("valid_s", "median"), seconds=("seconds", "median"), diverged=("diverged", "mean"),
+        seeds=("accuracy", "size"),
+    )  # fmt: skip
+    return found.reset_index()[list(COLUMNS)]

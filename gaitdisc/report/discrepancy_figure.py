@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import Look
@@ -80,31 +81,56 @@ def _error_lines(axes: Axes, cell: DiscrepancyCell, part: str, channel: int) -> 
 
 
 @in_style
-def system_figure(found: PartAccuracy, channels: Sequence[str], name: str, source: str) -> Figure:
-    """True and known system over time (Figs. 3.2, 3.6).
+def system_figure(
+    found: PartAccuracy, missing: NDArray[np.float64], channels: Sequence[str], name: str, source: str
+) -> Figure:
+    """Phase portraits and time evolution of true and known system, and what is missing in rates and states.
 
     Parameters
     ----------
     found : PartAccuracy
-        Of any cell.
+        Of any cell, with every state measured.
+    missing : ndarray (sample, channel)
+        Rates that the known system lacks, along the truth.
     channels : sequence of str
         Names.
     name, source : str
-        Of the files; the figure of the dissertation that it stands for.
+        Of the files; the figure of the dissertation that it stands for (Figs. 3.2, 3.6).
     """
-    drawn, grid = panels(len(channels), 1, 1.0, Room())
+    drawn, grid = panels(2, 3, 1.5, Room(across=0.6, down=0.6))
     some = np.unique(np.linspace(0, len(found.time) - 1, MOST_DRAWN).astype(int))
+    lacking, last = int(np.argmax(np.abs(missing).max(axis=0))), len(channels) - 1
     table = pd.DataFrame({"t_s": found.time[some]})
-    for k, (row, channel) in enumerate(zip(grid, channels, strict=True)):
-        for model, look in (("truth", AUGMENTED), ("known", KNOWN)):
-            table[f"{channel} {model}"] = getattr(found, model)[some, k]
-            row[0].plot(
-                table["t_s"], table[f"{channel} {model}"], color=look.colour, linestyle=look.line, linewidth=0.8
-            )
-        row[0].set_ylabel(channel)
-    grid[-1][0].set_xlabel("time [s]")
+    for row, model, look in zip(grid, ("truth", "known"), (AUGMENTED, KNOWN), strict=True):
+        for channel, values in zip(channels, getattr(found, model)[some].T, strict=True):
+            table[f"{channel} {model}"] = values
+        row[0].plot(
+            table[f"{channels[0]} {model}"], table[f"{channels[last]} {model}"], color=look.colour, linewidth=0.6
+        )
+        row[0].set_title(f"phase portrait, {'true' if model == 'truth' else 'known'}")
+        row[0].set_xlabel(channels[0])
+        row[0].set_ylabel(channels[last])
+        for panel, channel in zip((grid[0][1], grid[1][1]), (channels[0], channels[last]), strict=True):
+            values = table[f"{channel} {model}"]
+            panel.plot(table["t_s"], values, color=look.colour, linestyle=look.line, linewidth=0.7)
+            panel.set_ylabel(channel)
+            panel.set_xlabel("time [s]")
+    table["missing rate"], table["residual"] = missing[some, lacking], (found.truth - found.known)[some, 0]
+    for panel, column, words in zip(
+        (grid[0][2], grid[1][2]),
+        ("missing rate", "residual"),
+        (f"dynamical error: rate of {channels[lacking]}", f"state-space residual of {channels[0]}"),
+        strict=True,
+    ):
+        panel.plot(table["t_s"], table[column], color=AUGMENTED.colour, linewidth=0.7)
+        panel.set_title(words)
+        panel.set_xlabel("time [s]")
     legend(drawn, _handles({"true": AUGMENTED, "known": KNOWN}))
-    return Figure(name, f"{source}. True and known system from the same start.", "Two curves over time", table, drawn)
+    caption = (
+        f"{source}. True and known system from the same start, without noise: phase portraits, time evolution, and the "
+        "two errors along the truth."
+    )
+    return Figure(name, caption, "Phase portraits, curves over time, two error signals", table, drawn)
 
 
 @in_style

@@ -143,6 +143,11 @@ class DiscrepancyCell:
     terms: str = ""
     refused: str = ""
 
+    @property
+    def samples(self) -> int:
+        """Length of the training part; 0 where nothing was fitted."""
+        return len(self.parts["reconstruction"].time) if "reconstruction" in self.parts else 0
+
 
 def cells_table(cells: Sequence[DiscrepancyCell]) -> pd.DataFrame:
     """Return the numbers of all cells, one row a cell, part and channel.
@@ -156,7 +161,7 @@ def cells_table(cells: Sequence[DiscrepancyCell]) -> pd.DataFrame:
     for cell in cells:
         head = {
             "system": cell.system, "method": cell.method, "approach": cell.approach, "variant": cell.variant,
-            "noise": cell.noise, "seed": cell.seed,
+            "noise": cell.noise, "seed": cell.seed, "samples": cell.samples,
         }  # fmt: skip
         tail = {"fit_s": cell.fit_s, "run_s": cell.run_s, "terms": cell.terms, "refused": cell.refused}
         if not cell.parts:

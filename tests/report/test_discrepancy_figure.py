@@ -33,7 +33,10 @@ def test_each_figure_carries_the_numbers_drawn():
     assert np.allclose(horizon_figure(some, "c", "Fig. 3.9").numbers.groupby("method")["accuracy"].first()["gp"], 50)
     assert cost_figure(some, "d", "Fig. 3.11").numbers["fit_s"].tolist() == [1, 2, 3, 4] * 2
     part = some[0].parts["forecast"]
-    assert len(system_figure(part, ("x", "y"), "e", "Fig. 3.2").drawn.axes) == 2
+    both = system_figure(part, np.column_stack([0 * TIME, TIME]), ("x", "y"), "e", "Fig. 3.2")
+    assert both.drawn.axes[2].get_title() == "dynamical error: rate of y"
+    assert np.allclose(both.numbers["missing rate"], both.numbers["t_s"])
+    assert np.allclose(both.numbers["residual"], -0.2)
     assert np.allclose(field_figure(part, (0.0, 1.0), "f", "Fig. 3.12").numbers["rmse_known"], 0.2)
 
 

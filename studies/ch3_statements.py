@@ -1,0 +1,123 @@
+"""What chapter 3 states of its figures, and what the cells answer."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from gaitdisc.report.discrepancy_figure import METHOD_WORDS
+from gaitdisc.report.discrepancy_tables import spread_words
+from gaitdisc.results.discrepancy_cell import DiscrepancyCell
+
+Cells = Mapping[str, tuple[DiscrepancyCell, ...]]
+Stated = tuple[str, str, str, float]  # where, statement, approach, noise
+APART = "the time evolution diverges quickly with only an eps-small difference in the dynamics"
+COST = "SINDy costs least, then DMD, GPR and NN, in both approaches; NN in the dynamics over 500 s, up to 2,100 s"
+HORIZON = "dynamics: near 100 % at first, falls at the first jump (about 5 s), settles near 0"
+HORIZONS_S = (0.3, 1.0, 5.0, 20.0)
+
+
+def of_figures(cells: Cells, figures: Mapping[str, str]) -> list[tuple[str, str, str]]:
+    """Answer the statements that captions make, of the figures that a study has.
+
+    Parameters
+    ----------
+    cells : mapping
+        By variant.
+    figures : mapping of str to str
+        Figure of the dissertation by `system`, `horizon`, `cost`.
+    """
+    own = (("system", APART, apart_words), ("horizon", HORIZON, horizon_words), ("cost", COST, cost_words))
+    return [(figures[key], words, answer(cells)) for key, words, answer in own if key in figures]
+
+
+def apart_words(cells: Cells) -> str:
+    """Say how long the known system stays near the true one, by variant.
+
+    Parameters
+    ----------
+    cells : mapping
+        By variant.
+    """
+    said = []
+    for variant, found in cells.items():
+        part = next(c.parts["reconstruction"] for c in found if c.parts and not c.noise)
+        said.append(f"{variant}: within 0.4 SD for {part.valid_s('known'):.1f} of {part.time[-1]:.0f} s")
+    return "; ".join(said)
+
+
+def cost_words(cells: Cells) -> str:
+    """Seconds of a core of each method, cheapest first, by approach: median over variants, noises and seeds.
+
+    Parameters
+    ----------
+    cells : mapping
+        By variant.
+    """
+    said = []
+    for approach in ("dynamics", "state"):
+        some = [c for found in cells.values() for c in found if c.approach == approach and c.parts]
+        spent = {m: np.median([c.fit_s + c.run_s for c in some if c.method == m]) for m in {c.method for c in some}}
+        ordered = sorted(spent.items(), key=lambda item: item[1])
+        said.append(
+            f"{approach}: " + ", ".join(f"{METHOD_WORDS[method]} {seconds:.1f} s" for method, seconds in ordered)
+        )
+    return "; ".join(said)
+
+
+def horizon_words(cells: Cells) -> str:
+    """Say how much less error the forecasts have within a few horizons, without noise, by variant and method.
+
+    Parameters
+    ----------
+    cells : mapping
+        By variant.
+    """
+    said = []
+    for variant, found in cells.items():
+        quiet = [c for c in found if c.approach == "dynamics" and c.parts and not c.noise]
+        some = [f"{METHOD_WORDS[c.method]} {_within(c)}" for c in quiet]
+        said.append(f"{variant}: " + ", ".join(some))
+    horizons = "; ".join(f"{each:g}" for each in HORIZONS_S)
+    return f"[%] within {horizons} s; " + "; ".join(said)
+
+
+def _within(cell: DiscrepancyCell) -> str:
+    part = cell.parts["forecast"]
+    changes = part.change([each for each in HORIZONS_S if each <= part.time[-1]])
+    said = f"diverged at t = {part.diverged_s:.2f} s" if part.diverged_s is not None else ""
+    return "/".join([f"{each:.0f}" if np.isfinite(each) else said for each in changes])
+
+
+def answered(cells: Cells, approach: str, noise: float) -> str:
+    """Forecast (reconstruction) accuracy of each method, by variant: median and range over seeds.
+
+    Parameters
+    ----------
+    cells : mapping
+        By variant.
+    approach : str
+        `dynamics` or `state`.
+    noise : float
+        Level.
+    """
+    said = []
+    for variant, found in cells.items():
+        some = [c for c in found if c.approach == approach and c.noise == noise]
+        parts = [f"{METHOD_WORDS[m]} {_accuracy([c for c in some if c.method == m])}" for m in METHOD_WORDS]
+        if some:
+            said.append(f"{variant}: {', '.join(part for part in parts if not part.endswith(' '))}")
+    return "forecast (reconstruction) [%]; " + "; ".join(said) if said else "not computed"
+
+
+def _accuracy(cells: Sequence[DiscrepancyCell]) -> str:
+    fitted = [cell for cell in cells if cell.parts]
+    if not fitted:
+        return "not fitted" if cells else ""
+    words = []
+    for part in ("forecast", "reconstruction"):
+        lost = [t for c in fitted if (t := c.parts[part].diverged_s) is not None]
+        said = spread_words(np.array([np.median(c.parts[part].accuracy()) for c in fitted]))
+        words.append(f"diverged at t = {min(lost):.2f} s ({len(lost)} of {len(cells)} seeds)" if lost else said)
+    return f"{words[0]} ({words[1]})"
