@@ -1,16 +1,16 @@
 """Section 5.3.1: a turbulent flow from one sensor that stays or walks: Fig. 5.2, on a stand-in for the database's flow.
 
-    python studies/ch5_turbulence.py [FOLDER] [--quick]
+    python studies/ch5_turbulence.py [FOLDER] [--quick] [--models 8] [--nodes 48]
 
 The database's flow (1024 nodes, Re_lambda 433) does not come with the package. A forced isotropic flow is computed
-instead, with 48 nodes and Re_lambda near 25: a stand-in, on which no printed number can be reproduced. Its snapshots
-lie in FOLDER/flow and are computed once.
+instead, with 48 nodes and Re_lambda near 30: a stand-in, on which no printed number can be reproduced. Its snapshots
+lie in FOLDER/flow, its models' errors in FOLDER/cells; a run that was stopped goes on.
 """
 
 from __future__ import annotations
 
-import sys
-from dataclasses import replace
+import argparse
+from dataclasses import asdict, replace
 from pathlib import Path
 
 from ch5_fields import Result, written
@@ -20,7 +20,7 @@ from gaitdisc.report.field_errors_figure import boxes_figure, histograms_figure
 from gaitdisc.report.field_maps_figure import maps_figure
 from gaitdisc.report.field_table import medians_table
 from gaitdisc.report.turbulence_figure import flow_figure
-from gaitdisc.results.field_cell import FieldCell
+from gaitdisc.results.field_cell import FieldCell, load_cells, save_cells
 from gaitdisc.sensing.field_windows import snapshots_of
 from gaitdisc.sensing.reconstruct_field import CEILING, FieldTask, prepare, reconstruct_field, targets_of
 from gaitdisc.sensing.routes import Route, fixed, fixed_at_random, random_walk
@@ -31,7 +31,6 @@ from gaitdisc.turbulence.isotropic import FlowSettings, record_turbulence
 SPLITS = (RANDOM, "temporal")
 MODELS = 8  # of each kind of sensor; the dissertation trains 100
 KINDS = ("linear", "delay ridge", "fourier ridge", "shred")
-SETTINGS = FlowSettings()  # 1,257 snapshots of 40 x 40 x 40 nodes
 TASK = FieldTask(
     "stand-in turbulence", Lags(13, 8)
 )  # reaches as far back as the 100 snapshots of the dissertation: 1.2 turnovers
@@ -42,7 +41,7 @@ STAND_IN = (
 )
 
 
-def run(quick: bool = False, folder: Path = Path("ch5_turbulence"), models: int = MODELS) -> Result:
+def run(quick: bool = False, folder: Path = Path("ch5_turbulence"), models: int = MODELS, nodes: int = 48) -> Result:
     """Compute the flow, tell it from fixed and from walking sensors under both splits, and draw what Fig. 5.2 shows.
 
     Parameters
@@ -53,8 +52,10 @@ def run(quick: bool = False, folder: Path = Path("ch5_turbulence"), models: int 
         Where the flow and the report go.
     models : int
         Of each kind of sensor.
+    nodes : int
+        Of the box along each side; five sixths of them are kept.
     """
-    settings = FlowSettings(nodes=24, cut=16, spin_up=300) if quick else SETTINGS
+    settings = FlowSettings(nodes=24, cut=16, spin_up=300) if quick else FlowSettings(nodes, 5 * nodes // 6)
     kinds = KINDS[:2] if quick else KINDS
     flow, numbers = record_turbulence(settings, folder / "flow", _said("flow"))
     cells: list[FieldCell] = []
@@ -67,7 +68,13 @@ def run(quick: bool = False, folder: Path = Path("ch5_turbulence"), models: int 
             stays = Route("1 fixed", fixed_at_random(flow, 1, run_number).points)
             for route in (stays, Route("1 walking", walk.points)):
                 asked = replace(task, seed=run_number)
-                cells += reconstruct_field(flow, route, asked, kinds, run_number == 0, targets)
+                made_by = {"task": asdict(asked), "flow": asdict(settings), "kinds": kinds}
+                path = folder / "cells" / f"{rule.split()[0]}-{route.name.split()[-1]}-{run_number}.json"
+                found = load_cells(made_by, path)
+                if found is None:
+                    found = reconstruct_field(flow, route, asked, kinds, run_number == 0, targets)
+                    save_cells(found, made_by, path)
+                cells += found
                 print(f"{rule}, {route.name} {run_number + 1} of {models}: R2 {cells[-1].r2:.3f}", flush=True)
         ready = prepare(flow, fixed(flow, [0]), task, targets)
         middle = ready.test.rows(slice(len(ready.test) // 2, len(ready.test) // 2 + 1))
@@ -98,5 +105,9 @@ def _said(what: str):
 
 
 if __name__ == "__main__":
-    words = [word for word in sys.argv[1:] if word != "--quick"]
-    print(run("--quick" in sys.argv, Path((words or ["ch5_turbulence"])[0])).page)
+    asked = argparse.ArgumentParser(description="Turbulence from one sensor.")
+    asked.add_argument("folder", nargs="?", type=Path, default=Path("ch5_turbulence"))
+    asked.add_argument("--quick", action="store_true")
+    asked.add_argument("--models", type=int, default=MODELS)
+    asked.add_argument("--nodes", type=int, default=48)
+    print(run(**vars(asked.parse_args())).page)

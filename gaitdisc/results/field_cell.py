@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import json
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.recording.arrays import read_only
+from gaitdisc.whole_file import write_whole
 
 BINS = 121
 REACH_SD = 4.0  # of the field's own standard deviation: how far the bins of errors reach
@@ -115,19 +119,38 @@ def error_counts(errors: NDArray[np.floating], sd: float) -> ErrorCounts:
     return ErrorCounts(edges, np.bincount(place, minlength=BINS))
 
 
-def shares_within(cell: FieldCell) -> dict[str, float]:
-    """Share of errors of each sign and size, as a Gaussian of the same mean and spread would have them.
+def save_cells(cells: Sequence[FieldCell], made_by: Mapping[str, Any], path: Path) -> None:
+    """Keep cells, so that a study that was stopped goes on.
 
     Parameters
     ----------
-    cell : FieldCell
-        Of any model.
-
-    Returns
-    -------
-    dict
-        `within one sd`: a Gaussian has .683; more means a sharper peak and longer tails.
+    cells : sequence of FieldCell
+        That belong together.
+    made_by : mapping
+        Every setting that could change a number; plain values.
+    path : Path
+        Of a JSON file; written whole or not at all.
     """
-    middles = (cell.errors.edges[1:] + cell.errors.edges[:-1]) / 2
-    inside = np.abs(middles - cell.bias) <= cell.sd
-    return {"within one sd": float(cell.errors.counts[inside].sum() / cell.errors.counts.sum())}
+    rows = [
+        {**vars(cell), "errors": {"edges": cell.errors.edges.tolist(), "counts": cell.errors.counts.tolist()}}
+        for cell in cells
+    ]
+    write_whole(path, json.dumps({"made_by": dict(made_by), "cells": rows}))
+
+
+def load_cells(made_by: Mapping[str, Any], path: Path) -> list[FieldCell] | None:
+    """Cells that were kept, or None where there are none, or other settings made them.
+
+    Parameters
+    ----------
+    made_by : mapping
+        As in `save_cells`.
+    path : Path
+        Of the file.
+    """
+    if not path.exists():
+        return None
+    held = json.loads(path.read_text(encoding="utf-8"))
+    if held["made_by"] != json.loads(json.dumps(dict(made_by))):
+        return None
+    return [FieldCell(**{**row, "errors": ErrorCounts(**row["errors"])}) for row in held["cells"]]

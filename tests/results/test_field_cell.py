@@ -1,6 +1,6 @@
 import numpy as np
 
-from gaitdisc.results.field_cell import BINS, FieldCell, error_counts, field_cells_table, shares_within
+from gaitdisc.results.field_cell import BINS, FieldCell, error_counts, field_cells_table, load_cells, save_cells
 
 
 def cell(errors, **changed):
@@ -19,9 +19,16 @@ def test_every_error_is_counted_once_also_those_beyond():
     assert (len(counts.counts), counts.edges[0], counts.edges[-1]) == (BINS, -4, 4)
 
 
-def test_a_gaussian_has_two_thirds_within_one_sd():
-    found = shares_within(cell(np.random.default_rng(0).normal(size=200_000)))
-    assert abs(found["within one sd"] - 0.683) < 0.02
+def test_what_is_kept_is_found_again_unless_other_settings_made_it(tmp_path):
+    kept = cell(np.array([0.1, -9.0, 0.1]))
+    save_cells([kept], {"lags": (13, 8), "seed": 1}, tmp_path / "a.json")
+    found = load_cells({"lags": (13, 8), "seed": 1}, tmp_path / "a.json")
+    assert found is not None
+    assert found[0].relative_l2 == kept.relative_l2
+    np.testing.assert_array_equal(found[0].errors.counts, kept.errors.counts)
+    np.testing.assert_array_equal(found[0].errors.edges, kept.errors.edges)
+    assert load_cells({"lags": (25, 4), "seed": 1}, tmp_path / "a.json") is None
+    assert load_cells({}, tmp_path / "b.json") is None
 
 
 def test_the_table_has_a_row_a_cell():
