@@ -19,6 +19,7 @@ import numpy as np
 
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.evidence import Judged
+from gaitdisc.discovery.growth import grown
 from gaitdisc.discovery.held_out import Trial, runs_of
 from gaitdisc.discovery.inquiry import Inquiry, begin_inquiry
 from gaitdisc.results.discovery import Discovery
@@ -60,7 +61,7 @@ def run(quick: bool, data: Path) -> Result:
     measured = stretches(data / "DATA_EMPS.mat", simulation)
     inquiry = begin_inquiry(simulation, measured)
     as_read = inquiry.as_read()
-    first, _ = inquiry.search.grown(as_read, 1)
+    first, _ = grown(inquiry.search, as_read, 1)
     part = first.account.parts[0]
     runs = {"held-out stretches": free_runs(inquiry, inquiry.held_out, as_read, first)}
     if (data / "DATA_EMPS_PULSES.mat").exists():

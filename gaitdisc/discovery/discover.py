@@ -11,9 +11,10 @@ from gaitdisc.discovery.answer import answer
 from gaitdisc.discovery.catalogue import Shape
 from gaitdisc.discovery.evidence import Judged, compared
 from gaitdisc.discovery.fitted_shape import fitted_shape
+from gaitdisc.discovery.growth import grown
 from gaitdisc.discovery.held_out import runs_of
 from gaitdisc.discovery.inquiry import Inquiry, begin_inquiry
-from gaitdisc.discovery.search import MARGIN, ranked
+from gaitdisc.discovery.ranking import MARGIN, ranked
 from gaitdisc.discovery.shaken import Shaken, shaken
 from gaitdisc.discovery.verdict import Verdict
 from gaitdisc.discovery.wrong_start import wrong_starts
@@ -75,14 +76,14 @@ def judge(inquiry: Inquiry, as_read: Judged) -> Verdict:
         The simulation as read.
     """
     as_read, named, rivals = searched(inquiry, as_read)
-    many = len(named.account.parts) > MOST_NAMES
-    shape = fitted_shape(as_read, inquiry.search) if many or named.noise.remembers else None
+    names = len(named.account.parts)
+    shape = fitted_shape(as_read, inquiry.search) if names > 1 or named.noise.remembers else None
     remembered = weighed_with_memory(inquiry, as_read, named, shape, rivals) if named.noise.remembers else None
     if remembered:
         return remembered
-    if many:
+    if names > MOST_NAMES or (names > 1 and shape and says_more(inquiry, shape, named)):
         return Verdict("unnamed", shape or named, (named, *rivals))
-    if not named.account.parts:
+    if not names:
         wrong = wrong_starts(inquiry.search.base, as_read)
         return Verdict("wrong_initial_condition" if wrong else "no_gap", as_read, tuple(rivals), starts=wrong)
     longer, rivals = decided(inquiry, named, rivals)
@@ -108,13 +109,13 @@ def searched(inquiry: Inquiry, as_read: Judged) -> tuple[Judged, Judged, list[Ju
     rivals : list of Judged
         What else stood for the first place, best first.
     """
-    named, rivals = inquiry.search.grown(as_read, MOST_NAMES + 1)
+    named, rivals = grown(inquiry.search, as_read, MOST_NAMES + 1)
     if named.account.parts or not inquiry.is_tame(as_read):
         return as_read, named, rivals
     longer = inquiry.lengthened(as_read)
     if longer is as_read:
         return as_read, named, rivals
-    named, rivals = inquiry.search.grown(longer, MOST_NAMES + 1)
+    named, rivals = grown(inquiry.search, longer, MOST_NAMES + 1)
     return (longer, named, rivals) if named.account.parts else (as_read, as_read, rivals)
 
 
@@ -145,6 +146,20 @@ def weighed_with_memory(
     return None
 
 
+def says_more(inquiry: Inquiry, shape: Judged, named: Judged) -> bool:
+    """Whether one shape without a name explains more than several names together.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        What is asked.
+    shape, named : Judged
+        The simulation with a fitted shape, and with what the search let in.
+    """
+    named, shape = compared([named, shape], inquiry.search.base)
+    return shape.evidence < named.evidence - MARGIN
+
+
 def decided(inquiry: Inquiry, named: Judged, rivals: list[Judged]) -> tuple[Judged, list[Judged]]:
     """Return what was named, fitted to long runs; where a rival comes near, the one that long runs prefer.
 
@@ -170,7 +185,7 @@ def decided(inquiry: Inquiry, named: Judged, rivals: list[Judged]) -> tuple[Judg
     near = [one for one in rivals if one is not named and one.evidence < named.evidence + NEAR][:MOST_NEAR]
     near = [inquiry.lengthened(one, longer.shooting.segments.length) for one in near]
     near = [one for one in near if one.shooting.segments.length == longer.shooting.segments.length]
-    first, *others = ranked(compared([longer, *near], inquiry.search.base))
+    first, *others = ranked(compared([longer, *near], inquiry.search.base), inquiry.search.candidates)
     others = [replace(one, gained=first.gained + first.evidence - one.evidence) for one in others]
     decided_on = {one.labels for one in (first, *others)}
     return first, [first, *others, *(one for one in rivals if one.labels not in decided_on)]
@@ -211,6 +226,9 @@ def explains(inquiry: Inquiry, as_read: Judged, now: Judged, shaking: Shaken | N
 def proven(inquiry: Inquiry, as_read: Judged, now: Judged) -> bool:
     """Whether what was found makes the misfit fall on the trials that were held out.
 
+    Over runs as long as it was fitted to, which show a small effect best; or, where these are too long for chaos, over
+    those that the search began with.
+
     Parameters
     ----------
     inquiry : Inquiry
@@ -218,6 +236,11 @@ def proven(inquiry: Inquiry, as_read: Judged, now: Judged) -> bool:
     as_read, now : Judged
         The simulation as read and with what was found.
     """
-    like = replace(as_read, shooting=as_read.shooting.with_noise(now.noise))
+    shorter = replace(as_read, shooting=as_read.shooting.with_noise(now.noise))
+    lengths = {one.shooting.segments.length: one for one in (now, shorter)}
+    return any(_falls(inquiry, as_read, now, like) for like in lengths.values())
+
+
+def _falls(inquiry: Inquiry, as_read: Judged, now: Judged, like: Judged) -> bool:
     before, after = (runs_of(inquiry, one, inquiry.held_out, like) for one in (as_read, now))
     return bool(np.nan_to_num(before.misfits - after.misfits, nan=0.0).sum() > 0)

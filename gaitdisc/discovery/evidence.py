@@ -48,6 +48,11 @@ class Judged:
         """Name and place of each explanation."""
         return tuple(part.candidate.label for part in self.account.parts)
 
+    @property
+    def verdicts(self) -> tuple[str, ...]:
+        """What kind of explanation each is."""
+        return tuple(part.candidate.verdict for part in self.account.parts)
+
     def under(self, other: Judged, base: Simulation) -> Judged:
         """Return the account fitted again under another's noise, so that the two can be compared.
 

@@ -3,6 +3,7 @@
 import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
+from gaitdisc.discovery.growth import grown
 from gaitdisc.discovery.inquiry import begin_inquiry
 
 
@@ -26,4 +27,4 @@ def cubic(inquiry):
 @pytest.fixture(scope="package")
 def named(inquiry, as_read):
     """Return the simulation with what the search let in, and the rivals."""
-    return inquiry.search.grown(as_read, 2)
+    return grown(inquiry.search, as_read, 2)
