@@ -119,5 +119,6 @@ def _accuracy(cells: Sequence[DiscrepancyCell]) -> str:
     for part in ("forecast", "reconstruction"):
         lost = [t for c in fitted if (t := c.parts[part].diverged_s) is not None]
         said = spread_words(np.array([np.median(c.parts[part].accuracy()) for c in fitted]))
-        words.append(f"diverged at t = {min(lost):.2f} s ({len(lost)} of {len(cells)} seeds)" if lost else said)
+        some = f" ({len(lost)} of {len(cells)} seeds)" * (len(cells) > 1)
+        words.append(f"diverged at t = {min(lost):.2f} s{some}" if lost else said)
     return f"{words[0]} ({words[1]})"

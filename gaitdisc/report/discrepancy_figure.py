@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import Look
-from gaitdisc.report.panels import Room, in_style, legend, panels
+from gaitdisc.report.panels import Room, decades, in_style, legend, panels
 from gaitdisc.results.discrepancy_cell import PARTS, DiscrepancyCell, PartAccuracy, cells_table
 
 if TYPE_CHECKING:
@@ -230,16 +230,16 @@ def cost_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) -> Fig
     )
     middle = rows.groupby(["approach", "method"], sort=False).median().reset_index()
     approaches = list(dict.fromkeys(middle["approach"]))
-    drawn, grid = panels(1, len(approaches), 1.6, Room(across=0.6))
+    drawn, grid = panels(1, len(approaches), 1.6, Room(across=0.6, bottom=0.5))
     for axes, approach in zip(grid[0], approaches, strict=True):
         part = middle[middle["approach"] == approach]
-        axes.bar([METHOD_WORDS[str(m)] for m in part["method"]], part["fit_s"], 0.6, color="#555555")
-        axes.bar(
-            [METHOD_WORDS[str(m)] for m in part["method"]], part["run_s"], 0.6, bottom=part["fit_s"], color="#bbbbbb"
-        )
-        axes.set_yscale("log")
+        at = np.arange(len(part))
+        axes.bar(at - 0.2, part["fit_s"], 0.36, color="#555555")
+        axes.bar(at + 0.2, part["run_s"], 0.36, color="#bbbbbb")
+        decades(axes)
+        axes.set_xticks(at, [METHOD_WORDS[str(method)].replace(" ", "\n") for method in part["method"]])
         axes.set_title(approach)
-    grid[0][0].set_ylabel("wall-clock time [s]")
+    grid[0][0].set_ylabel("seconds of a core")
     legend(drawn, _patches({"fit": Look("#555555", "-", ""), "run of both parts": Look("#bbbbbb", "-", "")}))
     return Figure(
         name,

@@ -76,7 +76,7 @@ def naming_figure(namings: Sequence[Naming], name: str) -> Figure:
     caption = (
         "Answer of most seeds, with its share in percent where the seeds differ; below it, how much less RMSE the "
         f"forecast has than that of the known model [%], median of n = {table['seed'].nunique()} seeds "
-        "(without noise, and of the curves, one)."
+        "(without noise, and of the curves, one; no tile: not asked)."
     )
     return Figure(name, caption, "Tiles of answers by case, tool and noise", pd.DataFrame(rows), drawn)
 
