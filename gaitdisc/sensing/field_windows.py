@@ -40,23 +40,25 @@ def field_windows(field: Field, route: Route, lags: Lags, positions: bool = Fals
     route : Route
         Where the sensors are.
     lags : Lags
-        Readings of a window, and snapshots from one to the next.
+        Readings of a window, snapshots from one to the next, and from the last to the one that is told.
     positions : bool
         Whether each sensor's place stands beside its reading: what a path never seen in training needs.
 
     Returns
     -------
     Samples
-        x (window, reading * sensor), oldest first; no outputs; time in snapshots, counted from 0.
+        x (window, reading * sensor), oldest first; no outputs; time is the snapshot that is told, counted from 0: that
+        of the last reading, or `lags.ahead` later.
 
     Raises
     ------
     SamplingError
         If the field has fewer snapshots than a window spans.
     """
-    if len(field) <= lags.reach:
+    if len(field) <= lags.reach + lags.ahead:
+        forth = f" and {lags.ahead} ahead" if lags.ahead else ""
         raise SamplingError(
-            f"a window reaches back {lags.reach} snapshots",
+            f"a window reaches back {lags.reach} snapshots{forth}",
             f"{field.source.file or 'the field'} has {len(field)}",
             "Take fewer lags, or a longer field.",
         )
@@ -64,7 +66,7 @@ def field_windows(field: Field, route: Route, lags: Lags, positions: bool = Fals
     if positions:
         told = np.concatenate([told, route.places(field)], axis=2)
     told = told.reshape(len(field), -1)
-    last = np.arange(lags.reach, len(field))
+    last = np.arange(lags.reach, len(field) - lags.ahead)
     rows = last[:, None] + (np.arange(lags.count) - lags.count + 1) * lags.spacing
     names = reading_names(field, route, positions)
     inputs = tuple(
@@ -73,7 +75,7 @@ def field_windows(field: Field, route: Route, lags: Lags, positions: bool = Fals
         for name in names
     )
     x, none = told[rows].reshape(len(last), -1), np.zeros((len(last), 0))
-    return Samples(x, none, inputs, (), last.astype(float), np.zeros(len(last)))
+    return Samples(x, none, inputs, (), (last + lags.ahead).astype(float), np.zeros(len(last)))
 
 
 def snapshots_of(windows: Samples) -> NDArray[np.intp]:

@@ -32,7 +32,7 @@ class FieldTask:
     name : str
         Of the field.
     lags : Lags
-        Readings of a window, and snapshots from one to the next.
+        Readings of a window, snapshots from one to the next, and how far ahead the field is told.
     rule : str
         Split, a word of `gaitdisc.sensing.splits.RULES`.
     energy : float
@@ -168,7 +168,7 @@ def prepare(field: Field, route: Route, task: FieldTask, targets: Targets | None
 
 def _parts(field: Field, route: Route, task: FieldTask) -> Parts:
     windows = field_windows(field, route, task.lags, task.positions)
-    return split_within([windows], task.rule, task.lags.reach, SPLIT_SEED)
+    return split_within([windows], task.rule, task.lags.reach + task.lags.ahead, SPLIT_SEED)
 
 
 def reconstruct_field(

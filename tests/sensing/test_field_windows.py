@@ -42,6 +42,14 @@ def test_outputs_are_the_coefficients_of_the_snapshot_itself():
     assert rows[0] - snapshots_of(check)[-1] > 4
 
 
+def test_ahead_of_its_readings_a_window_tells_a_later_snapshot():
+    now, later = field_windows(WAVE, ROUTE, Lags(3, 2)), field_windows(WAVE, ROUTE, Lags(3, 2, 5))
+    assert snapshots_of(later)[[0, -1]].tolist() == [9, 119]
+    np.testing.assert_array_equal(later.x, now.x[:-5])
+
+
 def test_a_window_longer_than_the_field_is_refused():
     with pytest.raises(SamplingError, match="reaches back 121 snapshots; the field has 120"):
         field_windows(WAVE, ROUTE, Lags(122, 1))
+    with pytest.raises(SamplingError, match=r"reaches back 99 snapshots and 21 ahead; the field has 120"):
+        field_windows(WAVE, ROUTE, Lags(100, 1, 21))

@@ -71,3 +71,11 @@ def test_departures_are_told_about_the_season_and_judged_with_it():
     assert apart["delay ridge, departures"].r2 > plain["delay ridge"].r2
     assert apart[SEASON].r2 == plain[SEASON].r2
     assert apart[CEILING].r2 > 0.999
+
+
+def test_the_future_of_a_travelling_wave_is_told_and_its_split_keeps_the_longer_gap():
+    task = FieldTask("wave", Lags(8, 3, 10), energy=0.9999)
+    cells = {cell.model: cell for cell in reconstruct(WAVE, fixed(WAVE, [30]), task, ("delay ridge",))}
+    assert cells["delay ridge"].relative_l2 < 1e-2
+    ready = prepare(WAVE, fixed(WAVE, [30]), task)
+    assert snapshots_of(ready.test)[0] - snapshots_of(ready.check)[-1] > 31
