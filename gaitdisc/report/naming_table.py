@@ -9,6 +9,7 @@ import pandas as pd
 from gaitdisc.report.table import Table
 from gaitdisc.results.naming import Naming, namings_table
 
+MOST_WORDS = 120  # characters of an answer
 TOOL_WORDS = {"discover": "discover", "sindy": "SINDy", "dmd": "DMD", "gp": "Gaussian process", "nn": "network"}
 
 
@@ -65,5 +66,6 @@ def _said(found: pd.DataFrame) -> str:
     words = ", ".join(some)
     if len(amounts):
         words += f" (× {amounts.median():.4g})"
-    first = str(found["said"].iloc[0])
-    return f"{words}: {first}" if found["answer"].iloc[0] in ("curve", "refused") and len(first) < 200 else words
+    first = str(found["said"].iloc[0]).split(";")[0]
+    told = found["answer"].iloc[0] in ("curve", "refused") and len(first) < MOST_WORDS
+    return f"{words}: {first}" if told else words
