@@ -21,5 +21,5 @@ def test_many_units_have_as_many_as_are_asked_for_and_the_same_for_a_seed():
 
 
 def test_permutations_that_could_show_nothing_are_refused():
-    with pytest.raises(ComparisonError, match="at level 0.01 needs 100 permutations or more; there are 32"):
+    with pytest.raises(ComparisonError, match=r"at level 0\.01 needs 100 permutations or more; there are 32"):
         sign_flips(6, PermutationPlan(alpha=0.01))
