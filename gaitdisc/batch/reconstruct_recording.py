@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +11,10 @@ from gaitdisc.errors import SamplingError
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.recording import Recording
+from gaitdisc.sensing.calibration import calibrated
 from gaitdisc.sensing.intervals import LEVEL, coverage
-from gaitdisc.sensing.model_folder import load_model
+from gaitdisc.sensing.model_folder import SensingModel, load_model
+from gaitdisc.sensing.reconstructor import Reconstructor
 from gaitdisc.signals.butterworth import KINEMATICS_HZ, lowpassed
 
 
@@ -50,7 +52,9 @@ class ToldRecording:
         return said
 
 
-def reconstruct_recording(file: Path, model: Path, out: Path, cutoff_hz: float = KINEMATICS_HZ) -> ToldRecording:
+def reconstruct_recording(
+    file: Path, model: Path, out: Path, cutoff_hz: float = KINEMATICS_HZ, calibration: Path | None = None
+) -> ToldRecording:
     """Tell the states of one recording, and write them as a `.mot`.
 
     Parameters
@@ -63,6 +67,9 @@ def reconstruct_recording(file: Path, model: Path, out: Path, cutoff_hz: float =
         File to write.
     cutoff_hz : float
         -3 dB frequency of one pass of the low-pass; the model's own recordings had the study's.
+    calibration : Path, optional
+        Kinematics of the same person that hold the sensors and every state, some ten strides: the model is corrected
+        for the person by them. Its intervals stay as they are, and are too wide then.
 
     Returns
     -------
@@ -74,6 +81,8 @@ def reconstruct_recording(file: Path, model: Path, out: Path, cutoff_hz: float =
         If a file cannot be read, a sensor is missing, or rate or units are others than the model's.
     """
     saved, kinematics = load_model(model), read_trial(file).stream("kinematics")
+    if calibration is not None:
+        saved = replace(saved, reconstructor=_for_person(saved, calibration, cutoff_hz))
     what = saved.reconstructor.sensing
     names = [name for name in (*what.sensors, *what.states) if name in kinematics.names or name in what.sensors]
     filtered = lowpassed(kinematics.selected(names), cutoff_hz)
@@ -95,3 +104,10 @@ def reconstruct_recording(file: Path, model: Path, out: Path, cutoff_hz: float =
             rmse[name] = float(np.sqrt(np.mean(error**2)))
             inside[name] = float(coverage(error[:, None], saved.half_widths[column : column + 1])[0])
     return ToldRecording(kept, out, rmse, inside, LEVEL)
+
+
+def _for_person(saved: SensingModel, calibration: Path, cutoff_hz: float) -> Reconstructor:
+    what, kinematics = saved.reconstructor.sensing, read_trial(calibration).stream("kinematics")
+    walk = lowpassed(kinematics.selected([*what.sensors, *what.states]), cutoff_hz)
+    saved(walk)  # refuses another rate or unit
+    return calibrated(saved.reconstructor, what.windows(walk, np.zeros(len(walk.time))))

@@ -36,6 +36,9 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     model: Annotated[
         Path | None, typer.Option(help="Folder of a model that this command saved: tell the states of a recording.")
     ] = None,
+    calibrate: Annotated[
+        Path | None, typer.Option(help="With --model: a walk of the same person with all states, to correct it by.")
+    ] = None,
     out: Annotated[Path | None, typer.Option(help="Folder of the report; by default STUDY/reconstruct.")] = None,
     quiet: Quiet = False,
 ) -> None:
@@ -51,7 +54,7 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     from gaitdisc.sensing.reconstructor import KINDS
 
     if model is not None:
-        _by_model(study, model, out)
+        _by_model(study, model, out, calibrate)
         return
     loaded = load_study(study)
     folder = out or loaded.folder / "reconstruct"
@@ -75,10 +78,11 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     _tell(done, page)
 
 
-def _by_model(recording: Path, model: Path, out: Path | None) -> None:
+def _by_model(recording: Path, model: Path, out: Path | None, calibrate: Path | None) -> None:
     from gaitdisc.batch.reconstruct_recording import reconstruct_recording
 
-    told = reconstruct_recording(recording, model, out or Path(f"{recording.stem}_reconstructed.mot"))
+    file = out or Path(f"{recording.stem}_reconstructed.mot")
+    told = reconstruct_recording(recording, model, file, calibration=calibrate)
     for line in told.lines():
         typer.echo(line)
 

@@ -3,30 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import StrideError
-from gaitdisc.recording import Samples
-from gaitdisc.sensing.reconstructor import Reconstructor
+from gaitdisc.recording import Samples, Scale
+from gaitdisc.sensing.reconstructor import STATIC, Reconstructor, ScaledModel
 from gaitdisc.sensing.splits import SEAM_S
 from gaitdisc.sensing.state_errors import stride_numbers
-from gaitdisc.sensing.windows import stacked
+from gaitdisc.sensing.windows import present, stacked
 
 PENALTIES = tuple(10.0**power for power in np.arange(-3.0, 2.5, 0.5))
+USUAL_PENALTY = 0.1  # where no other person is there to rehearse on
 TOLD = 3.0  # weight of what the model tells beside the readings, in standard deviations
 
 
 @dataclass(frozen=True, eq=False)
-class Correction:
-    """What is added to a model's states for one person: linear in the readings, their history and the states told.
+class Corrected:
+    """A model with what is added for one person: linear in the readings, their history and the states told.
 
     Parameters
     ----------
-    reconstructor : Reconstructor
-        The model of the population.
+    model : ScaledModel
+        Of the population.
     mean : ndarray (column,)
         Of readings and told states in the calibration strides, each scaled as in the model's training part.
     weights : ndarray (column, state) [each state's unit]
@@ -35,16 +36,35 @@ class Correction:
         Mean error in the calibration strides.
     """
 
-    reconstructor: Reconstructor
+    model: ScaledModel
     mean: NDArray[np.float64]
     weights: NDArray[np.float64]
     offset: NDArray[np.float64]
 
-    def __call__(self, windows: Samples) -> NDArray[np.float64]:
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Those of the model."""
+        return self.model.inputs
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Those of the model."""
+        return self.model.outputs
+
+    @property
+    def x_scale(self) -> Scale:
+        """Of every input, in the population."""
+        return self.model.x_scale
+
+    @property
+    def y_scale(self) -> Scale:
+        """Of every state, in the population."""
+        return self.model.y_scale
+
+    def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """States (window, state) of the person, each in its unit."""
-        states = self.reconstructor(windows)
-        columns = _columns(self.reconstructor, windows, states)
-        return states + (columns - self.mean) @ self.weights + self.offset
+        states = self.model(x)
+        return states + (_columns(self.model, x, states) - self.mean) @ self.weights + self.offset
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +119,7 @@ def first_strides(trials: Sequence[Samples], count: int, reach_s: float) -> Firs
     return FirstStrides(windows.rows(first), rest & ~near)
 
 
-def calibrated(done: Reconstructor, strides: Samples, penalty: float) -> Correction:
+def calibrated(done: Reconstructor, strides: Samples, penalty: float = USUAL_PENALTY) -> Reconstructor:
     """Correct a model for one person by ridge regression of its error, shrunk towards the model as it is.
 
     Minimises sum (y - f(x) - b - W h)^2 / windows + penalty sum W^2, where h holds the scaled readings with their
@@ -116,9 +136,10 @@ def calibrated(done: Reconstructor, strides: Samples, penalty: float) -> Correct
 
     Returns
     -------
-    Correction
+    Reconstructor
+        Of this person.
     """
-    return _corrections(done, strides, (penalty,))[0]
+    return _calibrated(done, strides, (penalty,))[0]
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,23 +176,24 @@ def rehearsed(done: Reconstructor, trials: Sequence[Samples], count: int) -> Reh
     """
     parted = first_strides(trials, count, done.sensing.reach_s)
     rest = stacked([each for each in trials if len(each)]).rows(parted.rest)
-    missed = [each(rest) - rest.y for each in _corrections(done, parted.strides, PENALTIES)]
+    missed = [each(rest) - rest.y for each in _calibrated(done, parted.strides, PENALTIES)]
     best = int(np.argmin([np.mean((each / done.model.y_scale.sd) ** 2) for each in missed]))
     return Rehearsal(PENALTIES[best], missed[best])
 
 
-def _corrections(done: Reconstructor, strides: Samples, penalties: Sequence[float]) -> list[Correction]:
-    states = done(strides)
-    columns, missed = _columns(done, strides, states), strides.y - states
+def _calibrated(done: Reconstructor, strides: Samples, penalties: Sequence[float]) -> list[Reconstructor]:
+    x = present(strides, done.sensing.sensors).x if done.kind in STATIC else strides.x
+    states = done.model(x)
+    columns, missed = _columns(done.model, x, states), strides.y - states
     mean, offset = columns.mean(axis=0), missed.mean(axis=0)
     centred = columns - mean
     values, vectors = np.linalg.eigh(centred.T @ centred / len(centred))
     turned = vectors.T @ (centred.T @ (missed - offset) / len(centred))
     spread = np.maximum(values, 0.0)[:, None]
-    return [Correction(done, mean, vectors @ (turned / (spread + p)), offset) for p in penalties]
+    found = [Corrected(done.model, mean, vectors @ (turned / (spread + each)), offset) for each in penalties]
+    return [replace(done, model=model, n_fitted=len(strides)) for model in found]
 
 
-def _columns(done: Reconstructor, windows: Samples, states: NDArray[np.float64]) -> NDArray[np.float64]:
-    scale = done.model.x_scale
-    readings = windows.x[:, -len(scale.mean) :]  # a model without history is corrected without it
-    return np.hstack([scale.scaled(readings), TOLD * done.model.y_scale.scaled(states)])
+def _columns(model: ScaledModel, x: NDArray[np.float64], states: NDArray[np.float64]) -> NDArray[np.float64]:
+    readings = np.nan_to_num(model.x_scale.scaled(x))  # a missing one counts as the mean
+    return np.hstack([readings, TOLD * model.y_scale.scaled(states)])

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from gaitdisc.batch.reconstruct_recording import reconstruct_recording
@@ -35,3 +36,20 @@ def test_sensors_alone_are_enough_and_without_one_it_is_refused(model, recording
     write_storage(kinematics.selected(["knee_angle_r"]), tmp_path / "one.mot")
     with pytest.raises(ChannelError, match="'hip_flexion_r' is needed"):
         reconstruct_recording(tmp_path / "one.mot", model, tmp_path / "told.mot")
+
+
+def test_a_walk_with_all_states_corrects_the_model_for_another_person(model, recordings, tmp_path):
+    other, out = recordings / "P02_exo.mot", tmp_path / "told.mot"
+    before = reconstruct_recording(other, model, out)
+    after = reconstruct_recording(other, model, out, calibration=recordings / "P02_nominal.mot")
+    rms = [np.sqrt(np.mean(np.square(list(told.rmse.values())))) for told in (before, after)]
+    assert rms[1] < 0.95 * rms[0]
+
+
+def test_a_calibration_without_a_state_is_refused(model, recordings, tmp_path):
+    kinematics = read_trial(recordings / "P01_nominal.mot").stream("kinematics")
+    write_storage(kinematics.selected(["hip_flexion_r", "knee_angle_r"]), tmp_path / "two.mot")
+    with pytest.raises(ChannelError, match="'ankle_angle_r' is needed"):
+        reconstruct_recording(
+            recordings / "P02_exo.mot", model, tmp_path / "told.mot", calibration=tmp_path / "two.mot"
+        )
