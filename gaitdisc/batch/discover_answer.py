@@ -63,14 +63,16 @@ def judged(hidden: HiddenEffect, found: Discovery) -> tuple[str, float]:
         The answer.
     """
     named: dict[tuple[str, ...], FoundEffect] = {(one.place, one.name): one for one in found.effects}
-    if not named or found.verdict == "unnamed":
-        return ("nothing" if not named else "curve"), float("nan")
+    if not named:
+        return "nothing", float("nan")
+    tied = {(one.place, one.name) for one in found.rivals if one.tied}
     if hidden.effect in named:
         number = next(iter(named[hidden.effect].estimates.values())).value
         alone = len(named) == 1 or found.verdict == "wrong_initial_condition"
-        return ("named" if alone else "among others"), number / hidden.amount
-    tied = any((one.place, one.name) == hidden.effect and one.tied for one in found.rivals)
-    return ("tied" if tied else "wrong name"), float("nan")
+        return ("among others" if not alone else "tied" if tied else "named"), number / hidden.amount
+    if hidden.effect in tied:
+        return "tied", float("nan")
+    return ("curve" if found.verdict == "unnamed" else "wrong name"), float("nan")
 
 
 def forecast_accuracy(record: Record, augmented: Simulation) -> float:

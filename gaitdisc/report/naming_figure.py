@@ -15,7 +15,7 @@ from gaitdisc.results.naming import Naming, namings_table
 RIGHT, HALF, WRONG, SILENT, CURVE = "#00875a", "#8fd0b5", "#d97700", "#ffffff", "#c9ced6"
 LOOKS = {
     "right": (RIGHT, "N", "right, and nothing else"),
-    "tied": (HALF, "T", "tied with the right name"),
+    "tied": (HALF, "T", "right or another, tied"),
     "among others": (HALF, "A", "right among others"),
     "wrong name": (WRONG, "W", "wrong name"),
     "curve": (CURVE, "C", "a curve, no name"),

@@ -26,8 +26,9 @@ class Naming:
     seed : int
         Of the noise.
     answer : str
-        One of `ANSWERS`: the hidden effect and nothing else, another one from which the data cannot tell it, more than
-        it, something else, a curve without a name, that nothing is missing, or a refusal.
+        One of `ANSWERS`: the hidden effect and nothing else, it and another from which the data cannot tell it
+        (whichever stands first), more than it, something else, a curve without a name, that nothing is missing, or a
+        refusal.
     said : str
         The answer in words.
     amount : float

@@ -1,13 +1,15 @@
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from gaitdisc.batch.discover_answer import discover_answer
+from gaitdisc.batch.discover_answer import discover_answer, judged
 from gaitdisc.discrepancy.burgers import burgers
 from gaitdisc.discrepancy.hidden_effect import HiddenEffect
 from gaitdisc.discrepancy.record import Conditions, recorded
 from gaitdisc.discrepancy.system import system_of
 from gaitdisc.errors import ShapeError
+from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, GapSize, Runs
 from gaitdisc.simulation.bundled import bundled
 from gaitdisc.simulation.parts import Term
 
@@ -38,3 +40,31 @@ def test_a_field_without_a_simulation_file_is_refused(hidden):
     record = recorded(field.system, Conditions(duration_s=2.0))
     with pytest.raises(ShapeError, match="is known as BurgersRates"):
         discover_answer(field, record)
+
+
+def effect(name, place="y", tied=False):
+    kind = "observation" if name == "sensor_gain" else "equation"
+    return FoundEffect(kind, place, name, "", {"factor": Estimate(0.02, 0.01, 0.03)}, tied=tied)
+
+
+@pytest.mark.parametrize(
+    ("verdict", "effects", "rivals", "answer"),
+    [
+        ("missing_physics", ["cubic_stiffness"], [], "named"),
+        ("missing_physics", ["cubic_stiffness", "linear_damping"], [], "among others"),
+        ("missing_physics", ["cubic_stiffness"], [effect("dead_zone_spring", tied=True)], "tied"),
+        ("missing_physics", ["dead_zone_spring"], [effect("cubic_stiffness", tied=True)], "tied"),
+        ("unnamed", ["unnamed"], [effect("cubic_stiffness", tied=True)], "tied"),
+        ("unnamed", ["unnamed"], [effect("cubic_stiffness")], "curve"),
+        ("missing_physics", ["dead_zone_spring"], [effect("cubic_stiffness")], "wrong name"),
+        ("no_gap", [], [effect("cubic_stiffness")], "nothing"),
+    ],
+)
+def test_a_verdict_is_an_answer(hidden, verdict, effects, rivals, answer):
+    size, none = GapSize(2.0, 1.0, 1.0), np.empty((0, 0, 1))
+    runs = Runs(np.empty(0, int), np.empty((0, 0)), np.empty(0), none, none, none)
+    named = tuple(effect(name) for name in effects)
+    found = Discovery(verdict, "", (), named, tuple(rivals), size, size, ("x",), ("1",), runs)
+    said, amount = judged(hidden, found)
+    assert said == answer
+    assert (amount == pytest.approx(2.0)) == ("cubic_stiffness" in effects)
