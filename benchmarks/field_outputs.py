@@ -2,7 +2,7 @@
 
     python benchmarks/field_outputs.py FOLDER [--epochs 30] [--text-epochs 3] [--energy 0.99]
 
-The flow: forced isotropic turbulence in a box of 50 x 50 x 50 nodes (computed once into FOLDER/flow), 1,257 snapshots,
+The flow: forced isotropic turbulence in a box of 50 x 50 x 50 nodes (computed once into FOLDER/flow), 600 snapshots,
 one fixed sensor, windows drawn at random (they leak; both sides alike). Each training runs in a process of its own on
 one thread, so that its peak memory is its own; the same steps, batches and learning rates on both sides.
 
@@ -32,7 +32,7 @@ from gaitdisc.sensing.splits import RANDOM
 from gaitdisc.sensing.windows import Lags
 from gaitdisc.turbulence.isotropic import FlowSettings, record_turbulence
 
-FLOW = FlowSettings(nodes=50, cut=50, spin_up=800)
+FLOW = FlowSettings(nodes=50, cut=50, snapshots=600, spin_up=800)
 LAGS = {"ours": Lags(13, 8), "text": Lags(100, 1)}
 BATCH, RATE, DECAY = 64, 3e-3, 0.01
 

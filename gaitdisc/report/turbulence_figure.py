@@ -42,7 +42,7 @@ def flow_figure(numbers: pd.DataFrame, power: float, name: str) -> Figure:
     left.legend(loc="lower left")
     right.plot(numbers["snapshot"], numbers["dissipation"], color="#c8102e", linewidth=1.0, label="dissipation")
     right.axhline(power, color="#888888", linestyle=(0, (4.0, 1.6)), label="power put in")
-    right.set_ylim(bottom=0)
+    right.set_ylim(0, 1.3 * max(power, float(numbers["dissipation"].max())))
     right.set_xlabel("snapshot")
     right.set_ylabel("per mass and time")
     right.legend(loc="lower right")
