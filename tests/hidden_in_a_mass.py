@@ -84,7 +84,7 @@ class Experiment:
     cutoff_hz : float
         Of the low-pass filter that colours the noise; 0 leaves it white.
     late : int
-        Samples by which the recorded push is ahead of the true one.
+        Samples by which the recorded push is ahead of the true one; negative where it is behind.
     shaking : float
         Standard deviation of a random push that nobody records [N].
     """
@@ -117,19 +117,20 @@ def record(truth: Simulation, seed: int, how: Experiment | None = None) -> Measu
     how = how or Experiment()
     rng = np.random.default_rng(seed)
     samples = round(how.seconds * RATE)
-    t = np.arange(samples + how.late) / RATE
+    t = np.arange(samples + abs(how.late)) / RATE
+    true, recorded = (slice(first, first + samples) for first in (max(-how.late, 0), max(how.late, 0)))
     pushes = [_push(rng, t)[:, None] if truth.inputs else np.zeros((len(t), 0)) for _ in range(how.trials)]
     shocks = [rng.normal(0, how.shaking, push.shape) for push in pushes]
     machine = compile_simulation(truth)
     starts = rng.normal(0, 0.5, (how.trials, len(machine.states)))
     rows = Rows(np.arange(how.trials), np.zeros(how.trials, int), starts)
-    drive = Drive.of([(push + shock)[:samples] for push, shock in zip(pushes, shocks, strict=True)], RATE)
+    drive = Drive.of([(push + shock)[true] for push, shock in zip(pushes, shocks, strict=True)], RATE)
     states, ok = machine.run(drive, rows, samples - 1)
     assert ok.all()
     seen = machine.observe(drive, rows, states)
     error = _noise(rng, seen.shape, how.cutoff_hz) * how.noise * seen.std(axis=(0, 1))
     names = tuple(str(trial + 1) for trial in range(how.trials))
-    told = Drive.of([push[how.late :] for push in pushes], RATE)
+    told = Drive.of([push[recorded] for push in pushes], RATE)
     return Measured(told, seen + error, names, machine.observed)
 
 

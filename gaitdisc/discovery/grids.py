@@ -90,15 +90,25 @@ def grid(kind: str, along: NDArray[np.float64], rhythm: Rhythm) -> NDArray[np.fl
     return PHASES if kind == "phases" else PHASE_WIDTHS
 
 
-def delays(rhythm: Rhythm) -> NDArray[np.float64]:
+def delays(rhythm: Rhythm, either_way: bool = False) -> NDArray[np.float64]:
     """Return the delays at which a search begins [s]: up to about half a period.
 
     Parameters
     ----------
     rhythm : Rhythm
         The record's times.
+    either_way : bool
+        Whether a signal may as well come early: one that was recorded late.
+
+    Examples
+    --------
+    >>> late = delays(Rhythm(1.0, 10.0, 100.0))
+    >>> both = delays(Rhythm(1.0, 10.0, 100.0), either_way=True)
+    >>> bool(late.min() > 0), sorted(both) == sorted([*late, *-late])
+    (True, True)
     """
-    return np.maximum(DELAYS_PER_PERIOD * rhythm.period, 0.5 / rhythm.rate)
+    late = np.maximum(DELAYS_PER_PERIOD * rhythm.period, 0.5 / rhythm.rate)
+    return np.concatenate([late, -late]) if either_way else late
 
 
 def cells(constants: dict[str, str], along: NDArray[np.float64], rhythm: Rhythm) -> list[dict[str, float]]:

@@ -162,7 +162,8 @@ class Scorer:
         values = machine.defaults.copy()
         values[: len(self.fit.values)] = self.fit.values
         none = float(values[place])
-        tried = delays(self.rhythm) if late else np.array([none + NUDGE * max(abs(none), 1e-2)])
+        either_way = candidate.verdict == "input_error"
+        tried = delays(self.rhythm, either_way) if late else np.array([none + NUDGE * max(abs(none), 1e-2)])
         values = np.repeat(values[None], len(tried), axis=0)
         values[:, place] = tried
         over = np.ones(len(tried)) if late else tried - none

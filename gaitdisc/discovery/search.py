@@ -109,7 +109,8 @@ class Search:
                 else:
                     yield part.values[slot], LIMITS[kind]
             if part.candidate.is_late:
-                yield part.values["seconds"], (0.0, self.rhythm.period)
+                early = -self.rhythm.period if part.candidate.verdict == "input_error" else 0.0
+                yield part.values["seconds"], (early, self.rhythm.period)
 
     def _visited(self, account: Account, role: str) -> tuple[float, float]:
         """Return where the run goes: a threshold beyond makes a one-sided spring a linear one, or nothing."""

@@ -104,17 +104,17 @@ def _one(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whereab
 
 def _signal(name: str, estimate: Estimate) -> str:
     """Say what is wrong with a signal."""
-    number = estimate_text(estimate)
-    if name in ("input_delay", "sensor_lag"):
-        return f"{'acts' if name == 'input_delay' else 'is seen'} late by {number}"
     if name == "input_gain":
-        return f"acts {number} times as strongly as recorded"
+        return f"acts {estimate_text(estimate)} times as strongly as recorded"
     if name == "sensor_gain":
-        return f"reads {number} times what it should"
+        return f"reads {estimate_text(estimate)} times what it should"
     low = estimate.value < 0
-    size = Estimate(-estimate.value, -estimate.high, -estimate.low, estimate.unit) if low else estimate
-    verb = "reads" if name == "sensor_offset" else "drifts"
-    return f"{verb} {'low' if low else 'high'} by {estimate_text(size)}"
+    size = estimate_text(Estimate(-estimate.value, -estimate.high, -estimate.low, estimate.unit) if low else estimate)
+    if name == "sensor_lag":
+        return f"is seen late by {size}"
+    if name == "input_delay":
+        return f"acts earlier than recorded, by {size}" if low else f"acts late by {size}"
+    return f"{'reads' if name == 'sensor_offset' else 'drifts'} {'low' if low else 'high'} by {size}"
 
 
 def _missing(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whereabouts, ...]) -> str:

@@ -11,7 +11,6 @@ from gaitdisc.simulation.running import compile_simulation
 
 SEED = 3
 MISSING = {
-    "constant_load": ("1.2", {"load": 1.2}),
     "cubic_stiffness": ("-14*x**3", {"stiffness": 14.0}),
     "coulomb_friction": ("-1.5*sign(v)", {"friction": 1.5}),
     "quadratic_drag": ("-0.7*v*abs(v)", {"drag": 0.7}),
@@ -50,10 +49,11 @@ def test_a_missing_term_is_named_with_its_numbers(name):
         (mass().with_values({"k": 27.0}), None, "wrong_parameter", "wrong_parameter", "k", 27.0),
         (mass().with_values({"c": 1.6}), None, "wrong_parameter", "wrong_parameter", "c", 1.6),
         (mass(), Experiment(late=4), "input_error", "input_delay", "push", 0.08),
+        (mass(), Experiment(late=-4), "input_error", "input_delay", "push", -0.08),
         (mass().with_observation("x", "x + 0.02*t"), None, "sensor_error", "sensor_drift", "x", 0.02),
         (mass(), Experiment(shaking=6.0), "process_noise", "process_noise", "load", 6.0),
     ],
-    ids=["stiffness", "damping", "late input", "drift", "shaken"],
+    ids=["stiffness", "damping", "late input", "early input", "drift", "shaken"],
 )
 def test_what_is_wrong_but_not_missing_is_named(truth, how, verdict, name, place, value):
     discovery, _ = _found(truth, how)
@@ -61,6 +61,12 @@ def test_what_is_wrong_but_not_missing_is_named(truth, how, verdict, name, place
     assert _named(discovery)[1] == [(name, place)]
     (estimate,) = discovery.effects[0].estimates.values()
     assert estimate.value == pytest.approx(value, rel=0.02 if name != "process_noise" else 0.3)
+
+
+def test_a_load_and_an_offset_that_a_linear_spring_cannot_tell_apart_are_both_given():
+    discovery, _ = _found(with_load("1.2"))
+    tied = {(one.name, one.place) for one in discovery.rivals if one.tied}
+    assert {_named(discovery)[1][0], *tied} >= {("sensor_offset", "x"), ("constant_load", "load")}
 
 
 def test_a_sensor_and_an_input_that_a_linear_system_cannot_tell_apart_are_both_given():

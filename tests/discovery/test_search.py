@@ -12,6 +12,7 @@ SPRING = Candidate(
 SLACK = Candidate("missing_physics", "port", "load", "slack", ("max(0, x - _d)",), {"d": "half widths of x"}, "x")
 LATE = Candidate("missing_physics", "port", "load", "late", ("delay(x, _d)",), {"d": "delays"}, "x")
 DELAY = Candidate("input_error", "input", "push", "input_delay")
+LAG = Candidate("sensor_error", "observation", "x", "sensor_lag")
 DAMPER = Candidate("missing_physics", "port", "load", "viscous_damping", ("v",), None, "x")
 
 
@@ -31,7 +32,10 @@ def _with(account, candidate, **values):
         (LATE, {"factor": -9.0, "d": -0.05}, False),
         (LATE, {"factor": -9.0, "d": 99.0}, False),
         (DELAY, {"seconds": 0.1}, True),
-        (DELAY, {"seconds": -0.1}, False),
+        (DELAY, {"seconds": -0.1}, True),
+        (DELAY, {"seconds": -99.0}, False),
+        (LAG, {"seconds": 0.1}, True),
+        (LAG, {"seconds": -0.1}, False),
     ],
 )
 def test_a_number_has_to_lie_where_it_means_what_its_name_says(inquiry, as_read, candidate, values, sensible):

@@ -69,6 +69,12 @@ def test_a_wrong_parameter_is_told_beside_the_files_number():
     ("kind", "name", "number", "told"),
     [
         ("input_error", "input_delay", Estimate(0.04, 0.03, 0.05, "s"), "driving signal x acts late by 0.04 s"),
+        (
+            "input_error",
+            "input_delay",
+            Estimate(-0.04, -0.05, -0.03, "s"),
+            "driving signal x acts earlier than recorded, by 0.04 s",
+        ),
         ("input_error", "input_gain", Estimate(1.2, 1.1, 1.3, "1"), "x acts 1.2 (95 % 1.1-1.3) times as strongly"),
         (
             "sensor_error",
