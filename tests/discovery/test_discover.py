@@ -84,6 +84,11 @@ def test_nothing_is_named_where_nothing_is_hidden(seed, cutoff_hz):
     assert discovery.held_out.before == discovery.held_out.after
 
 
+def test_what_moves_the_run_by_less_than_anyone_would_see_is_not_named():
+    discovery, _ = _found(with_load("-0.002*x**3"), Experiment(noise=1e-6))
+    assert _named(discovery) == ("no_gap", [])
+
+
 @pytest.mark.slow
 def test_of_forty_nulls_at_most_two_are_named():
     how = [Experiment(cutoff_hz=cutoff) for cutoff in (0.0, 6.0)]
