@@ -27,7 +27,7 @@ NEAR = 40.0  # by which a rival's evidence may be worse and still be tried on lo
 MOST_NEAR = 4
 REPEATS = 0.2  # of the misfit, which something that repeats itself has to take away where random pushes would do
 PUSHED = 0.03  # by which random pushes must be likelier than a sensor's own memory, for each number
-NEGLIGIBLE = 0.001  # of a channel's spread: what moves a run by less is not worth a name
+NEGLIGIBLE = 1e-4  # of a channel's spread: what moves a run by less may be how either was integrated
 WORTH = 0.05  # of what was named, which a shape without a name must explain beyond it
 
 

@@ -85,7 +85,7 @@ def test_nothing_is_named_where_nothing_is_hidden(seed, cutoff_hz):
 
 
 def test_what_moves_the_run_by_less_than_anyone_would_see_is_not_named():
-    discovery, _ = _found(with_load("-0.002*x**3"), Experiment(noise=1e-6))
+    discovery, _ = _found(with_load("-1e-4*x**3"), Experiment(noise=1e-7))
     assert _named(discovery) == ("no_gap", [])
 
 
