@@ -53,7 +53,12 @@ class ToldRecording:
 
 
 def reconstruct_recording(
-    file: Path, model: Path, out: Path, cutoff_hz: float = KINEMATICS_HZ, calibration: Path | None = None
+    file: Path,
+    model: Path,
+    out: Path,
+    cutoff_hz: float = KINEMATICS_HZ,
+    calibration: Path | None = None,
+    missing: str = "none",
 ) -> ToldRecording:
     """Tell the states of one recording, and write them as a `.mot`.
 
@@ -70,6 +75,8 @@ def reconstruct_recording(
     calibration : Path, optional
         Kinematics of the same person that hold the sensors and every state, some ten strides: the model is corrected
         for the person by them. Its intervals stay as they are, and are too wide then.
+    missing : str
+        What stands for a reading that is missing: a word of `gaitdisc.sensing.missing.WAYS`.
 
     Returns
     -------
@@ -86,7 +93,7 @@ def reconstruct_recording(
     what = saved.reconstructor.sensing
     names = [name for name in (*what.sensors, *what.states) if name in kinematics.names or name in what.sensors]
     filtered = lowpassed(kinematics.selected(names), cutoff_hz)
-    told = saved(filtered)
+    told = saved(filtered, missing)
     known = np.isfinite(told.values).all(axis=1)
     if known.sum() < 2:
         raise SamplingError(
@@ -100,7 +107,8 @@ def reconstruct_recording(
     rmse, inside = {}, {}
     for column, name in enumerate(what.states):
         if name in filtered.names:
-            error = told[name][known] - filtered[name][known]
+            both = known & np.isfinite(filtered[name])
+            error = told[name][both] - filtered[name][both]
             rmse[name] = float(np.sqrt(np.mean(error**2)))
             inside[name] = float(coverage(error[:, None], saved.half_widths[column : column + 1])[0])
     return ToldRecording(kept, out, rmse, inside, LEVEL)

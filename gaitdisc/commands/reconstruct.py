@@ -39,6 +39,9 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     calibrate: Annotated[
         Path | None, typer.Option(help="With --model: a walk of the same person with all states, to correct it by.")
     ] = None,
+    missing: Annotated[
+        str, typer.Option(help="With --model: what stands for a missing reading: none, mean or last.")
+    ] = "none",
     out: Annotated[Path | None, typer.Option(help="Folder of the report; by default STUDY/reconstruct.")] = None,
     quiet: Quiet = False,
 ) -> None:
@@ -54,7 +57,7 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     from gaitdisc.sensing.reconstructor import KINDS
 
     if model is not None:
-        _by_model(study, model, out, calibrate)
+        _by_model(study, model, out, calibrate, missing)
         return
     loaded = load_study(study)
     folder = out or loaded.folder / "reconstruct"
@@ -78,11 +81,11 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     _tell(done, page)
 
 
-def _by_model(recording: Path, model: Path, out: Path | None, calibrate: Path | None) -> None:
+def _by_model(recording: Path, model: Path, out: Path | None, calibrate: Path | None, missing: str) -> None:
     from gaitdisc.batch.reconstruct_recording import reconstruct_recording
 
     file = out or Path(f"{recording.stem}_reconstructed.mot")
-    told = reconstruct_recording(recording, model, file, calibration=calibrate)
+    told = reconstruct_recording(recording, model, file, calibration=calibrate, missing=missing)
     for line in told.lines():
         typer.echo(line)
 

@@ -115,5 +115,6 @@ def _told_by(reconstructor: Reconstructor) -> _LastReadings | _Mean | CarriedWin
     lags, model = reconstructor.sensing.lags, reconstructor.model
     if isinstance(model, Ensemble):
         return _Mean([CarriedWindows(member, lags.count, lags.spacing) for member in model.members])
-    assert isinstance(model, TrainedNetwork)  # what the other two are fitted as
-    return CarriedWindows(model, lags.count, lags.spacing)
+    if isinstance(model, TrainedNetwork):
+        return CarriedWindows(model, lags.count, lags.spacing)
+    return _LastReadings(reconstructor)  # corrected for a person by what the windows hold

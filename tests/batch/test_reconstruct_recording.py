@@ -5,7 +5,7 @@ import pytest
 
 from gaitdisc.batch.reconstruct_recording import reconstruct_recording
 from gaitdisc.batch.reconstruct_study import ReconstructionSettings, reconstruct_study
-from gaitdisc.errors import ChannelError
+from gaitdisc.errors import ChannelError, SchemaError
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.sensing.model_folder import save_model
@@ -53,3 +53,19 @@ def test_a_calibration_without_a_state_is_refused(model, recordings, tmp_path):
         reconstruct_recording(
             recordings / "P02_exo.mot", model, tmp_path / "told.mot", calibration=tmp_path / "two.mot"
         )
+
+
+def test_missing_readings_are_told_over_on_request(model, recordings, tmp_path):
+    kinematics = read_trial(recordings / "P01_nominal.mot").stream("kinematics")
+    values = kinematics.values.copy()
+    values[1000:1060, kinematics.index("knee_angle_r")] = np.nan
+    write_storage(kinematics.with_values(values), tmp_path / "gap.mot")
+    told = {
+        way: reconstruct_recording(tmp_path / "gap.mot", model, tmp_path / f"{way}.mot", missing=way)
+        for way in ("none", "last")
+    }
+    assert np.isnan(told["none"].states.values).any()
+    assert np.isfinite(told["last"].states.values).all()
+    assert np.isfinite(list(told["last"].rmse.values())).all()
+    with pytest.raises(SchemaError, match="one of three ways; 'zero' is none"):
+        reconstruct_recording(tmp_path / "gap.mot", model, tmp_path / "zero.mot", missing="zero")

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.errors import SchemaError, ShapeError
+from gaitdisc.sensing.calibration import calibrated
 from gaitdisc.sensing.missing import with_missing
 from gaitdisc.sensing.model_folder import SensingModel
 from gaitdisc.sensing.reconstructor import MASKED, STATIC, fit_reconstructor
@@ -25,6 +26,15 @@ def test_a_stream_tells_what_the_recording_tells(pair, fitted, untrained, kind):
     wanted = done(windows)[: 120 - reach]
     np.testing.assert_allclose(told[reach:], wanted, rtol=1e-9 if kind in RIDGES else 1e-6)
     assert np.isnan(told[:reach]).all() == (kind not in STATIC)
+
+
+def test_a_network_that_is_corrected_for_a_person_streams_too(pair, untrained):
+    judged = pair.parts.judged()
+    done = calibrated(untrained("shred"), judged)
+    stream = Stream(done)
+    told = [stream.update(row) for row in pair.recording.selected(["a"]).values[:60]]
+    windows = pair.what.windows(pair.recording, np.zeros(3000))
+    np.testing.assert_allclose(told[50:], done(windows)[:10], rtol=1e-6)
 
 
 def test_a_dropped_reading_is_not_made_up(pair, fitted):
