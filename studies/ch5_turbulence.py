@@ -2,7 +2,7 @@
 
     python studies/ch5_turbulence.py [FOLDER] [--quick] [--models 8] [--nodes 48]
 
-The database's flow (1024 nodes, Re_lambda 433) does not come with the package. A forced isotropic flow is computed
+The database's flow (1024 nodes, Re_lambda above 400) does not come with the package. A forced isotropic flow is computed
 instead, with 48 nodes and Re_lambda near 30: a stand-in, on which no printed number can be reproduced. Its snapshots
 lie in FOLDER/flow, its models' errors in FOLDER/cells; a run that was stopped goes on.
 """
@@ -35,7 +35,7 @@ TASK = FieldTask(
     "stand-in turbulence", Lags(13, 8)
 )  # reaches as far back as the 100 snapshots of the dissertation: 1.2 turnovers
 STAND_IN = (
-    "This flow is a stand-in, not the database's: its Reynolds number is a twentieth, and its cut holds most of the "
+    "This flow is a stand-in, not the database's: its Reynolds number is a fifteenth, and its cut holds most of the "
     "box, where the dissertation's holds a hundred-thirtieth. The dissertation prints no error in numbers but standard "
     "deviations, 0.0998 for fixed and 0.0617 for walking sensors, of windows drawn at random."
 )
