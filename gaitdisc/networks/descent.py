@@ -112,7 +112,7 @@ def descend(
     ----------
     Loshchilov and Hutter 2019, Decoupled weight decay regularization. The dissertation does not say how it trained.
     """
-    steps = _steps(network, part, check, schedule, settings.arithmetic)
+    steps = _steps(network, part, check, schedule, settings)
     order = torch.Generator().manual_seed(settings.seed)
     losses: list[float] = []
     best = steps.weights()
@@ -139,11 +139,11 @@ def _steps(
     part: tuple[Tensor, Tensor],
     check: tuple[Tensor, Tensor],
     schedule: Schedule,
-    arithmetic: str,
+    settings: TrainingSettings,
 ) -> Steps:
-    if arithmetic == "auto":
+    if settings.arithmetic == "auto" and settings.precision == "float32":
         from gaitdisc.networks.fused_steps import FusedSteps, can_be_fused
 
         if can_be_fused(network):
             return FusedSteps(cast(FeedForward, network), part, check, schedule)
-    return TorchSteps(network, part, check, schedule)
+    return TorchSteps(network, part, check, schedule, settings.precision)

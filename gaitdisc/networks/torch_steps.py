@@ -26,6 +26,8 @@ class TorchSteps:
         Scaled samples to descend on, and to judge by; on the device of the network.
     schedule : Schedule
         Decay and batch.
+    precision : str
+        Of the matrix products: `float32` or `bfloat16`; weights stay float32.
 
     References
     ----------
@@ -35,9 +37,15 @@ class TorchSteps:
     arithmetic = "torch"
 
     def __init__(
-        self, network: nn.Module, part: tuple[Tensor, Tensor], check: tuple[Tensor, Tensor], schedule: Schedule
+        self,
+        network: nn.Module,
+        part: tuple[Tensor, Tensor],
+        check: tuple[Tensor, Tensor],
+        schedule: Schedule,
+        precision: str = "float32",
     ) -> None:
         self._network, self._part, self._check, self._batch = network, part, check, schedule.batch
+        self._short = precision == "bfloat16"
         matrices = [p for p in network.parameters() if p.ndim > 1]
         others = [p for p in network.parameters() if p.ndim <= 1]
         groups = [{"params": matrices, "weight_decay": schedule.decay}, {"params": others, "weight_decay": 0.0}]
@@ -60,7 +68,9 @@ class TorchSteps:
             for group in self._adam.param_groups:
                 group["lr"] = rate
             self._adam.zero_grad()
-            nn.functional.mse_loss(self._network(x[rows]), y[rows]).backward()
+            with torch.autocast(x.device.type, torch.bfloat16, enabled=self._short):
+                told = self._network(x[rows])
+            nn.functional.mse_loss(told.float(), y[rows]).backward()
             self._adam.step()
 
     def loss(self) -> float:

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 from gaitdisc.errors import TrainingError
 
+PRECISIONS = ("float32", "bfloat16")
+
 
 @dataclass(frozen=True)
 class TrainingSettings:
@@ -34,6 +36,10 @@ class TrainingSettings:
     arithmetic : str
         `auto` computes the dissertation's network on the CPU by compiled code, with torch's numbers to rounding, and
         everything else by torch; `torch` computes everything by torch.
+    precision : str
+        `float32`, or `bfloat16`: torch multiplies in bfloat16 while descending, and keeps weights, losses and the
+        readout in float32 and better. It pays for an LSTM (1.5 to 1.7 times as fast on a processor that has bfloat16),
+        not for the GRU of 64 (docs/results.md).
     missing_inputs : bool
         Whether inputs may be missing (NaN); the network has to know what to do with them, as `Shred` with `masked`.
 
@@ -57,6 +63,7 @@ class TrainingSettings:
     device: str = "cpu"
     threads: int = 1
     arithmetic: str = "auto"
+    precision: str = "float32"
     missing_inputs: bool = False
 
     def __post_init__(self) -> None:
@@ -68,6 +75,8 @@ class TrainingSettings:
         _refuse_unless(0 < self.inner_share < 1, "an inner_share between 0 and 1", f"it is {self.inner_share}")
         known = self.arithmetic in ("auto", "torch")
         _refuse_unless(known, "arithmetic 'auto' or 'torch'", f"it is {self.arithmetic!r}")
+        known = self.precision in PRECISIONS
+        _refuse_unless(known, f"precision {' or '.join(map(repr, PRECISIONS))}", f"it is {self.precision!r}")
 
 
 def _refuse_unless(holds: bool, needed: str, found: str) -> None:

@@ -1,11 +1,14 @@
 from __future__ import annotations
 
+import numpy as np
+import pytest
 import torch
 from torch import nn
 
 from gaitdisc.networks.schedule import schedule_of
+from gaitdisc.networks.shred import Shred
 from gaitdisc.networks.torch_steps import TorchSteps
-from gaitdisc.networks.training_settings import TrainingSettings
+from gaitdisc.networks.training_settings import PRECISIONS, TrainingSettings
 
 
 def test_one_epoch_is_that_of_a_loop_written_out():
@@ -40,3 +43,22 @@ def test_weights_are_a_copy_and_come_back():
     assert steps.loss() < loss
     steps.restore(before)
     assert steps.loss() == loss
+
+
+@pytest.mark.parametrize("cell", ["gru", "lstm"])
+def test_steps_in_bfloat16_lead_nearly_where_those_in_float32_do(cell):
+    x = torch.from_numpy(np.random.default_rng(0).normal(size=(64, 8)).astype(np.float32))
+    y = x[:, 2:3] * x[:, 6:7]
+    found = {}
+    for precision in PRECISIONS:
+        torch.manual_seed(0)
+        network = Shred(8, 1, 2, nodes=8, cell=cell)
+        schedule = schedule_of(64, 0.0, TrainingSettings(batch=16, learning_rate=1e-3))
+        steps = TorchSteps(network, (x, y), (x, y), schedule, precision)
+        before = steps.loss()
+        steps.epoch(torch.arange(64), schedule.rates[0])
+        assert {weights.dtype for weights in network.parameters()} == {torch.float32}
+        found[precision] = before - steps.loss()
+    assert found["float32"] > 0
+    assert found["bfloat16"] == pytest.approx(found["float32"], rel=0.3)
+    assert found["bfloat16"] != found["float32"]

@@ -17,6 +17,7 @@ from gaitdisc.networks.training_settings import TrainingSettings
         ({"decays": (0.1, -0.2)}, "needs weight decays of 0 or more; decays holds -0.2"),
         ({"inner_share": 1.0}, "needs an inner_share between 0 and 1; it is 1.0"),
         ({"arithmetic": "fast"}, "needs arithmetic 'auto' or 'torch'; it is 'fast'"),
+        ({"precision": "float16"}, "needs precision 'float32' or 'bfloat16'; it is 'float16'"),
     ],
 )
 def test_settings_that_train_nothing_are_refused(wrong: dict[str, Any], words):
