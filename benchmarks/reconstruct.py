@@ -110,7 +110,7 @@ def rmse(told: NDArray[np.float64], samples: Samples, angles: Sequence[int]) -> 
 
 
 def original(parts: Parts, angles: list[int], cap_s: float, seed: int) -> list[Watched]:
-    """Train the original SHRED, and watch it."""
+    """Train the original SHRED, and watch it; the last entry is the error with its best weights."""
     torch.manual_seed(seed)
     training, check, test = parts.fitted(), parts.checked(), parts.judged()
     low, high = (np.concatenate([f(training.x, axis=0), f(training.y, axis=0)]) for f in (np.min, np.max))
@@ -147,7 +147,7 @@ def original(parts: Parts, angles: list[int], cap_s: float, seed: int) -> list[W
     rate, error = 1e6 * spent / epoch / len(training), rmse(told, test, angles)
     print(f"original: {len(training)} windows, {rate:.0f} us a window and epoch; ended by {stopped}")
     print(f"original: {epoch} epochs, {spent:.0f} s, {error:.3f} deg with its best weights", flush=True)
-    return found
+    return [*found, Watched(epoch, spent, best, error)]
 
 
 def ours(parts: Parts, person: Person, watched: list[Watched], seed: int) -> None:
