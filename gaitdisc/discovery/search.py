@@ -135,7 +135,15 @@ class Search:
 
 
 def is_certain(account: Account, first: int = 0) -> bool:
-    """Whether no explanation from `first` on could as well be idle, its number lost in its error."""
+    """Whether no explanation from `first` on could as well be idle, its number lost in its error.
+
+    Parameters
+    ----------
+    account : Account
+        Fitted.
+    first : int
+        Explanations before this one are not looked at.
+    """
     errors = dict(zip(account.fit.free, np.sqrt(np.diag(account.fit.covariance)), strict=True))
     return all(
         abs(part.values[slot] - none) > CERTAIN * errors[names[slot]]
