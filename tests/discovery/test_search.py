@@ -5,6 +5,7 @@ import pytest
 from gaitdisc.discovery.account import Part, account_for
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.evidence import Judged
+from gaitdisc.discovery.search import is_certain
 
 SPRING = Candidate(
     "missing_physics", "port", "load", "one_sided_spring", ("max(0, x - _x0)",), {"x0": "quantiles of x"}, "x"
@@ -58,3 +59,9 @@ def test_less_one_explanation_the_others_stay(inquiry, as_read, cubic):
     both = _both(inquiry, as_read, cubic)
     assert inquiry.search.without(both, 0).labels == ("viscous_damping@load",)
     assert inquiry.search.without(both, 1).labels == ("cubic_stiffness@load",)
+
+
+def test_a_number_lost_in_its_error_is_not_certain(inquiry, as_read, cubic):
+    both = _both(inquiry, as_read, cubic)
+    assert not is_certain(both.account)
+    assert is_certain(inquiry.search.without(both, 1).account)
