@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from gaitdisc.discovery.account import Account, account_for
 from gaitdisc.discovery.noise import Noise, noise_of
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.simulation.simulation import Simulation
 
 TURNS = 4
+INTEGRATED = 1e-4  # of a channel's spread: how far two integrators of one model may be apart
 
 
 @dataclass(frozen=True)
@@ -65,9 +68,8 @@ class Judged:
         """
         if other.shooting is self.shooting:
             return self
-        return Judged(
-            account_for(other.shooting, base, self.account.parts, self.account.fit.starts, TURNS), other.shooting
-        )
+        account = account_for(other.shooting, base, self.account.parts, self.account.fit.starts, TURNS)
+        return Judged(account, other.shooting, self.gained)
 
 
 def judged(shooting: Shooting, base: Simulation, account: Account, rounds: int = 2) -> Judged:
@@ -84,8 +86,10 @@ def judged(shooting: Shooting, base: Simulation, account: Account, rounds: int =
     rounds : int
         How often noise and fit take turns.
     """
+    least = INTEGRATED * np.nanstd(shooting.measured.observed, axis=(0, 1))
     for _ in range(rounds):
-        noise = noise_of(account.fit.residual, account.fit.starts.shape[1] / account.fit.residual.shape[2])
+        used = account.fit.starts.shape[1] / account.fit.residual.shape[2]
+        noise = noise_of(account.fit.residual, used, least=least)
         shooting = shooting.with_noise(noise)
         account = account_for(shooting, base, account.parts, account.fit.starts, TURNS)
     return Judged(account, shooting)

@@ -78,18 +78,6 @@ def gap_size(before: Trial, after: Trial, floor: NDArray[np.float64], channels: 
     return GapSize(whole[0], whole[1], whole[2], chance(_gains(before, after, floor, block)), sizes)
 
 
-def moved(before: Trial, after: Trial) -> float:
-    """Share of a channel's spread by which what was found moves the run, in the channel that it moves most.
-
-    Parameters
-    ----------
-    before, after : Trial
-        The same runs of the simulation as read and with what was found.
-    """
-    change = np.sqrt(np.nanmean((before.fit.residual - after.fit.residual) ** 2, axis=(0, 1)))
-    return float((change / np.maximum(np.nanstd(after.measured, axis=(0, 1)), 1e-300)).max())
-
-
 def _gains(before: Trial, after: Trial, floor: NDArray[np.float64], block: int) -> NDArray[np.float64]:
     """Fall of the squared error, in units of the noise, block by block (block,)."""
     fall = np.nan_to_num((before.fit.residual**2 - after.fit.residual**2) / floor**2).sum(axis=2)

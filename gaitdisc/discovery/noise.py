@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import solve_toeplitz
 
 from gaitdisc.discovery.whitening import whiten
@@ -80,7 +80,9 @@ def white_noise(size: NDArray[np.float64]) -> Noise:
     return Noise(tuple((np.zeros(0),) for _ in size), tuple(np.array([one]) for one in size))
 
 
-def noise_of(residual: NDArray[np.float64], used: float = 0.0, white_share: float = WHITE_SHARE) -> Noise:
+def noise_of(
+    residual: NDArray[np.float64], used: float = 0.0, white_share: float = WHITE_SHARE, least: ArrayLike = 0.0
+) -> Noise:
     """Learn the noise from residuals (Yule-Walker; the order by the Bayesian criterion).
 
     Parameters
@@ -91,6 +93,8 @@ def noise_of(residual: NDArray[np.float64], used: float = 0.0, white_share: floa
         Numbers that the fit took from each segment and channel; the variance is enlarged accordingly.
     white_share : float
         Of the variance, taken as white whatever the residuals say.
+    least : float or ndarray (channel,)
+        Standard deviation of white noise that is there in any case: what integration and rounding leave.
 
     Examples
     --------
@@ -102,13 +106,14 @@ def noise_of(residual: NDArray[np.float64], used: float = 0.0, white_share: floa
     predictors, spread = [], []
     _, samples, channels = residual.shape
     enlarge = samples / max(samples - used, 1.0)
+    always = np.broadcast_to(np.square(least), channels)
     for channel in range(channels):
         e = residual[:, :, channel]
         most = min(MOST_LAGS, samples // 4)
         covariance = (
             np.array([(e[:, : samples - lag] * e[:, lag:]).sum() / e.size for lag in range(most + 1)]) * enlarge
         )
-        covariance[0] = max(covariance[0], np.finfo(float).tiny)
+        covariance[0] = max(covariance[0] + always[channel], np.finfo(float).tiny)
         covariance[1:] /= 1 + white_share
         orders = [np.zeros(0)] + [
             solve_toeplitz(covariance[:order], covariance[1 : order + 1]) for order in range(1, most + 1)

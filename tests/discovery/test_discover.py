@@ -84,9 +84,17 @@ def test_nothing_is_named_where_nothing_is_hidden(seed, cutoff_hz):
     assert discovery.held_out.before == discovery.held_out.after
 
 
-def test_what_moves_the_run_by_less_than_anyone_would_see_is_not_named():
-    discovery, _ = _found(with_load("-1e-4*x**3"), Experiment(noise=1e-7))
+@pytest.mark.parametrize("noise", [0.0, 1e-7])
+@pytest.mark.parametrize("term", ["0", "-1e-4*x**3"])
+def test_what_integration_may_leave_is_not_named(term, noise):
+    discovery, _ = _found(with_load(term), Experiment(noise=noise))
     assert _named(discovery) == ("no_gap", [])
+
+
+def test_without_noise_a_small_effect_is_named_with_its_number():
+    discovery, _ = _found(with_load("-0.05*x**3"), Experiment(noise=0.0))
+    assert _named(discovery) == ("missing_physics", [("cubic_stiffness", "load")])
+    assert discovery.effects[0].estimates["stiffness"].value == pytest.approx(0.05, rel=0.02)
 
 
 @pytest.mark.slow

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -48,3 +50,9 @@ def test_labels_name_what_is_in(as_read, with_cubic):
     assert as_read.labels == ()
     assert with_cubic.labels == ("cubic_stiffness@load",)
     assert np.isfinite(with_cubic.evidence)
+
+
+def test_under_anothers_noise_what_was_gained_stays(inquiry, as_read, with_cubic):
+    own = judged(as_read.shooting, inquiry.search.base, with_cubic.account)
+    moved = replace(as_read, gained=7.0).under(own, inquiry.search.base)
+    assert (moved.gained, moved.noise) == (7.0, own.noise)

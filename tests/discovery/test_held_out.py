@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from gaitdisc.discovery.account import Part, account_for
 from gaitdisc.discovery.evidence import Judged
-from gaitdisc.discovery.held_out import chance, drawn_runs, gap_size, moved, runs_of
+from gaitdisc.discovery.held_out import chance, drawn_runs, gap_size, runs_of
 
 
 @settings(max_examples=30, deadline=None)
@@ -74,11 +74,3 @@ def test_a_long_run_counts_as_many_blocks(runs):
     before, after = runs
     whole, in_two = (gap_size(before, after, np.array([0.01]), ("x",), before.measured.shape[1] // n) for n in (1, 2))
     assert in_two.p < whole.p
-
-
-def test_a_run_is_moved_by_the_share_of_its_channels_spread(runs):
-    before, _ = runs
-    spread = np.nanstd(before.measured)
-    shifted = replace(before, fit=replace(before.fit, residual=before.fit.residual + 0.25 * spread))
-    assert moved(before, shifted) == pytest.approx(0.25)
-    assert moved(before, before) == 0.0

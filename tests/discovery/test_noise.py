@@ -76,3 +76,9 @@ def test_residuals_of_zero_do_not_divide_by_zero():
 def test_white_noise_of_a_size_divides_by_it():
     noise: Noise = white_noise(np.array([2.0, 4.0]))
     np.testing.assert_array_equal(noise.whitened(np.full((1, 2, 2), 8.0))[0, 0], [4.0, 2.0])
+
+
+def test_what_integration_leaves_is_white_and_there_in_any_case():
+    noise = noise_of(np.zeros((2, 40, 2)), least=np.array([0.5, 2.0]))
+    assert noise.size == pytest.approx([0.5, 2.0])
+    assert noise.lags == (0, 0)
