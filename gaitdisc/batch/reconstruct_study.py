@@ -110,7 +110,8 @@ def reconstruct_study(
     """
     settings = settings or ReconstructionSettings()
     walks = sensed_walks(study, sensors, settings.condition_read, settings.targets)
-    names = tuple(channel.name for channel in walks.channels)
+    told_of = walks.channels if settings.targets == STATES else [c for c in walks.channels if c.name not in sensors]
+    names = tuple(channel.name for channel in told_of)
     what = sensing(names, tuple(sensors), settings.lags(walks.rate_hz), walks.rate_hz)
     by_name = {channel.name: channel for channel in walks.channels}
     channels = tuple(by_name[name] for name in (*what.sensors, *what.states))
@@ -202,8 +203,9 @@ def _result(
         tuple(by_name[name] for name in what.sensors),
         tuple(by_name[name] for name in what.states),
         f"{settings.split}: {rule}",
-        f"{what.lags.count} readings of each sensor, {what.lags.spacing / what.rate_hz:.2f} s apart"
-        + (f"; states {what.lags.ahead / what.rate_hz:.2f} s after the last of them" if what.lags.ahead else ""),
+        f"{what.lags.count} readings of each sensor, {what.lags.spacing / what.rate_hz:.2f} s apart; each model tells "
+        + (f"the states {what.lags.ahead / what.rate_hz:.2f} s after" if what.lags.ahead else "the states at")
+        + " the last of them",
         models,
         *(
             pd.concat([getattr(each, name) for each in done], ignore_index=True)

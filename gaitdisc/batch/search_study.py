@@ -6,6 +6,8 @@ import pandas as pd
 
 from gaitdisc.batch.reconstruct_study import ReconstructionSettings, parts_of
 from gaitdisc.batch.sensed_walks import sensed_walks
+from gaitdisc.batch.target_walks import STATES
+from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.study import Study
 from gaitdisc.sensing.sensor_search import search_sensors
 from gaitdisc.sensing.windows import windows_of
@@ -30,10 +32,18 @@ def search_study(study: Study, most: int, settings: ReconstructionSettings | Non
 
     Raises
     ------
+    SchemaError
+        If something else is to be told than the present states.
     GaitdiscError
         If no walk can be processed, or none can be parted.
     """
     settings = settings or ReconstructionSettings()
+    if settings.targets != STATES or settings.ahead_s:
+        raise SchemaError(
+            "sensors are searched for the states at their last reading",
+            f"{settings.targets} are to be told {settings.ahead_s:g} s ahead",
+            "Search without --targets and --ahead; then name the sensors with --sensors.",
+        )
     walks = sensed_walks(study, (), settings.condition_read)
     names, lags = [channel.name for channel in walks.channels], settings.lags(walks.rate_hz)
     windows = {

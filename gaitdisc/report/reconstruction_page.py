@@ -75,8 +75,8 @@ def method_sentences(done: Reconstruction) -> list[str]:
         The whole result.
     """
     return [
-        f"A window holds {done.history}; each model tells the states at its last reading (Eqs. 5.1-5.7). No window "
-        f"reaches over a missing value, or from one trial into another.",
+        f"A window holds {done.history} (Eqs. 5.1-5.7). No window reaches over a missing value, or from "
+        "one trial into another.",
         f"Windows are parted by {done.split}. Scales and weights come from the fitted windows alone; penalties, widths "
         f"and the epoch whose weights are kept are chosen on the checked ones; errors are of the judged ones, from "
         f"which the others lie apart by the length of a window and 0.3 s.",

@@ -42,9 +42,9 @@ def models_table(done: Reconstruction) -> Table:
     )
     people = counted(len(done.participants), "participant")
     caption = (
-        f"Models on the judged windows: mean over n = {people} [95 % interval of the mean], angles that no sensor "
-        f"measures. Split: {done.split}. Relative L2: norm of the error by norm of the measured values about zero; "
-        f"“with sensors”: the sensors counted as states without error, as Table 5.2 does; R²: median of the angles; "
+        f"Models on the judged windows: mean over n = {people} [95 % interval of the mean], {_judged(done)}. "
+        f"Split: {done.split}. Relative L2: norm of the error by norm of the measured values about zero; "
+        f"“with sensors”: the sensors counted as states without error, as Table 5.2 does; R²: median of these; "
         f"coverage: share inside an interval that was made for 90 %; seconds: processor time of a fit. * recommended: "
         f"the cheapest within 2 % of the least error on the windows that models are chosen by."
     )
@@ -91,7 +91,7 @@ def participants_table(done: Reconstruction) -> Table:
         (str(row[0]), str(int(strides[row[0]])), *(_plain(value, 2 if angles else 3) for value in row[1:]))
         for row in wide.itertuples()
     )
-    what = "RMSE of the angles that no sensor measures [deg]" if angles else "Relative L2 of all that is told [1]"
+    what = f"RMSE of {_judged(done)} [deg]" if angles else "Relative L2 of all that is told [1]"
     caption = f"{what}, by participant; strides: those that were judged."
     return Table("participants", caption, ("participant", "strides", *done.models), rows, done.summary)
 
@@ -110,7 +110,7 @@ def reconstruction_sentences(done: Reconstruction) -> list[str]:
     row = over.loc[best]
     angles = _has_angles(done)
     rmse = f"an RMSE of {_plain(row['rmse_deg'], 2)} deg over the angles and " if angles else ""
-    noun = "future state" if set(done.sensors) & set(done.states) else "other state"
+    noun = "future state" if _ahead(done) else "other state"
     what = counted(len(done.states), noun) if angles else _quantities(done)
     sentences = [
         f"From {sensors} {what} {'is' if len(done.states) == 1 else 'are'} told with {rmse}a relative L2 of "
@@ -181,6 +181,16 @@ def _has_angles(done: Reconstruction) -> bool:
     return any(channel.unit == "deg" for channel in done.states)
 
 
+def _ahead(done: Reconstruction) -> bool:
+    return bool(set(done.sensors) & set(done.states))  # the present of a sensor is read, not told
+
+
+def _judged(done: Reconstruction) -> str:
+    if not _has_angles(done):
+        return "all that is told"
+    return "all angles" if _ahead(done) else "the angles that no sensor measures"
+
+
 def _quantities(done: Reconstruction) -> str:
     units = listed(list(dict.fromkeys(channel.unit for channel in done.states)))
     return f"{counted(len(done.states), 'channel')} [{units}]"
@@ -196,4 +206,7 @@ def _plain(value: Any, digits: int) -> str:
 
 
 def _rmse(value: Any, unit: str) -> str:
-    return _plain(value, 4 if unit == "m" else 2)
+    if unit == "deg" or not float(value):
+        return _plain(value, 2)
+    leading = math.floor(math.log10(float(value))) if math.isfinite(float(value)) else 0
+    return _plain(value, max(0, 2 - leading))  # three digits of volts, metres and newtons alike

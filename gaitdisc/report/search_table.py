@@ -33,7 +33,7 @@ def search_table(found: pd.DataFrame) -> Table:
         "Best set of sensors of every size, by ridge regression on their history, all participants together: all sets "
         "of up to three, then the sensor that helps most. Chosen by the RMSE of all angles on the checked windows, "
         "sensors counted as exact; beside it that of the angles that no sensor measures, on the judged windows. * the "
-        f"smallest set that one more sensor improves by less than {100 * WORTH:.0f} %."
+        f"smallest set that one more sensor improves by less than {100 * WORTH:.0f} %; without one, the largest."
     )
     columns = ("sensors", "which", "all angles [deg]", "not measured [deg]", "regressions", "processor time [s]")
     return Table("search", caption, columns, rows, found)
@@ -51,11 +51,14 @@ def search_sentences(found: pd.DataFrame) -> list[str]:
     row = found.iloc[chosen]
     names = listed([label(name) for name in str(row["names"]).split(", ")])
     size = int(row["sensors"])
-    said = f"{counted(size, 'sensor').capitalize()} {'is' if size == 1 else 'are'} enough: {names}"
     if chosen + 1 < len(found):
         less = 1 - (float(found["loss"].iloc[chosen + 1]) / float(row["loss"])) ** 0.5
-        said += f"; one more takes {100 * less:.0f} % off the error of all angles"
+        said = f"{counted(size, 'sensor').capitalize()} {'is' if size == 1 else 'are'} enough: {names}; one more "
+        said += f"takes {100 * less:.0f} % off the error of all angles"
     else:
-        said += ", or more: the largest set that was tried was still worth its last sensor"
+        said = (
+            f"The best set of {counted(size, 'sensor')} is {names}; whether it is enough is not known, no larger one "
+        )
+        said += "was tried"
     cost = f"{counted(int(found['fits'].sum()), 'regression')}, {found['seconds'].sum():.1f} s"
     return [f"{said} (search: {cost})."]

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from gaitdisc.batch.demonstration import write_demonstration
@@ -42,6 +44,8 @@ def test_forces_are_told_in_newtons_and_no_number_is_in_degrees(tmp_path):
     assert over["delay ridge"] < 0.5 * over["linear"]
     said = " ".join(reconstruction_sentences(done))
     assert "4 channels [N] are told with a relative L2 of 0." in said and "deg" not in said
+    later, _ = reconstruct_study(study, ("hip_flexion_r", "knee_angle_r"), replace(settings, ahead_s=0.1))
+    assert later.states == done.states  # the sensors' own future was not asked for
 
 
 def test_one_condition_is_told_from_the_other(study):
@@ -64,6 +68,6 @@ def test_states_ahead_of_the_last_reading(study):
     done, people = reconstruct_study(study, ("knee_angle_r",), ReconstructionSettings(kinds=KINDS, ahead_s=0.1))
     assert "knee_angle_r" in set(done.errors["state"])
     assert {"persistence", "phase average"} < set(done.models)
-    assert done.history.endswith("states 0.10 s after the last of them")
+    assert done.history.endswith("each model tells the states 0.10 s after the last of them")
     assert people[0].fitted[0].reconstructor.sensing.lags.ahead == 10
     assert "future states are told" in reconstruction_sentences(done)[0]

@@ -26,6 +26,21 @@ def test_states_and_participants(reconstruction):
     assert participants_table(reconstruction).rows[0][0] == "P01"
 
 
+@pytest.mark.parametrize(
+    ("unit", "rmse", "printed"), [("V", 2.34567e-5, "0.0000235"), ("m", 0.0412, "0.0412"), ("N", 209.4, "209")]
+)
+def test_a_small_unit_is_printed_with_three_digits(reconstruction, unit, rmse, printed):
+    [state] = reconstruction.states
+    other = replace(reconstruction, states=(replace(state, unit=unit),), errors=reconstruction.errors.assign(rmse=rmse))
+    assert states_table(other).rows[0][2] == printed
+
+
+def test_the_future_of_a_sensor_is_among_the_angles_that_are_judged(reconstruction):
+    assert "the angles that no sensor measures" in models_table(reconstruction).caption
+    ahead = replace(reconstruction, states=(*reconstruction.states, *reconstruction.sensors))
+    assert "all angles" in participants_table(ahead).caption and "no sensor measures" not in models_table(ahead).caption
+
+
 def test_the_sentences_recommend_and_refuse_the_name(reconstruction):
     said = reconstruction_sentences(reconstruction)
     rmse = reconstruction.over_participants().loc["delay ridge", "rmse_deg"]
