@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 import os
+import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from gaitdisc.batch.demonstration import write_demonstration
 from gaitdisc.batch.sensed_walks import SensedWalks, sensed_walks
-from gaitdisc.channel import Channel, vocabulary
-from gaitdisc.ingest.storage import write_storage
-from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
-from gaitdisc.recording import Recording
+from gaitdisc.channel import Channel
+from gaitdisc.ingest.study import Study
 from gaitdisc.sensing.reconstructor import Sensing, sensing
 from gaitdisc.sensing.windows import Lags
 
+sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
+from ch5_gait import treadmill
+
 SENSORS = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r")
 LAGS = Lags(25, 4)
-TRIALS = range(504, 516)
 DATA = Path(os.environ.get("GAITDISC_DATA", Path(__file__).parents[2] / "shared" / "data"))
 
 
@@ -42,7 +41,7 @@ class Person:
 def treadmill_walks(sensors: tuple[str, ...] = SENSORS, lags: Lags = LAGS) -> list[Person]:
     """The person of treadmill_walk_ik, twelve walks of 21 s."""
     with tempfile.TemporaryDirectory() as name:
-        return _people(_treadmill_study(Path(name)), sensors, lags)
+        return _people(treadmill(DATA / "gait", Path(name)), sensors, lags)
 
 
 def cohort_walks(
@@ -57,20 +56,3 @@ def _people(study: Study, sensors: tuple[str, ...], lags: Lags, condition: str =
     walks = sensed_walks(study, sensors, condition)
     what = sensing(tuple(channel.name for channel in walks.channels), sensors, lags, walks.rate_hz)
     return [Person(name, walks, what) for name in walks.people]
-
-
-def _treadmill_study(folder: Path) -> Study:
-    with np.load(DATA / "gait" / "treadmill_walk_ik" / "addbio_expert3_ik.npz") as packed:
-        names = [str(name) for name in packed["columns"]]
-        known = [(k, vocabulary().named(name)) for k, name in enumerate(names)]
-        kept = [(k, channel) for k, channel in known if channel is not None]
-        for number in TRIALS:
-            values = np.array(packed[f"S01DE{number}"], float)[:, [k for k, _ in kept]]
-            channels = tuple(channel for _, channel in kept)
-            write_storage(Recording(np.arange(len(values)) / 100, values, channels), folder / f"{number}.mot")
-    trials = tuple(PlannedTrial(condition="walk", files=(f"{number}.mot",)) for number in TRIALS)
-    one = Conditions(nominal="walk", device="none")
-    study = Study(conditions=one, participants=(Participant(id="S01", trials=trials),))
-    return study.model_copy(update={"quality": study.quality.model_copy(update={"late_change": "report"})}).placed(
-        folder
-    )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,6 +28,7 @@ SENSORS = {
 }  # of Table 5.2: "randomly" and "non-randomly chosen"
 PELVIS = ("3 random", "1 random")  # the embedded cohort has no pelvis, and cannot have these
 WALK_S, PEOPLE = 60.0, 12
+DATA = Path(os.environ.get("GAITDISC_DATA", Path(__file__).parents[2] / "shared" / "data")) / "gait"
 TREADMILL = range(504, 516)
 RUNS = {
     "welk007": {

@@ -10,13 +10,12 @@ one person of each kind, windows drawn at random stand beside it, which leak. Th
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Mapping
 from pathlib import Path
 
 import pandas as pd
-from ch5_gait import PELVIS, SENSORS, Result, cell, cohort, exotendon, printed, treadmill
+from ch5_gait import DATA, PELVIS, SENSORS, Result, cell, cohort, exotendon, printed, treadmill
 
 from gaitdisc.batch.reconstruct_study import ReconstructionSettings
 from gaitdisc.batch.sensed_walks import sensed_walks
@@ -33,7 +32,6 @@ from gaitdisc.sensing.splits import RANDOM, RULES
 
 SAGITTAL = "3 sagittal"
 QUICK_KINDS = ("linear", "delay ridge", "fourier ridge")
-DATA = Path(os.environ.get("GAITDISC_DATA", Path(__file__).parents[2] / "shared" / "data")) / "gait"
 
 
 def run(quick: bool = False, folder: Path = Path("ch5_individual"), data: Path = DATA) -> Result:

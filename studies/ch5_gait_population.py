@@ -9,12 +9,11 @@ people in the same task here: of the two runners one is told in each condition b
 
 from __future__ import annotations
 
-import os
 import sys
 from pathlib import Path
 
 import pandas as pd
-from ch5_gait import PELVIS, SENSORS, Result, cell, cohort, exotendon, printed
+from ch5_gait import DATA, PELVIS, SENSORS, Result, cell, cohort, exotendon, printed
 
 from gaitdisc.batch.reconstruct_study import CONDITION, SUBJECT, ReconstructionSettings
 from gaitdisc.report.block import Block
@@ -26,7 +25,6 @@ from gaitdisc.sensing.reconstructor import KINDS
 
 WITHOUT = ("linear", "delay ridge", "fourier ridge")
 RULE = "one person left out"
-DATA = Path(os.environ.get("GAITDISC_DATA", Path(__file__).parents[2] / "shared" / "data")) / "gait"
 
 
 def run(
