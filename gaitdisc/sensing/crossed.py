@@ -53,9 +53,8 @@ def crossed_widths(
     """Half width of the 90 % interval for a person whom a model has not seen, (state,) [each state's unit].
 
     One checked person may be told better or worse than most (and is all there is where there are fewer than four people
-    in all). Ridge regression is therefore crossed over people; a
-    network, which would take five times as long, gets its interval on the checked person, times what crossing changes
-    for ridge regression on delays.
+    in all). Ridge regression is therefore crossed over people; a network, which would take five times as long, gets its
+    interval on the checked person, times what crossing changes for ridge regression on delays.
 
     Parameters
     ----------

@@ -161,8 +161,8 @@ def prepare(field: Field, route: Route, task: FieldTask, targets: Targets | None
     told = targets or targets_of(field, task)
     parts = _parts(told.read, route, task)
     names = reading_names(field, route, task.positions)
-    training, check, test = (with_coefficients(each, told.coefficients, told.modes.names)
-             for each in (parts.fitted(), parts.checked(), parts.judged()))  # fmt: skip
+    windows = parts.fitted(), parts.checked(), parts.judged()
+    training, check, test = (with_coefficients(each, told.coefficients, told.modes.names) for each in windows)
     return Prepared(training, check, test, told, Sensing(names, told.modes.names, task.lags, 1.0))
 
 
