@@ -15,7 +15,6 @@ AXES = {
     "noise": "noise of the sensors [% of their standard deviation]",
     "missing": "missing readings [%]",
 }
-MASKED = "masked shred"
 
 
 @in_style
@@ -53,6 +52,5 @@ def disturbance_figure(found: pd.DataFrame, whose: str, name: str) -> Figure:
 
 
 def _look(model: str) -> dict[str, Any]:
-    look = RECONSTRUCTED["shred" if model == MASKED else model]
-    mark = "*" if model == MASKED else look.mark
-    return {"color": look.colour, "linestyle": ":" if model == MASKED else look.line, "marker": mark}
+    look = RECONSTRUCTED[model]
+    return {"color": look.colour, "linestyle": look.line, "marker": look.mark}

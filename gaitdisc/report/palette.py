@@ -40,6 +40,8 @@ RECONSTRUCTED = {
     "linear": Look("#d97700", (0, (4.0, 1.6)), "^"),
     "delay ridge": Look("#7a3fa0", (0, (3.0, 1.0, 1.0, 1.0)), "v"),
     "fourier ridge": Look("#a8326e", (0, (1.4, 1.0)), "D"),
+    "masked shred": Look("#1f4fc8", ":", "*"),
+    "shred ensemble": Look("#1f4fc8", "-.", "P"),
 }
 SIDES = {
     "l": Look("#c8102e", "-", "v"),

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 from gaitdisc.report.search_table import search_sentences
 from gaitdisc.report.table import Table
 from gaitdisc.report.wording import counted, label, listed, number
-from gaitdisc.results.reconstruction import CALIBRATED, Reconstruction
+from gaitdisc.results.reconstruction import CALIBRATED, FLOORS, Reconstruction
 
 if TYPE_CHECKING:
     import rich.table
 
+BESIDE = ("shred", "fourier ridge", "delay ridge", "linear", *FLOORS)
 NOT_MSE = (
     "The dissertation calls the norm of the error by the norm of the measured values “MSE” (Eq. 2.21, Table 5.2) and "
     "prints it in degrees; it has no unit. It is compared with the relative L2 here, and with no number in degrees."
@@ -117,7 +118,7 @@ def reconstruction_sentences(done: Reconstruction) -> list[str]:
         f"{_plain(row['relative_l2'], 3)} (median R² {_plain(row['r2'], 2)}; mean of "
         f"{counted(len(done.participants), 'participant')}) by {best}, which is recommended.",
     ]
-    compared = [kind for kind in ("shred", "fourier ridge", "delay ridge", "linear") if kind in kinds and kind != best]
+    compared = [kind for kind in BESIDE if kind in kinds and kind != best]
     if compared:
         measure, digits, unit = ("rmse_deg", 2, " deg") if angles else ("relative_l2", 3, "")
         words = [f"{kind} {_plain(over.loc[kind, measure], digits)}{unit}" for kind in compared]

@@ -19,7 +19,8 @@ NAME = "reconstruction.json"
 NEAR = 1.02  # of the least error on the check part: a cheaper model that is within this is recommended instead
 WORTH = 0.1  # of the root mean squared error, which one more sensor must take off
 CALIBRATED = "{}, calibrated"  # name of a model that is corrected for the person who is judged
-CHEAP_FIRST = ("linear", "delay ridge", "shallow decoder", "fourier ridge", "shred")
+CHEAP_FIRST = ("linear", "delay ridge", "shallow decoder", "fourier ridge", "shred", "masked shred", "shred ensemble")
+FLOORS = ("persistence", "phase average")  # what a forecast has to beat; no models
 MEASURES = ("rmse_deg", "relative_l2", "r2", "relative_l2_whole", "check_loss", "coverage", "seconds")
 
 
@@ -78,12 +79,12 @@ class Reconstruction:
     def recommended(self) -> str:
         """Model to use: the cheapest of those whose error on the check part is within 2 % of the least.
 
-        The judged part has no say in it. A calibrated model is recommended by what it is without.
+        The judged part has no say in it. A calibrated model is recommended by what it is without; a forecast's floors
+        are none to recommend.
         """
         every = self.summary.groupby("model")["check_loss"].mean()
-        loss = every[[model for model in every.index if not model.endswith(CALIBRATED.format(""))]]
-        near = [kind for kind in CHEAP_FIRST if kind in loss.index and np.sqrt(loss[kind] / loss.min()) <= NEAR]
-        return near[0] if near else str(loss.idxmin())
+        loss = every[[kind for kind in CHEAP_FIRST if kind in every.index]]
+        return str(loss.index[np.sqrt(loss / loss.min()) <= NEAR][0])
 
     def over_participants(self) -> pd.DataFrame:
         """Mean of each measure over participants, and its 95 % interval (Student's t, from three people); by model."""

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import Samples
+from gaitdisc.results.reconstruction import FLOORS
 
-PERSISTENCE, PHASE_AVERAGE = "persistence", "phase average"
+PERSISTENCE, PHASE_AVERAGE = FLOORS
 BASELINES = {
     PERSISTENCE: "all states as they were when the forecast was made: measured, not told from the sensors",
     PHASE_AVERAGE: "the mean stride of the fitted part, at the phase that the time since the last contact leads to",

@@ -76,3 +76,12 @@ def test_a_calibrated_model_does_not_decide_which_is_recommended(done):
 def test_a_search_is_saved_with_the_rest(done, tmp_path):
     save_reconstruction(replace(done, search=pd.DataFrame({"sensors": [1], "names": ["a"]})), tmp_path)
     assert (tmp_path / "search.csv").read_text().splitlines() == ["sensors,names", "1,a"]
+
+
+def test_a_floor_of_forecasts_is_not_recommended_and_what_was_asked_for_may_be(done):
+    floor, asked = (
+        done.summary[done.summary["model"] == "linear"].assign(model=model, check_loss=loss)
+        for model, loss in (("phase average", 1e-4), ("masked shred", 1e-3))
+    )
+    assert replace(done, summary=pd.concat([done.summary, floor])).recommended == done.recommended
+    assert replace(done, summary=pd.concat([done.summary, floor, asked])).recommended == "masked shred"
