@@ -169,7 +169,12 @@ def _begun(
 ) -> tuple[NDArray[np.complexfloating], int, list[dict[str, float]]]:
     path = folder / SETTINGS
     if path.exists():
-        there = json.loads(path.read_text(encoding="utf-8"))
+        try:
+            there = dict(json.loads(path.read_text(encoding="utf-8")))
+        except (OSError, ValueError, TypeError) as error:
+            raise ReadError(
+                "a flow is to go on by its settings", f"{SETTINGS} cannot be read: {error}", "Delete the folder."
+            ) from error
         if there != asdict(settings):
             other = [
                 f"{name} {there.get(name)}" for name, value in asdict(settings).items() if there.get(name) != value

@@ -48,6 +48,9 @@ def test_a_folder_of_another_flow_is_refused(tmp_path):
     (tmp_path / "flow" / "state.npz").write_bytes(b"x")
     with pytest.raises(ReadError, match=r"state.npz cannot be read: .* Delete the folder"):
         record_turbulence(SMALL, tmp_path / "flow")
+    (tmp_path / "flow" / "flow.json").write_text("{")
+    with pytest.raises(ReadError, match=r"flow.json cannot be read: .* Delete the folder"):
+        record_turbulence(SMALL, tmp_path / "flow")
 
 
 def test_settings_that_keep_nothing_are_refused():
