@@ -4,6 +4,9 @@ from gaitdisc.cli import app
 from gaitdisc.commands.exit_codes import REFUSED
 
 
+FAST = ("--kinds", "linear,delay ridge")  # no network, where none is asked about
+
+
 def test_a_study_gives_a_sentence_a_table_and_a_report(study, tmp_path):
     words = ["reconstruct", str(study), "-s", "hip_flexion_r,knee_angle_r", "--out", str(tmp_path), "-q"]
     done = CliRunner().invoke(app, words)
@@ -24,7 +27,7 @@ def test_a_sensor_that_is_not_there_is_one_sentence(study, called):
 
 
 def test_a_model_tells_a_recording(study, recordings, tmp_path, called):
-    words = ["-s", "hip_flexion_r", "-s", "knee_angle_r", "--condition", "natural", "--out", tmp_path, "-q"]
+    words = ["-s", "hip_flexion_r", "-s", "knee_angle_r", "--condition", "natural", "--out", tmp_path, "-q", *FAST]
     assert called("reconstruct", study, *words).returncode == 0
     [model] = (tmp_path / "models").iterdir()
     file, out = recordings / "walker1" / "exo.mot", tmp_path / "told.mot"
@@ -41,7 +44,7 @@ def test_without_sensors_it_is_refused(study, called):
 
 
 def test_a_search_chooses_the_sensors_and_stands_in_the_report(study, tmp_path):
-    words = ["reconstruct", str(study), "--search", "2", "--out", str(tmp_path), "-q"]
+    words = ["reconstruct", str(study), "--search", "2", "--out", str(tmp_path), "-q", *FAST]
     done = CliRunner().invoke(app, words)
     assert done.exit_code == 0, done.output
     assert "; whether it is enough is not known" in done.stdout
