@@ -3,7 +3,6 @@ from typer.testing import CliRunner
 from gaitdisc.cli import app
 from gaitdisc.commands.exit_codes import REFUSED
 
-
 FAST = ("--kinds", "linear,delay ridge")  # no network, where none is asked about
 
 
