@@ -46,7 +46,7 @@ def line(person: Person) -> str:
     single = [np.sqrt(np.mean((member(test.x) - test.y)[:, angles] ** 2)) for member in done.model.members]
     other = np.sqrt(np.mean((ridge(test) - test.y)[:, angles] ** 2))
     spread = done.model.spread(test.x)[:, angles]
-    ranks = [spearmanr(spread[:, k], np.abs(errors[:, k]))[0] for k in range(len(angles))]
+    ranks = [float(np.asarray(spearmanr(spread[:, k], np.abs(errors[:, k])))[0]) for k in range(len(angles))]
     inside = coverage(errors, half_widths((done(check) - check.y)[:, angles])).mean()
     return (
         f"{person.name}: one {np.mean(single):.2f} ({min(single):.2f} to {max(single):.2f}), mean of five "
