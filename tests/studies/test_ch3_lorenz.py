@@ -22,6 +22,6 @@ def test_the_hidden_term_is_in_the_first_equation(study):
 def test_no_learned_rate_loses_before_the_first_jump_but_that_of_dmd(study, tmp_path):
     cells = study.run(quick=True, folder=tmp_path).cells["done right"]
     for cell in cells:
-        if cell.approach == "dynamics" and cell.method != "dmd":
+        if cell.approach == "dynamics" and cell.method not in ("dmd", "bopdmd"):
             part = cell.parts["forecast"]
             assert part.accuracy(until_s=part.first_jump_s()).min() > 80
