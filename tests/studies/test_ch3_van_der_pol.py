@@ -23,5 +23,6 @@ def test_text_and_code_hide_a_term_of_opposite_sign_and_start_apart(study):
 @pytest.mark.slow
 def test_the_quick_study_answers_every_statement(study, tmp_path):
     result = study.run(quick=True, folder=tmp_path)
-    assert len(result.tables[0].rows) == len(study.STATED)
+    captions = [study.FIGURES[each] for each in ("system", "cost")]
+    assert [row[0] for row in result.tables[0].rows] == [where for where, *_ in study.STATED] + captions
     assert (tmp_path / "tables.md").exists()
