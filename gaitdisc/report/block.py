@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from gaitdisc.report.figure import Figure, SavedFigure, save_figure
+from gaitdisc.report.figure import Figure, SavedFigure, save_figures
 from gaitdisc.report.table import Table, save_tables
 
 
@@ -67,6 +67,6 @@ def save_block(block: Block, folder: Path) -> SavedBlock:
     folder : Path
         Folder of the report.
     """
-    figures = tuple(save_figure(figure, folder / "figures") for figure in block.figures)
+    figures = tuple(save_figures(block.figures, folder))
     save_tables(block.tables, folder)
     return SavedBlock(block.anchor, block.heading, block.sentences, figures, block.tables)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from gaitdisc.report.discovery_figure import discovery_figures
 from gaitdisc.report.discovery_tables import data_findings, estimates_table, gap_table, rivals_table, where_table
-from gaitdisc.report.figure import save_figure
+from gaitdisc.report.figure import save_figures
 from gaitdisc.report.page import write_page
 from gaitdisc.report.provenance_tables import provenance_tables
 from gaitdisc.report.table import save_tables
@@ -73,7 +73,7 @@ def write_discovery_report(discovery: Discovery, folder: Path) -> Path:
         "title": str(made.settings.get("title", "A simulation")) if made else "A simulation",
         "verdict": VERDICTS[discovery.verdict],
         "terms": [effect for effect in discovery.effects if effect.term],
-        "figures": [save_figure(figure, folder / "figures") for figure in discovery_figures(discovery)],
+        "figures": save_figures(discovery_figures(discovery), folder),
         "tables": tables,
         "method": METHOD,
     }

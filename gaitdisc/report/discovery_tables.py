@@ -10,11 +10,10 @@ import pandas as pd
 from gaitdisc.discovery.amounts import amount, estimate_text, shown_unit
 from gaitdisc.discovery.told_apart import would_tell_apart
 from gaitdisc.discovery.wording import at_place, spoken
+from gaitdisc.report.seen_tables import seen_table
 from gaitdisc.report.table import Table
-from gaitdisc.report.wording import counted
+from gaitdisc.report.wording import NONE, counted, p_cell
 from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect
-
-NONE = "–"
 
 
 def estimates_table(discovery: Discovery) -> Table:
@@ -57,7 +56,7 @@ def gap_table(discovery: Discovery) -> Table:
             shown, factor = shown_unit(unit)
             before, after, floor = size.channels[channel]
             told = [f"{amount(factor * one, factor * floor / 10)} {shown}".strip() for one in (before, after, floor)]
-            rows.append((data, channel, *told, _percent(closed_share(before, after, floor)), _p(size.p)))
+            rows.append((data, channel, *told, _percent(closed_share(before, after, floor)), p_cell(size.p)))
             records.append((data, channel, before, after, floor, unit, closed_share(before, after, floor), size.p))
     runs = counted(len(discovery.runs.trial), "run")
     caption = (
@@ -133,9 +132,7 @@ def data_findings(discovery: Discovery) -> Table:
     discovery : Discovery
         What was found.
     """
-    rows = tuple((f.severity, f.file, f.channel, f"{f.kind}: {f.what}", f.spoils) for f in discovery.findings)
-    columns = ("severity", "file", "channel", "what", "spoils")
-    return Table("findings", f"Seen in the files, n = {len(rows)}.", columns, rows, _frame(rows, columns))
+    return seen_table(discovery.findings, f"Seen in the files, n = {len(discovery.findings)}.")
 
 
 def closed_share(before: float, after: float, floor: float) -> float:
@@ -170,10 +167,6 @@ def _bic(value: float) -> str:
 
 def _percent(share: float) -> str:
     return f"{100 * share:.0f} %".replace("-", "−") if math.isfinite(share) else NONE
-
-
-def _p(p: float) -> str:
-    return NONE if not math.isfinite(p) else "< .001" if p < 0.001 else f"{p:.3f}"
 
 
 def _frame(records: Sequence[tuple[object, ...]], columns: Sequence[str]) -> pd.DataFrame:

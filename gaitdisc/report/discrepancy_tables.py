@@ -6,11 +6,10 @@ import re
 from collections.abc import Sequence
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.report.discrepancy_figure import METHOD_WORDS
-from gaitdisc.report.table import Table
+from gaitdisc.report.table import Table, words_table
 from gaitdisc.results.discrepancy_cell import DiscrepancyCell, PartAccuracy, cells_table
 
 MOST_TERMS = 110  # characters
@@ -117,7 +116,7 @@ def statements_table(statements: Sequence[tuple[str, str, str]], name: str) -> T
     """
     columns = ("where", "dissertation", "ours")
     caption = "The dissertation's statements beside what was found here."
-    return Table(name, caption, columns, tuple(statements), pd.DataFrame(list(statements), columns=pd.Index(columns)))
+    return words_table(name, caption, columns, statements)
 
 
 def as_markdown(table: Table) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import io
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -91,6 +91,21 @@ def save_figure(figure: Figure, folder: Path, inline_bytes: int = LARGEST_INLINE
     kind, content = ("svg+xml", svg) if len(svg) <= max(inline_bytes, len(png)) else ("png", png)
     data = f"data:image/{kind};base64,{base64.b64encode(content).decode('ascii')}"
     return SavedFigure(figure.name, figure.caption, figure.alt, data, 96 * figure.drawn.get_figwidth())
+
+
+def save_figures(figures: Iterable[Figure], folder: Path, inline_bytes: int = LARGEST_INLINE_SVG) -> list[SavedFigure]:
+    """Write figures into the folder `figures/` of a report.
+
+    Parameters
+    ----------
+    figures : iterable of Figure
+        What to save.
+    folder : Path
+        Folder of the report.
+    inline_bytes : int
+        As of `save_figure`.
+    """
+    return [save_figure(figure, folder / "figures", inline_bytes) for figure in figures]
 
 
 def file_names(participants: Sequence[str]) -> dict[str, str]:

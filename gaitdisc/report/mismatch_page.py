@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from gaitdisc.report.figure import save_figure
+from gaitdisc.report.figure import save_figures
 from gaitdisc.report.mismatch_figure import mismatch_figures
 from gaitdisc.report.mismatch_sentences import method_sentences, mismatch_sentences
 from gaitdisc.report.mismatch_tables import channels_table, findings_of, regions_table
@@ -46,7 +46,7 @@ def write_mismatch_report(mismatch: Mismatch, folder: Path) -> Path:
     shown = {
         "mismatch": mismatch,
         "sentences": mismatch_sentences(mismatch),
-        "figures": [save_figure(figure, folder / "figures") for figure in mismatch_figures(mismatch)],
+        "figures": save_figures(mismatch_figures(mismatch), folder),
         "tables": tables,
         "method": method_sentences(mismatch),
     }

@@ -5,18 +5,16 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-import pandas as pd
-
 from gaitdisc.report.gap_wording import amount, spoken, with_unit
+from gaitdisc.report.seen_tables import seen_table
 from gaitdisc.report.table import Table
-from gaitdisc.report.wording import counted
+from gaitdisc.report.wording import NONE, counted, p_cell
 from gaitdisc.results.mismatch import Mismatch
 
 if TYPE_CHECKING:
     import rich.table
 
 HEADINGS = ("channel", "stride [%]", "gap", "at [%]", "in sd", "p")
-NONE = "–"
 
 
 def regions_table(mismatch: Mismatch) -> Table:
@@ -52,7 +50,7 @@ def channels_table(mismatch: Mismatch) -> Table:
             f"{row['at_percent']:.0f}",
             amount(float(row["rms_gap"])),
             amount(float(row["rms_sd"])),
-            _p(float(row["p"])),
+            p_cell(float(row["p"])),
             amount(float(row["within"])),
             amount(float(row["visible"])),
             f"{row['shift_percent']:+.0f}" if row["shift_percent"] else "0",
@@ -82,10 +80,7 @@ def findings_of(mismatch: Mismatch) -> Table:
     mismatch : Mismatch
         What was found.
     """
-    rows = tuple((f.severity, f.file, f.channel, f"{f.kind}: {f.what}", f.spoils) for f in mismatch.findings)
-    columns = ("severity", "file", "channel", "what", "spoils")
-    caption = f"Seen on the way, n = {len(rows)}."
-    return Table("findings", caption, columns, rows, pd.DataFrame(rows, columns=pd.Index(columns)))
+    return seen_table(mismatch.findings, f"Seen on the way, n = {len(mismatch.findings)}.")
 
 
 def mismatch_text(mismatch: Mismatch) -> rich.table.Table:
@@ -115,7 +110,7 @@ def _rows(mismatch: Mismatch, name: str) -> list[tuple[str, ...]]:
         row = mismatch.summary_of(name)
         gap = _signed(float(row["largest_gap"]), str(row["unit"]))
         return [
-            (spoken(name), NONE, gap, f"{row['at_percent']:.0f}", _in_sd(float(row["gap_sd"])), _p(float(row["p"])))
+            (spoken(name), NONE, gap, f"{row['at_percent']:.0f}", _in_sd(float(row["gap_sd"])), p_cell(float(row["p"])))
         ]
     return [
         (
@@ -124,7 +119,7 @@ def _rows(mismatch: Mismatch, name: str) -> list[tuple[str, ...]]:
             _signed(float(row["gap"]), str(row["unit"])),
             f"{row['at_percent']:.0f}",
             _in_sd(float(row["gap_sd"])),
-            _p(float(row["p"])),
+            p_cell(float(row["p"])),
         )
         for row in regions
     ]
@@ -136,7 +131,3 @@ def _signed(gap: float, unit: str) -> str:
 
 def _in_sd(value: float) -> str:
     return amount(abs(value)) if math.isfinite(value) else NONE
-
-
-def _p(p: float) -> str:
-    return "< .001" if p < 0.001 else f"{p:.3f}"

@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from gaitdisc.report.table import Table, pairs_table
+from gaitdisc.report.table import Table, words_table
 from gaitdisc.results.provenance import Provenance
 
 
@@ -20,11 +20,11 @@ def provenance_tables(made: Provenance) -> dict[str, Table]:
     """
     files = sorted(made.files.items())
     return {
-        "settings": pairs_table(
+        "settings": words_table(
             "settings", "Settings, with all defaults.", ("setting", "value"), flattened(made.settings)
         ),
-        "versions": pairs_table("versions", "Circumstances.", ("what", "value"), provenance_rows(made)),
-        "files": pairs_table("files", f"Files read, n = {len(files)}, with their SHA-256.", ("file", "SHA-256"), files),
+        "versions": words_table("versions", "Circumstances.", ("what", "value"), provenance_rows(made)),
+        "files": words_table("files", f"Files read, n = {len(files)}, with their SHA-256.", ("file", "SHA-256"), files),
     }
 
 

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pandas as pd
-
-from gaitdisc.report.figure import file_names, save_figure
+from gaitdisc.report.figure import file_names, save_figures
 from gaitdisc.report.page import write_page
 from gaitdisc.report.provenance_tables import provenance_tables
 from gaitdisc.report.reconstruction_figure import reconstruction_figures
@@ -17,10 +15,12 @@ from gaitdisc.report.reconstruction_tables import (
     states_table,
 )
 from gaitdisc.report.search_table import search_table
-from gaitdisc.report.table import Table, save_tables
+from gaitdisc.report.seen_tables import left_out_table, seen_table
+from gaitdisc.report.table import save_tables
 from gaitdisc.results.reconstruction import Reconstruction
 
 MOST_DRAWN = 4  # participants whose curves stand in the page; the numbers of all are in errors.csv and curves.csv
+FINDINGS = "Findings in the recordings, n = {}; windows on plateaus and filled gaps are used as they are."
 
 
 def write_reconstruction_report(done: Reconstruction, folder: Path) -> Path:
@@ -48,8 +48,8 @@ def write_reconstruction_report(done: Reconstruction, folder: Path) -> Path:
         "states": states_table(done),
         **({"search": search_table(done.search)} if done.search is not None else {}),
         "participants": participants_table(done),
-        "left_out": _left_out(done),
-        "findings": _findings(done),
+        "left_out": left_out_table(done.refusals, "left-out", f"Left out, n = {len(done.refusals)}."),
+        "findings": seen_table(done.findings, FINDINGS.format(len(done.findings)), "what was seen"),
         **provenance_tables(done.provenance),
     }
     save_tables(tables.values(), folder)
@@ -58,7 +58,7 @@ def write_reconstruction_report(done: Reconstruction, folder: Path) -> Path:
     shown = {
         "done": done,
         "sentences": reconstruction_sentences(done),
-        "figures": [save_figure(figure, folder / "figures") for figure in drawn],
+        "figures": save_figures(drawn, folder),
         "tables": tables,
         "method": method_sentences(done),
         "undrawn": len(done.participants) - len(names),
@@ -86,18 +86,3 @@ def method_sentences(done: Reconstruction) -> list[str]:
         "angles and positions are never averaged together.",
         *(f"{name}: {words}." for name, words in done.models.items()),
     ]
-
-
-def _left_out(done: Reconstruction) -> Table:
-    rows = tuple((r.participant, r.condition or "all", r.reason) for r in done.refusals)
-    columns = ("participant", "walk", "reason")
-    return Table(
-        "left-out", f"Left out, n = {len(rows)}.", columns, rows, pd.DataFrame(rows, columns=pd.Index(columns))
-    )
-
-
-def _findings(done: Reconstruction) -> Table:
-    rows = tuple((f.severity, f.file, f.channel, f"{f.kind}: {f.what}", f.spoils) for f in done.findings)
-    columns = ("severity", "file", "channel", "what was seen", "spoils")
-    caption = f"Findings in the recordings, n = {len(rows)}; windows on plateaus and filled gaps are used as they are."
-    return Table("findings", caption, columns, rows, pd.DataFrame(rows, columns=pd.Index(columns)))

@@ -10,7 +10,7 @@ from gaitdisc.report.block import save_block
 from gaitdisc.report.comparison_figure import comparison_figures
 from gaitdisc.report.comparison_tables import comparison_sentences, comparison_tables
 from gaitdisc.report.curves_figure import curves_figures
-from gaitdisc.report.figure import LARGEST_INLINE_SVG, Figure, SavedFigure, file_names, save_figure
+from gaitdisc.report.figure import LARGEST_INLINE_SVG, Figure, SavedFigure, file_names, save_figures
 from gaitdisc.report.held_out_figure import held_out_figures
 from gaitdisc.report.method import method_sentences
 from gaitdisc.report.over_blocks import over_blocks
@@ -88,8 +88,8 @@ def write_report(run: ResponseRun, folder: Path) -> Path:
     people = list(dict.fromkeys([*(r.participant for r in run.responses), *(w.subject for w in run.walks)]))
     names = file_names(people)
     sections = _sections(run, names, folder)
-    overview = [save_figure(figure, folder / "figures") for figure in (r2_figures(run) if run.responses else [])]
-    compared = [save_figure(figure, folder / "figures") for figure in comparison_figures(run)]
+    overview = save_figures(r2_figures(run) if run.responses else [], folder)
+    compared = save_figures(comparison_figures(run), folder)
     pair_tables = comparison_tables(run)
     blocks = [save_block(block, folder) for block in over_blocks(run)]
     tables = {
@@ -159,5 +159,5 @@ def _section(run: ResponseRun, person: str, name: str, folder: Path, limit: int)
         r2,
         not_computed(run, response) if response else [],
         dropped,
-        {subject: [save_figure(f, folder / "figures", limit) for f in figures] for subject, figures in drawn.items()},
+        {subject: save_figures(figures, folder, limit) for subject, figures in drawn.items()},
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pandas as pd
 
+from gaitdisc.report.seen_tables import left_out_table
 from gaitdisc.report.strides_figure import reason_kind, stride_numbers
 from gaitdisc.report.table import Table
 from gaitdisc.report.wording import LIGHTS, MODEL_WORDS, SIDE_WORDS
@@ -60,10 +61,7 @@ def refusals_table(run: ResponseRun) -> Table:
     run : ResponseRun
         The whole result.
     """
-    rows = tuple((r.participant, r.condition or "all", r.reason) for r in run.refusals)
-    columns = ("participant", "walk", "reason")
-    numbers = pd.DataFrame(rows, columns=pd.Index(columns))
-    return Table("refusals", f"Left out, n = {len(rows)}, and why.", columns, rows, numbers)
+    return left_out_table(run.refusals, "refusals", f"Left out, n = {len(run.refusals)}, and why.")
 
 
 def findings_table(run: ResponseRun) -> Table:

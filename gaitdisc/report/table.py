@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -42,8 +42,8 @@ class Table:
     summary: bool = False
 
 
-def pairs_table(name: str, caption: str, headings: tuple[str, str], pairs: Sequence[tuple[str, str]]) -> Table:
-    """Table of names and values, such as settings, versions and hashes.
+def words_table(name: str, caption: str, headings: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> Table:
+    """Table whose CSV holds the very words that are read: settings, hashes, findings, reasons.
 
     Parameters
     ----------
@@ -51,13 +51,18 @@ def pairs_table(name: str, caption: str, headings: tuple[str, str], pairs: Seque
         Name of the CSV.
     caption : str
         What it shows.
-    headings : (str, str)
-        Of the two columns.
-    pairs : sequence of (str, str)
-        The rows.
+    headings : tuple of str
+        Of the columns.
+    rows : iterable of tuple of str
+        Cells.
+
+    Examples
+    --------
+    >>> words_table("files", "Files.", ("file", "SHA-256"), [("a.c3d", "ff")]).numbers["file"].tolist()
+    ['a.c3d']
     """
-    rows = tuple((str(key), str(value)) for key, value in pairs)
-    return Table(name, caption, headings, rows, pd.DataFrame(rows, columns=pd.Index(headings)))
+    cells = tuple(rows)
+    return Table(name, caption, headings, cells, pd.DataFrame(cells, columns=pd.Index(headings)))
 
 
 def save_tables(tables: Iterable[Table], folder: Path) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from gaitdisc.report.figure import save_figure
+from gaitdisc.report.figure import save_figures
 from gaitdisc.report.modalities_figure import modalities_figure, modalities_sentences, modalities_table
 from gaitdisc.report.page import write_page
 from gaitdisc.report.sensitivity_table import sensitivity_sentences, sensitivity_table
@@ -45,7 +45,7 @@ def write_variants(run: VariantRun, folder: Path) -> Path:
         "run": run,
         "heading": HEADINGS[run.question],
         "sentences": variant_sentences(run),
-        "figures": [save_figure(figure, folder / "figures")] if figure else [],
+        "figures": save_figures([figure] if figure else [], folder),
         "tables": tables,
     }
     return write_page("variants", shown, folder)

@@ -15,6 +15,7 @@ LIGHTS = {
     "warning": ("amber", "warnings"),
     "refused": ("red", "refused"),
 }
+NONE = "–"  # cell of what has no value
 _TRANSLATIONS = {"pelvis_tx": "pelvis fore-aft", "pelvis_ty": "pelvis vertical", "pelvis_tz": "pelvis sideways"}
 
 
@@ -109,6 +110,22 @@ def number(value: float, digits: int = 2) -> str:
     if value < 1 and float(text) == 1:
         return f">{1 - 10**-digits:.{digits}f}"  # what falls short of all is not printed as all
     return text.lstrip("-") if float(text) == 0 else text.replace("-", "−")
+
+
+def p_cell(p: float) -> str:
+    """Write a p as it stands in a table.
+
+    Parameters
+    ----------
+    p : float
+        0 to 1, or NaN where nothing was tested.
+
+    Examples
+    --------
+    >>> p_cell(0.0004), p_cell(0.0312), p_cell(float("nan"))
+    ('< .001', '0.031', '–')
+    """
+    return NONE if not math.isfinite(p) else "< .001" if p < 0.001 else f"{p:.3f}"
 
 
 def counted(count: int, noun: str) -> str:
