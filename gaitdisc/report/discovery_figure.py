@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gaitdisc.discovery.amounts import shown_unit
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import MEASURED, MODELS
-from gaitdisc.report.panels import Room, in_style, legend, panels
+from gaitdisc.report.panels import Room, in_style, legend, lines_of, panels
 from gaitdisc.results.discovery import Discovery
 
 if TYPE_CHECKING:
@@ -214,17 +214,12 @@ def _mark_stride(axes: Axes, discovery: Discovery) -> None:
 
 
 def _key(measured: bool) -> list[Artist]:
-    from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    nominal, augmented = MODELS["nominal"], MODELS["augmented"]
-    keys: list[Artist] = [
-        Line2D([], [], color=nominal.colour, linestyle=nominal.line, label="simulated as read"),
-        Line2D([], [], color=augmented.colour, linestyle=augmented.line, label="with what was found"),
-    ]
+    looks = {"simulated as read": MODELS["nominal"], "with what was found": MODELS["augmented"]}
     if not measured:
-        return keys
-    return [Line2D([], [], color=MEASURED.colour, label="measured"), *keys, Patch(color=SHADE, alpha=0.55, label="gap")]
+        return lines_of(looks)
+    return [*lines_of({"measured": MEASURED} | looks), Patch(color=SHADE, alpha=0.55, label="gap")]
 
 
 def _alt(discovery: Discovery) -> str:

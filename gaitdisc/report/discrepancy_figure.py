@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import Look
-from gaitdisc.report.panels import Room, decades, in_style, legend, panels
+from gaitdisc.report.panels import Room, decades, in_style, legend, lines_of, panels
 from gaitdisc.results.discrepancy_cell import PARTS, DiscrepancyCell, PartAccuracy, cells_table
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ def error_figure(cells: Sequence[DiscrepancyCell], name: str, source: str, chann
         row[0].set_ylabel(METHOD_WORDS[cell.method])
     for axes in grid[-1]:
         axes.set_xlabel("time since the part's start [s]")
-    legend(drawn, _handles({"truth − known": KNOWN, "truth − augmented": AUGMENTED}))
+    legend(drawn, lines_of({"truth − known": KNOWN, "truth − augmented": AUGMENTED}))
     caption = (
         f"{source}. {cells[0].system}, {cells[0].channels[channel]}: reconstruction of the training part, forecast; "
         f"approach: {cells[0].approach}; variant: {cells[0].variant}; noise {cells[0].noise:g}."
@@ -125,7 +125,7 @@ def system_figure(
         panel.plot(table["t_s"], table[column], color=AUGMENTED.colour, linewidth=0.7)
         panel.set_title(words)
         panel.set_xlabel("time [s]")
-    legend(drawn, _handles({"true": AUGMENTED, "known": KNOWN}))
+    legend(drawn, lines_of({"true": AUGMENTED, "known": KNOWN}))
     caption = (
         f"{source}. True and known system from the same start, without noise: phase portraits, time evolution, and the "
         "two errors along the truth."
@@ -207,7 +207,7 @@ def horizon_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) -> 
         axes.set_xlabel("forecast horizon [s]")
     grid[0][0].set_ylabel("less RMSE [%]")
     methods = list(dict.fromkeys(cell.method for cell in cells))
-    legend(drawn, _handles({METHOD_WORDS[method]: METHOD_LOOKS[method] for method in methods}))
+    legend(drawn, lines_of({METHOD_WORDS[method]: METHOD_LOOKS[method] for method in methods}))
     caption = (
         f"{source}. Median over channels, clipped to ±100; grey: the truth’s first jump. Noise {cells[0].noise:g}."
     )
@@ -276,12 +276,6 @@ def field_figure(found: PartAccuracy, places: Sequence[float], name: str, source
         "t_s": found.time[some], **{f"rmse_{m}": np.sqrt(np.mean(e**2, axis=1)) for m, e in errors.items()},
     })  # fmt: skip
     return Figure(name, f"{source}. Colours span ±{most:.3g}.", "Two maps of error over space and time", numbers, drawn)
-
-
-def _handles(looks: dict[str, Look]) -> list[Artist]:
-    from matplotlib.lines import Line2D
-
-    return [Line2D([], [], color=look.colour, linestyle=look.line, label=words) for words, look in looks.items()]
 
 
 def _patches(looks: dict[str, Look]) -> list[Artist]:

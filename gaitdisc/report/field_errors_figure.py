@@ -10,11 +10,10 @@ import pandas as pd
 
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import RECONSTRUCTED, Look
-from gaitdisc.report.panels import Room, in_style, legend, panels
+from gaitdisc.report.panels import Room, in_style, legend, lines_of, panels
 from gaitdisc.results.field_cell import FieldCell
 
 if TYPE_CHECKING:
-    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
 ROUTE_LOOKS = (
@@ -55,7 +54,7 @@ def histograms_figure(cells: Sequence[FieldCell], name: str, source: str) -> Fig
         axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
         axes.set_xlabel(f"told − measured [{cells[0].unit}]")
     row[0].set_ylabel(f"density [1/{cells[0].unit}]" if cells[0].unit != "1" else "density")
-    handles = _handles(dict(zip(routes, ROUTE_LOOKS, strict=False)))
+    handles = lines_of(dict(zip(routes, ROUTE_LOOKS, strict=False)))
     drawn.legend(handles=handles, loc="upper center", ncols=min(3, len(routes)), bbox_to_anchor=(0.5, 1.0))
     caption = (
         f"{source}. {cells[0].field}, {cells[0].quantity}, {cells[0].model}: errors at all points of all judged "
@@ -102,7 +101,7 @@ def boxes_figure(cells: Sequence[FieldCell], name: str, source: str, ceilings: d
         axes.set_title(split)
         axes.set_ylim(bottom=0)
     row[0].set_ylabel("relative L2 error")
-    legend(drawn, _handles({"the field's own norm": Look("#888888", "-", ""),
+    legend(drawn, lines_of({"the field's own norm": Look("#888888", "-", ""),
                             "POD ceiling": Look("#00875a", (0, (4.0, 1.6)), "")}))  # fmt: skip
     numbers = pd.DataFrame([(c.split, c.route, c.run, c.relative_l2, c.r2) for c in cells],
                            columns=pd.Index(["split", "route", "run", "relative_l2", "r2"]))  # fmt: skip
@@ -141,9 +140,3 @@ def latent_figure(found: pd.DataFrame, name: str, source: str) -> Figure:
     left.legend(loc="lower left")
     caption = f"{source}. Dotted: 5, where the dissertation sees both elbows. Modes of the training part ({splits[0]})."
     return Figure(name, caption, "Error against latent size, and energy against modes", found, drawn)
-
-
-def _handles(looks: dict[str, Look]) -> list[Artist]:
-    from matplotlib.lines import Line2D
-
-    return [Line2D([], [], color=look.colour, linestyle=look.line, label=words) for words, look in looks.items()]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
@@ -12,7 +13,11 @@ from gaitdisc.report.naming_table import TOOL_WORDS, seeds_of
 from gaitdisc.report.panels import Room, in_style, legend, panels
 from gaitdisc.results.naming import Naming, namings_table
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 RIGHT, HALF, WRONG, SILENT, CURVE = "#00875a", "#8fd0b5", "#d97700", "#ffffff", "#c9ced6"
+EDGE = "#555555"
 LOOKS = {
     "right": (RIGHT, "N", "right, and nothing else"),
     "tied": (HALF, "T", "right or another, tied"),
@@ -37,66 +42,60 @@ def naming_figure(namings: Sequence[Naming], name: str) -> Figure:
     name : str
         Of the files.
     """
-    from matplotlib.patches import Patch, Rectangle
+    from matplotlib.patches import Patch
 
     table = namings_table(namings)
-    cases, tools = list(dict.fromkeys(table["case"])), [tool for tool in TOOL_WORDS if tool in set(table["tool"])]
-    noises = sorted(table["noise"].unique())
+    tiles = _tiles(table)
+    cases, noises = list(dict.fromkeys(table["case"])), sorted(table["noise"].unique())
+    tools = list(dict.fromkeys(tiles["tool"]))
     room = Room(left=LEFT, top=0.75, bottom=0.35, across=0.06)
-    drawn, grid = panels(1, len(tools), ROW * len(cases), room)
-    rows = []
-    for axes, tool in zip(grid[0], tools, strict=True):
-        for (case, noise), found in table[table["tool"] == tool].groupby(["case", "noise"], sort=False):
-            down, across = cases.index(str(case)), noises.index(noise)
-            kind, share = seeds_of(found)
-            colour, letter, _ = LOOKS[kind]
-            axes.add_patch(Rectangle((across, down), 1, 1, facecolor=colour, edgecolor="#555555", linewidth=0.4))
-            ink = "#ffffff" if colour in (RIGHT, WRONG) else "#111111"
-            said = letter if share == 1 else f"{letter} {share:.0%}".replace("%", "")
-            axes.text(across + 0.5, down + 0.30, said, ha="center", va="center", fontsize=6, color=ink)
-            forecast = _forecast(found)
-            axes.text(across + 0.5, down + 0.72, forecast, ha="center", va="center", fontsize=5, color=ink)
-            rows.append(
-                {"case": case, "tool": tool, "noise": noise, "kind": kind, "share": share, "forecast": forecast}
-            )
-        axes.set_xlim(0, len(noises))
-        axes.set_ylim(len(cases), 0)
-        axes.set_xticks(np.arange(len(noises)) + 0.5, [f"{100 * noise:g}" for noise in noises])
-        axes.set_yticks([])
-        axes.tick_params(length=0)
+    drawn, (row,) = panels(1, len(tools), ROW * len(cases), room)
+    for axes, tool in zip(row, tools, strict=True):
+        _draw(axes, tiles[tiles["tool"] == tool], cases, noises)
         axes.set_title(TOOL_WORDS[tool])
-        for spine in axes.spines.values():
-            spine.set_visible(False)
     hidden = dict(zip(table["case"], table["hidden"], strict=True))
-    labels = [f"{case}: {hidden[case]}" if hidden[case] else case for case in cases]
-    grid[0][0].set_yticks(np.arange(len(cases)) + 0.5, [label.replace(": ", ":\n", 1) for label in labels], fontsize=6)
-    grid[0][len(tools) // 2].set_xlabel("noise [% of each channel’s SD]")
-    legend(drawn, [Patch(facecolor=c, edgecolor="#555555", label=f"{x} {words}") for c, x, words in LOOKS.values()][:4])
-    legend_below(drawn, [Patch(facecolor=c, edgecolor="#555555", label=f"{x} {w}") for c, x, w in LOOKS.values()][4:])
+    labels = [f"{case}:\n{hidden[case]}" if hidden[case] else case for case in cases]
+    row[0].set_yticks(np.arange(len(cases)) + 0.5, labels, fontsize=6)
+    row[len(tools) // 2].set_xlabel("noise [% of each channel’s SD]")
+    key = [Patch(facecolor=c, edgecolor=EDGE, label=f"{letter} {words}") for c, letter, words in LOOKS.values()]
+    legend(drawn, key[:4])
+    legend(drawn, key[4:], down=0.2)
     caption = (
         "Answer of most seeds, with its share in percent where the seeds differ; below it, how much less RMSE the "
         f"forecast has than that of the known model [%], median of n = {table['seed'].nunique()} seeds "
         "(without noise, and of the curves, one; no tile: not asked)."
     )
-    return Figure(name, caption, "Tiles of answers by case, tool and noise", pd.DataFrame(rows), drawn)
+    return Figure(name, caption, "Tiles of answers by case, tool and noise", tiles, drawn)
 
 
-def legend_below(drawn, handles: Sequence) -> None:
-    """Second row of a legend.
+def _tiles(table: pd.DataFrame) -> pd.DataFrame:
+    """What each tile tells: the answer of most seeds, its share, and the forecast."""
+    rows = []
+    for tool in TOOL_WORDS:
+        for (case, noise), found in table[table["tool"] == tool].groupby(["case", "noise"], sort=False):
+            kind, share = seeds_of(found)
+            rows.append((case, tool, noise, kind, share, _forecast(found)))
+    return pd.DataFrame(rows, columns=pd.Index(["case", "tool", "noise", "kind", "share", "forecast"]))
 
-    Parameters
-    ----------
-    drawn : matplotlib.figure.Figure
-        Receives it.
-    handles : sequence of Artist
-        What is explained.
-    """
-    drawn.legend(
-        handles=list(handles),
-        loc="upper center",
-        ncols=len(handles),
-        bbox_to_anchor=(0.5, 1.0 - 0.2 / drawn.get_figheight()),
-    )
+
+def _draw(axes: Axes, tiles: pd.DataFrame, cases: list[str], noises: list[float]) -> None:
+    from matplotlib.patches import Rectangle
+
+    for case, _, noise, kind, share, forecast in tiles.itertuples(index=False):
+        down, across = cases.index(str(case)), noises.index(noise)
+        colour, letter, _ = LOOKS[kind]
+        axes.add_patch(Rectangle((across, down), 1, 1, facecolor=colour, edgecolor=EDGE, linewidth=0.4))
+        ink = "#ffffff" if colour in (RIGHT, WRONG) else "#111111"
+        said = letter if share == 1 else f"{letter} {share:.0%}".replace("%", "")
+        axes.text(across + 0.5, down + 0.30, said, ha="center", va="center", fontsize=6, color=ink)
+        axes.text(across + 0.5, down + 0.72, forecast, ha="center", va="center", fontsize=5, color=ink)
+    axes.set_xlim(0, len(noises))
+    axes.set_ylim(len(cases), 0)
+    axes.set_xticks(np.arange(len(noises)) + 0.5, [f"{100 * noise:g}" for noise in noises])
+    axes.set_yticks([])
+    axes.tick_params(length=0)
+    for spine in axes.spines.values():
+        spine.set_visible(False)
 
 
 def _forecast(found: pd.DataFrame) -> str:

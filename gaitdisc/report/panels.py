@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ParamSpec, TypeVar
 
 import numpy as np
+
+from gaitdisc.report.palette import Look
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -97,8 +99,8 @@ def panels(rows: int, columns: int, height: float, room: Room) -> tuple[matplotl
     return drawn, grid
 
 
-def legend(drawn: matplotlib.figure.Figure, handles: Sequence[Artist]) -> None:
-    """One legend above all panels.
+def legend(drawn: matplotlib.figure.Figure, handles: Sequence[Artist], down: float = 0.0) -> None:
+    """Write one row of a legend above all panels.
 
     Parameters
     ----------
@@ -106,8 +108,24 @@ def legend(drawn: matplotlib.figure.Figure, handles: Sequence[Artist]) -> None:
         Receives the legend.
     handles : sequence of Artist
         What is explained, each with its label.
+    down : float
+        Below the top of the figure [inch]: a second row stands under the first.
     """
-    drawn.legend(handles=list(handles), loc="upper center", ncols=len(handles), bbox_to_anchor=(0.5, 1.0))
+    top = (0.5, 1.0 - down / drawn.get_figheight())
+    drawn.legend(handles=list(handles), loc="upper center", ncols=len(handles), bbox_to_anchor=top)
+
+
+def lines_of(looks: Mapping[str, Look]) -> list[Artist]:
+    """Handles of a legend that explains lines.
+
+    Parameters
+    ----------
+    looks : mapping of str to Look
+        Words -> colour and line style.
+    """
+    from matplotlib.lines import Line2D
+
+    return [Line2D([], [], color=look.colour, linestyle=look.line, label=words) for words, look in looks.items()]
 
 
 def decades(axes: Axes) -> None:

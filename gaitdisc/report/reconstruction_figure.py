@@ -8,7 +8,7 @@ import pandas as pd
 
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import MEASURED, RECONSTRUCTED
-from gaitdisc.report.panels import Room, in_style, legend, panels, sheets
+from gaitdisc.report.panels import Room, in_style, legend, lines_of, panels, sheets
 from gaitdisc.report.wording import counted, label, unit_text
 from gaitdisc.results.reconstruction import Reconstruction
 
@@ -41,7 +41,6 @@ def reconstruction_figures(done: Reconstruction, participant: str, name: str) ->
 
 
 def _figure(done: Reconstruction, participant: str, numbers: pd.DataFrame, name: str) -> Figure:
-    from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
     units = {channel.name: channel.unit for channel in done.states}
@@ -60,8 +59,7 @@ def _figure(done: Reconstruction, participant: str, numbers: pd.DataFrame, name:
     for axes in cells[max(0, len(states) - columns) : len(states)]:
         axes.set_xlabel("stride [%]", labelpad=1)
     looks = {model: RECONSTRUCTED[model.removesuffix(", calibrated")] for model in models}
-    lines = [Line2D([], [], color=look.colour, linestyle=look.line, label=model) for model, look in looks.items()]
-    legend(drawn, [Patch(color=MEASURED.colour, alpha=0.2, label="measured, mean ± sd"), *lines])
+    legend(drawn, [Patch(color=MEASURED.colour, alpha=0.2, label="measured, mean ± sd"), *lines_of(looks)])
     strides = int(done.summary.loc[done.summary["participant"] == participant, "strides"].iloc[0])
     caption = (
         f"{participant}: states measured and reconstructed over the stride, judged windows alone, n = "
