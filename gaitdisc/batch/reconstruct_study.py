@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 
 import pandas as pd
@@ -17,8 +17,8 @@ from gaitdisc.results import Provenance, Refusal
 from gaitdisc.results.provenance import installed_versions
 from gaitdisc.results.reconstruction import CALIBRATED, Reconstruction
 from gaitdisc.sensing.forecast import BASELINES
-from gaitdisc.sensing.reconstruct import PersonReconstruction, reconstruct
-from gaitdisc.sensing.reconstructor import KINDS, ON_REQUEST, Sensing, sensing
+from gaitdisc.sensing.reconstruct import Fits, PersonReconstruction, reconstruct
+from gaitdisc.sensing.reconstructor import KINDS, ON_REQUEST, Sensing, fitting_device, sensing
 from gaitdisc.sensing.splits import RULES, Parts, split_by_subject, split_by_trial, split_within
 from gaitdisc.sensing.windows import Lags
 
@@ -51,6 +51,8 @@ class ReconstructionSettings:
         How far ahead of the last reading the states are told [s]; 0 tells the present.
     seed : int
         Of every random act.
+    device : str
+        That networks are fitted on: `cpu`, `cuda`, or `auto`, the GPU where there is one.
     """
 
     split: str = "temporal"
@@ -61,6 +63,7 @@ class ReconstructionSettings:
     targets: str = STATES
     ahead_s: float = 0.0
     seed: int = 0
+    device: str = "auto"
 
     @property
     def condition_read(self) -> str:
@@ -107,15 +110,18 @@ def reconstruct_study(
     ------
     GaitdiscError
         If no participant can be reconstructed.
+    TrainingError
+        If networks are to be fitted on a GPU and there is none.
     """
     settings = settings or ReconstructionSettings()
+    settings = replace(settings, device=fitting_device(settings.kinds, settings.device))
     walks = sensed_walks(study, sensors, settings.condition_read, settings.targets)
     told_of = walks.channels if settings.targets == STATES else [c for c in walks.channels if c.name not in sensors]
     names = tuple(channel.name for channel in told_of)
     what = sensing(names, tuple(sensors), settings.lags(walks.rate_hz), walks.rate_hz)
     by_name = {channel.name: channel for channel in walks.channels}
     channels = tuple(by_name[name] for name in (*what.sensors, *what.states))
-    calibration = CALIBRATION_STRIDES if settings.split == SUBJECT else 0
+    fits = Fits(settings.kinds, settings.seed, settings.device, CALIBRATION_STRIDES if settings.split == SUBJECT else 0)
     windows = {
         person: [what.windows(walk.recording, walk.phi) for walk in found] for person, found in walks.people.items()
     }
@@ -124,7 +130,7 @@ def reconstruct_study(
     for person in windows:
         try:
             parts = parts_of(walks, windows, person, settings)
-            done.append(reconstruct(person, parts, what, channels, settings.kinds, settings.seed, calibration))
+            done.append(reconstruct(person, parts, what, channels, fits))
         except GaitdiscError as error:
             refusals.append(Refusal(person, "", str(error)))
             refused = error

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.batch.target_walks import STATES as STATE_TARGETS
-from gaitdisc.batch.target_walks import refuse_unknown, target_walk
+from gaitdisc.batch.target_walks import refuse_unknown_targets, target_walk
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, GaitdiscError, SamplingError, UnitError
 from gaitdisc.ingest.c3d import C3DReader
@@ -111,7 +111,7 @@ def sensed_walks(
     UnitError
         If a channel has one unit in one walk and another in another.
     """
-    refuse_unknown(targets)
+    refuse_unknown_targets(targets)
     walks: dict[str, list[SensedWalk]] = {}
     refusals, findings, files = [], [], {}
     with C3DReader() as reader:

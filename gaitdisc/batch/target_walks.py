@@ -66,7 +66,7 @@ def target_walk(
     SamplingError
         If sensors and targets have no time in common.
     """
-    refuse_unknown(targets)
+    refuse_unknown_targets(targets)
     filters = study.filters
     read = _sensors_of(trial, sensors)
     read = lowpassed(read, filters.kinematics_hz, filters.order, filters.gap_s)
@@ -93,7 +93,7 @@ def target_walk(
     return both, strides, findings
 
 
-def refuse_unknown(targets: str) -> None:
+def refuse_unknown_targets(targets: str) -> None:
     """Refuse what can not be told.
 
     Parameters

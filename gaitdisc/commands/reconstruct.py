@@ -10,12 +10,17 @@ import typer
 
 from gaitdisc.commands.exit_codes import SOME_REFUSED
 from gaitdisc.commands.options import Quiet
+from gaitdisc.errors import SchemaError
 
 if TYPE_CHECKING:
     from gaitdisc.results.reconstruction import Reconstruction
 
+OF_A_STUDY = ("sensors", "search", "split", "condition", "targets", "ahead", "kinds", "device")
+OF_A_RECORDING = ("calibrate", "missing")
+
 
 def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
+    context: typer.Context,
     study: Annotated[Path, typer.Argument(help="The study file or its folder; with --model one recording.")],
     sensors: Annotated[
         list[str] | None, typer.Option("--sensors", "-s", help="Channels that are read: a,b,c or repeated.")
@@ -42,6 +47,9 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     missing: Annotated[
         str, typer.Option(help="With --model: what stands for a missing reading: none, mean or last.")
     ] = "none",
+    device: Annotated[
+        str, typer.Option(help="That networks are fitted on: cpu, cuda, or auto, the GPU where there is one.")
+    ] = "auto",
     out: Annotated[Path | None, typer.Option(help="Folder of the report; by default STUDY/reconstruct.")] = None,
     quiet: Quiet = False,
 ) -> None:
@@ -53,9 +61,9 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     from gaitdisc.report.reconstruction_page import write_reconstruction_report
     from gaitdisc.results.reconstruction import enough_sensors, save_reconstruction
     from gaitdisc.sensing.model_folder import save_model
-    from gaitdisc.sensing.reconstruct import best_of
     from gaitdisc.sensing.reconstructor import KINDS
 
+    _refuse_others(context, model)
     if model is not None:
         _by_model(study, model, out, calibrate, missing)
         return
@@ -63,7 +71,13 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     folder = out or loaded.folder / "reconstruct"
     chosen = tuple(kind.strip() for kind in kinds.split(",")) if kinds else tuple(KINDS)
     settings = ReconstructionSettings(
-        split=split, condition=condition, targets=targets, ahead_s=ahead, kinds=chosen, seed=loaded.models.seed
+        split=split,
+        condition=condition,
+        targets=targets,
+        ahead_s=ahead,
+        kinds=chosen,
+        seed=loaded.models.seed,
+        device=device,
     )
     names = [name for words in sensors or [] for name in words.replace(",", " ").split()]
     found = search_study(loaded, search, settings) if search else None
@@ -77,8 +91,24 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     page = write_reconstruction_report(done, folder)
     places = file_names([person.participant for person in people])
     for person in people:
-        save_model(best_of(person), folder / "models" / places[person.participant])
-    _tell(done, page)
+        save_model(person.model(done.recommended), folder / "models" / places[person.participant])
+    _tell(done)
+    typer.echo(f"models: {folder / 'models'}, {done.recommended} for each participant")
+    typer.echo(f"report: {page}")
+    if done.refusals:
+        raise typer.Exit(SOME_REFUSED)
+
+
+def _refuse_others(context: typer.Context, model: Path | None) -> None:
+    others = OF_A_STUDY if model is not None else OF_A_RECORDING
+    sources = {name: context.get_parameter_source(name) for name in others}
+    given = [name for name, source in sources.items() if source is not None and source.name == "COMMANDLINE"]
+    if given:
+        words = " and ".join(f"--{name}" for name in given)
+        told = ("a saved model tells a recording as it was fitted", "Leave them out, or leave --model out.")
+        fitted = ("these correct what a saved model tells of a recording", "Name the model's folder with --model.")
+        needed, remedy = told if model is not None else fitted
+        raise SchemaError(needed, f"{words} {'with' if model is not None else 'without'} --model", remedy)
 
 
 def _by_model(recording: Path, model: Path, out: Path | None, calibrate: Path | None, missing: str) -> None:
@@ -90,7 +120,7 @@ def _by_model(recording: Path, model: Path, out: Path | None, calibrate: Path | 
         typer.echo(line)
 
 
-def _tell(done: Reconstruction, page: Path) -> None:
+def _tell(done: Reconstruction) -> None:
     from rich.console import Console
 
     from gaitdisc.report.reconstruction_tables import reconstruction_sentences, reconstruction_text
@@ -99,6 +129,3 @@ def _tell(done: Reconstruction, page: Path) -> None:
     Console().print(reconstruction_text(done))
     for refusal in done.refusals:
         typer.echo(f"left out: {refusal.participant} {refusal.condition}: {refusal.reason}", err=True)
-    typer.echo(f"report: {page}")
-    if done.refusals:
-        raise typer.Exit(SOME_REFUSED)

@@ -13,6 +13,7 @@ from gaitdisc.results.reconstruction import CALIBRATED, FLOORS, Reconstruction
 if TYPE_CHECKING:
     import rich.table
 
+WITH_SENSORS, COVERAGE = "with sensors [1]", "coverage [%]"  # left out where there is little room
 BESIDE = ("shred", "fourier ridge", "delay ridge", "linear", *FLOORS)
 NOT_MSE = (
     "The dissertation calls the norm of the error by the norm of the measured values “MSE” (Eq. 2.21, Table 5.2) and "
@@ -29,27 +30,37 @@ def models_table(done: Reconstruction) -> Table:
         The whole result.
     """
     numbers: Any = done.over_participants().rename_axis("model").reset_index()
+    angles = _has_angles(done)
     rows = tuple(
         (
             f"{row['model']}{' *' if row['model'] == done.recommended else ''}",
-            _spread(row, "rmse_deg", 2),
+            *((_spread(row, "rmse_deg", 2),) if angles else ()),
             _spread(row, "relative_l2", 3),
-            _plain(row["relative_l2_whole"], 3),
+            *((_plain(row["relative_l2_whole"], 3),) if angles else ()),
             _spread(row, "r2", 3),
             f"{100 * row['coverage']:.0f}",
             f"{row['seconds']:.2f}",
         )
         for _, row in numbers.iterrows()
     )
+    with_sensors = "“with sensors”: the sensors counted as states without error, as Table 5.2 does; " if angles else ""
     people = counted(len(done.participants), "participant")
     caption = (
         f"Models on the judged windows: mean over n = {people} [95 % interval of the mean], {_judged(done)}. "
         f"Split: {done.split}. Relative L2: norm of the error by norm of the measured values about zero; "
-        f"“with sensors”: the sensors counted as states without error, as Table 5.2 does; R²: median of these; "
+        f"{with_sensors}R²: median over what is told; "
         f"coverage: share inside an interval that was made for 90 %; seconds: processor time of a fit. * recommended: "
         f"the cheapest within 2 % of the least error on the windows that models are chosen by."
     )
-    columns = ("model", "RMSE [deg]", "relative L2 [1]", "with sensors [1]", "R² [1]", "coverage [%]", "fit [s]")
+    columns = (
+        "model",
+        *(("RMSE [deg]",) if angles else ()),
+        "relative L2 [1]",
+        *((WITH_SENSORS,) if angles else ()),
+        "R² [1]",
+        COVERAGE,
+        "fit [s]",
+    )
     return Table("models", caption, columns, rows, numbers)
 
 
@@ -170,7 +181,7 @@ def reconstruction_text(done: Reconstruction) -> rich.table.Table:
 
     shown = models_table(done)
     table = Printed(box=box.SIMPLE, show_edge=False, pad_edge=False, padding=(0, 1, 0, 0))
-    chosen = (0, 1, 2, 4, 6)
+    chosen = [k for k, column in enumerate(shown.columns) if column not in (WITH_SENSORS, COVERAGE)]
     for k in chosen:
         table.add_column(shown.columns[k], justify="left" if k == 0 else "right")
     for row in shown.rows:

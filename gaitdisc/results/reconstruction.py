@@ -80,7 +80,7 @@ class Reconstruction:
         """Model to use: the cheapest of those whose error on the check part is within 2 % of the least.
 
         The judged part has no say in it. A calibrated model is recommended by what it is without; a forecast's floors
-        are none to recommend.
+        are none to recommend. What `gaitdisc reconstruct` saves is of this kind, for every participant.
         """
         every = self.summary.groupby("model")["check_loss"].mean()
         loss = every[[kind for kind in CHEAP_FIRST if kind in every.index]]

@@ -106,7 +106,7 @@ def filled(recording: Recording, sensors: Sequence[str], way: str, means: NDArra
     SchemaError
         If there is no such way.
     """
-    refuse_unknown(way)
+    refuse_unknown_way(way)
     values = recording.values.copy()
     for name, mean in zip(sensors, means, strict=True):
         column = recording.index(name)
@@ -119,7 +119,7 @@ def filled(recording: Recording, sensors: Sequence[str], way: str, means: NDArra
     return recording.with_values(values)
 
 
-def refuse_unknown(way: str) -> None:
+def refuse_unknown_way(way: str) -> None:
     """Refuse what is no way to deal with missing readings.
 
     Parameters

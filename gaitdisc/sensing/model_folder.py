@@ -124,6 +124,7 @@ def save_model(model: SensingModel, folder: Path) -> None:
         "half_widths": model.half_widths.tolist(),
         "n_fitted": done.n_fitted,
         "seconds": done.seconds,
+        "device": done.device,
     }
     write_whole(folder / NAME, json.dumps(data, indent=1))
 
@@ -153,7 +154,7 @@ def load_model(folder: Path) -> SensingModel:
         what = Sensing(tuple(told["sensors"]), tuple(told["states"]), Lags(**told["lags"]), told["rate_hz"])
         channels: Sequence[Channel] = [Channel(**channel) for channel in data["channels"]]
         half, kind = np.array(data["half_widths"]), data["kind"]
-        numbers = data["n_fitted"], data["seconds"]
+        numbers = data["n_fitted"], data["seconds"], data.get("device", "cpu")  # before it was told, it was that
         _refuse_parts(kind, what, channels, half)
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise SchemaError(

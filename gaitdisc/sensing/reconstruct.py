@@ -24,6 +24,29 @@ from gaitdisc.sensing.windows import stacked
 from gaitdisc.statistics.r2 import r2
 
 
+@dataclass(frozen=True)
+class Fits:
+    """What is fitted for a person, and how.
+
+    Parameters
+    ----------
+    kinds : tuple of str
+        Words of `KINDS` or `ON_REQUEST`.
+    seed : int
+        Of every random act.
+    device : str
+        That networks are fitted on: `cpu`, `cuda`, or `auto`, the GPU where there is one.
+    calibration : int
+        Strides of the test part, its first ones, on which models named `..., calibrated` are corrected for the person;
+        windows that share a reading with them are not judged, whether a model is calibrated or not. 0 for none.
+    """
+
+    kinds: tuple[str, ...] = tuple(KINDS)
+    seed: int = 0
+    device: str = "auto"
+    calibration: int = 0
+
+
 @dataclass(frozen=True, eq=False)
 class PersonReconstruction:
     """Every kind of model, fitted and judged for one person.
@@ -44,15 +67,23 @@ class PersonReconstruction:
     curves: pd.DataFrame
     fitted: tuple[SensingModel, ...]
 
+    def model(self, kind: str) -> SensingModel:
+        """Return the model of one kind.
+
+        Parameters
+        ----------
+        kind : str
+            One that was fitted.
+        """
+        return next(each for each in self.fitted if each.reconstructor.kind == kind)
+
 
 def reconstruct(
     participant: str,
     parts: Parts,
     what: Sensing,
     channels: Sequence[Channel],
-    kinds: Sequence[str] = tuple(KINDS),
-    seed: int = 0,
-    calibration: int = 0,
+    fits: Fits | None = None,
 ) -> PersonReconstruction:
     """Fit every kind of model and judge it on the test part; a forecast has its two baselines beside it.
 
@@ -66,21 +97,17 @@ def reconstruct(
         What is read and told.
     channels : sequence of Channel
         Of the sensors, then of the states, in the order of `what`.
-    kinds : sequence of str
-        Words of `KINDS`.
-    seed : int
-        Of every random act.
-    calibration : int
-        Strides of the test part, its first ones, on which models named `..., calibrated` are corrected for the person;
-        windows that share a reading with them are not judged, whether a model is calibrated or not. 0 for none.
+    fits : Fits, optional
+        Kinds of models, seed, device, calibration; the defaults without.
 
     Returns
     -------
     PersonReconstruction
     """
+    fits = fits or Fits()
     test, own = parts.judged(), channels[len(what.sensors) :]
     stride = stride_numbers(parts.test)
-    fitted, accounts, judged_rows = _fitted(parts, what, kinds, seed, calibration)
+    fitted, accounts, judged_rows = _fitted(parts, what, fits)
     accounts += _baselines(parts, what) if what.lags.ahead else []
     judged_rows &= np.isfinite(np.hstack([account.told for account in accounts])).all(axis=1)
     spread, errors, summary, curves = parts.fitted().y.std(axis=0), [], [], []
@@ -89,7 +116,7 @@ def reconstruct(
         row = _summary(judged, channels, what) | account.checked(spread, judged)
         summary.append({"participant": participant, "model": account.model, "n_fitted": account.n_fitted, **row,
                         "seconds": account.seconds})  # fmt: skip
-        errors.append(state_errors(judged, own, seed).assign(participant=participant, model=account.model))
+        errors.append(state_errors(judged, own, fits.seed).assign(participant=participant, model=account.model))
         curves.append(phase_curves(judged, what.states).assign(participant=participant, model=account.model))
     order = ["participant", "model"]
     tables = (pd.concat(part, ignore_index=True) for part in (errors, curves))
@@ -118,22 +145,20 @@ class _Account:
 Fitted = tuple[Reconstructor, NDArray[np.float64]]  # and the half widths of its interval
 
 
-def _fitted(
-    parts: Parts, what: Sensing, kinds: Sequence[str], seed: int, calibration: int
-) -> tuple[list[Fitted], list[_Account], NDArray[np.bool_]]:
+def _fitted(parts: Parts, what: Sensing, fits: Fits) -> tuple[list[Fitted], list[_Account], NDArray[np.bool_]]:
     """Every kind of model, what it tells as it is and calibrated, and which windows may be judged."""
     training, check, test = parts.fitted(), parts.checked(), parts.judged()
-    first = first_strides(parts.test, calibration, what.reach_s) if calibration else None
+    first = first_strides(parts.test, fits.calibration, what.reach_s) if fits.calibration else None
     fitted, accounts = [], []
-    for kind in kinds:
-        done = fit_reconstructor(kind, what, training, check, seed)
+    for kind in fits.kinds:
+        done = fit_reconstructor(kind, what, training, check, fits.seed, fits.device)
         missed = done(check) - check.y
         alone = parts.rule != PERSON_OUT
-        half = half_widths(missed) if alone else crossed_widths(kind, what, parts, missed, seed)
+        half = half_widths(missed) if alone else crossed_widths(kind, what, parts, missed, fits.seed)
         fitted.append((done, half))
         accounts.append(_Account(kind, done(test), missed, half, done.n_fitted, done.seconds))
         if first is not None:
-            rehearsal = rehearsed(done, parts.check, calibration)
+            rehearsal = rehearsed(done, parts.check, fits.calibration)
             told = calibrated(done, first.strides, rehearsal.penalty)(test)
             name = CALIBRATED.format(kind)
             half = half_widths(rehearsal.missed)
@@ -175,15 +200,3 @@ def _alike(judged: Judged) -> dict[str, float]:
     measured = judged.windows.y
     relative = float(np.linalg.norm(judged.told - measured) / np.linalg.norm(measured))
     return {"relative_l2": relative, "r2": float(np.nanmedian(r2(measured, judged.told)))}
-
-
-def best_of(done: PersonReconstruction) -> SensingModel:
-    """Model with the least error on the check part.
-
-    Parameters
-    ----------
-    done : PersonReconstruction
-        Fitted and judged.
-    """
-    loss = done.summary.drop_duplicates("model").set_index("model")["check_loss"]
-    return min(done.fitted, key=lambda each: float(loss[each.reconstructor.kind]))

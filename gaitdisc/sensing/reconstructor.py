@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Protocol
@@ -33,6 +33,8 @@ ON_REQUEST = {
     ENSEMBLE: f"mean of SHRED from {MEMBERS} seeds",
 }
 STATIC = ("linear", "shallow decoder")
+WITHOUT_NETWORK = ("linear", "delay ridge", "fourier ridge")
+DEVICES = ("auto", "cpu", "cuda")
 
 
 class ScaledModel(Model, Protocol):
@@ -151,6 +153,8 @@ class Reconstructor:
         Windows it was fitted to.
     seconds : float
         Processor time of the fit [s].
+    device : str
+        Where it was fitted: `cpu` or `cuda`.
     """
 
     kind: str
@@ -158,6 +162,7 @@ class Reconstructor:
     model: ScaledModel
     n_fitted: int
     seconds: float
+    device: str = "cpu"
 
     @property
     def sensor_means(self) -> NDArray[np.float64]:
@@ -170,7 +175,36 @@ class Reconstructor:
         return self.model(seen.x)
 
 
-def fit_reconstructor(kind: str, what: Sensing, training: Samples, check: Samples, seed: int = 0) -> Reconstructor:
+def fitting_device(kinds: Sequence[str], wanted: str) -> str:
+    """Device that kinds of models are fitted on: `cpu` or `cuda`; ridge regression always takes the CPU.
+
+    Parameters
+    ----------
+    kinds : sequence of str
+        Words of `KINDS` or `ON_REQUEST`.
+    wanted : str
+        `cpu`, `cuda`, or `auto`: the GPU where there is one.
+
+    Raises
+    ------
+    TrainingError
+        If a network is among them, and the device that is wanted is not there.
+
+    Examples
+    --------
+    >>> fitting_device(("delay ridge",), "auto")
+    'cpu'
+    """
+    if wanted in DEVICES and all(kind in WITHOUT_NETWORK for kind in kinds):
+        return "cpu"
+    from gaitdisc.networks.trainer import chosen_device
+
+    return chosen_device(wanted).type
+
+
+def fit_reconstructor(
+    kind: str, what: Sensing, training: Samples, check: Samples, seed: int = 0, device: str = "auto"
+) -> Reconstructor:
     """Fit one kind of model; scales, penalties and the epoch whose weights stay are chosen without the judged part.
 
     Parameters
@@ -183,6 +217,8 @@ def fit_reconstructor(kind: str, what: Sensing, training: Samples, check: Sample
         Windows to fit, and windows to choose by; readings may be missing for the kind that is told of it.
     seed : int
         Of every random act.
+    device : str
+        That a network is fitted on: `cpu`, `cuda`, or `auto`, the GPU where there is one.
 
     Returns
     -------
@@ -193,12 +229,13 @@ def fit_reconstructor(kind: str, what: Sensing, training: Samples, check: Sample
     SchemaError
         If there is no such kind.
     TrainingError
-        If the windows are too few, or an output does not vary.
+        If the windows are too few, an output does not vary, or a GPU is asked for and there is none.
     """
     if kind not in (*KINDS, *ON_REQUEST):
         known = ", ".join((*KINDS, *ON_REQUEST))
         raise SchemaError("a reconstruction needs a kind of model", f"{kind!r} is none", f"Use: {known}.")
-    fit = _fit_of(kind, len(what.sensors), seed)
+    device = fitting_device((kind,), device)
+    fit = _fit_of(kind, len(what.sensors), seed, device)
     training, check = thinned(training, MOST_FITTED), thinned(check, MOST_FITTED)
     if kind in STATIC:
         training, check = present(training, what.sensors), present(check, what.sensors)
@@ -206,10 +243,10 @@ def fit_reconstructor(kind: str, what: Sensing, training: Samples, check: Sample
         training, check = hidden(training, len(what.sensors), seed), hidden(check, len(what.sensors), seed + 1)
     begun = time.process_time()
     model = fit(training, check)
-    return Reconstructor(kind, what, model, len(training), time.process_time() - begun)
+    return Reconstructor(kind, what, model, len(training), time.process_time() - begun, device)
 
 
-def _fit_of(kind: str, sensors: int, seed: int) -> Callable[[Samples, Samples], ScaledModel]:
+def _fit_of(kind: str, sensors: int, seed: int, device: str) -> Callable[[Samples, Samples], ScaledModel]:
     from gaitdisc.regression.fourier_ridge import fit_fourier_ridge
 
     if kind in ("linear", "delay ridge"):
@@ -224,7 +261,7 @@ def _fit_of(kind: str, sensors: int, seed: int) -> Callable[[Samples, Samples], 
 
     masked = kind == MASKED
     build = ShallowDecoder if kind == "shallow decoder" else partial(Shred, sensors=sensors, masked=masked)
-    settings = TrainingSettings(epochs=20, batch=128, decays=(0.01,), seed=seed, missing_inputs=masked)
+    settings = TrainingSettings(epochs=20, batch=128, decays=(0.01,), seed=seed, device=device, missing_inputs=masked)
     if kind == ENSEMBLE:
         each = [replace(settings, seed=seed + k) for k in range(MEMBERS)]
         return lambda training, check: Ensemble(tuple(train(training, build, s, check=check).network for s in each))

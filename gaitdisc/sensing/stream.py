@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.errors import ShapeError
-from gaitdisc.sensing.missing import refuse_unknown
+from gaitdisc.sensing.missing import refuse_unknown_way
 from gaitdisc.sensing.reconstructor import ENSEMBLE, MASKED, STATIC, Reconstructor
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ class Stream:
     """
 
     def __init__(self, reconstructor: Reconstructor, missing: str = "none") -> None:
-        refuse_unknown(missing)
+        refuse_unknown_way(missing)
         self._sensors = reconstructor.sensing.sensors
         self._told = _told_by(reconstructor)
         self._missing = missing

@@ -3,10 +3,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+import torch
 
 from gaitdisc.batch.demonstration import write_demonstration
 from gaitdisc.batch.reconstruct_study import ReconstructionSettings, reconstruct_study
-from gaitdisc.errors import SamplingError, SchemaError
+from gaitdisc.errors import SamplingError, SchemaError, TrainingError
 from gaitdisc.report.reconstruction_tables import reconstruction_sentences
 
 KINDS = ("linear", "delay ridge")
@@ -21,6 +22,18 @@ def test_every_participant_is_reconstructed_from_own_walks(study):
     assert done.split.startswith("temporal: each trial: first 70 %")
     assert len(done.provenance.files) == 4
     assert people[0].fitted[1].reconstructor.sensing.lags.count == 25
+
+
+def test_where_it_was_fitted_is_told(study):
+    done, people = reconstruct_study(study, ("knee_angle_r",), ReconstructionSettings(kinds=KINDS))
+    assert done.provenance.settings["reconstruct"]["device"] == "cpu"
+    assert {model.reconstructor.device for person in people for model in person.fitted} == {"cpu"}
+
+
+@pytest.mark.skipif(torch.cuda.is_available(), reason="a GPU is there")
+def test_a_gpu_that_is_not_there_is_refused_before_anything_is_fitted(study):
+    with pytest.raises(TrainingError, match=r"run on 'cuda'; torch sees no GPU, only the CPU\. Use device 'auto'"):
+        reconstruct_study(study, ("knee_angle_r",), ReconstructionSettings(kinds=("linear", "shred"), device="cuda"))
 
 
 def test_a_population_needs_three_people(study):

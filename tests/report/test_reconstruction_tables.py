@@ -21,6 +21,21 @@ def test_every_error_stands_under_its_own_name(reconstruction):
     assert reconstruction_text(reconstruction).row_count == 2
 
 
+def test_what_has_no_angles_has_no_column_of_degrees(reconstruction):
+    [state] = reconstruction.states
+    emg = replace(reconstruction, states=(replace(state, unit="V"),))
+    table = models_table(emg)
+    assert table.columns == ("model", "relative L2 [1]", "R² [1]", "coverage [%]", "fit [s]")
+    assert {len(row) for row in table.rows} == {5}
+    assert "with sensors" not in table.caption
+    assert [str(column.header) for column in reconstruction_text(emg).columns] == [
+        "model",
+        "relative L2 [1]",
+        "R² [1]",
+        "fit [s]",
+    ]
+
+
 def test_states_and_participants(reconstruction):
     assert [row[1] for row in states_table(reconstruction).rows] == ["deg"]
     assert participants_table(reconstruction).rows[0][0] == "P01"

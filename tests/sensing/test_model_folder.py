@@ -28,6 +28,13 @@ def test_a_loaded_model_tells_the_same_of_a_new_recording(pair, saved, tmp_path)
     assert (told.names, kept.half_widths.tolist()) == (("late",), [0.5])
 
 
+def test_where_it_was_fitted_is_kept_and_was_the_cpu_before_that_was_told(saved, tmp_path):
+    save_model(replace(saved, reconstructor=replace(saved.reconstructor, device="cuda")), tmp_path)
+    assert load_model(tmp_path).reconstructor.device == "cuda"
+    changed(tmp_path, ',\n "device": "cuda"', "")
+    assert load_model(tmp_path).reconstructor.device == "cpu"
+
+
 def test_a_network_is_loaded_with_its_kind(pair, tmp_path):
     fitted = fit_reconstructor("shallow decoder", pair.what, pair.parts.fitted(), pair.parts.checked())
     save_model(SensingModel(fitted, pair.channels, np.ones(1)), tmp_path)

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from gaitdisc.errors import ChannelError, SchemaError
-from gaitdisc.sensing.reconstructor import fit_reconstructor, sensing
+from gaitdisc.errors import ChannelError, SchemaError, TrainingError
+from gaitdisc.sensing.reconstructor import KINDS, fit_reconstructor, fitting_device, sensing
 from gaitdisc.sensing.windows import Lags, present
 
 
@@ -39,3 +39,19 @@ def test_history_tells_a_state_that_lags_behind(pair):
     assert errors["delay ridge"] < 0.01
     assert errors["linear"] > 0.5
     assert errors["fourier ridge"] < 0.02
+
+
+@pytest.mark.parametrize("wanted", ["auto", "cpu", "cuda"])
+def test_ridge_regression_takes_the_cpu_whatever_is_wanted(pair, wanted):
+    assert fitting_device(("linear", "delay ridge", "fourier ridge"), wanted) == "cpu"
+    done = fit_reconstructor("linear", pair.what, pair.parts.fitted(), pair.parts.checked(), device=wanted)
+    assert done.device == "cpu"
+
+
+def test_a_network_takes_the_gpu_where_there_is_one():
+    import torch
+
+    assert fitting_device(tuple(KINDS), "cpu") == "cpu"
+    assert fitting_device(tuple(KINDS), "auto") == ("cuda" if torch.cuda.is_available() else "cpu")
+    with pytest.raises(TrainingError, match=r"training is to run on 'gpu'; torch sees .*Use device 'auto'"):
+        fitting_device(("linear",), "gpu")
