@@ -60,7 +60,7 @@ def nominal_inquiry(
             "; ".join(f"{one.condition}: {one.reason}" for one in refusals),
             "Mend it, or choose another participant.",
         )
-    nominal, device = walks[study.conditions.nominal], walks[study.conditions.device]
+    nominal, device = (walks[word] for word in study.conditions.both)
     name = f"{joint}_{study.strides.side}"
     return nominal_model(nominal, name), stride_trials(device, name, strides)
 

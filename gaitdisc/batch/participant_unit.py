@@ -113,7 +113,7 @@ def _incomplete(study: Study, participant: Participant) -> str:
     """Why a participant cannot be compared; empty where one can."""
     if participant.excluded:
         return f"excluded in the study: {participant.excluded}"
-    both = (study.conditions.nominal, study.conditions.device)
+    both = study.conditions.both
     counts = {word: len(participant.trials_of(word)) for word in both}
     if set(counts.values()) == {1}:
         return ""
@@ -131,7 +131,7 @@ def _after_processing(progress: Progress, share: float) -> None:
 def _fitted(
     study: Study, participant: Participant, walks: Mapping[str, Walk], progress: Progress
 ) -> ParticipantResponse:
-    nominal, exo = walks[study.conditions.nominal], walks[study.conditions.device]
+    nominal, exo = (walks[word] for word in study.conditions.both)
     settings = response_settings(study)
     null = filter_null_of(exo, study.filters)
     response = fit_response(nominal.trajectory, exo.trajectory, settings, null, progress)

@@ -40,7 +40,7 @@ def walks_and_errors(study: Study, participant: Participant) -> tuple[dict[str, 
     """
     walks, errors = {}, {}
     with C3DReader() as reader:  # starts its process at the first C3D file, one for both walks
-        for word in (study.conditions.nominal, study.conditions.device):
+        for word in study.conditions.both:
             try:
                 walks[word] = _walk(study, participant, participant.trials_of(word)[0], reader)
             except GaitdiscError as error:

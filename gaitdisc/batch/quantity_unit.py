@@ -52,7 +52,7 @@ def computed_quantity(
     walks, refusals = processed_walks(study, participant)
     if refusals:
         return refusals[0]
-    nominal, exo = (walks[word].trajectory for word in (study.conditions.nominal, study.conditions.device))
+    nominal, exo = (walks[word].trajectory for word in study.conditions.both)
     try:
         whole = _whole(participant, folder, key)
         quantity = fit_data_quantity(nominal, exo, response_settings(study), lengths_s, part, progress, whole)

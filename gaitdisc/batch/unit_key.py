@@ -21,8 +21,7 @@ def unit_keys(study: Study, participant: Participant) -> dict[str, str]:
     participant : Participant
         With one trial of each condition.
     """
-    both = (study.conditions.nominal, study.conditions.device)
-    return {word: unit_key(study, participant.trials_of(word)[0]) for word in both}
+    return {word: unit_key(study, participant.trials_of(word)[0]) for word in study.conditions.both}
 
 
 def response_key(keys: Mapping[str, str]) -> str:

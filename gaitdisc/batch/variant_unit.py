@@ -80,7 +80,7 @@ def _modalities(study: Study, participant: Participant, progress: Progress) -> V
     walks, refusals = processed_walks(study, participant)
     if refusals:
         return refusals[0]
-    nominal, exo = (walks[word].trajectory for word in _words(study))
+    nominal, exo = (walks[word].trajectory for word in study.conditions.both)
     try:
         table = fit_without(nominal, exo, response_settings(study), progress)
     except GaitdiscError as error:
@@ -91,7 +91,7 @@ def _modalities(study: Study, participant: Participant, progress: Progress) -> V
 def _sensitivity(study: Study, participant: Participant, progress: Progress) -> Variants | Refusal:
     try:
         with C3DReader() as reader:
-            planned = {word: participant.trials_of(word)[0] for word in _words(study)}
+            planned = {word: participant.trials_of(word)[0] for word in study.conditions.both}
             trials = {word: read_planned_trial(study, participant, one, reader) for word, one in planned.items()}
     except GaitdiscError as error:
         return Refusal(participant.id, "", str(error))
@@ -113,7 +113,7 @@ def _under(study: Study, trials: Mapping[str, Trial], setting: Setting, told: Pr
     """R2 on device walking under one setting."""
     cut_offs = {"kinematics_hz": setting.angles_hz, "emg_lowpass_hz": setting.emg_hz}
     filtered = study.model_copy(update={"filters": study.filters.model_copy(update=cut_offs)})
-    nominal, exo = (processed(trials[word], filtered) for word in _words(study))
+    nominal, exo = (processed(trials[word], filtered) for word in study.conditions.both)
     fits = response_settings(study)
     null = filter_null_of(exo, filtered.filters)
     less_nominal, less_exo = (_first_share(walk.trajectory, fits, setting.share) for walk in (nominal, exo))
@@ -131,10 +131,6 @@ def _first_share(walk: Trajectory, fits: ResponseSettings, share: float) -> Traj
 def _settings(study: Study) -> tuple[Setting, ...]:
     filters = study.filters
     return settings_around(filters.kinematics_hz, filters.emg_lowpass_hz, bool(study.models.emg))
-
-
-def _words(study: Study) -> tuple[str, str]:
-    return study.conditions.nominal, study.conditions.device
 
 
 def _told(progress: Progress, number: int, count: int, fraction: float) -> None:

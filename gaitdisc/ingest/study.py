@@ -34,6 +34,11 @@ class Conditions(_Part):
     nominal: Word = Field(description="the reference condition, without the device or with it passive")
     device: Word = Field(description="the condition with the device")
 
+    @property
+    def both(self) -> tuple[str, str]:
+        """Nominal, then device."""
+        return self.nominal, self.device
+
 
 class PlannedTrial(_Part):
     """One walk: the files that hold it, and what the files do not say."""
@@ -243,7 +248,7 @@ class Study(_Part):
 
     def one_condition_only(self) -> tuple[str, ...]:
         """Pseudonyms of those who lack a trial of one of the two conditions."""
-        both = (self.conditions.nominal, self.conditions.device)
+        both = self.conditions.both
         return tuple(each.id for each in self.participants if not all(each.trials_of(word) for word in both))
 
     def missing_files(self) -> tuple[str, ...]:

@@ -59,7 +59,7 @@ def check_participants(study: Study, unknown: str) -> None:
     --------
     >>> check_participants(study, "unknown")  # doctest: +SKIP
     """
-    words = (study.conditions.nominal, study.conditions.device)
+    words = study.conditions.both
     if words[0] == words[1] or unknown in words:
         found = f"found {words[0]!r} and {words[1]!r}"
         refuse(("conditions",), f"two different words, neither of them {unknown!r}", found, "Name the two conditions.")

@@ -31,6 +31,11 @@ def test_the_defaults_are_those_of_the_dissertation():
     assert study.held_out.length_s(240.0) == 30.0
 
 
+def test_both_conditions_nominal_first():
+    assert _study(BOTH).conditions.both == ("natural", "exo")
+    assert set(_study(BOTH).conditions.model_dump()) == {"nominal", "device"}
+
+
 def test_the_held_out_part_may_be_given_in_seconds():
     assert HeldOut(seconds=20.0).length_s(240.0) == 20.0
     with pytest.raises(ValidationError, match="either 'seconds' or 'share'; both are there"):
