@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from datetime import UTC, datetime
 from pathlib import Path
 
 from gaitdisc.discovery.blow_up import refuse_blow_up
@@ -12,7 +11,7 @@ from gaitdisc.discovery.catalogue import read_catalogue
 from gaitdisc.discovery.discover import discover
 from gaitdisc.ingest.file_hash import file_sha256
 from gaitdisc.results.discovery import Discovery
-from gaitdisc.results.provenance import Provenance, installed_versions
+from gaitdisc.results.provenance import made_now
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.measured_table import read_measured
 from gaitdisc.simulation.simulation import Simulation
@@ -100,13 +99,8 @@ def _discovered(
     shapes = read_catalogue(catalogue) if catalogue else ()
     refuse_blow_up(model, data)
     found, augmented = discover(model, data, shapes, told)
-    made = Provenance(
-        {"title": model.title, "trials": len(data.trials), "rate_hz": data.rate, "channels": list(data.channels)},
-        0,
-        {path.name: file_sha256(path) for path in files},
-        installed_versions(),
-        "discovery of missing physics",
-        datetime.now(UTC).isoformat(timespec="seconds"),
-    )
+    settings = {"title": model.title, "trials": len(data.trials), "rate_hz": data.rate, "channels": list(data.channels)}
+    hashes = {path.name: file_sha256(path) for path in files}
+    made = made_now(settings, 0, hashes, "discovery of missing physics")
     findings = (*unit_findings(model), *found.findings)
     return replace(found, findings=findings, provenance=made), augmented

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict
-from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 
@@ -16,7 +15,7 @@ from gaitdisc.ingest.study import Study
 from gaitdisc.response.comparison import compare_models
 from gaitdisc.response.over_participants import compare_participants
 from gaitdisc.results import DataQuantity, Provenance, ResponseRun
-from gaitdisc.results.provenance import installed_versions
+from gaitdisc.results.provenance import made_now
 from gaitdisc.results.run_store import save_run
 
 SECTION = "4.2, Eqs. 4.1-4.5"
@@ -85,6 +84,5 @@ def _stored_quantities(study: Study, units: Sequence[ParticipantUnit], folder: P
 
 def _provenance(study: Study, units: Sequence[ParticipantUnit]) -> Provenance:
     files = {name: sha for unit in units for walk in unit.walks for name, sha in walk.files.items()}
-    created = datetime.now(UTC).isoformat(timespec="seconds")
     settings = {**study.model_dump(mode="json"), "fits": asdict(response_settings(study))}
-    return Provenance(settings, study.models.seed, files, installed_versions(), SECTION, created)
+    return made_now(settings, study.models.seed, files, SECTION)

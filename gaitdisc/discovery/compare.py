@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
-from datetime import UTC, datetime
 
 import numpy as np
 import pandas as pd
@@ -16,7 +15,7 @@ from gaitdisc.errors import ComparisonError
 from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.results import WalkSummary
 from gaitdisc.results.mismatch import CHANNEL_COLUMNS, REGION_COLUMNS, Exchange, Mismatch
-from gaitdisc.results.provenance import Provenance, installed_versions
+from gaitdisc.results.provenance import Provenance, made_now
 from gaitdisc.statistics.cluster_test import (
     FEWEST_IN_EACH,
     FEWEST_IN_ONE,
@@ -266,8 +265,7 @@ def _summary(channels: tuple[Channel, ...], compared: _Compared) -> pd.DataFrame
 
 
 def _provenance(plan: PermutationPlan, files: Mapping[str, str]) -> Provenance:
-    now = datetime.now(UTC).isoformat(timespec="seconds")
-    return Provenance(asdict(plan), plan.seed, files, installed_versions(), SECTION, now)
+    return made_now(asdict(plan), plan.seed, files, SECTION)
 
 
 def _sd(curves: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -6,6 +6,7 @@ import hashlib
 import platform
 from collections.abc import Mapping
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -47,6 +48,29 @@ class Provenance:
     versions: Mapping[str, str]
     section: str
     created: str
+
+
+def made_now(settings: Mapping[str, Any], seed: int, files: Mapping[str, str], section: str) -> Provenance:
+    """Return what a result rests on that is computed now, by what is installed here.
+
+    Parameters
+    ----------
+    settings : mapping
+        Every setting that could change a number.
+    seed : int
+        Seed of every random act.
+    files : mapping of str to str
+        File name -> SHA-256.
+    section : str
+        Part of the dissertation that the result follows.
+
+    Examples
+    --------
+    >>> made_now({}, 0, {}, "4.2").created[-6:]
+    '+00:00'
+    """
+    created = datetime.now(UTC).isoformat(timespec="seconds")
+    return Provenance(settings, seed, files, installed_versions(), section, created)
 
 
 def installed_versions() -> dict[str, str]:
