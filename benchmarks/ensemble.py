@@ -15,12 +15,11 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
 from scipy.stats import spearmanr
-from sensing_walks import Person, cohort_walks, treadmill_walks
+from sensing_walks import Person, chosen_walks
 
 from gaitdisc.networks.ensemble import Ensemble
 from gaitdisc.sensing.intervals import coverage, half_widths
 from gaitdisc.sensing.reconstructor import ENSEMBLE, fit_reconstructor
-from gaitdisc.sensing.splits import split_within
 
 
 def main() -> None:
@@ -28,20 +27,18 @@ def main() -> None:
     parser.add_argument("walks", choices=("treadmill", "cohort"))
     parser.add_argument("--people", type=int, default=3)
     given = parser.parse_args()
-    for person in treadmill_walks() if given.walks == "treadmill" else cohort_walks(given.people):
+    for person in chosen_walks(given.walks, given.people):
         print(line(person), flush=True)
 
 
 def line(person: Person) -> str:
     """What is found for one person."""
     what = person.what
-    windows = [what.windows(walk.recording, walk.phi) for walk in person.walks.people[person.name]]
-    parts = split_within(windows, "temporal", what.reach_s)
+    parts, angles = person.parts(), person.angles
     check, test = parts.checked(), parts.judged()
     done = fit_reconstructor(ENSEMBLE, what, parts.fitted(), check)
     ridge = fit_reconstructor("fourier ridge", what, parts.fitted(), check)
     assert isinstance(done.model, Ensemble)
-    angles = [k for k, channel in enumerate(person.channels[len(what.sensors) :]) if channel.unit == "deg"]
     errors = (done(test) - test.y)[:, angles]
     single = [np.sqrt(np.mean((member(test.x) - test.y)[:, angles] ** 2)) for member in done.model.members]
     other = np.sqrt(np.mean((ridge(test) - test.y)[:, angles] ** 2))

@@ -15,11 +15,10 @@ from dataclasses import replace
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
-from sensing_walks import LAGS, Person, cohort_walks, treadmill_walks
+from sensing_walks import LAGS, Person, chosen_walks
 
-from gaitdisc.sensing.reconstruct import reconstruct
+from gaitdisc.sensing.reconstruct import Fits, reconstruct
 from gaitdisc.sensing.reconstructor import sensing
-from gaitdisc.sensing.splits import split_within
 
 AHEAD = (0, 5, 10, 20, 30, 50)  # samples
 
@@ -30,7 +29,7 @@ def main() -> None:
     parser.add_argument("--people", type=int, default=4)
     parser.add_argument("--networks", action="store_true")
     given = parser.parse_args()
-    people = treadmill_walks() if given.walks == "treadmill" else cohort_walks(given.people)
+    people = chosen_walks(given.walks, given.people)
     kinds = ("linear", "delay ridge", "fourier ridge") + (("shred",) if given.networks else ())
     for ahead in AHEAD:
         found = [errors(person, ahead, kinds) for person in people]
@@ -42,12 +41,9 @@ def errors(person: Person, ahead: int, kinds: tuple[str, ...]) -> dict[str, floa
     """Mean squared error of every model over the angles that no sensor measures [deg2]."""
     names = tuple(channel.name for channel in person.walks.channels)
     what = sensing(names, person.what.sensors, replace(LAGS, ahead=ahead), person.what.rate_hz)
-    by_name = {channel.name: channel for channel in person.walks.channels}
-    windows = [what.windows(walk.recording, walk.phi) for walk in person.walks.people[person.name]]
-    parts = split_within(windows, "temporal", what.reach_s)
-    channels = [by_name[name] for name in (*what.sensors, *what.states)]
-    done = reconstruct(person.name, parts, what, channels, kinds)
-    angles = [c.name for c in channels if c.unit == "deg" and c.name not in what.sensors]
+    ahead_of = replace(person, what=what)
+    done = reconstruct(person.name, ahead_of.parts(), what, ahead_of.channels, Fits(kinds))
+    angles = [c.name for c in ahead_of.channels if c.unit == "deg" and c.name not in what.sensors]
     table = done.errors[done.errors["state"].isin(angles)]
     squares = (table["rmse"] ** 2).groupby(table["model"], sort=False).mean()
     return {str(name): float(value) for name, value in squares.items()}

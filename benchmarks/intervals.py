@@ -15,7 +15,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
 from numpy.typing import NDArray
-from sensing_walks import Person, cohort_walks, treadmill_walks
+from sensing_walks import Person, chosen_walks
 
 from gaitdisc.recording import Samples
 from gaitdisc.sensing.crossed import crossed_widths
@@ -32,8 +32,8 @@ def main() -> None:
     parser.add_argument("--kinds", default="linear,delay ridge,fourier ridge")
     parser.add_argument("--every", type=int, default=1, help="judge every so manieth person")
     given = parser.parse_args()
-    people = treadmill_walks() if given.walks == "treadmill" else cohort_walks(given.people)
-    windows = [[p.what.windows(w.recording, w.phi) for w in p.walks.people[p.name]] for p in people]
+    people = chosen_walks(given.walks, given.people)
+    windows = [person.windows() for person in people]
     for kind in given.kinds.split(","):
         judged = range(0, len(people), given.every)
         found = np.array([shares(kind, people[k], parts_of(windows, k, given.split)) for k in judged])

@@ -19,7 +19,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
 from numpy.typing import NDArray
-from sensing_walks import Person, cohort_walks, treadmill_walks
+from sensing_walks import Person, chosen_walks
 
 from gaitdisc.recording import Samples
 from gaitdisc.regression.fourier_ridge import fit_fourier_ridge
@@ -40,7 +40,7 @@ def main() -> None:
     parser.add_argument("--people", type=int, default=4)
     parser.add_argument("--seed", type=int, default=0)
     given = parser.parse_args()
-    people = treadmill_walks() if given.walks == "treadmill" else cohort_walks(given.people)
+    people = chosen_walks(given.walks, given.people)
     found = np.array([curves(person, given.seed) for person in people])  # (person, run, share, model)
     names = [*(f"{kind}, {way}" for kind, way in FILLED), "fourier ridge, told", MASKED]
     for run, table in zip(RUNS_S, np.sqrt(np.mean(found, axis=0)), strict=True):
@@ -59,7 +59,7 @@ def curves(person: Person, seed: int) -> NDArray[np.float64]:
     training, check = (hidden(part, count, seed + k) for k, part in enumerate((whole.fitted(), whole.checked())))
     means = np.nanmean(training.x, axis=0)
     ridge = fit_fourier_ridge(with_marks(training, means), with_marks(check, means), FEATURES, seed)
-    angles = [k for k, channel in enumerate(person.channels[count:]) if channel.unit == "deg"]
+    angles = person.angles
     found = np.empty((len(RUNS_S), len(SHARES), len(FILLED) + 2))
     for i, run_s in enumerate(RUNS_S):
         for j, share in enumerate(SHARES):
@@ -77,8 +77,7 @@ def parts(
 ) -> Parts:
     """Windows of all walks that have lost readings, filled or not, and parted in time."""
     what, windows = person.what, []
-    [walks] = [found for name, found in person.walks.people.items() if name == person.name]
-    for number, walk in enumerate(walks):
+    for number, walk in enumerate(person.walks.people[person.name]):
         recording = with_missing(walk.recording, what.sensors, share, run_s, 100 * seed + number)
         if filling:
             recording = filled(recording, what.sensors, filling[1], filling[0].sensor_means)

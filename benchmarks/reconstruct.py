@@ -43,7 +43,7 @@ from torch.utils.data import DataLoader, TensorDataset
 from gaitdisc.networks.threads import pinned_threads
 from gaitdisc.recording import Samples
 from gaitdisc.sensing.reconstructor import KINDS, fit_reconstructor
-from gaitdisc.sensing.splits import Parts, split_by_subject, split_within
+from gaitdisc.sensing.splits import Parts, split_by_subject
 from gaitdisc.sensing.windows import Lags
 
 EVERY_SAMPLE = Lags(100, 1)
@@ -85,23 +85,11 @@ def main() -> None:
     given = parser.parse_args()
     with pinned_threads(1):
         dense, sparse = (cohort_walks(1, lags=lags)[0] for lags in (EVERY_SAMPLE, Lags(25, 4)))
-        watched = original(parts_of(dense), angles_of(dense), given.cap_s, given.seed)
-        ours(parts_of(sparse), sparse, watched, given.seed)
+        watched = original(dense.parts(), dense.angles, given.cap_s, given.seed)
+        ours(sparse.parts(), sparse, watched, given.seed)
         if given.pyshred:
             packaged(dense, given.pyshred)
         several(given.seed)
-
-
-def parts_of(person: Person) -> Parts:
-    """Windows of one person, parted in time."""
-    walks = person.walks.people[person.name]
-    windows = [person.what.windows(walk.recording, walk.phi) for walk in walks]
-    return split_within(windows, "temporal", person.what.reach_s)
-
-
-def angles_of(person: Person) -> list[int]:
-    """Columns of the states that are angles."""
-    return [k for k, channel in enumerate(person.channels[len(SENSORS) :]) if channel.unit == "deg"]
 
 
 def rmse(told: NDArray[np.float64], samples: Samples, angles: Sequence[int]) -> float:
@@ -152,7 +140,7 @@ def original(parts: Parts, angles: list[int], cap_s: float, seed: int) -> list[W
 
 def ours(parts: Parts, person: Person, watched: list[Watched], seed: int) -> None:
     """Fit every kind, and say what the original needed for the same error."""
-    final, angles = watched[-1], angles_of(person)
+    final, angles = watched[-1], person.angles
     for kind in KINDS:
         done = fit_reconstructor(kind, person.what, parts.fitted(), parts.checked(), seed)
         error = rmse(done(parts.judged()), parts.judged(), angles)
@@ -184,9 +172,9 @@ def several(seed: int) -> None:
     """Twelve individual models, and one fold of the population."""
     people = cohort_walks()
     begun = time.process_time()
-    parted = [parts_of(person) for person in people]
+    parted = [person.parts() for person in people]
     windows_s = time.process_time() - begun
-    fold = split_by_subject([[p.what.windows(w.recording, w.phi) for w in p.walks.people[p.name]] for p in people], 0)
+    fold = split_by_subject([person.windows() for person in people], 0)
     for kind in CLOSED:
         fits = [
             fit_reconstructor(kind, person.what, own.fitted(), own.checked(), seed)

@@ -12,7 +12,10 @@ from gaitdisc.batch.demonstration import write_demonstration
 from gaitdisc.batch.sensed_walks import SensedWalks, sensed_walks
 from gaitdisc.channel import Channel
 from gaitdisc.ingest.study import Study
+from gaitdisc.recording import Samples
 from gaitdisc.sensing.reconstructor import Sensing, sensing
+from gaitdisc.sensing.splits import Parts, split_within
+from gaitdisc.sensing.state_errors import angle_columns
 from gaitdisc.sensing.windows import Lags
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
@@ -34,8 +37,25 @@ class Person:
     @property
     def channels(self) -> tuple[Channel, ...]:
         """Of the sensors, then of the states."""
-        by_name = {channel.name: channel for channel in self.walks.channels}
-        return tuple(by_name[name] for name in (*self.what.sensors, *self.what.states))
+        return self.walks.named((*self.what.sensors, *self.what.states))
+
+    @property
+    def angles(self) -> list[int]:
+        """Columns of the states that are angles."""
+        return angle_columns(self.walks.named(self.what.states))
+
+    def windows(self) -> list[Samples]:
+        """Windows of each walk."""
+        return [self.what.windows(walk.recording, walk.phi) for walk in self.walks.people[self.name]]
+
+    def parts(self) -> Parts:
+        """Windows of all walks, parted in time."""
+        return split_within(self.windows(), "temporal", self.what.reach_s)
+
+
+def chosen_walks(word: str, people: int) -> list[Person]:
+    """Those of `treadmill`, or so many people of the `cohort`."""
+    return treadmill_walks() if word == "treadmill" else cohort_walks(people)
 
 
 def treadmill_walks(sensors: tuple[str, ...] = SENSORS, lags: Lags = LAGS) -> list[Person]:

@@ -21,7 +21,6 @@ from numpy.typing import NDArray
 from sensing_walks import treadmill_walks
 
 from gaitdisc.sensing.reconstructor import KINDS, fit_reconstructor
-from gaitdisc.sensing.splits import split_within
 from gaitdisc.sensing.stream import Stream
 from gaitdisc.sensing.windows import windows_of
 
@@ -35,7 +34,7 @@ def main() -> None:
     [person] = treadmill_walks()
     [walks] = person.walks.people.values()
     what = person.what
-    parts = split_within([what.windows(w.recording, w.phi) for w in walks], "temporal", what.reach_s)
+    parts = person.parts()
     recording = walks[0].recording
     readings = np.resize(recording.selected(what.sensors).values, (count, len(what.sensors)))
     windows = windows_of(recording, what.sensors, what.states, what.lags, walks[0].phi)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
-from datetime import UTC, datetime
 
 import pandas as pd
 
@@ -13,8 +12,8 @@ from gaitdisc.batch.target_walks import STATES
 from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.ingest.study import Study
 from gaitdisc.recording import Samples
-from gaitdisc.results import Provenance, Refusal
-from gaitdisc.results.provenance import installed_versions
+from gaitdisc.results import Refusal
+from gaitdisc.results.provenance import made_now
 from gaitdisc.results.reconstruction import CALIBRATED, Reconstruction
 from gaitdisc.sensing.forecast import BASELINES
 from gaitdisc.sensing.reconstruct import Fits, PersonReconstruction, reconstruct
@@ -119,8 +118,7 @@ def reconstruct_study(
     told_of = walks.channels if settings.targets == STATES else [c for c in walks.channels if c.name not in sensors]
     names = tuple(channel.name for channel in told_of)
     what = sensing(names, tuple(sensors), settings.lags(walks.rate_hz), walks.rate_hz)
-    by_name = {channel.name: channel for channel in walks.channels}
-    channels = tuple(by_name[name] for name in (*what.sensors, *what.states))
+    channels = walks.named((*what.sensors, *what.states))
     fits = Fits(settings.kinds, settings.seed, settings.device, CALIBRATION_STRIDES if settings.split == SUBJECT else 0)
     windows = {
         person: [what.windows(walk.recording, walk.phi) for walk in found] for person, found in walks.people.items()
@@ -189,7 +187,6 @@ def _result(
     done: Sequence[PersonReconstruction],
     refusals: Sequence[Refusal],
 ) -> Reconstruction:
-    by_name = {channel.name: channel for channel in walks.channels}
     models = {kind: (KINDS | ON_REQUEST)[kind] for kind in settings.kinds}
     rule = (RULES | ACROSS)[settings.split]
     if settings.split == SUBJECT:
@@ -199,15 +196,14 @@ def _result(
         }
     if what.lags.ahead:
         models |= BASELINES
-    created = datetime.now(UTC).isoformat(timespec="seconds")
     used = {
         **study.model_dump(mode="json", include={"filters", "strides", "conditions"}),
         "reconstruct": asdict(settings),
     }
     return Reconstruction(
         study.title or study.folder.name,
-        tuple(by_name[name] for name in what.sensors),
-        tuple(by_name[name] for name in what.states),
+        walks.named(what.sensors),
+        walks.named(what.states),
         f"{settings.split}: {rule}",
         f"{what.lags.count} readings of each sensor, {what.lags.spacing / what.rate_hz:.2f} s apart; each model tells "
         + (f"the states {what.lags.ahead / what.rate_hz:.2f} s after" if what.lags.ahead else "the states at")
@@ -219,5 +215,5 @@ def _result(
         ),
         tuple(refusals),
         walks.findings,
-        Provenance(used, settings.seed, walks.files, installed_versions(), SECTION, created),
+        made_now(used, settings.seed, walks.files, SECTION),
     )

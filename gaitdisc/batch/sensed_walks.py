@@ -79,6 +79,17 @@ class SensedWalks:
         """Samples a second of every recording."""
         return next(iter(self.people.values()))[0].recording.rate_hz
 
+    def named(self, names: Sequence[str]) -> tuple[Channel, ...]:
+        """Return channels by their names, in the order asked for.
+
+        Parameters
+        ----------
+        names : sequence of str
+            Of channels that every recording has.
+        """
+        by_name = {channel.name: channel for channel in self.channels}
+        return tuple(by_name[name] for name in names)
+
 
 def sensed_walks(
     study: Study, sensors: Sequence[str], condition: str = "", targets: str = STATE_TARGETS

@@ -13,7 +13,7 @@ from gaitdisc.recording import Recording, Samples
 from gaitdisc.sensing.missing import filled, with_missing
 from gaitdisc.sensing.reconstructor import KINDS, MASKED, Reconstructor, Sensing, fit_reconstructor
 from gaitdisc.sensing.splits import Parts, split_within
-from gaitdisc.sensing.windows import windows_of
+from gaitdisc.sensing.state_errors import angle_columns
 
 NOISES = (0.0, 0.01, 0.02, 0.05, 0.10)
 SHARES = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5)
@@ -131,13 +131,9 @@ def against_missing(
 
 
 def _parts(walks: Walks, what: Sensing, disturbed: Callable[[Recording, int], Recording]) -> Parts:
-    windows = [
-        windows_of(disturbed(walk, k), what.sensors, what.states, what.lags, phi, missing=True)
-        for k, (walk, phi) in enumerate(walks)
-    ]
+    windows = [what.windows(disturbed(walk, k), phi, missing=True) for k, (walk, phi) in enumerate(walks)]
     return split_within(windows, "temporal", what.reach_s)
 
 
 def _rmse(done: Reconstructor, judged: Samples, channels: Sequence[Channel]) -> float:
-    angles = [k for k, channel in enumerate(channels) if channel.unit == "deg"]
-    return float(np.sqrt(np.mean((done(judged) - judged.y)[:, angles] ** 2)))
+    return float(np.sqrt(np.mean((done(judged) - judged.y)[:, angle_columns(channels)] ** 2)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -166,4 +167,4 @@ def hidden(samples: Samples, sensors: int, seed: int = 0) -> Samples:
     x[chosen] = np.where(
         lost.reshape(readings, len(chosen), sensors).swapaxes(0, 1).reshape(len(chosen), -1), np.nan, x[chosen]
     )
-    return Samples(x, samples.y, samples.inputs, samples.outputs, samples.time, samples.phi, samples.subject)
+    return replace(samples, x=x)

@@ -19,7 +19,14 @@ from gaitdisc.sensing.intervals import coverage, half_widths
 from gaitdisc.sensing.model_folder import SensingModel
 from gaitdisc.sensing.reconstructor import KINDS, Reconstructor, Sensing, fit_reconstructor
 from gaitdisc.sensing.splits import PERSON_OUT, Parts
-from gaitdisc.sensing.state_errors import Judged, angles_error, phase_curves, state_errors, stride_numbers
+from gaitdisc.sensing.state_errors import (
+    Judged,
+    angle_columns,
+    angles_error,
+    phase_curves,
+    state_errors,
+    stride_numbers,
+)
 from gaitdisc.sensing.windows import stacked
 from gaitdisc.statistics.r2 import r2
 
@@ -187,7 +194,7 @@ def _baselines(parts: Parts, what: Sensing) -> list[_Account]:
 def _summary(judged: Judged, channels: Sequence[Channel], what: Sensing) -> dict[str, float]:
     count = len(what.sensors)
     read = channels[:count] if not what.lags.ahead else ()  # the future of a sensor is told, not read
-    angles = [k for k, channel in enumerate(read) if channel.unit == "deg"]
+    angles = angle_columns(read)
     readings = judged.windows.x[:, -count:][:, angles]
     errors = angles_error(judged, channels[count:], readings)
     if len({channel.unit for channel in channels[count:]}) == 1 and channels[-1].unit != "deg":

@@ -15,6 +15,7 @@ from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError
 from gaitdisc.recording import Samples, scale_of
 from gaitdisc.sensing.splits import Parts
+from gaitdisc.sensing.state_errors import angle_columns
 from gaitdisc.sensing.windows import thinned
 
 PENALTIES = tuple(10.0**power for power in range(-7, 1))
@@ -64,7 +65,7 @@ def search_sensors(people: Sequence[Parts], channels: Sequence[Channel], most: i
             "Give --search 1 or more, and recordings with more channels.",
         )
     begun = time.process_time()
-    angles = [k for k, channel in enumerate(channels) if channel.unit == "deg"]
+    angles = angle_columns(channels)
     kept = tuple(angles) if len(angles) > 1 else tuple(range(len(channels)))
     products = [_products(parts, kept, bool(angles)) for parts in people]
     rows, best = [], ()

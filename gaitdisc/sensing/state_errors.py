@@ -107,6 +107,22 @@ def state_errors(judged: Judged, channels: Sequence[Channel], seed: int = 0) -> 
     )
 
 
+def angle_columns(channels: Sequence[Channel]) -> list[int]:
+    """Columns that are angles.
+
+    Parameters
+    ----------
+    channels : sequence of Channel
+        In the order of the columns.
+
+    Examples
+    --------
+    >>> angle_columns([Channel("pelvis_tx", "translation", "m"), Channel("knee_angle_r", "angle", "deg", "r")])
+    [1]
+    """
+    return [k for k, channel in enumerate(channels) if channel.unit == "deg"]
+
+
 def angles_error(judged: Judged, channels: Sequence[Channel], sensors: NDArray[np.float64]) -> dict[str, float]:
     """One number for all angles that no sensor measures, by each of the three names.
 
@@ -125,7 +141,7 @@ def angles_error(judged: Judged, channels: Sequence[Channel], sensors: NDArray[n
         `rmse_deg` (root of the mean square over windows and angles), `relative_l2`, `r2` (median of the angles), and
         `relative_l2_whole`, in which the sensors count as states without error, as in Table 5.2. NaN without angles.
     """
-    angles = [k for k, channel in enumerate(channels) if channel.unit == "deg"]
+    angles = angle_columns(channels)
     if not angles:
         return dict.fromkeys(("rmse_deg", "relative_l2", "r2", "relative_l2_whole"), float("nan"))
     measured, told = judged.windows.y[:, angles], judged.told[:, angles]

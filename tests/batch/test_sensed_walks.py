@@ -20,6 +20,7 @@ def test_every_walk_is_filtered_trimmed_and_cut_into_strides(study):
     assert np.isfinite(walk.phi).mean() > 0.9
     assert [c.name for c in walks.channels][-2:] == ["hip_flexion_l", "knee_angle_l"]
     assert len(walks.files) == 4
+    assert walks.named(("knee_angle_l", "knee_angle_r")) == (walks.channels[-1], walks.channels[1])
 
 
 def test_one_condition_alone(study):

@@ -3,7 +3,14 @@ import pytest
 
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Samples
-from gaitdisc.sensing.state_errors import Judged, angles_error, phase_curves, state_errors, stride_numbers
+from gaitdisc.sensing.state_errors import (
+    Judged,
+    angle_columns,
+    angles_error,
+    phase_curves,
+    state_errors,
+    stride_numbers,
+)
 
 CHANNELS = (Channel("knee_angle_r", "angle", "deg", "r"), Channel("pelvis_tx", "translation", "m"))
 
@@ -49,3 +56,8 @@ def test_curves_over_the_stride(judged):
     assert len(knee) == 50
     np.testing.assert_allclose(knee["told"] - knee["measured"], 2.0)
     np.testing.assert_allclose(knee["measured"], 30 + 10 * np.sin(2 * np.pi * knee["percent"] / 100), atol=0.6)
+
+
+def test_columns_that_are_angles():
+    assert angle_columns((*CHANNELS, CHANNELS[0])) == [0, 2]
+    assert angle_columns(CHANNELS[1:]) == []
