@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 from gaitdisc.discovery.fitted import Fitted
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.parts import Parameter, Term
-from gaitdisc.simulation.running import Compiled, compile_simulation
+from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
 NUDGE = 1e-5

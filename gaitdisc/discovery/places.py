@@ -8,8 +8,9 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.parts import Term
-from gaitdisc.simulation.running import Compiled, compile_simulation
+from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
 ANGLES = ("rad", "deg")

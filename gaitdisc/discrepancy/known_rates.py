@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.refusal import SimulationError
-from gaitdisc.simulation.running import Compiled, compile_simulation
+from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
 STEP_S = 5e-4  # of Runge-Kutta order 4: the Lorenz system loses 1e-12 a second to it

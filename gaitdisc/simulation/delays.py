@@ -1,57 +1,9 @@
-"""Delayed signals outside a run: along rows that were run, and along the samples of one trial."""
+"""Signals between their samples, and some seconds ago: along rows of a run, and along the samples of one trial."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
-
-from gaitdisc.simulation.drive import Drive
-
-if TYPE_CHECKING:
-    from gaitdisc.simulation.running import Compiled
-
-
-def delayed_in_rows(
-    compiled: Compiled,
-    recorded: tuple[Drive, NDArray[np.int64], NDArray[np.float64] | None],
-    states: NDArray[np.float64],
-    seconds: NDArray[np.float64],
-) -> NDArray[np.float64]:
-    """Delayed signals of the observations along rows, (row, step, delay).
-
-    States are cubic between the samples of their row, near to the finer steps of the run; inputs are linear.
-
-    Parameters
-    ----------
-    compiled : Compiled
-        Whose observations are wanted.
-    recorded : tuple of Drive, ndarray (row, 2), ndarray (trial, sample, state) or None
-        Inputs, place of the rows as trial and first sample, measured states before the rows begin.
-    states : ndarray (row, step, state)
-        From `Compiled.run`.
-    seconds : ndarray (row, delay)
-        How long ago [s].
-    """
-    drive, place, past = recorded
-    count, steps, _ = states.shape
-    late = np.empty((count, steps, seconds.shape[1]))
-    for k, (signal, _) in enumerate(compiled.observation.delays):
-        position = np.arange(steps) - seconds[:, k, None] * drive.rate  # samples since the row's start
-        if signal in compiled.inputs:
-            column = compiled.inputs.index(signal)
-            wraps = compiled.simulation.inputs[column].wraps
-            at = np.clip(place[:, 1, None] + position, 0, drive.samples[place[:, 0], None] - 1)
-            late[:, :, k] = linear_in_rows(drive.inputs[:, :, column], place[:, 0], at, wraps)
-            continue
-        column = compiled.states.index(signal)
-        late[:, :, k] = _cubic(states[:, :, column], np.clip(position, 0, steps - 1))
-        before = (position < 0) & (place[:, 1, None] > 0)
-        if past is not None and before.any():
-            measured = before_rows(past[:, :, column], place, position, states[:, 0, column])
-            late[:, :, k] = np.where(before, measured, late[:, :, k])
-    return late
 
 
 def delayed_in_series(
@@ -104,8 +56,21 @@ def linear_in_rows(
     return value % 1.0 if wraps else value
 
 
-def _cubic(series: NDArray[np.float64], at: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Values (row, step) of series (row, sample) at places (row, step), by the polynomial through four samples."""
+def cubic_in_rows(series: NDArray[np.float64], at: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Values between the samples of series by the polynomial through four of them, (row, step).
+
+    Parameters
+    ----------
+    series : ndarray (row, sample)
+        Signals; linear where they have fewer than four samples.
+    at : ndarray (row, step)
+        Places, in samples, inside the row.
+
+    Examples
+    --------
+    >>> cubic_in_rows(np.arange(5.0)[None] ** 3, np.array([[1.5]])).tolist()
+    [[3.375]]
+    """
     count, steps = series.shape
     rows = np.arange(count)
     if steps < 4:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.refusal import SimulationError
-from gaitdisc.simulation.running import Compiled
 
 _NUDGE = 1e-2  # of a parameter, to see what drives the rate
 

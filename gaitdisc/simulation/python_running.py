@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.simulation.at_points import at_points, leaf_columns
+from gaitdisc.simulation.compiled_simulation import SUBSTEPS, Compiled
 from gaitdisc.simulation.delays import before_rows, linear_in_rows
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.machine import BOUND
 from gaitdisc.simulation.python_simulation import PythonSimulation, called
-from gaitdisc.simulation.running import SUBSTEPS, Compiled, compile_simulation
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,28 +81,6 @@ class PythonCompiled(Compiled):
         columns = leaf_columns(np.broadcast_to(np.asarray(t, float), len(x)), x, u, given)
         fed = at_points(self.right_hand_side, columns, late, len(x)).T
         return called(self.model, columns[0], x, fed, np.broadcast_to(given, (len(x), len(self.parameters))))
-
-
-def compile_python_simulation(model: PythonSimulation) -> PythonCompiled:
-    """Make a simulation of a Python object ready to run; `compile_simulation` does this too.
-
-    Parameters
-    ----------
-    model : PythonSimulation
-        With its effects.
-    """
-    own, feeds = compile_simulation(model.parts), compile_simulation(model.feeds)
-    return PythonCompiled(
-        model.parts,
-        own.states,
-        own.inputs,
-        own.parameters,
-        own.observed,
-        own.defaults,
-        feeds.observation,
-        own.observation,
-        model,
-    )
 
 
 class _Walk:

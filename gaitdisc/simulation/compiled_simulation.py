@@ -1,0 +1,231 @@
+"""A simulation that is ready to run: many trials, many starts and many parameters at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gaitdisc.errors import ShapeError
+from gaitdisc.recording.arrays import read_only
+from gaitdisc.simulation.at_points import at_points, leaf_columns
+from gaitdisc.simulation.delays import before_rows, cubic_in_rows, linear_in_rows
+from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.simulation.program import Program, compiled_program
+from gaitdisc.simulation.simulation import Simulation
+
+SUBSTEPS = 5  # Runge-Kutta steps for each sample
+
+
+@dataclass(frozen=True, eq=False)
+class Compiled:
+    """A simulation that is ready to run.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        What it was made from.
+    states, inputs, parameters, observed : tuple of str
+        Names, in order.
+    defaults : ndarray (parameter,)
+        The parameters' own values.
+    right_hand_side, observation : Program
+        Derivatives of the states, and the observed channels.
+    """
+
+    simulation: Simulation
+    states: tuple[str, ...]
+    inputs: tuple[str, ...]
+    parameters: tuple[str, ...]
+    observed: tuple[str, ...]
+    defaults: NDArray[np.float64]
+    right_hand_side: Program
+    observation: Program
+
+    def run(
+        self,
+        drive: Drive,
+        rows: Rows,
+        steps: int,
+        *,
+        substeps: int = SUBSTEPS,
+        past: NDArray[np.float64] | None = None,
+    ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        """States along each row, by Runge-Kutta of order 4.
+
+        Parameters
+        ----------
+        drive : Drive
+            Inputs of all trials.
+        rows : Rows
+            Where each row starts, and with which parameters.
+        steps : int
+            Samples to go.
+        substeps : int
+            Steps for each sample.
+        past : ndarray (trial, sample, state), optional
+            Measured states, for delays that reach before a row's start; held at the start where absent or NaN.
+
+        Returns
+        -------
+        states : ndarray (row, steps + 1, state)
+            NaN beyond the trial's end, and from where a row diverged (a state beyond 1e6, or not a number).
+        ok : ndarray of bool (row,)
+            False where a row diverged.
+        """
+        from gaitdisc.simulation.machine import BLOCK, integrate
+
+        place, starts, values = self._rows(drive, rows)
+        seconds = self._seconds(self.right_hand_side, values)
+        found = np.full((len(starts), steps + 1, len(self.states)), np.nan)
+        found[:, 0] = starts
+        ok = np.asarray(np.isfinite(starts).all(axis=1))
+        program = self._instructions(BLOCK)
+        wraps = np.array([each.wraps for each in self.simulation.inputs], bool)
+        driven = (drive.rate, drive.time0, drive.inputs, drive.samples, wraps)
+        before = read_only(np.empty((0, 0, 0)) if past is None else np.ascontiguousarray(past, float))
+        integrate(program, driven, (place, starts, values, seconds), (steps, substeps), before, (found, ok))
+        return found, ok
+
+    def rates(
+        self,
+        t: ArrayLike,
+        x: NDArray[np.float64],
+        u: NDArray[np.float64],
+        values: NDArray[np.float64] | None = None,
+        late: NDArray[np.float64] | None = None,
+    ) -> NDArray[np.float64]:
+        """Right-hand side at many points.
+
+        Parameters
+        ----------
+        t : ndarray (point,)
+            Time [s].
+        x : ndarray (point, state)
+            States.
+        u : ndarray (point, input)
+            Inputs.
+        values : ndarray (parameter,) or (point, parameter), optional
+            Parameters; the simulation's own where absent.
+        late : ndarray (point, delay), optional
+            Delayed signals, in the order of `right_hand_side.delays`.
+
+        Raises
+        ------
+        SimulationError
+            If the simulation has delays and `late` is absent.
+        """
+        values = self.defaults if values is None else np.asarray(values, float)
+        return at_points(self.right_hand_side, leaf_columns(t, x, u, values), late).T
+
+    def observe(
+        self,
+        drive: Drive,
+        rows: Rows,
+        states: NDArray[np.float64],
+        past: NDArray[np.float64] | None = None,
+    ) -> NDArray[np.float64]:
+        """Observed channels along rows that were run.
+
+        Parameters
+        ----------
+        drive : Drive
+            Inputs of all trials.
+        rows : Rows
+            The rows that were run.
+        states : ndarray (row, step, state)
+            From `run`.
+        past : ndarray (trial, sample, state), optional
+            As for `run`.
+
+        Returns
+        -------
+        ndarray (row, step, observed)
+        """
+        place, _, values = self._rows(drive, rows)
+        count, steps, n = states.shape
+        sample = place[:, 1, None] + np.arange(steps)
+        held = np.minimum(sample, drive.samples[place[:, 0], None] - 1)
+        u = drive.inputs[place[:, 0, None], held]
+        t = drive.time0[place[:, 0], None] + sample / drive.rate
+        seconds = self._seconds(self.observation, values)
+        late = self._delayed(drive, place, states, seconds, past)
+        points = count * steps
+        columns = leaf_columns(t.ravel(), states.reshape(points, n), u.reshape(points, -1), values[0])
+        first, used = 1 + n + len(self.inputs), self.observation.used()
+        for column in range(len(self.parameters)):
+            if used[first + column]:
+                columns[first + column] = np.repeat(values[:, column], steps)
+        found = at_points(self.observation, columns, late.reshape(points, -1), points)
+        return np.ascontiguousarray(found.T).reshape(count, steps, len(self.observed))
+
+    def _delayed(
+        self,
+        drive: Drive,
+        place: NDArray[np.int64],
+        states: NDArray[np.float64],
+        seconds: NDArray[np.float64],
+        past: NDArray[np.float64] | None,
+    ) -> NDArray[np.float64]:
+        """Delayed signals of the observations along rows, (row, step, delay).
+
+        States are cubic between the samples of their row, near to the finer steps of the run; inputs are linear.
+        """
+        count, steps, _ = states.shape
+        late = np.empty((count, steps, seconds.shape[1]))
+        for k, (signal, _) in enumerate(self.observation.delays):
+            position = np.arange(steps) - seconds[:, k, None] * drive.rate  # samples since the row's start
+            if signal in self.inputs:
+                column = self.inputs.index(signal)
+                wraps = self.simulation.inputs[column].wraps
+                at = np.clip(place[:, 1, None] + position, 0, drive.samples[place[:, 0], None] - 1)
+                late[:, :, k] = linear_in_rows(drive.inputs[:, :, column], place[:, 0], at, wraps)
+                continue
+            column = self.states.index(signal)
+            late[:, :, k] = cubic_in_rows(states[:, :, column], np.clip(position, 0, steps - 1))
+            before = (position < 0) & (place[:, 1, None] > 0)
+            if past is not None and before.any():
+                measured = before_rows(past[:, :, column], place, position, states[:, 0, column])
+                late[:, :, k] = np.where(before, measured, late[:, :, k])
+        return late
+
+    def _rows(self, drive: Drive, rows: Rows) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+        starts = np.array(rows.starts, float, order="C", ndmin=2)
+        count = len(starts)
+        values = self.defaults if rows.values is None else np.asarray(rows.values, float)
+        fits = starts.shape[1] == len(self.states) and drive.inputs.shape[2] == len(self.inputs)
+        if not fits or values.shape not in ((len(self.parameters),), (count, len(self.parameters))):
+            raise ShapeError(
+                f"rows have starts (row, {len(self.states)}), values (row, {len(self.parameters)}) and "
+                f"{len(self.inputs)} inputs",
+                f"found starts {starts.shape}, values {values.shape}, {drive.inputs.shape[2]} inputs",
+                "Follow the order of the simulation's states, parameters and inputs.",
+            )
+        place = np.empty((count, 2), np.int64)
+        place[:, 0], place[:, 1] = rows.trial, rows.begin
+        inside = (place[:, 0] >= 0) & (place[:, 0] < len(drive.samples)) & (place[:, 1] >= 0)
+        if not inside.all() or np.any(place[:, 1] >= drive.samples[place[:, 0]]):
+            raise ShapeError(
+                f"rows begin inside one of {len(drive.samples)} trials",
+                f"found trials {place[:, 0].min()} to {place[:, 0].max()}, first samples from {place[:, 1].min()} "
+                f"to {place[:, 1].max()}",
+                "Count trials and samples from 0.",
+            )
+        return place, starts, np.array(np.broadcast_to(values, (count, len(self.parameters))), order="C")
+
+    def _seconds(self, program: Program, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Seconds of each delay of a program, (row, delay)."""
+        if not program.delays:
+            return np.empty((len(values), 0))
+        wanted = compiled_program([seconds for _, seconds in program.delays], self.parameters)
+        return np.ascontiguousarray(at_points(wanted, list(values.T), None, len(values)).T)
+
+    def _instructions(self, rows: int) -> tuple:
+        program = self.right_hand_side
+        kinds = [
+            (1, self.states.index(signal)) if signal in self.states else (0, self.inputs.index(signal))
+            for signal, _ in program.delays
+        ]
+        delayed = np.array(kinds, np.int64).reshape(-1, 2)
+        return program.placed(rows), program.setup, program.constants, delayed, program.registers
