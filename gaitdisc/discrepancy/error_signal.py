@@ -29,7 +29,8 @@ def error_samples(record: Record, approach: Approach, of_time: bool = False) -> 
         Its training part.
     approach : str
         `dynamics`: the deterministic dynamical error at the measured states (Eqs. 3.4, 3.6); `state`: the systematic
-        state-space residual at the known model's states (Eq. 3.5).
+        state-space residual at the known model's states (Eq. 3.5), of the measurement as it is: low-passed, its noise
+        would be taken for signal (only the published variant is).
     of_time : bool
         The input is time instead, for dynamic mode decomposition.
 
@@ -130,6 +131,6 @@ def _state(record: Record) -> tuple[NDArray[np.float64], NDArray[np.float64], in
     system, made = record.system, record.conditions
     run = system.known.run(record.start(forecast=False)[None], made.dt_s, record.split - 1)[0]
     seen = run[:, : len(system.channels)]
-    edge = edge_samples(1.0 / made.dt_s) if made.noise and not made.published else 0
-    inner = slice(edge, len(run) - edge)
-    return run[inner], (record.filtered - seen)[inner], inner.start, inner.stop
+    # no derivative is taken, so no low-pass is needed: it would colour the noise, which every method takes for white
+    y = record.filtered if made.published else record.measured[: record.split]
+    return run, y - seen, 0, len(run)

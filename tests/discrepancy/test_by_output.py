@@ -4,7 +4,6 @@ import pytest
 from gaitdisc.discrepancy.by_output import fitted_by_output
 from gaitdisc.discrepancy.error_signal import error_samples
 from gaitdisc.discrepancy.methods import MethodSettings, fitted
-from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.regression.sindy import fit_sindy
 
 
@@ -19,7 +18,7 @@ def test_each_output_is_fitted_alone_and_they_stand_in_order(quiet):
 def test_an_output_that_is_noise_does_not_change_the_network_of_another(quiet):
     samples = error_samples(quiet, "dynamics")
     loud = samples.with_outputs(samples.y + np.random.default_rng(0).standard_normal((len(samples), 1)) * [[1.0, 0.0]])
-    settings = MethodSettings(training=TrainingSettings(epochs=2, decays=(0.1,)))
+    settings = MethodSettings(nodes=4)
     one, other = (fitted(each, "nn", settings)(samples.x) for each in (samples, loud))
     assert other[:, 1] == pytest.approx(one[:, 1], abs=1e-12)
     assert not np.allclose(other[:, 0], one[:, 0])

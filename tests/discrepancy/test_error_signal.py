@@ -31,6 +31,17 @@ def test_the_residual_is_what_the_known_model_misses(quiet):
     assert np.allclose(samples.x + samples.y, quiet.truth[: quiet.split])
 
 
+def test_the_residual_keeps_the_noise_white_and_is_low_passed_only_as_published(van_der_pol):
+    for published in (False, True):
+        record = recorded(van_der_pol, Conditions(0.01, duration_s=20.0, published=published))
+        samples = error_samples(record, "state")
+        run = van_der_pol.known.run(record.start(forecast=False)[None], 0.01, record.split - 1)[0]
+        noise = samples.y + run - record.truth[: record.split]
+        neighbours = [np.corrcoef(noise[1:, k], noise[:-1, k])[0, 1] for k in range(2)]
+        assert len(samples) == record.split
+        assert np.all(np.array(neighbours) > 0.5) if published else np.all(np.abs(neighbours) < 0.1)
+
+
 def test_rates_of_states_that_are_not_measured_are_refused():
     record = recorded(system_of(bundled("mass_spring_damper"), gain=(1.01,)), Conditions(duration_s=5.0))
     with pytest.raises(ShapeError, match="needs all 2 states measured; 1 are: x"):

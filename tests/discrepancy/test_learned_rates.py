@@ -5,13 +5,12 @@ from gaitdisc.discrepancy.error_signal import error_samples
 from gaitdisc.discrepancy.learned_rates import learned_rate
 from gaitdisc.discrepancy.learned_term import learned_term
 from gaitdisc.discrepancy.methods import OF_TIME, MethodSettings, fitted
-from gaitdisc.networks.training_settings import TrainingSettings
 
 
 @pytest.mark.parametrize("method", ["sindy", "gp", "nn", "dmd", "bopdmd"])
 def test_compiled_code_gives_the_numbers_of_the_model(quiet, method):
     samples = error_samples(quiet, "dynamics", of_time=method in OF_TIME)
-    settings = MethodSettings(training=TrainingSettings(epochs=2, decays=(0.1,)))
+    settings = MethodSettings(nodes=4)
     model = fitted(samples, method, settings)
     points = samples.x[::300]
     term = learned_term(model, points[:, 0])
