@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.recording import Field
-from gaitdisc.sensing.reconstruct_field import FieldTask, Label, field_cells, prepare
+from gaitdisc.sensing.reconstruct_field import FieldTask, field_cells, prepare
 from gaitdisc.sensing.routes import Route
 
 SIZES = (1, 2, 3, 5, 8, 12, 20, 32, 64)
@@ -53,7 +53,7 @@ def latent_sizes(
     for nodes in sizes:
         build = partial(Shred, sensors=len(ready.what.sensors), nodes=nodes)
         model = train(ready.training, build, settings, check=ready.check).network
-        label = Label(task.name, route.name, task.rule, f"shred {nodes}", task.seed)
+        label = task.label(route.name, f"shred {nodes}")
         left = float(1 - np.sum(ready.targets.modes.energies[:nodes]))
         for cell in field_cells(field, ready, label, ready.targets.fields(model(ready.test.x), ready.test)):
             rows.append((nodes, task.rule, cell.quantity, cell.relative_l2, cell.r2, left))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -21,6 +21,24 @@ from gaitdisc.sensing.windows import Lags
 
 SPLIT_SEED = 0  # windows drawn at random are the same ones in every run and for every route
 MEAN, SEASON, CEILING = "mean (no sensor)", "season (no sensor)", "POD ceiling"
+
+
+class Label(NamedTuple):
+    """Which cell it is.
+
+    Parameters
+    ----------
+    field, route, split, model : str
+        What was varied.
+    run : int
+        Seed.
+    """
+
+    field: str
+    route: str
+    split: str
+    model: str
+    run: int
 
 
 @dataclass(frozen=True)
@@ -56,6 +74,26 @@ class FieldTask:
     positions: bool = False
     departures: bool = False
     seed: int = 0
+
+    def label(self, route: str, model: str) -> Label:
+        """Return which cell a route and a model are.
+
+        Parameters
+        ----------
+        route, model : str
+            In words.
+        """
+        return Label(self.name, route, self.rule, model, self.seed)
+
+    def named(self, kind: str) -> str:
+        """Return what a kind of model is called that tells what this task asks for.
+
+        Parameters
+        ----------
+        kind : str
+            A word of `gaitdisc.sensing.reconstructor.KINDS`.
+        """
+        return f"{kind}, departures" if self.departures else kind
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,6 +156,16 @@ class Prepared:
     test: Samples
     targets: Targets
     what: Sensing
+
+    def told(self, model: Callable[[Samples], NDArray[np.float64]]) -> NDArray[np.float32]:
+        """Field at each window of the test part, (window, point, quantity) [each quantity's unit].
+
+        Parameters
+        ----------
+        model : callable
+            Tells the modes' coefficients, (window, mode).
+        """
+        return self.targets.fields(model(self.test), self.test)
 
 
 def targets_of(field: Field, task: FieldTask) -> Targets:
@@ -212,31 +260,12 @@ def reconstruct_field(
     ready = prepare(field, route, task, targets)
     cells = []
     for model, told in (_floors(ready, task) if floors else {}).items():
-        cells += field_cells(field, ready, Label(task.name, route.name, task.rule, model, task.seed), told)
+        cells += field_cells(field, ready, task.label(route.name, model), told)
     for kind in kinds:
         done = fit_reconstructor(kind, ready.what, ready.training, ready.check, task.seed)
-        named = f"{kind}, departures" if task.departures else kind
-        label = Label(task.name, route.name, task.rule, named, task.seed)
-        cells += field_cells(field, ready, label, ready.targets.fields(done(ready.test), ready.test), done.seconds)
+        label = task.label(route.name, task.named(kind))
+        cells += field_cells(field, ready, label, ready.told(done), done.seconds)
     return cells
-
-
-class Label(NamedTuple):
-    """Which cell it is.
-
-    Parameters
-    ----------
-    field, route, split, model : str
-        What was varied.
-    run : int
-        Seed.
-    """
-
-    field: str
-    route: str
-    split: str
-    model: str
-    run: int
 
 
 def field_cells(

@@ -8,7 +8,7 @@ from dataclasses import replace
 from gaitdisc.errors import ChannelError
 from gaitdisc.recording import Field
 from gaitdisc.results.field_cell import FieldCell
-from gaitdisc.sensing.reconstruct_field import FieldTask, Label, field_cells, prepare, targets_of
+from gaitdisc.sensing.reconstruct_field import FieldTask, field_cells, prepare, targets_of
 from gaitdisc.sensing.reconstructor import fit_reconstructor
 from gaitdisc.sensing.routes import Route
 from gaitdisc.sensing.windows import stacked
@@ -68,7 +68,6 @@ def unseen_path(
         for kind in kinds:
             done = fit_reconstructor(kind, ready[0].what, training, check, task.seed)
             for where, each in judged.items():
-                named = f"{kind}, departures" if task.departures else kind
-                label = Label(task.name, f"{where}; {fitted}", task.rule, named, task.seed)
-                cells += field_cells(field, each, label, each.targets.fields(done(each.test), each.test), done.seconds)
+                label = task.label(f"{where}; {fitted}", task.named(kind))
+                cells += field_cells(field, each, label, each.told(done), done.seconds)
     return cells

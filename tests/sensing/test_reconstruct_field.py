@@ -57,6 +57,12 @@ def test_errors_are_of_each_quantity_in_its_unit():
     assert [(cell.quantity, cell.unit) for cell in cells] == [("h", "m"), ("g", "m")]
 
 
+def test_a_cell_is_named_after_its_task():
+    assert TASK.label("r", TASK.named("linear")) == Label("wave", "r", "temporal", "linear", 0)
+    asked = replace(TASK, departures=True, rule=RANDOM, seed=3)
+    assert asked.label("r", asked.named("linear")) == Label("wave", "r", RANDOM, "linear, departures", 3)
+
+
 def test_departures_are_told_about_the_season_and_judged_with_it():
     """A season twice as strong as the waves, another mean at each point: only departures are linear in the readings."""
     t = np.arange(400)
