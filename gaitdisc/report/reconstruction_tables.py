@@ -177,13 +177,15 @@ def reconstruction_text(done: Reconstruction) -> rich.table.Table:
         The whole result.
     """
     from rich import box
+    from rich.markup import escape
     from rich.table import Table as Printed
 
     shown = models_table(done)
     table = Printed(box=box.SIMPLE, show_edge=False, pad_edge=False, padding=(0, 1, 0, 0))
     chosen = [k for k, column in enumerate(shown.columns) if column not in (WITH_SENSORS, COVERAGE)]
     for k in chosen:
-        table.add_column(shown.columns[k], justify="left" if k == 0 else "right")
+        heading = escape(shown.columns[k])  # or a unit in brackets is taken for a style
+        table.add_column(heading, justify="left" if k == 0 else "right")
     for row in shown.rows:
         table.add_row(*(row[k] for k in chosen))
     return table
