@@ -11,6 +11,7 @@ from ch3_statements import Cells, Stated, answered, of_figures
 from gaitdisc.discrepancy.recommend import measured_cells
 from gaitdisc.discrepancy.system import System
 from gaitdisc.report.block import Block
+from gaitdisc.report.blocks_page import write_blocks, write_markdown
 from gaitdisc.report.discrepancy_figure import (
     accuracy_figure,
     cost_figure,
@@ -18,10 +19,8 @@ from gaitdisc.report.discrepancy_figure import (
     horizon_figure,
     system_figure,
 )
-from gaitdisc.report.discrepancy_page import write_blocks
-from gaitdisc.report.discrepancy_tables import as_markdown, grid_table, statements_table
+from gaitdisc.report.discrepancy_tables import grid_table, statements_table
 from gaitdisc.report.table import Table, save_table
-from gaitdisc.whole_file import write_whole
 
 ARTEFACT = (
     "As published, SINDy's map for the residual is integrated as if it gave a rate, from zero, and added; the map "
@@ -104,8 +103,7 @@ def written(cells: Cells, blocks: Sequence[Block], title: str, folder: Path) -> 
     folder.mkdir(parents=True, exist_ok=True)
     page = write_blocks(title, "Ebers 2023, chapter 3, computed anew.", blocks, folder)
     tables = tuple(table for block in blocks for table in block.tables)
-    text = "\n\n".join(f"{block.heading}\n\n{as_markdown(t)}" for block in blocks for t in block.tables)
-    write_whole(folder / "tables.md", text + "\n")
+    write_markdown(blocks, folder)
     measured = [
         cell for name, found in cells.items() for cell in found if "dt" not in name and cell.approach == "dynamics"
     ]

@@ -9,10 +9,9 @@ from pathlib import Path
 
 from gaitdisc.ingest.monthly_fields import read_navy_winds, read_sst_pacific
 from gaitdisc.ingest.sea_surface import read_oisst, read_sst_mat
-from gaitdisc.recording import Field
+from gaitdisc.recording import Field, Samples
 from gaitdisc.report.block import Block
-from gaitdisc.report.discrepancy_page import write_blocks
-from gaitdisc.report.discrepancy_tables import as_markdown
+from gaitdisc.report.blocks_page import write_blocks, write_markdown
 from gaitdisc.report.table import Table
 from gaitdisc.results.field_cell import FieldCell
 from gaitdisc.sensing.field_windows import snapshots_of
@@ -21,7 +20,6 @@ from gaitdisc.sensing.reconstructor import fit_reconstructor
 from gaitdisc.sensing.routes import Route, fixed_at_random, random_walk
 from gaitdisc.sensing.unseen_path import unseen_path
 from gaitdisc.sensing.windows import Lags
-from gaitdisc.whole_file import write_whole
 
 FIELDS = Path(os.environ.get("GAITDISC_DATA", Path(__file__).parents[2] / "shared" / "data")) / "fields"
 WALKS = 12  # fitted, before one that never was
@@ -80,11 +78,22 @@ def maps_told(field: Field, route: Route, task: FieldTask, kind: str, rules: Seq
     for rule in rules:
         ready = prepare(field, route, replace(task, rule=rule))
         fitted = fit_reconstructor(kind, ready.what, ready.training, ready.check, task.seed)
-        middle = ready.test.rows(slice(len(ready.test) // 2, len(ready.test) // 2 + 1))
-        snapshot = int(snapshots_of(middle)[0])
+        middle, snapshot = middle_of(ready.test)
         shown[f"measured, {field.time_unit} {snapshot + 1}"] = field.values[snapshot, :, 0]
         shown[f"told by {kind}, {rule}"] = ready.targets.fields(fitted(middle), middle)[0, :, 0]
     return shown
+
+
+def middle_of(judged: Samples) -> tuple[Samples, int]:
+    """Return the window in the middle of the judged ones, and the number of its snapshot.
+
+    Parameters
+    ----------
+    judged : Samples
+        Windows.
+    """
+    middle = judged.rows(slice(len(judged) // 2, len(judged) // 2 + 1))
+    return middle, int(snapshots_of(middle)[0])
 
 
 def on_departures(field: Field, routes: Sequence[Route], task: FieldTask, rules: Sequence[str]) -> list[FieldCell]:
@@ -144,6 +153,5 @@ def written(cells: Sequence[FieldCell], blocks: Sequence[Block], title: str, fol
     """
     page = write_blocks(title, "Ebers 2023, chapter 5, on fields that can be had.", blocks, folder)
     tables = tuple(table for block in blocks for table in block.tables)
-    text = "\n\n".join(f"{block.heading}\n\n{as_markdown(t)}" for block in blocks for t in block.tables)
-    write_whole(folder / "tables.md", text + "\n")
+    write_markdown(blocks, folder)
     return Result(tuple(cells), tables, page)

@@ -26,6 +26,8 @@ SENSORS = {
     "1 random": ("pelvis_tz",),
     "1 sagittal": ("ankle_angle_r",),
 }  # of Table 5.2: "randomly" and "non-randomly chosen"
+PRINTED = ["sensors", "model", "mean", "sd"]
+NOTHING_PRINTED = pd.DataFrame(columns=pd.Index(PRINTED))
 PELVIS = ("3 random", "1 random")  # the embedded cohort has no pelvis, and cannot have these
 WALK_S, PEOPLE = 60.0, 12
 DATA = Path(os.environ.get("GAITDISC_DATA", Path(__file__).parents[2] / "shared" / "data")) / "gait"
@@ -66,7 +68,7 @@ def printed(kind: str) -> pd.DataFrame:
     rows = tomllib.loads(Path(__file__).with_name("ch5_printed.toml").read_text(encoding="utf-8"))["row"]
     models = ("shred", "shallow decoder", "linear")
     found = [(row["sensors"], model, *row[model]) for row in rows if row["kind"] == kind for model in models]
-    return pd.DataFrame(found, columns=pd.Index(["sensors", "model", "mean", "sd"]))
+    return pd.DataFrame(found, columns=pd.Index(PRINTED))
 
 
 def cell(study: Study, sensors: str, settings: ReconstructionSettings, folder: Path) -> dict[str, pd.DataFrame]:
@@ -88,6 +90,17 @@ def cell(study: Study, sensors: str, settings: ReconstructionSettings, folder: P
         save_reconstruction(done, folder)
         write_reconstruction_report(done, folder)
     return {name: pd.read_csv(folder / f"{name}.csv").assign(sensors=sensors) for name in ("summary", "errors")}
+
+
+def first_person(study: Study) -> Study:
+    """The study with its first participant alone.
+
+    Parameters
+    ----------
+    study : Study
+        Of any number.
+    """
+    return study.model_copy(update={"participants": study.participants[:1]}).placed(study.folder)
 
 
 def cohort(folder: Path, people: int = PEOPLE, walk_s: float = WALK_S) -> Study:

@@ -15,13 +15,25 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pandas as pd
-from ch5_gait import DATA, PELVIS, SENSORS, Result, cell, cohort, exotendon, printed, treadmill
+from ch5_gait import (
+    DATA,
+    NOTHING_PRINTED,
+    PELVIS,
+    SENSORS,
+    Result,
+    cell,
+    cohort,
+    exotendon,
+    first_person,
+    printed,
+    treadmill,
+)
 
 from gaitdisc.batch.reconstruct_study import ReconstructionSettings
 from gaitdisc.batch.sensed_walks import sensed_walks
 from gaitdisc.ingest.study import Study
 from gaitdisc.report.block import Block
-from gaitdisc.report.discrepancy_page import write_blocks
+from gaitdisc.report.blocks_page import write_blocks
 from gaitdisc.report.disturbance_figure import disturbance_figure
 from gaitdisc.report.sensor_sets_figure import sensor_sets_figure
 from gaitdisc.report.sensor_sets_table import sensor_sets_table
@@ -79,16 +91,15 @@ def leaks(walks: Mapping[str, Study], kinds: tuple[str, ...], folder: Path) -> B
     """The split that leaks beside the honest ones, for one person: of the treadmill, or the first of the cohort."""
     name = "treadmill_walk_ik" if "treadmill_walk_ik" in walks else "cohort"
     study, condition = walks[name], "nominal" if name == "cohort" else ""
-    one = study.model_copy(update={"participants": study.participants[:1]}).placed(study.folder)
+    one = first_person(study)
     found = []
     for rule in RULES:
         settings = ReconstructionSettings(split=rule, kinds=kinds, condition=condition)
         place = folder / name / f"{SAGITTAL}{'' if rule == 'temporal' else f' {rule.split()[0]}'}".replace(" ", "_")
         found.append(cell(one, SAGITTAL, settings, place)["summary"].assign(data=f"{name}, {rule}"))
-    nothing = pd.DataFrame(columns=pd.Index(["sensors", "model", "mean", "sd"]))
     rule = f"as named; {RANDOM}: {RULES[RANDOM]}"
     own = pd.concat(found).query("participant == @one.participants[0].id")
-    return Block("splits", "The split", (), tables=(sensor_sets_table(own, nothing, "splits", rule),))
+    return Block("splits", "The split", (), tables=(sensor_sets_table(own, NOTHING_PRINTED, "splits", rule),))
 
 
 def disturbed(study: Study, kinds: tuple[str, ...], folder: Path) -> Block:

@@ -13,11 +13,11 @@ import sys
 from pathlib import Path
 
 import pandas as pd
-from ch5_gait import DATA, PELVIS, SENSORS, Result, cell, cohort, exotendon, printed
+from ch5_gait import DATA, NOTHING_PRINTED, PELVIS, SENSORS, Result, cell, cohort, exotendon, first_person, printed
 
 from gaitdisc.batch.reconstruct_study import CONDITION, SUBJECT, ReconstructionSettings
 from gaitdisc.report.block import Block
-from gaitdisc.report.discrepancy_page import write_blocks
+from gaitdisc.report.blocks_page import write_blocks
 from gaitdisc.report.sensor_sets_figure import sensor_sets_figure
 from gaitdisc.report.sensor_sets_table import sensor_sets_table
 from gaitdisc.results.reconstruction import CALIBRATED
@@ -76,16 +76,14 @@ def calibration_sentences(table: pd.DataFrame) -> list[str]:
 
 def across(data: Path, kinds: tuple[str, ...], folder: Path) -> Block:
     """One runner, without and with the device, each told by models of the other condition."""
-    study = exotendon(data)
-    one = study.model_copy(update={"participants": study.participants[:1]}).placed(study.folder)
+    one = first_person(exotendon(data))
     found = []
     for word in ("natural", "exotendon"):
         settings = ReconstructionSettings(split=CONDITION, condition=word, kinds=kinds)
         for sensors in SENSORS:
             place = folder / "exotendon_run" / word / sensors.replace(" ", "_")
             found.append(cell(one, sensors, settings, place)["summary"].assign(data=f"exotendon_run, {word} judged"))
-    nothing = pd.DataFrame(columns=pd.Index(["sensors", "model", "mean", "sd"]))
-    table = sensor_sets_table(pd.concat(found), nothing, "conditions", "fitted to the other condition")
+    table = sensor_sets_table(pd.concat(found), NOTHING_PRINTED, "conditions", "fitted to the other condition")
     return Block("conditions", "Another condition", (), tables=(table,))
 
 

@@ -13,7 +13,7 @@ import argparse
 from dataclasses import asdict, replace
 from pathlib import Path
 
-from ch5_fields import Result, written
+from ch5_fields import Result, middle_of, written
 
 from gaitdisc.report.block import Block
 from gaitdisc.report.field_errors_figure import boxes_figure, histograms_figure
@@ -21,7 +21,6 @@ from gaitdisc.report.field_maps_figure import maps_figure
 from gaitdisc.report.field_table import medians_table
 from gaitdisc.report.turbulence_figure import flow_figure
 from gaitdisc.results.field_cell import FieldCell, load_cells, save_cells
-from gaitdisc.sensing.field_windows import snapshots_of
 from gaitdisc.sensing.reconstruct_field import CEILING, FieldTask, prepare, reconstruct_field, targets_of
 from gaitdisc.sensing.routes import Route, fixed, fixed_at_random, random_walk
 from gaitdisc.sensing.splits import RANDOM
@@ -77,8 +76,7 @@ def run(quick: bool = False, folder: Path = Path("ch5_turbulence"), models: int 
                 cells += found
                 print(f"{rule}, {route.name} {run_number + 1} of {models}: R2 {cells[-1].r2:.3f}", flush=True)
         ready = prepare(flow, fixed(flow, [0]), task, targets)
-        middle = ready.test.rows(slice(len(ready.test) // 2, len(ready.test) // 2 + 1))
-        snapshot = int(snapshots_of(middle)[0])
+        middle, snapshot = middle_of(ready.test)
         shown[f"flow, snapshot {snapshot + 1}, {rule}"] = flow.values[snapshot, :, 0]
         shown[f"its POD ceiling, {rule}"] = targets.fields(middle.y, middle)[0, :, 0]
     best = [cell for cell in cells if cell.model == kinds[-1]]

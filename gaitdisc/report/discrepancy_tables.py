@@ -117,24 +117,3 @@ def statements_table(statements: Sequence[tuple[str, str, str]], name: str) -> T
     columns = ("where", "dissertation", "ours")
     caption = "The dissertation's statements beside what was found here."
     return words_table(name, caption, columns, statements)
-
-
-def as_markdown(table: Table) -> str:
-    """Return a table as documents of the project hold it.
-
-    Parameters
-    ----------
-    table : Table
-        Any.
-
-    Examples
-    --------
-    >>> print(as_markdown(statements_table([("3.4", "a", "b")], "s")))
-    | where | dissertation | ours |
-    |---|---|---|
-    | 3.4 | a | b |
-    """
-    rows = ["| " + " | ".join(table.columns) + " |", "|" + "---|" * len(table.columns)]
-    return "\n".join(
-        [*rows, *("| " + " | ".join(cell.replace("\n", " ") for cell in row) + " |" for row in table.rows)]
-    )

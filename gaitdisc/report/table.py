@@ -91,3 +91,24 @@ def save_table(table: pd.DataFrame, path: Path) -> None:
     """
     with whole_file(path) as part:
         table.to_csv(part, index=False, lineterminator="\n", float_format="%.8g")
+
+
+def as_markdown(table: Table) -> str:
+    """Return a table as documents of the project hold it.
+
+    Parameters
+    ----------
+    table : Table
+        Any.
+
+    Examples
+    --------
+    >>> print(as_markdown(words_table("s", "", ("where", "ours"), [("3.4", "a")])))
+    | where | ours |
+    |---|---|
+    | 3.4 | a |
+    """
+    rows = ["| " + " | ".join(table.columns) + " |", "|" + "---|" * len(table.columns)]
+    return "\n".join(
+        [*rows, *("| " + " | ".join(cell.replace("\n", " ") for cell in row) + " |" for row in table.rows)]
+    )

@@ -2,7 +2,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from gaitdisc.report.discrepancy_tables import as_markdown, grid_table
+from gaitdisc.report.discrepancy_tables import grid_table
+from gaitdisc.report.table import as_markdown
 from gaitdisc.results.discrepancy_cell import PARTS, DiscrepancyCell, PartAccuracy
 
 TIME = np.arange(301) / 10
