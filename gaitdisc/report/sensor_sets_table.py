@@ -10,8 +10,8 @@ import pandas as pd
 from gaitdisc.report.reconstruction_tables import NOT_MSE
 from gaitdisc.report.table import Table
 from gaitdisc.report.wording import number
+from gaitdisc.results.reconstruction import mean_over_people
 
-LEVEL = 0.95
 MEASURES = ("rmse_deg", "relative_l2", "relative_l2_whole", "r2", "coverage", "seconds")
 LESS_THAN_NOTHING = (
     "A relative L2 above 1 is worse than telling zero; the table prints such values for linear and SDN, so its norm "
@@ -57,14 +57,9 @@ def sensor_sets_table(summary: pd.DataFrame, printed: pd.DataFrame, name: str, r
 
 
 def _over(own: pd.DataFrame) -> dict[str, float]:
-    from scipy.stats import t
-
     found: dict[str, float] = {}
     for measure in MEASURES:
-        values = own[measure].to_numpy(float)
-        sd = float(values.std(ddof=1)) if len(values) > 2 else float("nan")
-        half = float(t.ppf((1 + LEVEL) / 2, max(len(values) - 1, 1))) * sd / np.sqrt(len(values))
-        mean = float(values.mean())
+        mean, sd, half = mean_over_people(own[measure].to_numpy(float))
         found |= {measure: mean, f"{measure}_sd": sd, f"{measure}_low": mean - half, f"{measure}_high": mean + half}
     return found
 

@@ -8,10 +8,9 @@ from pathlib import Path
 import pandas as pd
 
 from gaitdisc.channel import Channel
-from gaitdisc.recording import Finding
 from gaitdisc.results.mismatch import CHANNEL_COLUMNS, REGION_COLUMNS, Exchange, Mismatch
 from gaitdisc.results.provenance import Provenance
-from gaitdisc.results.unit_folder import load_unit, save_unit
+from gaitdisc.results.unit_folder import load_unit, save_unit, stored_finding
 
 NAME = "mismatch.json"
 TABLES = {"regions.csv": REGION_COLUMNS, "summary.csv": CHANNEL_COLUMNS}
@@ -71,6 +70,6 @@ def load_mismatch(folder: Path) -> Mismatch:
         regions,
         summary,
         Exchange(**data["exchange"]),
-        tuple(Finding(**{**f, "spans": tuple(tuple(span) for span in f["spans"])}) for f in data["findings"]),
+        tuple(map(stored_finding, data["findings"])),
         Provenance(**data["provenance"]),
     )

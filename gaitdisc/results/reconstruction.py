@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Finding
@@ -95,6 +96,28 @@ class Reconstruction:
         return self.errors.groupby(["state", "model"], sort=False)[["rmse", "relative_l2", "r2"]].mean()
 
 
+def mean_over_people(values: NDArray[np.float64]) -> tuple[float, float, float]:
+    """Mean, standard deviation, and half of the mean's 95 % interval (Student's t); the latter two from three people.
+
+    Parameters
+    ----------
+    values : ndarray (participant,)
+        One measure.
+
+    Examples
+    --------
+    >>> [round(each, 3) for each in mean_over_people(np.array([1.0, 2.0, 3.0]))]
+    [2.0, 1.0, 2.484]
+    """
+    from scipy.stats import t
+
+    n, mean = len(values), float(values.mean())
+    if n < 3:
+        return mean, float("nan"), float("nan")
+    sd = float(values.std(ddof=1))
+    return mean, sd, float(t.ppf(0.975, n - 1)) * sd / np.sqrt(n)
+
+
 def enough_sensors(found: pd.DataFrame) -> int:
     """Row of the smallest set of sensors that one more improves by less than a tenth.
 
@@ -147,13 +170,8 @@ def save_reconstruction(done: Reconstruction, folder: Path) -> None:
 
 
 def _over(rows: pd.DataFrame) -> pd.Series:
-    from scipy.stats import t
-
-    n = len(rows)
-    found: dict[str, float] = {"n": n}
+    found: dict[str, float] = {"n": len(rows)}
     for measure in MEASURES:
-        values = rows[measure].to_numpy(float)
-        half = t.ppf(0.975, n - 1) * values.std(ddof=1) / np.sqrt(n) if n > 2 else np.nan
-        mean = float(values.mean())
+        mean, _, half = mean_over_people(rows[measure].to_numpy(float))
         found |= {measure: mean, f"{measure}_low": mean - half, f"{measure}_high": mean + half}
     return pd.Series(found)

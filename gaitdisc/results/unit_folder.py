@@ -15,6 +15,7 @@ from jsonschema import Draft202012Validator
 from numpy.typing import NDArray
 
 from gaitdisc.channel import schema_folder
+from gaitdisc.recording import Finding
 from gaitdisc.results.on_disk import StoredArrays, damaged
 from gaitdisc.whole_file import whole_file
 
@@ -112,6 +113,23 @@ def with_words(table: pd.DataFrame, column: str) -> pd.DataFrame:
     if column in table:
         table[column] = table[column].astype(object).fillna("").astype(str)
     return table
+
+
+def stored_finding(row: Mapping[str, Any]) -> Finding:
+    """Return a finding as it was before JSON made lists of its spans.
+
+    Parameters
+    ----------
+    row : mapping
+        `asdict` of a finding, read back.
+
+    Examples
+    --------
+    >>> gap = {"severity": "warning", "kind": "gap", "file": "a.mot", "what": "0.1 s", "spoils": ""}
+    >>> stored_finding(gap | {"spans": [[1.0, 1.1]]}).spans
+    ((1.0, 1.1),)
+    """
+    return Finding(**{**row, "spans": tuple(tuple(span) for span in row["spans"])})
 
 
 def read_json(path: Path) -> dict[str, Any]:

@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
-from gaitdisc.recording import Finding
 from gaitdisc.results.on_disk import Arrays
-from gaitdisc.results.unit_folder import load_unit, save_unit, with_words
+from gaitdisc.results.unit_folder import load_unit, save_unit, stored_finding, with_words
 from gaitdisc.results.walk_summary import WalkSummary
 
 
@@ -61,7 +60,6 @@ def load_walk(folder: Path) -> tuple[WalkSummary, str]:
     """
     data, tables, arrays = load_unit(folder, "walk.json")
     strides = with_words(tables["strides.csv"], "reason")
-    findings = tuple(Finding(**{**f, "spans": tuple(tuple(span) for span in f["spans"])}) for f in data["findings"])
     walk = WalkSummary(
         data["subject"],
         data["condition"],
@@ -71,7 +69,7 @@ def load_walk(folder: Path) -> tuple[WalkSummary, str]:
         tuple(Channel(**channel) for channel in data["channels"]),
         arrays.later(_curves),
         strides,
-        findings,
+        tuple(map(stored_finding, data["findings"])),
         data["files"],
     )
     return walk, data["key"]

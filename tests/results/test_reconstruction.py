@@ -7,7 +7,13 @@ import pytest
 
 from gaitdisc.channel import Channel
 from gaitdisc.results import Provenance
-from gaitdisc.results.reconstruction import MEASURES, Reconstruction, enough_sensors, save_reconstruction
+from gaitdisc.results.reconstruction import (
+    MEASURES,
+    Reconstruction,
+    enough_sensors,
+    mean_over_people,
+    save_reconstruction,
+)
 
 
 @pytest.fixture
@@ -85,3 +91,10 @@ def test_a_floor_of_forecasts_is_not_recommended_and_what_was_asked_for_may_be(d
     )
     assert replace(done, summary=pd.concat([done.summary, floor])).recommended == done.recommended
     assert replace(done, summary=pd.concat([done.summary, floor, asked])).recommended == "masked shred"
+
+
+def test_two_people_have_a_mean_and_no_interval():
+    mean, sd, half = mean_over_people(np.array([1.0, 3.0]))
+    assert mean == 2.0
+    assert np.isnan([sd, half]).all()
+    assert mean_over_people(np.array([1.0, 2.0, 3.0]))[2] == pytest.approx(4.302653 / np.sqrt(3))

@@ -1,10 +1,13 @@
 import json
+from dataclasses import asdict
 
 import pytest
 
 from gaitdisc.errors import SchemaError
+from gaitdisc.recording import Finding
 from gaitdisc.results.response_store import load_response, save_response
 from gaitdisc.results.run_store import load_run
+from gaitdisc.results.unit_folder import stored_finding
 
 
 @pytest.mark.parametrize("file", ["r2.csv", "arrays.npz"])
@@ -36,3 +39,8 @@ def test_a_field_that_does_not_fit_the_schema_is_named(response, tmp_path):
     (tmp_path / "response.json").write_text(json.dumps({**data, "held_out_s": -1}))
     with pytest.raises(SchemaError, match=r"at \$.held_out_s: -1"):
         load_response(tmp_path)
+
+
+def test_a_finding_comes_back_as_it_was():
+    gap = Finding("warning", "gap", "a.mot", "0.1 s missing", "the windows", "knee_angle_r", ((1.0, 1.1), (2.0, 2.3)))
+    assert stored_finding(json.loads(json.dumps(asdict(gap)))) == gap
