@@ -1,4 +1,4 @@
-"""Small systems whose missing effect is known, because it was hidden here: a mass on a spring, two rods in a chain."""
+"""Small systems whose missing effect is known, because it was hidden here: a mass on a spring, two rods, a neuron."""
 
 from __future__ import annotations
 
@@ -67,6 +67,21 @@ lower_rate = "lower_moment - stiffness*lower - 0.2*lower_rate + 2*(upper - lower
 upper = "upper"
 lower = "lower"
 """
+NEURON = """
+title = "A neuron that fires"
+[states.v]
+unit = "1"
+[states.w]
+unit = "1"
+[inputs.push]
+unit = "1"
+[parameters.b]
+value = 0.8
+unit = "1"
+[equations]
+v = "20*(v - v**3/3 - w + 0.04*push)"
+w = "1.6*(v + 0.7 - b*w)"
+"""
 
 
 @dataclass(frozen=True)
@@ -105,6 +120,11 @@ def mass() -> Simulation:
 def two_rods() -> Simulation:
     """Two rods, each with a port of its own; the lower port moves the upper rod more than the lower."""
     return simulation_of(TWO_RODS, "two_rods.toml")
+
+
+def neuron() -> Simulation:
+    """A neuron that fires or does not, a hair apart: the start of a run has more than one minimum of the misfit."""
+    return simulation_of(NEURON, "neuron.toml")
 
 
 def with_load(term: str, name: str = "hidden") -> Simulation:

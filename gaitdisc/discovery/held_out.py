@@ -9,10 +9,12 @@ from numpy.typing import NDArray
 
 from gaitdisc.discovery.evidence import Judged
 from gaitdisc.discovery.fitted import Fitted
-from gaitdisc.discovery.inquiry import Inquiry
+from gaitdisc.discovery.inquiry import LENGTHENED, Inquiry
+from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.results.discovery import GapSize, Runs
 
 FLIPS = 9999
+TURNS = 30
 
 
 @dataclass(frozen=True)
@@ -51,10 +53,36 @@ def runs_of(inquiry: Inquiry, now: Judged, trials: tuple[int, ...], like: Judged
         Whose noise and whose length of runs are used.
     """
     periods = like.shooting.segments.length / (inquiry.rhythm.period * inquiry.rhythm.rate)
-    segments = inquiry.segments(trials, periods)
+    *shorter, whole = _lengths(periods)
+    guess = inquiry.guess
+    for length in shorter:
+        segments = inquiry.segments(trials, length)
+        shooting = inquiry.shooting(segments).with_noise(like.noise)
+        guess = guess.with_run(segments, _started(shooting, now, guess.starts(segments)).states)
+    segments = inquiry.segments(trials, whole)
     shooting = inquiry.shooting(segments).with_noise(like.noise)
-    fit = shooting.fitted(now.account.machine, (), now.account.fit.values, inquiry.guess.starts(segments), 30)
-    return Trial(fit, shooting.seen)
+    return Trial(_started(shooting, now, guess.starts(segments)), shooting.seen)
+
+
+def _started(shooting: Shooting, now: Judged, starts: NDArray[np.float64]) -> Fitted:
+    """Return an account run over segments from the start states that suit it best, its constants as they are."""
+    return shooting.fitted(now.account.machine, (), now.account.fit.values, starts, TURNS)
+
+
+def _lengths(periods: float) -> list[float]:
+    """Lengths of runs up to the wanted one, each at most `LENGTHENED` times the one before.
+
+    The start of a long run is found near that of a short one; from a rough guess its search may end elsewhere.
+
+    Examples
+    --------
+    >>> _lengths(4.5), _lengths(0.4)
+    ([0.5, 1.5, 4.5], [0.4])
+    """
+    lengths = [periods]
+    while lengths[0] > 1:
+        lengths.insert(0, lengths[0] / LENGTHENED)
+    return lengths
 
 
 def gap_size(before: Trial, after: Trial, floor: NDArray[np.float64], channels: tuple[str, ...], block: int) -> GapSize:

@@ -3,12 +3,14 @@ from itertools import product
 
 import numpy as np
 import pytest
+from hidden_in_a_mass import Experiment, neuron, record
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gaitdisc.discovery.account import Part, account_for
-from gaitdisc.discovery.evidence import Judged
+from gaitdisc.discovery.evidence import Judged, judged
 from gaitdisc.discovery.held_out import chance, drawn_runs, gap_size, runs_of
+from gaitdisc.discovery.inquiry import begin_inquiry
 
 
 @settings(max_examples=30, deadline=None)
@@ -74,3 +76,15 @@ def test_a_long_run_counts_as_many_blocks(runs):
     before, after = runs
     whole, in_two = (gap_size(before, after, np.array([0.01]), ("x",), before.measured.shape[1] // n) for n in (1, 2))
     assert in_two.p < whole.p
+
+
+def test_the_start_of_a_long_run_is_found_by_way_of_short_ones():
+    truth = neuron().with_values({"b": 1.0})
+    inquiry = begin_inquiry(neuron(), record(truth, 2, Experiment(seconds=40.0, noise=0.05)))
+    as_read = inquiry.as_read()
+    b = next(one for one in inquiry.search.candidates if one.label == "wrong_parameter@b")
+    true = account_for(as_read.shooting, inquiry.search.base, (Part(b, {"value": 1.0}),), as_read.account.fit.starts)
+    longer = inquiry.lengthened(judged(as_read.shooting, inquiry.search.base, true))
+    assert longer.shooting.segments.length > 4 * as_read.shooting.segments.length
+    run = runs_of(inquiry, longer, inquiry.held_out, longer)
+    assert run.misfits.sum() < 1.2 * run.fit.white.size
