@@ -73,7 +73,7 @@ class Judged:
 
 
 def judged(shooting: Shooting, base: Simulation, account: Account, rounds: int = 2) -> Judged:
-    """Learn an account's own noise and fit it again under it.
+    """Learn an account's own noise, and its own past for what comes late, and fit it again under them.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def judged(shooting: Shooting, base: Simulation, account: Account, rounds: int =
     for _ in range(rounds):
         used = account.fit.starts.shape[1] / account.fit.residual.shape[2]
         noise = noise_of(account.fit.residual, used, least=least)
-        shooting = shooting.with_noise(noise)
+        shooting = shooting.with_noise(noise).with_past(account.fit.states)
         account = account_for(shooting, base, account.parts, account.fit.starts, TURNS)
     return Judged(account, shooting)
 

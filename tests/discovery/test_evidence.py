@@ -28,6 +28,13 @@ def test_the_noise_of_the_true_account_is_that_of_the_sensor(inquiry, as_read, w
     assert own.noise.size[0] == pytest.approx(hidden, rel=0.1)
 
 
+def test_what_comes_late_sees_the_past_of_the_account_and_not_of_the_simulation_as_read(inquiry, as_read, with_cubic):
+    own = judged(as_read.shooting, inquiry.search.base, with_cubic.account)
+    past, states = own.shooting.segments.of(own.shooting.past), own.account.fit.states
+    apart = np.abs(states - as_read.account.fit.states).max()
+    assert np.abs(past - states).max() < 0.01 * apart
+
+
 def test_accounts_are_compared_under_the_noise_that_the_best_leaves(inquiry, as_read, with_cubic):
     plain, true = compared([as_read, with_cubic], inquiry.search.base)
     assert plain.noise is true.noise
