@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.fitted import Fitted
-from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.discovery.shooting import ENOUGH, Shooting
 from gaitdisc.simulation.running import Compiled, compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
@@ -95,7 +95,12 @@ def _tag(number: int) -> str:
 
 
 def account_for(
-    shooting: Shooting, base: Simulation, parts: tuple[Part, ...], starts: NDArray[np.float64], turns: int = 12
+    shooting: Shooting,
+    base: Simulation,
+    parts: tuple[Part, ...],
+    starts: NDArray[np.float64],
+    turns: int = 12,
+    enough: float = ENOUGH,
 ) -> Account:
     """Fit a simulation with explanations in it.
 
@@ -111,6 +116,8 @@ def account_for(
         Start states to begin from.
     turns : int
         Most steps of the fit.
+    enough : float
+        A step that takes less off the misfit is the last.
     """
     simulation, names = with_parts(base, parts)
     machine = compile_simulation(simulation)
@@ -119,7 +126,7 @@ def account_for(
         for slot, name in slots.items():
             values[machine.parameters.index(name)] = part.values[slot]
     free = tuple(name for slots in names for name in slots.values())
-    fit = shooting.fitted(machine, free, values, starts, turns)
+    fit = shooting.fitted(machine, free, values, starts, turns, enough)
     found = tuple(
         Part(part.candidate, {slot: float(fit.values[machine.parameters.index(name)]) for slot, name in slots.items()})
         for part, slots in zip(parts, names, strict=True)

@@ -9,6 +9,8 @@ from gaitdisc.discovery.search import Search, is_certain
 MATERIAL = (0.0, 0.001, 0.01)  # of what is explained already, which the first, second, third explanation must explain
 MOST_TURNS = 5  # explanations let in, those that were thrown out again included
 FIRST_PLACES = 5  # that a second explanation is sought beside
+SAME = 0.1  # difference of evidence
+Explanations = frozenset[tuple[str, tuple[str, ...]]]
 SETTLED = 3  # turns of exchanging and throwing out
 
 
@@ -32,28 +34,42 @@ def grown(search: Search, now: Judged, most: int) -> tuple[Judged, list[Judged]]
         What else stood for the first place, best first.
     """
     rivals: list[Judged] = []
+    explored = {explanations(now)}
     explained, turns = 0.0, 0
     while len(now.account.parts) < most and turns < MOST_TURNS:
         before, *more = search.extended(now) or [now]
         more = ranked(more, search.candidates)
         rivals = rivals or more
-        if not more or before.evidence - more[0].evidence < MARGIN:
+        number = len(now.account.parts) + 1
+        worth = max(MARGIN, MATERIAL[min(number, len(MATERIAL)) - 1] * explained)
+        if not more or before.evidence - more[0].evidence < (worth if number > 2 else MARGIN):
             break
         better = more[0]
-        if len(better.account.parts) == 2:
-            better = beside_others(search, better, [one for one in rivals if one is not now])
-        worth = max(MARGIN, MATERIAL[min(len(better.account.parts), len(MATERIAL)) - 1] * explained)
-        if len(better.account.parts) > 1:
-            better = settled(search, better, worth)
+        if number == 2:
+            better = beside_others(search, better, [one for one in rivals if one is not now], explored)
+        if number > 1:
+            better = settled(search, better, worth, explored)
             before, better = compared([before, better], search.base)
         gained = before.evidence - better.evidence
         if gained < worth or not is_certain(better.account):
             break
         explained, now, turns = max(explained, gained), better, turns + 1
+        explored.add(explanations(now))
     return now, rivals
 
 
-def beside_others(search: Search, pair: Judged, firsts: list[Judged]) -> Judged:
+def explanations(now: Judged) -> Explanations:
+    """Return which explanations are in an account, whatever their order and numbers.
+
+    Parameters
+    ----------
+    now : Judged
+        Any.
+    """
+    return frozenset((part.candidate.label, part.candidate.pieces) for part in now.account.parts)
+
+
+def beside_others(search: Search, pair: Judged, firsts: list[Judged], explored: set[Explanations]) -> Judged:
     """Return the best pair of explanations, also of those whose first was not the best alone.
 
     Two effects together may look most like a third one, which then stands in the way of both.
@@ -66,14 +82,23 @@ def beside_others(search: Search, pair: Judged, firsts: list[Judged]) -> Judged:
         The best alone, and what stands best beside it.
     firsts : list of Judged
         What else stood for the first place, best first.
+    explored : set of Explanations
+        Beside which another was sought; those of this search are added.
     """
     pairs = [pair]
-    for first in firsts[: FIRST_PLACES - 1]:
+    unlike = [one for number, one in enumerate(firsts) if not any(_alike(one, other) for other in firsts[:number])]
+    for first in unlike[: FIRST_PLACES - 1]:
         pairs += ranked(search.extended(first)[1:], search.candidates)[:1]
+        explored.add(explanations(first))
     return ranked(compared(pairs, search.base), search.candidates)[0]
 
 
-def settled(search: Search, now: Judged, worth: float) -> Judged:
+def _alike(one: Judged, other: Judged) -> bool:
+    """Whether two accounts are the same model under two names: a wrong damping, and damping that is missing."""
+    return one.account.size == other.account.size and abs(one.evidence - other.evidence) < SAME
+
+
+def settled(search: Search, now: Judged, worth: float, explored: set[Explanations]) -> Judged:
     """Exchange and throw out explanations until nothing changes.
 
     Parameters
@@ -84,16 +109,18 @@ def settled(search: Search, now: Judged, worth: float) -> Judged:
         With two explanations or more.
     worth : float
         By which the evidence must get worse for one to stay.
+    explored : set of Explanations
+        Beside which another was sought; those of this search are added.
     """
     for _ in range(SETTLED):
         before = now
-        now = pruned(search, exchanged(search, now), worth)
+        now = pruned(search, exchanged(search, now, explored), worth)
         if sorted(now.labels) == sorted(before.labels):
             break
     return now
 
 
-def exchanged(search: Search, now: Judged) -> Judged:
+def exchanged(search: Search, now: Judged, explored: set[Explanations]) -> Judged:
     """Return the account after each explanation was tried against all others in its place.
 
     Parameters
@@ -102,9 +129,15 @@ def exchanged(search: Search, now: Judged) -> Judged:
         What is searched.
     now : Judged
         With two explanations or more.
+    explored : set of Explanations
+        Beside which another was sought; those of this search are added.
     """
     for number in range(len(now.account.parts)):
-        others = search.extended(search.without(now, number))[1:]
+        rest = search.without(now, number)
+        if explanations(rest) in explored:
+            continue
+        explored.add(explanations(rest))
+        others = search.extended(rest)[1:]
         if others:
             now, *others = compared([now, *others], search.base)
             best = ranked(others, search.candidates)[0]

@@ -60,6 +60,8 @@ class Noise:
             Each segment begins afresh: its first samples are predicted from the few before them.
         """
         wide = np.ascontiguousarray(residual, float).reshape(*residual.shape[:3], -1)
+        if not any(self.lags):
+            return (wide / self.size[:, None]).reshape(residual.shape)
         out = np.empty_like(wide)
         for channel, (predictors, spread) in enumerate(zip(self.predictors, self.spread, strict=True)):
             table = np.zeros((len(spread), max(len(spread) - 1, 1)))

@@ -188,14 +188,14 @@ def _gains(
     columns: NDArray[np.float64], left: NDArray[np.float64], some: list[_Cell], candidates: tuple[Candidate, ...]
 ) -> Iterator[tuple[Score, int]]:
     """Yield each cell's score; a cell has as many columns as slots that columns stand for."""
-    size = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
-    match = columns.T @ left
+    normal, match = columns.T @ columns, columns.T @ left
+    size = np.maximum(np.sqrt(np.diag(normal)), 1e-300)
+    normal /= np.outer(size, size)
     first = 0
     for cell in some:
         mine = slice(first, first + len(cell.idle))
         first = mine.stop
-        block = columns[:, mine] / size[mine]
-        found = np.linalg.lstsq(block.T @ block, match[mine] / size[mine], rcond=1e-10)[0] / size[mine]
+        found = np.linalg.lstsq(normal[mine, mine], match[mine] / size[mine], rcond=1e-10)[0] / size[mine]
         gain = float(found @ match[mine])
         if size[mine].max() <= 1e-9 or (cell.tried and found[0] <= 0):
             continue

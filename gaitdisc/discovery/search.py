@@ -26,6 +26,7 @@ LIMITS = {
 }
 VISITED = (0.01, 0.99)  # quantiles of a state between which a threshold has a meaning
 TURNS = 15
+NEARLY = 0.5  # off the misfit: too little to tell explanations apart by
 CERTAIN = 2.5  # standard errors
 
 
@@ -74,7 +75,12 @@ class Search:
         worth = [one for one in scores if one.gain > price * len(one.candidate.slots)][:REFITTED]
         tried = [
             account_for(
-                shooting, self.base, (*account.parts, Part(one.candidate, one.values)), account.fit.starts, TURNS
+                shooting,
+                self.base,
+                (*account.parts, Part(one.candidate, one.values)),
+                account.fit.starts,
+                TURNS,
+                NEARLY,
             )
             for one in worth
         ]

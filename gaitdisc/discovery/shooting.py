@@ -16,6 +16,10 @@ from gaitdisc.simulation.running import Compiled
 DAMPING = 1e-3
 MOST_DAMPING = 1e6
 NUDGE = 1e-5
+STUCK = 5.0  # times the median misfit of a segment
+FREED = 0.5  # of their misfit, which another start must leave at most
+FEW_TURNS = 6
+ENOUGH = 1e-2
 
 
 @dataclass(frozen=True)
@@ -117,7 +121,9 @@ class Shooting:
         residual : ndarray (segment, sample, channel, ...)
             [the channel's unit].
         """
-        white = self.noise.whitened(np.nan_to_num(residual, nan=0.0, posinf=0.0, neginf=0.0))
+        if not np.isfinite(residual).all():
+            residual = np.nan_to_num(residual, nan=0.0, posinf=0.0, neginf=0.0)
+        white = self.noise.whitened(residual)
         return white.reshape(white.shape[0], -1, *white.shape[3:])
 
     def at(
@@ -161,6 +167,7 @@ class Shooting:
         values: NDArray[np.float64],
         starts: NDArray[np.float64],
         turns: int = 12,
+        enough: float = ENOUGH,
     ) -> Fitted:
         """Fit constants and start states (Levenberg-Marquardt; the start states of each segment solved for within).
 
@@ -176,22 +183,51 @@ class Shooting:
             Where the start states begin.
         turns : int
             Most steps.
+        enough : float
+            A step that takes less off the misfit is the last.
         """
-        now = self.at(machine, free, values, starts)
+        now = self._descended(machine, self.at(machine, free, values, starts), turns, enough)
+        elsewhere = self._begun_elsewhere(machine, now, starts)
+        if elsewhere is None:
+            return now
+        again = self._descended(machine, self.at(machine, free, now.values, elsewhere), turns, enough)
+        return again if again.misfit < now.misfit else now
+
+    def _descended(self, machine: Compiled, now: Fitted, turns: int, enough: float = ENOUGH) -> Fitted:
+        """Return the fit after damped steps, until these gain nothing more."""
         damping = np.full(len(self.segments), DAMPING)
         for _ in range(turns):
             if not np.isfinite(now.misfit):
                 break
-            step = self.at(machine, free, *_step(now, machine, damping))
+            step = self.at(machine, now.free, *_step(now, machine, damping))
             better = step.misfits <= now.misfits
-            if free:
+            if now.free:
                 better[:] = step.misfit <= now.misfit
             moved = now.where(better, step)
             damping = np.where(better, np.maximum(damping / 10, 1e-9), damping * 10)
             gained, now = now.misfit - moved.misfit, moved
-            if (damping > MOST_DAMPING).all() or (better.any() and gained < 1e-2 + 1e-6 * now.misfit):
+            if (damping > MOST_DAMPING).all() or (better.any() and gained < enough + 1e-6 * now.misfit):
                 break
         return now
+
+    def _begun_elsewhere(
+        self, machine: Compiled, now: Fitted, starts: NDArray[np.float64]
+    ) -> NDArray[np.float64] | None:
+        """Return better start states (segment, state) where a few segments fit far worse than most.
+
+        A start on the wrong side of a threshold (a spike, a fall) is a minimum of its own. Tried are the start that the
+        fit began with and the end of the segment before, each for constants as they are.
+        """
+        stuck = now.misfits > STUCK * np.median(now.misfits)
+        if not np.isfinite(now.misfit) or not stuck.any():
+            return None
+        before = np.vstack([now.starts[:1], now.states[:-1, -1]])
+        best = replace(now, free=(), slopes=now.slopes[..., : starts.shape[1]])
+        for other in (starts, before):
+            tried = np.where(stuck[:, None], other, now.starts)
+            fit = self._descended(machine, self.at(machine, (), now.values, tried), FEW_TURNS)
+            best = best.where(fit.misfits < best.misfits, fit)
+        return best.starts if best.misfits[stuck].sum() < FREED * now.misfits[stuck].sum() else None
 
     def with_past(self, states: NDArray[np.float64]) -> Shooting:
         """Return the same segments with a run's states as the past of what comes late.

@@ -4,7 +4,7 @@ from hidden_in_a_mass import Experiment, mass, record, with_load
 from gaitdisc.discovery.account import Part, account_for
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.evidence import Judged
-from gaitdisc.discovery.growth import beside_others, exchanged, grown, pruned, settled
+from gaitdisc.discovery.growth import beside_others, exchanged, explanations, grown, pruned, settled
 from gaitdisc.discovery.inquiry import begin_inquiry
 from gaitdisc.discovery.ranking import MARGIN, ranked
 
@@ -39,11 +39,19 @@ def test_an_explanation_that_earns_nothing_is_thrown_out(inquiry, as_read, cubic
 
 
 def test_a_wrong_explanation_is_exchanged_for_the_true_one(inquiry, as_read):
-    assert "cubic_stiffness@load" in exchanged(inquiry.search, _wrong_and_idle(inquiry, as_read)).labels
+    assert "cubic_stiffness@load" in exchanged(inquiry.search, _wrong_and_idle(inquiry, as_read), set()).labels
 
 
 def test_what_is_settled_holds_the_true_one_alone(inquiry, as_read):
-    assert settled(inquiry.search, _wrong_and_idle(inquiry, as_read), MARGIN).labels == ("cubic_stiffness@load",)
+    now = settled(inquiry.search, _wrong_and_idle(inquiry, as_read), MARGIN, set())
+    assert now.labels == ("cubic_stiffness@load",)
+
+
+def test_beside_what_was_explored_already_nothing_is_sought_again(inquiry, as_read):
+    now = _wrong_and_idle(inquiry, as_read)
+    explored = {explanations(inquiry.search.without(now, number)) for number in range(2)}
+    assert len(explored) == 2
+    assert exchanged(inquiry.search, now, explored) is now
 
 
 @pytest.fixture(scope="module")
@@ -66,7 +74,7 @@ def test_a_pair_whose_first_was_not_the_best_alone_is_found_beside_it(two):
     wrong = _wrong_and_idle(inquiry, as_read)
     firsts = ranked(inquiry.search.extended(as_read)[1:], inquiry.search.candidates)
     cubic = [one for one in firsts if one.labels == ("cubic_stiffness@load",)]
-    assert sorted(beside_others(inquiry.search, wrong, cubic).labels) == [
-        "cubic_stiffness@load",
-        "quadratic_stiffness@load",
-    ]
+    explored = set()
+    pair = beside_others(inquiry.search, wrong, [*cubic, *cubic], explored)
+    assert sorted(pair.labels) == ["cubic_stiffness@load", "quadratic_stiffness@load"]
+    assert explored == {explanations(cubic[0])}

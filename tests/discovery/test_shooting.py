@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hidden_in_a_mass import Experiment, mass, record
+from hidden_in_a_mass import Experiment, mass, neuron, record
 
 from gaitdisc.discovery.inquiry import begin_inquiry
 from gaitdisc.discovery.noise import white_noise
@@ -32,6 +32,17 @@ def test_start_states_are_found_from_far_away():
     machine = compile_simulation(mass())
     fit = shooting.fitted(machine, (), machine.defaults, starts + 3.0, 30)
     assert np.abs(fit.residual).max() < 2e-3
+
+
+def test_a_segment_that_began_on_the_wrong_side_of_a_threshold_is_begun_elsewhere():
+    truth = neuron().with_values({"b": 1.0})
+    inquiry = begin_inquiry(neuron(), record(truth, 2, Experiment(seconds=20.0, noise=0.01)))
+    segments = inquiry.segments(inquiry.learned)
+    size = white_noise(0.01 * np.nanstd(inquiry.measured.observed, axis=(0, 1)))
+    shooting, machine = inquiry.shooting(segments).with_noise(size), compile_simulation(neuron())
+    fit = shooting.fitted(machine, ("b",), machine.defaults, inquiry.guess.starts(segments), 30)
+    assert (fit.misfits < 1.6 * fit.white.shape[1]).all()
+    assert fit.values[machine.parameters.index("b")] == pytest.approx(1.0, abs=1e-3)
 
 
 def test_the_interval_of_a_parameter_covers_the_truth_as_often_as_it_says():
