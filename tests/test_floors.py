@@ -69,3 +69,13 @@ def test_heavy_libraries_have_one_home():
         if room not in SOLE_HOME.get(name.split(".")[0], {room})
     ]
     assert not strays, "\n".join(strays)
+
+
+def test_the_report_reads_results_and_computes_none():
+    strays = [
+        f"{path.relative_to(PACKAGE)} imports {name}"
+        for path, room in _modules()
+        for name in _imported(path)
+        if room == "report" and name.startswith("gaitdisc.") and name.split(".")[1] in FLOORS[3]
+    ]
+    assert not strays, "\n".join(strays)

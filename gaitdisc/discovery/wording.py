@@ -6,9 +6,10 @@ import re
 from dataclasses import replace
 
 from gaitdisc.discovery.account import Part
-from gaitdisc.discovery.amounts import amount, brief_text, estimate_text, shown_unit, with_unit
-from gaitdisc.discovery.told_apart import would_tell_apart
+from gaitdisc.results.amounts import amount, brief_text, estimate_text, shown_unit, with_unit
 from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, Whereabouts
+from gaitdisc.results.effect_words import at_place, spoken
+from gaitdisc.results.told_apart import would_tell_apart
 from gaitdisc.simulation.simulation import Simulation
 
 DIRECTIONS = re.compile(
@@ -31,40 +32,6 @@ def sentence_of(discovery: Discovery, base: Simulation, parts: tuple[Part, ...])
     """
     said = [_said(discovery, base, parts), _tied(discovery), _shown(discovery)]
     return replace(discovery, sentence=" ".join(one for one in said if one))
-
-
-def spoken(name: str) -> str:
-    """Return an effect's name as it is said.
-
-    Parameters
-    ----------
-    name : str
-        As in discovery.md.
-
-    Examples
-    --------
-    >>> spoken("one_sided_spring"), spoken("coulomb_friction")
-    ('one-sided spring', 'Coulomb friction')
-    """
-    return name.replace("one_sided", "one-sided").replace("coulomb", "Coulomb").replace("_", " ")
-
-
-def at_place(kind: str, place: str) -> str:
-    """Say where something enters.
-
-    Parameters
-    ----------
-    kind, place : str
-        `port` and its name, `equation` and its state, ...
-
-    Examples
-    --------
-    >>> at_place("port", "ankle_moment"), at_place("equation", "v")
-    ('at the ankle_moment port', 'in the equation of v')
-    """
-    if kind == "port":
-        return f"at the {place} port"
-    return f"in the {kind} {place}" if kind != "equation" else f"in the equation of {place}"
 
 
 def _said(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> str:

@@ -8,10 +8,10 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.amounts import shown_unit
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import MEASURED, MODELS
 from gaitdisc.report.panels import Room, in_style, legend, lines_of, panels
+from gaitdisc.results.amounts import shown_unit
 from gaitdisc.results.discovery import Discovery
 
 if TYPE_CHECKING:

@@ -7,13 +7,13 @@ from collections.abc import Sequence
 
 import pandas as pd
 
-from gaitdisc.discovery.amounts import amount, estimate_text, shown_unit
-from gaitdisc.discovery.told_apart import would_tell_apart
-from gaitdisc.discovery.wording import at_place, spoken
 from gaitdisc.report.seen_tables import seen_table
 from gaitdisc.report.table import Table
 from gaitdisc.report.wording import NONE, counted, p_cell
+from gaitdisc.results.amounts import amount, estimate_text, shown_unit
 from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect
+from gaitdisc.results.effect_words import at_place, spoken
+from gaitdisc.results.told_apart import would_tell_apart
 
 
 def estimates_table(discovery: Discovery) -> Table:

@@ -7,7 +7,7 @@ from manufactured_discovery import CUBIC, SPRING, manufactured
 from gaitdisc.discovery.account import Part
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.catalogue import known_shapes
-from gaitdisc.discovery.wording import at_place, sentence_of, spoken
+from gaitdisc.discovery.wording import sentence_of
 from gaitdisc.results.discovery import Estimate, FoundEffect, GapSize, Whereabouts
 from gaitdisc.simulation.bundled import bundled
 
@@ -123,8 +123,3 @@ def test_of_several_channels_the_one_with_the_clearest_gap_is_told():
     size = GapSize(1, 1, 1, 0.1, {"x": (1.0, 0.9, 0.9), "y": (0.5, 0.1, 0.1)})
     told = sentence(held_out=size, channels=("x", "y"), units=("m", "m"))
     assert "the held-out error of y falls from 0.50 to 0.10 m" in told
-
-
-def test_places_and_names_as_they_are_said():
-    assert at_place("observation", "x") == "in the observation x"
-    assert spoken("viscous_damping") == "viscous damping"

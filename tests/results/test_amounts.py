@@ -1,6 +1,6 @@
 import pytest
 
-from gaitdisc.discovery.amounts import amount, brief_text, estimate_text, shown_unit, with_unit
+from gaitdisc.results.amounts import amount, brief_text, estimate_text, shown_unit, with_unit
 from gaitdisc.results.discovery import Estimate
 
 NAN = float("nan")

@@ -1,6 +1,6 @@
 import pytest
 
-from gaitdisc.discovery.told_apart import would_tell_apart
+from gaitdisc.results.told_apart import would_tell_apart
 
 
 @pytest.mark.parametrize(
