@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.fitted import Fitted
 from gaitdisc.discovery.shooting import ENOUGH, Shooting
-from gaitdisc.simulation.running import Compiled, compile_simulation
+from gaitdisc.simulation.compiled_simulation import Compiled
+from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
 

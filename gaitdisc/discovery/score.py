@@ -14,8 +14,9 @@ from gaitdisc.discovery.grids import Rhythm, cells, delays
 from gaitdisc.discovery.linearised import Linearised, linearise, seen_change
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.evaluating import Points, evaluate_many
-from gaitdisc.simulation.running import Compiled, compile_simulation
+from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
 AT_ONCE = 96

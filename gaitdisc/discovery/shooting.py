@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from gaitdisc.discovery.fitted import Fitted
 from gaitdisc.discovery.noise import Noise
 from gaitdisc.discovery.segments import Segments
+from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.measured import Measured
-from gaitdisc.simulation.running import Compiled
 
 DAMPING = 1e-3
 MOST_DAMPING = 1e6
