@@ -88,21 +88,12 @@ def recommend(
             f"{', '.join(missing)} missing",
             "Make it with measured_cells.",
         )
-    table = table[table["system"].str.contains("Lorenz") == chaotic]
-    levels = np.sort(table["noise"].unique())
-    near = float(levels[np.argmin(np.abs(np.log(levels + 1e-4) - np.log(noise + 1e-4)))])
-    table = table[table["noise"] == near]
-    lengths = np.sort(table["samples"].unique())
-    length = int(lengths[np.argmin(np.abs(np.log(lengths / samples)))])
+    table = _nearest(table[table["system"].str.contains("Lorenz") == chaotic], noise, samples)
+    near, length = float(table["noise"].iloc[0]), int(table["samples"].iloc[0])
     by = "valid_s" if chaotic else "accuracy"
-    table = table[table["samples"] == length]
     lost = table.loc[table["diverged"] > 0, "method"]
     rows = table[~table["method"].isin(lost)].sort_values(by, ascending=False)
-    worst = rows.groupby("method", sort=False).tail(1)  # of the systems that were measured
-    allowed = worst[worst["method"].isin(INTERPRETABLE)] if want == "interpretability" else worst
-    if samples < DELAYS + 2 * RANK:
-        allowed = allowed[~allowed["method"].isin(OF_TIME)]
-    better = allowed[allowed["accuracy"] > 0]
+    better = _allowed(rows, want, samples)
     if not len(better):
         return Recommendation(
             "",
@@ -121,6 +112,23 @@ def recommend(
     if not 1 / BEYOND <= samples / length <= BEYOND:
         why += f" This record has {samples:,} samples: there it was not measured."
     return Recommendation(str(best["method"]), why, rows.reset_index(drop=True))
+
+
+def _nearest(table: pd.DataFrame, noise: float, samples: int) -> pd.DataFrame:
+    """Cells nearest in noise, and of these those nearest in samples, by their ratio."""
+    levels = np.sort(table["noise"].unique())
+    table = table[table["noise"] == levels[np.argmin(np.abs(np.log(levels + 1e-4) - np.log(noise + 1e-4)))]]
+    lengths = np.sort(table["samples"].unique())
+    return table[table["samples"] == lengths[np.argmin(np.abs(np.log(lengths / samples)))]]
+
+
+def _allowed(rows: pd.DataFrame, want: Want, samples: int) -> pd.DataFrame:
+    """Methods that give what is wanted and beat the known model, each on the system on which it did worst."""
+    worst = rows.groupby("method", sort=False).tail(1)
+    allowed = worst[worst["method"].isin(INTERPRETABLE)] if want == "interpretability" else worst
+    if samples < DELAYS + 2 * RANK:
+        allowed = allowed[~allowed["method"].isin(OF_TIME)]
+    return allowed[allowed["accuracy"] > 0]
 
 
 def measured_cells(cells: Sequence[DiscrepancyCell]) -> pd.DataFrame:
