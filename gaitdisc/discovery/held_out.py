@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,8 @@ from gaitdisc.results.discovery import GapSize, Runs
 
 FLIPS = 9999
 TURNS = 30
+TELLING = 16.0  # how far two runs are apart, in variances of the noise, for trials to tell which is true
+WORTH_ASKING = 50.0  # evidence of the trials that were learned from
 
 
 @dataclass(frozen=True)
@@ -62,6 +64,40 @@ def runs_of(inquiry: Inquiry, now: Judged, trials: tuple[int, ...], like: Judged
     segments = inquiry.segments(trials, whole)
     shooting = inquiry.shooting(segments).with_noise(like.noise)
     return Trial(_started(shooting, now, guess.starts(segments)), shooting.seen)
+
+
+def holding_out_others(inquiry: Inquiry, as_read: Judged, now: Judged) -> Inquiry | None:
+    """Return the inquiry with other trials held out, where those that were can say nothing for or against.
+
+    A spring that engages beyond where a trial goes changes nothing in it. What counts is how far the two runs are
+    apart, never which of them the measurement prefers.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        The trials.
+    as_read, now : Judged
+        The simulation as read and with what trials that were learned from speak for.
+
+    Returns
+    -------
+    Inquiry or None
+        None where nothing speaks for anything, where the held-out trials can tell, or no trial could.
+    """
+    if not now.account.parts or now.gained < WORTH_ASKING or len(inquiry.learned) < 2:
+        return None
+    if _apart(inquiry, as_read, now, inquiry.held_out) > TELLING:
+        return None
+    telling = [one for one in inquiry.learned if _apart(inquiry, as_read, now, (one,)) > TELLING]
+    held = tuple(telling[-len(inquiry.held_out) :])
+    learned = tuple(sorted({*inquiry.learned, *inquiry.held_out} - {*held}))
+    return replace(inquiry, learned=learned, held_out=held) if held else None
+
+
+def _apart(inquiry: Inquiry, as_read: Judged, now: Judged, trials: tuple[int, ...]) -> float:
+    """Return by how much the misfit would fall on trials if what was found were true: how far the runs are apart."""
+    before, after = (runs_of(inquiry, one, trials, now) for one in (as_read, now))
+    return float(((before.fit.white - after.fit.white) ** 2).sum())
 
 
 def _started(shooting: Shooting, now: Judged, starts: NDArray[np.float64]) -> Fitted:

@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import Experiment, mass, record, two_rods, with_load
 
+from gaitdisc.discovery.account import Part, account_for
 from gaitdisc.discovery.catalogue import read_catalogue
-from gaitdisc.discovery.discover import discover
+from gaitdisc.discovery.discover import discover, lasting
+from gaitdisc.discovery.evidence import judged
 from gaitdisc.simulation.parts import Term
 from gaitdisc.simulation.running import compile_simulation
 
@@ -148,6 +150,34 @@ def test_in_a_chain_an_effect_is_named_at_the_joint_where_it_acts():
     truth = two_rods().with_effect(Term("lower_moment", "port", "hidden", "-6*max(0, lower - 0.1)"))
     discovery, _ = _found(truth, Experiment(noise=0.01), nominal=two_rods())
     assert _named(discovery) == ("missing_physics", [("one_sided_spring", "lower_moment")])
+
+
+def test_a_spring_that_the_held_out_trial_never_reaches_is_proven_on_another():
+    truth = with_load("-20*max(0, x - 0.7)")
+    measured = record(truth, 1, Experiment(seconds=10.0))
+    reached = measured.observed[:, :, 0].max(axis=1)
+    assert (reached[:3] > 0.8).all()
+    assert reached[3] < 0.65
+    told = []
+    found, _ = discover(mass(), measured, told=told.append)
+    assert [effect.name for effect in found.effects] == ["one_sided_spring"]
+    assert found.effects[0].estimates["engagement"].value == pytest.approx(0.7, abs=0.03)
+    assert found.held_out.after < 0.5 * found.held_out.before
+    assert "the trials held out never go where it would act: others are held out" in told
+
+
+def test_what_longer_runs_have_no_use_for_is_not_named(inquiry, as_read, cubic):
+    shooting = inquiry.shooting(inquiry.segments(inquiry.learned, 0.4)).with_noise(as_read.noise)
+    starts = inquiry.guess.starts(shooting.segments)
+    damper = next(one for one in inquiry.search.candidates if one.label == "viscous_damping@load")
+    read, both = (
+        judged(shooting, inquiry.search.base, account_for(shooting, inquiry.search.base, parts, starts))
+        for parts in ((), (Part(cubic, {"factor": -14.0}), Part(damper, {"factor": 0.0})))
+    )
+    assert not inquiry.is_tame(read)
+    assert lasting(inquiry, read, both).labels == ("cubic_stiffness@load",)
+    assert lasting(inquiry, read, both).shooting.segments is shooting.segments
+    assert lasting(inquiry, as_read, both) is both
 
 
 def test_every_step_is_told():

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from gaitdisc.discovery.account import Part, account_for
 from gaitdisc.discovery.evidence import Judged, judged
-from gaitdisc.discovery.held_out import chance, drawn_runs, gap_size, runs_of
+from gaitdisc.discovery.held_out import chance, drawn_runs, gap_size, holding_out_others, runs_of
 from gaitdisc.discovery.inquiry import begin_inquiry
 
 
@@ -88,3 +88,15 @@ def test_the_start_of_a_long_run_is_found_by_way_of_short_ones():
     assert longer.shooting.segments.length > 4 * as_read.shooting.segments.length
     run = runs_of(inquiry, longer, inquiry.held_out, longer)
     assert run.misfits.sum() < 1.2 * run.fit.white.size
+
+
+def test_trials_that_can_tell_stay_held_out(inquiry, as_read, named):
+    now, _ = named
+    assert holding_out_others(inquiry, as_read, now) is None
+
+
+def test_nothing_else_is_held_out_where_nothing_speaks_for_it(inquiry, as_read, named):
+    now, _ = named
+    assert holding_out_others(inquiry, as_read, replace(now, gained=10.0)) is None
+    assert holding_out_others(replace(inquiry, learned=(0,)), as_read, now) is None
+    assert holding_out_others(inquiry, as_read, as_read) is None
