@@ -11,6 +11,7 @@ from gaitdisc.discovery.evidence import Judged
 from gaitdisc.discovery.fitted import Fitted
 from gaitdisc.discovery.inquiry import LENGTHENED, Inquiry
 from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.recording.finding import Finding
 from gaitdisc.results.discovery import GapSize, Runs
 
 FLIPS = 9999
@@ -91,7 +92,14 @@ def holding_out_others(inquiry: Inquiry, as_read: Judged, now: Judged) -> Inquir
     telling = [one for one in inquiry.learned if _apart(inquiry, as_read, now, (one,)) > TELLING]
     held = tuple(telling[-len(inquiry.held_out) :])
     learned = tuple(sorted({*inquiry.learned, *inquiry.held_out} - {*held}))
-    return replace(inquiry, learned=learned, held_out=held) if held else None
+    if not held:
+        return None
+    names = inquiry.measured.trials
+    blind, instead = (", ".join(names[one] for one in some) for some in (inquiry.held_out, held))
+    what = f"with and without what was found, trial {blind} runs alike; trial {instead} is held out in its place"
+    finding = Finding("note", "held out", inquiry.measured.source, what, "nothing; the last trials were to be held out")
+    measured = replace(inquiry.measured, findings=(*inquiry.measured.findings, finding))
+    return replace(inquiry, measured=measured, learned=learned, held_out=held)
 
 
 def _apart(inquiry: Inquiry, as_read: Judged, now: Judged, trials: tuple[int, ...]) -> float:

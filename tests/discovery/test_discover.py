@@ -164,6 +164,8 @@ def test_a_spring_that_the_held_out_trial_never_reaches_is_proven_on_another():
     assert found.effects[0].estimates["engagement"].value == pytest.approx(0.7, abs=0.03)
     assert found.held_out.after < 0.5 * found.held_out.before
     assert "the trials held out never go where it would act: others are held out" in told
+    note = next(finding for finding in found.findings if finding.kind == "held out")
+    assert note.what == "with and without what was found, trial 4 runs alike; trial 3 is held out in its place"
 
 
 def test_what_longer_runs_have_no_use_for_is_not_named(inquiry, as_read, cubic):
