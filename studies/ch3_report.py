@@ -104,9 +104,7 @@ def written(cells: Cells, blocks: Sequence[Block], title: str, folder: Path) -> 
     page = write_blocks(title, "Ebers 2023, chapter 3, computed anew.", blocks, folder)
     tables = tuple(table for block in blocks for table in block.tables)
     write_markdown(blocks, folder)
-    measured = [
-        cell for name, found in cells.items() for cell in found if "dt" not in name and cell.approach == "dynamics"
-    ]
+    measured = [cell for found in cells.values() for cell in found if cell.approach == "dynamics"]
     if measured:
         save_table(measured_cells(measured), folder / "measured_cells.csv")
     return Result(cells, tables, page)

@@ -13,7 +13,7 @@ from gaitdisc.discrepancy.system import System
 from gaitdisc.results.discrepancy_cell import DiscrepancyCell
 
 NOISES = (0.0, 0.001, 0.01, 0.1)
-WARMING = 300  # samples
+WARMING = 600  # samples
 ALL_METHODS: tuple[Method, ...] = ("sindy", "dmd", "bopdmd", "gp", "nn")
 
 

@@ -22,7 +22,8 @@ BEYOND = 2.0  # times as many samples as were measured, or as few: said
 NEAR = 5.0  # points of accuracy that the fastest method may lose to the best
 FOUND = Path(__file__).with_name("measured_cells.csv")  # what the studies of chapter 3 measured
 COLUMNS = (
-    "system", "method", "noise", "samples", "accuracy", "least", "greatest", "valid_s", "seconds", "diverged", "seeds"
+    "system", "method", "noise", "dt_s", "samples", "accuracy", "least", "greatest", "valid_s", "seconds", "diverged",
+    "seeds",
 )  # fmt: skip
 
 
@@ -47,12 +48,18 @@ class Recommendation:
 
 
 def recommend(
-    noise: float, samples: int, want: Want, chaotic: bool = False, evidence: pd.DataFrame | None = None
+    noise: float,
+    samples: int,
+    want: Want,
+    chaotic: bool = False,
+    dt_s: float | None = None,
+    evidence: pd.DataFrame | None = None,
 ) -> Recommendation:
     """Recommend a method for learning the missing rates of a known model.
 
-    The measured cells nearest in noise, then in samples, decide; a method counts by the system on which it did worst,
-    and not at all where it diverged.
+    The measured cells nearest in noise, then in the step between samples, then in samples, decide; a method counts by
+    the system on which it did worst, and not at all where it diverged. Where a step, or a length, is more than twice or
+    less than half of what was measured at that noise, `why` says so.
 
     Parameters
     ----------
@@ -65,6 +72,9 @@ def recommend(
         best; `forecast`: the best forecast.
     chaotic : bool
         Judge by the Lorenz system's valid time instead of the Van der Pol oscillator's accuracy.
+    dt_s : float, optional
+        Between samples [s], for systems that turn once in 0.7 (Lorenz) to 6 s (Van der Pol) as the measured ones;
+        where absent, the step at which most was measured.
     evidence : DataFrame, optional
         As `measured_cells` makes it; what the studies of chapter 3 measured where absent.
 
@@ -88,8 +98,8 @@ def recommend(
             f"{', '.join(missing)} missing",
             "Make it with measured_cells.",
         )
-    table = _nearest(table[table["system"].str.contains("Lorenz") == chaotic], noise, samples)
-    near, length = float(table["noise"].iloc[0]), int(table["samples"].iloc[0])
+    table = _nearest(table[table["system"].str.contains("Lorenz") == chaotic], noise, samples, dt_s)
+    near, step, length = float(table["noise"].iloc[0]), float(table["dt_s"].iloc[0]), int(table["samples"].iloc[0])
     by = "valid_s" if chaotic else "accuracy"
     lost = table.loc[table["diverged"] > 0, "method"]
     rows = table[~table["method"].isin(lost)].sort_values(by, ascending=False)
@@ -97,7 +107,8 @@ def recommend(
     if not len(better):
         return Recommendation(
             "",
-            f"At {near:.1%} noise and {length:,} samples none of the methods forecast better than the known model.",
+            f"At {near:.1%} noise and {length:,} samples, {step:g} s apart, none of the methods forecast better than "
+            "the known model.",
             rows,
         )
     best = better.iloc[0]
@@ -105,19 +116,24 @@ def recommend(
         close = better[better[by] >= best[by] - (NEAR if by == "accuracy" else NEAR / 100 * best[by])]
         best = close.sort_values("seconds").iloc[0]
     why = (
-        f"Measured at {near:.1%} noise and {length:,} samples on {best['system']}: forecast error "
+        f"Measured at {near:.1%} noise and {length:,} samples, {step:g} s apart, on {best['system']}: forecast error "
         f"{best['accuracy']:.1f} % smaller than the known model's ({best['least']:.1f} to {best['greatest']:.1f} %, "
         f"n = {best['seeds']:.0f} seeds), valid for {best['valid_s']:.1f} s, in {best['seconds']:.1f} s of a core."
     )
     if not 1 / BEYOND <= samples / length <= BEYOND:
         why += f" This record has {samples:,} samples: there it was not measured."
+    if dt_s is not None and not 1 / BEYOND <= dt_s / step <= BEYOND:
+        why += f" This record has a sample every {dt_s:g} s: at this noise nothing was measured there."
     return Recommendation(str(best["method"]), why, rows.reset_index(drop=True))
 
 
-def _nearest(table: pd.DataFrame, noise: float, samples: int) -> pd.DataFrame:
-    """Cells nearest in noise, and of these those nearest in samples, by their ratio."""
+def _nearest(table: pd.DataFrame, noise: float, samples: int, dt_s: float | None) -> pd.DataFrame:
+    """Cells nearest in noise, of these nearest in step, and of these nearest in samples, by their ratio."""
     levels = np.sort(table["noise"].unique())
     table = table[table["noise"] == levels[np.argmin(np.abs(np.log(levels + 1e-4) - np.log(noise + 1e-4)))]]
+    steps = table["dt_s"].value_counts()
+    step = float(steps.index[0] if dt_s is None else min(steps.index, key=lambda each: abs(np.log(each / dt_s))))
+    table = table[table["dt_s"] == step]
     lengths = np.sort(table["samples"].unique())
     return table[table["samples"] == lengths[np.argmin(np.abs(np.log(lengths / samples)))]]
 
@@ -144,7 +160,7 @@ def measured_cells(cells: Sequence[DiscrepancyCell]) -> pd.DataFrame:
     table = table[table["part"] == "forecast"]
     table["seconds"] = table["fit_s"] + table["run_s"]
     table["diverged"] = table["diverged_s"].notna()
-    keys = ["system", "method", "noise", "samples"]
+    keys = ["system", "method", "noise", "dt_s", "samples"]
     seeds = table.groupby([*keys, "seed"], sort=False).agg(
         accuracy=("accuracy", "median"), valid_s=("valid_s", "median"), seconds=("seconds", "median"),
         diverged=("diverged", "max"),

@@ -148,6 +148,13 @@ class DiscrepancyCell:
         """Length of the training part; 0 where nothing was fitted."""
         return len(self.parts["reconstruction"].time) if "reconstruction" in self.parts else 0
 
+    @property
+    def dt_s(self) -> float:
+        """Step between samples [s]; NaN where nothing was fitted."""
+        if "reconstruction" not in self.parts:
+            return float("nan")
+        return round(float(np.diff(self.parts["reconstruction"].time[:2])[0]), 9)
+
 
 def cells_table(cells: Sequence[DiscrepancyCell]) -> pd.DataFrame:
     """Return the numbers of all cells, one row a cell, part and channel.
@@ -161,7 +168,7 @@ def cells_table(cells: Sequence[DiscrepancyCell]) -> pd.DataFrame:
     for cell in cells:
         head = {
             "system": cell.system, "method": cell.method, "approach": cell.approach, "variant": cell.variant,
-            "noise": cell.noise, "seed": cell.seed, "samples": cell.samples,
+            "noise": cell.noise, "seed": cell.seed, "dt_s": cell.dt_s, "samples": cell.samples,
         }  # fmt: skip
         tail = {"fit_s": cell.fit_s, "run_s": cell.run_s, "terms": cell.terms, "refused": cell.refused}
         if not cell.parts:

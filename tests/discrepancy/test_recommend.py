@@ -6,15 +6,17 @@ from gaitdisc.discrepancy.recommend import COLUMNS, measured_cells, recommend
 from gaitdisc.errors import SchemaError
 
 ROWS = [
-    ("Van der Pol", "sindy", 0.01, 3001, 90.0, 85.0, 92.0, 20.0, 0.5, 0.0, 3),
-    ("Van der Pol", "dmd", 0.01, 3001, 99.0, 98.0, 99.5, 20.0, 2.0, 0.0, 3),
-    ("Van der Pol, late", "dmd", 0.01, 3001, 40.0, 10.0, 50.0, 20.0, 2.0, 0.0, 3),
-    ("Van der Pol", "gp", 0.01, 3001, 97.0, 96.0, 98.0, 20.0, 5.0, 0.0, 3),
-    ("Van der Pol", "nn", 0.01, 3001, 94.0, 90.0, 95.0, 20.0, 3.0, 0.0, 3),
-    ("Van der Pol", "gp", 0.01, 601, 60.0, 50.0, 70.0, 4.0, 2.0, 0.0, 3),
-    ("Van der Pol", "nn", 0.01, 601, 70.0, 65.0, 75.0, 4.0, 1.0, 0.0, 3),
-    ("Van der Pol", "sindy", 0.1, 3001, -5.0, -9.0, 1.0, 3.0, 0.5, 0.0, 3),
-    ("Van der Pol", "gp", 0.1, 3001, 60.0, 50.0, 70.0, 9.0, 5.0, 0.4, 3),
+    ("Van der Pol", "sindy", 0.01, 0.01, 3001, 90.0, 85.0, 92.0, 20.0, 0.5, 0.0, 3),
+    ("Van der Pol", "dmd", 0.01, 0.01, 3001, 99.0, 98.0, 99.5, 20.0, 2.0, 0.0, 3),
+    ("Van der Pol, late", "dmd", 0.01, 0.01, 3001, 40.0, 10.0, 50.0, 20.0, 2.0, 0.0, 3),
+    ("Van der Pol", "gp", 0.01, 0.01, 3001, 97.0, 96.0, 98.0, 20.0, 5.0, 0.0, 3),
+    ("Van der Pol", "nn", 0.01, 0.01, 3001, 94.0, 90.0, 95.0, 20.0, 3.0, 0.0, 3),
+    ("Van der Pol", "gp", 0.01, 0.01, 601, 60.0, 50.0, 70.0, 4.0, 2.0, 0.0, 3),
+    ("Van der Pol", "nn", 0.01, 0.01, 601, 70.0, 65.0, 75.0, 4.0, 1.0, 0.0, 3),
+    ("Van der Pol", "sindy", 0.1, 0.01, 3001, -5.0, -9.0, 1.0, 3.0, 0.5, 0.0, 3),
+    ("Van der Pol", "gp", 0.1, 0.01, 3001, 60.0, 50.0, 70.0, 9.0, 5.0, 0.4, 3),
+    ("Van der Pol", "gp", 0.01, 0.001, 12001, 80.0, 75.0, 85.0, 8.0, 9.0, 0.0, 1),
+    ("Van der Pol", "nn", 0.01, 0.001, 12001, 88.0, 85.0, 89.0, 8.0, 9.0, 0.0, 1),
 ]
 TABLE = pd.DataFrame(ROWS, columns=list(COLUMNS))
 
@@ -23,14 +25,14 @@ TABLE = pd.DataFrame(ROWS, columns=list(COLUMNS))
 def test_the_measured_cells_decide(want, method):
     found = recommend(0.008, 3000, want, evidence=TABLE)
     assert found.method == method
-    assert "Measured at 1.0% noise and 3,001 samples on Van der Pol" in found.why
+    assert "Measured at 1.0% noise and 3,001 samples, 0.01 s apart, on Van der Pol" in found.why
     assert len(found.evidence) == 5
 
 
 def test_the_range_of_the_seeds_is_told_and_a_method_counts_by_its_worst_system():
     assert "(96.0 to 98.0 %, n = 3 seeds)" in recommend(0.01, 3000, "forecast", evidence=TABLE).why
     assert recommend(0.01, 3000, "forecast", evidence=TABLE[TABLE["method"] == "dmd"]).why.startswith(
-        "Measured at 1.0% noise and 3,001 samples on Van der Pol, late: forecast error 40.0 %"
+        "Measured at 1.0% noise and 3,001 samples, 0.01 s apart, on Van der Pol, late: forecast error 40.0 %"
     )
 
 
@@ -50,6 +52,17 @@ def test_the_nearest_measured_length_decides_and_what_lies_far_off_is_said():
     )
 
 
+def test_the_nearest_measured_step_decides_and_one_that_was_not_measured_is_said():
+    fine = recommend(0.01, 3000, "forecast", dt_s=0.002, evidence=TABLE)
+    assert fine.method == "nn"
+    assert "12,001 samples, 0.001 s apart" in fine.why
+    coarse = recommend(0.01, 3000, "forecast", dt_s=0.1, evidence=TABLE)
+    assert coarse.method == "gp"
+    assert coarse.why.endswith("This record has a sample every 0.1 s: at this noise nothing was measured there.")
+    finer = recommend(0.1, 3000, "forecast", dt_s=0.001, evidence=TABLE[TABLE["diverged"] == 0])
+    assert finer.method == ""
+
+
 def test_another_want_and_other_columns_are_refused():
     with pytest.raises(SchemaError, match="found 'beauty'"):
         recommend(0.01, 200, "beauty", evidence=TABLE)
@@ -61,4 +74,5 @@ def test_evidence_is_made_of_cells(quiet):
     row = measured_cells([cell_of(quiet, "sindy", "dynamics")]).iloc[0]
     assert (row["method"], row["diverged"], row["seeds"]) == ("sindy", 0, 1)
     assert row["accuracy"] > 99
+    assert row["dt_s"] == 0.01
     assert (row["samples"], row["least"], row["greatest"]) == (1201, row["accuracy"], row["accuracy"])

@@ -37,3 +37,9 @@ def test_what_diverged_has_no_number():
 def test_what_was_refused_keeps_its_row():
     cell = DiscrepancyCell("s", "gp", "state", "right", 0.0, 0, ("x",), {}, 1.0, 0.0, refused="too short")
     assert cells_table([cell])["refused"].tolist() == ["too short"]
+
+
+def test_the_step_between_samples_is_told():
+    cell = DiscrepancyCell("s", "gp", "state", "right", 0.0, 0, ("x", "y"), {"reconstruction": part(TRUTH)}, 1.0, 1.0)
+    assert cell.dt_s == pytest.approx(TIME[1])
+    assert np.isnan(DiscrepancyCell("s", "gp", "state", "right", 0.0, 0, ("x",), {}, 1.0, 0.0).dt_s)
