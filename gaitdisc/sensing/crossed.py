@@ -9,12 +9,11 @@ from numpy.typing import NDArray
 
 from gaitdisc.recording import Samples
 from gaitdisc.sensing.intervals import half_widths
-from gaitdisc.sensing.reconstructor import Sensing, fit_reconstructor
+from gaitdisc.sensing.reconstructor import WITHOUT_NETWORK, Sensing, fit_reconstructor
 from gaitdisc.sensing.splits import Parts
 from gaitdisc.sensing.windows import stacked
 
 FOLDS = 5
-CHEAP = ("linear", "delay ridge", "fourier ridge")  # fitted once more for every fold
 FEWEST = 3  # people of whom one can be left out, one chosen by, one fitted
 STANDARD = "delay ridge"  # tells for the others how far the checked people are from typical
 
@@ -76,7 +75,7 @@ def crossed_widths(
     """
     if len(people_of((*parts.check, *parts.training))) < FEWEST:
         return half_widths(missed)
-    if kind in CHEAP:
+    if kind in WITHOUT_NETWORK:
         return half_widths(crossed_errors(kind, what, parts, seed))
     check = parts.checked()
     standard = fit_reconstructor(STANDARD, what, parts.fitted(), check, seed)

@@ -33,7 +33,7 @@ ON_REQUEST = {
     ENSEMBLE: f"mean of SHRED from {MEMBERS} seeds",
 }
 STATIC = ("linear", "shallow decoder")
-WITHOUT_NETWORK = ("linear", "delay ridge", "fourier ridge")
+WITHOUT_NETWORK = ("linear", "delay ridge", "fourier ridge")  # cheap: fitted many times where that is asked for
 DEVICES = ("auto", "cpu", "cuda")
 
 
