@@ -128,4 +128,5 @@ def _tell(done: Reconstruction) -> None:
     typer.echo(" ".join(reconstruction_sentences(done)))
     Console().print(reconstruction_text(done))
     for refusal in done.refusals:
-        typer.echo(f"left out: {refusal.participant} {refusal.condition}: {refusal.reason}", err=True)
+        who = " ".join(filter(None, (refusal.participant, refusal.condition)))
+        typer.echo(f"left out: {who}: {refusal.reason}", err=True)
