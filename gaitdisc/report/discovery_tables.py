@@ -36,6 +36,8 @@ def estimates_table(discovery: Discovery) -> Table:
             )
     caption = "What was found, in the units of the simulation file; low and high: 95 % interval."
     headings = ("effect", "place", "number", "value", "low", "high", "in degrees")
+    if not any(row[-1] for row in rows):
+        headings, rows = headings[:-1], [row[:-1] for row in rows]
     columns = ("effect", "kind", "place", "number", "value", "low", "high", "unit", "term")
     return Table("estimates", caption, headings, tuple(rows), _frame(records, columns))
 

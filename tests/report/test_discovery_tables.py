@@ -20,6 +20,16 @@ def test_an_angle_is_told_in_degrees_too():
     assert rows[1][-1] == "2.0 deg (95 % 1.9-2.1)"
 
 
+def test_where_no_number_is_an_angle_no_column_is_in_degrees():
+    found = manufactured()
+    (effect,) = found.effects
+    table = estimates_table(
+        replace(found, effects=(replace(effect, estimates={"stiffness": effect.estimates["stiffness"]}),))
+    )
+    assert table.columns[-1] == "high"
+    assert table.rows[0][2:] == ("stiffness", "286 N m/rad", "279 N m/rad", "293 N m/rad")
+
+
 def test_the_gap_is_told_for_both_parts_of_the_data():
     table = gap_table(manufactured())
     assert [row[0] for row in table.rows] == ["held out", "fitted"]
