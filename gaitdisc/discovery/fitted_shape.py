@@ -18,6 +18,7 @@ from gaitdisc.simulation.evaluating import Points, evaluate_many
 BUMPS = 5
 FLAT_BUMPS = 7
 STRIDE_BUMPS = 10
+DEGREE = 3  # of a product of powers of two states
 SHARPNESS = 1.2  # of a bump's width against the distance to the next
 SHARE_OF_SPEED = 0.2  # at which friction that depends on place has risen
 _RISE = re.compile(r"\*tanh\((.+)/(\S+)\)")
@@ -26,7 +27,7 @@ SIGNIFICANT = 3.0  # standard errors that a bump must have to stay
 
 
 def shapes_at(place: Place, judged_now: Judged, search: Search) -> list[Candidate]:
-    """Return the shapes that could be fitted at a place: over one state, over two, over the stride.
+    """Return the shapes that could be fitted at a place: over one state, over two (bumps, and powers), over the stride.
 
     Parameters
     ----------
@@ -50,7 +51,7 @@ def shapes_at(place: Place, judged_now: Judged, search: Search) -> list[Candidat
             [f"{piece}*tanh({name}/{SHARE_OF_SPEED * speed:.4g})" for piece in across],
         ]
     if len(axes) > 1:
-        shapes.append(_bumps(ranges, dict.fromkeys(axes, BUMPS)))
+        shapes += [_bumps(ranges, dict.fromkeys(axes, BUMPS)), _powers(ranges)]
     if any(one.name == "phase" for one in search.base.inputs):
         centres = (np.arange(STRIDE_BUMPS) + 0.5) / STRIDE_BUMPS
         sharp = (STRIDE_BUMPS / (SHARPNESS * 2 * np.pi)) ** 2 * 2
@@ -177,6 +178,16 @@ def _bumps(ranges: dict[str, tuple[float, float]], counts: dict[str, int]) -> li
         at: NDArray[np.float64] = np.linspace(low, high, count)
         centres.append([f"(({name} - {_number(centre)})/{SHARPNESS * step:.4g})**2" for centre in at])
     return [f"exp(-({' + '.join(parts)}))" for parts in product(*centres)]
+
+
+def _powers(ranges: dict[str, tuple[float, float]]) -> list[str]:
+    """Return the products of powers of two states, each between -1 and 1 where it mostly lies."""
+    scaled = []
+    for axis, (low, high) in ranges.items():
+        name = f"({axis})" if " " in axis else axis
+        scaled.append(f"(({name} - {_number((low + high) / 2)})/{(high - low) / 2 or 1.0:.4g})")
+    orders = [(i, j) for i in range(DEGREE + 1) for j in range(DEGREE + 1 - i)]
+    return ["*".join(f"{one}**{n}" for one, n in zip(scaled, order, strict=True) if n) or "1" for order in orders]
 
 
 def _number(value: float) -> str:

@@ -1,3 +1,6 @@
+import re
+
+import numpy as np
 import pytest
 from hidden_in_a_mass import MASS, Experiment, mass, record, with_load
 
@@ -28,6 +31,16 @@ def test_bumps_lie_where_the_run_goes(bumpy):
     x = now.account.fit.states[..., 0]
     centres = [float(piece.split(" - ")[1].split("/")[0].strip("()")) for piece in first.pieces]
     assert x.min() <= min(centres) < 0 < max(centres) <= x.max()
+
+
+def test_powers_of_two_states_are_tried_up_to_the_third_together(bumpy):
+    inquiry, now = bumpy
+    (powers,) = [one for one in shapes_at(inquiry.search.places[0], now, inquiry.search) if "1" in one.pieces]
+    assert len(powers.pieces) == 10
+    assert max(sum(map(int, re.findall(r"\*\*(\d)", piece))) for piece in powers.pieces) == 3
+    x = now.account.fit.states[..., 0]
+    centre, half = map(float, re.search(r"x - (?:\()?([-\d.]+)\)*/([\d.]+)", powers.pieces[-1]).groups())
+    assert np.mean(np.abs((x - centre) / half) <= 1) == pytest.approx(0.96, abs=0.01)
 
 
 def test_where_there_is_a_stride_a_shape_may_be_locked_to_it():
