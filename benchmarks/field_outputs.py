@@ -26,7 +26,8 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
 
-from gaitdisc.sensing.reconstruct_field import FieldTask, prepare
+from gaitdisc.sensing.field_task import FieldTask
+from gaitdisc.sensing.reconstruct_field import prepare
 from gaitdisc.sensing.routes import fixed_at_random
 from gaitdisc.sensing.splits import RANDOM
 from gaitdisc.sensing.windows import Lags

@@ -14,8 +14,9 @@ from gaitdisc.report.block import Block
 from gaitdisc.report.blocks_page import write_blocks, write_markdown
 from gaitdisc.report.table import Table
 from gaitdisc.results.field_cell import FieldCell
+from gaitdisc.sensing.field_task import FieldTask
 from gaitdisc.sensing.field_windows import snapshots_of
-from gaitdisc.sensing.reconstruct_field import FieldTask, prepare, reconstruct_field, targets_of
+from gaitdisc.sensing.reconstruct_field import prepare, reconstruct_field, targets_of
 from gaitdisc.sensing.reconstructor import fit_reconstructor
 from gaitdisc.sensing.routes import Route, fixed_at_random, random_walk
 from gaitdisc.sensing.unseen_path import unseen_path

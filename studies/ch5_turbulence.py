@@ -22,7 +22,8 @@ from gaitdisc.report.field_maps_figure import maps_figure
 from gaitdisc.report.field_table import medians_table
 from gaitdisc.report.turbulence_figure import flow_figure
 from gaitdisc.results.field_cell import FieldCell, load_cells, save_cells
-from gaitdisc.sensing.reconstruct_field import CEILING, FieldTask, prepare, reconstruct_field, targets_of
+from gaitdisc.sensing.field_task import FieldTask
+from gaitdisc.sensing.reconstruct_field import CEILING, prepare, reconstruct_field, targets_of
 from gaitdisc.sensing.routes import Route, fixed, fixed_at_random, random_walk
 from gaitdisc.sensing.splits import RANDOM
 from gaitdisc.sensing.windows import Lags

@@ -9,7 +9,8 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.recording import Field
-from gaitdisc.sensing.reconstruct_field import FieldTask, field_cells, prepare
+from gaitdisc.sensing.field_task import FieldTask
+from gaitdisc.sensing.reconstruct_field import field_cells, prepare
 from gaitdisc.sensing.routes import Route
 
 SIZES = (1, 2, 3, 5, 8, 12, 20, 32, 64)

@@ -4,96 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.recording import Field, Samples
 from gaitdisc.results.field_cell import FieldCell, error_counts
+from gaitdisc.sensing.field_task import FieldTask, Label
 from gaitdisc.sensing.field_windows import field_windows, reading_names, snapshots_of, with_coefficients
-from gaitdisc.sensing.modes import ENERGY, Modes, fit_modes
+from gaitdisc.sensing.modes import Modes, fit_modes
 from gaitdisc.sensing.reconstructor import KINDS, Sensing, fit_reconstructor
 from gaitdisc.sensing.routes import Route, fixed
 from gaitdisc.sensing.season import Season, season_of
 from gaitdisc.sensing.splits import Parts, split_within
-from gaitdisc.sensing.windows import Lags
 
 SPLIT_SEED = 0  # windows drawn at random are the same ones in every run and for every route
 MEAN, SEASON, CEILING = "mean (no sensor)", "season (no sensor)", "POD ceiling"
-
-
-class Label(NamedTuple):
-    """Which cell it is.
-
-    Parameters
-    ----------
-    field, route, split, model : str
-        What was varied.
-    run : int
-        Seed.
-    """
-
-    field: str
-    route: str
-    split: str
-    model: str
-    run: int
-
-
-@dataclass(frozen=True)
-class FieldTask:
-    """What is the same for every route and model of a study.
-
-    Parameters
-    ----------
-    name : str
-        Of the field.
-    lags : Lags
-        Readings of a window, snapshots from one to the next, and how far ahead the field is told.
-    rule : str
-        Split, a word of `gaitdisc.sensing.splits.RULES`.
-    energy : float
-        Share of the training snapshots' energy that the modes keep.
-    season : int
-        Snapshots of a year, whose mean course is a floor of its own; 0 where there is none.
-    positions : bool
-        Whether each sensor tells where it is.
-    departures : bool
-        Whether sensors read, and models tell, departures from the training part's mean at the place and time of year:
-        what a reading means then depends less on where the sensor is. The season is added to what is told.
-    seed : int
-        Of every fit.
-    """
-
-    name: str
-    lags: Lags
-    rule: str = "temporal"
-    energy: float = ENERGY
-    season: int = 0
-    positions: bool = False
-    departures: bool = False
-    seed: int = 0
-
-    def label(self, route: str, model: str) -> Label:
-        """Return which cell a route and a model are.
-
-        Parameters
-        ----------
-        route, model : str
-            In words.
-        """
-        return Label(self.name, route, self.rule, model, self.seed)
-
-    def named(self, kind: str) -> str:
-        """Return what a kind of model is called that tells what this task asks for.
-
-        Parameters
-        ----------
-        kind : str
-            A word of `gaitdisc.sensing.reconstructor.KINDS`.
-        """
-        return f"{kind}, departures" if self.departures else kind
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,8 @@ from dataclasses import replace
 from gaitdisc.errors import ChannelError
 from gaitdisc.recording import Field
 from gaitdisc.results.field_cell import FieldCell
-from gaitdisc.sensing.reconstruct_field import FieldTask, field_cells, prepare, targets_of
+from gaitdisc.sensing.field_task import FieldTask
+from gaitdisc.sensing.reconstruct_field import field_cells, prepare, targets_of
 from gaitdisc.sensing.reconstructor import fit_reconstructor
 from gaitdisc.sensing.routes import Route
 from gaitdisc.sensing.windows import stacked

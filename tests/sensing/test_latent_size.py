@@ -1,7 +1,7 @@
 from manufactured_field import travelling_wave
 
+from gaitdisc.sensing.field_task import FieldTask
 from gaitdisc.sensing.latent_size import latent_sizes
-from gaitdisc.sensing.reconstruct_field import FieldTask
 from gaitdisc.sensing.routes import fixed
 from gaitdisc.sensing.windows import Lags
 

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from manufactured_field import travelling_wave
 
+from gaitdisc.sensing.field_task import FieldTask, Label
 from gaitdisc.sensing.field_windows import snapshots_of
-from gaitdisc.sensing.reconstruct_field import CEILING, MEAN, SEASON, FieldTask, Label, field_cells, prepare
+from gaitdisc.sensing.reconstruct_field import CEILING, MEAN, SEASON, field_cells, prepare
 from gaitdisc.sensing.reconstruct_field import reconstruct_field as reconstruct
 from gaitdisc.sensing.routes import circuit, fixed
 from gaitdisc.sensing.splits import RANDOM
@@ -55,12 +56,6 @@ def test_errors_are_of_each_quantity_in_its_unit():
     cells = field_cells(field, ready, Label("wave", "r", "temporal", "m", 0), told)
     np.testing.assert_allclose([(cell.rmse, cell.bias) for cell in cells], [(0.1, 0.1), (0.3, 0.3)], rtol=1e-5)
     assert [(cell.quantity, cell.unit) for cell in cells] == [("h", "m"), ("g", "m")]
-
-
-def test_a_cell_is_named_after_its_task():
-    assert TASK.label("r", TASK.named("linear")) == Label("wave", "r", "temporal", "linear", 0)
-    asked = replace(TASK, departures=True, rule=RANDOM, seed=3)
-    assert asked.label("r", asked.named("linear")) == Label("wave", "r", RANDOM, "linear, departures", 3)
 
 
 def test_departures_are_told_about_the_season_and_judged_with_it():

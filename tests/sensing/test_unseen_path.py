@@ -2,7 +2,7 @@ import pytest
 from manufactured_field import travelling_wave
 
 from gaitdisc.errors import ChannelError
-from gaitdisc.sensing.reconstruct_field import FieldTask
+from gaitdisc.sensing.field_task import FieldTask
 from gaitdisc.sensing.routes import fixed, fixed_at_random
 from gaitdisc.sensing.unseen_path import ALONE, MANY_PLACED, OTHER, OWN, unseen_path
 from gaitdisc.sensing.windows import Lags
