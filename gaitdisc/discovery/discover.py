@@ -13,8 +13,8 @@ from gaitdisc.discovery.catalogue import Shape
 from gaitdisc.discovery.evidence import Judged, compared, judged
 from gaitdisc.discovery.fitted_shape import fitted_shape
 from gaitdisc.discovery.growth import grown, pruned
-from gaitdisc.discovery.held_out import holding_out_others, runs_of
-from gaitdisc.discovery.inquiry import Inquiry, begin_inquiry
+from gaitdisc.discovery.held_out import holding_out_others, noted, runs_of, tells_nothing
+from gaitdisc.discovery.inquiry import Inquiry, begin_inquiry, split_in_time
 from gaitdisc.discovery.ranking import MARGIN, ranked
 from gaitdisc.discovery.shaken import Shaken, shaken
 from gaitdisc.discovery.verdict import Verdict
@@ -63,10 +63,13 @@ def discover(
     told(f"weighing {len(inquiry.search.candidates)} explanations")
     verdict = judge(inquiry, as_read)
     unproven = verdict.rivals[:1] if verdict.word == "no_gap" else ()
-    other = holding_out_others(inquiry, as_read, *unproven) if unproven else None
-    if other:
-        told("the trials held out never go where it would act: others are held out")
-        inquiry, as_read = other, other.as_read()
+    if unproven and tells_nothing(inquiry, as_read, *unproven):
+        if len(measured.trials) == 1:
+            other = begin_inquiry(simulation, split_in_time(measured, last=False), shapes)
+        else:
+            other = holding_out_others(inquiry, as_read, *unproven)
+        told("what is held out never goes where it would act: other data are held out")
+        inquiry, as_read = noted(inquiry, other), other.as_read()
         verdict = judge(inquiry, as_read)
     told("showing it on what was held out")
     return answer(inquiry, as_read, verdict)

@@ -16,7 +16,7 @@ from gaitdisc.results.discovery import GapSize, Runs
 
 FLIPS = 9999
 TURNS = 30
-TELLING = 16.0  # how far two runs are apart, in variances of the noise, for trials to tell which is true
+TELLING = 36.0  # how far two runs are apart, in variances of the noise, for trials to tell which is true
 WORTH_ASKING = 50.0  # evidence of the trials that were learned from
 
 
@@ -67,8 +67,8 @@ def runs_of(inquiry: Inquiry, now: Judged, trials: tuple[int, ...], like: Judged
     return Trial(_started(shooting, now, guess.starts(segments)), shooting.seen)
 
 
-def holding_out_others(inquiry: Inquiry, as_read: Judged, now: Judged) -> Inquiry | None:
-    """Return the inquiry with other trials held out, where those that were can say nothing for or against.
+def tells_nothing(inquiry: Inquiry, as_read: Judged, now: Judged) -> bool:
+    """Whether the held-out data can say nothing for or against what the others speak for.
 
     A spring that engages beyond where a trial goes changes nothing in it. What counts is how far the two runs are
     apart, never which of them the measurement prefers.
@@ -79,27 +79,44 @@ def holding_out_others(inquiry: Inquiry, as_read: Judged, now: Judged) -> Inquir
         The trials.
     as_read, now : Judged
         The simulation as read and with what trials that were learned from speak for.
-
-    Returns
-    -------
-    Inquiry or None
-        None where nothing speaks for anything, where the held-out trials can tell, or no trial could.
     """
-    if not now.account.parts or now.gained < WORTH_ASKING or len(inquiry.learned) < 2:
-        return None
-    if _apart(inquiry, as_read, now, inquiry.held_out) > TELLING:
-        return None
-    telling = [one for one in inquiry.learned if _apart(inquiry, as_read, now, (one,)) > TELLING]
-    held = tuple(telling[-len(inquiry.held_out) :])
+    if not now.account.parts or now.gained < WORTH_ASKING or not _telling(inquiry, as_read, now):
+        return False
+    return _apart(inquiry, as_read, now, inquiry.held_out) <= TELLING
+
+
+def holding_out_others(inquiry: Inquiry, as_read: Judged, now: Judged) -> Inquiry:
+    """Return the inquiry with other trials held out: the last of those that can tell.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        The trials, two or more of them learned from.
+    as_read, now : Judged
+        The simulation as read and with what trials that were learned from speak for.
+    """
+    held = _telling(inquiry, as_read, now)[-len(inquiry.held_out) :]
     learned = tuple(sorted({*inquiry.learned, *inquiry.held_out} - {*held}))
-    if not held:
-        return None
-    names = inquiry.measured.trials
-    blind, instead = (", ".join(names[one] for one in some) for some in (inquiry.held_out, held))
+    return replace(inquiry, learned=learned, held_out=held)
+
+
+def noted(before: Inquiry, now: Inquiry) -> Inquiry:
+    """Return an inquiry with a finding that says what is held out in place of what.
+
+    Parameters
+    ----------
+    before, now : Inquiry
+        With the first data held out, and with others.
+    """
+    blind, instead = (", ".join(one.measured.trials[trial] for trial in one.held_out) for one in (before, now))
     what = f"with and without what was found, trial {blind} runs alike; trial {instead} is held out in its place"
-    finding = Finding("note", "held out", inquiry.measured.source, what, "nothing; the last trials were to be held out")
-    measured = replace(inquiry.measured, findings=(*inquiry.measured.findings, finding))
-    return replace(inquiry, measured=measured, learned=learned, held_out=held)
+    finding = Finding("note", "held out", now.measured.source, what, "nothing; the last data were to be held out")
+    return replace(now, measured=replace(now.measured, findings=(*now.measured.findings, finding)))
+
+
+def _telling(inquiry: Inquiry, as_read: Judged, now: Judged) -> tuple[int, ...]:
+    """Return the learned trials on which the two runs are apart."""
+    return tuple(one for one in inquiry.learned if _apart(inquiry, as_read, now, (one,)) > TELLING)
 
 
 def _apart(inquiry: Inquiry, as_read: Judged, now: Judged, trials: tuple[int, ...]) -> float:

@@ -173,26 +173,31 @@ def begin_inquiry(simulation: Simulation, measured: Measured, shapes: tuple[Shap
     return Inquiry(search, measured, tuple(range(trials - held)), tuple(range(trials - held, trials)), guess)
 
 
-def split_in_time(measured: Measured) -> Measured:
-    """Return one trial as two: what is learned from, and its last quarter, held out.
+def split_in_time(measured: Measured, last: bool = True) -> Measured:
+    """Return one trial as two: what is learned from, and a quarter of its time, held out.
 
     Parameters
     ----------
     measured : Measured
         With one trial.
+    last : bool
+        Whether the last quarter is held out, or the first.
     """
     drive, samples = measured.drive, int(measured.samples[0])
-    cut = samples - samples // 4
-    inputs = [drive.inputs[0, :cut], drive.inputs[0, cut:samples]]
-    observed = np.full((2, cut, measured.observed.shape[2]), np.nan)
-    observed[0] = measured.observed[0, :cut]
-    observed[1, : samples - cut] = measured.observed[0, cut:samples]
-    time0 = [drive.time0[0], drive.time0[0] + cut / drive.rate]
+    quarter = samples // 4
+    parts = [(0, samples - quarter), (samples - quarter, samples)] if last else [(quarter, samples), (0, quarter)]
+    observed = np.full((2, samples - quarter, measured.observed.shape[2]), np.nan)
+    for place, (first, end) in enumerate(parts):
+        observed[place, : end - first] = measured.observed[0, first:end]
     name = measured.trials[0]
     return Measured(
-        Drive.of(inputs, drive.rate, time0),
+        Drive.of(
+            [drive.inputs[0, first:end] for first, end in parts],
+            drive.rate,
+            [drive.time0[0] + first / drive.rate for first, _ in parts],
+        ),
         observed,
-        (name, f"{name}, last quarter"),
+        (name, f"{name}, {'last' if last else 'first'} quarter"),
         measured.channels,
         measured.findings,
         measured.source,

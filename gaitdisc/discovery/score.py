@@ -190,7 +190,7 @@ def _gains(
 ) -> Iterator[tuple[Score, int]]:
     """Yield each cell's score; a cell has as many columns as slots that columns stand for."""
     normal, match = columns.T @ columns, columns.T @ left
-    size = np.maximum(np.sqrt(np.diag(normal)), 1e-300)
+    size = np.maximum(np.sqrt(np.diag(normal)), 1e-150)
     normal /= np.outer(size, size)
     first = 0
     for cell in some:

@@ -8,6 +8,8 @@ from gaitdisc.discovery.account import Part, account_for
 from gaitdisc.discovery.catalogue import read_catalogue
 from gaitdisc.discovery.discover import discover, lasting
 from gaitdisc.discovery.evidence import judged
+from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import Term
 from gaitdisc.simulation.running import compile_simulation
 
@@ -163,9 +165,23 @@ def test_a_spring_that_the_held_out_trial_never_reaches_is_proven_on_another():
     assert [effect.name for effect in found.effects] == ["one_sided_spring"]
     assert found.effects[0].estimates["engagement"].value == pytest.approx(0.7, abs=0.03)
     assert found.held_out.after < 0.5 * found.held_out.before
-    assert "the trials held out never go where it would act: others are held out" in told
+    assert "what is held out never goes where it would act: other data are held out" in told
     note = next(finding for finding in found.findings if finding.kind == "held out")
     assert note.what == "with and without what was found, trial 4 runs alike; trial 3 is held out in its place"
+
+
+def test_where_one_trial_comes_to_rest_its_first_quarter_proves_the_friction():
+    still = mass().with_values({"c": 0.1})
+    measured = record(still.with_effect(Term("load", "port", "friction", "-1.5*sign(v)")), 2, Experiment(1, 40.0, 0.05))
+    rest = Drive.of([0 * measured.drive.inputs[0]], measured.drive.rate)
+    rows = Rows(np.zeros(1, int), np.zeros(1, int), np.array([[2.0, 0.0]]))
+    truth = compile_simulation(still.with_effect(Term("load", "port", "friction", "-1.5*sign(v)")))
+    states, _ = truth.run(rest, rows, measured.observed.shape[1] - 1)
+    assert np.abs(states[0, 1500:, 0]).max() < 0.1
+    seen = states[:, :, :1] + 0.03 * np.random.default_rng(0).normal(size=states[:, :, :1].shape)
+    found, _ = discover(still, Measured(rest, seen, ("1",), measured.channels))
+    assert [effect.name for effect in found.effects] == ["coulomb_friction"]
+    assert "trial 1, first quarter is held out in its place" in found.findings[-1].what
 
 
 def test_what_longer_runs_have_no_use_for_is_not_named(inquiry, as_read, cubic):

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from gaitdisc.discovery.account import Part, account_for
 from gaitdisc.discovery.evidence import Judged, judged
-from gaitdisc.discovery.held_out import chance, drawn_runs, gap_size, holding_out_others, runs_of
+from gaitdisc.discovery.held_out import chance, drawn_runs, gap_size, holding_out_others, noted, runs_of, tells_nothing
 from gaitdisc.discovery.inquiry import begin_inquiry
 
 
@@ -92,11 +92,20 @@ def test_the_start_of_a_long_run_is_found_by_way_of_short_ones():
 
 def test_trials_that_can_tell_stay_held_out(inquiry, as_read, named):
     now, _ = named
-    assert holding_out_others(inquiry, as_read, now) is None
+    assert not tells_nothing(inquiry, as_read, now)
+    other = holding_out_others(inquiry, as_read, now)
+    assert sorted((*other.learned, *other.held_out)) == sorted((*inquiry.learned, *inquiry.held_out))
+    assert other.held_out == inquiry.learned[-1:]
 
 
-def test_nothing_else_is_held_out_where_nothing_speaks_for_it(inquiry, as_read, named):
+def test_nothing_is_asked_where_nothing_speaks_for_it(inquiry, as_read, named):
     now, _ = named
-    assert holding_out_others(inquiry, as_read, replace(now, gained=10.0)) is None
-    assert holding_out_others(replace(inquiry, learned=(0,)), as_read, now) is None
-    assert holding_out_others(inquiry, as_read, as_read) is None
+    assert not tells_nothing(inquiry, as_read, replace(now, gained=10.0))
+    assert not tells_nothing(inquiry, as_read, as_read)
+
+
+def test_what_is_held_out_in_place_of_what_is_noted(inquiry):
+    other = replace(inquiry, learned=inquiry.held_out, held_out=inquiry.learned[:1])
+    note = noted(inquiry, other).measured.findings[-1]
+    blind, instead = (inquiry.measured.trials[one.held_out[0]] for one in (inquiry, other))
+    assert f"trial {blind} runs alike; trial {instead} is held out" in note.what
