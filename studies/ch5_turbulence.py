@@ -36,7 +36,7 @@ TASK = FieldTask(
     "stand-in turbulence", Lags(13, 8)
 )  # reaches as far back as the 100 snapshots of the dissertation: 1.2 turnovers
 STAND_IN = (
-    "This flow is a stand-in, not the database's, whose Reynolds number of Taylor's microscale is above 400; and its cut "
+    "This flow is a stand-in, not the database's, whose Reynolds number of Taylor's microscale is above 400; its cut "
     "holds most of the box, where the dissertation's holds a hundred-thirtieth. The dissertation prints no error in "
     "numbers but standard deviations, 0.0998 for fixed and 0.0617 for walking sensors, of windows drawn at random."
 )
