@@ -6,6 +6,7 @@ import re
 from dataclasses import replace
 
 from gaitdisc.discovery.account import Part
+from gaitdisc.discovery.held_out import WORTH_ASKING
 from gaitdisc.results.amounts import amount, brief_text, estimate_text, shown_unit, with_unit
 from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, Whereabouts
 from gaitdisc.results.effect_words import at_place, spoken
@@ -36,7 +37,7 @@ def sentence_of(discovery: Discovery, base: Simulation, parts: tuple[Part, ...])
 
 def _said(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> str:
     if discovery.verdict == "no_gap":
-        return "Simulation and data agree to within the noise: nothing is missing that these data could show."
+        return _nothing(discovery)
     effects = discovery.effects
     if discovery.verdict == "process_noise":
         where = at_place(effects[0].kind, effects[0].place)
@@ -53,6 +54,18 @@ def _said(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> st
     lacks = [f"The simulation lacks {'; and '.join(missing)}"] if missing else []
     whole = "; besides, ".join([*lacks, *others])
     return f"{whole[:1].upper()}{whole[1:]}."
+
+
+def _nothing(discovery: Discovery) -> str:
+    """Say that nothing is named, and whether the data that were learned from speak for something all the same."""
+    first = discovery.rivals[0] if discovery.rivals else None
+    if first is None or not first.bic >= WORTH_ASKING:
+        return "Simulation and data agree to within the noise: nothing is missing that these data could show."
+    for_what = f"{spoken(first.name)} {at_place(first.kind, first.place)}"
+    return (
+        f"Nothing is named: the data that were learned from speak for {for_what}, and those held out do not bear it "
+        "out. More trials of varied movement would tell."
+    )
 
 
 def _one(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whereabouts, ...]) -> str:

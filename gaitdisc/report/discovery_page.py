@@ -13,7 +13,7 @@ from gaitdisc.report.table import save_tables
 from gaitdisc.results.discovery import Discovery
 
 VERDICTS = {
-    "no_gap": "no gap: simulation and data agree to within the noise",
+    "no_gap": "no gap: nothing is added to the simulation",
     "missing_physics": "missing physics: a term is missing in the dynamics",
     "wrong_parameter": "wrong parameter: the structure is right, a number is not",
     "input_error": "input error: a driving signal is late or scaled",

@@ -51,6 +51,15 @@ def test_no_gap_says_what_is_left():
     assert told.endswith("Held-out error: 3.09 deg (noise floor 0.50).")
 
 
+@pytest.mark.parametrize(("evidence", "unproven"), [(1325.0, True), (9.0, False), (float("nan"), False)])
+def test_what_was_learned_from_and_not_borne_out_is_not_called_agreement(evidence, unproven):
+    rival = FoundEffect("equation", "omega", "coulomb_friction", "", {}, bic=evidence)
+    told = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=(rival,))
+    assert told.startswith("Nothing is named: the data that were learned from speak for") == unproven
+    assert ("in the equation of omega, and those held out do not bear it out." in told) == unproven
+    assert ("agree to within the noise" in told) != unproven
+
+
 def test_two_effects_are_both_told():
     friction = FoundEffect("port", "load", "coulomb_friction", "", {"friction": Estimate(3.0, 2.8, 3.2, "N m")})
     other = Candidate("missing_physics", "port", "load", "coulomb_friction", means="dry (Coulomb) friction")
