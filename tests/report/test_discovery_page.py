@@ -26,7 +26,7 @@ def test_every_table_lies_beside_the_page(tmp_path):
 def test_no_gap_is_a_page_too(tmp_path):
     empty = manufactured(verdict="no_gap", where=(), effects=(), rivals=(), findings=(), provenance=None)
     text = write_discovery_report(empty, tmp_path).read_text(encoding="utf-8")
-    assert "no gap: simulation and data agree" in text
+    assert "no gap: nothing is added to the simulation" in text
     assert "What else it could be" not in text
 
 
