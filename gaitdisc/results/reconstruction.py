@@ -115,7 +115,7 @@ def mean_over_people(values: NDArray[np.float64]) -> tuple[float, float, float]:
     if n < 3:
         return mean, float("nan"), float("nan")
     sd = float(values.std(ddof=1))
-    return mean, sd, float(t.ppf(0.975, n - 1)) * sd / np.sqrt(n)
+    return mean, sd, float(t.ppf(0.975, n - 1)) * sd / float(np.sqrt(n))
 
 
 def enough_sensors(found: pd.DataFrame) -> int:
