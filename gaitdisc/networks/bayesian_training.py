@@ -96,16 +96,15 @@ def _descended(
         while damping < MOST_DAMPING:
             curved = now.noise * squares + (now.weights + damping * now.noise) * np.eye(len(weights))
             tried = weights + np.linalg.solve(curved, now.noise * pull - now.weights * weights)
-            error = y - _outputs(tried, x)[0]
+            found, tried_slopes = _outputs(tried, x)
+            error = y - found
             after = now.noise * error @ error + now.weights * tried @ tried
             if after < before:
                 break
             damping *= EASED
         else:
             break
-        damping, weights = max(damping / EASED, 1 / MOST_DAMPING), tried
-        found, slopes = _outputs(weights, x)
-        error = y - found
+        damping, weights, slopes = max(damping / EASED, 1 / MOST_DAMPING), tried, tried_slopes
         if renewed:
             now = _weighed(slopes, error, weights, now)
         elif before - after < SETTLED * before:
