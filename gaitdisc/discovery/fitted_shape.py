@@ -44,7 +44,7 @@ def shapes_at(place: Place, judged_now: Judged, search: Search) -> list[Candidat
     shapes = [_bumps(ranges, dict.fromkeys([one], FLAT_BUMPS)) for one in axes]
     if v:
         speed = max(abs(one) for one in ranges[v])
-        name = f"({v})" if " " in v else v
+        name = _bracketed(v)
         across = _bumps(ranges, {x: FLAT_BUMPS})
         shapes += [
             [f"{piece}*{name}" for piece in across],
@@ -174,7 +174,7 @@ def _bumps(ranges: dict[str, tuple[float, float]], counts: dict[str, int]) -> li
     for axis, count in counts.items():
         low, high = ranges[axis]
         step = (high - low) / (count - 1) or 1.0
-        name = f"({axis})" if " " in axis else axis
+        name = _bracketed(axis)
         at: NDArray[np.float64] = np.linspace(low, high, count)
         centres.append([f"(({name} - {_number(centre)})/{SHARPNESS * step:.4g})**2" for centre in at])
     return [f"exp(-({' + '.join(parts)}))" for parts in product(*centres)]
@@ -184,10 +184,14 @@ def _powers(ranges: dict[str, tuple[float, float]]) -> list[str]:
     """Return the products of powers of two states, each between -1 and 1 where it mostly lies."""
     scaled = []
     for axis, (low, high) in ranges.items():
-        name = f"({axis})" if " " in axis else axis
+        name = _bracketed(axis)
         scaled.append(f"(({name} - {_number((low + high) / 2)})/{(high - low) / 2 or 1.0:.4g})")
     orders = [(i, j) for i in range(DEGREE + 1) for j in range(DEGREE + 1 - i)]
     return ["*".join(f"{one}**{n}" for one, n in zip(scaled, order, strict=True) if n) or "1" for order in orders]
+
+
+def _bracketed(axis: str) -> str:
+    return f"({axis})" if " " in axis else axis
 
 
 def _number(value: float) -> str:

@@ -80,9 +80,9 @@ def tells_nothing(inquiry: Inquiry, as_read: Judged, now: Judged) -> bool:
     as_read, now : Judged
         The simulation as read and with what trials that were learned from speak for.
     """
-    if not now.account.parts or now.gained < WORTH_ASKING or not _telling(inquiry, as_read, now):
+    if not now.account.parts or now.gained < WORTH_ASKING:
         return False
-    return _apart(inquiry, as_read, now, inquiry.held_out) <= TELLING
+    return _apart(inquiry, as_read, now, inquiry.held_out) <= TELLING and bool(_telling(inquiry, as_read, now))
 
 
 def holding_out_others(inquiry: Inquiry, as_read: Judged, now: Judged) -> Inquiry:
