@@ -17,6 +17,7 @@ def new(
     """Write a study file from the recordings found in a folder."""
     from gaitdisc.ingest.new_study import found_study
     from gaitdisc.ingest.study_file import write_study
+    from gaitdisc.report.wording import counted
 
     file = study / "study.toml"
     if file.exists():
@@ -27,6 +28,5 @@ def new(
     write_study(draft, file)
     for note in notes:
         typer.echo(f"  {note}")
-    count = len(draft.participants)
-    people = "1 participant" if count == 1 else f"{count} participants"
+    people = counted(len(draft.participants), "participant")
     typer.echo(f"{file} written: {people}. Read it, then: gaitdisc check {study}")
