@@ -70,8 +70,8 @@ class Inquiry:
         periods : float
             Length of a run, in main periods.
         """
-        wanted = max(int(periods * self.rhythm.period * self.rhythm.rate), FEWEST_SAMPLES)
-        return cut_segments(self.measured.drive.samples, trials, wanted)
+        samples = int(round(periods * self.rhythm.period * self.rhythm.rate, 6))  # 88 / period / rate * ... may be 87.99
+        return cut_segments(self.measured.drive.samples, trials, max(samples, FEWEST_SAMPLES))
 
     def shooting(self, segments: Segments) -> Shooting:
         """Return the segments, ready to be fitted, under noise of unit size.
