@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import cast
 
 from gaitdisc.discovery.blow_up import refuse_blow_up
 from gaitdisc.discovery.catalogue import read_catalogue
@@ -14,6 +15,7 @@ from gaitdisc.results.discovery import Discovery
 from gaitdisc.results.provenance import made_now
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.measured_table import read_measured
+from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.simulation_file import read_simulation
 from gaitdisc.simulation.unit_check import unit_findings
@@ -52,6 +54,41 @@ def discover_files(
     data = read_measured(measured, model)
     files = [simulation, measured, *([catalogue] if catalogue else [])]
     return _discovered(model, data, catalogue, files, told)
+
+
+def discover_model(
+    model: PythonSimulation, measured: Path, catalogue: Path | None = None, told: Callable[[str], None] = lambda _: None
+) -> tuple[Discovery, PythonSimulation]:
+    """Find what a simulation that is a Python object lacks against a table of measured trials.
+
+    Parameters
+    ----------
+    model : PythonSimulation
+        Made by `python_simulation`.
+    measured : Path
+        CSV or Parquet.
+    catalogue : Path, optional
+        Effects of the user's own.
+    told : callable
+        Takes one line about each step.
+
+    Returns
+    -------
+    discovery : Discovery
+        The answer, with what it rests on.
+    augmented : PythonSimulation
+        The model with what was found in it.
+
+    Raises
+    ------
+    GaitdiscError
+        As `discover_files`; also if the function does not give a derivative for each row and state.
+    """
+    told(f"reading {measured.name}")
+    simulation = cast("Simulation", model)  # it goes wherever a `Simulation` goes
+    data = read_measured(measured, simulation)
+    found, augmented = _discovered(simulation, data, catalogue, [measured, *([catalogue] if catalogue else [])], told)
+    return found, cast("PythonSimulation", augmented)
 
 
 def discover_study(
@@ -102,5 +139,6 @@ def _discovered(
     settings = {"title": model.title, "trials": len(data.trials), "rate_hz": data.rate, "channels": list(data.channels)}
     hashes = {path.name: file_sha256(path) for path in files}
     made = made_now(settings, 0, hashes, "discovery of missing physics")
-    findings = (*unit_findings(model), *found.findings)
+    listed = unit_findings(model) if isinstance(model, Simulation) else ()  # a function has no units to check
+    findings = (*listed, *found.findings)
     return replace(found, findings=findings, provenance=made), augmented
