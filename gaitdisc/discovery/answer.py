@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from gaitdisc.discovery.account import Part
-from gaitdisc.discovery.effect_units import places_unit, unit_of
+from gaitdisc.discovery.effect_units import channel_unit, places_unit
 from gaitdisc.discovery.estimates import estimates_of
 from gaitdisc.discovery.evidence import Judged
 from gaitdisc.discovery.held_out import drawn_runs, gap_size, runs_of
@@ -281,4 +281,4 @@ def units_of(inquiry: Inquiry) -> tuple[str, ...]:
     """
     base = inquiry.search.base
     units = {part.name: part.unit for part in (*base.states, *base.inputs, *base.parameters)} | {"t": "s"}
-    return tuple(unit_of(text, units) for _, text in base.observations)
+    return tuple(channel_unit(text, units) for _, text in base.observations)
