@@ -10,6 +10,7 @@ from gaitdisc.discovery.estimates import estimates_of
 from gaitdisc.discovery.evidence import Judged
 from gaitdisc.discovery.held_out import drawn_runs, gap_size, runs_of
 from gaitdisc.discovery.inquiry import Inquiry
+from gaitdisc.discovery.rivals import Rival, evidence_of, rivals_of
 from gaitdisc.discovery.shaken import Shaken
 from gaitdisc.discovery.verdict import Verdict
 from gaitdisc.discovery.wording import sentence_of
@@ -18,8 +19,6 @@ from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, GapSize
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.simulation import Simulation
 
-TIE = 6.0  # fall of the criterion below which two explanations are told apart by nothing
-RIVALS = 6
 HALF = 0.5
 
 
@@ -50,12 +49,13 @@ def answer(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> tuple[Discove
         before, after = (runs_of(inquiry, one, trials, now) for one in (as_read, now))
         sizes.append(gap_size(before, after, now.noise.size, channels, block))
     train, held_out = sizes
+    gained = evidence_of(inquiry.search, now)
     discovery = Discovery(
         verdict.word,
         "",
         whereabouts(inquiry, verdict, train),
-        effects_of(inquiry, verdict, closed_share(held_out)),
-        rivals_of(inquiry, now, verdict.rivals),
+        effects_of(inquiry, verdict, closed_share(held_out), gained),
+        told_rivals(inquiry, rivals_of(inquiry.search, now, verdict.rivals, gained)),
         train,
         held_out,
         channels,
@@ -67,7 +67,7 @@ def answer(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> tuple[Discove
     return sentence_of(discovery, base, now.account.parts), augmented
 
 
-def effects_of(inquiry: Inquiry, verdict: Verdict, closed: float) -> tuple[FoundEffect, ...]:
+def effects_of(inquiry: Inquiry, verdict: Verdict, closed: float, gained: float) -> tuple[FoundEffect, ...]:
     """List what was found: a random push, wrong starts, or the explanations that were let in.
 
     Parameters
@@ -78,6 +78,8 @@ def effects_of(inquiry: Inquiry, verdict: Verdict, closed: float) -> tuple[Found
         What the search came to.
     closed : float
         Share of the held-out gap that is closed.
+    gained : float
+        Fall of the criterion from the simulation as read.
     """
     if verdict.shaking:
         place, push = verdict.shaking.place, push_of(inquiry, verdict.shaking)
@@ -87,7 +89,6 @@ def effects_of(inquiry: Inquiry, verdict: Verdict, closed: float) -> tuple[Found
             FoundEffect("state", name, "wrong_initial_condition", "", {"initial": start})
             for name, start in verdict.starts.items()
         )
-    gained = max([one.gained for one in verdict.rivals], default=0.0)
     return tuple(found_effects(inquiry, verdict.account, closed, gained))
 
 
@@ -160,38 +161,23 @@ def found_effects(inquiry: Inquiry, now: Judged, closed: float, gained: float) -
     return found
 
 
-def rivals_of(inquiry: Inquiry, now: Judged, rivals: tuple[Judged, ...]) -> tuple[FoundEffect, ...]:
-    """List what else was weighed for the first place.
+def told_rivals(inquiry: Inquiry, rivals: tuple[Rival, ...]) -> tuple[FoundEffect, ...]:
+    """List what else was weighed, with its numbers.
 
     Parameters
     ----------
     inquiry : Inquiry
         What was asked.
-    now : Judged
-        The simulation with what was found.
-    rivals : tuple of Judged
+    rivals : tuple of Rival
         Best first.
     """
-    own = {part.candidate.label for part in now.account.parts}
-    best = max([one.gained for one in rivals], default=0.0)
     listed = []
-    for rival in (one for one in rivals if one.account.parts):
-        last = rival.account.parts[-1]
-        if last.candidate.label in own:
-            continue
-        estimates = estimates_of(rival.account, len(rival.account.parts) - 1, inquiry.search.base)
-        listed.append(
-            FoundEffect(
-                last.candidate.kind,
-                last.candidate.place,
-                last.candidate.name,
-                "",
-                estimates,
-                bic=rival.gained,
-                tied=bool(own and best - rival.gained < TIE),
-            )
-        )
-    return tuple(listed[:RIVALS])
+    for rival in rivals:
+        candidate, account = rival.part.candidate, rival.account.account
+        estimates = estimates_of(account, len(account.parts) - 1, inquiry.search.base)
+        place = (candidate.kind, candidate.place, candidate.name)
+        listed.append(FoundEffect(*place, "", estimates, bic=rival.gained, tied=rival.tied))
+    return tuple(listed)
 
 
 def whereabouts(inquiry: Inquiry, verdict: Verdict, train: GapSize) -> tuple[Whereabouts, ...]:

@@ -59,9 +59,10 @@ class FoundEffect:
     estimates : mapping of str to Estimate
         Its numbers.
     held_out : float
-        Share of the gap on held-out data that goes when it is let in.
+        Share of the gap on held-out data that goes with all that was found.
     bic : float
-        Fall of the Bayesian criterion when it is let in.
+        Fall of the Bayesian criterion from the simulation as read: of what was found, all of it together; of a rival,
+        with it in the place of what it rivals.
     tied : bool
         For a rival: the data cannot tell it from what was named.
     """
