@@ -8,7 +8,7 @@ from gaitdisc.discovery.account import Part
 from gaitdisc.discovery.effect_units import channel_unit, places_unit
 from gaitdisc.discovery.estimates import estimates_of
 from gaitdisc.discovery.evidence import Judged
-from gaitdisc.discovery.held_out import drawn_runs, gap_size, runs_of
+from gaitdisc.discovery.held_out import drawn_runs, gap_size, proof_of, runs_of, tested
 from gaitdisc.discovery.inquiry import Inquiry
 from gaitdisc.discovery.rivals import Rival, evidence_of, rivals_of
 from gaitdisc.discovery.shaken import Shaken
@@ -43,12 +43,11 @@ def answer(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> tuple[Discove
     """
     now, base = verdict.account, inquiry.search.base
     channels = tuple(name for name, _ in base.observations)
-    block = int(inquiry.rhythm.period * inquiry.rhythm.rate) + 1
-    sizes = []
-    for trials in (inquiry.learned, inquiry.held_out):
-        before, after = (runs_of(inquiry, one, trials, now) for one in (as_read, now))
-        sizes.append(gap_size(before, after, now.noise.size, channels, block))
-    train, held_out = sizes
+    floor, proof = now.noise.size, verdict.proof
+    before, after = (runs_of(inquiry, one, inquiry.learned, now) for one in (as_read, now))
+    train = gap_size(before, after, floor, channels, tested(inquiry, before, after, now))
+    held = proof if proof and now.account.parts else proof_of(inquiry, as_read, now, now)
+    held_out = gap_size(held.before, held.after, floor, channels, (proof or held).test)
     gained = evidence_of(inquiry.search, now)
     discovery = Discovery(
         verdict.word,
@@ -60,7 +59,7 @@ def answer(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> tuple[Discove
         held_out,
         channels,
         units_of(inquiry),
-        drawn_runs(inquiry, before, after, inquiry.held_out),
+        drawn_runs(inquiry, held.before, held.after, inquiry.held_out),
         inquiry.measured.findings,
     )
     augmented = begun_at(augmented_of(base, now.account.parts), verdict.starts)
