@@ -179,7 +179,7 @@ def begin_inquiry(simulation: Simulation, measured: Measured, shapes: tuple[Shap
     search = Search(simulation, places, candidates_of(simulation, places, (*known_shapes(), *shapes)), rhythm)
     trials = len(measured.drive.samples)
     held = max(round(trials / 4), 1)
-    guess = guess_states(simulation, measured.observed, measured.drive.rate, rhythm.period, rate_of)
+    guess = guess_states(simulation, measured, rhythm.period, rate_of)
     inquiry = Inquiry(search, measured, tuple(range(trials - held)), tuple(range(trials - held, trials)), guess)
     return _less_idle(inquiry)
 
