@@ -13,10 +13,12 @@ from typer.testing import CliRunner
 
 from gaitdisc.cli import app, main
 from gaitdisc.commands.exit_codes import REFUSED, SOME_REFUSED
+from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import write_study
 from gaitdisc.ingest.table import write_table
+from gaitdisc.signals.contact_force import force_contacts
 
 ANGLES = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", "hip_flexion_l", "knee_angle_l")
 
@@ -204,3 +206,14 @@ def test_dropping_nothing_silently(walk, folder):
     assert code == 0
     kinds = {(finding["kind"], finding["channel"]) for finding in seen["P02", "exo"]["findings"]}
     assert ("gap", "knee_angle_r") in kinds
+
+
+def test_moments_named_after_the_force_add_no_contact(walk, folder):
+    forces = walk.stream("forces").selected(["ground_force_r_vy", "ground_force_l_vy"])
+    labels = ["time", *forces.names, "ground_force_r_my", "ground_force_l_my"]
+    table = np.column_stack([forces.time, forces.values, 0.3 * np.roll(forces.values, 300, axis=0)])
+    rows = ["\t".join(map(repr, row)) for row in table.tolist()]
+    (folder / "belts.mot").write_text("\n".join(["belts", "endheader", "\t".join(labels), *rows]) + "\n")
+    read = read_trial(folder / "belts.mot").stream("forces")
+    for side, contacts in force_contacts(forces).items():
+        np.testing.assert_array_equal(force_contacts(read)[side].time, contacts.time)
