@@ -217,3 +217,11 @@ def test_moments_named_after_the_force_add_no_contact(walk, folder):
     read = read_trial(folder / "belts.mot").stream("forces")
     for side, contacts in force_contacts(forces).items():
         np.testing.assert_array_equal(force_contacts(read)[side].time, contacts.time)
+
+
+def test_knees_counted_the_other_way_give_the_same_strides(walk, folder):
+    signs = np.where([name.startswith("knee") for name in ANGLES], -1.0, 1.0)
+    _, seen = checked(folder, altered(walk, folder, lambda values: values * signs))
+    assert seen["P02", "exo"]["strides"] == seen["P01", "exo"]["strides"] != {}
+    said = [one for one in seen["P02", "exo"]["findings"] if one["kind"] == "knee sign"]
+    assert [(one["file"], one["channel"]) for one in said] == [("bad.mot", "knee_angle_r"), ("bad.mot", "knee_angle_l")]

@@ -12,6 +12,7 @@ import numpy as np
 from gaitdisc.channel import nearest_word
 from gaitdisc.errors import ChannelError, ReadError, SamplingError
 from gaitdisc.ingest.columns import split_unit
+from gaitdisc.ingest.knee_sign import with_flexion_positive
 from gaitdisc.ingest.storage import read_storage
 from gaitdisc.ingest.table import read_table
 from gaitdisc.ingest.trc import read_trc
@@ -96,7 +97,7 @@ def read_trial(
     if not any(Path(file).suffix.lower() == ".c3d" for file in files):  # that reader tells unused labels itself
         findings += _unused(channels, named, parts[0].name)
     trial = Trial(parts[0].name, named, events, tuple(findings), subject, condition)
-    return trial if crop_s is None else _cropped(trial, *crop_s)
+    return _in_house_signs(trial if crop_s is None else _cropped(trial, *crop_s))
 
 
 def read_planned_trial(
@@ -188,6 +189,12 @@ def _joined(one: Recording, other: Recording, key: str) -> Recording:
         source=source,
         suspect=np.hstack([one.suspect, other.suspect]),
     )
+
+
+def _in_house_signs(trial: Trial) -> Trial:
+    """Judge signs on what is used of a trial: the part that a crop leaves out is often not tracked."""
+    streams, findings = with_flexion_positive(trial.streams)
+    return replace(trial, streams=streams, findings=(*trial.findings, *findings))
 
 
 def _unused(channels: Mapping[str, str] | None, streams: Mapping[str, Recording], name: str) -> list[Finding]:

@@ -150,7 +150,7 @@ def _guessed(label: str, name: str, title: str) -> Column:
 
 
 def _ground(label: str, name: str, found: re.Match[str]) -> Column:
-    """Ground reaction by the last letters: v a force, p a place, m a moment; by the word only where none stands there."""
+    """Ground reaction by its last letters: v a force, p a place, m a moment; by the word where none stands there."""
     kind, axis = found[1].lower(), found[2].lower()
     words = _GROUND_WORD.findall(name.lower())
     side = side_of(name)
