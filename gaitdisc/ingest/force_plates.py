@@ -146,6 +146,25 @@ def plate_streams(
     return streams, {column for plate, _, _ in wrenches for column in plate.columns}, findings
 
 
+def plate_loads(streams: Streams, samples_per_frame: int) -> NDArray[np.float64]:
+    """Size of each plate's force at the frames of the points, (frame, plate) [N].
+
+    Parameters
+    ----------
+    streams : dict of str to (values, channels)
+        As `plate_streams` gives them.
+    samples_per_frame : int
+        Analog samples in a frame.
+    """
+    if "forces" not in streams:
+        return np.empty((0, 0))
+    values, channels = streams["forces"]
+    plates = dict.fromkeys(c.name.rpartition("_")[0] for c in channels)
+    first = [next(i for i, c in enumerate(channels) if c.name == f"{plate}_fx") for plate in plates]
+    at_frames = values[::samples_per_frame]
+    return np.column_stack([np.linalg.norm(at_frames[:, i : i + 3], axis=1) for i in first])
+
+
 def _last_axis(numbers: NDArray[np.float64], inner: int) -> list[NDArray[np.float64]]:
     """One array a plate; a file with one plate may leave the last dimension out."""
     if numbers.ndim == inner:
