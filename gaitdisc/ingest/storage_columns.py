@@ -13,7 +13,13 @@ from gaitdisc.recording import Finding
 
 _GROUND = re.compile(r"(?:.*_)?(?:ground|grf|fp_?\d)\w*?_([vpm]?)([xyz])", re.IGNORECASE)
 _GROUND_WORD = re.compile(r"force|torque|moment", re.IGNORECASE)
-_RATES = {"speeds": "/s", "velocities": "/s", "accelerations": "/s2"}
+_RATES = {
+    "speeds": "/s",
+    "velocities": "/s",
+    "accelerations": "/s2",
+    "kinematics_u": "/s",  # what OpenSim's analyses write
+    "kinematics_dudt": "/s2",
+}
 _RATE_WORD = {"/s": "speed", "/s2": "accel"}
 
 

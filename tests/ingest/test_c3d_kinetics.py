@@ -129,7 +129,7 @@ def test_ankle_moments_of_six_people_are_those_of_the_calf_at_push_off(gait_data
 
 
 def test_internal_moments_times_angular_velocity_are_the_power_of_the_file(gait_data, reader):
-    """The sign needs no knowledge of walking: moment times velocity of the ankle, both of dorsiflexion, is its power."""
+    """The sign needs no knowledge of walking: moment times velocity, both of dorsiflexion, is the ankle's power."""
     for path in [path for path in _people(gait_data) if "straight" in path.parts]:
         trial = read_trial(path, reader=reader)
         kinematics, moments = trial.stream("kinematics"), trial.stream("moments")

@@ -65,6 +65,8 @@ def test_a_place_in_the_name_of_a_point_is_no_ground_reaction():
         ("/forceset/soleus_r/activation", "states", "/forceset/soleus_r/activation", "signal", "1"),
         ("knee_angle_r", "Speeds", "knee_angle_r/speed", "signal", "deg/s"),
         ("knee_angle_r", "Accelerations", "knee_angle_r/accel", "signal", "deg/s2"),
+        ("knee_angle_r", "Kinematics_u", "knee_angle_r/speed", "signal", "deg/s"),
+        ("pelvis_tx", "Kinematics_dudt", "pelvis_tx/accel", "signal", "m/s2"),
         ("patella_tx", "Coordinates", "patella_tx", "translation", "m"),
         ("neck_flexion", "Coordinates", "neck_flexion", "angle", "deg"),
         ("arm_flex_l_moment", "Inverse Dynamics", "arm_flex_l_moment", "moment", "N m"),
