@@ -19,6 +19,7 @@ from gaitdisc.ingest.c3d_labels import LabelMap
 from gaitdisc.ingest.c3d_layout import C3DLayout, expected_layout
 from gaitdisc.ingest.c3d_parameters import C3DParameters, read_c3d_parameters
 from gaitdisc.ingest.c3d_points import Streams, point_names, point_streams
+from gaitdisc.ingest.c3d_scales import check_common_scales, unscaled_channels
 from gaitdisc.ingest.file_hash import file_sha256
 from gaitdisc.ingest.force_plates import force_plates, plate_loads, plate_streams
 from gaitdisc.ingest.reader_process import RawTrial, ReaderProcess, ReadRequest
@@ -103,6 +104,7 @@ class C3DReader:
     def _trial(self, path: Path, channels: Mapping[str, str] | None) -> Trial:
         header = read_c3d_header(path)
         parameters = read_c3d_parameters(path, header)
+        check_common_scales(header, parameters)
         layout, findings = expected_layout(header, parameters)
         rate_hz, doubts = _rate(header, parameters, layout)
         with ThreadPoolExecutor(1) as beside:  # the hash is done while the other process reads
@@ -177,12 +179,15 @@ def read_c3d(path: str | Path, channels: Mapping[str, str] | None = None) -> Tri
 def _streams(
     raw: RawTrial, layout: C3DLayout, parameters: C3DParameters, labels: LabelMap, file: str
 ) -> tuple[Streams, list[Finding]]:
+    unscaled, seen = unscaled_channels(parameters, layout.channels, file)
+    raw.analog[:, sorted(unscaled)] = np.nan
     findings = [
+        *seen,
         *_made_finite(raw.points, "coordinates of points", file),
         *_made_finite(raw.analog, "analog values", file),
     ]
     streams, unit, doubts = point_streams(raw.points, parameters, labels, file)
-    plates, described = force_plates(parameters, layout.channels, unit, file)
+    plates, described = force_plates(parameters, layout.channels, unit, file, unscaled)
     forces, columns, told = plate_streams(raw.analog, plates, parameters, unit, file)
     if "moments" in streams:
         loads = plate_loads(forces, max(layout.samples_per_frame, 1))
