@@ -83,7 +83,7 @@ def _peak_times(time: NDArray[np.float64], x: NDArray[np.float64], prominence: f
 def _of_each_step(
     time: NDArray[np.float64], swung: NDArray[np.float64], direction: Direction, times: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Peaks again, each along the one direction of its own step: a line that turns moves the peak of what lies beside it."""
+    """Peaks again, each along one direction: a line that turns moves the peak of a heel that lies beside it."""
     if direction.headings is None:
         return times
     step = (time[-1] - time[0]) / (len(time) - 1)

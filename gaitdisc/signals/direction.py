@@ -112,12 +112,19 @@ def walking_direction(markers: Recording, heels: Mapping[str, str], pelvis: Sequ
     Raises
     ------
     StrideError
-        If on a treadmill forwards cannot be told from backwards (skewness of the velocity below 0.2).
+        If on a treadmill forwards cannot be told from backwards (skewness of the velocity below 0.2), or no frame has
+        a heel and the pelvis.
     ChannelError
         If a marker is not there.
     """
     centre = pelvis_position(markers, pelvis)
     swings = [marker_position(markers, name) - centre for name in heels.values()]
+    if not np.isfinite(np.concatenate(swings)).all(axis=1).any():
+        raise StrideError(
+            "the direction of walking needs a frame with a heel and the pelvis",
+            f"{markers.source.file or 'the recording'}: none has {', '.join(heels.values())} and {', '.join(pelvis)}",
+            "Fill the markers, or choose another detector in [strides].",
+        )
     up_axis = int(np.argmax(np.abs(np.nanmean(np.concatenate(swings), axis=0))))
     up = np.zeros(3)
     up[up_axis] = 1.0

@@ -54,8 +54,8 @@ def test_a_turn_loses_no_contact_and_moves_none(turn_deg):
     assert np.abs(found.time - CONTACTS).max() < 0.02
 
 
-def test_real_turns_against_the_events_of_their_files(gait_data, real):
-    """Each of five turns of 86 to 96 deg: with one direction a trial, a stride of 1.5 s where the file has 0.9 and 1.0."""
+def test_real_turns_against_the_events_of_their_files(gait_data):
+    """Five turns of 86 to 96 deg: one direction a trial made a stride of 1.5 s where the file has 0.9 and 1.0."""
     apart = []
     for file in sorted((gait_data / "young_straight_and_turn").glob("*/turn/*.c3d")):
         trial = read_trial(file)

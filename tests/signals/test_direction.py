@@ -68,6 +68,14 @@ def test_the_direction_is_held_where_the_person_stands():
     assert found.headings[-1] @ [1, 0, 0] > 0.999
 
 
+def test_markers_that_are_never_there_are_named():
+    walk = walker((1, 0, 0))
+    values = walk.values.copy()
+    values[:, walk.index("SACR.x")] = np.nan
+    with pytest.raises(StrideError, match=r"a frame with a heel and the pelvis; .*none has RHEE, LHEE and SACR\. Fill"):
+        walking_direction(walk.with_values(values), HEELS, PELVIS)
+
+
 def test_the_vertical_need_not_be_z():
     found = walking_direction(walker((1, 0, 0), (0, 1, 0)), HEELS, PELVIS)
     assert found.up.tolist() == [0, 1, 0]
