@@ -13,6 +13,7 @@ from gaitdisc.signals.butterworth import (
     needed_samples,
     short_run_findings,
 )
+from gaitdisc.signals.gaps import filled
 
 KNEE = Channel("knee_angle_r", "angle", "deg", "r")
 
@@ -96,3 +97,20 @@ def test_a_recording_too_short_is_refused():
 def test_a_cutoff_outside_of_the_band_is_refused(cutoff):
     with pytest.raises(SamplingError, match=r"between 0 Hz and half the rate, 50 Hz; .* walk\.mot has 100 samples"):
         lowpassed(recording(np.zeros(500)), cutoff)
+
+
+def test_a_heading_that_passes_180_deg_is_filtered_as_it_goes_on():
+    """Filtered as numbers, the leap of 360 deg rings: samples of 201 and 36 deg that nobody measured."""
+    t = np.arange(600) / 100
+    true = 170 + 8 * t + 4 * np.sin(2 * np.pi * t)
+    raw = np.stack([(true + 180) % 360 - 180, (true + 180) % 360 - 180], axis=1)
+    raw[260:265] = np.nan
+    channels = (Channel("pelvis_rotation", "angle", "deg"), Channel("RFootProgressAngles.z", "angle", "deg", "r"))
+    smooth = lowpassed(Recording(t, raw, channels))
+    plain = lowpassed(Recording(t, np.stack([true, true], axis=1), channels))
+    apart = (smooth.values - plain.values + 180) % 360 - 180
+    assert np.abs(apart[40:-40]).max() < 0.2
+    assert np.abs(smooth.values).max() <= 180
+    assert (
+        np.abs((filled(Recording(t, raw, channels)).values[260:265, 0] - true[260:265] + 180) % 360 - 180).max() < 0.1
+    )
