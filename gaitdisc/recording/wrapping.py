@@ -16,7 +16,7 @@ from gaitdisc.channel import Channel
 from gaitdisc.recording.recording import Recording
 
 HEADINGS = re.compile(
-    r"^(pelvis_rotation|\w*(pelvis|thorax|trunk|head|foot_?progress(ion)?)_?angles?(_[rl])?(\.[xyz])?|pelang(\.[xyz])?"
+    r"^(pelvis_rotation|\w*(pelvis|thorax|trunk|head|foot_?progress(ion)?)_?angles?(_[rl])?(\.[xyz])?"
     r"|(\w*_)?(heading|yaw)(_\w+)?)$",
     re.IGNORECASE,
 )

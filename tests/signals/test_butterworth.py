@@ -5,6 +5,7 @@ import pytest
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError
+from gaitdisc.ingest.reading import read_trial
 from gaitdisc.recording import Recording, Source
 from gaitdisc.signals.butterworth import (
     effective_cutoff_hz,
@@ -114,3 +115,12 @@ def test_a_heading_that_passes_180_deg_is_filtered_as_it_goes_on():
     assert (
         np.abs((filled(Recording(t, raw, channels)).values[260:265, 0] - true[260:265] + 180) % 360 - 180).max() < 0.1
     )
+
+
+def test_a_real_turn_in_a_laboratory_turned_by_120_deg(gait_data):
+    """The pelvis turns from 0 to 94 deg; turned by 120 deg the same walk passes 180 deg."""
+    file = gait_data / "young_straight_and_turn" / "HC030A" / "turn" / "HC030A22.c3d"
+    pelvis = read_trial(file).stream("kinematics").selected(["LPelvisAngles.z"])
+    turned = pelvis.with_values((pelvis.values + 120 + 180) % 360 - 180)
+    there = (lowpassed(turned).values - 120 - lowpassed(pelvis).values + 180) % 360 - 180
+    assert np.nanmax(np.abs(there)) < 1e-6
