@@ -10,7 +10,20 @@ ridge, told`, its rival: the same values and marks as columns. RMSE over the ang
 
 from __future__ import annotations
 
-import argparse
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
+from command_line import argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument("walks", "which walks", choices=("treadmill", "cohort")),
+    argument("--people", "the first so many of the cohort", 4),
+    argument("--seed", "of what goes missing and of the fits", 0),
+)  # before the slow imports
+
 import os
 from collections.abc import Callable
 from dataclasses import replace
@@ -35,13 +48,8 @@ Told = Callable[[Samples], NDArray[np.float64]]
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("walks", choices=("treadmill", "cohort"))
-    parser.add_argument("--people", type=int, default=4)
-    parser.add_argument("--seed", type=int, default=0)
-    given = parser.parse_args()
-    people = chosen_walks(given.walks, given.people)
-    found = np.array([curves(person, given.seed) for person in people])  # (person, run, share, model)
+    people = chosen_walks(GIVEN.walks, GIVEN.people)
+    found = np.array([curves(person, GIVEN.seed) for person in people])  # (person, run, share, model)
     names = [*(f"{kind}, {way}" for kind, way in FILLED), "fourier ridge, told", MASKED]
     for run, table in zip(RUNS_S, np.sqrt(np.mean(found, axis=0)), strict=True):
         print(f"{len(people)} people; drop-outs of {run:g} s; RMSE [deg] at {', '.join(f'{s:.0%}' for s in SHARES)}")

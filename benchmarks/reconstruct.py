@@ -20,7 +20,20 @@ after the other, and one fold of the population, of the kinds that are closed fo
 
 from __future__ import annotations
 
-import argparse
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
+from command_line import argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument("--cap-s", "the original stops after so much processor time [s]", 200.0),
+    argument("--seed", "of the fits", 0),
+    argument("--pyshred", "the Python of an environment that has the packaged pyshred", type=Path),
+)  # before the slow imports
+
 import copy
 import json
 import os
@@ -29,7 +42,6 @@ import tempfile
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
@@ -78,18 +90,13 @@ class OriginalShred(nn.Module):
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--cap-s", type=float, default=200.0)
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--pyshred", type=Path)
-    given = parser.parse_args()
     with pinned_threads(1):
         dense, sparse = (cohort_walks(1, lags=lags)[0] for lags in (EVERY_SAMPLE, Lags(25, 4)))
-        watched = original(dense.parts(), dense.angles, given.cap_s, given.seed)
-        ours(sparse.parts(), sparse, watched, given.seed)
-        if given.pyshred:
-            packaged(dense, given.pyshred)
-        several(given.seed)
+        watched = original(dense.parts(), dense.angles, GIVEN.cap_s, GIVEN.seed)
+        ours(sparse.parts(), sparse, watched, GIVEN.seed)
+        if GIVEN.pyshred:
+            packaged(dense, GIVEN.pyshred)
+        several(GIVEN.seed)
 
 
 def rmse(told: NDArray[np.float64], samples: Samples, angles: Sequence[int]) -> float:

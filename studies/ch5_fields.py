@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+
+from command_line import SHARED
 
 from gaitdisc.ingest.monthly_fields import read_navy_winds, read_sst_pacific
 from gaitdisc.ingest.sea_surface import read_oisst, read_sst_mat
@@ -22,7 +23,7 @@ from gaitdisc.sensing.routes import Route, fixed_at_random, random_walk
 from gaitdisc.sensing.unseen_path import unseen_path
 from gaitdisc.sensing.windows import Lags
 
-FIELDS = Path(os.environ.get("GAITDISC_DATA", Path(__file__).parents[2] / "shared" / "data")) / "fields"
+FIELDS = SHARED / "fields"
 WALKS = 12  # fitted, before one that never was
 
 

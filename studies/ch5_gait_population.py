@@ -9,8 +9,22 @@ people in the same task here: of the two runners one is told in each condition b
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
+
+from command_line import QUICK, SHARED, argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument(
+        "folder",
+        "where recordings, results and the pages go; what is there is not computed again",
+        Path("ch5_population"),
+    ),
+    argument("data", "folder of the real gait recordings", SHARED / "gait"),
+    QUICK,
+    argument("--without-networks", "ridge regressions alone", False),
+)  # before the slow imports
 
 import pandas as pd
 from ch5_gait import DATA, NOTHING_PRINTED, PELVIS, SENSORS, Result, cell, cohort, exotendon, first_person, printed
@@ -88,8 +102,7 @@ def across(data: Path, kinds: tuple[str, ...], folder: Path) -> Block:
 
 
 if __name__ == "__main__":
-    words = [word for word in sys.argv[1:] if not word.startswith("--")]
-    places = dict(zip(("folder", "data"), map(Path, words[:2]), strict=False))
-    result = run("--quick" in sys.argv, kinds=WITHOUT if "--without-networks" in sys.argv else tuple(KINDS), **places)
+    kinds = WITHOUT if GIVEN.without_networks else tuple(KINDS)
+    result = run(GIVEN.quick, GIVEN.folder, GIVEN.data, kinds)
     print(result.table.groupby(["data", "sensors", "model"], sort=False)[["rmse_deg", "relative_l2_whole"]].mean())
     print(result.page)

@@ -10,8 +10,12 @@ quarter of them, and all of the second file, are never fitted: in each only the 
 
 from __future__ import annotations
 
-import os
-import sys
+from command_line import QUICK, SHARED, argument, command_line
+
+GIVEN = command_line(
+    __name__, __doc__, argument("data", "folder that holds DATA_EMPS.mat", SHARED / "hidden_effect" / "emps"), QUICK
+)  # before the slow imports
+
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -102,9 +106,7 @@ def rms(runs: Trial) -> float:
 
 
 if __name__ == "__main__":
-    words = [word for word in sys.argv[1:] if word != "--quick"]
-    shared = Path(os.environ.get("GAITDISC_DATA", Path(__file__).parents[2] / "shared" / "data")) / "hidden_effect"
-    found = run("--quick" in sys.argv, Path(words[0]) if words else shared / "emps")
+    found = run(GIVEN.quick, GIVEN.data)
     off = 100 * (found.friction_n / PUBLISHED_N - 1)
     print(f"named first: {found.named} at {found.place}, {found.friction_n:.2f} N ({off:+.1f} % of {PUBLISHED_N:g} N)")
     for name, (before, after) in found.left_mm.items():
