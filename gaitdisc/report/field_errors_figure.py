@@ -1,4 +1,4 @@
-"""Errors of told fields: histograms by route, a box for each kind of sensor, and error against the latent size."""
+"""Errors of reconstructed fields: histograms by route, a box for each kind of sensor, and error against the latent size."""
 
 from __future__ import annotations
 
@@ -52,12 +52,12 @@ def histograms_figure(cells: Sequence[FieldCell], name: str, source: str) -> Fig
         axes.set_title(split)
         axes.set_yscale("log")
         axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
-        axes.set_xlabel(f"told − measured [{cells[0].unit}]")
+        axes.set_xlabel(f"reconstructed − measured [{cells[0].unit}]")
     row[0].set_ylabel(f"density [1/{cells[0].unit}]" if cells[0].unit != "1" else "density")
     handles = lines_of(dict(zip(routes, ROUTE_LOOKS, strict=False)))
     drawn.legend(handles=handles, loc="upper center", ncols=min(3, len(routes)), bbox_to_anchor=(0.5, 1.0))
     caption = (
-        f"{source}. {cells[0].field}, {cells[0].quantity}, {cells[0].model}: errors at all points of all judged "
+        f"{source}. {cells[0].field}, {cells[0].quantity}, {cells[0].model}: errors at all points of all test "
         f"snapshots, n = {cells[0].judged} at most; the outermost bins hold what lies beyond."
     )
     return Figure(name, caption, f"Histograms of errors of {len(routes)} routes", pd.concat(numbers), drawn)

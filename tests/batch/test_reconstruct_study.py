@@ -37,7 +37,7 @@ def test_a_gpu_that_is_not_there_is_refused_before_anything_is_fitted(study):
 
 
 def test_a_population_needs_three_people(study):
-    with pytest.raises(SamplingError, match="needs at least three people: to fit, to check, and to judge; there are 2"):
+    with pytest.raises(SamplingError, match="needs at least three people: to fit, to check, and to test; there are 2"):
         reconstruct_study(study, ("knee_angle_r",), ReconstructionSettings(split="subject", kinds=KINDS))
 
 
