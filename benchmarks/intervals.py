@@ -1,4 +1,4 @@
-"""Share of judged states inside the 90 % interval: temporal split, and one person left out.
+"""Share of test states inside the 90 % interval: temporal split, and one person left out.
 
     python benchmarks/intervals.py treadmill|cohort [--people 12] [--split temporal|subject] [--kinds "delay ridge,..."]
 

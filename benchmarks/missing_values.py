@@ -2,7 +2,7 @@
 
     python benchmarks/missing_values.py treadmill|cohort [--people 4] [--seed 0]
 
-Readings of each sensor go missing by themselves, one by one or in drop-outs of 0.2 s on average, in the judged part
+Readings of each sensor go missing by themselves, one by one or in drop-outs of 0.2 s on average, in the test part
 (temporal split). Ridge regression and SHRED read the training mean or the last known value in their place. `masked
 shred` is told which are missing, and was fitted to windows of which every second had lost up to 60 %; so was `fourier
 ridge, told`, its rival: the same values and marks as columns. RMSE over the angles that no sensor measures [deg].

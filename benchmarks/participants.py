@@ -3,7 +3,7 @@
     python benchmarks/participants.py [--people 12 50 200] [--seconds 16]
 
 One person of the driven walker is recorded in both conditions (ten angles at 100 Hz, forces at 1000 Hz) and copied to
-as many pseudonyms as are asked for, for people that differ would cost the same; walks are short so that 200 are
+as many pseudonyms as are wanted, for people that differ would cost the same; walks are short so that 200 are
 affordable. Each study is run in a fresh process, one participant after the other, one thread; then the run is taken up
 again, with everything computed, and then its report is written. Memory is the peak of that process so far.
 

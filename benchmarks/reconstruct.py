@@ -7,8 +7,8 @@ with a gap.
 
 The original, written here as its published code does it: every sample of 1 s of history (100 readings), LSTM 2 x 64,
 decoder 350-400, no dropout, sensors and states scaled to [0, 1] by the training part, DataLoader of batch 64, shuffled,
-Adam at 1e-3, judged on the check part every 20 epochs, weights of the best kept, stopped after five checks without
-gain: no sooner than after 120 epochs, which is why --cap-s ends it. Its error on the judged part is watched every
+Adam at 1e-3, scored on the check part every 20 epochs, weights of the best kept, stopped after five checks without
+gain: no sooner than after 120 epochs, which is why --cap-s ends it. Its error on the test part is watched every
 `WATCH` epochs, and the watching is left out of its time.
 
 Ours: `fit_reconstructor` with its defaults, 25 readings over the same second; then all twelve people of the cohort one

@@ -4,7 +4,7 @@
 
 Cohort: nominal walks of 60 s, hip, knee and ankle angle of the right leg, 1 s of history. The real walk
 (treadmill_c3d_emg: markers, 16 EMG electrodes without muscle names, two belts): height and fore-aft place of both heels
-and toes, 0.24 s of history, since its checked and judged parts last 0.9 s and 1.7 s before the gaps are taken off.
+and toes, 0.24 s of history, since its checked and test parts last 0.9 s and 1.7 s before the gaps are taken off.
 """
 
 from __future__ import annotations

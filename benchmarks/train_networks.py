@@ -3,7 +3,7 @@
     python benchmarks/train_networks.py [--people 12] [--processes 2] [--only ours|loop] [--seed 0] [--arithmetic auto]
 
 The study: twelve people, ten lengths of the training part (1 s to all of 210 s at 100 Hz), three networks each
-(Nominal, Exo, Discrepancy): 360 networks of 49 inputs, 64 and 64 nodes, 8 outputs, judged on 30 s held out.
+(Nominal, Exo, Discrepancy): 360 networks of 49 inputs, 64 and 64 nodes, 8 outputs, tested on 30 s held out.
 
 The loop: PyTorch, DataLoader, batch 64, Adam at 1e-3, 30 epochs, one network after the other, one thread (two are
 slower). It takes a quarter of an hour, so every person and length is recorded as it is done in
@@ -12,7 +12,7 @@ a run that was stopped goes on. Further seeds of the loop tell how far it differ
 
 Ours: `fit_models` with its defaults, decays and penalties chosen on inner blocks, in processes of one thread. Before
 and after each length our side multiplies matrices of 1024 x 1024 in float32, so that its share of the machine's rate
-is one of what neighbours left at that time. Starting processes is told apart: it is paid once.
+is one of what neighbours left at that time. Starting processes is distinguished: it is paid once.
 """
 
 from __future__ import annotations

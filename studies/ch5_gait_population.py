@@ -4,7 +4,7 @@
 
 The embedded cohort, each of its twelve people told by models of ten others (the next in the list is who the models are
 chosen by), and then corrected by ten strides of which the states are known. There are no real recordings of three
-people in the same task here: of the two runners one is told in each condition by what was learnt in the other.
+people in the same task here: of the two runners one is told in each condition by what was learned in the other.
 """
 
 from __future__ import annotations
