@@ -1,4 +1,4 @@
-"""SHRED from five seeds: error of one and of their mean, coverage, and whether their spread tells where the error is.
+"""SHRED from five seeds: error of one and of their mean, coverage, and whether their spread shows where the error is.
 
     python benchmarks/ensemble.py treadmill|cohort [--people 3]
 

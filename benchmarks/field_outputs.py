@@ -59,7 +59,9 @@ def main() -> None:
         return
     for network in LAGS:
         write_parts(GIVEN.folder, network, GIVEN.energy)
-    print("| network | targets | outputs | weights | s an epoch | peak beyond libraries [MB] | relative L2, judged |")
+    print(
+        "| network | targets | outputs | weights | s an epoch | peak beyond libraries [MB] | relative L2, test part |"
+    )
     print("|---|---|---|---|---|---|---|")
     found = {}
     for network in LAGS:
@@ -95,7 +97,7 @@ def write_parts(folder: Path, network: str, energy: float) -> None:
 
 
 def trained(folder: Path, network: str, targets: str, epochs: int) -> dict[str, float]:
-    """Train on one kind of targets and judge in the field."""
+    """Train on one kind of targets and test in the field."""
     import torch
 
     from gaitdisc.networks.schedule import schedule_of

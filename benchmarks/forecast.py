@@ -1,4 +1,4 @@
-"""Error of the states told some time ahead, against that time; persistence and the mean stride beside it.
+"""Error of the states forecast some time ahead, against that time; persistence and the mean stride beside it.
 
     python benchmarks/forecast.py treadmill|cohort [--people 4] [--networks]
 

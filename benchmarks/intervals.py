@@ -2,8 +2,8 @@
 
     python benchmarks/intervals.py treadmill|cohort [--people 12] [--split temporal|subject] [--kinds "delay ridge,..."]
 
-Mean over all told states and people, and the least and largest of the people; `plain` is the split conformal quantile
-that takes every window for an independent one, and for a person left out the checked person alone.
+Mean over all reconstructed states and people, and the least and largest of the people; `plain` is the split conformal
+quantile that takes every window for an independent one, and for a person left out the checked person alone.
 """
 
 from __future__ import annotations

@@ -4,8 +4,8 @@
 
 Readings of each sensor go missing by themselves, one by one or in drop-outs of 0.2 s on average, in the test part
 (temporal split). Ridge regression and SHRED read the training mean or the last known value in their place. `masked
-shred` is told which are missing, and was fitted to windows of which every second had lost up to 60 %; so was `fourier
-ridge, told`, its rival: the same values and marks as columns. RMSE over the angles that no sensor measures [deg].
+shred` is given which are missing, and was fitted to windows of which every second had lost up to 60 %; so was `fourier
+ridge, marks given`, its rival: the same values and marks as columns. RMSE [deg] over angles that no sensor measures.
 """
 
 from __future__ import annotations
@@ -50,11 +50,11 @@ Told = Callable[[Samples], NDArray[np.float64]]
 def main() -> None:
     people = chosen_walks(GIVEN.walks, GIVEN.people)
     found = np.array([curves(person, GIVEN.seed) for person in people])  # (person, run, share, model)
-    names = [*(f"{kind}, {way}" for kind, way in FILLED), "fourier ridge, told", MASKED]
+    names = [*(f"{kind}, {way}" for kind, way in FILLED), "fourier ridge, marks given", MASKED]
     for run, table in zip(RUNS_S, np.sqrt(np.mean(found, axis=0)), strict=True):
         print(f"{len(people)} people; drop-outs of {run:g} s; RMSE [deg] at {', '.join(f'{s:.0%}' for s in SHARES)}")
         for name, row in zip(names, table.T, strict=True):
-            print(f"  {name:<22}" + "".join(f"{value:8.2f}" for value in row))
+            print(f"  {name:<27}" + "".join(f"{value:8.2f}" for value in row))
 
 
 def curves(person: Person, seed: int) -> NDArray[np.float64]:
@@ -94,7 +94,7 @@ def parts(
 
 
 def with_marks(samples: Samples, means: NDArray[np.float64]) -> Samples:
-    """Values, or means where they are missing, and marks of that: inputs of a rival that is told, too."""
+    """Values, or means where they are missing, and marks of that: inputs of a rival that is given them, too."""
     lost = np.isnan(samples.x)
     x = np.hstack([np.where(lost, means, samples.x), lost])
     return replace(samples, x=x, inputs=(*samples.inputs, *(f"{name} missing" for name in samples.inputs)))

@@ -2,7 +2,7 @@
 
     python benchmarks/reconstruct.py [--cap-s 200] [--seed 0] [--pyshred PYTHON]
 
-Hip, knee and ankle of one leg tell the other seven angles of W01 of the embedded cohort, 60 s, temporal split 70/10/20
+Hip, knee and ankle of one leg give the other seven angles of W01 of the embedded cohort, 60 s, temporal split 70/10/20
 with a gap.
 
 The original, written here as its published code does it: every sample of 1 s of history (100 readings), LSTM 2 x 64,

@@ -4,7 +4,7 @@
 
 Real walks (treadmill_walk_ik, three sensors, 15 states, 25 readings 0.04 s apart).
 Calls are timed one by one, on one thread; beside them stands the largest difference between what is streamed and what
-is told over the recording, in standard deviations of the state (torch computes the networks in float32).
+is computed over the recording, in standard deviations of the state (torch computes the networks in float32).
 """
 
 from __future__ import annotations

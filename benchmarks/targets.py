@@ -1,4 +1,4 @@
-"""Muscles and ground forces told from movement: on the embedded cohort, and on one real walk of 8.7 s.
+"""Muscles and ground forces reconstructed from movement: on the embedded cohort, and on one real walk of 8.7 s.
 
     python benchmarks/targets.py [--people 12] [--networks]
 

@@ -8,11 +8,11 @@ The study: twelve people, ten lengths of the training part (1 s to all of 210 s 
 The loop: PyTorch, DataLoader, batch 64, Adam at 1e-3, 30 epochs, one network after the other, one thread (two are
 slower). It takes a quarter of an hour, so every person and length is recorded as it is done in
 `train_networks_loop.jsonl`, with the hash of its samples and of its own code, and is not run again while these hold;
-a run that was stopped goes on. Further seeds of the loop tell how far it differs from itself.
+a run that was stopped goes on. Further seeds of the loop show how far it differs from itself.
 
 Ours: `fit_models` with its defaults, decays and penalties chosen on inner blocks, in processes of one thread. Before
 and after each length our side multiplies matrices of 1024 x 1024 in float32, so that its share of the machine's rate
-is one of what neighbours left at that time. Starting processes is distinguished: it is paid once.
+is one of what neighbours left at that time. Starting processes is counted apart: it is paid once.
 """
 
 from __future__ import annotations

@@ -2,9 +2,10 @@
 
     python studies/ch5_gait_population.py [FOLDER] [DATA] [--quick] [--without-networks]
 
-The embedded cohort, each of its twelve people told by models of ten others (the next in the list is who the models are
-chosen by), and then corrected by ten strides of which the states are known. There are no real recordings of three
-people in the same task here: of the two runners one is told in each condition by what was learned in the other.
+The embedded cohort, each of its twelve people reconstructed by models of ten others (the next in the
+list is who the models are chosen by), and then corrected by ten strides of which the states are known. There are no
+real recordings of three people in the same task here: of the two runners one is reconstructed in each condition by what
+was learned in the other.
 """
 
 from __future__ import annotations
@@ -89,14 +90,14 @@ def calibration_sentences(table: pd.DataFrame) -> list[str]:
 
 
 def across(data: Path, kinds: tuple[str, ...], folder: Path) -> Block:
-    """One runner, without and with the device, each told by models of the other condition."""
+    """One runner, without and with the device, each reconstructed by models of the other condition."""
     one = first_person(exotendon(data))
     found = []
     for word in ("natural", "exotendon"):
         settings = ReconstructionSettings(split=CONDITION, condition=word, kinds=kinds)
         for sensors in SENSORS:
             place = folder / "exotendon_run" / word / sensors.replace(" ", "_")
-            found.append(cell(one, sensors, settings, place)["summary"].assign(data=f"exotendon_run, {word} judged"))
+            found.append(cell(one, sensors, settings, place)["summary"].assign(data=f"exotendon_run, {word} tested"))
     table = sensor_sets_table(pd.concat(found), NOTHING_PRINTED, "conditions", "fitted to the other condition")
     return Block("conditions", "Another condition", (), tables=(table,))
 

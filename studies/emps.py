@@ -49,7 +49,7 @@ class Result:
     left_mm : dict of str to tuple
         Free-run error before and after, of the held-out stretches and of the pulses [mm].
     whole : Discovery or None
-        What the whole inquiry says, with everything else that it finds; not asked for in a quick run.
+        What the whole search says, with everything else that it finds; left out of a quick run.
     """
 
     named: str
@@ -60,7 +60,7 @@ class Result:
 
 
 def run(quick: bool, data: Path) -> Result:
-    """Search the first record; judge on its end, and on the pulses where they are there."""
+    """Search the first record; test on its end, and on the pulses where they are there."""
     simulation = read_simulation(MODEL)
     measured = stretches(data / "DATA_EMPS.mat", simulation)
     inquiry = begin_inquiry(simulation, measured)

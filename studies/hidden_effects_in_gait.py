@@ -74,14 +74,14 @@ class Result:
 
 
 def run(quick: bool) -> Result:
-    """Hide each effect in each person's walk, and ask what is missing."""
+    """Hide each effect in each person's walk, and search for what is missing."""
     people = the_twelve()[:1] if quick else the_twelve()
     hidden = tuple(RIGHT)[1:2] if quick else tuple(RIGHT)
     return Result(pd.DataFrame([found_in(person, effect) for person in people for effect in hidden]))
 
 
 def found_in(person: Person, hidden: str) -> dict[str, object]:
-    """One walk, one inquiry: what it says beside what is true."""
+    """One walk, one search: what it says beside what is true."""
     size = {"spring": 1.0, "scaled moment": SCALED}.get(hidden, 0.0)
     spring = Spring(STIFFNESS * size) if size else None
     strength, added = WEAK if hidden == "weak plantarflexor" else 1.0, ADDED_KG if hidden == "foot mass" else 0.0
