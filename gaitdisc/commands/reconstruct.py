@@ -39,7 +39,8 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     ahead: Annotated[float, typer.Option(min=0.0, help="Forecast the states so many seconds ahead.")] = 0.0,
     kinds: Annotated[str, typer.Option(help='As in "delay ridge,masked shred"; by default five kinds of model.')] = "",
     model: Annotated[
-        Path | None, typer.Option(help="Folder of a model that this command saved: reconstruct the states of a recording.")
+        Path | None,
+        typer.Option(help="Folder of a model that this command saved: reconstruct the states of a recording."),
     ] = None,
     calibrate: Annotated[
         Path | None, typer.Option(help="With --model: a walk of the same person with all states, to correct it by.")
@@ -53,7 +54,7 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     out: Annotated[Path | None, typer.Option(help="Folder of the report; by default STUDY/reconstruct.")] = None,
     quiet: Quiet = False,
 ) -> None:
-    """Reconstruct all states from a few sensors, by SHRED and by what it has to beat, tested on walking it never saw."""
+    """Reconstruct all states from a few sensors, by SHRED and by what it has to beat; tested on unseen walking."""
     from gaitdisc.batch.reconstruct_study import ReconstructionSettings, reconstruct_study
     from gaitdisc.batch.search_study import search_study
     from gaitdisc.ingest.study_file import load_study
@@ -106,7 +107,10 @@ def _refuse_others(context: typer.Context, model: Path | None) -> None:
     if given:
         words = " and ".join(f"--{name}" for name in given)
         told = ("a saved model reads a recording as it was fitted", "Leave them out, or leave --model out.")
-        fitted = ("these correct what a saved model reconstructs of a recording", "Name the model's folder with --model.")
+        fitted = (
+            "these correct what a saved model reconstructs of a recording",
+            "Name the model's folder with --model.",
+        )
         needed, remedy = told if model is not None else fitted
         raise SchemaError(needed, f"{words} {'with' if model is not None else 'without'} --model", remedy)
 

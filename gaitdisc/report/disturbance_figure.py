@@ -45,8 +45,8 @@ def disturbance_figure(found: pd.DataFrame, whose: str, name: str) -> Figure:
     caption = (
         f"{whose}: RMSE of the angles that no sensor measures, temporal split. Left: white noise on the sensors, in "
         f"the fitted and the test part alike. Right: readings lost one by one in the test part; models were "
-        f"fitted to walks that lack none, the last known reading stands for a lost one, and masked shred is given which "
-        f"are lost."
+        f"fitted to walks that lack none, the last known reading stands for a lost one, and masked shred is "
+        f"given which are lost."
     )
     return Figure(name, caption, f"Error of {listed(models)} against noise and missing readings.", found, drawn)
 

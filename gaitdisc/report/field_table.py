@@ -98,8 +98,8 @@ def medians_table(cells: Sequence[FieldCell], name: str) -> Table:
     first = cells[0]
     caption = (
         f"{first.field}, {first.quantity} [{first.unit}]: medians over runs; relative L2 error about zero with its "
-        "range, R2 about the training part's mean, mean and standard deviation of reconstructed minus measured, processor time "
-        "of a fit."
+        "range, R2 about the training part's mean, mean and standard deviation of reconstructed minus measured, "
+        "processor time of a fit."
     )
     columns = ("split", "model", "sensor", "n", "relative L2", "range", "R2", "bias", "sd", "fit [s]")
     return Table(name, caption, columns, tuple(rows), field_cells_table(cells))

@@ -66,9 +66,8 @@ def _figure(done: Reconstruction, participant: str, numbers: pd.DataFrame, name:
         f"{counted(strides, 'stride')}. Band: measured, mean ± standard deviation; lines: mean of what each model "
         f"estimates from {counted(len(done.sensors), 'sensor')}. Split: {done.split}."
     )
-    alt = (
-        f"{counted(len(states), 'state')} of {participant} over the stride, measured, and reconstructed by {', '.join(models)}."
-    )
+    by = ", ".join(models)
+    alt = f"{counted(len(states), 'state')} of {participant} over the stride, measured, and reconstructed by {by}."
     return Figure(f"reconstruction-{name}", caption, alt, numbers, drawn)
 
 
