@@ -105,13 +105,20 @@ def rms(runs: Trial) -> float:
     return float(np.sqrt(np.mean(runs.fit.residual**2)))
 
 
-if __name__ == "__main__":
-    found = run(GIVEN.quick, GIVEN.data)
+def lines(found: Result) -> list[str]:
+    """What is printed."""
     off = 100 * (found.friction_n / PUBLISHED_N - 1)
-    print(f"named first: {found.named} at {found.place}, {found.friction_n:.2f} N ({off:+.1f} % of {PUBLISHED_N:g} N)")
+    said = [
+        f"named first: {found.named} at {found.place}, {found.friction_n:.2f} N ({off:+.1f} % of {PUBLISHED_N:g} N)"
+    ]
     for name, (before, after) in found.left_mm.items():
-        print(f"{name}: free-run error {before:.3f} mm -> {after:.3f} mm ({100 * (1 - after / before):.1f} % less)")
+        less = 100 * (1 - after / before)
+        said.append(f"{name}: free-run error {before:.3f} mm -> {after:.3f} mm ({less:.1f} % less)")
     if found.whole:
-        print(found.whole.sentence)
-        for rival in found.whole.rivals:
-            print(f"  weighed too: {rival.name} at {rival.place}, criterion falls by {rival.bic:.0f}")
+        said.append(found.whole.sentence)
+        said += [f"  weighed too: {each.name} at {each.place}" for each in found.whole.rivals]
+    return said
+
+
+if __name__ == "__main__":
+    print(*lines(run(GIVEN.quick, GIVEN.data)), sep="\n")

@@ -5,7 +5,8 @@
 A block is opened by `<!-- printed by: COMMAND; COMMAND | FORM -->` and closed by `<!-- end -->`. The commands run in an
 empty folder, each once for all pages, and what the last one prints is brought into its FORM. DATA stands for the
 folder of real recordings; what needs it is skipped where it is absent. --check writes nothing and ends with 1 where
-words differ, or a number by more than one unit of its last printed digit; seconds and "times" are this machine's.
+words differ, or a number by more than one unit of its last printed digit. Numbers of the form `measured` (seconds, and
+what follows a chaotic path) are those of one machine, and only their words are compared.
 """
 
 from __future__ import annotations
@@ -28,13 +29,14 @@ import shlex
 import subprocess
 import sys
 import tempfile
+import textwrap
 from collections.abc import Callable
 from dataclasses import dataclass
 
 PROJECT = Path(__file__).parents[1]
 BLOCK = re.compile(r"(<!-- printed by: (.+?) \| (.+?) -->\n)(.*?)(\n<!-- end -->)", re.DOTALL)
 NUMBER = re.compile(r"(?<![\w.])[-−+]?\d[\d,]*(?:\.\d+)?(?:e[-+]?\d+)?|(?<![\w.])\.\d+")
-PLACEHOLDER = "#"
+PLACEHOLDER, WIDTH = "#", 150
 
 
 @dataclass(frozen=True)
@@ -79,13 +81,13 @@ def renewed(text: str, wanted: Callable[[Block], str | None]) -> str:
 
 def quoted(printed: str) -> str:
     """The first line as a quotation."""
-    return f"> {printed.strip().splitlines()[0]}"
+    return textwrap.fill(printed.strip().splitlines()[0], WIDTH, initial_indent="> ", subsequent_indent="> ")
 
 
 def first_two(printed: str) -> str:
     """The first two sentences of the first line, as a quotation."""
     sentences = re.split(r"(?<=\.) (?=[A-Z])", printed.strip().splitlines()[0])
-    return f"> {' '.join(sentences[:2])}{' …' if len(sentences) > 2 else ''}"
+    return quoted(" ".join(sentences[:2]) + (" …" if len(sentences) > 2 else ""))
 
 
 def scores(printed: str) -> str:
@@ -93,7 +95,7 @@ def scores(printed: str) -> str:
     lines = printed.splitlines()
     first = next((n for n, line in enumerate(lines) if line.lstrip().startswith("network")), 0)
     last = next((n for n in range(first, len(lines)) if not lines[n].strip()), len(lines))
-    return fenced("\n".join(line.rstrip() for line in lines[first:last]))
+    return fenced("\n".join(line.rstrip() for line in lines[first:last] if line.strip("─ ")))
 
 
 def fenced(printed: str) -> str:
@@ -112,6 +114,7 @@ FORMS: dict[str, Callable[[str], str]] = {
     "scores": scores,
     "code": fenced,
     "markdown": as_printed,
+    "measured": fenced,
 }
 
 
@@ -131,13 +134,26 @@ def run(commands: tuple[str, ...], folder: Path, done: dict[str, str]) -> str:
     return done[commands[-1]]
 
 
-def apart(written: str, printed: str) -> str:
-    """The first line that differs in words, or in a number by more than one unit of its last digit; empty if none."""
-    old, new = written.split("\n"), printed.split("\n")
+def difference(block: Block, printed: str) -> str:
+    """What a block has otherwise than it is printed; empty where words and numbers agree."""
+    return apart(block.written, printed, numbers=block.form != "measured")
+
+
+def apart(written: str, printed: str, numbers: bool = True) -> str:
+    """The first line that differs in words, or in a number by more than one unit of its last digit; empty if none.
+
+    Parameters
+    ----------
+    written, printed : str
+        What stands on the page; what the command prints.
+    numbers : bool
+        Whether numbers are compared.
+    """
+    old, new = (text.replace("\n> ", " ").split("\n") for text in (written, printed))  # a quotation is one line
     for one, other in zip(old, new, strict=False):
         if " ".join(NUMBER.sub(PLACEHOLDER, one).split()) != " ".join(NUMBER.sub(PLACEHOLDER, other).split()):
             return f"{one!r} is printed as {other!r}"
-        if "[s]" in one or "times" in one:
+        if not numbers:
             continue
         pairs = zip(NUMBER.findall(one), NUMBER.findall(other), strict=True)
         far = [pair for pair in pairs if abs(value(pair[0]) - value(pair[1])) > 1.001 * last_digit(pair[0])]
@@ -165,26 +181,29 @@ def answer(block: Block, folder: Path, done: dict[str, str]) -> str | None:
     return FORMS[block.form](run(block.commands, folder, done))
 
 
+def gone_through(page: Path, folder: Path, done: dict[str, str]) -> int:
+    """Run the commands of one page, say what differs, write it unless it is only compared; how many blocks differ."""
+
+    def wanted(block: Block) -> str | None:
+        chosen = any(GIVEN.only in command for command in block.commands)
+        return answer(block, folder, done) if chosen else None
+
+    text = page.read_text(encoding="utf-8")
+    new = renewed(text, wanted)
+    pairs = zip(blocks(text), blocks(new), strict=True)
+    different = [found for old, renewed_one in pairs if (found := difference(old, renewed_one.written))]
+    for found in different:
+        print(f"{page.name}: {found}")
+    if not GIVEN.check:
+        page.write_text(new, encoding="utf-8")
+    return len(different)
+
+
 def main() -> int:
     """Go through the pages."""
-    wrong = 0
+    done: dict[str, str] = {}
     with tempfile.TemporaryDirectory() as name:
-        done: dict[str, str] = {}
-        for page in GIVEN.pages or pages():
-            text = page.read_text(encoding="utf-8")
-
-            def wanted(block: Block) -> str | None:
-                chosen = any(GIVEN.only in command for command in block.commands)
-                return answer(block, Path(name), done) if chosen else None
-
-            new = renewed(text, wanted)
-            for old_block, new_block in zip(blocks(text), blocks(new), strict=True):
-                difference = apart(old_block.written, new_block.written)
-                wrong += bool(difference)
-                if difference:
-                    print(f"{page.name}: {'' if GIVEN.check else 'was: '}{difference}")
-            if not GIVEN.check:
-                page.write_text(new, encoding="utf-8")
+        wrong = sum(gone_through(page, Path(name), done) for page in GIVEN.pages or pages())
     return int(GIVEN.check and wrong > 0)
 
 
