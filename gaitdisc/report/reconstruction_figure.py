@@ -77,4 +77,4 @@ def _draw(axes: Axes, numbers: pd.DataFrame) -> None:
             low, high = rows["measured"] - rows["measured_sd"], rows["measured"] + rows["measured_sd"]
             axes.fill_between(rows["percent"], low, high, color=MEASURED.colour, alpha=0.2, linewidth=0)
         look = RECONSTRUCTED[str(model).removesuffix(", calibrated")]
-        axes.plot(rows["percent"], rows["told"], color=look.colour, linestyle=look.line, linewidth=1.1)
+        axes.plot(rows["percent"], rows["reconstructed"], color=look.colour, linestyle=look.line, linewidth=1.1)
