@@ -181,8 +181,8 @@ def _refuse_others(weights: ScaledModel, kind: str, what: Sensing, folder: Path)
     if weights.outputs != what.states or len(weights.inputs) != readings * len(what.sensors):
         raise SchemaError(
             f"{folder.name}/{WEIGHTS} is to be read with {folder.name}/{NAME}",
-            f"the weights read {len(weights.inputs)} numbers and tell {', '.join(weights.outputs[:3])}, the model has "
-            f"{readings * len(what.sensors)} and {', '.join(what.states[:3])}",
+            f"the weights read {len(weights.inputs)} numbers and estimate {', '.join(weights.outputs[:3])}, "
+            f"the model has {readings * len(what.sensors)} and {', '.join(what.states[:3])}",
             "Both files belong to one model: copy them together, or run `gaitdisc reconstruct` again.",
         )
 
