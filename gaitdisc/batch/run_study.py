@@ -17,6 +17,7 @@ from gaitdisc.response.over_participants import compare_participants
 from gaitdisc.results import DataQuantity, Provenance, ResponseRun
 from gaitdisc.results.provenance import made_now
 from gaitdisc.results.run_store import save_run
+from gaitdisc.results.unit_folder import damaged_units
 
 SECTION = "4.2, Eqs. 4.1-4.5"
 
@@ -30,7 +31,8 @@ def run_study(
     """Process every walk of a study and fit every participant's models.
 
     A participant whose files, settings and package version are those of an earlier run in the same folder is loaded,
-    not computed; so a run that was stopped goes on, and loses at most the participant it was at.
+    not computed; so a run that was stopped goes on, and loses at most the participant it was at. What was changed since
+    it was saved, in a table or in a JSON file, is not loaded but computed again, and said in `renewed`.
 
     Parameters
     ----------
@@ -56,6 +58,7 @@ def run_study(
         If the cluster cannot be reached.
     """
     with run_lock(folder):
+        renewed = damaged_units(folder)
         compute = partial(computed_unit, study, folder=folder.absolute())
         units = list(computed_units(workers or Workers(), compute, study.participants, told))
         responses = tuple(unit.response for unit in units if unit.response is not None)
@@ -71,6 +74,7 @@ def run_study(
             compare_models(responses),
             quantities,
             compare_participants(responses, quantities, study.models.seed),
+            renewed,
         )
         save_run(run, folder)
     return run

@@ -79,4 +79,5 @@ def _varied(run: ResponseRun, question: str, found: Sequence[Variants | Refusal]
         compare_modalities(people) if question == "modalities" else compare_settings(people),
         (*run.refusals, *(each for each in found if isinstance(each, Refusal))),
         (min(lengths), max(lengths)),
+        run.renewed,
     )

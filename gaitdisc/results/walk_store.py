@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.results.on_disk import Arrays
 from gaitdisc.results.unit_folder import load_unit, save_unit, stored_finding, with_words
-from gaitdisc.results.walk_summary import WalkSummary
+from gaitdisc.results.walk_summary import STRIDE_COLUMNS, WalkSummary
 
 
 def save_walk(walk: WalkSummary, folder: Path, key: str) -> None:
@@ -58,7 +58,7 @@ def load_walk(folder: Path) -> tuple[WalkSummary, str]:
     SchemaError
         If a file is missing, damaged or of another format.
     """
-    data, tables, arrays = load_unit(folder, "walk.json")
+    data, tables, arrays = load_unit(folder, "walk.json", {"strides.csv": STRIDE_COLUMNS})
     strides = with_words(tables["strides.csv"], "reason")
     walk = WalkSummary(
         data["subject"],
