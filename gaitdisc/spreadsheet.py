@@ -76,7 +76,7 @@ def write_csv(table: pd.DataFrame, path: Path, float_format: str | None = None) 
     safe = table.rename(columns=lambda name: quoted(str(name)))
     for place in range(len(table.columns)):
         if table.dtypes.iloc[place].kind not in _NUMBERS:
-            safe.isetitem(place, table.iloc[:, place].map(_safe))
+            safe.isetitem(place, table.iloc[:, place].map(_safe).to_numpy(object))
     words = [*map(str, safe.columns), *(cell for cell in safe.to_numpy(object).flat if isinstance(cell, str))]
     quoting = csv.QUOTE_NONNUMERIC if any(map(_OTHER_SEPARATORS.search, words)) else csv.QUOTE_MINIMAL
     with whole_file(path) as part:
@@ -96,7 +96,7 @@ def read_csv(path: Path) -> pd.DataFrame:
     table = pd.read_csv(path, engine="python", keep_default_na=False, na_values=[""])
     for place in range(len(table.columns)):
         if table.dtypes.iloc[place].kind not in _NUMBERS:
-            table.isetitem(place, table.iloc[:, place].map(_plain))
+            table.isetitem(place, table.iloc[:, place].map(_plain).to_numpy())
     return table.rename(columns=unquoted)
 
 

@@ -8,13 +8,14 @@ from functools import partial
 from pathlib import Path
 
 from gaitdisc.batch.participant_unit import ParticipantUnit, computed_unit, response_settings
+from gaitdisc.batch.public_words import public_settings, public_title
 from gaitdisc.batch.quantity_unit import stored_quantity
 from gaitdisc.batch.run_lock import run_lock
 from gaitdisc.batch.workers import Told, Workers, computed_units
 from gaitdisc.ingest.study import Study
 from gaitdisc.response.comparison import compare_models
 from gaitdisc.response.over_participants import compare_participants
-from gaitdisc.results import DataQuantity, Provenance, ResponseRun
+from gaitdisc.results import DataQuantity, Provenance, Refusal, ResponseRun
 from gaitdisc.results.provenance import made_now
 from gaitdisc.results.run_store import save_run
 from gaitdisc.results.unit_folder import damaged_units
@@ -60,11 +61,11 @@ def run_study(
     with run_lock(folder):
         renewed = damaged_units(folder)
         compute = partial(computed_unit, study, folder=folder.absolute())
-        units = list(computed_units(workers or Workers(), compute, study.participants, told))
+        units = list(computed_units(workers or Workers(), compute, study.participants, told, _lost))
         responses = tuple(unit.response for unit in units if unit.response is not None)
         quantities = _stored_quantities(study, units, folder)
         run = ResponseRun(
-            study.title or study.folder.name,
+            public_title(study),
             study.conditions.nominal,
             study.conditions.device,
             tuple(walk for unit in units for walk in unit.walks),
@@ -80,6 +81,10 @@ def run_study(
     return run
 
 
+def _lost(refusal: Refusal) -> ParticipantUnit:
+    return ParticipantUnit(refusals=(refusal,))
+
+
 def _stored_quantities(study: Study, units: Sequence[ParticipantUnit], folder: Path) -> tuple[DataQuantity, ...]:
     whole = [(unit.response.participant, unit.key) for unit in units if unit.response is not None]
     found = (stored_quantity(study.participant(name), folder, key) for name, key in whole)
@@ -88,5 +93,5 @@ def _stored_quantities(study: Study, units: Sequence[ParticipantUnit], folder: P
 
 def _provenance(study: Study, units: Sequence[ParticipantUnit]) -> Provenance:
     files = {name: sha for unit in units for walk in unit.walks for name, sha in walk.files.items()}
-    settings = {**study.model_dump(mode="json"), "fits": asdict(response_settings(study))}
+    settings = {**public_settings(study), "fits": asdict(response_settings(study))}
     return made_now(settings, study.models.seed, files, SECTION)

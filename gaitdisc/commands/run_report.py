@@ -134,7 +134,13 @@ def with_progress(work: Callable[[Told], Result], people: list[str]) -> Result:
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
     elapsed, left = TimeElapsedColumn(), TimeRemainingColumn()
-    columns = (TextColumn("{task.description}"), BarColumn(), elapsed, TextColumn("left"), left)
+    columns = (
+        TextColumn("{task.description}", markup=False),
+        BarColumn(),
+        elapsed,
+        TextColumn("left", markup=False),
+        left,
+    )
     shares = dict.fromkeys(people, 0.0)
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task("participants", total=len(shares))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import asdict
 from pathlib import Path
 
@@ -76,7 +77,7 @@ def load_walk(folder: Path) -> tuple[WalkSummary, str]:
 
 
 def unit_name(subject: str, condition: str) -> str:
-    """Folder name of a walk: letters, digits, `-` and `_` only.
+    """Folder name of a walk: letters, digits, `-` and `_` only, another one for every person and condition.
 
     Parameters
     ----------
@@ -85,11 +86,13 @@ def unit_name(subject: str, condition: str) -> str:
 
     Examples
     --------
-    >>> unit_name("P01", "no spring")
-    'P01-no_spring'
+    >>> unit_name("P01", "exo"), unit_name("P01", "no spring"), unit_name("P01", "no_spring")
+    ('P01-exo', 'P01-no_spring-5b9bbb7a', 'P01-no_spring')
     """
-    text = f"{subject}-{condition}"
-    return "".join(letter if letter.isalnum() or letter in "-_" else "_" for letter in text)
+    plain = "".join(letter if letter.isalnum() or letter == "_" else "_" for letter in condition)
+    if plain == condition:
+        return f"{subject}-{condition}"
+    return f"{subject}-{plain}-{hashlib.sha256(condition.encode()).hexdigest()[:8]}"
 
 
 def _curves(arrays: Arrays) -> NDArray[np.float64]:

@@ -9,6 +9,7 @@ import time
 import pandas as pd
 import pytest
 
+from gaitdisc.batch.participant_unit import computed_unit
 from gaitdisc.batch.run_study import run_study
 from gaitdisc.batch.workers import Workers
 from gaitdisc.ingest.study_file import write_study
@@ -84,6 +85,24 @@ def test_what_was_edited_is_never_printed_but_computed_again_and_said(run, study
         "walks/P01-nominal/walk.json: changed since it was saved (SHA-256 differs)",
     )
     assert run_study(study, copy).renewed == ()
+
+
+def killed_for_the_second(study, participant, folder, progress):
+    if participant.id == "P02":
+        os.kill(os.getpid(), signal.SIGKILL)
+    return computed_unit(study, participant, folder, progress)
+
+
+def test_a_participant_whose_process_is_killed_is_refused_and_the_others_stand(
+    run, study, finished, tmp_path, monkeypatch
+):
+    copy = shutil.copytree(finished, tmp_path / "copy")
+    monkeypatch.setattr("gaitdisc.batch.run_study.computed_unit", killed_for_the_second)
+    done = run_study(study, copy, Workers(jobs=2))
+    assert [response.participant for response in done.responses] == ["P01"]
+    [refusal] = done.refusals
+    assert refusal.participant == "P02" and "was killed 2 times" in refusal.reason
+    assert [refusal.reason for refusal in load_run(copy).refusals] == [refusal.reason]
 
 
 def test_side_by_side_gives_the_same_tables(run, study, tmp_path):
