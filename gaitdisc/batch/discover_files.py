@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import cast
 
+from gaitdisc.batch.public_words import PublicWords
 from gaitdisc.discovery.blow_up import refuse_blow_up
 from gaitdisc.discovery.catalogue import read_catalogue
 from gaitdisc.discovery.discover import discover
@@ -19,6 +21,7 @@ from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.simulation_file import read_simulation
 from gaitdisc.simulation.unit_check import unit_findings
+from gaitdisc.simulation.writing import simulation_text
 
 
 def discover_files(
@@ -52,7 +55,7 @@ def discover_files(
     told(f"reading {simulation.name} and {measured.name}")
     model = read_simulation(simulation)
     data = read_measured(measured, model)
-    files = [simulation, measured, *([catalogue] if catalogue else [])]
+    files = {simulation: "simulation", measured: "measured table"}
     return _discovered(model, data, catalogue, files, told)
 
 
@@ -87,7 +90,7 @@ def discover_model(
     told(f"reading {measured.name}")
     simulation = cast("Simulation", model)  # it goes wherever a `Simulation` goes
     data = read_measured(measured, simulation)
-    found, augmented = _discovered(simulation, data, catalogue, [measured, *([catalogue] if catalogue else [])], told)
+    found, augmented = _discovered(simulation, data, catalogue, {measured: "measured table"}, told)
     return found, cast("PythonSimulation", augmented)
 
 
@@ -121,24 +124,35 @@ def discover_study(
     """
     # imported here: a simulation file needs no filters and no pandas
     from gaitdisc.batch.nominal_model import nominal_inquiry
+    from gaitdisc.batch.public_words import words_of
     from gaitdisc.ingest.study_file import load_study
 
     told(f"reading both walks of {participant} and fitting the Nominal model")
     read = load_study(study)
     model, data = nominal_inquiry(read, participant)
-    walks = [read.path_of(file) for trial in read.participant(participant).trials for file in trial.files]
-    return _discovered(model, data, catalogue, [*walks, *([catalogue] if catalogue else [])], told)
+    person = read.participant(participant)
+    called = words_of(read, person).files
+    walks = {read.path_of(file): called[Path(file).name] for trial in person.trials for file in trial.files}
+    return _discovered(model, data, catalogue, walks, told)
 
 
 def _discovered(
-    model: Simulation, data: Measured, catalogue: Path | None, files: list[Path], told: Callable[[str], None]
+    model: Simulation, data: Measured, catalogue: Path | None, files: dict[Path, str], told: Callable[[str], None]
 ) -> tuple[Discovery, Simulation]:
     shapes = read_catalogue(catalogue) if catalogue else ()
     refuse_blow_up(model, data)
     found, augmented = discover(model, data, shapes, told)
     settings = {"title": model.title, "trials": len(data.trials), "rate_hz": data.rate, "channels": list(data.channels)}
-    hashes = {path.name: file_sha256(path) for path in files}
+    files = {**files, **({catalogue: "catalogue"} if catalogue else {})}
+    hashes = {called: file_sha256(path) for path, called in files.items()}
     made = made_now(settings, 0, hashes, "discovery of missing physics")
     listed = unit_findings(model) if isinstance(model, Simulation) else ()  # a function has no units to check
-    findings = (*listed, *found.findings)
+    public = PublicWords(_own_words(augmented), {path.name: called for path, called in files.items()})
+    findings = tuple(map(public.finding, (*listed, *found.findings)))
     return replace(found, findings=findings, provenance=made), augmented
+
+
+def _own_words(model: Simulation) -> frozenset[str]:
+    """Words of the simulation file, which is the user's model and names no person; and of the catalogue's effects."""
+    written = model if isinstance(model, Simulation) else cast("PythonSimulation", model).parts
+    return frozenset(re.findall(r"\w+", simulation_text(written)))

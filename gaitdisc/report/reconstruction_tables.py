@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from gaitdisc.report.search_table import search_sentences
 from gaitdisc.report.table import Table
+from gaitdisc.report.terminal import plain
 from gaitdisc.report.wording import counted, label, listed, number
 from gaitdisc.results.reconstruction import CALIBRATED, FLOORS, Reconstruction
 
@@ -177,17 +178,15 @@ def reconstruction_text(done: Reconstruction) -> rich.table.Table:
         The whole result.
     """
     from rich import box
-    from rich.markup import escape
     from rich.table import Table as Printed
 
     shown = models_table(done)
     table = Printed(box=box.SIMPLE, show_edge=False, pad_edge=False, padding=(0, 1, 0, 0))
     chosen = [k for k, column in enumerate(shown.columns) if column not in (WITH_SENSORS, COVERAGE)]
     for k in chosen:
-        heading = escape(shown.columns[k])  # or a unit in brackets is taken for a style
-        table.add_column(heading, justify="left" if k == 0 else "right")
+        table.add_column(plain(shown.columns[k]), justify="left" if k == 0 else "right")
     for row in shown.rows:
-        table.add_row(*(row[k] for k in chosen))
+        table.add_row(*(plain(row[k]) for k in chosen))
     return table
 
 
