@@ -66,7 +66,7 @@ def test_a_simulation_that_is_a_function_goes_all_the_way(tmp_path, verdict):
     measured = write_record(tmp_path / "tank.csv", seed=1, **HIDDEN[verdict])
     found, augmented = discover_model(model, measured)
     assert found.verdict == verdict
-    assert found.provenance is not None and list(found.provenance.files) == ["tank.csv"]
+    assert found.provenance is not None and list(found.provenance.files) == ["measured table"]
 
     out = tmp_path / "found"
     read = read_into(model, write_simulation(augmented, out / "augmented.toml"))
