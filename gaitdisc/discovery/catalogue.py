@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
@@ -12,15 +11,18 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from gaitdisc.errors import SchemaError
+from gaitdisc.errors import ReadError, SchemaError
+from gaitdisc.regular_file import check_regular
 from gaitdisc.simulation.expression import names as names_in
 from gaitdisc.simulation.expression import parsed
 from gaitdisc.simulation.refusal import SimulationError
+from gaitdisc.toml_text import parsed_toml
 
 ROLES = ("x", "v", "y", "a", "b")
 SIGNALS = ("t", "phase")
 GRIDS = ("quantiles of x", "half widths of x", "delays", "frequencies", "phases", "phase widths")
 NEEDS = ("", "angle")
+LARGEST_CATALOGUE_BYTES = 2**20
 _NAME = re.compile(r"[a-z_][a-z0-9_]*")
 _ENTRIES = ("name", "pieces", "constants", "needs", "names", "means")
 
@@ -97,7 +99,7 @@ def known_shapes() -> tuple[Shape, ...]:
     True
     """
     text = (files("gaitdisc") / "discovery" / "catalogue.toml").read_text(encoding="utf-8")
-    return _shapes(tomllib.loads(text), "catalogue.toml")
+    return _shapes(parsed_toml(text), "catalogue.toml")
 
 
 def read_catalogue(path: Path | str) -> tuple[Shape, ...]:
@@ -115,6 +117,8 @@ def read_catalogue(path: Path | str) -> tuple[Shape, ...]:
 
     Raises
     ------
+    ReadError
+        If it is no regular file, or too large.
     SchemaError
         If the file is not TOML or an entry does not have the form.
 
@@ -128,8 +132,11 @@ def read_catalogue(path: Path | str) -> tuple[Shape, ...]:
     """
     path = Path(path)
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        check_regular(path, LARGEST_CATALOGUE_BYTES)
+        content = parsed_toml(path.read_text(encoding="utf-8"))
+    except ReadError:
+        raise
+    except (OSError, ValueError) as error:
         raise SchemaError(
             "a catalogue is a TOML file of [[shape]] entries", f"{path.name}: {error}", "Mend the file."
         ) from error

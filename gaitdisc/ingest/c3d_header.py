@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import ReadError
+from gaitdisc.regular_file import check_regular
 
 BLOCK = 512  # bytes; a C3D file counts in blocks from 1
 PROCESSORS = {84: "Intel", 85: "DEC", 86: "MIPS"}
@@ -164,9 +165,9 @@ def _first_bytes(path: Path) -> tuple[bytes, int]:
     if path.is_dir():
         raise ReadError("a C3D file is needed", f"{path.name} is a folder", "Give one of the files in it.")
     try:
+        size = check_regular(path)
         with path.open("rb") as file:
             head = file.read(256 * BLOCK)
-            size = path.stat().st_size
     except FileNotFoundError:
         raise ReadError("a C3D file is needed", f"{path.name} is not there", "Check the path.") from None
     except OSError as error:

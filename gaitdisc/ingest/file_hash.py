@@ -7,6 +7,8 @@ import os
 import time
 from pathlib import Path
 
+from gaitdisc.regular_file import check_regular
+
 SETTLED_S = 2.0  # a file younger than this may be written again within the clock of its folder
 _known: dict[tuple[int, ...], str] = {}
 
@@ -28,6 +30,8 @@ def file_sha256(path: Path) -> str:
 
     Raises
     ------
+    ReadError
+        If it is a folder, a pipe or a device, or too large.
     OSError
         If the file cannot be read.
 
@@ -42,6 +46,7 @@ def file_sha256(path: Path) -> str:
     known = known_sha256(path)
     if known:
         return known
+    check_regular(path)
     with path.open("rb") as file:
         before = os.fstat(file.fileno())
         found = hashlib.file_digest(file, "sha256").hexdigest()

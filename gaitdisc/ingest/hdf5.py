@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import json
+import subprocess
+import sys
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from gaitdisc.errors import ReadError
+import numpy as np
+from numpy.typing import NDArray
 
+from gaitdisc.errors import GaitdiscError, ReadError
+from gaitdisc.regular_file import LARGEST_BYTES, check_regular
+
+TEXT_LIMIT_S = 10.0  # a text takes a thousandth of it
+_TEXT = (
+    "import h5py, json, sys; v = h5py.File(sys.argv[1], 'r')[sys.argv[2]].attrs[sys.argv[3]]; "
+    "v = v.decode('utf-8', 'replace') if isinstance(v, bytes) else v; print(json.dumps(str(v)))"
+)
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
@@ -23,9 +35,10 @@ def is_hdf5(path: Path) -> bool:
     Raises
     ------
     ReadError
-        If it cannot be opened.
+        If it cannot be opened, is no regular file, or too large.
     """
     try:
+        check_regular(path)
         with path.open("rb") as file:
             return file.read(len(SIGNATURE)) == SIGNATURE
     except OSError as error:
@@ -48,7 +61,7 @@ def hdf5_file(path: Path) -> Iterator[Any]:
     Raises
     ------
     ReadError
-        If h5py is not installed, or the file is damaged; the latter also where a data set cannot be decoded.
+        If h5py is not installed, or the file is damaged.
     """
     try:
         import h5py
@@ -58,10 +71,124 @@ def hdf5_file(path: Path) -> Iterator[Any]:
             f"it cannot be imported ({error})",
             "Install the extra: pip install 'gaitdisc[fields]'.",
         ) from error
+    with _in_words(path):
+        check_regular(path)
+        file = h5py.File(path, "r")
     try:
-        with h5py.File(path, "r") as file:
-            yield file
-    except OSError as error:
+        yield file
+    finally:
+        with _in_words(path):
+            file.close()
+
+
+def member_names(file: Any, path: Path) -> tuple[str, ...]:
+    """Names at the top of an HDF5 file.
+
+    Parameters
+    ----------
+    file : h5py.File
+        The open file.
+    path : Path
+        What it was opened from.
+
+    Raises
+    ------
+    ReadError
+        If the file is damaged.
+    """
+    with _in_words(path):
+        return tuple(map(str, file))
+
+
+def data_set(file: Any, name: str, path: Path) -> NDArray[Any]:
+    """Numbers of one data set.
+
+    Parameters
+    ----------
+    file : h5py.File
+        The open file.
+    name : str
+        Name of the data set.
+    path : Path
+        What the file was opened from.
+
+    Raises
+    ------
+    ReadError
+        If it is no data set of numbers, too large for the file it stands in, or cannot be decoded.
+    """
+    with _in_words(path):
+        held = file[name]
+        kind = getattr(getattr(held, "dtype", None), "kind", "")
+        if kind not in tuple("iuf"):
+            raise ReadError(
+                f"{path.name}: {name!r} is to be a data set of numbers",
+                f"it is {'of another type' if kind else 'none'}",
+                "Fetch the file again; it may be damaged.",
+            )
+        if held.nbytes > LARGEST_BYTES:
+            raise ReadError(
+                f"{path.name}: a data set of at most {LARGEST_BYTES} bytes is read",
+                f"{name!r} claims {held.nbytes}",
+                "Cut a part out of it, or fetch the file again; it may be damaged.",
+            )
+        return np.asarray(held[()])
+
+
+def attributes(file: Any, name: str, path: Path, wanted: Collection[str]) -> dict[str, Any]:
+    """Attributes of one data set, as far as it has them.
+
+    A text of variable length is read by another process under a time limit: where its heap is damaged the library
+    runs in a circle, and nothing can stop it from within.
+
+    Parameters
+    ----------
+    file : h5py.File
+        The open file.
+    name : str
+        Name of the data set.
+    path : Path
+        What the file was opened from.
+    wanted : collection of str
+        Names of the attributes.
+
+    Raises
+    ------
+    ReadError
+        If the file is damaged.
+    """
+    with _in_words(path):
+        held = file[name].attrs
+        there = [one for one in wanted if one in held]
+        return {
+            one: _text_in_time(path, name, one) if held.get_id(one).dtype.kind == "O" else held[one] for one in there
+        }
+
+
+def _text_in_time(path: Path, name: str, attribute: str) -> str:
+    try:
+        done = subprocess.run(
+            [sys.executable, "-P", "-c", _TEXT, str(path), name, attribute],
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            timeout=TEXT_LIMIT_S,
+            check=True,
+        )
+    except subprocess.TimeoutExpired:
+        found = f"attribute {attribute!r} of {name!r} cannot be read within {TEXT_LIMIT_S:g} s"
+        raise ReadError(f"{path.name} is to be read as HDF5", found, "Fetch the file again; it is damaged.") from None
+    return str(json.loads(done.stdout))
+
+
+@contextmanager
+def _in_words(path: Path) -> Iterator[None]:
+    """Say in words what the library finds wrong with a file; its errors have no common ancestor."""
+    try:
+        yield
+    except GaitdiscError:
+        raise
+    except Exception as error:
+        said = " ".join(str(error).split())[:200] or type(error).__name__
         raise ReadError(
-            f"{path.name} is to be read as HDF5", f"it cannot be: {error}", "Fetch the file again; it may be cut short."
+            f"{path.name} is to be read as HDF5", f"it cannot be: {said}", "Fetch the file again; it may be cut short."
         ) from error

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from gaitdisc.errors import ReadError
 from gaitdisc.ingest.file_hash import file_sha256
 from gaitdisc.recording import Axis, Field, Source
+from gaitdisc.regular_file import check_regular
 
 
 def read_sst_pacific(path: Path) -> Field:
@@ -87,6 +88,7 @@ def _source(path: Path) -> Source:
 
 def _arrays(path: Path, names: tuple[str, ...]) -> dict[str, NDArray[Any]]:
     try:
+        check_regular(path)
         with np.load(path, allow_pickle=False) as file:
             return {name: file[name] for name in names}
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:

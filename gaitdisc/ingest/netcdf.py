@@ -11,7 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest.hdf5 import hdf5_file, is_hdf5
+from gaitdisc.ingest.hdf5 import attributes, data_set, hdf5_file, is_hdf5, member_names
+
+ATTRIBUTES = ("units", "scale_factor", "add_offset", "missing_value", "_FillValue")
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,8 +69,10 @@ def read_variables(path: Path, names: tuple[str, ...]) -> dict[str, Variable]:
     """
     if is_hdf5(path):
         with hdf5_file(path) as file:
-            _refuse_absent(path, names, tuple(file))
-            return {name: Variable(file[name][()], dict(file[name].attrs)) for name in names}
+            _refuse_absent(path, names, member_names(file, path))
+            return {
+                name: Variable(data_set(file, name, path), attributes(file, name, path, ATTRIBUTES)) for name in names
+            }
     from scipy.io import netcdf_file
 
     try:

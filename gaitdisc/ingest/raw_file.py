@@ -10,6 +10,7 @@ from gaitdisc.channel import nearest_word
 from gaitdisc.errors import ReadError
 from gaitdisc.ingest.file_hash import known_sha256
 from gaitdisc.recording import Source
+from gaitdisc.regular_file import LARGEST_TEXT_BYTES, check_regular
 
 
 @dataclass(frozen=True)
@@ -71,18 +72,20 @@ class RawFile:
         return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
-def read_raw(path: Path | str) -> RawFile:
+def read_raw(path: Path | str, largest_bytes: int = LARGEST_TEXT_BYTES) -> RawFile:
     """Read a file's bytes.
 
     Parameters
     ----------
     path : Path or str
         File to read.
+    largest_bytes : int
+        What is read at most.
 
     Raises
     ------
     ReadError
-        If there is no such file, it is a folder, empty, or must not be read.
+        If there is no such file, it is a folder, a pipe or a device, empty, too large, or must not be read.
 
     Examples
     --------
@@ -94,11 +97,15 @@ def read_raw(path: Path | str) -> RawFile:
     path = Path(path)
     needed = f"{path.name or path} is to be read"
     try:
+        if not path.is_dir():
+            check_regular(path, largest_bytes)
         content = path.read_bytes()
     except FileNotFoundError as error:
         raise ReadError(needed, "there is no such file" + _near(path), "Check the name and the folder.") from error
     except IsADirectoryError as error:
         raise ReadError(needed, "it is a folder", "Name the file inside of it.") from error
+    except ReadError:
+        raise
     except (OSError, ValueError) as error:
         words = error.strerror if isinstance(error, OSError) else str(error)
         raise ReadError(needed, f"the system says: {words}", "Check the name and the right to read it.") from error

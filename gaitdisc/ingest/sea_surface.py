@@ -98,7 +98,9 @@ def read_sst_mat(path: Path) -> Field:
     needed = f"{path.name} is to be read as SHRED's SST_data.mat"
     if is_hdf5(path):
         raise ReadError(needed, "it is a MATLAB file of version 7.3", "Save it anew with `save -v7`.")
-    if path.read_bytes()[:20].startswith(b"version https://git"):
+    with path.open("rb") as file:
+        head = file.read(20)
+    if head.startswith(b"version https://git"):
         raise ReadError(needed, "it is a pointer of Git LFS, not the file", "Fetch it with `git lfs pull`.")
     try:
         held = loadmat(path)

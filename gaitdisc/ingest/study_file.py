@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -15,7 +14,10 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.raw_file import read_raw
 from gaitdisc.ingest.study import Study
 from gaitdisc.ingest.study_errors import schema_error
+from gaitdisc.toml_text import parsed_toml
 from gaitdisc.whole_file import write_whole
+
+LARGEST_STUDY_BYTES = 16 * 2**20  # a hundred thousand trials
 
 _TOP = """\
 # A study of gaitdisc. Every setting stands here with its default; paths are relative to this file.
@@ -51,11 +53,11 @@ def load_study(path: Path | str) -> Study:
     path = Path(path)
     if path.is_dir():
         path = path / "study.toml"
-    raw = read_raw(path)
+    raw = read_raw(path, LARGEST_STUDY_BYTES)
     text = "\n".join(raw.lines())
     try:
-        content = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
+        content = parsed_toml(text)
+    except ValueError as error:
         raise SchemaError(
             f"{raw.name} must be a TOML file",
             f"it says: {str(error)[:200]}",

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import ReadError, ShapeError
 from gaitdisc.ingest.file_hash import file_sha256
-from gaitdisc.ingest.hdf5 import hdf5_file
+from gaitdisc.ingest.hdf5 import data_set, hdf5_file, member_names
 from gaitdisc.recording import Axis, Field, Source
 
 NAMES = {"velocity": ("u", "v", "w"), "pressure": ("p",)}
@@ -65,7 +65,7 @@ def read_cutout(paths: Sequence[Path], step_s: float, quantity: str = "velocity"
             for number, name in numbers.items():
                 if number in snapshots:
                     raise ReadError("each snapshot is needed once", f"{path.name} holds {name} again", "Leave one out.")
-                snapshots[number] = _values(file[name][()], path, coordinates, quantity)
+                snapshots[number] = _values(data_set(file, name, path), path, coordinates, quantity)
     if not snapshots:
         raise ReadError("a cut-out is needed", "no file was named", "Name at least one file.")
     order = sorted(snapshots)
@@ -81,25 +81,27 @@ def read_cutout(paths: Sequence[Path], step_s: float, quantity: str = "velocity"
 
 def _numbers(file: Any, path: Path, quantity: str) -> dict[int, str]:
     pattern = re.compile(rf"{quantity}_(\d+)", re.IGNORECASE)
-    found = {int(match.group(1)): name for name in file if (match := pattern.fullmatch(name))}
+    there = member_names(file, path)
+    found = {int(match.group(1)): name for name in there if (match := pattern.fullmatch(name))}
     if not found:
         raise ReadError(
             f"a cut-out needs data sets {quantity.capitalize()}_0001, ...",
-            f"{path.name} has {', '.join(file) or 'none'}",
+            f"{path.name} has {', '.join(there) or 'none'}",
             f"Ask the service for {quantity}, or name the quantity that the file has.",
         )
     return found
 
 
 def _coordinates(file: Any, path: Path) -> list[NDArray[Any]]:
-    absent = [name for name in COORDINATES if name not in file]
+    there = member_names(file, path)
+    absent = [name for name in COORDINATES if name not in there]
     if absent:
         raise ReadError(
             f"a cut-out needs its coordinates {', '.join(COORDINATES)}",
             f"{path.name} lacks {', '.join(absent)}",
             "Fetch it anew from the cut-out service.",
         )
-    return [np.ravel(file[name][()]).astype(float) for name in COORDINATES]
+    return [np.ravel(data_set(file, name, path)).astype(float) for name in COORDINATES]
 
 
 def _values(held: NDArray[Any], path: Path, grid: list[NDArray[Any]], quantity: str) -> NDArray[np.float32]:

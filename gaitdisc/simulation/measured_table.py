@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.channel import nearest_word
-from gaitdisc.errors import ChannelError, ReadError, UnitError
+from gaitdisc.errors import ChannelError, GaitdiscError, ReadError, UnitError
 from gaitdisc.recording import Finding, Recording
+from gaitdisc.regular_file import LARGEST_TEXT_BYTES, check_regular
 from gaitdisc.simulation.measured import Measured, TrialColumns, measured_of_trials
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.unit_factor import unit_factor
@@ -139,6 +140,7 @@ def _table(path: Path) -> pd.DataFrame:
             "measured data are a CSV or Parquet table", f"{path.name} ends in {path.suffix!r}", "Export it as CSV."
         )
     try:
+        check_regular(path, LARGEST_TEXT_BYTES)
         if path.suffix.lower() == ".parquet":
             from pyarrow.parquet import read_schema
 
@@ -157,7 +159,7 @@ def _table(path: Path) -> pd.DataFrame:
             skipinitialspace=True,
             low_memory=False,
         )
-    except ChannelError:
+    except GaitdiscError:
         raise
     except OSError as error:
         found = f"{path.name}: {error.strerror or error}"

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import math
 import re
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from gaitdisc.channel import nearest_word
 from gaitdisc.errors import ReadError, SchemaError
+from gaitdisc.regular_file import check_regular
 from gaitdisc.simulation.delay_check import refuse_delays
 from gaitdisc.simulation.parts import Input, Parameter, Port, State, Term
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.toml_text import parsed_toml
 
 LARGEST = 256 * 1024  # bytes
 MOST_TABLES = 1000  # the library that parses takes a time that grows with their square
@@ -59,7 +60,7 @@ def read_simulation(path: Path | str) -> Simulation:
     """
     path = Path(path)
     try:
-        size = path.stat().st_size
+        size = check_regular(path)
         if size > LARGEST:
             raise ReadError(
                 f"a simulation file has at most {LARGEST // 1024} KiB",
@@ -99,11 +100,9 @@ def simulation_of(text: str, file: str = "the simulation", source: Path | None =
     """
     if len(re.findall(r"^\s*\[", text, re.MULTILINE)) > MOST_TABLES:
         raise _not_toml(file, f"more than {MOST_TABLES} tables")
-    if re.search(r"(?:\.[^.\n]{0,80}){40}", re.sub(r"\d\.\d|#.*|\"[^\"\n]*\"", "", text)):
-        raise _not_toml(file, "a key of more than 40 parts")
     try:
-        table = tomllib.loads(text.replace("\r\n", "\n"))
-    except (tomllib.TOMLDecodeError, RecursionError, MemoryError, ValueError) as error:
+        table = parsed_toml(text.replace("\r\n", "\n"))
+    except ValueError as error:
         raise _not_toml(file, str(error)[:200] or type(error).__name__) from None
     try:
         simulation = _simulation(table, text, source)

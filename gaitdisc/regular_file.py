@@ -1,0 +1,66 @@
+"""Only regular files of a bounded size are opened: a pipe waits for ever, a device never ends."""
+
+from __future__ import annotations
+
+import stat
+from pathlib import Path
+
+from gaitdisc.errors import ReadError
+
+GIBIBYTE = 2**30
+LARGEST_BYTES = 4 * GIBIBYTE  # a binary recording: twenty hours of 50 markers and 40 analog channels
+LARGEST_TEXT_BYTES = GIBIBYTE  # a text takes about ten times its size of memory while it is parsed
+_KINDS = (
+    (stat.S_ISDIR, "a folder"),
+    (stat.S_ISFIFO, "a named pipe"),
+    (stat.S_ISSOCK, "a socket"),
+    (stat.S_ISCHR, "a device"),
+    (stat.S_ISBLK, "a device"),
+)
+
+
+def check_regular(path: Path, largest_bytes: int = LARGEST_BYTES) -> int:
+    """Size of a file that may be opened: a regular one, or a link to one, that is not too large.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    largest_bytes : int
+        What is read at most.
+
+    Returns
+    -------
+    int
+        Length of the file [bytes].
+
+    Raises
+    ------
+    ReadError
+        If it is a folder, a pipe, a socket or a device, or too large.
+    OSError
+        If there is no such file, or the system does not let it be seen.
+
+    Examples
+    --------
+    >>> check_regular(Path("/"))
+    Traceback (most recent call last):
+    ...
+    gaitdisc.errors.ReadError: a file is to be read; / is a folder. Name a file.
+    """
+    found = path.stat()
+    name = path.name or str(path)
+    if not stat.S_ISREG(found.st_mode):
+        kind = next((word for is_one, word in _KINDS if is_one(found.st_mode)), "no regular file")
+        raise ReadError("a file is to be read", f"{name} is {kind}", "Name a file.")
+    if found.st_size > largest_bytes:
+        raise ReadError(
+            f"a file of at most {_size(largest_bytes)} is to be read",
+            f"{name} has {_size(found.st_size)}",
+            "Export the recording in parts, or only the channels that are needed.",
+        )
+    return found.st_size
+
+
+def _size(count: int) -> str:
+    return f"{count / GIBIBYTE:.3g} GiB" if count >= GIBIBYTE else f"{count / 2**20:.3g} MiB"

@@ -1,0 +1,49 @@
+"""TOML that a person wrote: parsed, and refused where it is nested deeper than anybody writes."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from typing import Any
+
+DEEPEST = 40  # tables in tables; the parser and all who walk its answer call themselves once a level
+_MANY_DOTS = re.compile(rf"(?:\.[^.\n]{{0,80}}){{{DEEPEST}}}")
+_NO_KEYS = re.compile(r"\d\.\d|#.*|\"[^\"\n]*\"|'[^'\n]*'")
+
+
+def parsed_toml(text: str) -> dict[str, Any]:
+    r"""Table of a TOML text.
+
+    Parameters
+    ----------
+    text : str
+        The file.
+
+    Raises
+    ------
+    tomllib.TOMLDecodeError
+        If it is no TOML, or tables, lists or a dotted key are nested more than 40 deep.
+
+    Examples
+    --------
+    >>> parsed_toml("[filters]\norder = 4")
+    {'filters': {'order': 4}}
+    >>> parsed_toml("a = " + "[" * 50 + "]" * 50)
+    Traceback (most recent call last):
+    ...
+    tomllib.TOMLDecodeError: tables or lists are nested more than 40 deep
+    """
+    if _MANY_DOTS.search(_NO_KEYS.sub("", text)):
+        raise tomllib.TOMLDecodeError(f"a key has more than {DEEPEST} parts")
+    too_deep = f"tables or lists are nested more than {DEEPEST} deep"
+    try:
+        table = tomllib.loads(text)
+    except (RecursionError, MemoryError) as error:
+        raise tomllib.TOMLDecodeError(too_deep) from error
+    level: list[Any] = [table]
+    for _ in range(DEEPEST):
+        level = [inner for one in level for inner in (one.values() if isinstance(one, dict) else one)
+                 if isinstance(inner, dict | list)]  # fmt: skip
+        if not level:
+            return table
+    raise tomllib.TOMLDecodeError(too_deep)
