@@ -6,14 +6,14 @@ from dataclasses import replace
 from pathlib import Path
 
 from gaitdisc.batch.processed_walks import processed_walks
-from gaitdisc.discovery.compare import compare_people, compare_walks
+from gaitdisc.discovery.compare import CLINICAL, compare_people, compare_walks
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.study import Study
 from gaitdisc.processing.walk_pair import walk_pair
 from gaitdisc.recording import Finding
 from gaitdisc.results import WalkSummary
-from gaitdisc.results.mismatch import Mismatch
+from gaitdisc.results.mismatch import Mismatch, Smallest
 from gaitdisc.signals.butterworth import KINEMATICS_HZ
 
 
@@ -23,6 +23,7 @@ def compare_files(
     channels: tuple[str, ...] = (),
     cutoff_hz: float = KINEMATICS_HZ,
     detector: str = "auto",
+    smallest: Smallest = CLINICAL,
 ) -> Mismatch:
     """Mismatch of two recordings, first minus second.
 
@@ -38,6 +39,8 @@ def compare_files(
         -3 dB frequency of one pass of the low-pass of angles and moments.
     detector : str
         What finds initial contact in both.
+    smallest : Smallest
+        Difference that is named at least.
 
     Returns
     -------
@@ -58,11 +61,14 @@ def compare_files(
             "Name a simulated and a measured walk, or two conditions.",
         )
     return _with_settings(
-        compare_walks(walks[0], walks[1], channels), {"cutoff_hz": cutoff_hz, "detector": walks[0].detector}
+        compare_walks(walks[0], walks[1], channels, smallest=smallest),
+        {"cutoff_hz": cutoff_hz, "detector": walks[0].detector},
     )
 
 
-def compare_study(study: Study, participant: str = "", channels: tuple[str, ...] = ()) -> Mismatch:
+def compare_study(
+    study: Study, participant: str = "", channels: tuple[str, ...] = (), smallest: Smallest = CLINICAL
+) -> Mismatch:
     """Mismatch of the device walk against the nominal walk: of one participant's strides, or over participants.
 
     Parameters
@@ -73,6 +79,8 @@ def compare_study(study: Study, participant: str = "", channels: tuple[str, ...]
         Pseudonym; all participants, paired, where it is empty.
     channels : tuple of str
         Only these; by default the study's angles and EMG.
+    smallest : Smallest
+        Difference that is named at least.
 
     Returns
     -------
@@ -91,7 +99,7 @@ def compare_study(study: Study, participant: str = "", channels: tuple[str, ...]
             raise SchemaError(
                 f"both walks of {participant} are to be compared", walks, "Mend it, or choose another participant."
             )
-        return _with_settings(compare_walks(walks[0], walks[1], channels), settings)
+        return _with_settings(compare_walks(walks[0], walks[1], channels, smallest=smallest), settings)
     pairs, left_out = [], []
     for person in study.participants:
         walks = _walks_of(study, person.id)
@@ -99,7 +107,7 @@ def compare_study(study: Study, participant: str = "", channels: tuple[str, ...]
             left_out.append(Finding("refused", "left out", person.id, walks, "this participant's part"))
         else:
             pairs.append(walks)
-    mismatch = compare_people(pairs, channels)
+    mismatch = compare_people(pairs, channels, smallest=smallest)
     return _with_settings(replace(mismatch, findings=(*left_out, *mismatch.findings)), settings)
 
 
