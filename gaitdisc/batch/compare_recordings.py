@@ -8,14 +8,14 @@ from pathlib import Path
 
 from gaitdisc.batch.processed_walks import processed_walks
 from gaitdisc.batch.public_words import PublicWords, package_words, public_settings
-from gaitdisc.discovery.compare import compare_people, compare_walks
+from gaitdisc.discovery.compare import CLINICAL, compare_people, compare_walks
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.study import Study
 from gaitdisc.processing.walk_pair import COMPARED, walk_pair
 from gaitdisc.recording import Finding
 from gaitdisc.results import WalkSummary
-from gaitdisc.results.mismatch import Mismatch
+from gaitdisc.results.mismatch import Mismatch, Smallest
 from gaitdisc.signals.butterworth import KINEMATICS_HZ
 
 
@@ -25,6 +25,7 @@ def compare_files(
     channels: tuple[str, ...] = (),
     cutoff_hz: float = KINEMATICS_HZ,
     detector: str = "auto",
+    smallest: Smallest = CLINICAL,
 ) -> Mismatch:
     """Mismatch of two recordings, first minus second.
 
@@ -40,6 +41,8 @@ def compare_files(
         -3 dB frequency of one pass of the low-pass of angles and moments.
     detector : str
         What finds initial contact in both.
+    smallest : Smallest
+        Difference that is named at least.
 
     Returns
     -------
@@ -65,12 +68,14 @@ def compare_files(
             f"{first.name} and {second.name} hold the same bytes",
             "Name a simulated and a measured walk, or two conditions.",
         )
-    found = compare_walks(walks[0], walks[1], channels)
+    found = compare_walks(walks[0], walks[1], channels, smallest=smallest)
     found = replace(found, findings=tuple(map(public.finding, found.findings)))
     return _with_settings(found, {"cutoff_hz": cutoff_hz, "detector": walks[0].detector})
 
 
-def compare_study(study: Study, participant: str = "", channels: tuple[str, ...] = ()) -> Mismatch:
+def compare_study(
+    study: Study, participant: str = "", channels: tuple[str, ...] = (), smallest: Smallest = CLINICAL
+) -> Mismatch:
     """Mismatch of the device walk against the nominal walk: of one participant's strides, or over participants.
 
     Parameters
@@ -81,6 +86,8 @@ def compare_study(study: Study, participant: str = "", channels: tuple[str, ...]
         Pseudonym; all participants, paired, where it is empty.
     channels : tuple of str
         Only these; by default the study's angles and EMG.
+    smallest : Smallest
+        Difference that is named at least.
 
     Returns
     -------
@@ -99,7 +106,7 @@ def compare_study(study: Study, participant: str = "", channels: tuple[str, ...]
             raise SchemaError(
                 f"both walks of {participant} are to be compared", walks, "Mend it, or choose another participant."
             )
-        return _with_settings(compare_walks(walks[0], walks[1], channels), settings)
+        return _with_settings(compare_walks(walks[0], walks[1], channels, smallest=smallest), settings)
     pairs, left_out = [], []
     for person in study.participants:
         walks = _walks_of(study, person.id)
@@ -107,7 +114,7 @@ def compare_study(study: Study, participant: str = "", channels: tuple[str, ...]
             left_out.append(Finding("refused", "left out", person.id, walks, "this participant's part"))
         else:
             pairs.append(walks)
-    mismatch = compare_people(pairs, channels)
+    mismatch = compare_people(pairs, channels, smallest=smallest)
     return _with_settings(replace(mismatch, findings=(*left_out, *mismatch.findings)), settings)
 
 

@@ -10,10 +10,10 @@ import typer
 from gaitdisc.commands.exit_codes import SOME_REFUSED
 
 if TYPE_CHECKING:
-    from gaitdisc.results.mismatch import Mismatch
+    from gaitdisc.results.mismatch import Mismatch, Smallest
 
 
-def compare(
+def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
     first: Annotated[Path, typer.Argument(metavar="SIM", help="A simulated walk or one condition; or a study.")],
     second: Annotated[
         Path | None, typer.Argument(metavar="MEASURED", help="The measured walk or the other condition.")
@@ -29,6 +29,14 @@ def compare(
     detector: Annotated[
         str, typer.Option(help="Initial contact in two files: auto, force, events, markers or angles.")
     ] = "auto",
+    smallest_angle: Annotated[float, typer.Option(min=0.0, help="Smallest difference of an angle named [deg].")] = 2.0,
+    smallest_moment: Annotated[float, typer.Option(min=0.0, help="The same of a moment [N m/kg].")] = 0.1,
+    smallest_share: Annotated[
+        float, typer.Option(min=0.0, help="The same of all else: share of the range of the curve.")
+    ] = 0.05,
+    body_weight: Annotated[
+        float | None, typer.Option(min=1.0, help="Body weight [N]: forces are named from that share of it.")
+    ] = None,
 ) -> None:
     """Say where over the stride two walks disagree, how much, and whether that is more than chance."""
     from rich.console import Console
@@ -37,15 +45,17 @@ def compare(
     from gaitdisc.report.mismatch_page import write_mismatch_report
     from gaitdisc.report.mismatch_sentences import mismatch_sentences
     from gaitdisc.report.mismatch_tables import mismatch_text
+    from gaitdisc.results.mismatch import Smallest
     from gaitdisc.results.mismatch_folder import save_mismatch
 
     channels = tuple(channel or ())
+    smallest = Smallest(smallest_angle, smallest_moment, smallest_share, body_weight)
     if second is None:
-        mismatch, folder = _of_study(first, participant, channels)
+        mismatch, folder = _of_study(first, participant, channels, smallest)
     elif participant:
         raise typer.BadParameter("--participant belongs to a study; two files are given")
     else:
-        mismatch, folder = compare_files(first, second, channels, cutoff, detector), Path("compare")
+        mismatch, folder = compare_files(first, second, channels, cutoff, detector, smallest), Path("compare")
     folder = out or folder
     save_mismatch(mismatch, folder)
     page = write_mismatch_report(mismatch, folder)
@@ -60,7 +70,7 @@ def compare(
         raise typer.Exit(SOME_REFUSED)
 
 
-def _of_study(place: Path, participant: str, channels: tuple[str, ...]) -> tuple[Mismatch, Path]:
+def _of_study(place: Path, participant: str, channels: tuple[str, ...], smallest: Smallest) -> tuple[Mismatch, Path]:
     from gaitdisc.batch.compare_recordings import compare_study
     from gaitdisc.errors import SchemaError
     from gaitdisc.ingest.study_file import load_study
@@ -72,4 +82,4 @@ def _of_study(place: Path, participant: str, channels: tuple[str, ...]) -> tuple
             "Name the measured walk after it: gaitdisc compare SIM MEASURED.",
         )
     study = load_study(place)
-    return compare_study(study, participant, channels), study.folder / "compare"
+    return compare_study(study, participant, channels, smallest), study.folder / "compare"

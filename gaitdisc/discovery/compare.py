@@ -3,22 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
+from gaitdisc.discovery.alignment import aligned, common_shift
 from gaitdisc.discovery.compare_channels import CommonCurves, common_curves
 from gaitdisc.errors import ComparisonError
 from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.results import WalkSummary
-from gaitdisc.results.mismatch import CHANNEL_COLUMNS, REGION_COLUMNS, Exchange, Mismatch
+from gaitdisc.results.mismatch import (
+    CHANNEL_COLUMNS,
+    REGION_COLUMNS,
+    Alignment,
+    Exchange,
+    Mismatch,
+    Smallest,
+)
 from gaitdisc.results.provenance import Provenance, made_now
 from gaitdisc.statistics.cluster_test import (
     FEWEST_IN_EACH,
     FEWEST_IN_ONE,
+    Cluster,
     ClusterTest,
     one_sample_test,
     two_sample_test,
@@ -27,6 +36,7 @@ from gaitdisc.statistics.permutation import USUAL, PermutationPlan
 from gaitdisc.statistics.stride_blocks import block_length, block_means, block_worth, stride_correlation
 
 MOST_SHIFT = 10  # % of the stride
+CLINICAL = Smallest()
 POWER_80 = 0.8416  # standard normal quantile of .8
 SECTION = "Find: mismatch of two walks over the stride"
 
@@ -40,6 +50,17 @@ class _Compared:
     gap: NDArray[np.float64]
     means: tuple[NDArray[np.float64], NDArray[np.float64]]
     sds: tuple[NDArray[np.float64], NDArray[np.float64]]
+    alignment: Alignment
+    limits: NDArray[np.float64]
+
+    def named(self) -> list[Cluster]:
+        """Clusters in which the gap reaches the smallest difference that is named."""
+        gap = np.abs(self.gap)
+        return [
+            one
+            for one in self.test.clusters
+            if gap[one.first : one.last + 1, one.channel].max() >= self.limits[one.channel]
+        ]
 
 
 def compare_walks(
@@ -47,12 +68,15 @@ def compare_walks(
     second: WalkSummary,
     wanted: Sequence[str] = (),
     plan: PermutationPlan = USUAL,
+    smallest: Smallest = CLINICAL,
 ) -> Mismatch:
     """Mismatch of two walks, first minus second; strides, or blocks of them, are the units of exchange.
 
     Where successive strides depend on each other, blocks of consecutive strides are exchanged, and the dependence that
     blocks still have widens the standard error. A first walk of fewer than six strides (a periodic simulation has one)
-    is taken as a curve: the second walk's strides are tested against it.
+    is taken as a curve: the second walk's strides are tested against it. A shift along the stride that the channels
+    have in common is taken off first (`common_shift`): it says that the marks of initial contact lie apart, and would
+    make a gap in every channel that moves. What is smaller than `smallest` is not named.
 
     Parameters
     ----------
@@ -64,6 +88,8 @@ def compare_walks(
         Only these channels; by default all that both have.
     plan : PermutationPlan
         Level, number of permutations, seed.
+    smallest : Smallest
+        Difference that is named at least; 2 deg, 0.1 N m/kg, 5 % of body weight or of the channel's range by default.
 
     Returns
     -------
@@ -78,16 +104,22 @@ def compare_walks(
         If there are too few strides for any test.
     """
     common = common_curves((first, second), wanted)
-    compared = _of_strides(common, (_name(first), _name(second)), plan)
-    files = {**first.files, **second.files}
+    means = [curves.mean(axis=0) for curves in common.curves]
+    alignment = common_shift(means[0], means[1])
+    if alignment.applied:
+        common = replace(common, curves=(*aligned(common.curves[:1], alignment.percent), common.curves[1]))
+    limits = _limits(common.channels, means[1], smallest)
+    compared = _of_strides(common, (_name(first), _name(second)), plan, alignment, limits)
+    made = _provenance(plan, smallest, {**first.files, **second.files})
     findings = (*first.findings, *second.findings, *common.findings)
-    return _mismatch((_name(first), _name(second)), common.channels, compared, findings, _provenance(plan, files))
+    return _mismatch((_name(first), _name(second)), common.channels, compared, findings, made)
 
 
 def compare_people(
     pairs: Sequence[tuple[WalkSummary, WalkSummary]],
     wanted: Sequence[str] = (),
     plan: PermutationPlan = USUAL,
+    smallest: Smallest = CLINICAL,
 ) -> Mismatch:
     """Mismatch of two conditions over people, paired: each person's mean difference is one unit.
 
@@ -99,6 +131,8 @@ def compare_people(
         Only these channels; by default all that every walk has.
     plan : PermutationPlan
         Level, number of permutations, seed.
+    smallest : Smallest
+        Difference that is named at least, as in `compare_walks`; the shift in common is that of the mean curves.
 
     Returns
     -------
@@ -120,18 +154,24 @@ def compare_people(
         )
     walks = [walk for pair in pairs for walk in pair]
     common = common_curves(walks, wanted)
-    means = [np.array([curves.mean(axis=0) for curves in common.curves[k::2]]) for k in (0, 1)]
-    spreads = [[_sd(curves) for curves in common.curves[k::2]] for k in (0, 1)]
+    alignment = common_shift(*(np.mean([c.mean(axis=0) for c in common.curves[k::2]], axis=0) for k in (0, 1)))
+    curves_of = [list(common.curves[k::2]) for k in (0, 1)]
+    if alignment.applied:
+        curves_of[0] = aligned(curves_of[0], alignment.percent)
+    means = [np.array([curves.mean(axis=0) for curves in part]) for part in curves_of]
+    spreads = [[_sd(curves) for curves in part] for part in curves_of]
     test = one_sample_test(means[0] - means[1], plan)
     strides = [sum(map(len, common.curves[k::2])) for k in (0, 1)]
     exchange = _exchange("participant", (len(pairs), len(pairs)), (strides[0], strides[1]), test)
     gap = (means[0] - means[1]).mean(axis=0)
     sds = tuple(np.sqrt(np.mean(np.square(one), axis=0)) for one in spreads)
-    compared = _Compared(test, exchange, gap, (means[0].mean(axis=0), means[1].mean(axis=0)), (sds[0], sds[1]))
+    middles = (means[0].mean(axis=0), means[1].mean(axis=0))
+    limits = _limits(common.channels, middles[1], smallest)
+    compared = _Compared(test, exchange, gap, middles, (sds[0], sds[1]), alignment, limits)
     files = {name: sha for walk in walks for name, sha in walk.files.items()}
     findings = (*(finding for walk in walks for finding in walk.findings), *common.findings)
     names = (pairs[0][0].condition, pairs[0][1].condition)
-    return _mismatch(names, common.channels, compared, findings, _provenance(plan, files))
+    return _mismatch(names, common.channels, compared, findings, _provenance(plan, smallest, files))
 
 
 def best_shift(first: NDArray[np.float64], second: NDArray[np.float64]) -> tuple[float, float]:
@@ -166,7 +206,18 @@ def _of_interest(findings: Sequence[Finding], channels: Sequence[Channel]) -> tu
     return tuple(sorted(kept, key=lambda finding: finding.rank))
 
 
-def _of_strides(common: CommonCurves, names: tuple[str, str], plan: PermutationPlan) -> _Compared:
+def _limits(channels: Sequence[Channel], curves: NDArray[np.float64], smallest: Smallest) -> NDArray[np.float64]:
+    reaches = np.ptp(curves, axis=0)
+    return np.array([smallest.of(c.unit, float(reach)) for c, reach in zip(channels, reaches, strict=True)])
+
+
+def _of_strides(
+    common: CommonCurves,
+    names: tuple[str, str],
+    plan: PermutationPlan,
+    alignment: Alignment,
+    limits: NDArray[np.float64],
+) -> _Compared:
     first, second = common.curves
     as_curve = len(first) < FEWEST_IN_EACH
     fewest = FEWEST_IN_ONE if as_curve else FEWEST_IN_EACH
@@ -193,7 +244,7 @@ def _of_strides(common: CommonCurves, names: tuple[str, str], plan: PermutationP
         means, counts = (units[0].mean(axis=0), units[1].mean(axis=0)), (len(units[0]), len(units[1]))
     unit = "stride" if length == 1 else f"block of {length} strides"
     exchange = _exchange(unit, counts, (len(first), len(second)), test)
-    return _Compared(test, exchange, means[0] - means[1], means, (_sd(first), _sd(second)))
+    return _Compared(test, exchange, means[0] - means[1], means, (_sd(first), _sd(second)), alignment, limits)
 
 
 def _exchange(unit: str, counts: tuple[int, int], strides: tuple[int, int], test: ClusterTest) -> Exchange:
@@ -228,12 +279,13 @@ def _mismatch(
         compared.exchange,
         _of_interest(findings, channels),
         provenance,
+        compared.alignment,
     )
 
 
 def _regions(channels: tuple[Channel, ...], compared: _Compared) -> pd.DataFrame:
     rows = []
-    for cluster in compared.test.clusters:
+    for cluster in compared.named():
         inside = slice(cluster.first, cluster.last + 1)
         gap = compared.gap[inside, cluster.channel]
         at = cluster.first + int(np.argmax(np.abs(gap)))
@@ -249,7 +301,8 @@ def _regions(channels: tuple[Channel, ...], compared: _Compared) -> pd.DataFrame
 
 def _summary(channels: tuple[Channel, ...], compared: _Compared) -> pd.DataFrame:
     test, gap = compared.test, compared.gap
-    differing = {cluster.channel for cluster in test.clusters}
+    differing = {cluster.channel for cluster in compared.named()}
+    beyond_chance = {cluster.channel for cluster in test.clusters}
     within = (np.abs(gap) + test.threshold * test.standard_error).max(axis=0)
     visible = (test.threshold + POWER_80) * np.median(test.standard_error, axis=0)
     rows = []
@@ -260,12 +313,15 @@ def _summary(channels: tuple[Channel, ...], compared: _Compared) -> pd.DataFrame
             channel.name, channel.unit, column in differing, largest, PERCENT[at], _in_sd(largest, float(sd[at])),
             _rms(gap[:, column]), _rms(sd), float(test.p[column]), float(within[column]), float(visible[column]),
             *best_shift(compared.means[0][:, column], compared.means[1][:, column]),
+            float(compared.limits[column]), (offset := float(gap[:, column].mean())),
+            float(np.abs(gap[:, column] - offset).max()), column in beyond_chance - differing,
         ))  # fmt: skip
     return pd.DataFrame(rows, columns=pd.Index(CHANNEL_COLUMNS))
 
 
-def _provenance(plan: PermutationPlan, files: Mapping[str, str]) -> Provenance:
-    return made_now(asdict(plan), plan.seed, files, SECTION)
+def _provenance(plan: PermutationPlan, smallest: Smallest, files: Mapping[str, str]) -> Provenance:
+    named = {f"smallest_{key}": value for key, value in asdict(smallest).items() if value is not None}
+    return made_now({**asdict(plan), **named}, plan.seed, files, SECTION)
 
 
 def _sd(curves: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -6,6 +6,7 @@ from gaitdisc.processing.process import is_raw
 from gaitdisc.recording import Recording, Trial
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.envelope import enveloped
+from gaitdisc.signals.spikes import without_spikes
 
 SHARE_OF_RATE = 0.4  # cut-off of the low-pass before resampling; half the rate is the limit
 
@@ -51,4 +52,4 @@ def _slow_enough(key: str, recording: Recording, rate_hz: float) -> Recording:
         return recording
     if key == "emg" and is_raw(recording):
         return enveloped(recording)
-    return lowpassed(recording, SHARE_OF_RATE * rate_hz)
+    return lowpassed(without_spikes(recording), SHARE_OF_RATE * rate_hz)

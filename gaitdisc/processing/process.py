@@ -25,6 +25,7 @@ from gaitdisc.signals.gaps import filled
 from gaitdisc.signals.late_change import late_change_findings
 from gaitdisc.signals.plateaus import plateau_findings, plateau_marked
 from gaitdisc.signals.sides import verify_sides
+from gaitdisc.signals.spikes import spike_findings, without_spikes
 from gaitdisc.signals.stride_quality import stride_findings as outlier_findings
 from gaitdisc.signals.strides import cut_strides
 from gaitdisc.signals.walking import verify_walking
@@ -58,7 +59,7 @@ def processed(trial: Trial, study: Study) -> Walk:
     SamplingError
         If the recording is too short or too slow for the filters.
     """
-    raw = plateau_marked(_needed(trial, "kinematics", study.models.angles))
+    raw = without_spikes(plateau_marked(_needed(trial, "kinematics", study.models.angles)))
     choice = chosen_contacts(trial, study.strides.detector, study.treadmill.direction if study.treadmill else "")
     limits = (study.strides.min_s, study.strides.max_s)
     side = study.strides.side
@@ -97,7 +98,7 @@ def quality_findings(trial: Trial, angles: Sequence[str] = (), emg: Sequence[str
     if "kinematics" in trial.streams:
         kinematics = trial.stream("kinematics")
         looked_at = kinematics.selected([name for name in kinematics.names if not angles or name in angles])
-        findings += channel_findings(looked_at) + plateau_findings(looked_at)
+        findings += channel_findings(looked_at) + plateau_findings(looked_at) + spike_findings(looked_at)
     if "emg" in trial.streams:
         recorded = trial.stream("emg")
         looked_at = recorded.selected([name for name in recorded.names if not emg or name in emg])
@@ -107,7 +108,7 @@ def quality_findings(trial: Trial, angles: Sequence[str] = (), emg: Sequence[str
         forces = trial.stream("forces").selected_by(lambda channel: channel.quantity == "vertical_force")
         findings += channel_findings(forces) + drift_findings(forces)
     if "markers" in trial.streams and not angles:
-        findings += channel_findings(trial.stream("markers"))
+        findings += channel_findings(trial.stream("markers")) + spike_findings(trial.stream("markers"))
     return findings
 
 

@@ -21,6 +21,7 @@ from gaitdisc.signals.contact_angles import angle_contacts
 from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.envelope import ENVELOPE_HZ, enveloped
 from gaitdisc.signals.sides import verify_sides
+from gaitdisc.signals.spikes import without_spikes
 from gaitdisc.signals.stride_quality import without_outlying
 from gaitdisc.signals.strides import MAX_S, cut_strides
 from gaitdisc.signals.walking import verify_walking
@@ -211,7 +212,7 @@ def _state(trial: Trial, key: str, cutoff_hz: float) -> Recording | None:
         return None
     if key == "emg":
         return enveloped(recording) if is_raw(recording) else lowpassed(recording, ENVELOPE_HZ)
-    return lowpassed(recording, FORCE_HZ if key == "forces" else cutoff_hz)
+    return lowpassed(without_spikes(recording), FORCE_HZ if key == "forces" else cutoff_hz)
 
 
 def _curves(state: Recording, strides: Mapping[str, Strides], follow: str) -> NDArray[np.float64]:

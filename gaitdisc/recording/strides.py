@@ -172,6 +172,6 @@ def interpolated(
     right = np.minimum(left + 1, len(time) - 1)
     share = np.clip(place - left, 0.0, 1.0)[..., None]
     inside = (place >= -1e-6) & (place <= len(time) - 1 + 1e-6)
-    low, high = values[left], values[right]
+    low, high = (np.where(np.isfinite(values[at]), values[at], np.nan) for at in (left, right))
     mixed = np.where(share < 1e-6, low, (1 - share) * low + share * high)
     return np.where(inside[..., None], mixed, np.nan)

@@ -163,8 +163,11 @@ def _caption(mismatch: Mismatch, kind: str, count: int) -> str:
         n = f"n = {done.first} participants, {n}"
     shaded = (
         f"Shaded, with a bar at the foot: where the permutation test says more than chance, p < {done.alpha:g} for all "
-        f"points and channels together."
+        f"points and channels together, and the gap reaches the smallest difference that is named."
     )
+    if mismatch.alignment.applied:
+        moved = f"{mismatch.alignment.percent:+.1f} % of the stride"
+        shaded += f" {mismatch.first} is drawn {moved} later, a shift that the channels share."
     if kind == "gap":
         return (
             f"Gap, {mismatch.first} minus {mismatch.second}, {counted(count, 'channel')}, {n}. Band: "

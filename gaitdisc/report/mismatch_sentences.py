@@ -12,6 +12,7 @@ from gaitdisc.results.mismatch import Exchange, Mismatch
 
 MOST_NAMED = 3
 MOST_LISTED = 8
+SAID_FROM = 1.0  # % of the stride: less is the scatter of contacts
 MOSTLY_TIMING = 0.6  # of the gap that is left when the curve is moved along the stride
 
 
@@ -24,17 +25,65 @@ def mismatch_sentences(mismatch: Mismatch) -> list[str]:
         What was found.
     """
     ordered = mismatch.ordered()
+    moved = alignment_sentences(mismatch)
+    small = [name for name in mismatch.names if mismatch.summary_of(name)["too_small"]]
+    unseen = [name for name in mismatch.names if name not in ordered and name not in small]
+    if not ordered and not small:
+        return [_no_gap(mismatch), *moved, _visible(mismatch, list(mismatch.names))]
     if not ordered:
-        return [_no_gap(mismatch), _visible(mismatch, list(mismatch.names))]
-    sentences = [_gap(mismatch, ordered[0])]
+        return [_nothing_named(mismatch, small), *moved, *([_agreeing(mismatch, unseen)] if unseen else [])]
+    sentences = [_gap(mismatch, ordered[0]), *moved]
     sentences += [_further(mismatch, name) for name in ordered[1:MOST_NAMED]]
     if len(ordered) > MOST_NAMED:
         more = len(ordered) - MOST_NAMED
         others = _shortened(ordered[MOST_NAMED:])
         sentences.append(f"{counted(more, 'further channel')} {'differs' if more == 1 else 'differ'} too: {others}.")
     sentences += [timing] if (timing := _timing(mismatch, ordered[0])) else []
-    agreeing = [name for name in mismatch.names if name not in ordered]
-    return [*sentences, _agreeing(mismatch, agreeing)] if agreeing else sentences
+    sentences += [_too_small(mismatch, small)] if small else []
+    return [*sentences, _agreeing(mismatch, unseen)] if unseen else sentences
+
+
+def alignment_sentences(mismatch: Mismatch) -> list[str]:
+    """How far apart the marks of initial contact lie, where that is more than contacts scatter; else nothing.
+
+    Parameters
+    ----------
+    mismatch : Mismatch
+        What was found.
+    """
+    found = mismatch.alignment
+    if not found.applied or abs(found.percent) < SAID_FROM:
+        return []
+    way = "ahead of" if found.percent > 0 else "behind"
+    return [
+        f"All of {mismatch.first} runs {number(abs(found.percent), 1)} % of the stride {way} {mismatch.second} (so fit "
+        f"{found.agreeing} of {counted(found.channels, 'channel')}): the marks of initial contact lie that far apart, "
+        f"and {mismatch.first} was moved by it before anything was compared."
+    ]
+
+
+def _nothing_named(mismatch: Mismatch, small: list[str]) -> str:
+    limits = _by_unit(mismatch, small, "limit")
+    return (
+        f"No difference worth naming: {mismatch.first} and {mismatch.second} differ by more than chance in "
+        f"{_shortened(small)}, but by less than {limits} at every such point."
+    )
+
+
+def _too_small(mismatch: Mismatch, small: list[str]) -> str:
+    return f"More than chance, but less than {_by_unit(mismatch, small, 'limit')} and not named: {_shortened(small)}."
+
+
+def _kind(mismatch: Mismatch, name: str) -> str:
+    """Whether a gap is an offset of the whole curve, a change of its shape, or both."""
+    row = mismatch.summary_of(name)
+    offset, shape, limit = (float(row[key]) for key in ("offset", "shape", "limit"))
+    unit = str(row["unit"])
+    if abs(offset) < limit:
+        return ""
+    if shape < limit:
+        return f": an offset, for without its mean the shape agrees to within {with_unit(amount(shape), unit)}"
+    return f"; {with_unit(amount(abs(offset)), unit)} of the gap are an offset of the whole curve"
 
 
 def method_sentences(mismatch: Mismatch) -> list[str]:
@@ -46,6 +95,7 @@ def method_sentences(mismatch: Mismatch) -> list[str]:
         What was found.
     """
     done = mismatch.exchange
+    named_from = _by_unit(mismatch, list(mismatch.names), "limit", smallest=True)
     band = f"{100 * (1 - done.alpha):g} %"
     all_of = "all that there are" if done.exact else "drawn at random"
     if done.unit == "participant":
@@ -68,6 +118,8 @@ def method_sentences(mismatch: Mismatch) -> list[str]:
         f"{counted(len(mismatch.channels), 'channel')} in {done.permutations} permutations ({all_of}); the "
         f"gap is shaded beyond |t| = {done.threshold:.2f}, which {100 * done.alpha:g} % of them exceed anywhere. The p "
         f"of a stretch is that of its integral above this threshold.",
+        f"A difference is named where its gap reaches {named_from}; a shift along the stride that most channels share "
+        f"is taken off before the test.",
         f"The band of the gap holds {band} for all points and channels together, and widens where successive strides "
         f"depend on each other.",
         f"Standard deviations are those of {mismatch.second} from stride to stride at the same point. {about}",
@@ -115,13 +167,13 @@ def _size(row: Mapping[str, Any]) -> str:
 def _gap(mismatch: Mismatch, name: str) -> str:
     row = _largest(mismatch, name)
     way = direction_words(name, float(row["gap"]), str(row["unit"]))
-    return f"In {mismatch.first} {way} than in {mismatch.second} {_size(row)}."
+    return f"In {mismatch.first} {way} than in {mismatch.second} {_size(row)}{_kind(mismatch, name)}."
 
 
 def _further(mismatch: Mismatch, name: str) -> str:
     row = _largest(mismatch, name)
     way = direction_words(name, float(row["gap"]), str(row["unit"]))
-    return f"{way[0].upper()}{way[1:]} {_size(row)}."
+    return f"{way[0].upper()}{way[1:]} {_size(row)}{_kind(mismatch, name)}."
 
 
 def _timing(mismatch: Mismatch, name: str) -> str:

@@ -46,7 +46,7 @@ def channels_table(mismatch: Mismatch) -> Table:
     rows = tuple(
         (
             spoken(str(row["channel"])),
-            "yes" if row["differs"] else "no",
+            "yes" if row["differs"] else "too small" if row["too_small"] else "no",
             _signed(float(row["largest_gap"]), str(row["unit"])),
             f"{row['at_percent']:.0f}",
             amount(float(row["rms_gap"])),
@@ -56,6 +56,9 @@ def channels_table(mismatch: Mismatch) -> Table:
             amount(float(row["visible"])),
             f"{row['shift_percent']:+.0f}" if row["shift_percent"] else "0",
             amount(float(row["rms_shifted"])),
+            _signed(float(row["offset"]), str(row["unit"])),
+            amount(float(row["shape"])),
+            amount(float(row["limit"])),
         )
         for row in map(mismatch.summary_of, mismatch.names)
     )
@@ -64,11 +67,12 @@ def channels_table(mismatch: Mismatch) -> Table:
         f"stride-to-stride sd of {mismatch.second}; p: of the largest |t|, corrected for all points and channels; "
         f"agrees within: what the band of the gap allows at its worst point; visible: the gap that four such "
         f"comparisons of five would have seen at a typical point; shift: how much later the curve of "
-        f"{mismatch.first} fits best, and the rms gap that is left then."
+        f"{mismatch.first} fits best, and the rms gap that is left then; offset: the mean gap; shape: the largest gap "
+        f"without it; named from: the smallest difference that is called one{_moved(mismatch)}."
     )
     headings = (
         "channel", "differs", "largest gap", "at [%]", "rms gap", "rms sd", "p", "agrees within", "visible",
-        "shift [%]", "rms left",
+        "shift [%]", "rms left", "offset", "shape", "named from",
     )  # fmt: skip
     return Table("channels", caption, headings, rows, mismatch.summary)
 
@@ -123,6 +127,13 @@ def _rows(mismatch: Mismatch, name: str) -> list[tuple[str, ...]]:
         )
         for row in regions
     ]
+
+
+def _moved(mismatch: Mismatch) -> str:
+    found = mismatch.alignment
+    if not found.applied:
+        return ""
+    return f". All curves of {mismatch.first} were moved {found.percent:+.1f} % of the stride first, which they share"
 
 
 def _signed(gap: float, unit: str) -> str:

@@ -20,7 +20,7 @@ CURVES = ("first", "second", "sd_first", "sd_second", "gap", "low", "high", "t")
 REGION_COLUMNS = ("channel", "unit", "from_percent", "to_percent", "gap", "at_percent", "gap_sd", "mean_gap", "p")
 CHANNEL_COLUMNS = (
     "channel", "unit", "differs", "largest_gap", "at_percent", "gap_sd", "rms_gap", "rms_sd", "p", "within", "visible",
-    "shift_percent", "rms_shifted",
+    "shift_percent", "rms_shifted", "limit", "offset", "shape", "too_small",
 )  # fmt: skip
 
 
@@ -57,6 +57,70 @@ class Exchange:
     alpha: float
 
 
+@dataclass(frozen=True)
+class Alignment:
+    """Shift along the stride that the channels of two walks have in common.
+
+    Parameters
+    ----------
+    percent : float
+        By how much later the first walk's curves fit best, the median over channels [% stride].
+    applied : bool
+        Whether they were moved by it before anything was tested.
+    agreeing, channels : int
+        Channels whose own best shift lies within 2 % of the stride of it, and all.
+    """
+
+    percent: float = 0.0
+    applied: bool = False
+    agreeing: int = 0
+    channels: int = 0
+
+
+@dataclass(frozen=True)
+class Smallest:
+    """Smallest difference that is named: less matters to nobody, however sure it is.
+
+    Parameters
+    ----------
+    angle_deg : float
+        Of an angle [deg].
+    moment_n_m_per_kg : float
+        Of a moment per body mass [N m/kg].
+    share : float
+        Of body weight for a force where the weight is known; else, and for every other unit, of the range of the second
+        walk's mean curve.
+    body_weight_n : float, optional
+        Mass x 9.81 [N].
+
+    Examples
+    --------
+    >>> Smallest().of("deg", 60.0), Smallest(body_weight_n=700.0).of("N", 800.0), Smallest().of("N", 800.0)
+    (2.0, 35.0, 40.0)
+    """
+
+    angle_deg: float = 2.0
+    moment_n_m_per_kg: float = 0.1
+    share: float = 0.05
+    body_weight_n: float | None = None
+
+    def of(self, unit: str, reach: float) -> float:
+        """Smallest difference of one channel that is named, in its unit.
+
+        Parameters
+        ----------
+        unit : str
+            Of the channel.
+        reach : float
+            Range of its mean curve [unit].
+        """
+        if unit == "deg":
+            return self.angle_deg
+        if unit == "N m/kg":
+            return self.moment_n_m_per_kg
+        return self.share * (self.body_weight_n if unit == "N" and self.body_weight_n else reach)
+
+
 @dataclass(frozen=True, eq=False)
 class Mismatch:
     """First minus second, over the stride.
@@ -78,13 +142,17 @@ class Mismatch:
         One row a channel, columns `CHANNEL_COLUMNS`: whether it differs; largest gap anywhere and where; rms over the
         stride of gap and of the second walk's sd; p of the largest |t|, corrected; `within`, the largest gap that the
         band allows; `visible`, the gap that four such comparisons of five would have seen; `shift_percent`, by how much
-        later the first walk's curve fits best, and `rms_shifted`, the rms gap that is left then.
+        later the first walk's curve fits best, and `rms_shifted`, the rms gap that is left then; `limit`, the smallest
+        difference that is named; `offset`, the mean gap over the stride, and `shape`, the largest gap that is left
+        without it; `too_small`, more than chance, but smaller than `limit`.
     exchange : Exchange
         What was exchanged in the test.
     findings : tuple of Finding
         What was seen on the way: of both walks, and of channels that could not be compared.
     provenance : Provenance
         Settings, seed, files.
+    alignment : Alignment
+        Shift that all channels have in common; where it was applied, everything else is after it.
 
     Raises
     ------
@@ -103,6 +171,7 @@ class Mismatch:
     exchange: Exchange
     findings: tuple[Finding, ...]
     provenance: Provenance
+    alignment: Alignment = Alignment()
 
     def __post_init__(self) -> None:
         """Check shapes and columns once."""
@@ -149,7 +218,9 @@ class Mismatch:
         column = self.names.index(name)
         table = pd.DataFrame({key: self.curves[key][:, column] for key in CURVES})
         table.insert(0, "percent", PERCENT)
-        table["differs"] = np.abs(table["t"]) > self.exchange.threshold
+        table["differs"] = False
+        for row in self.regions_of(name):
+            table["differs"] |= table["percent"].between(row["from_percent"], row["to_percent"])
         return table
 
     def ordered(self) -> list[str]:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pandas as pd
 
 from gaitdisc.channel import Channel
-from gaitdisc.results.mismatch import CHANNEL_COLUMNS, REGION_COLUMNS, Exchange, Mismatch
+from gaitdisc.results.mismatch import CHANNEL_COLUMNS, REGION_COLUMNS, Alignment, Exchange, Mismatch
 from gaitdisc.results.provenance import Provenance
 from gaitdisc.results.unit_folder import load_unit, save_unit, stored_finding
 
@@ -39,6 +39,7 @@ def save_mismatch(mismatch: Mismatch, folder: Path) -> None:
             "second": mismatch.second,
             "channels": [asdict(channel) for channel in mismatch.channels],
             "exchange": asdict(mismatch.exchange),
+            "alignment": asdict(mismatch.alignment),
             "findings": [asdict(finding) for finding in mismatch.findings],
             "provenance": asdict(mismatch.provenance),
         },
@@ -72,4 +73,5 @@ def load_mismatch(folder: Path) -> Mismatch:
         Exchange(**data["exchange"]),
         tuple(map(stored_finding, data["findings"])),
         Provenance(**data["provenance"]),
+        Alignment(**data.get("alignment", {})),
     )

@@ -13,6 +13,7 @@ from gaitdisc.recording import Recording
 from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.direction import Direction, marker_position, pelvis_position, walking_direction
 from gaitdisc.signals.gaps import filled
+from gaitdisc.signals.spikes import without_spikes
 
 SHORTEST_STRIDE_S = 0.4
 FEWEST_SWING = 0.5  # of the usual excursion of the heel
@@ -54,7 +55,7 @@ def marker_contacts(
     """
     direction = direction or walking_direction(markers, heels, pelvis)
     needed = {f"{name}.{axis}" for name in [*heels.values(), *pelvis] for axis in "xyz"}
-    bridged = filled(markers.selected([name for name in markers.names if name in needed]))
+    bridged = filled(without_spikes(markers.selected([name for name in markers.names if name in needed])))
     centre = pelvis_position(bridged, pelvis)
     found = {}
     for side, heel in heels.items():

@@ -62,6 +62,7 @@ def differentiated(values: NDArray[np.float64], rate_hz: float, order: int = 1) 
         )
     weights = FIRST if order == 1 else SECOND
     count = len(values) - 2 * REACH
+    values = np.where(np.isfinite(values), values, np.nan)
     inner = np.sum([w * values[k : k + count] for k, w in enumerate(weights) if w], axis=0)
     derivative = np.full(np.shape(values), np.nan)
     derivative[REACH:-REACH] = inner * rate_hz**order

@@ -9,6 +9,7 @@ from gaitdisc.discovery.compare import compare_walks
 from gaitdisc.recording import PERCENT
 from gaitdisc.report.mismatch_sentences import method_sentences, mismatch_sentences
 from gaitdisc.results import WalkSummary
+from gaitdisc.results.mismatch import Smallest
 from gaitdisc.results.walk_summary import STRIDE_COLUMNS
 
 NAMES = ("hip_flexion_r", "ankle_angle_r", "pelvis_tilt")
@@ -28,7 +29,8 @@ def test_the_first_sentence_is_the_answer():
     first, *rest = mismatch_sentences(compare_walks(walk("model", 0, gap=-8.0), walk("measured", 1)))
     assert re.match(r"In model the right ankle is up to [78]\.\d deg", first)
     assert "deg more plantarflexed than in measured between 12 and 55 % of the stride (" in first
-    assert first.endswith(" stride-to-stride sd, p < .001).")
+    assert " stride-to-stride sd, p < .001); 3." in first
+    assert first.endswith(" deg of the gap are an offset of the whole curve.")
     assert rest[-1].startswith(
         "No gap is seen in right hip flexion and pelvis tilt: with 95 % confidence they agree to"
     )
@@ -42,8 +44,46 @@ def test_no_gap_is_said_with_what_could_have_been_seen():
 
 
 def test_a_late_curve_is_called_timing():
-    said = mismatch_sentences(compare_walks(walk("model", 4, shift=-6), walk("measured", 5)))
+    late = walk("model", 4)
+    curves = np.array(late.curves)
+    curves[:, :, 1] = walk("model", 4, shift=-6).curves[:, :, 1]
+    said = mismatch_sentences(compare_walks(replace(late, curves=curves), walk("measured", 5)))
     assert any("Much of the largest gap is timing: moved 6 % of the stride earlier" in text for text in said)
+
+
+def test_marks_that_lie_apart_are_said_and_make_no_finding():
+    found = compare_walks(walk("model", 4, shift=7), walk("measured", 5))
+    assert found.ordered() == []
+    said = mismatch_sentences(found)
+    assert said[1].startswith(
+        "All of model runs 7.0 % of the stride ahead of measured (so fit 3 of 3 channels): the marks"
+    )
+    assert "model was moved by it before anything was compared" in said[1]
+    assert "a shift along the stride that most channels share is taken off" in " ".join(method_sentences(found))
+
+
+def test_an_offset_is_told_from_a_change_of_shape():
+    higher = walk("model", 0, strides=40)
+    higher = replace(higher, curves=higher.curves + np.array([0.0, 6.0, 0.0]))
+    first = mismatch_sentences(compare_walks(higher, walk("measured", 1, strides=40)))[0]
+    assert "more dorsiflexed than in measured throughout the stride" in first
+    assert re.search(r"\): an offset, for without its mean the shape agrees to within \S+ deg\.$", first)
+
+
+def test_what_is_smaller_than_a_clinician_would_call_one_is_not_named():
+    rng = np.random.default_rng(0)
+    one, other = walk("model", 0), walk("measured", 1)
+    one = replace(one, curves=one.curves[:1] + [0.0, 1.5, 0.0] + 0.1 * rng.normal(size=one.curves.shape))
+    other = replace(other, curves=one.curves[::-1] - [0.0, 1.5, 0.0] + 0.1 * rng.normal(size=one.curves.shape))
+    found = compare_walks(one, other)
+    assert found.ordered() == []
+    assert not len(found.regions)
+    said = mismatch_sentences(found)
+    assert said[0].startswith(
+        "No difference worth naming: model and measured differ by more than chance in right ankle"
+    )
+    assert "by less than 2.0 deg" in said[0]
+    assert compare_walks(one, other, smallest=Smallest(angle_deg=1.0)).ordered() == ["ankle_angle_r"]
 
 
 def test_the_method_says_what_p_speaks_of():
