@@ -127,8 +127,8 @@ def odd_trials(inquiry: Inquiry) -> tuple[Odd, ...]:
     for change in (*_turned(inquiry), *_shifted(bench, fit, segments)):
         after = bench.errors(*bench.fitted(change.measured))
         for trial in range(count):
-            others = [float(np.median(np.delete(each, trial))) for each in (before, after)]
-            errors = (float(before[trial]), float(after[trial]), *others)
+            then, now = (float(np.median(np.delete(each, trial))) for each in (before, after))
+            errors = (float(before[trial]), float(after[trial]), then, now)
             if BETTER * errors[1] < errors[0] and errors[3] > WORSE * errors[2]:
                 found.setdefault(trial, []).append(Odd(trial, change.words, change.channel, errors))
     clear = count - len(found) >= max(FEWEST_OTHERS, len(found) + 1)
