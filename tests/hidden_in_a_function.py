@@ -42,10 +42,11 @@ def write_record(path: Path, change: Change = lambda one: one, seed: int = 0) ->
     rng = np.random.default_rng(seed)
     truth, count = change(tank()), 80
     t = np.arange(count) / RATE
-    pumps = [
-        sum(rng.uniform(0.5, 1.5) * np.sin(2 * np.pi * f * t + rng.uniform(0, 6.3)) for f in (0.2, 0.45, 0.9))
+    waves = [
+        [rng.uniform(0.5, 1.5) * np.sin(2 * np.pi * f * t + rng.uniform(0, 6.3)) for f in (0.2, 0.45, 0.9)]
         for _ in range(4)
     ]
+    pumps = np.sum(waves, axis=1)
     drive = Drive.of([pump[:, None] for pump in pumps], RATE)
     machine = compile_simulation(truth)
     rows = Rows(np.arange(4), np.zeros(4, int), rng.uniform(0.2, 0.6, (4, 1)))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from gaitdisc.discovery.account import Part
@@ -10,11 +12,13 @@ from gaitdisc.discovery.estimates import estimates_of
 from gaitdisc.discovery.evidence import Judged
 from gaitdisc.discovery.held_out import drawn_runs, gap_size, proof_of, runs_of, tested
 from gaitdisc.discovery.inquiry import Inquiry
+from gaitdisc.discovery.odd_trials import KIND as ODD_TRIAL
 from gaitdisc.discovery.rivals import Rival, evidence_of, rivals_of
 from gaitdisc.discovery.shaken import Shaken
 from gaitdisc.discovery.verdict import Verdict
 from gaitdisc.discovery.wording import sentence_of
 from gaitdisc.discovery.wrong_start import begun_at
+from gaitdisc.recording import Finding
 from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, GapSize, Whereabouts
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.simulation import Simulation
@@ -63,7 +67,19 @@ def answer(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> tuple[Discove
         inquiry.measured.findings,
     )
     augmented = begun_at(augmented_of(base, now.account.parts), verdict.starts)
-    return sentence_of(discovery, base, now.account.parts), augmented
+    said = sentence_of(discovery, base, now.account.parts)
+    return replace(said, sentence=" ".join([said.sentence, *left_out(inquiry.measured.findings)])), augmented
+
+
+def left_out(findings: tuple[Finding, ...]) -> list[str]:
+    """Say which trials were left out, and why.
+
+    Parameters
+    ----------
+    findings : tuple of Finding
+        About the measured data.
+    """
+    return [f"{one.what[0].upper()}{one.what[1:]}; it was left out." for one in findings if one.kind == ODD_TRIAL]
 
 
 def effects_of(inquiry: Inquiry, verdict: Verdict, closed: float, gained: float) -> tuple[FoundEffect, ...]:

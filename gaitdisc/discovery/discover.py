@@ -15,6 +15,7 @@ from gaitdisc.discovery.fitted_shape import fitted_shape
 from gaitdisc.discovery.growth import grown, pruned
 from gaitdisc.discovery.held_out import Proof, holding_out_others, noted, proof_of, tells_nothing
 from gaitdisc.discovery.inquiry import Inquiry, begin_inquiry, split_in_time
+from gaitdisc.discovery.odd_trials import agreeing_trials
 from gaitdisc.discovery.ranking import MARGIN, ranked
 from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.shaken import Shaken, shaken
@@ -58,6 +59,7 @@ def discover(
     augmented : Simulation
         The simulation with what was found in it.
     """
+    measured = agreeing_trials(simulation, measured)
     inquiry = begin_inquiry(simulation, measured, shapes)
     told("fitting the simulation as it was read")
     as_read = inquiry.as_read()

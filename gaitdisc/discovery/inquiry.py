@@ -93,7 +93,7 @@ class Inquiry:
 
         The runs last one period, or less where a small change of the start grows fast (chaos, a fall).
         """
-        periods = self._tame_periods()
+        periods = self.tame_periods()
         first = self.shooting(self.segments(self.learned, FIRST_SHARE * periods))
         begun = account_for(first, self.search.base, (), self.guess.starts(first.segments))
         guess = self.guess.with_run(first.segments, begun.fit.states)
@@ -101,7 +101,7 @@ class Inquiry:
         account = account_for(shooting, self.search.base, (), guess.starts(shooting.segments))
         return judged(shooting.with_past(account.fit.states), self.search.base, account)
 
-    def _tame_periods(self) -> float:
+    def tame_periods(self) -> float:
         """Return how long a run may be, in periods, before a change of its start has grown by `GROWTH`."""
         shooting = self.shooting(self.segments(self.learned))
         states = shooting.segments.of(self.guess.states)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from gaitdisc.channel import nearest_word
 from gaitdisc.discovery.catalogue import SIGNALS, Shape
@@ -120,7 +121,7 @@ def _check_observed(measured: Measured, where: str) -> None:
             )
 
 
-def _first(where: np.ndarray) -> tuple[int, int]:
+def _first(where: ArrayLike) -> tuple[int, int]:
     """Place of the first that is true in a table; -1, -1 where none is."""
     found = np.argwhere(where)
     return (int(found[0][0]), int(found[0][1])) if len(found) else (-1, -1)

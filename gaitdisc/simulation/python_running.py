@@ -98,7 +98,7 @@ class _Walk:
         self._seconds = compiled._seconds(compiled.right_hand_side, self._values)
         self._history = [starts]
         self._feeds = PointTable(compiled.right_hand_side, len(starts))
-        self._feeds.fill(1 + len(compiled.states) + len(compiled.inputs), self._values.T)
+        self._feeds.fill(1 + len(compiled.states) + len(compiled.inputs), list(self._values.T))
 
     def sample(self, x: NDArray[np.float64], sample: int) -> NDArray[np.float64]:
         """One sample further, in its steps of Runge-Kutta."""

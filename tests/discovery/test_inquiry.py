@@ -90,8 +90,8 @@ def test_runs_are_shorter_where_a_change_of_the_start_grows_fast():
     unstable = simulation_of(FALLING, "falling.toml")
     calm = begin_inquiry(mass(), record(mass(), 0, Experiment(4, 6.0)))
     wild = begin_inquiry(unstable, record(mass(), 0, Experiment(4, 6.0)))
-    assert calm._tame_periods() == 1.0
-    growing = wild._tame_periods() * wild.rhythm.period
+    assert calm.tame_periods() == 1.0
+    growing = wild.tame_periods() * wild.rhythm.period
     assert np.cosh(np.sqrt(60) * growing) == pytest.approx(3.0, abs=2.0)
 
 

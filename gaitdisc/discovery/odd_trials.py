@@ -1,0 +1,250 @@
+"""Odd trials: one whose sign is turned, or that is shifted in time, against its inputs and its other channels.
+
+The simulation as read is run from each trial, its start free every period. However wrong it is, a record with its sign
+turned or its time shifted goes with it worse still. A trial that goes with it much better so, while the others go
+worse, was recorded otherwise than they were.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.discovery.account import account_for
+from gaitdisc.discovery.first_states import guess_states
+from gaitdisc.discovery.fitted import Fitted, start_basis, without
+from gaitdisc.discovery.inquiry import FEWEST_SAMPLES, SUBSTEPS, Inquiry, begin_inquiry
+from gaitdisc.discovery.noise import white_noise
+from gaitdisc.discovery.places import kinematic_rates
+from gaitdisc.discovery.segments import Segments, cut_segments
+from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.recording import Finding
+from gaitdisc.simulation.drive import Drive
+from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.running import compile_simulation
+from gaitdisc.simulation.simulation import Simulation
+
+KIND = "odd trial"
+SIGN = "the sign of "
+FEWEST_OTHERS = 2
+BETTER = 2.0  # times smaller the error of a trial has to be once it is changed
+WORSE = 1.3  # times greater the error of the others (median) has to be if they are changed alike
+PROMISING = 0.5  # of the mean square, to first order, that a shift has to leave at most for it to be tried
+SHIFTS_TRIED = 3  # of each trial
+SMALLEST_SHIFT = 2  # samples
+LONGEST_SHIFT = 1.0  # periods of the motion
+AS_GOOD = 1.1  # times the least error; of changes that serve alike, the first is named
+
+
+@dataclass(frozen=True)
+class Odd:
+    """A trial that goes with the simulation only once it is changed, while the others go worse.
+
+    Parameters
+    ----------
+    trial : int
+        Its number.
+    change : str
+        What is to be done to it, in words: `the sign of x is turned`.
+    channel : str
+        The channel or input that is meant; empty where all are.
+    errors : tuple of float
+        Of the trial as it is and once changed, of the others (median) as they are and if changed alike; in standard
+        deviations of the channels.
+    """
+
+    trial: int
+    change: str
+    channel: str
+    errors: tuple[float, float, float, float]
+
+
+@dataclass(frozen=True)
+class Change:
+    """What may have happened to a trial, undone in every trial.
+
+    Parameters
+    ----------
+    words, channel : str
+        As for `Odd`.
+    measured : Measured
+        All trials, changed.
+    """
+
+    words: str
+    channel: str
+    measured: Measured
+
+
+def agreeing_trials(simulation: Simulation, measured: Measured) -> Measured:
+    """Return the trials without those that are turned in sign or shifted in time, each with a finding.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        As read.
+    measured : Measured
+        Its trials; of fewer than three, none can be said to be the odd one.
+    """
+    several = len(measured.trials) > FEWEST_OTHERS
+    odd = odd_trials(begin_inquiry(simulation, measured)) if several else ()
+    if not odd:
+        return measured
+    source = measured.source or simulation.title
+    findings = tuple(
+        Finding(
+            "warning",
+            KIND,
+            source,
+            f"trial {measured.trials[one.trial]!r} looks as if {one.change}: undone, the error of the simulation as "
+            f"given falls from {one.errors[0]:.2g} to {one.errors[1]:.2g} standard deviations; in the other trials the "
+            f"same makes it rise from {one.errors[2]:.2g} to {one.errors[3]:.2g}",
+            "this trial, which was left out: correct it, or take it away",
+            one.channel,
+        )
+        for one in odd
+    )
+    kept = measured.selected(sorted(set(range(len(measured.trials))) - {one.trial for one in odd}))
+    return replace(kept, findings=(*kept.findings, *findings))
+
+
+def odd_trials(inquiry: Inquiry) -> tuple[Odd, ...]:
+    """Find the trials that are turned in sign or shifted in time.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        The simulation as read and all trials.
+    """
+    count = len(inquiry.measured.trials)
+    bench = _Bench(inquiry)
+    fit, segments = bench.fitted(inquiry.measured)
+    before = bench.errors(fit, segments)
+    found: dict[int, list[Odd]] = {}
+    for change in (*_turned(inquiry), *_shifted(bench, fit, segments)):
+        after = bench.errors(*bench.fitted(change.measured))
+        for trial in range(count):
+            then, now = (float(np.median(np.delete(each, trial))) for each in (before, after))
+            errors = (float(before[trial]), float(after[trial]), then, now)
+            if BETTER * errors[1] < errors[0] and errors[3] > WORSE * errors[2]:
+                found.setdefault(trial, []).append(Odd(trial, change.words, change.channel, errors))
+    clear = count - len(found) >= max(FEWEST_OTHERS, len(found) + 1)
+    return tuple(_either(found[trial]) for trial in sorted(found)) if clear else ()
+
+
+def _either(found: list[Odd]) -> Odd:
+    """What suits a trial best, with what else would serve alike; of the shifts in time the best alone."""
+    least = min(one.errors[1] for one in found)
+    alike = [one for one in found if one.errors[1] <= AS_GOOD * least]
+    moved = sorted((one for one in alike if not one.change.startswith(SIGN)), key=lambda one: one.errors[1])
+    turned = [one for one in alike if one.change.startswith(SIGN)]
+    names = " or of ".join(one.change.removeprefix(SIGN) for one in turned)
+    words = ([f"{SIGN}{names} were turned"] if turned else []) + [one.change for one in moved[:1]]
+    return replace([*turned, *moved][0], change=", or ".join(words))
+
+
+class _Bench:
+    """What runs the simulation as read over all trials and measures how far it misses each."""
+
+    def __init__(self, inquiry: Inquiry) -> None:
+        self.simulation, self.rhythm = inquiry.search.base, inquiry.rhythm
+        self.rate_of = kinematic_rates(self.simulation, compile_simulation(self.simulation))
+        self.spread = np.nanstd(inquiry.measured.observed, axis=(0, 1))
+        self.samples = max(int(inquiry.tame_periods() * self.rhythm.period * self.rhythm.rate), FEWEST_SAMPLES)
+        self.measured = inquiry.measured
+
+    def fitted(self, measured: Measured) -> tuple[Fitted, Segments]:
+        """The fit of the start states, run by run."""
+        guess = guess_states(self.simulation, measured.observed, measured.rate, self.rhythm.period, self.rate_of)
+        segments = cut_segments(measured.samples, tuple(range(len(measured.trials))), self.samples)
+        shooting = Shooting(measured, segments, white_noise(self.spread), SUBSTEPS, guess.states)
+        return account_for(shooting, self.simulation, (), guess.starts(segments)).fit, segments
+
+    def errors(self, fit: Fitted, segments: Segments) -> NDArray[np.float64]:
+        """Root mean square of what is left of each trial [standard deviations]; infinite where a run failed."""
+        square = np.nanmean((fit.residual / self.spread) ** 2, axis=(1, 2))
+        square = np.where(np.isfinite(fit.white).all(axis=1), square, np.inf)
+        return np.sqrt([square[segments.trial == trial].mean() for trial in np.unique(segments.trial)])
+
+
+def _turned(inquiry: Inquiry) -> Iterator[Change]:
+    """Yield the trials with the sign of a channel, of all channels, or of an input turned."""
+    measured, inputs = inquiry.measured, inquiry.search.base.inputs
+    for number, name in enumerate(measured.channels):
+        observed = measured.observed * np.where(np.arange(len(measured.channels)) == number, -1.0, 1.0)
+        yield Change(f"{SIGN}{name}", name, replace(measured, observed=observed))
+    if len(measured.channels) > 1:
+        changed = replace(measured, observed=-measured.observed)
+        yield Change(f"{SIGN}every channel", "", changed)
+    for number, part in enumerate(inputs):
+        if not part.wraps:
+            signs = np.where(np.arange(len(inputs)) == number, -1.0, 1.0)
+            drive = replace(measured.drive, inputs=measured.drive.inputs * signs)
+            yield Change(f"{SIGN}{part.name}", part.name, replace(measured, drive=drive))
+
+
+def _shifted(bench: _Bench, fit: Fitted, segments: Segments) -> Iterator[Change]:
+    """Yield the trials with all channels shifted against the inputs, by what serves one of the trials."""
+    if not bench.simulation.inputs:  # a system that is left to itself has no clock to be shifted against
+        return
+    measured = bench.measured
+    most = min(int(LONGEST_SHIFT * bench.rhythm.period * bench.rhythm.rate), int(measured.samples.min()) // 3)
+    shifts = [shift for shift in range(-most, most + 1) if abs(shift) >= SMALLEST_SHIFT]
+    likely = set()
+    for trial in range(len(measured.trials)):
+        mine = np.flatnonzero(segments.trial == trial)
+        seen = measured.observed[trial, : measured.samples[trial]] / bench.spread
+        run = segments.of(measured.observed)[mine] / bench.spread - fit.residual[mine] / bench.spread
+        slopes, begin = fit.slopes[mine], segments.begin[mine]
+        now, *left = (_left(seen, run, slopes, begin + shift) for shift in (0, *shifts))
+        promising = [place for place in _lowest(np.array(left)) if left[place] < PROMISING * now]
+        likely |= {shifts[place] for place in promising[:SHIFTS_TRIED]}
+    for shift in sorted(likely):
+        words = f"its channels came {abs(shift) / measured.rate:.3g} s too {'late' if shift > 0 else 'early'}"
+        yield Change(f"{words} for its inputs", "", shifted(measured, shift))
+
+
+def shifted(measured: Measured, shift: int) -> Measured:
+    """Return trials whose channels come a number of samples earlier against their inputs; each loses as many.
+
+    Parameters
+    ----------
+    measured : Measured
+        All trials.
+    shift : int
+        Samples; negative where the channels come later.
+    """
+    inputs, seen = max(-shift, 0), max(shift, 0)
+    trials = [(each, int(samples) - abs(shift)) for each, samples in enumerate(measured.samples)]
+    drive = Drive.of(
+        [measured.drive.inputs[trial, inputs : inputs + samples] for trial, samples in trials],
+        measured.rate,
+        measured.drive.time0 + inputs / measured.rate,
+    )
+    observed = np.full((len(trials), int(drive.samples.max()), len(measured.channels)), np.nan)
+    for trial, samples in trials:
+        observed[trial, :samples] = measured.observed[trial, seen : seen + samples]
+    return replace(measured, drive=drive, observed=observed)
+
+
+def _left(
+    seen: NDArray[np.float64], run: NDArray[np.float64], slopes: NDArray[np.float64], begin: NDArray[np.intp]
+) -> float:
+    """Mean square of what another stretch of the record leaves of a run, its start free to first order."""
+    samples = begin[:, None] + np.arange(run.shape[1])
+    inside = (samples >= 0) & (samples < len(seen))
+    residual = np.where(inside[..., None], seen[np.clip(samples, 0, len(seen) - 1)] - run, 0.0)
+    flat = np.nan_to_num(residual).reshape(len(begin), -1)
+    kept = np.repeat(inside, run.shape[2], axis=1)
+    rest = without(start_basis(slopes * kept[..., None]), flat[..., None])[..., 0]
+    return float((rest**2).sum() / max(kept.sum(), 1))
+
+
+def _lowest(values: NDArray[np.float64]) -> list[int]:
+    """Places of the local minima, the least first."""
+    padded = np.concatenate([[np.inf], values, [np.inf]])
+    places = np.flatnonzero((values <= padded[:-2]) & (values <= padded[2:]))
+    return sorted(places.tolist(), key=lambda place: values[place])

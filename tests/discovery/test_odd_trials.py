@@ -1,0 +1,106 @@
+"""A trial that was turned or shifted is named and left out; trials that differ otherwise are not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hidden_in_a_mass import Experiment, mass, neuron, record, two_rods, with_load
+
+from gaitdisc.discovery.discover import discover
+from gaitdisc.discovery.inquiry import begin_inquiry
+from gaitdisc.discovery.odd_trials import agreeing_trials, odd_trials, shifted
+from gaitdisc.report.discovery_page import write_discovery_report
+from gaitdisc.results.discovery_folder import save_discovery
+
+
+@pytest.fixture(scope="module")
+def cubic():
+    return record(with_load("-14*x**3"), 3, Experiment(seconds=12.0))
+
+
+def turned(measured, trial, channel=0):
+    observed = np.array(measured.observed)
+    observed[trial, :, channel] *= -1
+    return replace(measured, observed=observed)
+
+
+def moved_in_time(measured, trial, samples):
+    """Return trials of one length, the channels of one of them so many samples early (late where negative)."""
+    every, length = shifted(measured, samples), measured.observed.shape[1] - abs(samples)
+    observed, inputs = np.array(measured.observed[:, :length]), np.array(measured.drive.inputs[:, :length])
+    observed[trial], inputs[trial] = every.observed[trial], every.drive.inputs[trial]
+    return replace(measured, drive=replace(every.drive, inputs=inputs, time0=measured.drive.time0), observed=observed)
+
+
+def found_in(simulation, measured):
+    return [(one.trial, one.change, one.channel) for one in odd_trials(begin_inquiry(simulation, measured))]
+
+
+@pytest.mark.parametrize("trial", [0, 2])
+def test_a_turned_sign_is_found_whichever_trial_has_it(cubic, trial):
+    said = "the sign of x or of push were turned"
+    assert found_in(mass(), turned(cubic, trial)) == [(trial, said, "x")]
+
+
+def test_channels_that_may_each_be_turned_are_both_named():
+    measured = record(two_rods(), 3, Experiment(seconds=8.0))  # a motion with both signs turned is a motion as well
+    said = "the sign of upper or of lower were turned"
+    assert found_in(two_rods(), turned(measured, 2, 1)) == [(2, said, "upper")]
+
+
+@pytest.mark.parametrize(("samples", "said"), [(25, "early"), (-25, "late")])
+def test_a_shift_is_found_with_its_seconds(cubic, samples, said):
+    ((trial, change, _),) = found_in(mass(), moved_in_time(cubic, 1, samples))
+    assert trial == 1 and change.endswith(f"s too {said} for its inputs")
+    assert float(change.split()[3]) == pytest.approx(0.5, abs=0.05)
+
+
+CLEAN = {
+    "nothing hidden": (mass(), mass(), Experiment()),
+    "a spring": (mass(), with_load("-14*x**3"), Experiment()),
+    "a stop that engages in few": (mass(), with_load("-200*max(0, x - 1.1)"), Experiment()),
+    "late inputs in all": (mass(), mass(), Experiment(late=-8)),
+    "much noise": (mass(), with_load("-6*x"), Experiment(noise=0.3)),
+    "shaken": (mass(), mass(), Experiment(shaking=6.0)),
+    "rods left to themselves": (two_rods(), two_rods(), Experiment(seconds=8.0)),
+    "a neuron": (neuron(), neuron(), Experiment(seconds=8.0)),
+}
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("case", CLEAN)
+def test_trials_that_were_recorded_alike_draw_no_finding(case, seed):
+    given, truth, how = CLEAN[case]
+    assert found_in(given, record(truth, seed, how)) == []
+
+
+def test_it_is_left_out_and_said_in_the_answer_and_the_report(cubic, tmp_path):
+    found, augmented = discover(mass(), turned(cubic, 1))
+    assert [one.name for one in augmented.effects] == ["cubic_stiffness"]
+    assert found.effects[0].estimates["stiffness"].value == pytest.approx(14, rel=0.1)
+    (odd,) = [one for one in found.findings if one.kind == "odd trial"]
+    assert (odd.severity, odd.channel) == ("warning", "x")
+    assert odd.what.startswith("trial '2' looks as if the sign of x or of push were turned: undone, the error of ")
+    assert "Trial '2' looks as if the sign of x or of push were turned" in found.sentence
+    assert found.sentence.endswith("it was left out.")
+    assert found.runs.names == ("1", "3", "4")
+    assert "odd trial" in save_discovery(found, tmp_path).read_text()
+    assert "the sign of x or of push were turned" in write_discovery_report(found, tmp_path).read_text()
+
+
+def test_of_two_trials_none_is_the_odd_one(cubic):
+    two = turned(cubic.selected([0, 1]), 1)
+    assert agreeing_trials(mass(), two) is two
+
+
+def test_two_against_two_are_left_as_they_are(cubic):
+    both = turned(turned(cubic, 0), 1)
+    assert agreeing_trials(mass(), both) is both
+
+
+def test_trials_are_shifted_against_their_inputs(cubic):
+    for shift in (3, -3):
+        moved = shifted(cubic, shift)
+        assert moved.samples.tolist() == [597] * 4
+        np.testing.assert_array_equal(moved.observed[2], cubic.observed[2, max(shift, 0) :][:597])
+        np.testing.assert_array_equal(moved.drive.inputs[2], cubic.drive.inputs[2, max(-shift, 0) :][:597])
