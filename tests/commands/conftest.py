@@ -13,6 +13,8 @@ from typer.testing import CliRunner
 from gaitdisc.cli import app, main
 from gaitdisc.ingest.storage import write_storage
 
+ANGLES = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", "hip_flexion_l", "knee_angle_l")
+
 
 @pytest.fixture(scope="session")
 def called():
@@ -38,7 +40,7 @@ def recordings(tmp_path_factory):
         walker = DrivenWalker("A", seed=8, spring_per_s2=spring)
         path = folder / "walker1" / f"{condition}.mot"
         path.parent.mkdir(exist_ok=True)
-        write_storage(walker.walked(40.0, condition).stream("kinematics"), path)
+        write_storage(walker.walked(30.0, condition).stream("kinematics").selected(ANGLES), path)
     return folder
 
 
