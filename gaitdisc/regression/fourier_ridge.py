@@ -156,10 +156,11 @@ def _squares(
     count = part[0].shape[1] + len(phases)
     squares, products, total = np.zeros((count, count)), np.zeros((count, part[1].shape[1])), np.zeros(count)
     for row in range(0, len(part[0]), ROWS_AT_ONCE):
-        h = _columns(part[0][row : row + ROWS_AT_ONCE], frequencies, phases)
+        # in double precision: in single, rounding outweighs the small penalties that columns that say the same rest on
+        h = _columns(part[0][row : row + ROWS_AT_ONCE], frequencies, phases).astype(float)
         squares += h.T @ h
         products += h.T @ part[1][row : row + ROWS_AT_ONCE]
-        total += h.sum(axis=0, dtype=float)
+        total += h.sum(axis=0)
     n = len(part[0])
     mean = total / n
     return squares / n - np.outer(mean, mean), products / n, mean

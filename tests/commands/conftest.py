@@ -1,22 +1,36 @@
 """A command line as a person calls it, and a study with one participant."""
 
-import subprocess
+import io
 import sys
+from contextlib import redirect_stderr, redirect_stdout
+from subprocess import CompletedProcess
+from unittest.mock import patch
 
 import pytest
 from driven_walker import DrivenWalker
 from typer.testing import CliRunner
 
-from gaitdisc.cli import app
+from gaitdisc.cli import app, main
 from gaitdisc.ingest.storage import write_storage
+
+ANGLES = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", "hip_flexion_l", "knee_angle_l")
 
 
 @pytest.fixture(scope="session")
 def called():
-    """Exit code and everything printed, with refusals printed as `main` prints them."""
-    return lambda *words: subprocess.run(
-        [sys.executable, "-m", "gaitdisc", *map(str, words)], capture_output=True, text=True, check=False
-    )
+    """Exit code and everything printed, with refusals printed as `main` prints them; tests/test_cli.py starts anew."""
+
+    def call(*words):
+        arguments, out, err = ["gaitdisc", *map(str, words)], io.StringIO(), io.StringIO()
+        with patch.object(sys, "argv", arguments), redirect_stdout(out), redirect_stderr(err):
+            try:
+                main()
+                code = 0
+            except SystemExit as end:
+                code = end.code
+        return CompletedProcess(arguments, code, out.getvalue(), err.getvalue())
+
+    return call
 
 
 @pytest.fixture(scope="session")
@@ -26,7 +40,7 @@ def recordings(tmp_path_factory):
         walker = DrivenWalker("A", seed=8, spring_per_s2=spring)
         path = folder / "walker1" / f"{condition}.mot"
         path.parent.mkdir(exist_ok=True)
-        write_storage(walker.walked(40.0, condition).stream("kinematics"), path)
+        write_storage(walker.walked(30.0, condition).stream("kinematics").selected(ANGLES), path)
     return folder
 
 

@@ -53,3 +53,14 @@ def test_same_seed_same_model_and_a_missing_input_gives_a_missing_output(curve):
 def test_without_a_check_part(curve):
     with pytest.raises(TrainingError, match="needs a check part, by which its penalty is chosen"):
         fit_fourier_ridge(curve, curve.rows(slice(0, 0)))
+
+
+def test_columns_that_say_the_same_share_their_weight_as_the_smallest_weights_do():
+    t = np.arange(1200) / 100
+    a, b = np.sin(2 * t), np.cos(3.3 * t)
+    x = np.column_stack([a, b, a + b, 2 * a - 0.5 * b])
+    s = Samples(x, (3 * a - b)[:, None], tuple("abcd"), ("y",), t, t)
+    found = fit_fourier_ridge(s.rows(slice(0, 900)), s.rows(slice(900, None)))
+    scaled = found.x_scale.scaled(x[:900])
+    smallest = np.linalg.pinv(scaled, rcond=1e-6) @ found.y_scale.scaled(s.y[:900])
+    assert np.allclose(found.weights, smallest, rtol=0, atol=1e-4)
