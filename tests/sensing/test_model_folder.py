@@ -92,7 +92,7 @@ def test_damaged_and_foreign_files(pair, saved, untrained, tmp_path):
     save_model(SensingModel(static, pair.channels, np.ones(1)), tmp_path / "static")
     (tmp_path / "weights.npz").write_bytes((tmp_path / "static" / "weights.npz").read_bytes())
     with pytest.raises(
-        SchemaError, match=r"the weights read 1 numbers and tell late, the model has 11 and late.*Both f"
+        SchemaError, match=r"the weights read 1 numbers and estimate late, the model has 11 and late.*Both f"
     ):
         load_model(tmp_path)
     (tmp_path / "model.json").write_text("{")
