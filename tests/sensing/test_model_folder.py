@@ -90,7 +90,7 @@ def test_damaged_and_foreign_files(pair, saved, untrained, tmp_path):
     sha256 = file_sha256(tmp_path / "weights.npz")
     resealed(tmp_path / "model.json", lambda data: data["sha256"].update({"weights.npz": sha256}))
     with pytest.raises(
-        SchemaError, match=r"the weights read 1 numbers and tell late, the model has 11 and late.*Both f"
+        SchemaError, match=r"the weights read 1 numbers and estimate late, the model has 11 and late.*Both f"
     ):
         load_model(tmp_path)
     (tmp_path / "model.json").write_text("{")

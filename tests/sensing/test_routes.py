@@ -69,9 +69,9 @@ def test_a_path_outside_the_field_is_one_clear_error():
         along(WAVE, [(-4.0, 2.0)] * 60, "ship")
     with pytest.raises(ChannelError, match=r"each of 60 snapshots along 2 axes; found an array of shape \(3, 2\)"):
         along(WAVE, [(0.0, 0.0)] * 3, "ship")
-    with pytest.raises(ChannelError, match="points of the field, 0 to 69; asked for 70"):
+    with pytest.raises(ChannelError, match="points of the field, 0 to 69; requested: 70"):
         fixed(WAVE, [3, 70])
-    with pytest.raises(ChannelError, match="asked for none"):
+    with pytest.raises(ChannelError, match="requested: none"):
         fixed(WAVE, [])
 
 
