@@ -1,0 +1,3 @@
+from pathlib import Path
+CELLS = Path(__file__).with_name("ch3_cells.csv")
+def write_docs(): ...
