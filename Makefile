@@ -5,17 +5,29 @@ VENV   ?= .venv
 TORCH  ?= torch==2.13.0
 BIN    := $(VENV)/bin
 DEMO   ?= demo
+# Test processes side by side; the tests of one file stay in one of them.
+JOBS   ?= 2
+PYTEST := OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q
+BESIDE := -n $(JOBS) --dist loadfile
 
-.PHONY: demo test slow lint format bench docs clean
+.PHONY: demo test elsewhere slow lint format bench docs clean
 
 demo: $(VENV)/.base
 	$(BIN)/gaitdisc demo $(DEMO)
 
 test: $(VENV)/.dev
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q
+	$(PYTEST) $(BESIDE)
+
+# The same tests with the arithmetic of an older processor (no AVX, no FMA) and in random order: make elsewhere SEED=7
+# repeats an order. What numpy found on this machine is switched off, whatever its names are.
+elsewhere: $(VENV)/.dev
+	@set -e; seed=$${SEED:-$$(od -An -N3 -tu4 /dev/urandom | tr -d ' ')}; echo "order of seed $$seed"; \
+	found=$$($(BIN)/python -c 'import numpy; print(*numpy.show_config("dicts")["SIMD Extensions"].get("found", []))'); \
+	NPY_DISABLE_CPU_FEATURES="$$found" OPENBLAS_CORETYPE=Nehalem ATEN_CPU_CAPABILITY=default NUMBA_CPU_NAME=generic \
+	$(PYTEST) $(BESIDE) -p randomly --randomly-seed=$$seed
 
 slow: $(VENV)/.dev
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q -m slow
+	$(PYTEST) $(BESIDE) -m slow
 
 lint: $(VENV)/.dev
 	$(BIN)/ruff format --check .
@@ -51,4 +63,4 @@ clean:
 
 docs: $(VENV)/.dev
 	$(BIN)/python -m pip install --quiet --editable '.[docs]'
-	$(BIN)/mkdocs build --strict --site-dir build/site
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --site-dir build/site

@@ -7,6 +7,14 @@ Forward, backward and Adam on random windows of 25 readings of three sensors, 15
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
+from command_line import command_line
+
+command_line(__name__, __doc__)  # before the slow imports
+
 import os
 import time
 

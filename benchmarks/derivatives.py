@@ -1,9 +1,19 @@
 """Error of the second derivative on signals whose second derivative is known.
 
-Run: python benchmarks/derivatives.py > docs/derivatives.md
+    python benchmarks/derivatives.py > docs/derivatives.md
+
+Operators, cut-offs, edges and gaps, as that page sets them side by side.
 """
 
 from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
+from command_line import command_line
+
+command_line(__name__, __doc__)  # before the slow imports
 
 import itertools
 

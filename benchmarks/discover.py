@@ -9,12 +9,26 @@ package's dependencies (pip install pysindy); stock_pysindy.py says what it is g
 
 from __future__ import annotations
 
-import argparse
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
+from command_line import argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument("bench", "folder of make_cases.py and score.py", type=Path),
+    argument("out", "where the cases go", Path("blind")),
+    argument("--seed", "of the cases", 21),
+    argument("--cases", "how many are kept", 30),
+    argument("--noise", "of the sensors, share of the signal", 0.05),
+    argument("--jobs", "cases side by side", 2),
+)  # before the slow imports
+
 import json
 import shutil
 import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -62,18 +76,10 @@ def line(name: str, rows: pd.DataFrame) -> dict[str, object]:
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("bench", type=Path)
-    parser.add_argument("out", type=Path, nargs="?", default=Path("blind"))
-    parser.add_argument("--seed", type=int, default=21)
-    parser.add_argument("--cases", type=int, default=30)
-    parser.add_argument("--noise", type=float, default=0.05)
-    parser.add_argument("--jobs", type=int, default=2)
-    asked = parser.parse_args()
-    make(asked.bench, asked.out, asked.seed, asked.cases, asked.noise)
+    make(GIVEN.bench, GIVEN.out, GIVEN.seed, GIVEN.cases, GIVEN.noise)
     lines = []
     for tool, command in TOOLS.items():
-        rows = scored(asked.bench, asked.out, command, asked.jobs)
-        rows.to_json(asked.out / f"{tool.replace(', ', '-')}.json", orient="records", indent=1)
+        rows = scored(GIVEN.bench, GIVEN.out, command, GIVEN.jobs)
+        rows.to_json(GIVEN.out / f"{tool.replace(', ', '-')}.json", orient="records", indent=1)
         lines.append(line(tool, rows))
         print(pd.DataFrame(lines).round(3).to_string(index=False), flush=True)

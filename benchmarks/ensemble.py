@@ -1,4 +1,4 @@
-"""SHRED from five seeds: error of one and of their mean, coverage, and whether their spread tells where the error is.
+"""SHRED from five seeds: error of one and of their mean, coverage, and whether their spread shows where the error is.
 
     python benchmarks/ensemble.py treadmill|cohort [--people 3]
 
@@ -8,7 +8,19 @@ error of their mean, over windows, mean over states.
 
 from __future__ import annotations
 
-import argparse
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
+from command_line import argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument("walks", "which walks", choices=("treadmill", "cohort")),
+    argument("--people", "the first so many of the cohort", 3),
+)  # before the slow imports
+
 import os
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
@@ -23,11 +35,7 @@ from gaitdisc.sensing.reconstructor import ENSEMBLE, fit_reconstructor
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("walks", choices=("treadmill", "cohort"))
-    parser.add_argument("--people", type=int, default=3)
-    given = parser.parse_args()
-    for person in chosen_walks(given.walks, given.people):
+    for person in chosen_walks(GIVEN.walks, GIVEN.people):
         print(line(person), flush=True)
 
 

@@ -12,15 +12,28 @@ decoder of 350 and 400, 100 readings, as the dissertation has it, for its cost a
 
 from __future__ import annotations
 
-import argparse
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
+from command_line import argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument("folder", "where the flow goes; what is there is not computed again", type=Path),
+    argument("--epochs", "of our network", 30),
+    argument("--text-epochs", "of the dissertation's network", 3),
+    argument("--energy", "share that the modes keep", 0.99),
+    argument("--one", "train one alone, print one line of JSON", nargs=2, metavar=("NETWORK", "TARGETS")),
+)  # before the slow imports
+
 import json
 import os
 import re
 import subprocess
-import sys
 import time
 from functools import partial
-from pathlib import Path
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
@@ -39,21 +52,16 @@ BATCH, RATE, DECAY = 64, 3e-3, 0.01
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description="125,000 outputs: raw points against modes.")
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--epochs", type=int, default=30)
-    parser.add_argument("--text-epochs", type=int, default=3)
-    parser.add_argument("--energy", type=float, default=0.99)
-    parser.add_argument("--one", nargs=2, metavar=("NETWORK", "TARGETS"))
-    asked = parser.parse_args()
-    if asked.one:
-        network, targets = asked.one
-        epochs = asked.epochs if network == "ours" else asked.text_epochs
-        print(json.dumps(trained(asked.folder, network, targets, epochs)))
+    if GIVEN.one:
+        network, targets = GIVEN.one
+        epochs = GIVEN.epochs if network == "ours" else GIVEN.text_epochs
+        print(json.dumps(trained(GIVEN.folder, network, targets, epochs)))
         return
     for network in LAGS:
-        write_parts(asked.folder, network, asked.energy)
-    print("| network | targets | outputs | weights | s an epoch | peak beyond libraries [MB] | relative L2, judged |")
+        write_parts(GIVEN.folder, network, GIVEN.energy)
+    print(
+        "| network | targets | outputs | weights | s an epoch | peak beyond libraries [MB] | relative L2, test part |"
+    )
     print("|---|---|---|---|---|---|---|")
     found = {}
     for network in LAGS:
@@ -89,7 +97,7 @@ def write_parts(folder: Path, network: str, energy: float) -> None:
 
 
 def trained(folder: Path, network: str, targets: str, epochs: int) -> dict[str, float]:
-    """Train on one kind of targets and judge in the field."""
+    """Train on one kind of targets and test in the field."""
     import torch
 
     from gaitdisc.networks.schedule import schedule_of

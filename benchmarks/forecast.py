@@ -1,4 +1,4 @@
-"""Error of the states told some time ahead, against that time; persistence and the mean stride beside it.
+"""Error of the states forecast some time ahead, against that time; persistence and the mean stride beside it.
 
     python benchmarks/forecast.py treadmill|cohort [--people 4] [--networks]
 
@@ -8,7 +8,20 @@ knows all states at the time of the forecast; the mean stride knows the contacts
 
 from __future__ import annotations
 
-import argparse
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
+from command_line import argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument("walks", "which walks", choices=("treadmill", "cohort")),
+    argument("--people", "the first so many of the cohort", 4),
+    argument("--networks", "networks as well as ridge regressions", False),
+)  # before the slow imports
+
 import os
 from dataclasses import replace
 
@@ -24,13 +37,8 @@ AHEAD = (0, 5, 10, 20, 30, 50)  # samples
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("walks", choices=("treadmill", "cohort"))
-    parser.add_argument("--people", type=int, default=4)
-    parser.add_argument("--networks", action="store_true")
-    given = parser.parse_args()
-    people = chosen_walks(given.walks, given.people)
-    kinds = ("linear", "delay ridge", "fourier ridge") + (("shred",) if given.networks else ())
+    people = chosen_walks(GIVEN.walks, GIVEN.people)
+    kinds = ("linear", "delay ridge", "fourier ridge") + (("shred",) if GIVEN.networks else ())
     for ahead in AHEAD:
         found = [errors(person, ahead, kinds) for person in people]
         mean = {name: np.sqrt(np.mean([each[name] for each in found])) for name in found[0]}

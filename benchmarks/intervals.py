@@ -1,14 +1,29 @@
-"""Share of judged states inside the 90 % interval: temporal split, and one person left out.
+"""Share of test states inside the 90 % interval: temporal split, and one person left out.
 
     python benchmarks/intervals.py treadmill|cohort [--people 12] [--split temporal|subject] [--kinds "delay ridge,..."]
 
-Mean over all told states and people, and the least and largest of the people; `plain` is the split conformal quantile
-that takes every window for an independent one, and for a person left out the checked person alone.
+Mean over all reconstructed states and people, and the least and largest of the people; `plain` is the split conformal
+quantile that takes every window for an independent one, and for a person left out the checked person alone.
 """
 
 from __future__ import annotations
 
-import argparse
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
+from command_line import argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument("walks", "which walks", choices=("treadmill", "cohort")),
+    argument("--people", "the first so many of the cohort", 12),
+    argument("--split", "what is held out", "temporal", choices=("temporal", "subject")),
+    argument("--kinds", "models, with commas between", "linear,delay ridge,fourier ridge"),
+    argument("--every", "test every n-th person", 1),
+)  # before the slow imports
+
 import os
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
@@ -25,21 +40,14 @@ from gaitdisc.sensing.splits import PERSON_OUT, Parts, split_by_subject, split_w
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("walks", choices=("treadmill", "cohort"))
-    parser.add_argument("--people", type=int, default=12)
-    parser.add_argument("--split", choices=("temporal", "subject"), default="temporal")
-    parser.add_argument("--kinds", default="linear,delay ridge,fourier ridge")
-    parser.add_argument("--every", type=int, default=1, help="judge every so manieth person")
-    given = parser.parse_args()
-    people = chosen_walks(given.walks, given.people)
+    people = chosen_walks(GIVEN.walks, GIVEN.people)
     windows = [person.windows() for person in people]
-    for kind in given.kinds.split(","):
-        judged = range(0, len(people), given.every)
-        found = np.array([shares(kind, people[k], parts_of(windows, k, given.split)) for k in judged])
+    for kind in GIVEN.kinds.split(","):
+        judged = range(0, len(people), GIVEN.every)
+        found = np.array([shares(kind, people[k], parts_of(windows, k, GIVEN.split)) for k in judged])
         said = [f"{name} {100 * v.mean():.1f} % ({100 * v.min():.0f} to {100 * v.max():.0f})"
                 for name, v in zip(("plain", "ours"), found.T, strict=True)]  # fmt: skip
-        print(f"{given.walks}, {given.split}, {kind}: {', '.join(said)}", flush=True)
+        print(f"{GIVEN.walks}, {GIVEN.split}, {kind}: {', '.join(said)}", flush=True)
 
 
 def parts_of(windows: list[list[Samples]], judged: int, split: str) -> Parts:

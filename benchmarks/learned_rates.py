@@ -10,7 +10,20 @@ how much less RMSE the forecast has than that of the known model, beside the Gau
 
 from __future__ import annotations
 
-import argparse
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
+from command_line import argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument("--noise", "of the record, share of the signal", 0.001),
+    argument("--seed", "of the noise", 0),
+    argument("--direct-s", "length of the run by solve_ivp [s]", 20.0),
+)  # before the slow imports
+
 import time as clock
 
 import numpy as np
@@ -89,11 +102,6 @@ def line(name: str, record: Record, direct_s: float) -> dict[str, object]:
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--noise", type=float, default=0.001)
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--direct-s", type=float, default=20.0)
-    asked = parser.parse_args()
-    made = Conditions(noise=asked.noise, seed=asked.seed)
-    lines = [line(name, recorded(system, made), asked.direct_s) for name, system in systems().items()]
+    made = Conditions(noise=GIVEN.noise, seed=GIVEN.seed)
+    lines = [line(name, recorded(system, made), GIVEN.direct_s) for name, system in systems().items()]
     print(pd.DataFrame(lines).set_index("system").T.to_string(float_format=lambda value: f"{value:.3g}"))

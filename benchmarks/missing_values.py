@@ -2,15 +2,28 @@
 
     python benchmarks/missing_values.py treadmill|cohort [--people 4] [--seed 0]
 
-Readings of each sensor go missing by themselves, one by one or in drop-outs of 0.2 s on average, in the judged part
+Readings of each sensor go missing by themselves, one by one or in drop-outs of 0.2 s on average, in the test part
 (temporal split). Ridge regression and SHRED read the training mean or the last known value in their place. `masked
-shred` is told which are missing, and was fitted to windows of which every second had lost up to 60 %; so was `fourier
-ridge, told`, its rival: the same values and marks as columns. RMSE over the angles that no sensor measures [deg].
+shred` is given which are missing, and was fitted to windows of which every second had lost up to 60 %; so was `fourier
+ridge, marks given`, its rival: the same values and marks as columns. RMSE [deg] over angles that no sensor measures.
 """
 
 from __future__ import annotations
 
-import argparse
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
+from command_line import argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument("walks", "which walks", choices=("treadmill", "cohort")),
+    argument("--people", "the first so many of the cohort", 4),
+    argument("--seed", "of what goes missing and of the fits", 0),
+)  # before the slow imports
+
 import os
 from collections.abc import Callable
 from dataclasses import replace
@@ -35,18 +48,13 @@ Told = Callable[[Samples], NDArray[np.float64]]
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("walks", choices=("treadmill", "cohort"))
-    parser.add_argument("--people", type=int, default=4)
-    parser.add_argument("--seed", type=int, default=0)
-    given = parser.parse_args()
-    people = chosen_walks(given.walks, given.people)
-    found = np.array([curves(person, given.seed) for person in people])  # (person, run, share, model)
-    names = [*(f"{kind}, {way}" for kind, way in FILLED), "fourier ridge, told", MASKED]
+    people = chosen_walks(GIVEN.walks, GIVEN.people)
+    found = np.array([curves(person, GIVEN.seed) for person in people])  # (person, run, share, model)
+    names = [*(f"{kind}, {way}" for kind, way in FILLED), "fourier ridge, marks given", MASKED]
     for run, table in zip(RUNS_S, np.sqrt(np.mean(found, axis=0)), strict=True):
         print(f"{len(people)} people; drop-outs of {run:g} s; RMSE [deg] at {', '.join(f'{s:.0%}' for s in SHARES)}")
         for name, row in zip(names, table.T, strict=True):
-            print(f"  {name:<22}" + "".join(f"{value:8.2f}" for value in row))
+            print(f"  {name:<27}" + "".join(f"{value:8.2f}" for value in row))
 
 
 def curves(person: Person, seed: int) -> NDArray[np.float64]:
@@ -86,7 +94,7 @@ def parts(
 
 
 def with_marks(samples: Samples, means: NDArray[np.float64]) -> Samples:
-    """Values, or means where they are missing, and marks of that: inputs of a rival that is told, too."""
+    """Values, or means where they are missing, and marks of that: inputs of a rival that is given them, too."""
     lost = np.isnan(samples.x)
     x = np.hstack([np.where(lost, means, samples.x), lost])
     return replace(samples, x=x, inputs=(*samples.inputs, *(f"{name} missing" for name in samples.inputs)))

@@ -3,7 +3,7 @@
     python benchmarks/participants.py [--people 12 50 200] [--seconds 16]
 
 One person of the driven walker is recorded in both conditions (ten angles at 100 Hz, forces at 1000 Hz) and copied to
-as many pseudonyms as are asked for, for people that differ would cost the same; walks are short so that 200 are
+as many pseudonyms as are wanted, for people that differ would cost the same; walks are short so that 200 are
 affordable. Each study is run in a fresh process, one participant after the other, one thread; then the run is taken up
 again, with everything computed, and then its report is written. Memory is the peak of that process so far.
 
@@ -12,14 +12,24 @@ Linear means that seconds a person stay the same; flat that memory does.
 
 from __future__ import annotations
 
-import argparse
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
+from command_line import argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument("--people", "numbers of participants", [12, 50, 200]),
+    argument("--seconds", "length of each walk [s]", 16.0),
+)  # before the slow imports
+
 import os
 import platform
 import shutil
 import subprocess
-import sys
 import tempfile
-from pathlib import Path
 
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial, Study
@@ -54,20 +64,16 @@ told(since)
 
 
 def main() -> None:
-    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    arguments.add_argument("--people", type=int, nargs="+", default=[12, 50, 200])
-    arguments.add_argument("--seconds", type=float, default=16.0, help="length of each walk")
-    options = arguments.parse_args()
     print(
-        f"{platform.machine()}, {os.cpu_count()} cores; load {os.getloadavg()[0]:.1f}; walks of {options.seconds:g} s\n"
+        f"{platform.machine()}, {os.cpu_count()} cores; load {os.getloadavg()[0]:.1f}; walks of {GIVEN.seconds:g} s\n"
     )
     parts = ("run", "taken up again", "report")
     head = " | ".join(f"{part} [s, of the core, a person] | peak [MB]" for part in parts)
     print(f"| n | starting [s of the core] | {head} |\n|---|---|{'---|' * 6}")
-    for count in options.people:
+    for count in GIVEN.people:
         folder = Path(tempfile.mkdtemp())
         try:
-            write_people(folder, count, options.seconds)
+            write_people(folder, count, GIVEN.seconds)
             start, *found = measured(folder)
         finally:
             shutil.rmtree(folder)

@@ -10,18 +10,28 @@ of the process that reads and of the isolated one that it starts, each at its ow
 
 from __future__ import annotations
 
-import argparse
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
+from command_line import argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument("--repeats", "processes of each side", 5),
+    argument("--seconds", "length of the trial [s]", 240),
+)  # before the slow imports
+
 import json
 import multiprocessing
 import os
 import platform
 import statistics
 import subprocess
-import sys
 import tempfile
 import time
 from importlib.metadata import version
-from pathlib import Path
 
 import numpy as np
 
@@ -57,24 +67,20 @@ print(json.dumps([times, *usage]))
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description="Time and memory of reading one C3D trial.")
-    parser.add_argument("--repeats", type=int, default=5)
-    parser.add_argument("--seconds", type=int, default=240)
-    arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "trial.c3d"
         # In a process of its own: Linux lets a new process inherit the peak memory of the one that starts it.
-        writing = multiprocessing.get_context("spawn").Process(target=write_trial, args=(path, arguments.seconds))
+        writing = multiprocessing.get_context("spawn").Process(target=write_trial, args=(path, GIVEN.seconds))
         writing.start()
         writing.join()
         megabytes = path.stat().st_size / 1e6
         print(f"{machine()}; ezc3d {version('ezc3d')}, numpy {np.__version__}, OMP_NUM_THREADS=1")
-        print(f"{arguments.seconds} s, {MARKERS} markers, {ANALOG} analog channels: {megabytes:.0f} MB")
+        print(f"{GIVEN.seconds} s, {MARKERS} markers, {ANALOG} analog channels: {megabytes:.0f} MB")
         runs: dict[str, list[dict[str, float]]] = {"plain ezc3d": [], "gaitdisc": []}
-        for _ in range(arguments.repeats):
+        for _ in range(GIVEN.repeats):
             for side, code in (("plain ezc3d", PLAIN), ("gaitdisc", OURS)):
                 runs[side].append(run(code, path))
-    print(f"{'':12} {'warm s':>8} {'cold s':>8} {'peak MB':>8} {'child MB':>9}   medians of {arguments.repeats}")
+    print(f"{'':12} {'warm s':>8} {'cold s':>8} {'peak MB':>8} {'child MB':>9}   medians of {GIVEN.repeats}")
     middle = {
         side: {key: statistics.median(one[key] for one in several) for key in several[0]}
         for side, several in runs.items()

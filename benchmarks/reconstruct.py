@@ -2,13 +2,13 @@
 
     python benchmarks/reconstruct.py [--cap-s 200] [--seed 0] [--pyshred PYTHON]
 
-Hip, knee and ankle of one leg tell the other seven angles of W01 of the embedded cohort, 60 s, temporal split 70/10/20
+Hip, knee and ankle of one leg give the other seven angles of W01 of the embedded cohort, 60 s, temporal split 70/10/20
 with a gap.
 
 The original, written here as its published code does it: every sample of 1 s of history (100 readings), LSTM 2 x 64,
 decoder 350-400, no dropout, sensors and states scaled to [0, 1] by the training part, DataLoader of batch 64, shuffled,
-Adam at 1e-3, judged on the check part every 20 epochs, weights of the best kept, stopped after five checks without
-gain: no sooner than after 120 epochs, which is why --cap-s ends it. Its error on the judged part is watched every
+Adam at 1e-3, scored on the check part every 20 epochs, weights of the best kept, stopped after five checks without
+gain: no sooner than after 120 epochs, which is why --cap-s ends it. Its error on the test part is watched every
 `WATCH` epochs, and the watching is left out of its time.
 
 Ours: `fit_reconstructor` with its defaults, 25 readings over the same second; then all twelve people of the cohort one
@@ -20,7 +20,20 @@ after the other, and one fold of the population, of the kinds that are closed fo
 
 from __future__ import annotations
 
-import argparse
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
+from command_line import argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument("--cap-s", "the original stops after so much processor time [s]", 200.0),
+    argument("--seed", "of the fits", 0),
+    argument("--pyshred", "the Python of an environment that has the packaged pyshred", type=Path),
+)  # before the slow imports
+
 import copy
 import json
 import os
@@ -29,7 +42,6 @@ import tempfile
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
@@ -78,18 +90,13 @@ class OriginalShred(nn.Module):
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--cap-s", type=float, default=200.0)
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--pyshred", type=Path)
-    given = parser.parse_args()
     with pinned_threads(1):
         dense, sparse = (cohort_walks(1, lags=lags)[0] for lags in (EVERY_SAMPLE, Lags(25, 4)))
-        watched = original(dense.parts(), dense.angles, given.cap_s, given.seed)
-        ours(sparse.parts(), sparse, watched, given.seed)
-        if given.pyshred:
-            packaged(dense, given.pyshred)
-        several(given.seed)
+        watched = original(dense.parts(), dense.angles, GIVEN.cap_s, GIVEN.seed)
+        ours(sparse.parts(), sparse, watched, GIVEN.seed)
+        if GIVEN.pyshred:
+            packaged(dense, GIVEN.pyshred)
+        several(GIVEN.seed)
 
 
 def rmse(told: NDArray[np.float64], samples: Samples, angles: Sequence[int]) -> float:

@@ -28,7 +28,7 @@ DATA = Path(os.environ.get("GAITDISC_DATA", Path(__file__).parents[2] / "shared"
 
 @dataclass(frozen=True, eq=False)
 class Person:
-    """Walks of one person, with what is read and told."""
+    """Walks of one person, with what is read and reconstructed."""
 
     name: str
     walks: SensedWalks

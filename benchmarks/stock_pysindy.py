@@ -10,10 +10,23 @@ sensors are out of its reach by construction. It writes discovery.json and augme
 
 from __future__ import annotations
 
-import argparse
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
+from command_line import argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument("simulation", "the simulation, TOML", type=Path),
+    argument("measured", "the trials, CSV", type=Path),
+    argument("--out", "folder that gets the answer", type=Path, required=True),
+    argument("--how", "way of choosing terms", "sweep", choices=("sweep", "ensemble", "weak")),
+)  # before the slow imports
+
 import json
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -215,11 +228,5 @@ def write(simulation: Simulation, terms: list[tuple[Column, float]], out: Path) 
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("simulation", type=Path)
-    parser.add_argument("measured", type=Path)
-    parser.add_argument("--out", type=Path, required=True)
-    parser.add_argument("--how", choices=("sweep", "ensemble", "weak"), default="sweep")
-    asked = parser.parse_args()
-    model = read_simulation(asked.simulation)
-    write(model, named(model, read_measured(asked.measured, model), asked.how), asked.out)
+    model = read_simulation(GIVEN.simulation)
+    write(model, named(model, read_measured(GIVEN.measured, model), GIVEN.how), GIVEN.out)

@@ -4,12 +4,19 @@
 
 Real walks (treadmill_walk_ik, three sensors, 15 states, 25 readings 0.04 s apart).
 Calls are timed one by one, on one thread; beside them stands the largest difference between what is streamed and what
-is told over the recording, in standard deviations of the state (torch computes the networks in float32).
+is computed over the recording, in standard deviations of the state (torch computes the networks in float32).
 """
 
 from __future__ import annotations
 
-import argparse
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
+from command_line import argument, command_line
+
+GIVEN = command_line(__name__, __doc__, argument("--samples", "streamed one by one", 5000))  # before the slow imports
+
 import os
 import time
 from collections.abc import Callable, Iterable
@@ -28,9 +35,7 @@ GOAL_MS = 0.2
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--samples", type=int, default=5000)
-    count = parser.parse_args().samples
+    count = GIVEN.samples
     [person] = treadmill_walks()
     [walks] = person.walks.people.values()
     what = person.what

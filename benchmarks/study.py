@@ -8,33 +8,38 @@ set beside this figure: no other tool does the whole job. The goal is 60 s on tw
 
 from __future__ import annotations
 
-import argparse
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
+from command_line import SHARED, argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument("folder", "recordings of people in two conditions", SHARED / "gait" / "exotendon_run"),
+    argument("--repeats", "runs of the whole study", 3),
+    argument("--threads", "of each run", 2),
+)  # before the slow imports
+
 import os
 import platform
 import resource
 import shutil
 import statistics
 import subprocess
-import sys
 import tempfile
 import time
-from pathlib import Path
 
 GOAL_S = 60.0
 
 
 def main() -> None:
-    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    data = Path(os.environ.get("GAITDISC_DATA", Path(__file__).parents[2] / "shared" / "data"))
-    arguments.add_argument("folder", nargs="?", type=Path, default=data / "gait" / "exotendon_run")
-    arguments.add_argument("--repeats", type=int, default=3)
-    arguments.add_argument("--threads", type=int, default=2)
-    options = arguments.parse_args()
-    if not options.folder.is_dir():
-        sys.exit(f"no recordings at {options.folder}; name a folder")
+    if not GIVEN.folder.is_dir():
+        sys.exit(f"no recordings at {GIVEN.folder}; name a folder")
     machine = f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}"
-    print(f"{machine}, {options.threads} threads")
-    walls = [timed_study(options.folder, options.threads) for _ in range(options.repeats)]
+    print(f"{machine}, {GIVEN.threads} threads")
+    walls = [timed_study(GIVEN.folder, GIVEN.threads) for _ in range(GIVEN.repeats)]
     peak_mb = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
     print(f"files to report: median {statistics.median(walls):.1f} s of {[round(wall, 1) for wall in walls]}")
     print(f"peak memory of the largest process: {peak_mb:.0f} MB; goal {GOAL_S:.0f} s")

@@ -1,18 +1,29 @@
-"""Muscles and ground forces told from movement: on the embedded cohort, and on one real walk of 8.7 s.
+"""Muscles and ground forces reconstructed from movement: on the embedded cohort, and on one real walk of 8.7 s.
 
     python benchmarks/targets.py [--people 12] [--networks]
 
 Cohort: nominal walks of 60 s, hip, knee and ankle angle of the right leg, 1 s of history. The real walk
 (treadmill_c3d_emg: markers, 16 EMG electrodes without muscle names, two belts): height and fore-aft place of both heels
-and toes, 0.24 s of history, since its checked and judged parts last 0.9 s and 1.7 s before the gaps are taken off.
+and toes, 0.24 s of history, since its checked and test parts last 0.9 s and 1.7 s before the gaps are taken off.
 """
 
 from __future__ import annotations
 
-import argparse
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
+from command_line import argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument("--people", "the first so many of the cohort", 12),
+    argument("--networks", "networks as well as ridge regressions", False),
+)  # before the slow imports
+
 import os
 import tempfile
-from pathlib import Path
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
@@ -29,13 +40,9 @@ MARKERS = tuple(f"{side}{place}.{axis}" for side in "RL" for place in ("CAL", "M
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--people", type=int, default=12)
-    parser.add_argument("--networks", action="store_true")
-    given = parser.parse_args()
-    kinds = tuple(KINDS) if given.networks else RIDGES
+    kinds = tuple(KINDS) if GIVEN.networks else RIDGES
     with tempfile.TemporaryDirectory() as name:
-        study = write_demonstration(Path(name), 60.0, given.people)
+        study = write_demonstration(Path(name), 60.0, GIVEN.people)
         for targets in ("emg", "forces"):
             settings = ReconstructionSettings(kinds=kinds, condition="nominal", targets=targets)
             tell("cohort", study, SENSORS, settings)

@@ -3,31 +3,47 @@
     python benchmarks/train_networks.py [--people 12] [--processes 2] [--only ours|loop] [--seed 0] [--arithmetic auto]
 
 The study: twelve people, ten lengths of the training part (1 s to all of 210 s at 100 Hz), three networks each
-(Nominal, Exo, Discrepancy): 360 networks of 49 inputs, 64 and 64 nodes, 8 outputs, judged on 30 s held out.
+(Nominal, Exo, Discrepancy): 360 networks of 49 inputs, 64 and 64 nodes, 8 outputs, tested on 30 s held out.
 
 The loop: PyTorch, DataLoader, batch 64, Adam at 1e-3, 30 epochs, one network after the other, one thread (two are
 slower). It takes a quarter of an hour, so every person and length is recorded as it is done in
 `train_networks_loop.jsonl`, with the hash of its samples and of its own code, and is not run again while these hold;
-a run that was stopped goes on. Further seeds of the loop tell how far it differs from itself.
+a run that was stopped goes on. Further seeds of the loop show how far it differs from itself.
 
 Ours: `fit_models` with its defaults, decays and penalties chosen on inner blocks, in processes of one thread. Before
 and after each length our side multiplies matrices of 1024 x 1024 in float32, so that its share of the machine's rate
-is one of what neighbours left at that time. Starting processes is told apart: it is paid once.
+is one of what neighbours left at that time. Starting processes is counted apart: it is paid once.
 """
 
 from __future__ import annotations
 
-import argparse
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
+from command_line import argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument("--people", "the first so many of the twelve", 12),
+    argument("--processes", "side by side, one thread each", 2),
+    argument("--only", "one side; loop: only run and record it", choices=("ours", "loop")),
+    argument("--seed", "of the loop", 0),
+    argument("--most", "no lengths above this [s]", 210),
+    argument("--arithmetic", "of our side", "auto", choices=("auto", "torch")),
+)  # before the slow imports
+
 import hashlib
 import inspect
 import json
 import os
 import platform
 import time
+from argparse import Namespace
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
-from pathlib import Path
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
@@ -187,24 +203,16 @@ def samples_key(samples: PersonSamples) -> str:
 
 
 def main() -> None:
-    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    arguments.add_argument("--people", type=int, default=PEOPLE, help="the first so many of the twelve")
-    arguments.add_argument("--processes", type=int, default=2)
-    arguments.add_argument("--only", choices=("ours", "loop"), help="loop: only run and record it")
-    arguments.add_argument("--seed", type=int, default=0, help="of the loop")
-    arguments.add_argument("--most", type=int, default=210, help="no lengths above this [s]")
-    arguments.add_argument("--arithmetic", choices=("auto", "torch"), default="auto")
-    options = arguments.parse_args()
     print(f"{platform.machine()}, {os.cpu_count()} cores, torch {torch.__version__}; load {os.getloadavg()[0]:.1f}")
     begun = time.perf_counter()
-    walks = {number: person_samples(number) for number in range(options.people)}
-    print(f"{options.people} people walked and were processed in {time.perf_counter() - begun:.0f} s, one process")
-    lengths = [length for length in reversed(LENGTHS_S) if length <= options.most]  # the longest first
+    walks = {number: person_samples(number) for number in range(GIVEN.people)}
+    print(f"{GIVEN.people} people walked and were processed in {time.perf_counter() - begun:.0f} s, one process")
+    lengths = [length for length in reversed(LENGTHS_S) if length <= GIVEN.most]  # the longest first
     units = [(person, length) for length in lengths for person in walks]
     mine = {}
-    if options.only != "loop":
-        mine = dict(zip(units, run_ours([walks[p].first(s) for p, s in units], options), strict=True))
-    loop = recorded_loop(walks, units, options.seed, options.only != "ours")
+    if GIVEN.only != "loop":
+        mine = dict(zip(units, run_ours([walks[p].first(s) for p, s in units], GIVEN), strict=True))
+    loop = recorded_loop(walks, units, GIVEN.seed, GIVEN.only != "ours")
     if loop:
         seconds, core = (sum(getattr(d, name) for d in loop.values()) for name in ("seconds", "core_seconds"))
         print(f"the loop, {3 * len(loop)} networks: {seconds:.0f} s by the clock, {core:.0f} s of the core")
@@ -212,11 +220,11 @@ def main() -> None:
         both = [unit for unit in units if unit in loop]
         shares = [sum(side[unit].core_seconds for unit in both) for side in (loop, mine)]
         print(f"one core: the loop takes {shares[0] / shares[1]:.1f} times as long")
-        print_r2(mine, loop, recorded_loop(walks, units, options.seed + 1, run=False))
+        print_r2(mine, loop, recorded_loop(walks, units, GIVEN.seed + 1, run=False))
     print(f"load {os.getloadavg()[0]:.1f}")
 
 
-def run_ours(given: list[Parts], options: argparse.Namespace) -> list[Done]:
+def run_ours(given: list[Parts], options: Namespace) -> list[Done]:
     with joblib.Parallel(n_jobs=options.processes, pre_dispatch="all") as parallel:
         begun = time.perf_counter()
         parallel(joblib.delayed(ours)(*given[-1], options.arithmetic) for _ in range(2 * options.processes))

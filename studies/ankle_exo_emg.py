@@ -11,8 +11,12 @@ two electrodes a leg, count as one muscle each, and the family is the six muscle
 
 from __future__ import annotations
 
-import os
-import sys
+from command_line import SHARED, argument, command_line
+
+GIVEN = command_line(
+    __name__, __doc__, argument("data", "folder that holds ankle_exo_emg_grf", SHARED / "gait")
+)  # before the slow imports
+
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -218,9 +222,7 @@ def _every_table(tests: pd.DataFrame) -> list[str]:
 
 def main() -> None:
     """Print the tables."""
-    given = Path(sys.argv[1]) if len(sys.argv) > 1 else None
-    shared = Path(os.environ.get("GAITDISC_DATA", Path(__file__).parents[2] / "shared" / "data"))
-    walks, faulty, tests = run(given or shared / "gait")
+    walks, faulty, tests = run(GIVEN.data)
     least = smallest_p(len(PEOPLE))
     print(f"{walks.strides} strides; energy [W]: {walks.energy_w.mean().round(0).astype(int).to_dict()}")
     print(f"n = {len(PEOPLE)}: smallest p {least:.4f}, largest family {largest_family(least)} tests")

@@ -10,10 +10,19 @@ beside it what is found here. The cohort is another population and was not tuned
 
 from __future__ import annotations
 
-import sys
+from pathlib import Path
+
+from command_line import QUICK, argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument("folder", "where recordings, results and the pages go; what is there is not computed again", Path("ch4")),
+    QUICK,
+)  # before the slow imports
+
 import tomllib
 from dataclasses import dataclass
-from pathlib import Path
 
 import pandas as pd
 from ch4_ours import OURS
@@ -76,8 +85,7 @@ def run(quick: bool, folder: Path = Path("ch4"), jobs: int = 2) -> Result:
 
 def main() -> None:
     """Compute the chapter and print what the dissertation prints beside ours."""
-    words = [word for word in sys.argv[1:] if word != "--quick"]
-    result = run("--quick" in sys.argv, Path(words[0]) if words else Path("ch4"))
+    result = run(GIVEN.quick, GIVEN.folder)
     print("| | dissertation | embedded cohort | why |\n|---|---|---|---|")
     for row in result.printed.itertuples():
         print(f"| {row.what} | {row.printed} | {row.ours} | {row.why} |")

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+
+from command_line import SHARED
 
 from gaitdisc.ingest.monthly_fields import read_navy_winds, read_sst_pacific
 from gaitdisc.ingest.sea_surface import read_oisst, read_sst_mat
@@ -22,7 +23,7 @@ from gaitdisc.sensing.routes import Route, fixed_at_random, random_walk
 from gaitdisc.sensing.unseen_path import unseen_path
 from gaitdisc.sensing.windows import Lags
 
-FIELDS = Path(os.environ.get("GAITDISC_DATA", Path(__file__).parents[2] / "shared" / "data")) / "fields"
+FIELDS = SHARED / "fields"
 WALKS = 12  # fitted, before one that never was
 
 
@@ -60,12 +61,12 @@ def fields() -> Iterator[tuple[Field, FieldTask, str]]:
 
 
 def maps_told(field: Field, route: Route, task: FieldTask, kind: str, rules: Sequence[str]) -> dict:
-    """One snapshot of the judged part as measured, and as told, under each split.
+    """One snapshot of the judged part as measured, and as reconstructed, under each split.
 
     Parameters
     ----------
     field : Field
-        To be told.
+        To be reconstructed.
     route : Route
         Where the sensors are.
     task : FieldTask
@@ -81,7 +82,7 @@ def maps_told(field: Field, route: Route, task: FieldTask, kind: str, rules: Seq
         fitted = fit_reconstructor(kind, ready.what, ready.training, ready.check, task.seed)
         middle, snapshot = middle_of(ready.test)
         shown[f"measured, {field.time_unit} {snapshot + 1}"] = field.values[snapshot, :, 0]
-        shown[f"told by {kind}, {rule}"] = ready.targets.fields(fitted(middle), middle)[0, :, 0]
+        shown[f"reconstructed by {kind}, {rule}"] = ready.targets.fields(fitted(middle), middle)[0, :, 0]
     return shown
 
 
@@ -103,7 +104,7 @@ def on_departures(field: Field, routes: Sequence[Route], task: FieldTask, rules:
     Parameters
     ----------
     field : Field
-        To be told.
+        To be reconstructed.
     routes : sequence of Route
         Where the sensors are.
     task : FieldTask
@@ -121,12 +122,12 @@ def on_departures(field: Field, routes: Sequence[Route], task: FieldTask, rules:
 
 
 def unseen_walks(field: Field, task: FieldTask, kinds: Sequence[str]) -> list[FieldCell]:
-    """Random walks from starts all over the field: one that was never fitted, told after one and after twelve others.
+    """Random walks from starts all over the field: one that was never fitted, after one and after twelve others.
 
     Parameters
     ----------
     field : Field
-        To be told.
+        To be reconstructed.
     task : FieldTask
         Lags, split, seed.
     kinds : sequence of str

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from command_line import SHARED
 
 from gaitdisc.batch.demonstration import write_demonstration
 from gaitdisc.batch.reconstruct_study import ReconstructionSettings, reconstruct_study
@@ -30,7 +30,7 @@ PRINTED = ["sensors", "model", "mean", "sd"]
 NOTHING_PRINTED = pd.DataFrame(columns=pd.Index(PRINTED))
 PELVIS = ("3 random", "1 random")  # the embedded cohort has no pelvis, and cannot have these
 WALK_S, PEOPLE = 60.0, 12
-DATA = Path(os.environ.get("GAITDISC_DATA", Path(__file__).parents[2] / "shared" / "data")) / "gait"
+DATA = SHARED / "gait"
 TREADMILL = range(504, 516)
 RUNS = {
     "welk007": {

@@ -10,9 +10,23 @@ one person of each kind, windows drawn at random stand beside it, which leak. Th
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Mapping
 from pathlib import Path
+
+from command_line import QUICK, SHARED, argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument(
+        "folder",
+        "where recordings, results and the pages go; what is there is not computed again",
+        Path("ch5_individual"),
+    ),
+    argument("data", "folder of the real gait recordings", SHARED / "gait"),
+    QUICK,
+)  # before the slow imports
+
+from collections.abc import Mapping
 
 import pandas as pd
 from ch5_gait import (
@@ -120,7 +134,6 @@ def disturbed(study: Study, kinds: tuple[str, ...], folder: Path) -> Block:
 
 
 if __name__ == "__main__":
-    words = [word for word in sys.argv[1:] if word != "--quick"]
-    result = run("--quick" in sys.argv, *map(Path, words[:2]))
+    result = run(GIVEN.quick, GIVEN.folder, GIVEN.data)
     print(result.table.groupby(["data", "sensors", "model"], sort=False)[["rmse_deg", "relative_l2_whole"]].mean())
     print(result.page)

@@ -2,15 +2,30 @@
 
     python studies/ch5_gait_population.py [FOLDER] [DATA] [--quick] [--without-networks]
 
-The embedded cohort, each of its twelve people told by models of ten others (the next in the list is who the models are
-chosen by), and then corrected by ten strides of which the states are known. There are no real recordings of three
-people in the same task here: of the two runners one is told in each condition by what was learnt in the other.
+The embedded cohort, each of its twelve people reconstructed by models of ten others (the next in the
+list is who the models are chosen by), and then corrected by ten strides of which the states are known. There are no
+real recordings of three people in the same task here: of the two runners one is reconstructed in each condition by what
+was learned in the other.
 """
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
+
+from command_line import QUICK, SHARED, argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument(
+        "folder",
+        "where recordings, results and the pages go; what is there is not computed again",
+        Path("ch5_population"),
+    ),
+    argument("data", "folder of the real gait recordings", SHARED / "gait"),
+    QUICK,
+    argument("--without-networks", "ridge regressions alone", False),
+)  # before the slow imports
 
 import pandas as pd
 from ch5_gait import DATA, NOTHING_PRINTED, PELVIS, SENSORS, Result, cell, cohort, exotendon, first_person, printed
@@ -75,21 +90,20 @@ def calibration_sentences(table: pd.DataFrame) -> list[str]:
 
 
 def across(data: Path, kinds: tuple[str, ...], folder: Path) -> Block:
-    """One runner, without and with the device, each told by models of the other condition."""
+    """One runner, without and with the device, each reconstructed by models of the other condition."""
     one = first_person(exotendon(data))
     found = []
     for word in ("natural", "exotendon"):
         settings = ReconstructionSettings(split=CONDITION, condition=word, kinds=kinds)
         for sensors in SENSORS:
             place = folder / "exotendon_run" / word / sensors.replace(" ", "_")
-            found.append(cell(one, sensors, settings, place)["summary"].assign(data=f"exotendon_run, {word} judged"))
+            found.append(cell(one, sensors, settings, place)["summary"].assign(data=f"exotendon_run, {word} tested"))
     table = sensor_sets_table(pd.concat(found), NOTHING_PRINTED, "conditions", "fitted to the other condition")
     return Block("conditions", "Another condition", (), tables=(table,))
 
 
 if __name__ == "__main__":
-    words = [word for word in sys.argv[1:] if not word.startswith("--")]
-    places = dict(zip(("folder", "data"), map(Path, words[:2]), strict=False))
-    result = run("--quick" in sys.argv, kinds=WITHOUT if "--without-networks" in sys.argv else tuple(KINDS), **places)
+    kinds = WITHOUT if GIVEN.without_networks else tuple(KINDS)
+    result = run(GIVEN.quick, GIVEN.folder, GIVEN.data, kinds)
     print(result.table.groupby(["data", "sensors", "model"], sort=False)[["rmse_deg", "relative_l2_whole"]].mean())
     print(result.page)

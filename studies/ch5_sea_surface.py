@@ -9,10 +9,23 @@ anomalies of the tropical Pacific, and monthly winds of the globe, whose routes 
 
 from __future__ import annotations
 
-import sys
+from pathlib import Path
+
+from command_line import QUICK, argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument(
+        "folder",
+        "where recordings, results and the pages go; what is there is not computed again",
+        Path("ch5_sea_surface"),
+    ),
+    QUICK,
+)  # before the slow imports
+
 import tomllib
 from dataclasses import replace
-from pathlib import Path
 
 import pandas as pd
 from ch5_fields import Result, fields, maps_told, on_departures, unseen_walks, written
@@ -106,5 +119,4 @@ def run(quick: bool = False, folder: Path = Path("ch5_sea_surface")) -> Result:
 
 
 if __name__ == "__main__":
-    words = [word for word in sys.argv[1:] if word != "--quick"]
-    print(run("--quick" in sys.argv, *map(Path, words[:1])).page)
+    print(run(GIVEN.quick, GIVEN.folder).page)

@@ -10,9 +10,25 @@ values are those of --nodes 64 --cut 50.
 
 from __future__ import annotations
 
-import argparse
-from dataclasses import asdict, replace
 from pathlib import Path
+
+from command_line import QUICK, argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument(
+        "folder",
+        "where recordings, results and the pages go; what is there is not computed again",
+        Path("ch5_turbulence"),
+    ),
+    QUICK,
+    argument("--models", "of each kind of sensor", 8),
+    argument("--nodes", "of the box, along one side", 48),
+    argument("--cut", "side of the part that is kept, in nodes (default: five sixths of the box)", type=int),
+)  # before the slow imports
+
+from dataclasses import asdict, replace
 
 from ch5_fields import Result, middle_of, written
 
@@ -113,10 +129,4 @@ def _said(what: str):
 
 
 if __name__ == "__main__":
-    asked = argparse.ArgumentParser(description="Turbulence from one sensor.")
-    asked.add_argument("folder", nargs="?", type=Path, default=Path("ch5_turbulence"))
-    asked.add_argument("--quick", action="store_true")
-    asked.add_argument("--models", type=int, default=MODELS)
-    asked.add_argument("--nodes", type=int, default=48)
-    asked.add_argument("--cut", type=int)
-    print(run(**vars(asked.parse_args())).page)
+    print(run(**vars(GIVEN)).page)

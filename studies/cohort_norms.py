@@ -1,11 +1,15 @@
 """Is the embedded cohort normal walking? Its ranges and timings, printed beside those of the literature.
 
-Run `python studies/cohort_norms.py`; docs/cohort.md holds the table that it prints, with what the sources are worth.
+    python studies/cohort_norms.py [--quick]
+
+docs/cohort.md holds the table that it prints, with what the sources are worth.
 """
 
 from __future__ import annotations
 
-import sys
+from command_line import QUICK, command_line
+
+GIVEN = command_line(__name__, __doc__, QUICK)  # before the slow imports
 
 import numpy as np
 from numpy.typing import NDArray
@@ -165,4 +169,4 @@ def _spread(values: NDArray[np.float64]) -> str:
 
 
 if __name__ == "__main__":
-    run(quick="--quick" in sys.argv)
+    run(GIVEN.quick)

@@ -8,9 +8,16 @@ The source gives 30 points of each stride, brought to 101 here by lines; what EM
 
 from __future__ import annotations
 
-import os
-import sys
 from pathlib import Path
+
+from command_line import SHARED, argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument("data", "folder that holds ankle_exo_emg_grf", SHARED / "gait"),
+    argument("out", "where the report goes (default: no report)", nargs="?", type=Path),
+)  # before the slow imports
 
 import numpy as np
 import pandas as pd
@@ -54,10 +61,9 @@ def summary(strides: NDArray[np.float64], signals: list[str], person: str, condi
 
 
 if __name__ == "__main__":
-    shared = Path(os.environ.get("GAITDISC_DATA", Path(__file__).parents[2] / "shared" / "data")) / "gait"
-    found = run(Path(sys.argv[1]) if len(sys.argv) > 1 else shared)
+    found = run(GIVEN.data)
     print(" ".join(mismatch_sentences(found)))
     print(found.summary.round(3).to_string())
     print(found.regions.round(3).to_string())
-    if len(sys.argv) > 2:
-        print(write_mismatch_report(found, Path(sys.argv[2])))
+    if GIVEN.out:
+        print(write_mismatch_report(found, GIVEN.out))

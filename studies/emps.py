@@ -10,8 +10,12 @@ quarter of them, and all of the second file, are never fitted: in each only the 
 
 from __future__ import annotations
 
-import os
-import sys
+from command_line import QUICK, SHARED, argument, command_line
+
+GIVEN = command_line(
+    __name__, __doc__, argument("data", "folder that holds DATA_EMPS.mat", SHARED / "hidden_effect" / "emps"), QUICK
+)  # before the slow imports
+
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -45,7 +49,7 @@ class Result:
     left_mm : dict of str to tuple
         Free-run error before and after, of the held-out stretches and of the pulses [mm].
     whole : Discovery or None
-        What the whole inquiry says, with everything else that it finds; not asked for in a quick run.
+        What the whole search says, with everything else that it finds; left out of a quick run.
     """
 
     named: str
@@ -56,7 +60,7 @@ class Result:
 
 
 def run(quick: bool, data: Path) -> Result:
-    """Search the first record; judge on its end, and on the pulses where they are there."""
+    """Search the first record; test on its end, and on the pulses where they are there."""
     simulation = read_simulation(MODEL)
     measured = stretches(data / "DATA_EMPS.mat", simulation)
     inquiry = begin_inquiry(simulation, measured)
@@ -101,15 +105,20 @@ def rms(runs: Trial) -> float:
     return float(np.sqrt(np.mean(runs.fit.residual**2)))
 
 
-if __name__ == "__main__":
-    words = [word for word in sys.argv[1:] if word != "--quick"]
-    shared = Path(os.environ.get("GAITDISC_DATA", Path(__file__).parents[2] / "shared" / "data")) / "hidden_effect"
-    found = run("--quick" in sys.argv, Path(words[0]) if words else shared / "emps")
+def lines(found: Result) -> list[str]:
+    """What is printed."""
     off = 100 * (found.friction_n / PUBLISHED_N - 1)
-    print(f"named first: {found.named} at {found.place}, {found.friction_n:.2f} N ({off:+.1f} % of {PUBLISHED_N:g} N)")
+    said = [
+        f"named first: {found.named} at {found.place}, {found.friction_n:.2f} N ({off:+.1f} % of {PUBLISHED_N:g} N)"
+    ]
     for name, (before, after) in found.left_mm.items():
-        print(f"{name}: free-run error {before:.3f} mm -> {after:.3f} mm ({100 * (1 - after / before):.1f} % less)")
+        less = 100 * (1 - after / before)
+        said.append(f"{name}: free-run error {before:.3f} mm -> {after:.3f} mm ({less:.1f} % less)")
     if found.whole:
-        print(found.whole.sentence)
-        for rival in found.whole.rivals:
-            print(f"  weighed too: {rival.name} at {rival.place}, criterion falls by {rival.bic:.0f}")
+        said.append(found.whole.sentence)
+        said += [f"  weighed too: {each.name} at {each.place}" for each in found.whole.rivals]
+    return said
+
+
+if __name__ == "__main__":
+    print(*lines(run(GIVEN.quick, GIVEN.data)), sep="\n")

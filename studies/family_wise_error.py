@@ -8,6 +8,10 @@ Three models whose R2 are exchangeable are compared over participants in many st
 
 from __future__ import annotations
 
+from command_line import command_line
+
+command_line(__name__, __doc__)  # before the slow imports
+
 import numpy as np
 from numpy.typing import NDArray
 

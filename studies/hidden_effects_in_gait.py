@@ -9,9 +9,15 @@ Nominal walk, in which nothing is hidden. Eight stretches of one walk, two of th
 
 from __future__ import annotations
 
-import sys
-from dataclasses import dataclass, replace
 from pathlib import Path
+
+from command_line import QUICK, argument, command_line
+
+GIVEN = command_line(
+    __name__, __doc__, argument("out", "CSV that gets the table (default: none)", nargs="?", type=Path), QUICK
+)  # before the slow imports
+
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
@@ -68,14 +74,14 @@ class Result:
 
 
 def run(quick: bool) -> Result:
-    """Hide each effect in each person's walk, and ask what is missing."""
+    """Hide each effect in each person's walk, and search for what is missing."""
     people = the_twelve()[:1] if quick else the_twelve()
     hidden = tuple(RIGHT)[1:2] if quick else tuple(RIGHT)
     return Result(pd.DataFrame([found_in(person, effect) for person in people for effect in hidden]))
 
 
 def found_in(person: Person, hidden: str) -> dict[str, object]:
-    """One walk, one inquiry: what it says beside what is true."""
+    """One walk, one search: what it says beside what is true."""
     size = {"spring": 1.0, "scaled moment": SCALED}.get(hidden, 0.0)
     spring = Spring(STIFFNESS * size) if size else None
     strength, added = WEAK if hidden == "weak plantarflexor" else 1.0, ADDED_KG if hidden == "foot mass" else 0.0
@@ -113,9 +119,8 @@ def found_in(person: Person, hidden: str) -> dict[str, object]:
 
 
 if __name__ == "__main__":
-    words = [word for word in sys.argv[1:] if word != "--quick"]
-    result = run("--quick" in sys.argv)
+    result = run(GIVEN.quick)
     print(result.table.round(4).to_string())
     print(result.summary().round(3).to_string())
-    if words:
-        result.table.to_csv(words[0], index=False)
+    if GIVEN.out:
+        result.table.to_csv(GIVEN.out, index=False)

@@ -9,8 +9,13 @@ the errors of `ankle_records.py`. The simulation is `tracked_ankle.toml` with th
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
+
+from command_line import argument, command_line
+
+GIVEN = command_line(
+    __name__, __doc__, argument("out", "folder that gets ankle.toml and walk.csv", type=Path)
+)  # before the slow imports
 
 import numpy as np
 import pandas as pd
@@ -50,4 +55,4 @@ def table_of(measured: Measured) -> pd.DataFrame:
 
 
 if __name__ == "__main__":
-    print(*run(Path(sys.argv[1])))
+    print(*run(GIVEN.out))

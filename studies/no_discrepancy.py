@@ -1,12 +1,16 @@
 """Without a spring and without adaptation there is no discrepancy: the embedded cohort's first law, over many pairs.
 
-Run `python studies/no_discrepancy.py`; docs/cohort.md holds what it prints. Both walks of a pair come from the same
-model with another seed, so the true difference is zero; what 30 held-out seconds show of it scatters.
+    python studies/no_discrepancy.py [--quick]
+
+docs/cohort.md holds what it prints. Both walks of a pair come from the same model with another seed, so the true
+difference is zero; what 30 held-out seconds show of it scatters.
 """
 
 from __future__ import annotations
 
-import sys
+from command_line import QUICK, command_line
+
+GIVEN = command_line(__name__, __doc__, QUICK)  # before the slow imports
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,4 +88,4 @@ def _parts(person: Person, device: Spring | None, duration_s: float, seed: int) 
 
 
 if __name__ == "__main__":
-    run(quick="--quick" in sys.argv)
+    run(GIVEN.quick)

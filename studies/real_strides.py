@@ -8,8 +8,12 @@ GAITDISC_DATA/gait. Each row is a promise and what was found.
 
 from __future__ import annotations
 
-import os
-import sys
+from command_line import SHARED, argument, command_line
+
+GIVEN = command_line(
+    __name__, __doc__, argument("data", "folder of the real gait recordings", SHARED / "gait")
+)  # before the slow imports
+
 from pathlib import Path
 
 import numpy as np
@@ -118,10 +122,8 @@ def _angles(names: list[str], values: NDArray[np.float32], trial: str) -> Record
 
 def main() -> None:
     """Print the rows."""
-    given = Path(sys.argv[1]) if len(sys.argv) > 1 else None
-    shared = Path(os.environ.get("GAITDISC_DATA", Path(__file__).parents[2] / "shared" / "data"))
     print("| recordings | promise | found |\n|---|---|---|")
-    for row in run(given or shared / "gait"):
+    for row in run(GIVEN.data):
         print(f"| {' | '.join(row)} |")
 
 

@@ -13,10 +13,13 @@ from typer.testing import CliRunner
 
 from gaitdisc.cli import app, main
 from gaitdisc.commands.exit_codes import REFUSED, SOME_REFUSED
+from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial, Study
-from gaitdisc.ingest.study_file import write_study
+from gaitdisc.ingest.study_file import load_study, write_study
 from gaitdisc.ingest.table import write_table
+from gaitdisc.processing.process import processed
+from gaitdisc.signals.contact_force import force_contacts
 
 ANGLES = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", "hip_flexion_l", "knee_angle_l")
 
@@ -204,3 +207,37 @@ def test_dropping_nothing_silently(walk, folder):
     assert code == 0
     kinds = {(finding["kind"], finding["channel"]) for finding in seen["P02", "exo"]["findings"]}
     assert ("gap", "knee_angle_r") in kinds
+
+
+def test_moments_named_after_the_force_add_no_contact(walk, folder):
+    forces = walk.stream("forces").selected(["ground_force_r_vy", "ground_force_l_vy"])
+    labels = ["time", *forces.names, "ground_force_r_my", "ground_force_l_my"]
+    table = np.column_stack([forces.time, forces.values, 0.3 * np.roll(forces.values, 300, axis=0)])
+    rows = ["\t".join(map(repr, row)) for row in table.tolist()]
+    (folder / "belts.mot").write_text("\n".join(["belts", "endheader", "\t".join(labels), *rows]) + "\n")
+    read = read_trial(folder / "belts.mot").stream("forces")
+    for side, contacts in force_contacts(forces).items():
+        np.testing.assert_array_equal(force_contacts(read)[side].time, contacts.time)
+
+
+def test_knees_counted_the_other_way_give_the_same_strides(walk, folder):
+    signs = np.where([name.startswith("knee") for name in ANGLES], -1.0, 1.0)
+    _, seen = checked(folder, altered(walk, folder, lambda values: values * signs))
+    assert seen["P02", "exo"]["strides"] == seen["P01", "exo"]["strides"] != {}
+    said = [one for one in seen["P02", "exo"]["findings"] if one["kind"] == "knee sign"]
+    assert [(one["file"], one["channel"]) for one in said] == [("bad.mot", "knee_angle_r"), ("bad.mot", "knee_angle_l")]
+
+
+def test_one_absurd_cell_costs_itself_only(walk, folder):
+    def absurd(values):
+        values[1500, 1] = 1e6
+        return values
+
+    code, seen = checked(folder, altered(walk, folder, absurd))
+    (said,) = [one for one in seen["P02", "exo"]["findings"] if one["kind"] == "out of range"]
+    assert code == 0 and seen["P02", "exo"]["light"] == "amber"
+    assert (said["file"], said["channel"]) == ("bad.mot", "knee_angle_r")
+    assert "1e+06 deg in frame 1501 (t = 15 s) is beyond what it can be, -90 to 180 deg" in said["what"]
+    study = load_study(folder)
+    sound, bad = (processed(read_trial(folder / file), study).state["knee_angle_r"] for file in ("exo.mot", "bad.mot"))
+    assert np.nanmax(np.abs(bad - sound)) < 1.0  # what the spline over one missing frame leaves [deg]

@@ -9,7 +9,7 @@ import gaitdisc
 
 PACKAGE = Path(gaitdisc.__file__).parent
 FLOORS = (
-    ("errors", "units", "channel", "whole_file", "compiled"),
+    ("errors", "units", "channel", "whole_file", "spreadsheet", "compiled"),
     ("recording", "model"),
     ("ingest", "signals", "simulation", "cohort", "regression", "networks", "statistics", "results", "turbulence"),
     ("processing", "discrepancy", "discovery", "sensing", "response"),

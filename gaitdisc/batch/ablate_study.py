@@ -60,7 +60,7 @@ def ablate_study(
     with run_lock(folder):
         people = [study.participant(response.participant) for response in run.responses]
         compute = partial(computed_quantity, study, folder=folder.absolute(), lengths_s=lengths_s, part=part)
-        found = list(computed_units(workers, compute, people, told))
+        found = list(computed_units(workers, compute, people, told, lambda refusal: refusal))
         quantities = tuple(each for each in found if isinstance(each, DataQuantity))
         run = replace(
             run,

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
 from gaitdisc.batch.processed_walks import processed_walks
+from gaitdisc.batch.public_words import PublicWords, package_words, public_settings
 from gaitdisc.discovery.compare import compare_people, compare_walks
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.study import Study
-from gaitdisc.processing.walk_pair import walk_pair
+from gaitdisc.processing.walk_pair import COMPARED, walk_pair
 from gaitdisc.recording import Finding
 from gaitdisc.results import WalkSummary
 from gaitdisc.results.mismatch import Mismatch
@@ -49,7 +51,13 @@ def compare_files(
         If a file cannot be read, is no walking, or the two have nothing in common.
     """
     names = _names(first, second)
-    trials = [replace(read_trial(path), name=name) for path, name in zip((first, second), names, strict=True)]
+    public = PublicWords(frozenset(channels), dict(zip((first.name, second.name), names, strict=True)))
+    trials = [
+        public.known_channels(
+            replace(public, files={path.name: name}).trial(replace(read_trial(path), name=name)), COMPARED
+        )
+        for path, name in zip((first, second), names, strict=True)
+    ]
     walks = walk_pair(trials[0], trials[1], cutoff_hz, detector)
     if walks[0].files and set(walks[0].files.values()) == set(walks[1].files.values()):
         raise SchemaError(
@@ -57,9 +65,9 @@ def compare_files(
             f"{first.name} and {second.name} hold the same bytes",
             "Name a simulated and a measured walk, or two conditions.",
         )
-    return _with_settings(
-        compare_walks(walks[0], walks[1], channels), {"cutoff_hz": cutoff_hz, "detector": walks[0].detector}
-    )
+    found = compare_walks(walks[0], walks[1], channels)
+    found = replace(found, findings=tuple(map(public.finding, found.findings)))
+    return _with_settings(found, {"cutoff_hz": cutoff_hz, "detector": walks[0].detector})
 
 
 def compare_study(study: Study, participant: str = "", channels: tuple[str, ...] = ()) -> Mismatch:
@@ -84,7 +92,7 @@ def compare_study(study: Study, participant: str = "", channels: tuple[str, ...]
     GaitdiscError
         If the participant's walks are refused, or too few participants are left.
     """
-    settings = study.model_dump(mode="json", include={"filters", "strides", "conditions"})
+    settings = public_settings(study, {"filters", "strides", "conditions"})
     if participant:
         walks = _walks_of(study, participant)
         if isinstance(walks, str):
@@ -119,11 +127,16 @@ def _walks_of(study: Study, participant: str) -> tuple[WalkSummary, WalkSummary]
 
 
 def _names(first: Path, second: Path) -> tuple[str, str]:
-    if first.stem != second.stem:
-        return _apart(first.stem, second.stem)
-    if first.suffix != second.suffix:
-        return first.name, second.name
-    return f"{first.parent.name}/{first.stem}", f"{second.parent.name}/{second.stem}"
+    """What two walks are called: the words in which their files' names differ, where these are no one's own."""
+    one, other = (
+        "_".join(word for word in re.split(r"[\W_]+", path.stem) if _public(word)) for path in (first, second)
+    )
+    one, other = _apart(one, other)
+    return (one, other) if one and other and one != other else ("first walk", "second walk")
+
+
+def _public(word: str) -> bool:
+    return word.isalpha() and word.lower() in package_words()
 
 
 def _apart(first: str, second: str) -> tuple[str, str]:

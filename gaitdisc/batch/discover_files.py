@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import cast
 
+from gaitdisc.batch.public_words import PublicWords
 from gaitdisc.discovery.blow_up import refuse_blow_up
 from gaitdisc.discovery.catalogue import read_catalogue
 from gaitdisc.discovery.discover import discover
@@ -14,9 +17,11 @@ from gaitdisc.results.discovery import Discovery
 from gaitdisc.results.provenance import made_now
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.measured_table import read_measured
+from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.simulation_file import read_simulation
 from gaitdisc.simulation.unit_check import unit_findings
+from gaitdisc.simulation.writing import simulation_text
 
 
 def discover_files(
@@ -50,8 +55,43 @@ def discover_files(
     told(f"reading {simulation.name} and {measured.name}")
     model = read_simulation(simulation)
     data = read_measured(measured, model)
-    files = [simulation, measured, *([catalogue] if catalogue else [])]
+    files = {simulation: "simulation", measured: "measured table"}
     return _discovered(model, data, catalogue, files, told)
+
+
+def discover_model(
+    model: PythonSimulation, measured: Path, catalogue: Path | None = None, told: Callable[[str], None] = lambda _: None
+) -> tuple[Discovery, PythonSimulation]:
+    """Find what a simulation that is a Python object lacks against a table of measured trials.
+
+    Parameters
+    ----------
+    model : PythonSimulation
+        Made by `python_simulation`.
+    measured : Path
+        CSV or Parquet.
+    catalogue : Path, optional
+        Effects of the user's own.
+    told : callable
+        Takes one line about each step.
+
+    Returns
+    -------
+    discovery : Discovery
+        The answer, with what it rests on.
+    augmented : PythonSimulation
+        The model with what was found in it.
+
+    Raises
+    ------
+    GaitdiscError
+        As `discover_files`; also if the function does not give a derivative for each row and state.
+    """
+    told(f"reading {measured.name}")
+    simulation = cast("Simulation", model)  # it goes wherever a `Simulation` goes
+    data = read_measured(measured, simulation)
+    found, augmented = _discovered(simulation, data, catalogue, {measured: "measured table"}, told)
+    return found, cast("PythonSimulation", augmented)
 
 
 def discover_study(
@@ -84,23 +124,35 @@ def discover_study(
     """
     # imported here: a simulation file needs no filters and no pandas
     from gaitdisc.batch.nominal_model import nominal_inquiry
+    from gaitdisc.batch.public_words import words_of
     from gaitdisc.ingest.study_file import load_study
 
     told(f"reading both walks of {participant} and fitting the Nominal model")
     read = load_study(study)
     model, data = nominal_inquiry(read, participant)
-    walks = [read.path_of(file) for trial in read.participant(participant).trials for file in trial.files]
-    return _discovered(model, data, catalogue, [*walks, *([catalogue] if catalogue else [])], told)
+    person = read.participant(participant)
+    called = words_of(read, person).files
+    walks = {read.path_of(file): called[Path(file).name] for trial in person.trials for file in trial.files}
+    return _discovered(model, data, catalogue, walks, told)
 
 
 def _discovered(
-    model: Simulation, data: Measured, catalogue: Path | None, files: list[Path], told: Callable[[str], None]
+    model: Simulation, data: Measured, catalogue: Path | None, files: dict[Path, str], told: Callable[[str], None]
 ) -> tuple[Discovery, Simulation]:
     shapes = read_catalogue(catalogue) if catalogue else ()
     refuse_blow_up(model, data)
     found, augmented = discover(model, data, shapes, told)
     settings = {"title": model.title, "trials": len(data.trials), "rate_hz": data.rate, "channels": list(data.channels)}
-    hashes = {path.name: file_sha256(path) for path in files}
+    files = {**files, **({catalogue: "catalogue"} if catalogue else {})}
+    hashes = {called: file_sha256(path) for path, called in files.items()}
     made = made_now(settings, 0, hashes, "discovery of missing physics")
-    findings = (*unit_findings(model), *found.findings)
+    listed = unit_findings(model) if isinstance(model, Simulation) else ()  # a function has no units to check
+    public = PublicWords(_own_words(augmented), {path.name: called for path, called in files.items()})
+    findings = tuple(map(public.finding, (*listed, *found.findings)))
     return replace(found, findings=findings, provenance=made), augmented
+
+
+def _own_words(model: Simulation) -> frozenset[str]:
+    """Words of the simulation file, which is the user's model and names no person; and of the catalogue's effects."""
+    written = model if isinstance(model, Simulation) else cast("PythonSimulation", model).parts
+    return frozenset(re.findall(r"\w+", simulation_text(written)))

@@ -118,8 +118,8 @@ def _incomplete(study: Study, participant: Participant) -> str:
     if set(counts.values()) == {1}:
         return ""
     found = ", ".join(f"{count or 'none'} of {word!r}" for word, count in counts.items())
-    others = [Path(t.files[0]).name for t in participant.trials if t.condition not in both]
-    unused = f"; of another condition: {', '.join(others)}" if others else ""
+    others = sum(trial.condition not in both for trial in participant.trials)
+    unused = f"; of other conditions: {others}" if others else ""
     needed = f"a comparison needs one trial of {both[0]!r} and one of {both[1]!r}"
     return f"{needed}; {participant.id} has {found}{unused}. Correct the conditions in [[participants.trials]]."
 

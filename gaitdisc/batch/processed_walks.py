@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
+from gaitdisc.batch.public_words import PublicWords, of_trial, words_of
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial
@@ -15,7 +17,7 @@ from gaitdisc.results import Refusal
 
 
 def processed_walks(study: Study, participant: Participant) -> tuple[dict[str, Walk], tuple[Refusal, ...]]:
-    """Both walks of a complete participant, by condition, and why one could not be processed.
+    """Both walks of a complete participant, by condition, and why one could not be processed, in public words.
 
     Parameters
     ----------
@@ -29,7 +31,7 @@ def processed_walks(study: Study, participant: Participant) -> tuple[dict[str, W
 
 
 def walks_and_errors(study: Study, participant: Participant) -> tuple[dict[str, Walk], dict[str, GaitdiscError]]:
-    """Both walks of a complete participant, by condition, and the error of one that could not be processed.
+    """Both walks of a complete participant, by condition, and the error of one that could not be, in public words.
 
     Parameters
     ----------
@@ -39,16 +41,21 @@ def walks_and_errors(study: Study, participant: Participant) -> tuple[dict[str, 
         With one trial of each condition.
     """
     walks, errors = {}, {}
+    words = words_of(study, participant)
     with C3DReader() as reader:  # starts its process at the first C3D file, one for both walks
         for word in study.conditions.both:
             try:
-                walks[word] = _walk(study, participant, participant.trials_of(word)[0], reader)
+                planned = participant.trials_of(word)[0]
+                public = of_trial(words, participant, planned)
+                walks[word] = public.of(partial(_walk, study, participant, planned, reader, public))
             except GaitdiscError as error:
                 errors[word] = error
     return walks, errors
 
 
-def _walk(study: Study, participant: Participant, planned: PlannedTrial, reader: C3DReader) -> Walk:
-    walk = processed(read_planned_trial(study, participant, planned, reader), study)
+def _walk(
+    study: Study, participant: Participant, planned: PlannedTrial, reader: C3DReader, public: PublicWords
+) -> Walk:
+    walk = processed(public.trial(read_planned_trial(study, participant, planned, reader)), study)
     left_away = gait_samples(walk.trajectory, study.models.outputs)[1].finding()
-    return replace(walk, findings=(*walk.findings, left_away))
+    return replace(walk, findings=tuple(map(public.finding, (*walk.findings, left_away))))

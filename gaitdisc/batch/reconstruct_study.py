@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, replace
 
 import pandas as pd
 
+from gaitdisc.batch.public_words import public_settings, public_title
 from gaitdisc.batch.sensed_walks import SensedWalk, SensedWalks, sensed_walks
 from gaitdisc.batch.target_walks import STATES
 from gaitdisc.errors import GaitdiscError, SchemaError
@@ -197,11 +198,11 @@ def _result(
     if what.lags.ahead:
         models |= BASELINES
     used = {
-        **study.model_dump(mode="json", include={"filters", "strides", "conditions"}),
+        **public_settings(study, {"filters", "strides", "conditions"}),
         "reconstruct": asdict(settings),
     }
     return Reconstruction(
-        study.title or study.folder.name,
+        public_title(study),
         walks.named(what.sensors),
         walks.named(what.states),
         f"{settings.split}: {rule}",

@@ -94,7 +94,7 @@ def _holder(path: Path) -> dict[str, Any]:
     """Who says to hold the folder; nothing where a process was killed before it could say."""
     try:
         holder = json.loads(path.read_text())
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return {}
     return holder if isinstance(holder, dict) else {}
 

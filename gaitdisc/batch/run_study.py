@@ -8,15 +8,17 @@ from functools import partial
 from pathlib import Path
 
 from gaitdisc.batch.participant_unit import ParticipantUnit, computed_unit, response_settings
+from gaitdisc.batch.public_words import public_settings, public_title
 from gaitdisc.batch.quantity_unit import stored_quantity
 from gaitdisc.batch.run_lock import run_lock
 from gaitdisc.batch.workers import Told, Workers, computed_units
 from gaitdisc.ingest.study import Study
 from gaitdisc.response.comparison import compare_models
 from gaitdisc.response.over_participants import compare_participants
-from gaitdisc.results import DataQuantity, Provenance, ResponseRun
+from gaitdisc.results import DataQuantity, Provenance, Refusal, ResponseRun
 from gaitdisc.results.provenance import made_now
 from gaitdisc.results.run_store import save_run
+from gaitdisc.results.unit_folder import damaged_units
 
 SECTION = "4.2, Eqs. 4.1-4.5"
 
@@ -30,7 +32,8 @@ def run_study(
     """Process every walk of a study and fit every participant's models.
 
     A participant whose files, settings and package version are those of an earlier run in the same folder is loaded,
-    not computed; so a run that was stopped goes on, and loses at most the participant it was at.
+    not computed; so a run that was stopped goes on, and loses at most the participant it was at. What was changed since
+    it was saved, in a table or in a JSON file, is not loaded but computed again, and said in `renewed`.
 
     Parameters
     ----------
@@ -56,12 +59,13 @@ def run_study(
         If the cluster cannot be reached.
     """
     with run_lock(folder):
+        renewed = damaged_units(folder)
         compute = partial(computed_unit, study, folder=folder.absolute())
-        units = list(computed_units(workers or Workers(), compute, study.participants, told))
+        units = list(computed_units(workers or Workers(), compute, study.participants, told, _lost))
         responses = tuple(unit.response for unit in units if unit.response is not None)
         quantities = _stored_quantities(study, units, folder)
         run = ResponseRun(
-            study.title or study.folder.name,
+            public_title(study),
             study.conditions.nominal,
             study.conditions.device,
             tuple(walk for unit in units for walk in unit.walks),
@@ -71,9 +75,14 @@ def run_study(
             compare_models(responses),
             quantities,
             compare_participants(responses, quantities, study.models.seed),
+            renewed,
         )
         save_run(run, folder)
     return run
+
+
+def _lost(refusal: Refusal) -> ParticipantUnit:
+    return ParticipantUnit(refusals=(refusal,))
 
 
 def _stored_quantities(study: Study, units: Sequence[ParticipantUnit], folder: Path) -> tuple[DataQuantity, ...]:
@@ -84,5 +93,5 @@ def _stored_quantities(study: Study, units: Sequence[ParticipantUnit], folder: P
 
 def _provenance(study: Study, units: Sequence[ParticipantUnit]) -> Provenance:
     files = {name: sha for unit in units for walk in unit.walks for name, sha in walk.files.items()}
-    settings = {**study.model_dump(mode="json"), "fits": asdict(response_settings(study))}
+    settings = {**public_settings(study), "fits": asdict(response_settings(study))}
     return made_now(settings, study.models.seed, files, SECTION)

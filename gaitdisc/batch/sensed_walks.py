@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.batch.public_words import PublicWords, of_trial, words_of
 from gaitdisc.batch.target_walks import STATES as STATE_TARGETS
-from gaitdisc.batch.target_walks import refuse_unknown_targets, target_walk
+from gaitdisc.batch.target_walks import TARGETS, refuse_unknown_targets, target_walk
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, GaitdiscError, SamplingError, UnitError
 from gaitdisc.ingest.c3d import C3DReader
@@ -30,6 +31,7 @@ STATES = (
         for joint in ("hip_flexion", "hip_adduction", "hip_rotation", "knee_angle", "ankle_angle")
     ),
 )  # the 18 of section 5.3.3
+TOLD = tuple(stream for stream, _ in TARGETS.values())
 STILL = {"deg": 1e-3, "m": 1e-3}  # a channel that varies less was locked
 STILL_OTHERWISE = 1e-9
 
@@ -65,7 +67,7 @@ class SensedWalks:
     findings : tuple of Finding
         States that are left out, and what was seen in the recordings.
     files : dict of str to str
-        File name -> SHA-256.
+        What each file is called -> SHA-256.
     """
 
     people: dict[str, tuple[SensedWalk, ...]]
@@ -130,14 +132,16 @@ def sensed_walks(
             if person.excluded:
                 refusals.append(Refusal(person.id, "", f"excluded in the study: {person.excluded}"))
                 continue
-            for trial in _trials(study, person, condition, reader, refusals):
+            public = words_of(study, person, sensors)
+            for trial in _trials(study, person, condition, reader, public, refusals):
                 try:
                     walk, seen = _sensed(trial, study, sensors, targets)
                 except GaitdiscError as error:
-                    refusals.append(Refusal(person.id, trial.condition, f"{trial.name}: {error}"))
+                    reason = f"{trial.name}: {public.error(error)}"
+                    refusals.append(Refusal(person.id, trial.condition, reason))
                     continue
                 walks.setdefault(person.id, []).append(walk)
-                findings += seen
+                findings += map(public.finding, seen)
                 files |= {s.source.file: s.source.sha256 for s in trial.streams.values() if s.source.sha256}
     if not walks:
         raise ChannelError(
@@ -157,16 +161,23 @@ def sensed_walks(
 
 
 def _trials(
-    study: Study, person: Participant, condition: str, reader: C3DReader, refusals: list[Refusal]
+    study: Study,
+    person: Participant,
+    condition: str,
+    reader: C3DReader,
+    public: PublicWords,
+    refusals: list[Refusal],
 ) -> list[Trial]:
     found = []
     for planned in person.trials:
         if planned.condition == UNKNOWN or (condition and planned.condition != condition):
             continue
         try:
-            found.append(read_planned_trial(study, person, planned, reader))
+            own = of_trial(public, person, planned)
+            trial = own.trial(read_planned_trial(study, person, planned, reader))
+            found.append(own.known_channels(trial, TOLD))
         except GaitdiscError as error:
-            refusals.append(Refusal(person.id, planned.condition, str(error)))
+            refusals.append(Refusal(person.id, planned.condition, str(public.error(error))))
     return found
 
 

@@ -11,6 +11,7 @@ import pandas as pd
 
 from gaitdisc.batch.participant_unit import response_settings
 from gaitdisc.batch.processed_walks import processed_walks
+from gaitdisc.batch.public_words import words_of
 from gaitdisc.batch.unit_key import response_key, unit_keys
 from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.ingest.c3d import C3DReader
@@ -89,12 +90,13 @@ def _modalities(study: Study, participant: Participant, progress: Progress) -> V
 
 
 def _sensitivity(study: Study, participant: Participant, progress: Progress) -> Variants | Refusal:
+    public = words_of(study, participant)
     try:
         with C3DReader() as reader:
             planned = {word: participant.trials_of(word)[0] for word in study.conditions.both}
             trials = {word: read_planned_trial(study, participant, one, reader) for word, one in planned.items()}
     except GaitdiscError as error:
-        return Refusal(participant.id, "", str(error))
+        return Refusal(participant.id, "", str(public.error(error)))
     tables, left_away = [], {}
     settings = _settings(study)
     for number, setting in enumerate(settings):
@@ -102,7 +104,7 @@ def _sensitivity(study: Study, participant: Participant, progress: Progress) -> 
             told = partial(_told, progress, number, len(settings))
             tables.append(_under(study, trials, setting, told).assign(variant=setting.name))
         except GaitdiscError as error:
-            left_away[setting.name] = str(error)
+            left_away[setting.name] = str(public.error(error))
     if not tables:
         return Refusal(participant.id, "", next(iter(left_away.values())))
     table = pd.concat(tables, ignore_index=True)[list(VARIANT_COLUMNS)]

@@ -62,7 +62,7 @@ def vary_study(
     with run_lock(folder):
         asked = [study.participant(response.participant) for response in run.responses]
         compute = partial(computed_variants, study, folder=folder.absolute(), question=question)
-        found = list(computed_units(workers, compute, asked, told))
+        found = list(computed_units(workers, compute, asked, told, lambda refusal: refusal))
         varied = _varied(run, question, found)
         save_variant_run(varied, folder / question)
     return varied
@@ -79,4 +79,5 @@ def _varied(run: ResponseRun, question: str, found: Sequence[Variants | Refusal]
         compare_modalities(people) if question == "modalities" else compare_settings(people),
         (*run.refusals, *(each for each in found if isinstance(each, Refusal))),
         (min(lengths), max(lengths)),
+        run.renewed,
     )

@@ -8,8 +8,10 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, TypeVar
 
+from gaitdisc.batch.worker_pools import Lost, computed_in_processes
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.study import Participant
+from gaitdisc.results import Refusal
 
 Told = Callable[[str, float], None]
 Unit = TypeVar("Unit")
@@ -44,9 +46,16 @@ class Workers:
 
 
 def computed_units(
-    workers: Workers, compute: Callable[..., Unit], people: Sequence[Participant], told: Told
+    workers: Workers,
+    compute: Callable[..., Unit],
+    people: Sequence[Participant],
+    told: Told,
+    lost: Callable[[Refusal], Unit],
 ) -> Iterator[Unit]:
     """Compute one unit a participant where it shall be done, in order.
+
+    A process beside this one that is killed costs its own participant's time: that participant is tried once more, and
+    if its process is killed again, refused.
 
     Parameters
     ----------
@@ -59,6 +68,8 @@ def computed_units(
     told : callable
         Called with a participant's pseudonym and the fraction done; progress within a participant is told only where
         everything is done in this process.
+    lost : callable
+        Makes the unit of a participant whose process was killed each time; takes the refusal.
 
     Yields
     ------
@@ -76,7 +87,7 @@ def computed_units(
         return
     for person, unit in computed_side_by_side(workers, partial(_untold, compute), people):
         told(person.id, 1.0)
-        yield unit
+        yield lost(Refusal(person.id, "", unit.reason)) if isinstance(unit, Lost) else unit
 
 
 def _untold(compute: Callable[..., Unit], person: Participant) -> Unit:
@@ -89,10 +100,10 @@ def _nobody(_fraction: float) -> None:
 
 def computed_side_by_side(
     workers: Workers, compute: Callable[[Person], Unit], people: Sequence[Person]
-) -> Iterator[tuple[Person, Unit]]:
+) -> Iterator[tuple[Person, Unit | Lost]]:
     """Compute one unit a person on other processes or machines, and give them back in order as they are ready.
 
-    A worker of a cluster that dies is replaced by another: its person is computed again.
+    A worker that dies is replaced by another: its person is computed again.
 
     Parameters
     ----------
@@ -106,24 +117,25 @@ def computed_side_by_side(
     Yields
     ------
     (person, unit)
+        `Lost` in the place of a unit whose process on this machine was killed each time.
 
     Raises
     ------
     ClusterError
         If there is no scheduler at the address, or the extra `cluster` is not installed.
     """
+    if not workers.cluster:
+        yield from computed_in_processes(workers.jobs, compute, people)
+        return
     from joblib import Parallel, delayed
 
-    with _backend(workers) as options:
-        results: Any = Parallel(return_as="generator", **options)(delayed(compute)(person) for person in people)
+    with _cluster(workers.cluster):
+        results: Any = Parallel(n_jobs=-1, return_as="generator")(delayed(compute)(person) for person in people)
         yield from zip(people, results, strict=True)
 
 
 @contextmanager
-def _backend(workers: Workers) -> Iterator[dict[str, Any]]:
-    if not workers.cluster:
-        yield {"n_jobs": workers.jobs, "backend": "loky", "inner_max_num_threads": 1}
-        return
+def _cluster(address: str) -> Iterator[None]:
     try:
         from distributed import Client
     except ImportError as error:
@@ -135,15 +147,15 @@ def _backend(workers: Workers) -> Iterator[dict[str, Any]]:
     from joblib import parallel_config
 
     try:
-        client = Client(workers.cluster, timeout=CONNECT_S)
+        client = Client(address, timeout=CONNECT_S)
     except (OSError, ValueError) as error:
         raise ClusterError(
             "a cluster needs a Dask scheduler that answers",
-            f"{workers.cluster}: {str(error)[:200] or type(error).__name__}",
+            f"{address}: {str(error)[:200] or type(error).__name__}",
             "Start one with `dask scheduler`, correct the address, or leave --cluster out.",
         ) from error
     try:
         with parallel_config(backend="dask"):
-            yield {"n_jobs": -1}
+            yield
     finally:
         client.close()

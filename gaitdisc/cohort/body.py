@@ -24,7 +24,7 @@ LEG_OF_HEIGHT = 0.530  # greater trochanter over ground, Winter (2009), figure 4
 class Leg(NamedTuple):
     """Masses and lengths of one leg, in the units of the equations.
 
-    Parameters
+    Attributes
     ----------
     thigh_m, shank_m : float
         Lengths L1, L2.

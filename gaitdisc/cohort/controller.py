@@ -39,7 +39,7 @@ GMED = MUSCLES.index("emg_gmed")
 class Columns(NamedTuple):
     """Where in a leg's table each quantity begins.
 
-    Parameters
+    Attributes
     ----------
     psi, turning : int
         Thigh, shank, foot [rad], and their rate by phase [rad].

@@ -25,7 +25,7 @@ RISE, FALL = 0.10, 0.16  # shares of the stance over which the gate opens and cl
 class Belt(NamedTuple):
     """How firmly the belt holds a foot.
 
-    Parameters
+    Attributes
     ----------
     along, up, turn : float
         Stiffness [N/m, N/m, N m/rad].

@@ -39,7 +39,7 @@ SLOW = 1 + 6 + 4 + 6 + 2 + 2 + 2 + 6
 class Loop(NamedTuple):
     """Feedback and unrest of one person.
 
-    Parameters
+    Attributes
     ----------
     stiffness, damping : ndarray (3,)
         Impedance of hip, knee, ankle about the habit [N m/rad, N m s/rad].
@@ -82,7 +82,7 @@ class Loop(NamedTuple):
 class Worn(NamedTuple):
     """Device and treadmill in the units of the equations.
 
-    Parameters
+    Attributes
     ----------
     stiffness : float
         Of the spring [N m/rad].

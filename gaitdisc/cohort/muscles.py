@@ -40,7 +40,7 @@ LEAST, MOST = 0.01, 1.0  # of excitation
 class Strength(NamedTuple):
     """Muscles of one person, in the units of the equations.
 
-    Parameters
+    Attributes
     ----------
     reach : ndarray (muscle, joint) [N m]
         Moment at full activation.

@@ -72,6 +72,8 @@ def _print_inspections(seen: list[Inspection], notes: bool) -> None:
     from rich.console import Console
     from rich.table import Table
 
+    from gaitdisc.report.terminal import plain
+
     console = Console()
     table = Table("light", "who", "trial", "channels", "strides", "warnings", box=box.SIMPLE)
     for inspection in seen:
@@ -82,19 +84,24 @@ def _print_inspections(seen: list[Inspection], notes: bool) -> None:
         ]
         warnings = sum(finding.severity != "note" for finding in inspection.findings)
         table.add_row(
-            f"[{light}]{inspection.light}[/]",
-            inspection.participant,
-            "\n".join(part for part in (inspection.condition, inspection.name) if part),
-            "\n".join(f"{key} {words}" for key, words in inspection.streams.items()),
-            "\n".join(lines),
-            str(warnings or ""),
+            plain(inspection.light, light),
+            *map(
+                plain,
+                (
+                    inspection.participant,
+                    "\n".join(part for part in (inspection.condition, inspection.name) if part),
+                    "\n".join(f"{key} {words}" for key, words in inspection.streams.items()),
+                    "\n".join(lines),
+                    str(warnings or ""),
+                ),
+            ),
         )
     console.print(table)
     for inspection in seen:
         if inspection.refusal:
-            console.print(f"refused: {inspection.name or inspection.participant}: {inspection.refusal}", markup=False)
+            console.print(plain(f"refused: {inspection.name or inspection.participant}: {inspection.refusal}"))
         for line in inspection.grouped(notes):
-            console.print(line, markup=False, highlight=False)
+            console.print(plain(line))
 
 
 def _as_dict(inspection: Inspection) -> dict[str, object]:

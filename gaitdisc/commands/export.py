@@ -17,17 +17,27 @@ def export(
     ],
     rate: Annotated[float, typer.Option(min=1.0, help="Samples a second of the result.")] = 100.0,
     stream: Annotated[list[str] | None, typer.Option(help="Only this stream; may be repeated.")] = None,
+    labels: Annotated[
+        bool,
+        typer.Option("--labels", help="Keep labels that are outside the vocabulary; without it they are numbered."),
+    ] = False,
 ) -> None:
     """Bring EMG, force and kinematics of one walk to one time base, low-passed where they are faster than it."""
     if out.suffix.lower() == ".onnx":
         _model(files, out)
         return
+    from gaitdisc.batch.public_words import with_public_labels
     from gaitdisc.ingest.reading import read_trial
     from gaitdisc.ingest.storage import write_storage
     from gaitdisc.ingest.table import write_table
     from gaitdisc.processing.one_base import on_one_base
 
     together = on_one_base(read_trial(files), rate, tuple(stream) if stream else None)
+    if not labels:
+        together, count = with_public_labels(together)
+        if count:
+            what = "label is" if count == 1 else "labels are"
+            typer.echo(f"{count} {what} outside the vocabulary and numbered; --labels keeps them.", err=True)
     write = write_storage if out.suffix.lower() in (".mot", ".sto") else write_table
     write(together, out)
     typer.echo(f"{out}: {len(together.names)} channels, {len(together.time)} samples at {together.rate_hz:g} Hz")

@@ -33,13 +33,14 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
         str, typer.Option(help='temporal, blocked, subject, condition (each by the others), or "random (leaks)".')
     ] = "temporal",
     condition: Annotated[
-        str, typer.Option(help="Walks of this condition alone; with --split condition those that are judged.")
+        str, typer.Option(help="Walks of this condition alone; with --split condition those of the test part.")
     ] = "",
-    targets: Annotated[str, typer.Option(help="What is told: states, emg, forces or moments.")] = "states",
-    ahead: Annotated[float, typer.Option(min=0.0, help="Tell the states so many seconds ahead.")] = 0.0,
+    targets: Annotated[str, typer.Option(help="What is reconstructed: states, emg, forces or moments.")] = "states",
+    ahead: Annotated[float, typer.Option(min=0.0, help="Forecast the states so many seconds ahead.")] = 0.0,
     kinds: Annotated[str, typer.Option(help='As in "delay ridge,masked shred"; by default five kinds of model.')] = "",
     model: Annotated[
-        Path | None, typer.Option(help="Folder of a model that this command saved: tell the states of a recording.")
+        Path | None,
+        typer.Option(help="Folder of a model that this command saved: reconstruct the states of a recording."),
     ] = None,
     calibrate: Annotated[
         Path | None, typer.Option(help="With --model: a walk of the same person with all states, to correct it by.")
@@ -53,7 +54,7 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     out: Annotated[Path | None, typer.Option(help="Folder of the report; by default STUDY/reconstruct.")] = None,
     quiet: Quiet = False,
 ) -> None:
-    """Tell all states from a few sensors, by SHRED and by what it has to beat, judged on walking it never saw."""
+    """Reconstruct all states from a few sensors, by SHRED and by what it has to beat; tested on unseen walking."""
     from gaitdisc.batch.reconstruct_study import ReconstructionSettings, reconstruct_study
     from gaitdisc.batch.search_study import search_study
     from gaitdisc.ingest.study_file import load_study
@@ -105,8 +106,11 @@ def _refuse_others(context: typer.Context, model: Path | None) -> None:
     given = [name for name, source in sources.items() if source is not None and source.name == "COMMANDLINE"]
     if given:
         words = " and ".join(f"--{name}" for name in given)
-        told = ("a saved model tells a recording as it was fitted", "Leave them out, or leave --model out.")
-        fitted = ("these correct what a saved model tells of a recording", "Name the model's folder with --model.")
+        told = ("a saved model reads a recording as it was fitted", "Leave them out, or leave --model out.")
+        fitted = (
+            "these correct what a saved model reconstructs of a recording",
+            "Name the model's folder with --model.",
+        )
         needed, remedy = told if model is not None else fitted
         raise SchemaError(needed, f"{words} {'with' if model is not None else 'without'} --model", remedy)
 

@@ -18,7 +18,7 @@ def run(
     cluster: Cluster = "",
     quiet: Quiet = False,
 ) -> None:
-    """Process, fit, judge and report; what an earlier run has finished is kept."""
+    """Process, fit, test and report; what an earlier run has finished is kept."""
     from gaitdisc.batch.run_study import run_study
     from gaitdisc.batch.workers import Workers
     from gaitdisc.ingest.study_file import load_study

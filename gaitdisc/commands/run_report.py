@@ -45,6 +45,7 @@ def report_on(work: Callable[[Told], ResponseRun], study: Study, folder: Path, q
 
     started = time.perf_counter()
     done = worked(work, [person.id for person in study.participants], quiet)
+    say_renewed(done.renewed)
     page = write_report(done, folder / "report")
     if done.responses:
         Console().print(r2_text(done))
@@ -52,6 +53,18 @@ def report_on(work: Callable[[Told], ResponseRun], study: Study, folder: Path, q
         for length_s, reason in quantity.left_away.items():
             typer.echo(f"left out: {quantity.participant}, training length {length_s:g} s: {reason}", err=True)
     end(done.refusals, len(done.responses), page, time.perf_counter() - started)
+
+
+def say_renewed(renewed: Sequence[str]) -> None:
+    """Say which files of an earlier run were not used.
+
+    Parameters
+    ----------
+    renewed : sequence of str
+        Of the run.
+    """
+    for line in renewed:
+        typer.echo(f"not used, computed again: {line}", err=True)
 
 
 def worked(work: Callable[[Told], Result], people: list[str], quiet: bool) -> Result:
@@ -121,7 +134,13 @@ def with_progress(work: Callable[[Told], Result], people: list[str]) -> Result:
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
     elapsed, left = TimeElapsedColumn(), TimeRemainingColumn()
-    columns = (TextColumn("{task.description}"), BarColumn(), elapsed, TextColumn("left"), left)
+    columns = (
+        TextColumn("{task.description}", markup=False),
+        BarColumn(),
+        elapsed,
+        TextColumn("left", markup=False),
+        left,
+    )
     shares = dict.fromkeys(people, 0.0)
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task("participants", total=len(shares))

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import typer
 
-from gaitdisc.commands.run_report import end, worked
+from gaitdisc.commands.run_report import end, say_renewed, worked
 
 
 def vary(place: Path, out: Path | None, question: str, workers: tuple[int, str], quiet: bool) -> None:
@@ -40,6 +40,7 @@ def vary(place: Path, out: Path | None, question: str, workers: tuple[int, str],
     folder, started, side_by_side = out or study.folder / "run", time.perf_counter(), Workers(*workers)
     people = [person.id for person in study.participants]
     done = worked(lambda told: vary_study(study, folder, question, side_by_side, told), people, quiet)
+    say_renewed(done.renewed)
     page = write_variants(done, folder / question)
     for sentence in variant_sentences(done):
         typer.echo(sentence)

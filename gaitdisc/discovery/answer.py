@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from gaitdisc.discovery.account import Part
-from gaitdisc.discovery.effect_units import places_unit, unit_of
+from gaitdisc.discovery.effect_units import channel_unit, places_unit
 from gaitdisc.discovery.estimates import estimates_of
 from gaitdisc.discovery.evidence import Judged
-from gaitdisc.discovery.held_out import drawn_runs, gap_size, runs_of
+from gaitdisc.discovery.held_out import drawn_runs, gap_size, proof_of, runs_of, tested
 from gaitdisc.discovery.inquiry import Inquiry
+from gaitdisc.discovery.rivals import Rival, evidence_of, rivals_of
 from gaitdisc.discovery.shaken import Shaken
 from gaitdisc.discovery.verdict import Verdict
 from gaitdisc.discovery.wording import sentence_of
@@ -18,8 +19,6 @@ from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, GapSize
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.simulation import Simulation
 
-TIE = 6.0  # fall of the criterion below which two explanations are told apart by nothing
-RIVALS = 6
 HALF = 0.5
 
 
@@ -44,30 +43,30 @@ def answer(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> tuple[Discove
     """
     now, base = verdict.account, inquiry.search.base
     channels = tuple(name for name, _ in base.observations)
-    block = int(inquiry.rhythm.period * inquiry.rhythm.rate) + 1
-    sizes = []
-    for trials in (inquiry.learned, inquiry.held_out):
-        before, after = (runs_of(inquiry, one, trials, now) for one in (as_read, now))
-        sizes.append(gap_size(before, after, now.noise.size, channels, block))
-    train, held_out = sizes
+    floor, proof = now.noise.size, verdict.proof
+    before, after = (runs_of(inquiry, one, inquiry.learned, now) for one in (as_read, now))
+    train = gap_size(before, after, floor, channels, tested(inquiry, before, after, now))
+    held = proof if proof and now.account.parts else proof_of(inquiry, as_read, now, now)
+    held_out = gap_size(held.before, held.after, floor, channels, (proof or held).test)
+    gained = evidence_of(inquiry.search, now)
     discovery = Discovery(
         verdict.word,
         "",
         whereabouts(inquiry, verdict, train),
-        effects_of(inquiry, verdict, closed_share(held_out)),
-        rivals_of(inquiry, now, verdict.rivals),
+        effects_of(inquiry, verdict, closed_share(held_out), gained),
+        told_rivals(inquiry, rivals_of(inquiry.search, now, verdict.rivals, gained)),
         train,
         held_out,
         channels,
         units_of(inquiry),
-        drawn_runs(inquiry, before, after, inquiry.held_out),
+        drawn_runs(inquiry, held.before, held.after, inquiry.held_out),
         inquiry.measured.findings,
     )
     augmented = begun_at(augmented_of(base, now.account.parts), verdict.starts)
     return sentence_of(discovery, base, now.account.parts), augmented
 
 
-def effects_of(inquiry: Inquiry, verdict: Verdict, closed: float) -> tuple[FoundEffect, ...]:
+def effects_of(inquiry: Inquiry, verdict: Verdict, closed: float, gained: float) -> tuple[FoundEffect, ...]:
     """List what was found: a random push, wrong starts, or the explanations that were let in.
 
     Parameters
@@ -78,6 +77,8 @@ def effects_of(inquiry: Inquiry, verdict: Verdict, closed: float) -> tuple[Found
         What the search came to.
     closed : float
         Share of the held-out gap that is closed.
+    gained : float
+        Fall of the criterion from the simulation as read.
     """
     if verdict.shaking:
         place, push = verdict.shaking.place, push_of(inquiry, verdict.shaking)
@@ -87,7 +88,6 @@ def effects_of(inquiry: Inquiry, verdict: Verdict, closed: float) -> tuple[Found
             FoundEffect("state", name, "wrong_initial_condition", "", {"initial": start})
             for name, start in verdict.starts.items()
         )
-    gained = max([one.gained for one in verdict.rivals], default=0.0)
     return tuple(found_effects(inquiry, verdict.account, closed, gained))
 
 
@@ -160,38 +160,23 @@ def found_effects(inquiry: Inquiry, now: Judged, closed: float, gained: float) -
     return found
 
 
-def rivals_of(inquiry: Inquiry, now: Judged, rivals: tuple[Judged, ...]) -> tuple[FoundEffect, ...]:
-    """List what else was weighed for the first place.
+def told_rivals(inquiry: Inquiry, rivals: tuple[Rival, ...]) -> tuple[FoundEffect, ...]:
+    """List what else was weighed, with its numbers.
 
     Parameters
     ----------
     inquiry : Inquiry
         What was asked.
-    now : Judged
-        The simulation with what was found.
-    rivals : tuple of Judged
+    rivals : tuple of Rival
         Best first.
     """
-    own = {part.candidate.label for part in now.account.parts}
-    best = max([one.gained for one in rivals], default=0.0)
     listed = []
-    for rival in (one for one in rivals if one.account.parts):
-        last = rival.account.parts[-1]
-        if last.candidate.label in own:
-            continue
-        estimates = estimates_of(rival.account, len(rival.account.parts) - 1, inquiry.search.base)
-        listed.append(
-            FoundEffect(
-                last.candidate.kind,
-                last.candidate.place,
-                last.candidate.name,
-                "",
-                estimates,
-                bic=rival.gained,
-                tied=bool(own and best - rival.gained < TIE),
-            )
-        )
-    return tuple(listed[:RIVALS])
+    for rival in rivals:
+        candidate, account = rival.part.candidate, rival.account.account
+        estimates = estimates_of(account, len(account.parts) - 1, inquiry.search.base)
+        place = (candidate.kind, candidate.place, candidate.name)
+        listed.append(FoundEffect(*place, "", estimates, bic=rival.gained, tied=rival.tied))
+    return tuple(listed)
 
 
 def whereabouts(inquiry: Inquiry, verdict: Verdict, train: GapSize) -> tuple[Whereabouts, ...]:
@@ -281,4 +266,4 @@ def units_of(inquiry: Inquiry) -> tuple[str, ...]:
     """
     base = inquiry.search.base
     units = {part.name: part.unit for part in (*base.states, *base.inputs, *base.parameters)} | {"t": "s"}
-    return tuple(unit_of(text, units) for _, text in base.observations)
+    return tuple(channel_unit(text, units) for _, text in base.observations)

@@ -8,7 +8,9 @@ from dataclasses import dataclass
 
 from gaitdisc.discovery.catalogue import Shape
 from gaitdisc.discovery.places import Place
+from gaitdisc.simulation.expression import Tree, parsed
 from gaitdisc.simulation.parts import Parameter, Term
+from gaitdisc.simulation.rewriting import substituted, written
 from gaitdisc.simulation.simulation import Simulation
 
 # verdict -> the kind of place it names
@@ -112,8 +114,7 @@ class Candidate:
             return simulation.with_input(self.place, form.format(s=self.place, **numbers))
         seen = dict(simulation.observations)[self.place]
         if self.name == "sensor_lag":
-            signals = "|".join(re.escape(signal) for signal in simulation.signals)
-            seen = re.sub(rf"\b({signals})\b", lambda match: f"delay({match.group()}, {numbers['seconds']})", seen)
+            seen = _late(simulation, seen, numbers["seconds"])
         return simulation.with_observation(self.place, form.format(s=seen, **numbers))
 
     @property
@@ -183,6 +184,15 @@ class Candidate:
             Begins the names of those that are added; a wrong parameter is there already.
         """
         return {slot: self.place if self.verdict == "wrong_parameter" else f"{tag}_{slot}" for slot in self.slots}
+
+
+def _late(simulation: Simulation, seen: str, seconds: str) -> str:
+    """An observation as it was some seconds ago, definitions that stand in it written out."""
+    by: dict[str, Tree] = {}
+    for name, text in simulation.definitions:
+        by[name] = substituted(parsed(text), by, simulation.signals)
+    whole = {"seen": substituted(parsed(seen), by, simulation.signals)}
+    return written(substituted(parsed(f"delay(seen, {seconds})"), whole, simulation.signals))
 
 
 def candidates_of(

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel, nearest_word
 from gaitdisc.errors import ChannelError
 from gaitdisc.recording import Finding
+from gaitdisc.recording.wrapping import turn_of
 from gaitdisc.results import WalkSummary
 
 LEAST_KEPT = 0.5  # of a walk's strides: a channel that would cost more is left out
@@ -64,7 +65,7 @@ def common_curves(walks: Sequence[WalkSummary], wanted: Sequence[str] = ()) -> C
     shared = _shared(walks, wanted, findings)
     if not wanted:
         shared = _sound(shared, walks, findings)
-    by_channel = {c.name: [_whole(walk, c.name) for walk in walks] for c in shared}
+    by_channel = {c.name: _near_each_other([_whole(walk, c.name) for walk in walks], c) for c in shared}
     shared = [c for c in shared if _usable(c, by_channel[c.name], walks, findings)]
     shared = _moving(shared, by_channel, walks, findings)
     if not shared:
@@ -136,6 +137,15 @@ def _whole(walk: WalkSummary, name: str) -> NDArray[np.float64]:
     column = [channel.name for channel in walk.channels].index(name)
     curves = walk.curves[:, :, column]
     return curves[np.isfinite(curves).all(axis=1)]
+
+
+def _near_each_other(parts: list[NDArray[np.float64]], channel: Channel) -> list[NDArray[np.float64]]:
+    """Curves of a heading moved by whole turns to those of the first walk; other channels as they are."""
+    turn = turn_of(channel)
+    if turn is None or not len(parts[0]):
+        return parts
+    middle = parts[0].mean()
+    return [part - turn * np.round((part.mean() - middle) / turn) if len(part) else part for part in parts]
 
 
 def _usable(

@@ -13,9 +13,10 @@ from gaitdisc.discovery.catalogue import Shape
 from gaitdisc.discovery.evidence import Judged, compared, judged
 from gaitdisc.discovery.fitted_shape import fitted_shape
 from gaitdisc.discovery.growth import grown, pruned
-from gaitdisc.discovery.held_out import holding_out_others, noted, runs_of, tells_nothing
+from gaitdisc.discovery.held_out import Proof, holding_out_others, noted, proof_of, tells_nothing
 from gaitdisc.discovery.inquiry import Inquiry, begin_inquiry, split_in_time
 from gaitdisc.discovery.ranking import MARGIN, ranked
+from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.shaken import Shaken, shaken
 from gaitdisc.discovery.verdict import Verdict
 from gaitdisc.discovery.wrong_start import wrong_starts
@@ -87,20 +88,60 @@ def judge(inquiry: Inquiry, as_read: Judged) -> Verdict:
     """
     as_read, named, rivals = searched(inquiry, as_read)
     named = lasting(inquiry, as_read, named)
-    names = len(named.account.parts)
-    shape = fitted_shape(as_read, inquiry.search) if names > 1 or named.noise.remembers else None
+    shape = fitted_shape(as_read, inquiry.search) if len(named.account.parts) > 1 or named.noise.remembers else None
     remembered = weighed_with_memory(inquiry, as_read, named, shape, rivals) if named.noise.remembers else None
     if remembered:
         return remembered
-    if names > MOST_NAMES or (names > 1 and shape and says_more(inquiry, shape, named)):
-        return Verdict("unnamed", shape or named, (named, *rivals))
+    names = len(named.account.parts)
+    if shape and (names > MOST_NAMES or (names > 1 and says_more(inquiry, shape, named))):
+        proof = borne_out(inquiry, as_read, shape)
+        if proof.bears_out:
+            return Verdict("unnamed", shape, (named, *rivals), proof=proof)
     if not names:
         wrong = wrong_starts(inquiry.search.base, as_read)
         return Verdict("wrong_initial_condition" if wrong else "no_gap", as_read, tuple(rivals), starts=wrong)
-    longer, rivals = decided(inquiry, named, rivals)
-    if not proven(inquiry, as_read, longer):
-        return Verdict("no_gap", as_read, (named, *rivals))
-    return Verdict(longer.account.parts[0].candidate.verdict, longer, tuple(rivals))
+    longer, rivals = decided(inquiry, strongest(inquiry.search, named), rivals)
+    longer = needed(inquiry, as_read, longer)
+    proof = borne_out(inquiry, as_read, longer)
+    if not proof.bears_out:
+        return Verdict("no_gap", as_read, (longer, *rivals), proof=proof)
+    return Verdict(longer.account.parts[0].candidate.verdict, longer, tuple(rivals), proof=proof)
+
+
+def strongest(search: Search, named: Judged) -> Judged:
+    """Return what was named with as many explanations as are named at most, those left out that are missed least.
+
+    Parameters
+    ----------
+    search : Search
+        What is searched.
+    named : Judged
+        The simulation with what was found.
+    """
+    while len(named.account.parts) > MOST_NAMES:
+        fewer = [search.without(named, number) for number in range(len(named.account.parts))]
+        named = min(fewer, key=lambda one: one.evidence)
+    return named
+
+
+def needed(inquiry: Inquiry, as_read: Judged, now: Judged) -> Judged:
+    """Return what was named without the explanations that the held-out data do not bear out beside the others.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        What is asked.
+    as_read, now : Judged
+        The simulation as read and with what was named.
+    """
+    while len(now.account.parts) > 1:
+        fewer = [inquiry.search.without(now, number) for number in range(len(now.account.parts))]
+        tests = [borne_out(inquiry, one, now, as_read).test for one in fewer]
+        idle = max(range(len(fewer)), key=lambda number: np.nan_to_num(tests[number].p, nan=1.0))
+        if tests[idle].bears_out:
+            break
+        now = judged(now.shooting, inquiry.search.base, fewer[idle].account)
+    return now
 
 
 def searched(inquiry: Inquiry, as_read: Judged) -> tuple[Judged, Judged, list[Judged]]:
@@ -175,7 +216,7 @@ def weighed_with_memory(
         return Verdict("process_noise", as_read, tuple(rivals), shaking)
     worth = WORTH * (plain.evidence - found[0].evidence) + MARGIN
     if shape and found[1] in ordered and found[1].evidence < found[0].evidence - worth:
-        return Verdict("unnamed", found[1], (named, *rivals))
+        return Verdict("unnamed", found[1], (named, *rivals), proof=borne_out(inquiry, plain, found[1]))
     return None
 
 
@@ -253,11 +294,13 @@ def explains(inquiry: Inquiry, as_read: Judged, now: Judged, shaking: Shaken | N
     if not now.account.parts or as_read.evidence - now.evidence < MARGIN:
         return False
     share = REPEATS if shaking else 0.0
-    return proven(inquiry, as_read, now) and 1 - now.account.fit.misfit / as_read.account.fit.misfit > share
+    if 1 - now.account.fit.misfit / as_read.account.fit.misfit <= share:
+        return False
+    return borne_out(inquiry, as_read, now).bears_out
 
 
-def proven(inquiry: Inquiry, as_read: Judged, now: Judged) -> bool:
-    """Whether what was found makes the misfit fall on the trials that were held out.
+def borne_out(inquiry: Inquiry, before: Judged, now: Judged, as_read: Judged | None = None) -> Proof:
+    """Test on the held-out trials whether the error falls with what was found.
 
     Over runs as long as it was fitted to, which show a small effect best; where chaos makes these too long, over those
     that the search began with will do.
@@ -266,18 +309,13 @@ def proven(inquiry: Inquiry, as_read: Judged, now: Judged) -> bool:
     ----------
     inquiry : Inquiry
         What is asked.
-    as_read, now : Judged
-        The simulation as read and with what was found.
+    before, now : Judged
+        Without and with what is to be borne out.
+    as_read : Judged, optional
+        The simulation as read, on the runs that the search began with; `before` where absent.
     """
-    if _falls(inquiry, as_read, now, now):
-        return True
-    if inquiry.is_tame(as_read):
-        return False
-    return _falls(inquiry, as_read, now, replace(as_read, shooting=as_read.shooting.with_noise(now.noise)))
-
-
-def _falls(inquiry: Inquiry, as_read: Judged, now: Judged, like: Judged) -> bool:
-    """Whether the misfit falls, and the plain error as well, which is what a reader is told."""
-    before, after = (runs_of(inquiry, one, inquiry.held_out, like) for one in (as_read, now))
-    plain = (before.fit.residual**2 - after.fit.residual**2) / like.noise.size**2
-    return all(bool(np.nan_to_num(fall, nan=0.0).sum() > 0) for fall in (before.misfits - after.misfits, plain))
+    proof, first = proof_of(inquiry, before, now, now), as_read or before
+    if proof.bears_out or inquiry.is_tame(first):
+        return proof
+    shorter = proof_of(inquiry, before, now, replace(first, shooting=first.shooting.with_noise(now.noise)))
+    return shorter if shorter.bears_out else proof

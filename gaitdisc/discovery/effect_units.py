@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 
@@ -10,6 +11,8 @@ from gaitdisc.simulation.simulation import Simulation
 
 Powers = dict[str, float]
 _SAME = frozenset(["+", "-", "max", "min", "neg", "abs", "delay"])
+_ANGLE = re.compile(r"^rad(?=$|/s)")
+IN_DEGREES = 1e-3  # off 180/pi, as people round it
 _WORD = re.compile(r"(.*?)\^?(-?\d+)?")
 
 
@@ -66,6 +69,45 @@ def unit_of(expression: str, units: Mapping[str, str]) -> str:
     ('rad^2/s^2', 'm')
     """
     return _written(_of(parsed(expression), {name: _powers(unit) for name, unit in units.items()}) or {})
+
+
+def channel_unit(expression: str, units: Mapping[str, str]) -> str:
+    """Return the unit of an observed channel; of one in other units than its states', `1` where it is not known.
+
+    Parameters
+    ----------
+    expression : str
+        Of the observation.
+    units : mapping of str to str
+        Unit by name.
+
+    Examples
+    --------
+    >>> of = {"theta": "rad", "x": "m"}
+    >>> [channel_unit(text, of) for text in ("theta", "57.2958*theta", "-1*theta", "1000*x", "x + 0.1")]
+    ['rad', 'deg', 'rad', '1', 'm']
+    """
+    unit, factor = unit_of(expression, units), _factor(parsed(expression))
+    if abs(abs(factor) - 1) < 1e-9:
+        return unit
+    if _ANGLE.match(unit) and abs(abs(factor) * math.pi / 180 - 1) < IN_DEGREES:
+        return _ANGLE.sub("deg", unit)
+    return "1"
+
+
+def _factor(tree: Tree) -> float:
+    """Return the bare number by which an expression is multiplied; of a sum, that of its first signal."""
+    if isinstance(tree, Number):
+        return tree.value
+    if isinstance(tree, Name):
+        return 1.0
+    if tree.symbol in ("*", "/"):
+        first, second = (_factor(argument) for argument in tree.arguments)
+        return first * second if tree.symbol == "*" else first / (second or 1.0)
+    if tree.symbol in _SAME:
+        signals = [argument for argument in tree.arguments if not isinstance(argument, Number)]
+        return _factor(signals[0]) if signals else 1.0
+    return 1.0
 
 
 def _of(tree: Tree, units: Mapping[str, Powers]) -> Powers | None:

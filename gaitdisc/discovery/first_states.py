@@ -7,11 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.discovery.observation_map import RANK, ObservationMap
 from gaitdisc.discovery.segments import Segments
 from gaitdisc.signals.local_polynomial import savgol_filter
+from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
 SHARE_OF_PERIOD = 0.2
+OFTEN = 0.5  # of a trial's samples, at which the channels determine a state
+TURNS = 4  # of rates and positions, where a channel sees both
 
 
 @dataclass(frozen=True)
@@ -51,19 +56,15 @@ class StateGuess:
         return StateGuess(better)
 
 
-def guess_states(
-    simulation: Simulation, observed: NDArray[np.float64], rate: float, period: float, rate_of: dict[str, str]
-) -> StateGuess:
-    """Guess the states: measured ones smoothed, rates as the slope of what they are the rate of.
+def guess_states(simulation: Simulation, measured: Measured, period: float, rate_of: dict[str, str]) -> StateGuess:
+    """Guess the states: the observation map solved for them on smoothed channels, rates as slopes of positions.
 
     Parameters
     ----------
     simulation : Simulation
-        Names and observations.
-    observed : ndarray (trial, sample, channel)
-        In the order of the simulation's observations.
-    rate : float
-        Samples a second [Hz].
+        Names, and observations: any expressions of states, inputs and time.
+    measured : Measured
+        Its trials; channels in the order of the observations.
     period : float
         The motion's main period [s].
     rate_of : dict of str to str
@@ -72,26 +73,56 @@ def guess_states(
     Returns
     -------
     StateGuess
-        A state that is neither measured nor a rate begins at its `initial`, or at 0.
+        A state that the channels do not determine and that is no rate of one that they do begins at its `initial`, or
+        at 0, moved by what the channels say of it.
     """
-    names = [state.name for state in simulation.states]
+    machine, drive = compile_simulation(simulation), measured.drive
+    observed, rate = measured.observed, drive.rate
     window = max(int(SHARE_OF_PERIOD * period * rate) // 2 * 2 + 1, 5)
-    out = np.full((*observed.shape[:2], len(names)), np.nan)
-    channels = {text.strip(): number for number, (_, text) in enumerate(simulation.observations)}
+    spread = np.nanstd(observed, axis=(0, 1))
+    spread = np.where(spread > 0, spread, 1.0)
+    pairs = [(machine.states.index(one), machine.states.index(other)) for one, other in rate_of.items()]
+    initial = np.array([state.initial or 0.0 for state in simulation.states])
+    out = np.full((*observed.shape[:2], len(machine.states)), np.nan)
     for trial, record in enumerate(observed):
         length = int(np.isfinite(record).any(axis=1).sum())
         width = min(window, length // 2 * 2 - 1)
-        for number, state in enumerate(simulation.states):
-            out[trial, :length, number] = state.initial or 0.0
-        for number, name in enumerate(names):
-            if name in channels:
-                seen = _filled(record[:length, channels[name]])
-                out[trial, :length, number] = savgol_filter(seen, width, 3)
-                if name in rate_of and rate_of[name] not in channels:
-                    out[trial, :length, names.index(rate_of[name])] = savgol_filter(seen, width, 3, 1, 1 / rate)
+        whole = [_bridged(channel, np.isfinite(channel)) for channel in record[:length].T]
+        smooth = np.column_stack([savgol_filter(one, width, 3) for one in whole]) / spread
+        slope = np.column_stack([savgol_filter(one, width, 3, 1, 1 / rate) for one in whole]) / spread
+        t = drive.time0[trial] + np.arange(length) / rate
+        seeing = ObservationMap(machine, t, drive.inputs[trial, :length], spread)
+        out[trial, :length] = _states(seeing, (smooth, slope), np.tile(initial, (length, 1)), pairs, rate)
     return StateGuess(out)
 
 
-def _filled(seen: NDArray[np.float64]) -> NDArray[np.float64]:
-    known = np.isfinite(seen)
-    return np.interp(np.arange(len(seen)), np.flatnonzero(known), seen[known])
+def _states(
+    seeing: ObservationMap,
+    seen: tuple[NDArray[np.float64], NDArray[np.float64]],
+    begin: NDArray[np.float64],
+    pairs: list[tuple[int, int]],
+    rate: float,
+) -> NDArray[np.float64]:
+    """States of one trial (sample, state); a rate that the channels leave open is the slope of its position."""
+    smooth, slope = seen
+    free = np.ones(begin.shape[1], bool)
+    x, known = seeing.solved(smooth, begin, free)
+    often = known.mean(axis=0) > OFTEN
+    rates = [(one, other) for one, other in pairs if often[one] and not often[other]]
+    free[[other for _, other in rates]] = False
+    for _ in range(TURNS if rates else 0):
+        slopes = seeing.jacobian(x)
+        beside = (slopes * ~free) @ (np.gradient(x, axis=0) * rate)[..., None]  # what the rates' own change shows
+        moving = np.linalg.pinv(slopes * free, rcond=RANK) @ ((slope - seeing.drift(x, rate))[..., None] - beside)
+        for position, other in rates:
+            x[:, other] = _bridged(moving[:, position, 0], known[:, position])
+        if not slopes[:, :, ~free].any():
+            break
+        x, known = seeing.solved(smooth, np.where(free, begin, x), free)
+    for state in np.flatnonzero(often):
+        x[:, state] = _bridged(x[:, state], known[:, state])
+    return x
+
+
+def _bridged(values: NDArray[np.float64], known: NDArray[np.bool_]) -> NDArray[np.float64]:
+    return values if known.all() else np.interp(np.arange(len(values)), np.flatnonzero(known), values[known])

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.discovery.borne_out import PairedTest, paired_test
 from gaitdisc.discovery.evidence import Judged
 from gaitdisc.discovery.fitted import Fitted
 from gaitdisc.discovery.inquiry import LENGTHENED, Inquiry
@@ -14,7 +15,6 @@ from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording.finding import Finding
 from gaitdisc.results.discovery import GapSize, Runs
 
-FLIPS = 9999
 TURNS = 30
 TELLING = 36.0  # how far two runs are apart, in variances of the noise, for trials to tell which is true
 WORTH_ASKING = 50.0  # evidence of the trials that were learned from
@@ -60,10 +60,10 @@ def runs_of(inquiry: Inquiry, now: Judged, trials: tuple[int, ...], like: Judged
     guess = inquiry.guess
     for length in shorter:
         segments = inquiry.segments(trials, length)
-        shooting = inquiry.shooting(segments).with_noise(like.noise)
+        shooting = replace(inquiry.shooting(segments).with_noise(like.noise), past=guess.states)
         guess = guess.with_run(segments, _started(shooting, now, guess.starts(segments)).states)
     segments = inquiry.segments(trials, whole)
-    shooting = inquiry.shooting(segments).with_noise(like.noise)
+    shooting = replace(inquiry.shooting(segments).with_noise(like.noise), past=guess.states)
     return Trial(_started(shooting, now, guess.starts(segments)), shooting.seen)
 
 
@@ -146,8 +146,65 @@ def _lengths(periods: float) -> list[float]:
     return lengths
 
 
-def gap_size(before: Trial, after: Trial, floor: NDArray[np.float64], channels: tuple[str, ...], block: int) -> GapSize:
-    """Measure the gap before and after, and the chance of such a fall.
+@dataclass(frozen=True)
+class Proof:
+    """Held-out runs of two models, and whether the second is better by more than chance.
+
+    Parameters
+    ----------
+    before, after : Trial
+        The same runs without and with what is to be borne out.
+    test : PairedTest
+        Of their squared errors.
+    """
+
+    before: Trial
+    after: Trial
+    test: PairedTest
+
+    @property
+    def bears_out(self) -> bool:
+        """Whether the plain error falls by more than chance, and the misfit under the noise's memory as well."""
+        misfit = float(np.nan_to_num(self.before.misfits - self.after.misfits, nan=0.0).sum())
+        return self.test.bears_out and misfit > 0
+
+
+def proof_of(inquiry: Inquiry, before: Judged, now: Judged, like: Judged) -> Proof:
+    """Run two accounts over the held-out trials and compare their squared errors piece by piece.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        The trials.
+    before, now : Judged
+        Without and with what is to be borne out.
+    like : Judged
+        Whose noise and whose length of runs are used.
+    """
+    first, second = (runs_of(inquiry, one, inquiry.held_out, like) for one in (before, now))
+    return Proof(first, second, tested(inquiry, first, second, like))
+
+
+def tested(inquiry: Inquiry, before: Trial, after: Trial, like: Judged) -> PairedTest:
+    """Compare the squared errors of the same runs of two models.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        Gives the period.
+    before, after : Trial
+        Without and with what was found.
+    like : Judged
+        Whose noise is used.
+    """
+    period = int(inquiry.rhythm.period * inquiry.rhythm.rate) + 1
+    return paired_test(before.fit.residual, after.fit.residual, like.noise.size, period)
+
+
+def gap_size(
+    before: Trial, after: Trial, floor: NDArray[np.float64], channels: tuple[str, ...], test: PairedTest
+) -> GapSize:
+    """Measure the gap before and after.
 
     Parameters
     ----------
@@ -157,46 +214,14 @@ def gap_size(before: Trial, after: Trial, floor: NDArray[np.float64], channels: 
         Standard deviation of the noise [the channel's unit].
     channels : tuple of str
         Names of the channels.
-    block : int
-        Samples that count as one in the chance: about a period, longer than noise remembers.
+    test : PairedTest
+        Of the squared errors, or of those of what the data did not bear out.
     """
     spread = np.nanstd(after.measured, axis=(0, 1))
     rms = [np.sqrt(np.nanmean(one.fit.residual**2, axis=(0, 1))) for one in (before, after)]
     sizes = {name: (float(rms[0][i]), float(rms[1][i]), float(floor[i])) for i, name in enumerate(channels)}
     whole = [float(np.sqrt(np.mean((one / spread) ** 2))) for one in (*rms, floor)]
-    return GapSize(whole[0], whole[1], whole[2], chance(_gains(before, after, floor, block)), sizes)
-
-
-def _gains(before: Trial, after: Trial, floor: NDArray[np.float64], block: int) -> NDArray[np.float64]:
-    """Fall of the squared error, in units of the noise, block by block (block,)."""
-    fall = np.nan_to_num((before.fit.residual**2 - after.fit.residual**2) / floor**2).sum(axis=2)
-    blocks = max(fall.shape[1] // block, 1)
-    return np.array([part.sum() for run in fall for part in np.array_split(run, blocks)])
-
-
-def chance(gains: NDArray[np.float64], seed: int = 0) -> float:
-    """Chance of so great a mean gain if each run's gain could as well have had the other sign.
-
-    Parameters
-    ----------
-    gains : ndarray (run,)
-        Fall of the misfit, run by run.
-    seed : int
-        Of the flips, where there are too many to take all.
-
-    Examples
-    --------
-    >>> chance(np.array([3.0, 2.0, 1.0]))
-    0.125
-    """
-    if not np.isfinite(gains).all():
-        return float("nan")
-    n = len(gains)
-    if n <= 13:
-        signs = 1 - 2 * ((np.arange(2**n)[:, None] >> np.arange(n)) & 1)
-        return float(np.mean(signs @ gains >= gains.sum() - 1e-12 * np.abs(gains).sum()))
-    signs = np.random.default_rng(seed).choice([-1.0, 1.0], (FLIPS, n))
-    return float((1 + np.sum(signs @ gains >= gains.sum())) / (FLIPS + 1))
+    return GapSize(whole[0], whole[1], whole[2], test.p, sizes, test.pieces)
 
 
 def drawn_runs(inquiry: Inquiry, before: Trial, after: Trial, trials: tuple[int, ...]) -> Runs:

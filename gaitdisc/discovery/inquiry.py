@@ -12,7 +12,9 @@ from gaitdisc.discovery.catalogue import Shape, known_shapes
 from gaitdisc.discovery.evidence import Judged, judged
 from gaitdisc.discovery.first_states import StateGuess, guess_states
 from gaitdisc.discovery.grids import Rhythm, rhythm_of
+from gaitdisc.discovery.influence import Idle, idle_parts, refuse_idle
 from gaitdisc.discovery.linearised import linearise, linearise_along
+from gaitdisc.discovery.matched import matched
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.places import kinematic_rates, places_of
 from gaitdisc.discovery.search import Search
@@ -70,8 +72,10 @@ class Inquiry:
         periods : float
             Length of a run, in main periods.
         """
-        wanted = max(int(periods * self.rhythm.period * self.rhythm.rate), FEWEST_SAMPLES)
-        return cut_segments(self.measured.drive.samples, trials, wanted)
+        samples = int(
+            round(periods * self.rhythm.period * self.rhythm.rate, 6)
+        )  # 88 / period / rate * ... may be 87.99
+        return cut_segments(self.measured.drive.samples, trials, max(samples, FEWEST_SAMPLES))
 
     def shooting(self, segments: Segments) -> Shooting:
         """Return the segments, ready to be fitted, under noise of unit size.
@@ -160,7 +164,13 @@ def begin_inquiry(simulation: Simulation, measured: Measured, shapes: tuple[Shap
         Its trials; of four, one is held out, of one, the last quarter of its time.
     shapes : tuple of Shape
         Effects of the user's own, beside the catalogue.
+
+    Raises
+    ------
+    GaitdiscError
+        If the trials are not of the simulation.
     """
+    simulation = matched(simulation, measured, shapes)
     if len(measured.trials) == 1:
         measured = split_in_time(measured)
     machine = compile_simulation(simulation)
@@ -169,8 +179,31 @@ def begin_inquiry(simulation: Simulation, measured: Measured, shapes: tuple[Shap
     search = Search(simulation, places, candidates_of(simulation, places, (*known_shapes(), *shapes)), rhythm)
     trials = len(measured.drive.samples)
     held = max(round(trials / 4), 1)
-    guess = guess_states(simulation, measured.observed, measured.drive.rate, rhythm.period, rate_of)
-    return Inquiry(search, measured, tuple(range(trials - held)), tuple(range(trials - held, trials)), guess)
+    guess = guess_states(simulation, measured, rhythm.period, rate_of)
+    inquiry = Inquiry(search, measured, tuple(range(trials - held)), tuple(range(trials - held, trials)), guess)
+    return _less_idle(inquiry)
+
+
+def _less_idle(inquiry: Inquiry) -> Inquiry:
+    """Return the inquiry without the places that change nothing of what is measured, and a finding about each."""
+    search = inquiry.search
+    for periods in (1.0, inquiry.rhythm.duration / inquiry.rhythm.period):  # what comes late may need a whole trial
+        segments = inquiry.segments(inquiry.learned, periods)
+        idle = idle_parts(inquiry.shooting(segments), search.base, search.places, inquiry.guess.starts(segments))
+        if idle == Idle():
+            return inquiry
+    refuse_idle(idle, search.base, search.places)
+    kinds = {(place.kind, place.name) for place in search.places if place.name in idle.places}
+    kinds |= {("parameter", name) for name in idle.parameters}
+    places = tuple(place for place in search.places if place.name not in idle.places)
+    candidates = tuple(one for one in search.candidates if (one.kind, one.place) not in kinds)
+    measured, kind = inquiry.measured, "port" if search.base.ports else "equation"
+    findings = (*measured.findings, *idle.findings(measured.source or search.base.title, kind))
+    return replace(
+        inquiry,
+        search=replace(search, places=places, candidates=candidates),
+        measured=replace(measured, findings=findings),
+    )
 
 
 def split_in_time(measured: Measured, last: bool = True) -> Measured:

@@ -82,7 +82,8 @@ def cut_segments(samples: NDArray[np.intp], trials: tuple[int, ...], length: int
     trials : tuple of int
         The trials to cut.
     length : int
-        Samples wanted; the shortest of the trials decides what divides it evenly.
+        Samples wanted; the shortest of the trials decides what divides it evenly. A length that came of a cut comes of
+        it again.
 
     Raises
     ------
@@ -97,7 +98,8 @@ def cut_segments(samples: NDArray[np.intp], trials: tuple[int, ...], length: int
     shortest = int(min(samples[trial] for trial in trials))
     if shortest < 4:
         raise SamplingError("a trial needs at least 4 samples", f"one has {shortest}", "Leave it out.")
-    length = shortest // max(round(shortest / length), 1)
+    if shortest // max(shortest // length, 1) != length:
+        length = shortest // max(round(shortest / length), 1)
     pairs = [(trial, begin) for trial in trials for begin in range(0, int(samples[trial]) - length + 1, length)]
     trial, begin = np.array(pairs, dtype=np.intp).T
     return Segments(trial, begin, length)

@@ -78,6 +78,9 @@ def shaken(shooting: Shooting, account: Account, places: tuple[Place, ...]) -> l
         flat = (seen / size[:, None]).reshape(len(some), -1, length - 1)
         pushes = flat @ np.swapaxes(flat, 1, 2)
         unit = np.trace(pushes, axis1=1, axis2=2).mean() / flat.shape[1]
+        if unit == 0:  # pushes there change nothing of what is measured
+            found.append(Shaken(place, np.inf, rival, 0.0, plain.size))
+            continue
         best, share, level = _best_share(
             (plain / size).reshape(len(some), -1), starts.reshape(*flat.shape[:2], -1), pushes / unit
         )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from gaitdisc.discovery.evidence import Judged
+from gaitdisc.discovery.held_out import Proof
 from gaitdisc.discovery.shaken import Shaken
 from gaitdisc.results.discovery import Estimate
 
@@ -25,6 +26,8 @@ class Verdict:
         For process noise: where, and how strong.
     starts : dict of str to Estimate
         For wrong initial conditions: where the trials begin.
+    proof : Proof or None
+        Held-out runs that bear the account out; where nothing is named, those that do not bear the first rival out.
     """
 
     word: str
@@ -32,3 +35,4 @@ class Verdict:
     rivals: tuple[Judged, ...]
     shaking: Shaken | None = None
     starts: dict[str, Estimate] = field(default_factory=dict)
+    proof: Proof | None = None

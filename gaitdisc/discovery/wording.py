@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import replace
 
@@ -13,6 +14,7 @@ from gaitdisc.results.effect_words import at_place, spoken
 from gaitdisc.results.told_apart import would_tell_apart
 from gaitdisc.simulation.simulation import Simulation
 
+FEW = 12  # pieces of held-out data
 DIRECTIONS = re.compile(
     r"\b(dorsiflexion|plantarflexion|flexion|extension|abduction|adduction|inversion|eversion|pronation|supination|"
     r"internal rotation|external rotation|tilt|obliquity)\b"
@@ -61,10 +63,12 @@ def _nothing(discovery: Discovery) -> str:
     first = discovery.rivals[0] if discovery.rivals else None
     if first is None or not first.bic >= WORTH_ASKING:
         return "Simulation and data agree to within the noise: nothing is missing that these data could show."
+    pieces = discovery.held_out.pieces
+    tested = f" (p = {_chance(discovery.held_out.p)} over {pieces} pieces)" if pieces else ""
     for_what = f"{spoken(first.name)} {at_place(first.kind, first.place)}"
     return (
         f"Nothing is named: the data that were learned from speak for {for_what}, and those held out do not bear it "
-        "out. More trials of varied movement would tell."
+        f"out{tested}. More trials of varied movement would tell."
     )
 
 
@@ -156,15 +160,41 @@ def _tied(discovery: Discovery) -> str:
 
 
 def _shown(discovery: Discovery) -> str:
+    """Say how large the held-out error is, and what becomes of it: as the numbers have it."""
     sizes = discovery.held_out.channels
     if not sizes:
         return ""
+    units = dict(zip(discovery.channels, discovery.units, strict=True))
     channel = max(sizes, key=lambda name: sizes[name][0] / (sizes[name][2] or 1.0))
-    unit, factor = shown_unit(dict(zip(discovery.channels, discovery.units, strict=True))[channel])
-    before, after, floor = (factor * one for one in sizes[channel])
+    unit, factor = shown_unit(units[channel])
+    floor = factor * sizes[channel][2]
     of = f" of {channel}" if len(sizes) > 1 else ""
-    noise = f"(noise floor {amount(floor, floor / 10)})"
+    noise = f"noise floor {amount(floor, floor / 10)}"
     if discovery.verdict in ("no_gap", "process_noise", "wrong_initial_condition"):
-        return f"Held-out error{of}: {with_unit(amount(before, floor / 10), unit)} {noise}."
-    fall = f"falls from {amount(before, floor / 10)} to {with_unit(amount(after, floor / 10), unit)}"
-    return f"With it, the held-out error{of} {fall} {noise}."
+        before = with_unit(amount(factor * sizes[channel][0], floor / 10), unit)
+        return f"Held-out error{of}: {before} ({noise})."
+    worse = [name for name in sizes if name != channel and _goes(sizes[name], units[name]).startswith("rises")]
+    others = "".join(f"; that of {name} {_goes(sizes[name], units[name])}" for name in worse)
+    return (
+        f"With it, the held-out error{of} {_goes(sizes[channel], units[channel])} ({noise}{_few(discovery)}){others}."
+    )
+
+
+def _goes(size: tuple[float, float, float], channel_unit: str) -> str:
+    """Say whether an error falls, rises or does not change, to the digits that the noise leaves worth writing."""
+    unit, factor = shown_unit(channel_unit)
+    step = factor * size[2] / 10
+    before, after = (amount(factor * one, step) for one in size[:2])
+    if before == after:
+        return f"does not change: {with_unit(after, unit)}"
+    return f"{'falls' if size[1] < size[0] else 'rises'} from {before} to {with_unit(after, unit)}"
+
+
+def _few(discovery: Discovery) -> str:
+    """Say on how many pieces it rests, where these are few."""
+    size = discovery.held_out
+    return f", p = {_chance(size.p)} over {size.pieces} pieces" if 0 < size.pieces < FEW else ""
+
+
+def _chance(p: float) -> str:
+    return f"{p:.2g}" if math.isfinite(p) else "not computed"

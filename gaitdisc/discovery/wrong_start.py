@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from gaitdisc.discovery.evidence import Judged
@@ -53,8 +51,4 @@ def begun_at(simulation: Simulation, starts: dict[str, Estimate]) -> Simulation:
     starts : dict of str to Estimate
         By state.
     """
-    states = (
-        replace(state, initial=float(f"{starts[state.name].value:.6g}")) if state.name in starts else state
-        for state in simulation.states
-    )
-    return replace(simulation, states=tuple(states))
+    return simulation.with_starts({name: float(f"{start.value:.6g}") for name, start in starts.items()})

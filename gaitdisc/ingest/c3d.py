@@ -14,12 +14,14 @@ from gaitdisc.errors import ReadError, SamplingError
 from gaitdisc.ingest.c3d_analog import analog_labels, analog_streams
 from gaitdisc.ingest.c3d_events import file_events
 from gaitdisc.ingest.c3d_header import C3DHeader, read_c3d_header
+from gaitdisc.ingest.c3d_kinetics import body_mass, house_kinetics
 from gaitdisc.ingest.c3d_labels import LabelMap
 from gaitdisc.ingest.c3d_layout import C3DLayout, expected_layout
 from gaitdisc.ingest.c3d_parameters import C3DParameters, read_c3d_parameters
 from gaitdisc.ingest.c3d_points import Streams, point_names, point_streams
+from gaitdisc.ingest.c3d_scales import check_common_scales, unscaled_channels
 from gaitdisc.ingest.file_hash import file_sha256
-from gaitdisc.ingest.force_plates import force_plates, plate_streams
+from gaitdisc.ingest.force_plates import force_plates, plate_loads, plate_streams
 from gaitdisc.ingest.reader_process import RawTrial, ReaderProcess, ReadRequest
 from gaitdisc.recording import Finding, Recording, Source, Trial
 
@@ -60,7 +62,8 @@ class C3DReader:
         """Trial of one C3D file.
 
         Streams: `markers` [m] as `<marker>.x`; `kinematics` [deg], the model's angles under the names of the
-        vocabulary where it knows them, `<label>.x` otherwise; `moments` [N m, N, W], the model's; `emg` [V]; `forces`
+        vocabulary where it knows them, `<label>.x` otherwise; `moments`, the model's, internal, [N m/kg, N/kg, W/kg]
+        where the file holds them per body mass and [N m, N, W] otherwise; `emg` [V]; `forces`
         [N, N m, m], ground on foot (see `force_plates`); `signals`, every other analog channel. The first frame is at
         0 s. Nothing passes that names a person: neither label prefixes nor the groups SUBJECTS, TRIAL, MANUFACTURER.
 
@@ -101,6 +104,7 @@ class C3DReader:
     def _trial(self, path: Path, channels: Mapping[str, str] | None) -> Trial:
         header = read_c3d_header(path)
         parameters = read_c3d_parameters(path, header)
+        check_common_scales(header, parameters)
         layout, findings = expected_layout(header, parameters)
         rate_hz, doubts = _rate(header, parameters, layout)
         with ThreadPoolExecutor(1) as beside:  # the hash is done while the other process reads
@@ -175,13 +179,20 @@ def read_c3d(path: str | Path, channels: Mapping[str, str] | None = None) -> Tri
 def _streams(
     raw: RawTrial, layout: C3DLayout, parameters: C3DParameters, labels: LabelMap, file: str
 ) -> tuple[Streams, list[Finding]]:
+    unscaled, seen = unscaled_channels(parameters, layout.channels, file)
+    raw.analog[:, sorted(unscaled)] = np.nan
     findings = [
+        *seen,
         *_made_finite(raw.points, "coordinates of points", file),
         *_made_finite(raw.analog, "analog values", file),
     ]
     streams, unit, doubts = point_streams(raw.points, parameters, labels, file)
-    plates, described = force_plates(parameters, layout.channels, unit, file)
+    plates, described = force_plates(parameters, layout.channels, unit, file, unscaled)
     forces, columns, told = plate_streams(raw.analog, plates, parameters, unit, file)
+    if "moments" in streams:
+        loads = plate_loads(forces, max(layout.samples_per_frame, 1))
+        streams["moments"], more = house_kinetics(streams["moments"], loads, body_mass(parameters), file)
+        told = [*told, *more]
     analog, asked = analog_streams(raw.analog, parameters, columns, labels, file)
     for part in (forces, analog):
         for key, (values, channels) in part.items():

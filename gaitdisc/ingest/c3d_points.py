@@ -230,11 +230,6 @@ def _magnitude(values: NDArray[np.float64], kind: ModelOutput, unit: str, file: 
     if kind.group == "ANGLES" and unit == "deg" and 0 < most < 3.2:
         what = f"no angle is beyond {most:.3g} deg; they look like radians"
         return [Finding("warning", "unit", file, what, "every angle if so; correct POINT:ANGLE_UNITS")]
-    if kind.group == "MOMENTS" and unit in ("N mm", "N m") and 0 < most < 10:
-        what = f"no joint moment is beyond {most:.3g} N m; Plug-in Gait writes moments per kg of body mass as {unit}"
-        return [
-            Finding("warning", "unit", file, what, "joint moments: multiply by body mass, or say N mm/kg in the file")
-        ]
     return []
 
 

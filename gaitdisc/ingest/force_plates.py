@@ -20,7 +20,7 @@ _CHANNELS_OF_TYPE = {1: 6, 2: 6, 3: 8, 4: 6}
 
 
 def force_plates(
-    parameters: C3DParameters, channels: int, length_unit: str, file: str
+    parameters: C3DParameters, channels: int, length_unit: str, file: str, unscaled: frozenset[int] = frozenset()
 ) -> tuple[list[ForcePlate], list[Finding]]:
     """Plates that the group FORCE_PLATFORM describes, and why others cannot be used.
 
@@ -34,6 +34,8 @@ def force_plates(
         Unit of CORNERS and ORIGIN, that of the points.
     file : str
         Name of the file.
+    unscaled : frozenset of int
+        Columns of analog channels without a scale that can be used.
 
     References
     ----------
@@ -56,12 +58,16 @@ def force_plates(
             why = f"is of type {kind}; types 1 to 4 are known"
         elif len(own) < wanted or not np.all((own >= 1) & (own <= channels)):
             why = f"names channels {', '.join(format(one, 'g') for one in own)} of {channels}"
+        elif any(int(one) - 1 in unscaled for one in own):
+            why = "has a channel without a scale"
         elif (
             place >= len(corners) or corners[place].shape != (3, 4) or place >= len(origins) or origins[place].size != 3
         ):
             why = "has no corners or no origin"
         elif kind == 4 and (place >= len(matrices) or matrices[place].shape != (6, 6)):
             why = "is of type 4 and has no calibration matrix"
+        elif kind == 4 and not np.isfinite(matrices[place]).all():
+            why = "has a calibration matrix that is not finite"
         if not why:
             origin = np.asarray(convert(origins[place], length_unit, "m"), float)
             if kind != 1 and origin[2] > 0:
@@ -144,6 +150,25 @@ def plate_streams(
         findings.append(Finding("note", "force sign", file, what, "nothing, as nobody stepped on it"))
     streams: Streams = {"forces": (np.hstack(parts), tuple(channels))} if parts else {}
     return streams, {column for plate, _, _ in wrenches for column in plate.columns}, findings
+
+
+def plate_loads(streams: Streams, samples_per_frame: int) -> NDArray[np.float64]:
+    """Size of each plate's force at the frames of the points, (frame, plate) [N].
+
+    Parameters
+    ----------
+    streams : dict of str to (values, channels)
+        As `plate_streams` gives them.
+    samples_per_frame : int
+        Analog samples in a frame.
+    """
+    if "forces" not in streams:
+        return np.empty((0, 0))
+    values, channels = streams["forces"]
+    plates = dict.fromkeys(c.name.rpartition("_")[0] for c in channels)
+    first = [next(i for i, c in enumerate(channels) if c.name == f"{plate}_fx") for plate in plates]
+    at_frames = values[::samples_per_frame]
+    return np.column_stack([np.linalg.norm(at_frames[:, i : i + 3], axis=1) for i in first])
 
 
 def _last_axis(numbers: NDArray[np.float64], inner: int) -> list[NDArray[np.float64]]:

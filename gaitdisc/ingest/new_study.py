@@ -92,7 +92,7 @@ def found_study(folder: Path | str, home: Path | str | None = None) -> tuple[Stu
     conditions = _conditions(found, notes)
     home = Path(home) if home is not None else folder
     participants = _participants(found, conditions, Path(os.path.relpath(folder.resolve(), home.resolve())), notes)
-    title = f"{folder.resolve().name}: {conditions.nominal} against {conditions.device}"
+    title = f"{conditions.nominal} against {conditions.device}"
     models = _models(found, notes)
     study = Study(title=title, conditions=conditions, models=models, participants=participants).placed(home)
     lacking = study.one_condition_only()

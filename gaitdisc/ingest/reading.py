@@ -12,6 +12,8 @@ import numpy as np
 from gaitdisc.channel import nearest_word
 from gaitdisc.errors import ChannelError, ReadError, SamplingError
 from gaitdisc.ingest.columns import split_unit
+from gaitdisc.ingest.knee_sign import with_flexion_positive
+from gaitdisc.ingest.plausible import without_impossible
 from gaitdisc.ingest.storage import read_storage
 from gaitdisc.ingest.table import read_table
 from gaitdisc.ingest.trc import read_trc
@@ -63,7 +65,7 @@ def read_trial(
     Raises
     ------
     ReadError
-        If a file cannot be read, or its ending is none that is known.
+        If a file cannot be read, its ending is none that is known, or a ground force is beyond what it can be.
     ChannelError
         If two files give the same channel.
     SamplingError
@@ -96,7 +98,8 @@ def read_trial(
     if not any(Path(file).suffix.lower() == ".c3d" for file in files):  # that reader tells unused labels itself
         findings += _unused(channels, named, parts[0].name)
     trial = Trial(parts[0].name, named, events, tuple(findings), subject, condition)
-    return trial if crop_s is None else _cropped(trial, *crop_s)
+    begin_s = {key: float(recording.time[0]) for key, recording in trial.streams.items() if len(recording.time)}
+    return _judged(trial if crop_s is None else _cropped(trial, *crop_s), begin_s)
 
 
 def read_planned_trial(
@@ -188,6 +191,13 @@ def _joined(one: Recording, other: Recording, key: str) -> Recording:
         source=source,
         suspect=np.hstack([one.suspect, other.suspect]),
     )
+
+
+def _judged(trial: Trial, begin_s: Mapping[str, float]) -> Trial:
+    """Trial with house signs and without impossible values; only what a crop leaves is judged, all else is not used."""
+    streams, turned = with_flexion_positive(trial.streams)
+    streams, beyond = without_impossible(streams, begin_s)
+    return replace(trial, streams=streams, findings=(*trial.findings, *turned, *beyond))
 
 
 def _unused(channels: Mapping[str, str] | None, streams: Mapping[str, Recording], name: str) -> list[Finding]:

@@ -11,9 +11,15 @@ from gaitdisc.ingest.columns import Column, column_in_unit, mapped_label, named_
 from gaitdisc.ingest.storage_header import StorageHeader
 from gaitdisc.recording import Finding
 
-_GROUND = re.compile(r"(?:.*_)?(?:ground_?|grf_?|fp_?)?(force|torque|moment)\w*?_(v|p|m|)([xyz])", re.IGNORECASE)
-_GROUND_WORDS = re.compile(r"ground|grf|(?:^|_)fp_?\d", re.IGNORECASE)
-_RATES = {"speeds": "/s", "velocities": "/s", "accelerations": "/s2"}
+_GROUND = re.compile(r"(?:.*_)?(?:ground|grf|fp_?\d)\w*?_([vpm]?)([xyz])", re.IGNORECASE)
+_GROUND_WORD = re.compile(r"force|torque|moment", re.IGNORECASE)
+_RATES = {
+    "speeds": "/s",
+    "velocities": "/s",
+    "accelerations": "/s2",
+    "kinematics_u": "/s",  # what OpenSim's analyses write
+    "kinematics_dudt": "/s2",
+}
 _RATE_WORD = {"/s": "speed", "/s2": "accel"}
 
 
@@ -140,7 +146,7 @@ def _guessed(label: str, name: str, title: str) -> Column:
         channel = named_channel(name)
         return Column(label, channel, channel.unit, guess if name.endswith("_beta_force") else "")
     ground = _GROUND.fullmatch(name)
-    if ground and _GROUND_WORDS.search(name):
+    if ground and (ground[1] or _GROUND_WORD.search(name)):
         return _ground(label, name, ground)
     if title.lower() == "coordinates":
         if re.search(r"_t[xyz]$", name):
@@ -150,12 +156,14 @@ def _guessed(label: str, name: str, title: str) -> Column:
 
 
 def _ground(label: str, name: str, found: re.Match[str]) -> Column:
-    what, kind, axis = found[1].lower(), found[2].lower(), found[3].lower()
+    """Ground reaction by its last letters: v a force, p a place, m a moment; by the word where none stands there."""
+    kind, axis = found[1].lower(), found[2].lower()
+    words = _GROUND_WORD.findall(name.lower())
     side = side_of(name)
     guess = "taken as ground reaction by its name" + ("" if side else ", side unknown")
     if kind == "p":
         return Column(label, Channel(name, "pressure_centre", "m", side), "m", guess)
-    if what == "force":
+    if kind == "v" or (not kind and words[-1] == "force"):
         quantity = "vertical_force" if axis == "y" else "force"
         return Column(label, Channel(name, quantity, "N", side), "N", guess)
     channel = Channel(name if "ground" in name.lower() else f"ground_{name}", "moment", "N m", side)

@@ -27,6 +27,7 @@ from gaitdisc.ingest.columns import (
 from gaitdisc.ingest.raw_file import RawFile, read_raw
 from gaitdisc.ingest.streams import sorted_trial
 from gaitdisc.recording import Finding, Recording, Trial
+from gaitdisc.spreadsheet import quoted, unquoted
 from gaitdisc.units import convert
 from gaitdisc.whole_file import write_whole
 
@@ -123,7 +124,7 @@ def write_table(recording: Recording, path: Path | str) -> Path:
         return write_whole(path, buffer.getvalue())
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(labels)
+    writer.writerow(map(quoted, labels))
     writer.writerows([["" if math.isnan(cell) else repr(cell) for cell in row] for row in table.tolist()])
     return write_whole(path, text.getvalue())
 
@@ -150,7 +151,7 @@ def _text(raw: RawFile) -> tuple[list[str], NDArray[np.float64], float, NDArray[
 
 def _labels(line: str, file: str, number: int) -> tuple[str, list[str]]:
     for separator in ",;\t":
-        labels = [label.strip() for label in next(csv.reader([line], delimiter=separator))]
+        labels = [unquoted(label.strip()) for label in next(csv.reader([line], delimiter=separator))]
         if any(map(_time_unit, labels)):
             _check_labels(labels, f"{file}, line {number}")
             return separator, labels

@@ -18,6 +18,7 @@ from gaitdisc.signals.strides import cut_strides
 from gaitdisc.signals.walking import verify_walking
 
 SHOWN = 4  # channels of one line
+SAID = ("contact offset",)  # kinds of notes that are always printed: percent stride was moved, or is known to be early
 
 
 @dataclass(frozen=True)
@@ -61,11 +62,11 @@ class Inspection:
         Parameters
         ----------
         notes : bool
-            Notes as well as warnings.
+            Notes as well as warnings; those about moved contacts are always there.
         """
         kinds: dict[tuple[str, str], list[Finding]] = {}
         for finding in self.findings:
-            if notes or finding.severity != "note":
+            if notes or finding.severity != "note" or finding.kind in SAID:
                 kinds.setdefault((finding.severity, finding.kind), []).append(finding)
         return [_line_of(severity, kind, same) for (severity, kind), same in kinds.items()]
 

@@ -80,7 +80,11 @@ def walk_pair(
         _summary(trials[k], contacts[k], cutoff_hz, repeated=trials[k] is not given[k]) for k in range(len(given))
     )
     note = Finding(
-        "note", "detector", f"{first.name}, {second.name}", f"percent stride counted by {chosen} in both", ""
+        "note",
+        "detector",
+        f"{first.name}, {second.name}",
+        f"percent stride counted by {chosen} in both, as it places contacts",
+        "",
     )
     return one, replace(other, findings=(*other.findings, note))
 
@@ -125,7 +129,7 @@ def _common_contacts(trials: list[Trial], detector: str) -> tuple[str, list[Mapp
 
 def _contacts(trial: Trial, name: str, joints: Recording | None) -> Mapping[str, Contacts]:
     if name != "angles":
-        return chosen_contacts(trial, name).contacts
+        return chosen_contacts(trial, name).uncorrected()  # one recording may lack the plate that corrects the other
     if joints is None:
         raise StrideError(
             "contacts from angles need hip flexion of one side in both recordings",

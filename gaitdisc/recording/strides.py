@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from gaitdisc.errors import ShapeError, StrideError
 from gaitdisc.recording.arrays import read_only
 from gaitdisc.recording.recording import Recording
+from gaitdisc.recording.wrapping import in_one_turn, turn_of, unwrapped
 
 PERCENT = read_only(np.arange(101.0))  # 0 to 100 % inclusive
 
@@ -112,7 +113,8 @@ class Strides:
     def normalised(self, recording: Recording) -> NDArray[np.float64]:
         """Every stride of a recording on 0 to 100 % in 101 points, (stride, phase, channel) [channel's unit].
 
-        Linear between samples; NaN where a sample beside the point is missing or the recording does not reach.
+        Linear between samples; NaN where a sample beside the point is missing or the recording does not reach. A
+        heading that passes 180 deg goes on in its stride, and strides are brought into one turn.
 
         Parameters
         ----------
@@ -120,7 +122,14 @@ class Strides:
             On the trial's clock, at any rate.
         """
         points = self.start[:, None] + self.duration_s[:, None] * PERCENT / 100.0
-        return interpolated(recording.time, recording.values, points)
+        plain = unwrapped(recording)
+        curves = interpolated(recording.time, plain.values, points)
+        if plain is not recording:
+            for column, channel in enumerate(recording.channels):
+                turn = turn_of(channel)
+                if turn is not None:
+                    curves[:, :, column] = in_one_turn(curves[:, :, column], turn)
+        return curves
 
     def between(self, start_s: float, end_s: float) -> Strides:
         """Strides that lie wholly between two times.

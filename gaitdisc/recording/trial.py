@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.recording.finding import Finding
 from gaitdisc.recording.recording import Recording
 from gaitdisc.recording.strides import interpolated
+from gaitdisc.recording.wrapping import unwrapped, wrapped
 
 STREAMS = ("kinematics", "markers", "emg", "forces", "moments", "signals")
 
@@ -137,7 +139,7 @@ class Trial:
                 "Check that the files belong to the same trial and clock.",
             )
         time = start + np.arange(count) / rate_hz
-        values = [interpolated(r.time, r.values, time) for r in streams]
+        values = [_at(r, time) for r in streams]
         marks = [interpolated(r.time, np.asarray(r.suspect, float), time) > 0 for r in streams]
         return Recording(
             time,
@@ -148,3 +150,10 @@ class Trial:
             streams[0].source,
             np.hstack(marks),
         )
+
+
+def _at(recording: Recording, time: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Values at other times; a heading that comes round between two samples is read on the short way."""
+    values = interpolated(recording.time, unwrapped(recording).values, time)
+    marks = np.zeros(values.shape, bool)
+    return wrapped(replace(recording, time=time, values=values, suspect=marks), recording).values

@@ -17,7 +17,7 @@ TIME = "t"
 UNEVEN = 1e-6  # of a sample
 MOST_ITERATIONS = 60  # of variable projection
 MOST_COLUMNS = 600  # of the Hankel matrix: evenly in time, since neighbours hold the same samples
-SMALLEST = 1e-15  # of the largest eigenvalue: beyond lies rounding
+SMALLEST = 1e-12  # of the largest eigenvalue, a millionth in size: rounding, about 1e-15, stays far below
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,6 +20,8 @@ SMALL = 0.05  # of the largest output: a smaller one is weighed as if it were so
 SEAM_S = 0.3  # as Trajectory.split: zero-lag filters look ahead over the seam
 LEAST_BEFORE_INNER = 20
 PASSES = 10  # of thresholding, as the published code
+LEAST_APART = 1e-8  # of a term's length from its nearest sum of simpler terms: nearer, half of all digits are lost
+NAMED = 1e-5  # of a term's length: what a simpler term must hold of it to be named
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +64,7 @@ class Sindy:
             Name.
         """
         column = self.coefficients[:, self.outputs.index(output)]
-        return {self._written(row): float(column[k]) for k, row in enumerate(self.powers) if column[k]}
+        return {written(self.inputs, row): float(column[k]) for k, row in enumerate(self.powers) if column[k]}
 
     def expression(self, output: str) -> str:
         """Return one output as an expression that a simulation file understands.
@@ -73,12 +75,6 @@ class Sindy:
             Name.
         """
         return " + ".join(f"{value:.8g}*{term}" for term, value in self.terms(output).items()) or "0"
-
-    def _written(self, powers: NDArray[np.int64]) -> str:
-        parts = [
-            name if power == 1 else f"{name}**{power}" for name, power in zip(self.inputs, powers, strict=True) if power
-        ]
-        return "*".join(parts) or "1"
 
 
 def fit_sindy(samples: Samples, degree: int = 3, threshold: float | None = None, bags: int = 0, seed: int = 0) -> Sindy:
@@ -109,7 +105,9 @@ def fit_sindy(samples: Samples, degree: int = 3, threshold: float | None = None,
     Raises
     ------
     TrainingError
-        If the library has more terms than there are samples, if numbers are missing, or pysindy is not installed.
+        If the library has more terms than there are samples, if numbers are missing, if pysindy is not installed, or if
+        terms of the library are the same on these samples (cos 2t = 1 - 2 sin^2 t): which of them belong in the model
+        cannot be found from such a record, and rounding would decide. The relation is named.
 
     References
     ----------
@@ -118,7 +116,7 @@ def fit_sindy(samples: Samples, degree: int = 3, threshold: float | None = None,
     Examples
     --------
     >>> t = np.arange(200) / 20
-    >>> x = np.column_stack([np.sin(t), np.cos(2 * t)])
+    >>> x = np.column_stack([np.sin(t), np.cos(np.sqrt(2) * t)])
     >>> s = Samples(x, -0.01 * x[:, :1] ** 3, ("x", "y"), ("v",), t, t)
     >>> fit_sindy(s, threshold=0.005).expression("v")
     '-0.01*x**3'
@@ -134,48 +132,98 @@ def fit_sindy(samples: Samples, degree: int = 3, threshold: float | None = None,
     samples.trainable(len(powers))
     if threshold is None:
         return _of_chosen_threshold(samples, powers, bags, seed)
-    found = _thresholded(products(samples.x, powers), samples.y, threshold, bags, seed)
+    found = _thresholded(samples, powers, (1.0, 1.0), threshold, (bags, seed))
     return Sindy(samples.inputs, samples.outputs, powers, found, threshold)
 
 
+Sizes = tuple[NDArray[np.float64] | float, NDArray[np.float64] | float]
+
+
 def _of_chosen_threshold(samples: Samples, powers: NDArray[np.int64], bags: int, seed: int) -> Sindy:
+    _triangle(samples, powers)  # what all samples cannot tell apart is refused before a part of them is
     before, inner = samples.last_block(0.15, SEAM_S)
     before.trainable(max(LEAST_BEFORE_INNER, len(powers)))
     size = np.sqrt(np.mean(samples.y**2, axis=0))
     size = np.maximum(size, SMALL * size.max())
     width = np.sqrt(np.mean(products(samples.x, powers) ** 2, axis=0))
-    width[width == 0] = 1.0
-    column, check = products(before.x, powers) / width, products(inner.x, powers) / width
+    check, triangle = products(inner.x, powers) / width, _triangle(before, powers)
     error = np.array([
-        np.mean((check @ _thresholded(column, before.y / size, each, 0, seed) - inner.y / size) ** 2)
-        for each in THRESHOLDS
+        np.mean((check @ _plain(triangle, (width, size), each) - inner.y / size) ** 2) for each in THRESHOLDS
     ])  # fmt: skip
     near = np.flatnonzero(error <= max((1 + NEAR_BEST) * error.min(), GOOD_ENOUGH))
     threshold = THRESHOLDS[int(near[-1])]
-    found = _thresholded(products(samples.x, powers) / width, samples.y / size, threshold, bags, seed)
+    found = _thresholded(samples, powers, (width, size), threshold, (bags, seed))
     return Sindy(samples.inputs, samples.outputs, powers, found * size / width[:, None], threshold)
 
 
 def _thresholded(
-    columns: NDArray[np.float64], y: NDArray[np.float64], threshold: float, bags: int, seed: int
+    samples: Samples, powers: NDArray[np.int64], sizes: Sizes, threshold: float, draws: tuple[int, int]
 ) -> NDArray[np.float64]:
-    """Coefficients (term, output)."""
+    """Coefficients (term, output) of terms and outputs divided by their sizes."""
+    triangle, (bags, seed) = _triangle(samples, powers), draws
     if not bags:
-        return _plain(columns, y, threshold)
+        return _plain(triangle, sizes, threshold)
     rng = np.random.default_rng(seed)
-    draws = [rng.integers(len(y), size=len(y)) for _ in range(bags)]
-    middle = np.median([_plain(columns[rows], y[rows], threshold) for rows in draws], axis=0)
+    bagged = [samples.rows(rng.integers(len(samples), size=len(samples))) for _ in range(bags)]
+    middle = np.median([_plain(_triangle(each, powers), sizes, threshold) for each in bagged], axis=0)
     return np.where(np.abs(middle) < threshold, 0.0, middle)
 
 
-def _plain(columns: NDArray[np.float64], y: NDArray[np.float64], threshold: float) -> NDArray[np.float64]:
+Triangle = tuple[NDArray[np.float64], NDArray[np.float64]]
+
+
+def _triangle(samples: Samples, powers: NDArray[np.int64]) -> Triangle:
+    """Library and outputs in the axes of the library: least squares finds the same in these few rows as in all."""
+    columns = products(samples.x, powers)
+    length = np.sqrt(np.sum(columns**2, axis=0))
+    length[length == 0] = 1.0
+    axes, triangle = np.linalg.qr(columns / length)
+    near = np.flatnonzero(np.abs(np.diag(triangle)) < LEAST_APART)
+    if len(near):
+        k = int(near[0])
+        of_simpler = np.linalg.solve(triangle[:k, :k], triangle[:k, k])
+        names = [written(samples.inputs, row) for row in powers]
+        amounts = np.where(np.abs(of_simpler) < NAMED, 0.0, of_simpler) * length[k] / length[:k]
+        parts = [f"{value:.4g}*{name}" for value, name in zip(amounts, names[:k], strict=True) if value]
+        relation = " + ".join(parts).replace("+ -", "- ").replace("*1 ", " ").removesuffix("*1") or "0"
+        more = f", and {len(near) - 1} more of its terms are such sums" if len(near) > 1 else ""
+        raise TrainingError(
+            "SINDy needs terms that differ on the samples, or rounding decides which of them the model has",
+            f"{samples.subject or 'the recording'}: {names[k]} = {relation} in all {len(samples)} samples{more}",
+            "Record what breaks the relation (another start, another amplitude), leave an input away, or lower the "
+            "degree.",
+        )
+    return triangle * length, axes.T @ samples.y
+
+
+def _plain(triangle: Triangle, sizes: Sizes, threshold: float) -> NDArray[np.float64]:
     import warnings
 
-    optimizer = chapter3_library("pysindy").STLSQ(threshold=threshold, alpha=0.0, max_iter=PASSES)
+    accurate = {"solver": "svd"}  # the normal equations would lose twice as many digits
+    optimizer = chapter3_library("pysindy").STLSQ(threshold=threshold, alpha=0.0, max_iter=PASSES, ridge_kw=accurate)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # that nothing is left, which the coefficients say themselves
-        optimizer.fit(columns, y)
+        optimizer.fit(triangle[0] / sizes[0], triangle[1] / sizes[1])
     return np.asarray(optimizer.coef_, float).T
+
+
+def written(inputs: tuple[str, ...], powers: NDArray[np.int64]) -> str:
+    """Return a term of the library as a simulation file writes it.
+
+    Parameters
+    ----------
+    inputs : tuple of str
+        Names.
+    powers : ndarray of int (input,)
+        Of the term.
+
+    Examples
+    --------
+    >>> written(("x", "y"), np.array([2, 1]))
+    'x**2*y'
+    """
+    parts = [name if power == 1 else f"{name}**{power}" for name, power in zip(inputs, powers, strict=True) if power]
+    return "*".join(parts) or "1"
 
 
 def library(inputs: int, degree: int) -> NDArray[np.int64]:

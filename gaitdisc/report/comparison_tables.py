@@ -187,7 +187,7 @@ def _left_over(tests: PairTests) -> str:
     if not len(left):
         return "What the Exo model leaves unexplained was not computed."
     return (
-        f"The Exo model, the upper limit of what these inputs tell, leaves {number(float(left.min()))} to "
+        f"The Exo model, the upper limit of what these inputs carry, leaves {number(float(left.min()))} to "
         f"{number(float(left.max()))} of the variance unexplained (medians of the variables); that it is below R² = 1 "
         f"no measurement could contradict, so its p carries no news."
     )

@@ -30,10 +30,11 @@ METHOD = (
     "constants inside them (a threshold, a delay, a frequency).",
     "Evidence is twice the log likelihood, under noise whose memory was learned from what is left, less the logarithm "
     "of the number of samples for each number fitted.",
-    "What was found had to make the misfit fall on the held-out data, of which nothing was fitted but the start of "
-    "each run. The intervals follow from the curvature of the likelihood under that noise.",
-    "More than two effects at one time, or what no effect of the catalogue explains, are not named: a shape is fitted "
-    "instead.",
+    "What was found had to make the squared error fall on the held-out data, of which nothing was fitted but the start "
+    "of each run: p < .05 in a one-sided signed-rank test over pieces of these data, each a period long or, where "
+    "these are few, no shorter than what is left remembers; beside another effect, too. The intervals follow from the "
+    "curvature of the likelihood under that noise.",
+    "At most two effects are named at one time. What these do not explain, and a fitted shape does, has no name.",
 )
 
 

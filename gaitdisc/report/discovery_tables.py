@@ -60,15 +60,24 @@ def gap_table(discovery: Discovery) -> Table:
             told = [f"{amount(factor * one, factor * floor / 10)} {shown}".strip() for one in (before, after, floor)]
             rows.append((data, channel, *told, _percent(closed_share(before, after, floor)), p_cell(size.p)))
             records.append((data, channel, before, after, floor, unit, closed_share(before, after, floor), size.p))
-    runs = counted(len(discovery.runs.trial), "run")
+    held, fitted = (counted(size.pieces, "piece") for size in (discovery.held_out, discovery.train))
     caption = (
         "Root mean square of measured minus simulated, before and after, and what noise alone would leave. Closed: of "
-        "the squared gap above the noise. p: chance of so great a fall if each run's gain could as well have had the "
-        f"other sign, for all channels of those data together (held out: {runs})."
+        "the squared gap above the noise. p: one-sided signed-rank test (Wilcoxon) of the squared errors before and "
+        f"after, for all channels of those data together, over pieces of the runs (held out: {held}, fitted: {fitted})."
+        f"{_unproven(discovery)}"
     )
     headings = ("data", "channel", "before", "after", "noise floor", "closed", "p")
     columns = ("data", "channel", "before", "after", "noise_floor", "unit", "closed", "p")
     return Table("gap", caption, headings, tuple(rows), _frame(records, columns))
+
+
+def _unproven(discovery: Discovery) -> str:
+    """Say whose p stands there, where nothing is named."""
+    if discovery.effects or not discovery.rivals or not discovery.held_out.pieces:
+        return ""
+    first = discovery.rivals[0]
+    return f" Where nothing is named, p is that of {spoken(first.name)} {at_place(first.kind, first.place)}."
 
 
 def where_table(discovery: Discovery) -> Table:

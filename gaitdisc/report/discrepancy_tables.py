@@ -14,6 +14,7 @@ from gaitdisc.results.discrepancy_cell import PARTS, DiscrepancyCell, PartAccura
 
 MOST_TERMS = 110  # characters
 COEFFICIENT = r"(?<![*\w.])-?[0-9.]+(e[-+]?[0-9]+)?\*"  # of a term, but no power
+WORST_SAID = -1000.0  # %: how much worse a run is whose error is eleven times the known model's, rounding decides
 MOST_CHANNELS = 4  # that are listed one by one
 
 
@@ -50,6 +51,7 @@ def grid_table(cells: Sequence[DiscrepancyCell], name: str) -> Table:
         "100 (1 − RMSE augmented / RMSE known) by channel, unclipped, against the noise-free truth: median and "
         "[least, greatest] of n seeds; without noise there is one. "
         "True start: the noise-free state, which no user has; estimated start: from the noisy measurement. "
+        "How far below −1000 it lies depends on the machine, and is not said. "
         "Valid: until the error passes 0.4 standard deviations, median. Seconds of processor time. "
         "Found: terms of the first seed."
     )
@@ -83,11 +85,17 @@ def spread_words(values: NDArray[np.float64]) -> str:
     --------
     >>> spread_words(np.array([99.5])), spread_words(np.array([-3.0, 4.0, 1.0]))
     ('99.5', '1.0 [-3.0, 4.0]')
+    >>> spread_words(np.array([98.8, -6628419.0, 99.2]))
+    '98.8 [below -1000, 99.2]'
     """
     if not np.isfinite(values).all():
         return "nothing to mend"
-    middle = f"{np.median(values):.1f}"
-    return middle if len(values) == 1 else f"{middle} [{values.min():.1f}, {values.max():.1f}]"
+    middle = _percent(float(np.median(values)))
+    return middle if len(values) == 1 else f"{middle} [{_percent(values.min())}, {_percent(values.max())}]"
+
+
+def _percent(value: float) -> str:
+    return f"{value:.1f}" if value >= WORST_SAID else f"below {WORST_SAID:.0f}"
 
 
 def _median(values: list[float], form: str) -> str:

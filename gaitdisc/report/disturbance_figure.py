@@ -44,9 +44,9 @@ def disturbance_figure(found: pd.DataFrame, whose: str, name: str) -> Figure:
     legend(drawn, [Line2D([], [], label=model, markersize=3, **_look(model)) for model in models])
     caption = (
         f"{whose}: RMSE of the angles that no sensor measures, temporal split. Left: white noise on the sensors, in "
-        f"the fitted and the judged part alike. Right: readings lost one by one in the judged part; models were "
-        f"fitted to walks that lack none, the last known reading stands for a lost one, and masked shred is told which "
-        f"are lost."
+        f"the fitted and the test part alike. Right: readings lost one by one in the test part; models were "
+        f"fitted to walks that lack none, the last known reading stands for a lost one, and masked shred is "
+        f"given which are lost."
     )
     return Figure(name, caption, f"Error of {listed(models)} against noise and missing readings.", found, drawn)
 

@@ -1,4 +1,4 @@
-"""Errors of told fields: histograms by route, a box for each kind of sensor, and error against the latent size."""
+"""Errors of reconstructed fields: histograms by route, boxes by kind of sensor, and error against the latent size."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import pandas as pd
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import RECONSTRUCTED, Look
 from gaitdisc.report.panels import Room, in_style, legend, lines_of, panels
+from gaitdisc.report.wording import number
 from gaitdisc.results.field_cell import FieldCell
 
 if TYPE_CHECKING:
@@ -52,22 +53,33 @@ def histograms_figure(cells: Sequence[FieldCell], name: str, source: str) -> Fig
         axes.set_title(split)
         axes.set_yscale("log")
         axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
-        axes.set_xlabel(f"told − measured [{cells[0].unit}]")
+        axes.set_xlabel(f"reconstructed − measured [{cells[0].unit}]")
     row[0].set_ylabel(f"density [1/{cells[0].unit}]" if cells[0].unit != "1" else "density")
     handles = lines_of(dict(zip(routes, ROUTE_LOOKS, strict=False)))
     drawn.legend(handles=handles, loc="upper center", ncols=min(3, len(routes)), bbox_to_anchor=(0.5, 1.0))
     caption = (
-        f"{source}. {cells[0].field}, {cells[0].quantity}, {cells[0].model}: errors at all points of all judged "
-        f"snapshots, n = {cells[0].judged} at most; the outermost bins hold what lies beyond."
+        f"{source}. {cells[0].field}, {cells[0].quantity}, {cells[0].model}: errors at all points of all test "
+        f"snapshots, n = {cells[0].judged} at most. {_beyond(numbers, cells[0])}"
     )
     return Figure(name, caption, f"Histograms of errors of {len(routes)} routes", pd.concat(numbers), drawn)
+
+
+def _beyond(numbers: Sequence[pd.DataFrame], cell: FieldCell) -> str:
+    """What the axis leaves out: the two outermost bins are open-ended, so their heights are no density."""
+    shares = [float(one["count"].iloc[[0, -1]].sum() / one["count"].sum()) for one in numbers]
+    low, high = cell.errors.edges[1], cell.errors.edges[-2]
+    return (
+        f"Not drawn: errors below {number(low)} or above {number(high)} {cell.unit}, "
+        f"{' to '.join(dict.fromkeys(f'{100 * share:.2g}' for share in (min(shares), max(shares))))} % of a route's."
+    )
 
 
 def _histogram(axes: Axes, some: Sequence[FieldCell], look: Look) -> pd.DataFrame:
     edges, counts = some[0].errors.edges, np.sum([cell.errors.counts for cell in some], axis=0)
     density = counts / counts.sum() / np.diff(edges)
     middles = (edges[1:] + edges[:-1]) / 2
-    axes.plot(middles, np.where(density > 0, density, np.nan), color=look.colour, linestyle=look.line, linewidth=1.0)
+    inner = np.where(density > 0, density, np.nan)[1:-1]
+    axes.plot(middles[1:-1], inner, color=look.colour, linestyle=look.line, linewidth=1.0)
     of = {"split": some[0].split, "route": some[0].route}
     return pd.DataFrame({**of, "error": middles, "count": counts, "density": density})
 

@@ -41,7 +41,7 @@ def field_table(cells: Sequence[FieldCell], name: str, printed: Mapping[tuple[st
     caption = (
         f"{first.field}, {first.quantity}: relative L2 error, the norm of the error over the norm of the field about "
         f"zero; in brackets RMSE [{first.unit}] and R2 about the training part's mean; star: least of the models. "
-        f"Judged snapshots: {', '.join(f'{split} {_judged(cells, split)}' for split in splits)}."
+        f"Test snapshots: {', '.join(f'{split} {_judged(cells, split)}' for split in splits)}."
         f"{_bounds(cells)}"
     )
     columns = ("route", *[word for _ in splits for word in (*models, *extra)])
@@ -98,8 +98,8 @@ def medians_table(cells: Sequence[FieldCell], name: str) -> Table:
     first = cells[0]
     caption = (
         f"{first.field}, {first.quantity} [{first.unit}]: medians over runs; relative L2 error about zero with its "
-        "range, R2 about the training part's mean, mean and standard deviation of told minus measured, processor time "
-        "of a fit."
+        "range, R2 about the training part's mean, mean and standard deviation of reconstructed minus measured, "
+        "processor time of a fit."
     )
     columns = ("split", "model", "sensor", "n", "relative L2", "range", "R2", "bias", "sd", "fit [s]")
     return Table(name, caption, columns, tuple(rows), field_cells_table(cells))

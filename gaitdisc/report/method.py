@@ -24,7 +24,7 @@ def method_sentences(run: ResponseRun) -> list[str]:
         "The state X holds joint angles and, where there are any, EMG envelopes (Eq. 4.1); each model sees X, its "
         "first derivative and percent stride φ, and predicts second derivatives of the outputs.",
         f"The Nominal model f is fitted to the walk without the device effect ({run.nominal}; Eq. 4.2), the Exo model "
-        f"Y to the device walk ({run.exo}; Eq. 4.3), which makes it the upper limit of what these inputs can tell.",
+        f"Y to the device walk ({run.exo}; Eq. 4.3), which makes it the upper limit of what these inputs can carry.",
         "The Discrepancy model g is fitted to what the Nominal model leaves on the device walk, the measured second "
         "derivative minus f (Eq. 4.4), and the Augmented model is the sum f + g (Eq. 4.5).",
         f"The last {f'{held_out} s' if held_out else 'part'} of each walk is held out before anything is fitted; R² = "

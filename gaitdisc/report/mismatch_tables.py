@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from gaitdisc.report.gap_wording import amount, spoken, with_unit
 from gaitdisc.report.seen_tables import seen_table
 from gaitdisc.report.table import Table
+from gaitdisc.report.terminal import plain
 from gaitdisc.report.wording import NONE, counted, p_cell
 from gaitdisc.results.mismatch import Mismatch
 
@@ -92,15 +93,14 @@ def mismatch_text(mismatch: Mismatch) -> rich.table.Table:
         What was found.
     """
     from rich import box
-    from rich.markup import escape
     from rich.table import Table as Printed
 
     table = Printed(box=box.SIMPLE)
     for number, heading in enumerate(HEADINGS):
-        table.add_column(escape(heading), justify="right" if number else "left", no_wrap=number > 0)
+        table.add_column(plain(heading), justify="right" if number else "left", no_wrap=number > 0)
     rest = [name for name in mismatch.names if name not in mismatch.ordered()]
     for row in [*regions_table(mismatch).rows, *(row for name in rest for row in _rows(mismatch, name))]:
-        table.add_row(*map(escape, row))
+        table.add_row(*map(plain, row))
     return table
 
 

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 LOWEST = -0.25  # R2 below this is drawn as an arrow at the edge, with its value
 FEWEST_FOR_BOXES = 5
+MOST_VALUES = 3  # that are written one by one
+ROW_IN, LABELLED_ROW_IN = 0.36, 0.5  # a row's height; three lines of labels need more
 _OFFSETS = {"nominal": -0.24, "augmented": 0.0, "exo": 0.24}
 
 
@@ -77,8 +79,9 @@ def r2_numbers(run: ResponseRun) -> pd.DataFrame:
 def _figure(run: ResponseRun, numbers: pd.DataFrame, name: str) -> Figure:
     names = list(dict.fromkeys(numbers["variable"]))
     people = len(run.responses)
-    drawn, [[axes]] = panels(1, 1, 0.36 * len(names) + 0.1, Room(left=1.75, right=0.25, top=0.45))
     low = _limit(numbers)
+    row_in = LABELLED_ROW_IN if numbers["r2"].min() < low else ROW_IN
+    drawn, [[axes]] = panels(1, 1, row_in * len(names) + 0.1, Room(left=1.75, right=0.25, top=0.45))
     for row, variable in enumerate(names):
         _draw_variable(axes, numbers[numbers["variable"] == variable], row, low)
     axes.set_yticks(range(len(names)), [label(variable) for variable in names])
@@ -111,8 +114,16 @@ def _draw_variable(axes: Axes, rows: pd.DataFrame, row: int, low: float) -> None
         small = 2.2 if len(network) >= FEWEST_FOR_BOXES else 4.6
         shown = np.maximum(network, low)
         axes.plot(shown, np.full(len(shown), y), look.mark, color=look.colour, ms=small, mew=0, clip_on=False, zorder=3)
-        for value in network[network < low]:
-            axes.annotate(f"◂ {number(value)}", (low, y), (5, 0), textcoords="offset points", va="center", fontsize=6.5)
+        if below := _below(network, low):
+            axes.annotate(f"◂ {below}", (low, y), (5, 0), textcoords="offset points", va="center", fontsize=6)
+
+
+def _below(values: np.ndarray, low: float) -> str:
+    """One label for all values of a row that lie left of the axis."""
+    left = np.sort(values[values < low])
+    if len(left) > MOST_VALUES:
+        return f"{len(left)} values, {number(left[0])} to {number(left[-1])}"
+    return ", ".join(number(value) for value in left)
 
 
 def _key(people: int, null: bool) -> list[Line2D]:

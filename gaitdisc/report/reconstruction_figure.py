@@ -62,13 +62,12 @@ def _figure(done: Reconstruction, participant: str, numbers: pd.DataFrame, name:
     legend(drawn, [Patch(color=MEASURED.colour, alpha=0.2, label="measured, mean ± sd"), *lines_of(looks)])
     strides = int(done.summary.loc[done.summary["participant"] == participant, "strides"].iloc[0])
     caption = (
-        f"{participant}: states measured and reconstructed over the stride, judged windows alone, n = "
+        f"{participant}: states measured and reconstructed over the stride, test windows alone, n = "
         f"{counted(strides, 'stride')}. Band: measured, mean ± standard deviation; lines: mean of what each model "
-        f"tells from {counted(len(done.sensors), 'sensor')}. Split: {done.split}."
+        f"estimates from {counted(len(done.sensors), 'sensor')}. Split: {done.split}."
     )
-    alt = (
-        f"{counted(len(states), 'state')} of {participant} over the stride, measured, and told by {', '.join(models)}."
-    )
+    by = ", ".join(models)
+    alt = f"{counted(len(states), 'state')} of {participant} over the stride, measured, and reconstructed by {by}."
     return Figure(f"reconstruction-{name}", caption, alt, numbers, drawn)
 
 
@@ -78,4 +77,4 @@ def _draw(axes: Axes, numbers: pd.DataFrame) -> None:
             low, high = rows["measured"] - rows["measured_sd"], rows["measured"] + rows["measured_sd"]
             axes.fill_between(rows["percent"], low, high, color=MEASURED.colour, alpha=0.2, linewidth=0)
         look = RECONSTRUCTED[str(model).removesuffix(", calibrated")]
-        axes.plot(rows["percent"], rows["told"], color=look.colour, linestyle=look.line, linewidth=1.1)
+        axes.plot(rows["percent"], rows["reconstructed"], color=look.colour, linestyle=look.line, linewidth=1.1)

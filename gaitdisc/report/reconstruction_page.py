@@ -78,10 +78,10 @@ def method_sentences(done: Reconstruction) -> list[str]:
         f"A window holds {done.history} (Eqs. 5.1-5.7). No window reaches over a missing value, or from "
         "one trial into another.",
         f"Windows are parted by {done.split}. Scales and weights come from the fitted windows alone; penalties, widths "
-        f"and the epoch whose weights are kept are chosen on the checked ones; errors are of the judged ones, from "
+        f"and the epoch whose weights are kept are chosen on the checked ones; errors are of the test windows, from "
         f"which the others lie apart by the length of a window and 0.3 s.",
-        "All recordings were low-passed by a filter without lag, which looks ahead: told live, states would come "
-        "later by the filter's reach, or be noisier.",
+        "All recordings were low-passed by a filter without lag, which looks ahead: reconstructed live, states would "
+        "come later by the filter's reach, or be noisier.",
         "RMSE is in the state's own unit, its interval by drawing strides with replacement (1,000 times, 95 %); "
         "angles and positions are never averaged together.",
         *(f"{name}: {words}." for name, words in done.models.items()),

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from gaitdisc.report.search_table import search_sentences
 from gaitdisc.report.table import Table
+from gaitdisc.report.terminal import plain
 from gaitdisc.report.wording import counted, label, listed, number
 from gaitdisc.results.reconstruction import CALIBRATED, FLOORS, Reconstruction
 
@@ -46,9 +47,9 @@ def models_table(done: Reconstruction) -> Table:
     with_sensors = "“with sensors”: the sensors counted as states without error, as Table 5.2 does; " if angles else ""
     people = counted(len(done.participants), "participant")
     caption = (
-        f"Models on the judged windows: mean over n = {people} [95 % interval of the mean], {_judged(done)}. "
+        f"Models on the test windows: mean over n = {people} [95 % interval of the mean], {_judged(done)}. "
         f"Split: {done.split}. Relative L2: norm of the error by norm of the measured values about zero; "
-        f"{with_sensors}R²: median over what is told; "
+        f"{with_sensors}R²: median over what is reconstructed; "
         f"coverage: share inside an interval that was made for 90 %; seconds: processor time of a fit. * recommended: "
         f"the cheapest within 2 % of the least error on the windows that models are chosen by."
     )
@@ -103,8 +104,8 @@ def participants_table(done: Reconstruction) -> Table:
         (str(row[0]), str(int(strides[row[0]])), *(_plain(value, 2 if angles else 3) for value in row[1:]))
         for row in wide.itertuples()
     )
-    what = f"RMSE of {_judged(done)} [deg]" if angles else "Relative L2 of all that is told [1]"
-    caption = f"{what}, by participant; strides: those that were judged."
+    what = f"RMSE of {_judged(done)} [deg]" if angles else "Relative L2 of all that is reconstructed [1]"
+    caption = f"{what}, by participant; strides: those of the test part."
     return Table("participants", caption, ("participant", "strides", *done.models), rows, done.summary)
 
 
@@ -125,7 +126,7 @@ def reconstruction_sentences(done: Reconstruction) -> list[str]:
     noun = "future state" if _ahead(done) else "other state"
     what = counted(len(done.states), noun) if angles else _quantities(done)
     sentences = [
-        f"From {sensors} {what} {'is' if len(done.states) == 1 else 'are'} told with {rmse}a relative L2 of "
+        f"From {sensors} {what} {'is' if len(done.states) == 1 else 'are'} reconstructed with {rmse}a relative L2 of "
         f"{_plain(row['relative_l2'], 3)} (median R² {_plain(row['r2'], 2)}; mean of "
         f"{counted(len(done.participants), 'participant')}) by {best}, which is recommended.",
     ]
@@ -177,17 +178,15 @@ def reconstruction_text(done: Reconstruction) -> rich.table.Table:
         The whole result.
     """
     from rich import box
-    from rich.markup import escape
     from rich.table import Table as Printed
 
     shown = models_table(done)
     table = Printed(box=box.SIMPLE, show_edge=False, pad_edge=False, padding=(0, 1, 0, 0))
     chosen = [k for k, column in enumerate(shown.columns) if column not in (WITH_SENSORS, COVERAGE)]
     for k in chosen:
-        heading = escape(shown.columns[k])  # or a unit in brackets is taken for a style
-        table.add_column(heading, justify="left" if k == 0 else "right")
+        table.add_column(plain(shown.columns[k]), justify="left" if k == 0 else "right")
     for row in shown.rows:
-        table.add_row(*(row[k] for k in chosen))
+        table.add_row(*(plain(row[k]) for k in chosen))
     return table
 
 
@@ -201,7 +200,7 @@ def _ahead(done: Reconstruction) -> bool:
 
 def _judged(done: Reconstruction) -> str:
     if not _has_angles(done):
-        return "all that is told"
+        return "all that is reconstructed"
     return "all angles" if _ahead(done) else "the angles that no sensor measures"
 
 

@@ -32,7 +32,7 @@ def search_table(found: pd.DataFrame) -> Table:
     caption = (
         "Best set of sensors of every size, by ridge regression on their history, all participants together: all sets "
         "of up to three, then the sensor that helps most. Chosen by the RMSE of all angles on the checked windows, "
-        "sensors counted as exact; beside it that of the angles that no sensor measures, on the judged windows. * the "
+        "sensors counted as exact; beside it that of the angles that no sensor measures, on the test windows. * the "
         f"smallest set that one more sensor improves by less than {100 * WORTH:.0f} %; without one, the largest."
     )
     columns = ("sensors", "which", "all angles [deg]", "not measured [deg]", "regressions", "processor time [s]")

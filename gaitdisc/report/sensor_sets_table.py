@@ -14,7 +14,7 @@ from gaitdisc.results.reconstruction import mean_over_people
 
 MEASURES = ("rmse_deg", "relative_l2", "relative_l2_whole", "r2", "coverage", "seconds")
 LESS_THAN_NOTHING = (
-    "A relative L2 above 1 is worse than telling zero; the table prints such values for linear and SDN, so its norm "
+    "A relative L2 above 1 is worse than estimating zero; the table prints such values for linear and SDN, so its norm "
     "may be of something else than angles about zero. It has no model that sees history without being a network, and "
     "does not say how time was split or how long the history was: no claim of better or worse is made."
 )

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from gaitdisc.whole_file import whole_file
+from gaitdisc.spreadsheet import write_csv
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,8 +89,7 @@ def save_table(table: pd.DataFrame, path: Path) -> None:
     path : Path
         File to write.
     """
-    with whole_file(path) as part:
-        table.to_csv(part, index=False, lineterminator="\n", float_format="%.8g")
+    write_csv(table, path, "%.8g")
 
 
 def as_markdown(table: Table) -> str:

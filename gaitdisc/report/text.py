@@ -14,6 +14,7 @@ from gaitdisc.report.r2_summary import (
     r2_by_variable,
     sample_counts,
 )
+from gaitdisc.report.terminal import plain
 from gaitdisc.report.wording import counted, number
 from gaitdisc.results import ResponseRun
 
@@ -50,16 +51,14 @@ def r2_text(run: ResponseRun) -> rich.table.Table:
 
 
 def _printed(values: pd.DataFrame, caption: str) -> rich.table.Table:
-    from rich.markup import escape
-
     table = _empty(caption)
-    table.add_column(str(values.index.name), vertical="bottom", no_wrap=True)
+    table.add_column(plain(str(values.index.name)), vertical="bottom", no_wrap=True)
     for column in _SHOWN:
         kind = "" if column.kind == "null" else column.kind
         place = "no dev." if column.walk == "nominal" else ""
-        table.add_column(f"{kind}\n{_SHORT[column.model]}\n{place}", justify="right", no_wrap=True)
+        table.add_column(plain(f"{kind}\n{_SHORT[column.model]}\n{place}"), justify="right", no_wrap=True)
     for name, row in values.iterrows():
-        table.add_row(escape(str(name)), *(_short(float(row[column.key])) for column in _SHOWN))
+        table.add_row(plain(str(name)), *(_short(float(row[column.key])) for column in _SHOWN))
     table.add_section()
     middle = medians(values)
     table.add_row("median", *(_short(float(middle[column.key])) for column in _SHOWN), style="bold")
@@ -67,24 +66,21 @@ def _printed(values: pd.DataFrame, caption: str) -> rich.table.Table:
 
 
 def _refused(run: ResponseRun) -> rich.table.Table:
-    from rich.markup import escape
-
     table = _empty(f"Nobody could be analysed; left out: n = {len(run.refusals)}.")
     for heading in ("participant", "walk", "reason"):
         table.add_column(heading)
     for refusal in run.refusals:
-        table.add_row(escape(refusal.participant), escape(refusal.condition or "all"), escape(refusal.reason))
+        table.add_row(plain(refusal.participant), plain(refusal.condition or "all"), plain(refusal.reason))
     return table
 
 
 def _empty(caption: str) -> rich.table.Table:
     from rich import box
-    from rich.markup import escape
     from rich.table import Table
 
     return Table(
         box=box.SIMPLE,
-        caption=escape(caption),
+        caption=plain(caption),
         caption_justify="left",
         show_edge=False,
         pad_edge=False,

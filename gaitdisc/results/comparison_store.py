@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from gaitdisc.results.over_participants import OverParticipants
-from gaitdisc.results.pair_test import PairTests
+from gaitdisc.results.over_participants import TABLES, OverParticipants
+from gaitdisc.results.pair_test import FAMILY_COLUMNS, TEST_COLUMNS, PairTests
 from gaitdisc.results.unit_folder import load_unit, save_unit, with_words
 
 
@@ -41,7 +41,7 @@ def load_tests(folder: Path) -> PairTests:
     SchemaError
         If a file is missing, damaged or of another format.
     """
-    data, tables, _ = load_unit(folder, "tests.json")
+    data, tables, _ = load_unit(folder, "tests.json", {"tests.csv": TEST_COLUMNS, "families.csv": FAMILY_COLUMNS})
     return PairTests(
         data["participants"],
         data["alpha"],
@@ -79,6 +79,6 @@ def load_over(folder: Path) -> OverParticipants:
     SchemaError
         If a file is missing, damaged or of another format.
     """
-    data, files, _ = load_unit(folder, "over.json")
-    tables = {file.removesuffix(".csv"): with_words(table, "left_out") for file, table in files.items()}
+    data, files, _ = load_unit(folder, "over.json", {f"{name}.csv": columns for name, columns in TABLES.items()})
+    tables = {name: with_words(files[f"{name}.csv"], "left_out") for name in TABLES}
     return OverParticipants(**tables, lengths_said=data["lengths_said"], responders_said=data["responders_said"])

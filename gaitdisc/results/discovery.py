@@ -59,9 +59,10 @@ class FoundEffect:
     estimates : mapping of str to Estimate
         Its numbers.
     held_out : float
-        Share of the gap on held-out data that goes when it is let in.
+        Share of the gap on held-out data that goes with all that was found.
     bic : float
-        Fall of the Bayesian criterion when it is let in.
+        Fall of the Bayesian criterion from the simulation as read: of what was found, all of it together; of a rival,
+        with it in the place of what it rivals.
     tied : bool
         For a rival: the data cannot tell it from what was named.
     """
@@ -110,9 +111,12 @@ class GapSize:
     noise_floor : float
         What noise alone would leave.
     p : float
-        Chance of so great a fall without any effect (sign flips of the runs' gains).
+        Chance of so clear a fall of the squared error without any effect (Wilcoxon's signed ranks over pieces of the
+        runs, one-sided). Where nothing is named: of what the data that were fitted spoke for most.
     channels : mapping of str to tuple of float
         For each channel: before, after, noise floor [the channel's unit].
+    pieces : int
+        How many pieces were compared.
     """
 
     before: float
@@ -120,6 +124,7 @@ class GapSize:
     noise_floor: float
     p: float = float("nan")
     channels: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
+    pieces: int = 0
 
 
 @dataclass(frozen=True)
@@ -258,6 +263,7 @@ def _gap(one: GapSize) -> dict[str, Any]:
         "after": _number(one.after),
         "noise_floor": _number(one.noise_floor),
         "p": _number(one.p),
+        "pieces": one.pieces,
         "channels": channels,
     }
 

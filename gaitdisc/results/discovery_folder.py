@@ -1,12 +1,13 @@
-"""A discovery on disk: `discovery.json`, the contract's keys first, and the held-out runs as CSV."""
+"""A discovery on disk: `discovery.json`, the contract's keys first, then hashes; and the held-out runs as CSV."""
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 from gaitdisc.results.discovery import Discovery
-from gaitdisc.whole_file import whole_file, write_whole
+from gaitdisc.results.sealed_json import file_sha256, sealed_text
+from gaitdisc.spreadsheet import write_csv
+from gaitdisc.whole_file import write_whole
 
 NAME = "discovery.json"
 RUNS = "held_out.csv"
@@ -34,8 +35,6 @@ def save_discovery(discovery: Discovery, folder: Path) -> Path:
     """
     import pandas as pd
 
-    with whole_file(folder / RUNS) as part:
-        table = pd.DataFrame(discovery.runs.table(discovery.channels)).dropna()
-        table.to_csv(part, index=False, lineterminator="\n", float_format="%.8g")
-    content = json.dumps(discovery.to_json(), indent=2, allow_nan=False, ensure_ascii=False)
-    return write_whole(folder / NAME, content + "\n")
+    write_csv(pd.DataFrame(discovery.runs.table(discovery.channels)).dropna(), folder / RUNS, "%.8g")
+    hashes = {RUNS: file_sha256(folder / RUNS)}
+    return write_whole(folder / NAME, sealed_text({**discovery.to_json(), "sha256": hashes}))

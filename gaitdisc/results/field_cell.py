@@ -13,6 +13,8 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.recording.arrays import read_only
+from gaitdisc.results.on_disk import DamagedError
+from gaitdisc.results.sealed_json import read_sealed, sealed_text
 from gaitdisc.whole_file import write_whole
 
 BINS = 121
@@ -135,11 +137,11 @@ def save_cells(cells: Sequence[FieldCell], made_by: Mapping[str, Any], path: Pat
         {**vars(cell), "errors": {"edges": cell.errors.edges.tolist(), "counts": cell.errors.counts.tolist()}}
         for cell in cells
     ]
-    write_whole(path, json.dumps({"made_by": dict(made_by), "cells": rows}))
+    write_whole(path, sealed_text({"made_by": dict(made_by), "cells": rows}))
 
 
 def load_cells(made_by: Mapping[str, Any], path: Path) -> list[FieldCell] | None:
-    """Cells that were kept, or None where there are none, or other settings made them.
+    """Cells that were kept, or None where there are none, other settings made them, or they were changed since.
 
     Parameters
     ----------
@@ -148,9 +150,10 @@ def load_cells(made_by: Mapping[str, Any], path: Path) -> list[FieldCell] | None
     path : Path
         Of the file.
     """
-    if not path.exists():
+    try:
+        held = read_sealed(path)
+    except DamagedError:
         return None
-    held = json.loads(path.read_text(encoding="utf-8"))
     if held["made_by"] != json.loads(json.dumps(dict(made_by))):
         return None
     return [FieldCell(**{**row, "errors": ErrorCounts(**row["errors"])}) for row in held["cells"]]

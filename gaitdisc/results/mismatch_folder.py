@@ -60,7 +60,7 @@ def load_mismatch(folder: Path) -> Mismatch:
     SchemaError
         If a file is missing, damaged or of another format.
     """
-    data, tables, arrays = load_unit(folder, NAME)
+    data, tables, arrays = load_unit(folder, NAME, TABLES)
     regions, summary = (pd.DataFrame(tables[name], columns=pd.Index(columns)) for name, columns in TABLES.items())
     return Mismatch(
         data["first"],

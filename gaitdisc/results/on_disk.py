@@ -20,6 +20,14 @@ T = TypeVar("T")
 Kind = TypeVar("Kind")
 Arrays = Mapping[str, NDArray[np.float64]]
 KEPT_FILES = 2  # of which the arrays stay in memory: both walks of one participant
+CHANGED = "changed since it was saved (SHA-256 differs)"
+
+
+class DamagedError(SchemaError):
+    """A file of results that is not as it was saved."""
+
+    path: Path
+    what: str
 
 
 @dataclass(frozen=True)
@@ -127,7 +135,7 @@ def lies_on_disk(thing: object, field: str) -> bool:
     return isinstance(vars(thing)[field], OnDisk)
 
 
-def damaged(path: Path, what: str) -> SchemaError:
+def damaged(path: Path, what: str) -> DamagedError:
     """Return the refusal of a file that is not as it was saved.
 
     Parameters
@@ -137,11 +145,13 @@ def damaged(path: Path, what: str) -> SchemaError:
     what : str
         What it is instead.
     """
-    return SchemaError(
+    error = DamagedError(
         "results need every file of their folder as it was saved",
         f"{path.parent.name}/{path.name} is {what}",
         "Run `gaitdisc run` on the study again: what is whole is kept, the rest is computed anew.",
     )
+    error.path, error.what = path, what
+    return error
 
 
 class _Field:
@@ -165,7 +175,7 @@ def _arrays(path: Path, sha256: str) -> Arrays:
     try:
         content = path.read_bytes()
         if hashlib.sha256(content).hexdigest() != sha256:
-            raise damaged(path, "changed since it was saved (SHA-256 differs)")
+            raise damaged(path, CHANGED)
         with np.load(io.BytesIO(content), allow_pickle=False) as stored:
             return {key: stored[key] for key in stored.files}
     except FileNotFoundError:

@@ -57,6 +57,8 @@ class ResponseRun:
         What less data would have given, where `gaitdisc ablate` was run.
     over : OverParticipants, optional
         Training lengths, residuals and baselines compared over participants, and sub-groups; None in older runs.
+    renewed : tuple of str
+        Files of an earlier run that were found changed or unreadable, and were computed again; said once, not saved.
     """
 
     title: str
@@ -69,6 +71,7 @@ class ResponseRun:
     tests: PairTests | None = None
     quantities: tuple[DataQuantity, ...] = ()
     over: OverParticipants | None = None
+    renewed: tuple[str, ...] = ()
 
     def r2_table(self) -> pd.DataFrame:
         """R2 of every participant, variable, model, kind and walk, one row each."""

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.results.data_quantity import DataQuantity
+from gaitdisc.results.data_quantity import QUANTITY_COLUMNS, DataQuantity
 from gaitdisc.results.on_disk import Arrays
-from gaitdisc.results.participant_response import HeldOut, ParticipantResponse
+from gaitdisc.results.participant_response import FIT_COLUMNS, R2_COLUMNS, HeldOut, ParticipantResponse
 from gaitdisc.results.response_run import Refusal
 from gaitdisc.results.unit_folder import load_unit, save_unit
 
@@ -63,7 +63,7 @@ def load_response(folder: Path) -> tuple[ParticipantResponse, str]:
     SchemaError
         If a file is missing, damaged or of another format.
     """
-    data, tables, arrays = load_unit(folder, "response.json")
+    data, tables, arrays = load_unit(folder, "response.json", {"r2.csv": R2_COLUMNS, "fits.csv": FIT_COLUMNS})
     response = ParticipantResponse(
         data["participant"],
         tuple(data["inputs"]),
@@ -108,7 +108,7 @@ def load_quantity(folder: Path) -> tuple[DataQuantity, str]:
     SchemaError
         If a file is missing, damaged or of another format.
     """
-    data, tables, _ = load_unit(folder, "quantity.json")
+    data, tables, _ = load_unit(folder, "quantity.json", {"quantity.csv": QUANTITY_COLUMNS})
     left_away = {float(row["length_s"]): str(row["reason"]) for row in data["left_away"]}
     return DataQuantity(data["participant"], data["part"], tables["quantity.csv"], left_away), data["key"]
 

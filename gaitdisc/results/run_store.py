@@ -11,7 +11,7 @@ A run is a folder::
     quantities/<person>/           quantity.json  quantity.csv
 
 A unit (one walk, one response) is complete when its JSON file stands, because that is written last and holds the hashes
-of the others. A damaged unit is told by its hash and computed again.
+of the others and its own. A unit of which anything was changed is found by its hashes and computed again.
 """
 
 from __future__ import annotations
@@ -23,7 +23,8 @@ from gaitdisc.results.comparison_store import load_over, load_tests, save_over, 
 from gaitdisc.results.provenance import Provenance
 from gaitdisc.results.response_run import Refusal, ResponseRun
 from gaitdisc.results.response_store import load_quantity, load_response
-from gaitdisc.results.unit_folder import FORMAT, json_text, read_json
+from gaitdisc.results.sealed_json import sealed_text
+from gaitdisc.results.unit_folder import FORMAT, read_json
 from gaitdisc.results.walk_store import load_walk, unit_name
 from gaitdisc.whole_file import write_whole
 
@@ -54,7 +55,7 @@ def save_run(run: ResponseRun, folder: Path) -> None:
         save_tests(run.tests, folder / "tests")
     if run.over is not None:
         save_over(run.over, folder / "over")
-    write_whole(folder / "run.json", json_text(data))
+    write_whole(folder / "run.json", sealed_text(data))
 
 
 def load_run(folder: Path) -> ResponseRun:

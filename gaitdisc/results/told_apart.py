@@ -1,4 +1,4 @@
-"""What would tell two explanations apart that the data at hand cannot."""
+"""Which recording would separate two explanations that fit the data at hand alike."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ BETWEEN = (
 
 
 def would_tell_apart(name: str, other: str) -> str:
-    """Return which recording would tell two explanations apart.
+    """Return which recording would separate two explanations.
 
     Parameters
     ----------

@@ -1,10 +1,14 @@
-"""One unit of a run on disk: a JSON file, written last, that holds the hashes of the tables and arrays beside it."""
+"""One unit of a run on disk: a JSON file, written last, that holds its own hash and those of the files beside it.
+
+Whatever is read back is covered: the numbers in the JSON file by `own_sha256`, every table and array by `sha256`. What
+was changed, by a hand or by a disk, is refused by `load_unit`; who can compute it again does so, and says it
+(`damaged_units`).
+"""
 
 from __future__ import annotations
 
-import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -16,10 +20,13 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import schema_folder
 from gaitdisc.recording import Finding
-from gaitdisc.results.on_disk import StoredArrays, damaged
-from gaitdisc.whole_file import whole_file
+from gaitdisc.results.on_disk import DamagedError, StoredArrays, damaged
+from gaitdisc.results.sealed_json import check_files, file_sha256, read_sealed, sealed_text
+from gaitdisc.spreadsheet import read_csv, write_csv
+from gaitdisc.whole_file import whole_file, write_whole
 
 FORMAT = 1
+SHOWN = 4  # files of one line
 Unit = tuple[dict[str, Any], dict[str, pd.DataFrame], StoredArrays]
 
 
@@ -51,19 +58,17 @@ def save_unit(
         If a file cannot be written; an older unit of that place is then told as damaged by its hashes.
     """
     for file, table in tables.items():
-        with whole_file(folder / file) as part:
-            table.to_csv(part, index=False, lineterminator="\n")
+        write_csv(table, folder / file)
     files = [*tables]
     if arrays:
         files.append("arrays.npz")
         with whole_file(folder / "arrays.npz") as part, part.open("wb") as stream:
             np.savez_compressed(stream, **arrays)  # type: ignore[arg-type]
-    hashes = {file: _sha256(folder / file) for file in files}
-    with whole_file(folder / name) as part:
-        part.write_text(json_text({"format": FORMAT, **data, "sha256": hashes}), encoding="utf-8")
+    hashes = {file: file_sha256(folder / file) for file in files}
+    write_whole(folder / name, sealed_text({"format": FORMAT, **data, "sha256": hashes}))
 
 
-def load_unit(folder: Path, name: str) -> Unit:
+def load_unit(folder: Path, name: str, columns: Mapping[str, Sequence[str]] | None = None) -> Unit:
     """Read a unit, after its hashes were compared.
 
     Parameters
@@ -72,6 +77,8 @@ def load_unit(folder: Path, name: str) -> Unit:
         Folder that `save_unit` wrote.
     name : str
         Name of the JSON file.
+    columns : mapping of str to sequence of str, optional
+        Tables that the unit must have, and the columns that each must have.
 
     Returns
     -------
@@ -88,16 +95,43 @@ def load_unit(folder: Path, name: str) -> Unit:
         If a file is missing, damaged or of another form.
     """
     data = read_json(folder / name)
-    for file, wanted in data["sha256"].items():
-        path = folder / file
-        if not path.is_file() or _sha256(path) != wanted:
-            raise damaged(path, "missing" if not path.is_file() else "changed since it was saved (SHA-256 differs)")
-    tables = {
-        file: pd.read_csv(folder / file, engine="python", keep_default_na=False, na_values=[""])
-        for file in data["sha256"]
-        if file.endswith(".csv")
-    }
+    check_files(folder, data["sha256"])
+    tables = {file: _read_table(folder / file) for file in data["sha256"] if file.endswith(".csv")}
+    for file, wanted in (columns or {}).items():
+        if file not in tables:
+            raise damaged(folder / file, f"not among the files that {name} names")
+        absent = [column for column in wanted if column not in tables[file]]
+        if absent:
+            raise damaged(folder / file, f"without the columns {', '.join(absent)}")
     return data, tables, StoredArrays(folder / "arrays.npz", data["sha256"].get("arrays.npz", ""))
+
+
+def damaged_units(folder: Path) -> tuple[str, ...]:
+    """Say which units below a folder are not as they were saved; nothing is changed.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of a run.
+
+    Returns
+    -------
+    tuple of str
+        One line for each kind of damage, with the files; empty where all is whole.
+    """
+    kinds: dict[str, list[str]] = {}
+    for path in sorted(folder.rglob("*.json")):
+        if path.stem not in _schema()["$defs"] or path.name.startswith("."):
+            continue
+        try:
+            data = read_json(path)
+            check_files(path.parent, data.get("sha256", {}))
+        except DamagedError as error:
+            kinds.setdefault(error.what, []).append(error.path.relative_to(folder).as_posix())
+    return tuple(
+        f"{', '.join(files[:SHOWN])}{f' and {len(files) - SHOWN} more' if len(files) > SHOWN else ''}: {what}"
+        for what, files in kinds.items()
+    )
 
 
 def with_words(table: pd.DataFrame, column: str) -> pd.DataFrame:
@@ -133,49 +167,44 @@ def stored_finding(row: Mapping[str, Any]) -> Finding:
 
 
 def read_json(path: Path) -> dict[str, Any]:
-    """Read a JSON file of a run and hold it against the schema.
+    """Read a JSON file of a run, compare its own hash, and hold it against the schema.
 
     Parameters
     ----------
     path : Path
-        `run.json`, `walk.json`, `response.json` or `tests.json`.
+        `run.json`, `walk.json`, `response.json`, `tests.json` or another that the schema names.
+
+    Returns
+    -------
+    dict
+        What is named; without its own hash.
 
     Raises
     ------
     SchemaError
-        If the file is missing, no JSON, or not of the agreed form.
+        If the file is missing, no JSON, edited, or not of the agreed form.
     """
-    try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise damaged(path, "missing") from None
-    except (OSError, ValueError) as error:
-        raise damaged(path, f"not readable as JSON ({error})") from error
-    if not isinstance(data, dict) or data.get("format") != FORMAT:
-        raise damaged(path, f"of format {data.get('format') if isinstance(data, dict) else None!r}, not {FORMAT}")
+    data = read_sealed(path)
+    if data.get("format") != FORMAT:
+        raise damaged(path, f"of format {str(data.get('format'))[:20]}, not {FORMAT}")
     wrong = next(iter(_validator(path.stem).iter_errors(data)), None)
     if wrong is not None:
         raise damaged(path, f"not of the agreed form at {wrong.json_path}: {wrong.message[:200]}")
     return data
 
 
+def _read_table(path: Path) -> pd.DataFrame:
+    try:
+        return read_csv(path)
+    except (OSError, ValueError, pd.errors.ParserError) as error:
+        raise damaged(path, f"not readable as a table ({error})") from error
+
+
+@cache
+def _schema() -> dict[str, Any]:
+    return json.loads((schema_folder() / "results.schema.json").read_text(encoding="utf-8"))
+
+
 @cache
 def _validator(part: str) -> Draft202012Validator:
-    schema = json.loads((schema_folder() / "results.schema.json").read_text(encoding="utf-8"))
-    return Draft202012Validator({"$ref": f"#/$defs/{part}", "$defs": schema["$defs"]})
-
-
-def json_text(data: Mapping[str, Any]) -> str:
-    """Write JSON the same way each time.
-
-    Parameters
-    ----------
-    data : mapping
-        What is named.
-    """
-    return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
-
-
-def _sha256(path: Path) -> str:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
+    return Draft202012Validator({"$ref": f"#/$defs/{part}", "$defs": _schema()["$defs"]})

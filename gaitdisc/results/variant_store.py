@@ -7,7 +7,7 @@ from pathlib import Path
 
 from gaitdisc.results.response_run import Refusal
 from gaitdisc.results.unit_folder import load_unit, save_unit, with_words
-from gaitdisc.results.variants import VariantRun, Variants
+from gaitdisc.results.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, VariantRun, Variants
 
 
 def save_variants(variants: Variants, folder: Path, key: str) -> None:
@@ -44,7 +44,7 @@ def load_variants(folder: Path) -> tuple[Variants, str]:
     SchemaError
         If a file is missing, damaged or of another format.
     """
-    data, tables, _ = load_unit(folder, "variants.json")
+    data, tables, _ = load_unit(folder, "variants.json", {"variants.csv": VARIANT_COLUMNS})
     left_away = {str(row["variant"]): str(row["reason"]) for row in data["left_away"]}
     return Variants(data["participant"], data["question"], tables["variants.csv"], left_away), data["key"]
 
@@ -83,7 +83,7 @@ def load_variant_run(folder: Path) -> VariantRun:
     SchemaError
         If a file is missing, damaged or of another format.
     """
-    data, tables, _ = load_unit(folder, "variant_run.json")
+    data, tables, _ = load_unit(folder, "variant_run.json", {"tests.csv": VARIANT_TEST_COLUMNS})
     return VariantRun(
         data["title"],
         data["exo"],

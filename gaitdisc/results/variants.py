@@ -74,6 +74,8 @@ class VariantRun:
         Everybody left out.
     held_out_s : tuple of float
         Shortest and longest held-out part [s].
+    renewed : tuple of str
+        As of the run.
     """
 
     title: str
@@ -83,6 +85,7 @@ class VariantRun:
     tests: pd.DataFrame
     refusals: tuple[Refusal, ...]
     held_out_s: tuple[float, float]
+    renewed: tuple[str, ...] = ()
 
     def r2_table(self) -> pd.DataFrame:
         """R2 of every participant, variant, variable, model and kind, one row each."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import asdict
 from pathlib import Path
 
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.results.on_disk import Arrays
 from gaitdisc.results.unit_folder import load_unit, save_unit, stored_finding, with_words
-from gaitdisc.results.walk_summary import WalkSummary
+from gaitdisc.results.walk_summary import STRIDE_COLUMNS, WalkSummary
 
 
 def save_walk(walk: WalkSummary, folder: Path, key: str) -> None:
@@ -58,7 +59,7 @@ def load_walk(folder: Path) -> tuple[WalkSummary, str]:
     SchemaError
         If a file is missing, damaged or of another format.
     """
-    data, tables, arrays = load_unit(folder, "walk.json")
+    data, tables, arrays = load_unit(folder, "walk.json", {"strides.csv": STRIDE_COLUMNS})
     strides = with_words(tables["strides.csv"], "reason")
     walk = WalkSummary(
         data["subject"],
@@ -76,7 +77,7 @@ def load_walk(folder: Path) -> tuple[WalkSummary, str]:
 
 
 def unit_name(subject: str, condition: str) -> str:
-    """Folder name of a walk: letters, digits, `-` and `_` only.
+    """Folder name of a walk: letters, digits, `-` and `_` only, another one for every person and condition.
 
     Parameters
     ----------
@@ -85,11 +86,13 @@ def unit_name(subject: str, condition: str) -> str:
 
     Examples
     --------
-    >>> unit_name("P01", "no spring")
-    'P01-no_spring'
+    >>> unit_name("P01", "exo"), unit_name("P01", "no spring"), unit_name("P01", "no_spring")
+    ('P01-exo', 'P01-no_spring-5b9bbb7a', 'P01-no_spring')
     """
-    text = f"{subject}-{condition}"
-    return "".join(letter if letter.isalnum() or letter in "-_" else "_" for letter in text)
+    plain = "".join(letter if letter.isalnum() or letter == "_" else "_" for letter in condition)
+    if plain == condition:
+        return f"{subject}-{condition}"
+    return f"{subject}-{plain}-{hashlib.sha256(condition.encode()).hexdigest()[:8]}"
 
 
 def _curves(arrays: Arrays) -> NDArray[np.float64]:

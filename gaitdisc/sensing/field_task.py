@@ -12,7 +12,7 @@ from gaitdisc.sensing.windows import Lags
 class Label(NamedTuple):
     """Which cell it is.
 
-    Parameters
+    Attributes
     ----------
     field, route, split, model : str
         What was varied.

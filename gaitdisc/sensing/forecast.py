@@ -14,7 +14,7 @@ from gaitdisc.results.reconstruction import FLOORS
 
 PERSISTENCE, PHASE_AVERAGE = FLOORS
 BASELINES = {
-    PERSISTENCE: "all states as they were when the forecast was made: measured, not told from the sensors",
+    PERSISTENCE: "all states as they were when the forecast was made: measured, not reconstructed from the sensors",
     PHASE_AVERAGE: "the mean stride of the fitted part, at the phase that the time since the last contact leads to",
 }
 POINTS = 100
@@ -108,7 +108,7 @@ def phase_average(trials: Sequence[Samples]) -> PhaseAverage:
         raise StrideError(
             "the mean stride needs strides in the fitted part",
             f"it has {len(durations)} and {int((counts == 0).sum())} of {POINTS} percents without a sample",
-            "Record longer, or tell the present (ahead 0).",
+            "Record longer, or reconstruct the present (ahead 0).",
         )
     sums = np.zeros((POINTS, y.shape[1]))
     np.add.at(sums, place, y[known])

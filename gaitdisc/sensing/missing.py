@@ -12,7 +12,7 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Recording, Samples
 
 WAYS = {
-    "none": "a window that lacks a reading tells nothing",
+    "none": "a window that lacks a reading is left out",
     "mean": "the sensor's mean in the training part stands for a reading that is missing",
     "last": "the sensor's last known reading stands for one that is missing",
 }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
@@ -14,6 +13,8 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError, SchemaError, UnitError
 from gaitdisc.recording import Recording
+from gaitdisc.results.on_disk import DamagedError
+from gaitdisc.results.sealed_json import check_files, file_sha256, read_sealed, sealed_text
 from gaitdisc.sensing.missing import filled
 from gaitdisc.sensing.reconstructor import (
     ENSEMBLE,
@@ -86,7 +87,7 @@ class SensingModel:
 
 
 def save_model(model: SensingModel, folder: Path) -> None:
-    """Save a model: `model.json` and `weights.npz`.
+    """Save a model: `weights.npz`, and `model.json` with the hashes of both.
 
     Parameters
     ----------
@@ -105,14 +106,16 @@ def save_model(model: SensingModel, folder: Path) -> None:
 
     done = model.reconstructor
     folder.mkdir(parents=True, exist_ok=True)
+    places = [folder / WEIGHTS]
     if isinstance(done.model, FourierRidge):
         save_ridge(done.model, folder / WEIGHTS)
     else:
-        from gaitdisc.networks.ensemble import Ensemble, save_ensemble
+        from gaitdisc.networks.ensemble import Ensemble, member_path, save_ensemble
         from gaitdisc.networks.trained_network import TrainedNetwork, save_network
 
         if isinstance(done.model, Ensemble):
             save_ensemble(done.model, folder / WEIGHTS)
+            places = [member_path(folder / WEIGHTS, number) for number in range(1, MEMBERS + 1)]
         else:
             assert isinstance(done.model, TrainedNetwork)  # there is no other kind
             save_network(done.model, folder / WEIGHTS)
@@ -125,8 +128,9 @@ def save_model(model: SensingModel, folder: Path) -> None:
         "n_fitted": done.n_fitted,
         "seconds": done.seconds,
         "device": done.device,
+        "sha256": {path.name: file_sha256(path) for path in places},
     }
-    write_whole(folder / NAME, json.dumps(data, indent=1))
+    write_whole(folder / NAME, sealed_text(data))
 
 
 def load_model(folder: Path) -> SensingModel:
@@ -147,24 +151,29 @@ def load_model(folder: Path) -> SensingModel:
         If a file is missing, damaged, or of another version.
     """
     try:
-        data = json.loads((folder / NAME).read_text(encoding="utf-8"))
+        data = read_sealed(folder / NAME)
         if data["format"] != FORMAT:
             raise ValueError(f"it has format {data['format']}, this version reads {FORMAT}")
+        check_files(folder, data["sha256"])
         told = data["sensing"]
         what = Sensing(tuple(told["sensors"]), tuple(told["states"]), Lags(**told["lags"]), told["rate_hz"])
         channels: Sequence[Channel] = [Channel(**channel) for channel in data["channels"]]
-        half, kind = np.array(data["half_widths"]), data["kind"]
-        numbers = data["n_fitted"], data["seconds"], data.get("device", "cpu")  # before it was told, it was that
+        half, kind = np.array(data["half_widths"], float), data["kind"]
+        numbers = data["n_fitted"], data["seconds"], data["device"]
         _refuse_parts(kind, what, channels, half)
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise SchemaError(
             f"{folder.name}/{NAME} is to be read as a model of gaitdisc",
-            f"it lacks {error}" if isinstance(error, KeyError) else str(error),
+            f"it lacks {error}" if isinstance(error, KeyError) else _said(error),
             "Run `gaitdisc reconstruct` again.",
         ) from error
     weights = _weights(kind, what, folder)
     _refuse_others(weights, kind, what, folder)
     return SensingModel(Reconstructor(kind, what, weights, *numbers), tuple(channels), half)
+
+
+def _said(error: Exception) -> str:
+    return error.found if isinstance(error, DamagedError) else str(error)
 
 
 def _refuse_parts(kind: str, what: Sensing, channels: Sequence[Channel], half: NDArray[np.float64]) -> None:
@@ -181,8 +190,8 @@ def _refuse_others(weights: ScaledModel, kind: str, what: Sensing, folder: Path)
     if weights.outputs != what.states or len(weights.inputs) != readings * len(what.sensors):
         raise SchemaError(
             f"{folder.name}/{WEIGHTS} is to be read with {folder.name}/{NAME}",
-            f"the weights read {len(weights.inputs)} numbers and tell {', '.join(weights.outputs[:3])}, the model has "
-            f"{readings * len(what.sensors)} and {', '.join(what.states[:3])}",
+            f"the weights read {len(weights.inputs)} numbers and estimate {', '.join(weights.outputs[:3])}, "
+            f"the model has {readings * len(what.sensors)} and {', '.join(what.states[:3])}",
             "Both files belong to one model: copy them together, or run `gaitdisc reconstruct` again.",
         )
 

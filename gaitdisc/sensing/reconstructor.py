@@ -29,7 +29,7 @@ KINDS = {
 MASKED = "masked shred"
 ENSEMBLE, MEMBERS = "shred ensemble", 5
 ON_REQUEST = {
-    MASKED: "SHRED that is told which readings are missing, fitted with a part of them hidden",
+    MASKED: "SHRED that is given which readings are missing, fitted with a part of them hidden",
     ENSEMBLE: f"mean of SHRED from {MEMBERS} seeds",
 }
 STATIC = ("linear", "shallow decoder")

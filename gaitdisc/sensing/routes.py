@@ -88,7 +88,7 @@ def fixed(field: Field, points: Sequence[int], name: str = "fixed") -> Route:
     if not len(chosen) or outside.any():
         raise ChannelError(
             f"sensors need points of the field, 0 to {field.points - 1}",
-            f"asked for {', '.join(str(k) for k in chosen[outside]) or 'none'}",
+            f"requested: {', '.join(str(k) for k in chosen[outside]) or 'none'}",
             "Name points of the field.",
         )
     return Route(name, np.tile(chosen, (len(field), 1)))

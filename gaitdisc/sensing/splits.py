@@ -19,9 +19,9 @@ PERSON_OUT = "leave one person out"
 SEAM_S = 0.3  # zero-lag filters look ahead and back over a border
 RANDOM = "random (leaks)"
 RULES = {
-    "temporal": "each trial: first 70 % fitted, next 10 % checked, last 20 % judged; no window crosses a border",
-    "blocked": "each trial in ten blocks: seven fitted, one checked, two judged; no window crosses a border",
-    RANDOM: "windows drawn at random: neighbours of every judged window were fitted, so the error is far too small",
+    "temporal": "each trial: first 70 % fitted, next 10 % checked, last 20 % tested; no window crosses a border",
+    "blocked": "each trial in ten blocks: seven fitted, one checked, two tested; no window crosses a border",
+    RANDOM: "windows drawn at random: neighbours of every test window were fitted, so the error is far too small",
 }
 
 
@@ -129,7 +129,7 @@ def split_by_subject(people: Sequence[Sequence[Samples]], judged: int) -> Parts:
     """
     if len(people) < 3:
         raise SamplingError(
-            "a model of a population needs at least three people: to fit, to check, and to judge",
+            "a model of a population needs at least three people: to fit, to check, and to test",
             f"there are {len(people)}",
             "Add participants, or fit each of them alone.",
         )

@@ -170,7 +170,7 @@ def phase_curves(judged: Judged, states: Sequence[str], points: int = 51) -> pd.
     Returns
     -------
     DataFrame
-        state, percent, measured, measured_sd, told, rmse (of the windows in the bin).
+        state, percent, measured, measured_sd, reconstructed, rmse (of the windows in the bin).
     """
     inside = judged.stride >= 0
     phi, y, told = judged.windows.phi[inside], judged.windows.y[inside], judged.told[inside]
@@ -183,7 +183,9 @@ def phase_curves(judged: Judged, states: Sequence[str], points: int = 51) -> pd.
             m, f = y[here, column], told[here, column]
             rmse = float(np.sqrt(np.mean((f - m) ** 2)))
             rows.append((state, float(edges[k] + edges[1] / 2), m.mean(), m.std(), f.mean(), rmse))
-    return pd.DataFrame(rows, columns=pd.Index(["state", "percent", "measured", "measured_sd", "told", "rmse"]))
+    return pd.DataFrame(
+        rows, columns=pd.Index(["state", "percent", "measured", "measured_sd", "reconstructed", "rmse"])
+    )
 
 
 def _interval(

@@ -15,7 +15,7 @@ from gaitdisc.sensing.routes import Route
 from gaitdisc.sensing.windows import stacked
 
 OWN, OTHER = "the fitted path", "another path, never fitted"
-ALONE, MANY, MANY_PLACED = "fitted on one path", "fitted on {} paths", "fitted on {} paths, places told"
+ALONE, MANY, MANY_PLACED = "fitted on one path", "fitted on {} paths", "fitted on {} paths, places given"
 
 
 def unseen_path(

@@ -17,6 +17,7 @@ from scipy.signal import butter, sosfiltfilt
 
 from gaitdisc.errors import SamplingError
 from gaitdisc.recording import Finding, Recording
+from gaitdisc.recording.wrapping import unwrapped, wrapped
 from gaitdisc.signals.gaps import MAX_SPLINE_S, filled, runs, spans_s
 
 KINEMATICS_HZ = 6.0
@@ -57,7 +58,8 @@ def lowpassed(
     """Recording without what is faster than the cut-off; zero lag.
 
     Gaps up to `max_gap_s` are bridged by a cubic spline and marked suspect; longer ones stay NaN, and what lies between
-    them is filtered run by run. 1.8 periods of the cut-off at both ends of each run are marked suspect.
+    them is filtered run by run. 1.8 periods of the cut-off at both ends of each run are marked suspect. A heading that
+    passes 180 deg is filtered as it goes on, and comes round again afterwards.
 
     Parameters
     ----------
@@ -191,7 +193,7 @@ def _filtered(recording: Recording, cutoff_hz: float, order: int, kind: str, max
             "Lower the cut-off in [filters], or export the raw signal at its full rate.",
         )
     sections = np.asarray(butter(order, cutoff_hz, kind, fs=rate, output="sos"))
-    bridged = filled(recording, None, max_gap_s)
+    bridged = filled(unwrapped(recording), None, max_gap_s)
     edge = math.ceil(EDGE_PERIODS / cutoff_hz * rate)
     values = np.full(recording.values.shape, np.nan)
     marks = np.array(bridged.suspect)
@@ -203,7 +205,8 @@ def _filtered(recording: Recording, cutoff_hz: float, order: int, kind: str, max
             values[start:end, column] = _both_ways(sections, x[start:end], need - 1)
             marks[start : start + edge, column] = True
             marks[max(start, end - edge) : end, column] = True
-    return recording.with_values(values, marks)
+    smooth = recording.with_values(values, marks)
+    return wrapped(smooth, recording) if kind == "lowpass" else smooth
 
 
 def _both_ways(sections: NDArray[np.float64], x: NDArray[np.float64], padding: int) -> NDArray[np.float64]:

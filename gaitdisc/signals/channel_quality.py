@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.recording import Finding, Recording
+from gaitdisc.recording.wrapping import unwrapped
 from gaitdisc.signals.gaps import gap_findings, runs, spans_s
 
 FROZEN_S = 0.1
@@ -35,6 +36,7 @@ def channel_findings(recording: Recording) -> list[Finding]:
     list of Finding
     """
     findings = gap_findings(recording)
+    recording = unwrapped(recording)
     for column, channel in enumerate(recording.channels):
         x = recording.values[:, column]
         if not np.isfinite(x).any() or channel.quantity == "emg":

@@ -141,7 +141,9 @@ def plate_contacts(
     """
     times: dict[str, list[float]] = {"r": [], "l": []}
     offs: dict[str, list[float]] = {"r": [], "l": []}
-    along = {side: marker_position(markers, name) @ direction.forward for side, name in heels.items()}
+    places = {side: marker_position(markers, name) for side, name in heels.items()}
+    middle = np.mean(list(places.values()), axis=0)
+    along = {side: direction.ahead(place - middle) for side, place in places.items()}
     for channel in forces.channels:
         if channel.quantity != "vertical_force":
             continue

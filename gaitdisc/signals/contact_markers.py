@@ -49,8 +49,8 @@ def marker_contacts(
     References
     ----------
     Zeni, Richards, Higginson (2008), Gait & Posture 27, 710-714. Differs: the direction need not be an axis of the
-    laboratory; peaks need half of the usual swing, so that a stop or a turn gives none; the peak is placed between
-    samples by a parabola; gaps above 0.1 s give no contact.
+    laboratory, and in a turn each step has its own; peaks need half of the usual swing, so that a stop gives none; the
+    peak is placed between samples by a parabola; gaps above 0.1 s give no contact.
     """
     direction = direction or walking_direction(markers, heels, pelvis)
     needed = {f"{name}.{axis}" for name in [*heels.values(), *pelvis] for axis in "xyz"}
@@ -58,7 +58,8 @@ def marker_contacts(
     centre = pelvis_position(bridged, pelvis)
     found = {}
     for side, heel in heels.items():
-        ahead = (marker_position(bridged, heel) - centre) @ direction.forward
+        swung = marker_position(bridged, heel) - centre
+        ahead = direction.ahead(swung)
         swing = float(np.subtract(*np.nanpercentile(ahead, [95, 5]))) if np.isfinite(ahead).any() else 0.0
         if swing < 0.1:
             raise StrideError(
@@ -67,6 +68,7 @@ def marker_contacts(
                 "Check the direction, the marker's name and that the trial is walking.",
             )
         times = _peak_times(markers.time, ahead, FEWEST_SWING * swing)
+        times = _of_each_step(markers.time, swung, direction, times)
         note = f"{heel} farthest in front of {', '.join(pelvis)}; {direction.how}"
         found[side] = Contacts(times, side, "markers", note=note)
     return found
@@ -76,6 +78,25 @@ def _peak_times(time: NDArray[np.float64], x: NDArray[np.float64], prominence: f
     step = (time[-1] - time[0]) / (len(time) - 1)
     peaks, _ = find_peaks(np.where(np.isfinite(x), x, -np.inf), distance=max(1, round(SHORTEST_STRIDE_S / step)))
     return np.array([time[p] + step * _vertex(x, p) for p in peaks if _prominent(x, p, prominence)])
+
+
+def _of_each_step(
+    time: NDArray[np.float64], swung: NDArray[np.float64], direction: Direction, times: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Peaks again, each along one direction: a line that turns moves the peak of a heel that lies beside it."""
+    if direction.headings is None:
+        return times
+    step = (time[-1] - time[0]) / (len(time) - 1)
+    reach = round(SHORTEST_STRIDE_S / 2 / step)
+    found = []
+    for at in times:
+        middle = round((at - time[0]) / step)
+        ahead = direction.ahead(swung, middle)
+        first, last = max(1, middle - reach), min(len(ahead) - 1, middle + reach + 1)
+        top = first + int(np.argmax(np.where(np.isfinite(ahead[first:last]), ahead[first:last], -np.inf)))
+        inside = ahead[top] >= max(ahead[top - 1], ahead[top + 1])
+        found.append(time[top] + step * _vertex(ahead, top) if inside else at)
+    return np.unique(found)
 
 
 def _prominent(x: NDArray[np.float64], peak: int, prominence: float) -> bool:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import SamplingError
 from gaitdisc.recording import Recording, Strides, Trajectory
+from gaitdisc.recording.wrapping import unwrapped
 from gaitdisc.units import rate_unit
 
 FIRST = (1 / 12, -8 / 12, 0.0, 8 / 12, -1 / 12)  # times 1 / step
@@ -83,7 +84,7 @@ def differentiated_recording(recording: Recording, order: int = 1) -> Recording:
         Same names, unit `deg/s` or `deg/s2`; suspect where one of the five samples is.
     """
     channels = tuple(replace(c, unit=rate_unit(c.unit, order)) for c in recording.channels)
-    values = differentiated(recording.values, recording.rate_hz, order)
+    values = differentiated(unwrapped(recording).values, recording.rate_hz, order)
     return replace(recording, values=values, channels=channels, suspect=_widened(np.asarray(recording.suspect)))
 
 
@@ -113,7 +114,8 @@ def trajectory(filtered: Recording, strides: Strides) -> Trajectory:
     Ebers (2023), Eqs. 4.1-4.4. Differs: the operator, which the text does not state, and the marks.
     """
     x, rate = filtered.values, filtered.rate_hz
-    xdot, xddot = differentiated(x, rate, 1), differentiated(x, rate, 2)
+    goes_on = unwrapped(filtered).values
+    xdot, xddot = differentiated(goes_on, rate, 1), differentiated(goes_on, rate, 2)
     usable = np.isfinite(x) & np.isfinite(xdot) & np.isfinite(xddot) & ~_widened(np.asarray(filtered.suspect))
     phi = strides.phi(filtered.time)
     return Trajectory(

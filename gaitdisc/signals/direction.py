@@ -1,4 +1,4 @@
-"""Direction of walking, given or inferred from markers."""
+"""Direction of walking, given or inferred from markers; it may turn on the way."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.recording import Recording
 
 FEWEST_SKEW = 0.2
+PATH_S = 1.0  # about a stride: sway from step to step cancels over it
+LEAST_SPEED = 0.3  # m/s of the pelvis in the laboratory: slower is a treadmill, or standing
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,14 +23,33 @@ class Direction:
     Parameters
     ----------
     forward, up : ndarray (3,)
-        Unit vectors.
+        Unit vectors; forward is the mean one where walking turns.
     how : str
         `given`, or what they were inferred from.
+    headings : ndarray (time, 3), optional
+        Forward at each sample of the markers, where it follows the path of the pelvis.
     """
 
     forward: NDArray[np.float64]
     up: NDArray[np.float64]
     how: str
+    headings: NDArray[np.float64] | None = None
+
+    def ahead(self, positions: NDArray[np.float64], sample: int | None = None) -> NDArray[np.float64]:
+        """How far forward positions lie, (time,) [m].
+
+        Parameters
+        ----------
+        positions : ndarray (time, 3) [m]
+            On the time base of the markers; relative to the pelvis where walking turns.
+        sample : int, optional
+            Keep the direction of this sample throughout, as one step needs it; by default each sample has its own.
+        """
+        if self.headings is None:
+            return positions @ self.forward
+        if sample is not None:
+            return positions @ self.headings[sample]
+        return np.einsum("tx,tx->t", positions, self.headings)
 
 
 def marker_position(markers: Recording, name: str) -> NDArray[np.float64]:
@@ -72,11 +93,12 @@ def pelvis_position(markers: Recording, pelvis: Sequence[str]) -> NDArray[np.flo
 
 
 def walking_direction(markers: Recording, heels: Mapping[str, str], pelvis: Sequence[str]) -> Direction:
-    """Direction of walking, from how heel markers swing about the pelvis.
+    """Direction of walking: the path of the pelvis over ground, the swing of the heels about it on a treadmill.
 
-    The axis along which the pelvis lies farthest from the heels is up. Across it, the line along which the heels swing
-    most is the walking line. On it the foot swings forwards faster than it goes backwards in stance, on a belt as over
-    ground, so velocity relative to the pelvis is skewed towards forward.
+    The axis along which the pelvis lies farthest from the heels is up. Where the pelvis travels at 0.3 m/s or more,
+    forward at each sample is where it moves over a second around it, so that a turn has the direction of each step.
+    On a treadmill, the line along which the heels swing most is the walking line; on it the foot swings forwards faster
+    than it goes backwards in stance, so velocity relative to the pelvis is skewed towards forward.
 
     Parameters
     ----------
@@ -90,18 +112,64 @@ def walking_direction(markers: Recording, heels: Mapping[str, str], pelvis: Sequ
     Raises
     ------
     StrideError
-        If forwards cannot be told from backwards (skewness of the velocity below 0.2).
+        If on a treadmill forwards cannot be told from backwards (skewness of the velocity below 0.2), or no frame has
+        a heel and the pelvis.
     ChannelError
         If a marker is not there.
     """
     centre = pelvis_position(markers, pelvis)
     swings = [marker_position(markers, name) - centre for name in heels.values()]
+    if not np.isfinite(np.concatenate(swings)).all(axis=1).any():
+        raise StrideError(
+            "the direction of walking needs a frame with a heel and the pelvis",
+            f"{markers.source.file or 'the recording'}: none has {', '.join(heels.values())} and {', '.join(pelvis)}",
+            "Fill the markers, or choose another detector in [strides].",
+        )
     up_axis = int(np.argmax(np.abs(np.nanmean(np.concatenate(swings), axis=0))))
     up = np.zeros(3)
     up[up_axis] = 1.0
     if np.nanmean(np.concatenate(swings)[:, up_axis]) > 0:
         up = -up
     level = [i for i in range(3) if i != up_axis]
+    headings = _headings(centre, level, markers.rate_hz)
+    if headings is not None:
+        return _along_path(headings, up, level)
+    return _from_swings(swings, up, level, markers.source.file)
+
+
+def _headings(centre: NDArray[np.float64], level: list[int], rate_hz: float) -> NDArray[np.float64] | None:
+    """Forward at each sample, (time, 3), from the path of the pelvis; None where it does not travel."""
+    known = np.flatnonzero(np.isfinite(centre).all(axis=1))
+    if len(known) < PATH_S * rate_hz:
+        return None
+    samples = np.arange(len(centre))
+    path = np.stack([np.interp(samples, known, centre[known, axis]) for axis in level], axis=1)
+    half = round(PATH_S * rate_hz / 2)
+    late, early = np.minimum(samples + half, known[-1]), np.maximum(samples - half, known[0])
+    velocity = (path[late] - path[early]) / np.maximum(late - early, 1)[:, None] * rate_hz
+    speed = np.linalg.norm(velocity, axis=1)
+    moving = np.flatnonzero((speed >= LEAST_SPEED) & (late - early >= half))
+    if len(moving) < len(centre) / 2:
+        return None
+    nearest = moving[np.rint(np.interp(samples, moving, np.arange(len(moving)))).astype(int)]  # held in standing
+    headings = np.zeros(centre.shape)
+    headings[:, level] = velocity[nearest] / speed[nearest, None]
+    return headings
+
+
+def _along_path(headings: NDArray[np.float64], up: NDArray[np.float64], level: list[int]) -> Direction:
+    angle = np.unwrap(np.arctan2(headings[:, level[1]], headings[:, level[0]]))
+    turned = np.degrees(angle.max() - angle.min())
+    mean = headings.mean(axis=0)
+    size = float(np.linalg.norm(mean))
+    forward = mean / size if size > 1e-9 else headings[0]  # there and back has no mean
+    how = f"forward ({_shown(forward)}) follows the path of the pelvis, which turns by {turned:.0f} deg"
+    return Direction(forward, up, how, headings)
+
+
+def _from_swings(
+    swings: Sequence[NDArray[np.float64]], up: NDArray[np.float64], level: list[int], file: str
+) -> Direction:
     centred = np.concatenate([s - np.nanmean(s, axis=0) for s in swings])[:, level]
     centred = centred[np.isfinite(centred).all(axis=1)]
     line = np.linalg.eigh(centred.T @ centred)[1][:, -1]
@@ -111,13 +179,17 @@ def walking_direction(markers: Recording, heels: Mapping[str, str], pelvis: Sequ
     if abs(skew) < FEWEST_SKEW:
         raise StrideError(
             f"forwards is where the heels move fastest: a skewness of {FEWEST_SKEW:g} or more",
-            f"{markers.source.file or 'the recording'} has {skew:+.2f}",
+            f"{file or 'the recording'} has {skew:+.2f}",
             "Give the direction of walking in the study's [strides].",
         )
     forward = np.zeros(3)
     forward[level] = line * np.sign(skew)
-    shown = ", ".join(f"{part:+.2f}" for part in forward)
-    return Direction(forward, up, f"forward ({shown}) inferred: heels move faster that way (skewness {abs(skew):.2f})")
+    how = f"forward ({_shown(forward)}) inferred: heels move faster that way (skewness {abs(skew):.2f})"
+    return Direction(forward, up, how)
+
+
+def _shown(forward: NDArray[np.float64]) -> str:
+    return ", ".join(f"{part:+.2f}" for part in forward)
 
 
 def given_direction(forward: Sequence[float], up: Sequence[float] = (0.0, 0.0, 1.0)) -> Direction:

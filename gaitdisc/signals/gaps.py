@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from gaitdisc.recording import PERCENT, Finding, Recording, Strides
+from gaitdisc.recording.wrapping import unwrapped, wrapped
 
 MAX_SPLINE_S = 0.1
 MAX_TEMPLATE_S = 0.2
@@ -106,6 +107,7 @@ def filled(
     Recording
         Filled samples suspect.
     """
+    given, recording = recording, unwrapped(recording)
     values, marks = np.array(recording.values), np.zeros(recording.values.shape, bool)
     rate = recording.rate_hz
     phi = None if strides is None else strides.phi(recording.time)
@@ -128,7 +130,7 @@ def filled(
             else:
                 values[start:end, column] = put
                 marks[start:end, column] = True
-    return recording.with_values(values, marks)
+    return wrapped(recording.with_values(values, marks), given)
 
 
 def gap_findings(recording: Recording, max_gap_s: float = MAX_SPLINE_S) -> list[Finding]:

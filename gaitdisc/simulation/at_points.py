@@ -47,22 +47,54 @@ def at_points(
     points : int, optional
         How many; the length of the first column by default.
     """
-    from gaitdisc.simulation.machine import BLOCK, evaluate_blocks
-
     if program.delays and (late is None or np.shape(late)[-1] != len(program.delays)):
         raise SimulationError(
             f"delayed signals are needed at each point: {', '.join(signal for signal, _ in program.delays)}",
             "they were not given",
             "Run the simulation, or give `late`.",
         )
-    count = int(np.size(columns[0])) if points is None else points
-    sources = [*columns, *(np.asarray(late).T if program.delays else ())]
-    spread = np.full(program.registers, 2, np.int64)
-    table = np.zeros((len(sources), count))
-    for k, (source, used) in enumerate(zip(sources, program.used(), strict=True)):
-        if used:
-            spread[k] = int(np.ndim(source) > 0)
-            table[k, : count if np.ndim(source) else 1] = source
-    into = np.empty((program.outputs, count))
-    evaluate_blocks(program.placed(BLOCK), program.constants, table, spread, into)
-    return into
+    table = PointTable(program, int(np.size(columns[0])) if points is None else points)
+    table.fill(0, [*columns, *(np.asarray(late).T if program.delays else ())])
+    return table.outputs()
+
+
+class PointTable:
+    """Values of a program's leaves at a number of points, to be filled in part and evaluated again and again.
+
+    Parameters
+    ----------
+    program : Program
+        Compiled expressions.
+    points : int
+        How many.
+    """
+
+    def __init__(self, program: Program, points: int) -> None:
+        self._used = tuple(program.used())
+        self._program, self._points = program, points
+        self._spread = np.full(program.registers, 2, np.int64)
+        self._table = np.zeros((len(self._used), points))
+
+    def fill(self, first: int, columns: Sequence[NDArray[np.float64]]) -> None:
+        """Put values in place of those of some leaves; what the program does not read is passed over.
+
+        Parameters
+        ----------
+        first : int
+            Number of the first of these leaves.
+        columns : sequence of ndarray (point,) or ()
+            Their values; one number serves all points.
+        """
+        for leaf, column in enumerate(columns, first):
+            if self._used[leaf]:
+                self._spread[leaf] = int(np.ndim(column) > 0)
+                self._table[leaf, : self._points if np.ndim(column) else 1] = column
+
+    def outputs(self) -> NDArray[np.float64]:
+        """Outputs of the program, (output, point)."""
+        from gaitdisc.simulation.machine import BLOCK, evaluate_blocks
+
+        into = np.empty((self._program.outputs, self._points))
+        program = self._program
+        evaluate_blocks(program.placed(BLOCK), program.constants, self._table, self._spread, into)
+        return into

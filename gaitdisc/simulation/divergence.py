@@ -11,6 +11,7 @@ from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.refusal import SimulationError
 
+SLOW_HZ = 2.0  # samples a second, below which a time in milliseconds is likelier than a record so coarse
 _NUDGE = 1e-2  # of a parameter, to see what drives the rate
 
 
@@ -81,11 +82,12 @@ def refuse_divergence(
     first, *others = divergences(compiled, drive, rows, states, ok)
     more = f"; {len(others)} of {len(ok)} rows more" if others else ""
     driven = f"{first.parameter!r}, on which its rate depends most, and " if first.parameter else ""
+    late = " (time is in seconds, not in milliseconds)" if drive.rate < SLOW_HZ else ""
     raise SimulationError(
         "a simulation stays finite (every state within 1e6)",
         f"{compiled.simulation.title!r} leaves it in trial {first.trial + 1} after t = {first.time:.4g} s, "
         f"first in {first.state!r} (last {first.value:.3g}){more}",
-        f"Check {driven}the start; or the sampling is too coarse for how fast it moves.",
+        f"Check {driven}the start; or samples {1 / drive.rate:.4g} s apart are too coarse for how fast it moves{late}.",
     )
 
 

@@ -168,6 +168,12 @@ def measured_of_trials(
     ShapeError
         If an observed channel never varies.
     """
+    if not trials:
+        raise SamplingError(
+            f"a trial has {SHORTEST} samples or more",
+            f"{source} has no row",
+            "Export the record again, with its samples.",
+        )
     rates = [_rate(trial, source) for trial in trials]
     apart = int(np.argmax(np.abs(np.array(rates) - rates[0])))
     if abs(rates[apart] - rates[0]) > 2e-3 * rates[0]:

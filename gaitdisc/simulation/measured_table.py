@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 ENDINGS = (".csv", ".parquet")
+_OTHER_TIME = re.compile(r"(?i)(time|t)[\s_\[(]*(ms|msec|milliseconds?|us|µs|ns|min|minutes?)[\])]*|frames?|samples?")
 
 
 def read_measured(path: Path | str, simulation: Simulation) -> Measured:
@@ -138,6 +140,9 @@ def _table(path: Path) -> pd.DataFrame:
         )
     try:
         if path.suffix.lower() == ".parquet":
+            from pyarrow.parquet import read_schema
+
+            _refuse_doubled(read_schema(path).names, path.name)
             return pd.read_parquet(path)
         with path.open(encoding="utf-8-sig") as file:
             head = file.readline(100_000)
@@ -184,6 +189,13 @@ def _channels(simulation: Simulation, columns: Sequence[str], file: str) -> tupl
 
 
 def _missing(name: str, columns: Sequence[str], file: str) -> ChannelError:
+    timed = next((column for column in columns if _OTHER_TIME.fullmatch(column)), None) if name == "time" else None
+    if timed is not None:
+        return ChannelError(
+            "the simulation needs a measured column 'time' in seconds",
+            f"{file} has {timed!r}",
+            "Convert it to seconds and call the column 'time'.",
+        )
     nearest = nearest_word(name, columns)
     hint = f", the nearest is {nearest!r}" if nearest else ""
     listed = ", ".join(columns[:20]) + (", ..." if len(columns) > 20 else "")
@@ -211,17 +223,25 @@ def _trials(table: pd.DataFrame, file: str) -> NDArray[np.object_]:
 def _numbers(table: pd.DataFrame, name: str, trial: NDArray[np.object_], file: str) -> NDArray[np.float64]:
     import pandas as pd
 
+    if pd.api.types.is_datetime64_any_dtype(table[name]) or pd.api.types.is_timedelta64_dtype(table[name]):
+        raise ReadError(
+            "every cell of a measured column is a number" + (", time in seconds" if name == "time" else ""),
+            f"{file}, column {name!r} holds dates or clock times, first {table[name].iloc[0]}",
+            "Write seconds since the trial's start." if name == "time" else "Write numbers.",
+        )
     values = pd.to_numeric(table[name], errors="coerce").to_numpy(float)
     bad = np.flatnonzero(~np.isfinite(values))
     if bad.size:
         row = int(bad[0])
         cell = table[name].iloc[row]
-        shown = "an empty cell" if pd.isna(cell) else repr(cell)
+        shown = "an empty cell" if pd.isna(cell) else repr(str(cell))
         raise ReadError(
             "every cell of a measured column is a number",
             f"{file}, line {row + 2} (trial {trial[row]!r}), column {name!r} has {shown}"
             + (f"; {bad.size} such cells" if bad.size > 1 else ""),
-            "Fill or cut the gap; a trial has no missing samples.",
+            "Fill or cut the gap; a trial has no missing samples."
+            if pd.isna(cell)
+            else "Write numbers in this column.",
         )
     return values
 

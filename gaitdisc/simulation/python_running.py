@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gaitdisc.simulation.at_points import at_points, leaf_columns
+from gaitdisc.simulation.at_points import PointTable, at_points, leaf_columns
 from gaitdisc.simulation.compiled_simulation import SUBSTEPS, Compiled
 from gaitdisc.simulation.delays import before_rows, linear_in_rows
 from gaitdisc.simulation.drive import Drive, Rows
@@ -53,8 +53,7 @@ class PythonCompiled(Compiled):
         x = starts
         last = drive.samples[place[:, 0]] - 1
         for sample in range(steps):
-            for sub in range(substeps):
-                x = walk.step(x, sample * substeps + sub)
+            x = walk.sample(x, sample)
             there = place[:, 1] + sample + 1 <= last
             ok &= ~there | np.all(np.abs(x) < BOUND, axis=1)
             found[ok & there, sample + 1] = x[ok & there]
@@ -98,33 +97,39 @@ class _Walk:
         self._place, starts, self._values = rows
         self._seconds = compiled._seconds(compiled.right_hand_side, self._values)
         self._history = [starts]
+        self._feeds = PointTable(compiled.right_hand_side, len(starts))
+        self._feeds.fill(1 + len(compiled.states) + len(compiled.inputs), self._values.T)
 
-    def step(self, x: NDArray[np.float64], done: int) -> NDArray[np.float64]:
-        """One step of Runge-Kutta from step number `done`."""
+    def sample(self, x: NDArray[np.float64], sample: int) -> NDArray[np.float64]:
+        """One sample further, in its steps of Runge-Kutta."""
         h = 1.0 / (self._drive.rate * self._substeps)
+        halves = np.arange(2 * self._substeps + 1)
+        at = np.broadcast_to(sample + halves / (2 * self._substeps), (len(x), len(halves)))
+        inputs = [self._input(k, at) for k in range(len(self._compiled.inputs))]
         with np.errstate(all="ignore"):  # a row that leaves every bound is told, not warned of
-            k1 = self._rates(x, done)
-            k2 = self._rates(x + h / 2 * k1, done + 0.5)
-            k3 = self._rates(x + h / 2 * k2, done + 0.5)
-            k4 = self._rates(x + h * k3, done + 1.0)
-            x = x + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
-        if self._compiled.right_hand_side.delays:
-            self._history.append(x)
+            for half in halves[:-1:2]:
+                start, middle, end = ((at[0, half + k], [each[:, half + k] for each in inputs]) for k in range(3))
+                k1 = self._rates(x, *start)
+                k2 = self._rates(x + h / 2 * k1, *middle)
+                k3 = self._rates(x + h / 2 * k2, *middle)
+                k4 = self._rates(x + h * k3, *end)
+                x = x + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+                if self._compiled.right_hand_side.delays:
+                    self._history.append(x)
         return x
 
-    def _rates(self, x: NDArray[np.float64], step: float) -> NDArray[np.float64]:
-        sample = step / self._substeps
-        at = np.full((len(x), 1), sample)
-        t = self._drive.time0[self._place[:, 0]] + (self._place[:, 1] + sample) / self._drive.rate
-        u = np.column_stack([self._input(k, at) for k in range(len(self._compiled.inputs))] or [np.empty((len(x), 0))])
+    def _rates(self, x: NDArray[np.float64], at: float, inputs: list[NDArray[np.float64]]) -> NDArray[np.float64]:
+        t = self._drive.time0[self._place[:, 0]] + (self._place[:, 1] + at) / self._drive.rate
+        self._feeds.fill(0, [t, *x.T, *inputs])
         late = [
-            self._delayed(signal, sample - self._seconds[:, k, None] * self._drive.rate)
+            self._delayed(signal, at - self._seconds[:, k, None] * self._drive.rate)[:, 0]
             for k, (signal, _) in enumerate(self._compiled.right_hand_side.delays)
         ]
-        return self._compiled.rates(t, x, u, self._values, np.column_stack(late) if late else None)
+        self._feeds.fill(1 + x.shape[1] + len(inputs) + self._values.shape[1], late)
+        return called(self._compiled.model, t, x, self._feeds.outputs().T, self._values)
 
     def _input(self, column: int, at: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Input at places (row, 1) counted from each row's start."""
+        """Input at places (row, place) counted from each row's start."""
         wraps = self._compiled.simulation.inputs[column].wraps
         trial, begin = self._place[:, 0], self._place[:, 1, None]
         at = np.clip(begin + at, 0, self._drive.samples[trial, None] - 1)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.simulation.parts import Input, Parameter, Port, State, Term
+from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Lines, Simulation
 
 RightHandSide = Callable[..., NDArray[np.float64]]
@@ -41,7 +42,7 @@ class PythonSimulation:
     'drag'
     """
 
-    rates: RightHandSide
+    rates: RightHandSide = field(hash=False)  # an object that computes may have no hash
     parts: Simulation
     replaced: Lines = field(default=())
 
@@ -139,6 +140,16 @@ class PythonSimulation:
         """
         return replace(self, parts=self.parts.with_values(values))
 
+    def with_starts(self, starts: Mapping[str, float]) -> PythonSimulation:
+        """Simulation of which some states have another `initial`.
+
+        Parameters
+        ----------
+        starts : mapping of str to float
+            By state's name [the state's unit].
+        """
+        return replace(self, parts=self.parts.with_starts(starts))
+
     def with_parameter(self, parameter: Parameter) -> PythonSimulation:
         """Simulation with a further parameter, for effects to use.
 
@@ -184,7 +195,8 @@ class PythonSimulation:
         seen = self.parts.with_observation("replaced", dict(self.replaced).get(name, name)).with_input(name, expression)
         kept = dict(self.replaced) | {name: dict(seen.observations)["replaced"]}
         rest = tuple(line for line in seen.observations if line[0] != "replaced")
-        return replace(self, parts=replace(seen, observations=rest), replaced=tuple(kept.items()))
+        parts = replace(seen, observations=rest, equations=self.equations)
+        return replace(self, parts=parts, replaced=tuple(kept.items()))
 
 
 def python_simulation(
@@ -238,7 +250,18 @@ def called(
         Ports, sums of the equations' effects, inputs: the observations of `PythonSimulation.feeds`.
     values : ndarray (row, parameter)
         Parameters.
+
+    Raises
+    ------
+    SimulationError
+        If the function gives anything but a derivative for each row and state.
     """
     ports, states = len(simulation.ports), len(simulation.states)
-    own = simulation.rates(np.asarray(t, float), x, fed[:, ports + states :], values, fed[:, :ports])
-    return np.asarray(own, float) + fed[:, ports : ports + states]
+    own = np.asarray(simulation.rates(np.asarray(t, float), x, fed[:, ports + states :], values, fed[:, :ports]))
+    if own.shape != x.shape or own.dtype.kind not in "fiu":
+        raise SimulationError(
+            f"the right-hand side of {simulation.title!r} gives a number for each row and state, {x.shape} here",
+            f"it gave {own.dtype} of shape {own.shape}",
+            "Return an array (row, state), np.column_stack of the states' derivatives, say.",
+        )
+    return own + fed[:, ports : ports + states]

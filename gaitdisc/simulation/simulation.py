@@ -126,6 +126,33 @@ class Simulation:
         changed = (replace(each, value=float(values.get(each.name, each.value))) for each in self.parameters)
         return replace(self, parameters=tuple(changed))
 
+    def with_starts(self, starts: Mapping[str, float]) -> Simulation:
+        """Simulation of which some states have another `initial`.
+
+        Parameters
+        ----------
+        starts : mapping of str to float
+            By state's name [the state's unit].
+
+        Raises
+        ------
+        SimulationError
+            If there is no state of that name, or a start is not finite.
+        """
+        known = tuple(state.name for state in self.states)
+        for name in starts:
+            if name not in known:
+                raise SimulationError(
+                    "a start belongs to a state of the simulation",
+                    f"there is none called {name!r}",
+                    f"Known: {', '.join(known)}.",
+                )
+        changed = (
+            replace(state, initial=float(starts[state.name])) if state.name in starts else state
+            for state in self.states
+        )
+        return replace(self, states=tuple(changed))
+
     def with_parameter(self, parameter: Parameter) -> Simulation:
         """Simulation with a further parameter, or with another in the place of one of the same name.
 

@@ -11,6 +11,7 @@ from typing import Any
 
 from gaitdisc.channel import nearest_word
 from gaitdisc.errors import ReadError, SchemaError
+from gaitdisc.simulation.delay_check import refuse_delays
 from gaitdisc.simulation.parts import Input, Parameter, Port, State, Term
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
@@ -105,7 +106,9 @@ def simulation_of(text: str, file: str = "the simulation", source: Path | None =
     except (tomllib.TOMLDecodeError, RecursionError, MemoryError, ValueError) as error:
         raise _not_toml(file, str(error)[:200] or type(error).__name__) from None
     try:
-        return _simulation(table, text, source)
+        simulation = _simulation(table, text, source)
+        refuse_delays(simulation)
+        return simulation
     except SimulationError as error:
         raise _located(error, text, file) from None
 

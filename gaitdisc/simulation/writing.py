@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
-from gaitdisc.errors import GaitdiscError
+from gaitdisc.errors import GaitdiscError, ReadError, SchemaError
 from gaitdisc.simulation.parts import Parameter, Term
 from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.simulation import Lines, Simulation
-from gaitdisc.simulation.simulation_file import read_simulation, simulation_of
+from gaitdisc.simulation.simulation_file import simulation_of
 from gaitdisc.whole_file import write_whole
 
+_REPLACED = "replaced_"  # begins the name of the definition that an input of a Python object is replaced by
 _HEADER = re.compile(r"\s*\[")
 _STRING = r"\"(?:[^\"\\\n]|\\.)*\"|'[^'\n]*'|[^#\"'\n]*?"
 
@@ -24,8 +26,8 @@ def write_simulation(simulation: Simulation | PythonSimulation, path: Path | str
     Parameters
     ----------
     simulation : Simulation or PythonSimulation
-        What the file shall hold. Of a Python object that is everything but its right-hand side: `effects_of` reads the
-        effects again, to be given to it.
+        What the file shall hold. Of a Python object that is everything but its right-hand side; `read_into` gives it to
+        the object again.
     path : Path or str
         Where.
 
@@ -80,23 +82,51 @@ def simulation_text(simulation: Simulation) -> str:
     return _new_text(simulation)
 
 
-def effects_of(path: Path | str) -> tuple[Term, ...]:
-    """Effects in a file that was written from a `PythonSimulation`, to be given to the object again.
+def read_into(model: PythonSimulation, path: Path | str) -> PythonSimulation:
+    """Give a Python object what was written of it: effects, numbers, starts, observations, inputs.
 
     Parameters
     ----------
+    model : PythonSimulation
+        With the right-hand side that no file holds.
     path : Path or str
-        File.
+        File that `write_simulation` wrote of it.
+
+    Raises
+    ------
+    ReadError, SchemaError
+        If the file cannot be read, or was written of a model of other states, inputs or ports.
     """
-    return read_simulation(path).effects
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="utf-8")
+        table = tomllib.loads(text)
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise ReadError("a model is read from a TOML file", f"{path.name}: {error}", "Check the path.") from error
+    for section in ("states", "inputs", "ports"):
+        own, its = [part.name for part in getattr(model, section)], list(table.get(section, {}))
+        if own != its:
+            raise SchemaError(
+                f"the {section} are those of {model.title!r}: {', '.join(own) or 'none'}",
+                f"{path.name} has {', '.join(its) or 'none'}",
+                "Read the file that was written of this model.",
+            )
+    equations = [f"{name} = {_quoted(listed)}" for name, listed in model.equations]
+    read = simulation_of("\n".join([text, "[equations]", *equations, ""]), path.name)
+    replaced = tuple((name.removeprefix(_REPLACED), listed) for name, listed in read.definitions)
+    return replace(model, parts=replace(read, definitions=(), layout="", source=None), replaced=replaced)
 
 
 def _python_text(simulation: PythonSimulation) -> str:
-    """Text that reads as a simulation, whose equations only say what the function may depend on."""
-    told = "# The right-hand side is a Python object. The equations below only list the names that it may depend on;\n"
-    told += "# give the effects to the object: for term in effects_of(path): model = model.with_effect(term)\n"
-    late = "".join(f"# the model's input {name} is {text}\n" for name, text in simulation.replaced)
-    return told + late + _new_text(simulation.parts)
+    """Text that says everything but the equations."""
+    replaced = tuple((f"{_REPLACED}{name}", text) for name, text in simulation.replaced)
+    return "\n".join(
+        (
+            "# The right-hand side is a Python object, which no file holds: there are no [equations] here. To give the",
+            "# object what stands here: model = gaitdisc.simulation.writing.read_into(model, path)",
+            _new_text(replace(simulation.parts, definitions=replaced), ("definitions", "observations")),
+        )
+    )
 
 
 def _changed_text(simulation: Simulation) -> str:
@@ -182,7 +212,7 @@ def _with_values(lines: list[str], span: tuple[int, int], values: dict[str, str]
     return changed
 
 
-def _new_text(simulation: Simulation) -> str:
+def _new_text(simulation: Simulation, sections: Iterable[str] = ("definitions", "equations", "observations")) -> str:
     lines = [f"title = {_quoted(simulation.title)}"]
     for section in ("states", "inputs"):
         for part in getattr(simulation, section):
@@ -193,7 +223,7 @@ def _new_text(simulation: Simulation) -> str:
         lines += ["", *_parameter(parameter)]
     for port in simulation.ports:
         lines += ["", f"[ports.{port.name}]", f"unit = {_quoted(port.unit)}", *_meaning(port.meaning)]
-    for section in ("definitions", "equations", "observations"):
+    for section in sections:
         if getattr(simulation, section):
             lines += ["", f"[{section}]", *_expressions(getattr(simulation, section))]
     for term in simulation.effects:

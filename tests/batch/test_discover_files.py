@@ -1,9 +1,16 @@
+import json
+
 import pytest
+from hidden_in_a_function import tank, write_record
 from hidden_in_a_mass import MASS, Experiment, record, with_load
 
-from gaitdisc.batch.discover_files import discover_files
+from gaitdisc.batch.discover_files import discover_files, discover_model
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.file_hash import file_sha256
+from gaitdisc.report.discovery_page import write_discovery_report
+from gaitdisc.results.discovery_folder import save_discovery
+from gaitdisc.simulation.parts import Term
+from gaitdisc.simulation.writing import read_into, write_simulation
 
 
 @pytest.fixture(scope="module")
@@ -35,3 +42,42 @@ def test_a_catalogue_is_read_before_anything_is_computed(files):
     (files / "mine.toml").write_text('[[shape]]\nname = "mine"\npieces = ["q**2"]\n')
     with pytest.raises(SchemaError, match=r"mine.toml, shape 1, piece 'q\*\*2' has 'q'"):
         discover_files(files / "mass.toml", files / "walk.csv", files / "mine.toml")
+
+
+def with_leak(term: str):
+    return lambda model: model.with_effect(Term("leak", "port", "hidden", term))
+
+
+BUMPS = "1.2*exp(-((level - 0.2)/0.12)**2) - 1.2*exp(-((level + 0.3)/0.12)**2)"
+HIDDEN = {
+    "no_gap": {},
+    "wrong_initial_condition": {},
+    "missing_physics": {"change": with_leak("-0.4*level**2")},
+    "wrong_parameter": {"change": lambda model: model.with_values({"drain": 1.5})},
+    "sensor_error": {"change": lambda model: model.with_observation("level", "level + 0.2")},
+    "input_error": {"change": lambda model: model.with_input("pump", "delay(pump, 0.15)")},
+    "unnamed": {"change": with_leak(BUMPS)},
+}
+
+
+@pytest.mark.parametrize("verdict", HIDDEN)
+def test_a_simulation_that_is_a_function_goes_all_the_way(tmp_path, verdict):
+    model = tank(initial=3.0 if verdict == "wrong_initial_condition" else None)
+    measured = write_record(tmp_path / "tank.csv", seed=1, **HIDDEN[verdict])
+    found, augmented = discover_model(model, measured)
+    assert found.verdict == verdict
+    assert found.provenance is not None and list(found.provenance.files) == ["tank.csv"]
+
+    out = tmp_path / "found"
+    read = read_into(model, write_simulation(augmented, out / "augmented.toml"))
+    assert (read.parts, read.replaced) == (augmented.parts, augmented.replaced)
+    assert json.loads(save_discovery(found, out).read_text())["verdict"] == verdict
+    assert found.sentence.split(" ")[0] in write_discovery_report(found, out).read_text()
+    if verdict == "missing_physics":
+        assert [(one.place, one.name) for one in read.effects] == [("leak", "quadratic_stiffness")]
+    if verdict == "wrong_parameter":
+        assert read.values()["drain"] == pytest.approx(1.5, rel=0.01)
+    if verdict == "wrong_initial_condition":
+        assert read.states[0].initial is not None and 0.2 < read.states[0].initial < 0.6
+    if verdict == "input_error":
+        assert read.replaced[0][1].startswith("delay(pump, 0.1")

@@ -37,7 +37,7 @@ def test_a_gpu_that_is_not_there_is_refused_before_anything_is_fitted(study):
 
 
 def test_a_population_needs_three_people(study):
-    with pytest.raises(SamplingError, match="needs at least three people: to fit, to check, and to judge; there are 2"):
+    with pytest.raises(SamplingError, match="needs at least three people: to fit, to check, and to test; there are 2"):
         reconstruct_study(study, ("knee_angle_r",), ReconstructionSettings(split="subject", kinds=KINDS))
 
 
@@ -56,7 +56,7 @@ def test_forces_are_told_in_newtons_and_no_number_is_in_degrees(tmp_path):
     over = done.over_participants()["relative_l2"]
     assert over["delay ridge"] < 0.5 * over["linear"]
     said = " ".join(reconstruction_sentences(done))
-    assert "4 channels [N] are told with a relative L2 of 0." in said and "deg" not in said
+    assert "4 channels [N] are reconstructed with a relative L2 of 0." in said and "deg" not in said
     later, _ = reconstruct_study(study, ("hip_flexion_r", "knee_angle_r"), replace(settings, ahead_s=0.1))
     assert later.states == done.states  # the sensors' own future was not asked for
 
@@ -83,4 +83,4 @@ def test_states_ahead_of_the_last_reading(study):
     assert {"persistence", "phase average"} < set(done.models)
     assert done.history.endswith("each model tells the states 0.10 s after the last of them")
     assert people[0].fitted[0].reconstructor.sensing.lags.ahead == 10
-    assert "future states are told" in reconstruction_sentences(done)[0]
+    assert "future states are reconstructed" in reconstruction_sentences(done)[0]

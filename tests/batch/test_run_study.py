@@ -1,3 +1,4 @@
+import json
 import os
 import shutil
 import signal
@@ -8,6 +9,7 @@ import time
 import pandas as pd
 import pytest
 
+from gaitdisc.batch.participant_unit import computed_unit
 from gaitdisc.batch.run_study import run_study
 from gaitdisc.batch.workers import Workers
 from gaitdisc.ingest.study_file import write_study
@@ -60,6 +62,47 @@ def test_a_damaged_unit_is_computed_again_to_the_same_tables(run, study, finishe
     for name, content in whole.items():
         if not name.endswith(("fits.csv", "response.json")):  # these hold the seconds that a fit took
             assert repaired[name] == content, name
+
+
+def test_what_was_edited_is_never_printed_but_computed_again_and_said(run, study, finished, tmp_path):
+    copy = shutil.copytree(finished, tmp_path / "copy")
+    edited = copy / "walks" / "P01-nominal" / "walk.json"
+    data = json.loads(edited.read_text())
+    edited.write_text(json.dumps({**data, "duration_s": 3.0, "rate_hz": 999.0}))
+    (copy / "over" / "over.json").write_text("[" * 100_000)
+    old = json.loads((copy / "responses" / "P02" / "response.json").read_text())
+    del old["own_sha256"]
+    (copy / "responses" / "P02" / "response.json").write_text(json.dumps(old))
+    again = run_study(study, copy)
+    assert [(walk.duration_s, walk.rate_hz) for walk in again.walks] == [
+        (walk.duration_s, walk.rate_hz) for walk in run.walks
+    ]
+    pd.testing.assert_frame_equal(again.r2_table(), run.r2_table(), check_dtype=False)
+    assert again.renewed == (
+        "over/over.json: not readable as JSON (nested too deeply)",
+        "responses/P02/response.json: without a hash of its own: an older version of gaitdisc wrote it, "
+        "or own_sha256 was taken out",
+        "walks/P01-nominal/walk.json: changed since it was saved (SHA-256 differs)",
+    )
+    assert run_study(study, copy).renewed == ()
+
+
+def killed_for_the_second(study, participant, folder, progress):
+    if participant.id == "P02":
+        os.kill(os.getpid(), signal.SIGKILL)
+    return computed_unit(study, participant, folder, progress)
+
+
+def test_a_participant_whose_process_is_killed_is_refused_and_the_others_stand(
+    run, study, finished, tmp_path, monkeypatch
+):
+    copy = shutil.copytree(finished, tmp_path / "copy")
+    monkeypatch.setattr("gaitdisc.batch.run_study.computed_unit", killed_for_the_second)
+    done = run_study(study, copy, Workers(jobs=2))
+    assert [response.participant for response in done.responses] == ["P01"]
+    [refusal] = done.refusals
+    assert refusal.participant == "P02" and "was killed 2 times" in refusal.reason
+    assert [refusal.reason for refusal in load_run(copy).refusals] == [refusal.reason]
 
 
 def test_side_by_side_gives_the_same_tables(run, study, tmp_path):

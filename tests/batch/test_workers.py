@@ -1,4 +1,5 @@
 import os
+import signal
 import time
 from pathlib import Path
 
@@ -56,11 +57,27 @@ def test_processes_beside_this_one_keep_the_order():
 def test_units_come_in_order_and_everybody_is_told(study, jobs):
     told = []
     found = computed_units(
-        Workers(jobs=jobs), named_after_half, study.participants, lambda who, share: told.append((who, share))
+        Workers(jobs=jobs), named_after_half, study.participants, lambda who, share: told.append((who, share)), str
     )
     assert list(found) == ["P01", "P02"]
     halves = [("P01", 0.5), ("P01", 1.0), ("P02", 0.5), ("P02", 1.0)]
     assert told == (halves if jobs == 1 else halves[1::2])
+
+
+def killed_for_the_second(*, participant, progress):
+    if participant.id == "P02":
+        os.kill(os.getpid(), signal.SIGKILL)
+    return participant.id
+
+
+def test_a_participant_whose_process_is_killed_is_refused(study):
+    found = computed_units(
+        Workers(jobs=2), killed_for_the_second, study.participants, lambda *_: None, lambda lost: lost
+    )
+    first, second = found
+    assert first == "P01"
+    assert (second.participant, second.condition) == ("P02", "")
+    assert "was killed 2 times" in second.reason
 
 
 def test_a_worker_that_is_killed_in_the_middle_costs_nothing(cluster, tmp_path):

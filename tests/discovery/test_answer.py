@@ -2,6 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hidden_in_a_function import tank, write_record
 from hidden_in_a_mass import MASS, Experiment, mass, record, with_load
 
 from gaitdisc.discovery.account import Part
@@ -9,7 +10,9 @@ from gaitdisc.discovery.answer import answer, augmented_of, phase_of, region_of,
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.evidence import compared
 from gaitdisc.discovery.inquiry import begin_inquiry
+from gaitdisc.discovery.shaken import shaken
 from gaitdisc.discovery.verdict import Verdict
+from gaitdisc.simulation.measured_table import read_measured
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import simulation_of
 
@@ -106,3 +109,12 @@ def test_the_part_of_the_stride_is_where_the_effect_is_half_as_strong_as_at_its_
     half = 0.1 * np.sqrt(np.log(2))
     begin, end = phase_of(inquiry, inquiry.as_read(), Part(pulse, {"factor": 3.0, "c": 0.4, "w": 0.1}))
     assert (begin, end) == pytest.approx((0.4 - half, 0.4 + half), abs=0.03)
+
+
+def test_random_pushes_of_a_function_are_answered(tmp_path):
+    inquiry = begin_inquiry(tank(), read_measured(write_record(tmp_path / "tank.csv"), tank()))
+    as_read = inquiry.as_read()
+    shaking, *_ = shaken(as_read.shooting, as_read.account, inquiry.search.places)
+    found, augmented = answer(inquiry, as_read, Verdict("process_noise", as_read, (), shaking))
+    assert [(one.place, one.name) for one in found.effects] == [("leak", "process_noise")]
+    assert augmented == tank()

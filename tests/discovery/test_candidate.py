@@ -117,3 +117,11 @@ def test_a_shape_of_the_users_own_is_one_more_candidate():
     quintic = Shape("quintic", ("x**5",), means="a very stiff spring")
     found = [one for one in _candidates(mass(), (*known_shapes(), quintic)) if one.name == "quintic"]
     assert [(one.label, one.pieces, one.means) for one in found] == [("quintic@load", ("x**5",), "a very stiff spring")]
+
+
+def test_a_lag_reaches_what_stands_inside_a_definition():
+    text = MASS.replace("[equations]", '[definitions]\nhalf = "x/2"\nboth = "half + v"\n[equations]')
+    simulation = simulation_of(text.replace('x = "x"', 'x = "3*both - push"'), "late.toml")
+    lag = Candidate("sensor_error", "observation", "x", "sensor_lag")
+    late = lag.written(simulation, {"seconds": "0.05"})
+    assert dict(late.observations)["x"] == "3*(delay(x, 0.05)/2 + delay(v, 0.05)) - delay(push, 0.05)"

@@ -71,3 +71,11 @@ def test_a_stride_with_a_gap_is_left_out_and_a_channel_full_of_gaps_too():
     assert [c.name for c in found.channels] == ["hip_flexion_r"]
     assert [len(c) for c in found.curves] == [9, 7]
     assert any("8 of 10 strides have gaps" in f.what for f in found.findings)
+
+
+def test_headings_on_either_side_of_180_deg_are_neighbours():
+    one, other = (summary(name, units={"pelvis_rotation": "deg", "hip_flexion_r": "deg"}, seed=0) for name in "ab")
+    one, other = replace(one, curves=one.curves + 178), replace(other, curves=other.curves - 179)
+    found = common_curves((one, other))
+    gap = found.curves[0].mean(axis=(0, 1)) - found.curves[1].mean(axis=(0, 1))
+    np.testing.assert_allclose(gap, [-3.0, 357.0], atol=1e-9)  # a hip does not come round

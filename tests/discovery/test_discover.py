@@ -1,5 +1,7 @@
 """Each verdict on a mass on a spring in which one thing was hidden; the answers are those that were hidden."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hidden_in_a_mass import Experiment, mass, record, two_rods, with_load
@@ -12,8 +14,28 @@ from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import Term
 from gaitdisc.simulation.running import compile_simulation
+from gaitdisc.simulation.simulation_file import simulation_of
 
 SEED = 3
+KNEE = """
+title = "A knee that swings"
+[states.theta]
+unit = "rad"
+[states.omega]
+unit = "rad/s"
+[inputs.push]
+unit = "N m"
+[parameters.inertia]
+value = 0.35
+unit = "kg m^2"
+[ports.knee]
+unit = "N m"
+[equations]
+theta = "omega"
+omega = "(push + knee - omega - 20*sin(theta))/inertia"
+[observations]
+theta = "theta"
+"""
 MISSING = {
     "cubic_stiffness": ("-14*x**3", {"stiffness": 14.0}),
     "coulomb_friction": ("-1.5*sign(v)", {"friction": 1.5}),
@@ -203,3 +225,20 @@ def test_every_step_is_told():
     discover(mass(), record(mass(), SEED), told=said.append)
     assert said[0] == "fitting the simulation as it was read"
     assert any("weighing" in one and "explanations" in one for one in said)
+
+
+def test_one_record_in_degrees_gives_the_same_name_and_estimates():
+    knee = simulation_of(KNEE, "knee.toml")
+    stop = knee.with_effect(Term("knee", "port", "hidden", "-110*max(0, theta - 0.25)"))
+    seen = record(stop, SEED)
+    plain, degrees = (
+        discover(knee.with_observation("theta", text), replace(seen, observed=factor * seen.observed))[0]
+        for text, factor in (("theta", 1.0), ("57.2958*theta", 57.2958))
+    )
+    assert _named(plain) == _named(degrees) == ("missing_physics", [("one_sided_spring", "knee")])
+    for name, one in plain.effects[0].estimates.items():
+        other = degrees.effects[0].estimates[name]
+        assert other.value == pytest.approx(one.value, rel=1e-4)
+        assert (other.low, other.high) == pytest.approx((one.low, one.high), rel=1e-3)
+    assert (plain.units, degrees.units) == (("rad",), ("deg",))
+    assert degrees.held_out.after == pytest.approx(plain.held_out.after, rel=1e-3)

@@ -2,7 +2,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gaitdisc.discovery.effect_units import divided, places_unit, unit_of
+from gaitdisc.discovery.effect_units import channel_unit, divided, places_unit, unit_of
 from gaitdisc.simulation.bundled import bundled
 from gaitdisc.simulation.unit_factor import unit_factor
 
@@ -42,3 +42,17 @@ def test_dividing_agrees_with_the_units_of_the_simulation_file(unit, by):
 def test_what_is_added_to_an_equation_is_a_rate():
     pendulum = bundled("pendulum")
     assert places_unit(pendulum, "equation", "omega") == "rad/s^2"
+
+
+@pytest.mark.parametrize(
+    ("text", "unit"),
+    [
+        ("57.3*theta", "deg"),
+        ("180*theta/3.14159", "deg"),
+        ("-57.2958*omega", "deg/s"),
+        ("2*theta", "1"),
+        ("theta", "rad"),
+    ],
+)
+def test_a_channel_in_other_units_is_never_told_in_those_of_its_state(text, unit):
+    assert channel_unit(text, {"theta": "rad", "omega": "rad/s"}) == unit

@@ -4,6 +4,8 @@ from hidden_in_a_mass import MASS, mass
 
 from gaitdisc.discovery.first_states import guess_states
 from gaitdisc.discovery.segments import Segments
+from gaitdisc.simulation.drive import Drive
+from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation_file import simulation_of
 
 RATE, PERIOD = 50.0, 2.0
@@ -12,7 +14,9 @@ X, V = np.sin(2 * np.pi * T / PERIOD), 2 * np.pi / PERIOD * np.cos(2 * np.pi * T
 
 
 def _guess(observed, simulation=None):
-    return guess_states(simulation or mass(), observed, RATE, PERIOD, {"x": "v"})
+    drive = Drive.of([0.1 * T[:, None]] * len(observed), RATE)
+    measured = Measured(drive, observed, tuple(map(str, range(len(observed)))), ("x",))
+    return guess_states(simulation or mass(), measured, PERIOD, {"x": "v"})
 
 
 def test_a_measured_state_and_its_rate_are_found():
@@ -49,3 +53,48 @@ def test_starts_are_the_states_at_each_first_sample_and_a_run_replaces_them():
     better = guess.with_run(segments, np.ones((2, 50, 2)))
     assert (better.states[0, :100] == 1).all()
     np.testing.assert_array_equal(better.states[0, 100:], guess.states[0, 100:])
+
+
+@pytest.mark.parametrize(
+    ("text", "seen"),
+    [
+        ("1*x", lambda x: x),
+        ("57.2958*x", lambda x: 57.2958 * x),
+        ("-x", lambda x: -x),
+        ("0.3 - 2*x", lambda x: 0.3 - 2 * x),
+        ("x + 3*push", lambda x: x + 0.3 * T),
+        ("k*x", lambda x: 24.0 * x),
+        ("x + 0.5*t", lambda x: x + 0.5 * T),
+    ],
+)
+def test_one_record_through_any_map_gives_the_same_states(text, seen):
+    noisy = X + np.random.default_rng(0).normal(0, 0.01, len(T))
+    plain = _guess(noisy[None, :, None]).states
+    through = _guess(seen(noisy)[None, :, None], mass().with_observation("x", text)).states
+    np.testing.assert_allclose(through, plain, rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("text", "seen", "atol"),
+    [("sin(x)", np.sin(X), 0.01), ("exp(2*x)", np.exp(2 * X), 0.06), ("x + 0.05*v", X + 0.05 * V, 0.04)],
+)
+def test_a_curved_map_and_one_that_sees_the_rate_beside_are_solved(text, seen, atol):
+    states = _guess(seen[None, :, None], mass().with_observation("x", text)).states[0, 10:-10]
+    np.testing.assert_allclose(states[:, 0], X[10:-10], atol=atol)
+    np.testing.assert_allclose(states[:, 1], V[10:-10], atol=6 * atol)
+
+
+def test_a_product_with_a_state_that_stands_still_is_bridged():
+    text = MASS.replace("[inputs.push]", "[states.gain]\ninitial = 2.0\n[inputs.push]")
+    text = text.replace("[equations]", '[equations]\ngain = "0"').replace('x = "x"', 'x = "x*gain"\ny = "gain"')
+    drive = Drive.of([0.1 * T[:, None]], RATE)
+    measured = Measured(drive, np.column_stack([3 * X, 3 + 0 * X])[None], ("1",), ("x", "y"))
+    states = guess_states(simulation_of(text, "gain.toml"), measured, PERIOD, {"x": "v"}).states[0]
+    np.testing.assert_allclose(states[10:-10, 0], X[10:-10], atol=2e-3)
+    np.testing.assert_allclose(states[10:-10, 2], 3.0, atol=1e-6)
+
+
+def test_what_the_channels_say_only_together_stays_near_where_it_began():
+    states = _guess((X + 2 * V)[None, :, None], mass().with_observation("x", "x + 2*v")).states[0]
+    assert np.isfinite(states).all()
+    np.testing.assert_allclose((states @ [1, 2])[10:-10], (X + 2 * V)[10:-10], atol=0.1)

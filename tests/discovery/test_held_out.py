@@ -1,36 +1,24 @@
 from dataclasses import replace
-from itertools import product
 
 import numpy as np
 import pytest
-from hidden_in_a_mass import Experiment, neuron, record
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hidden_in_a_mass import Experiment, mass, neuron, record, with_load
 
 from gaitdisc.discovery.account import Part, account_for
+from gaitdisc.discovery.borne_out import PairedTest
 from gaitdisc.discovery.evidence import Judged, judged
-from gaitdisc.discovery.held_out import chance, drawn_runs, gap_size, holding_out_others, noted, runs_of, tells_nothing
+from gaitdisc.discovery.first_states import StateGuess
+from gaitdisc.discovery.held_out import (
+    Proof,
+    drawn_runs,
+    gap_size,
+    holding_out_others,
+    noted,
+    proof_of,
+    runs_of,
+    tells_nothing,
+)
 from gaitdisc.discovery.inquiry import begin_inquiry
-
-
-@settings(max_examples=30, deadline=None)
-@given(st.lists(st.integers(-9, 9), min_size=1, max_size=8))
-def test_the_chance_is_the_share_of_signs_that_do_as_well(gains):
-    as_well = [
-        sum(s * g for s, g in zip(signs, gains, strict=True)) >= sum(gains)
-        for signs in product((1, -1), repeat=len(gains))
-    ]
-    assert chance(np.array(gains, float)) == pytest.approx(np.mean(as_well))
-
-
-def test_many_runs_are_flipped_at_random_and_never_have_no_chance():
-    assert chance(np.ones(40)) == pytest.approx(1 / 10000)
-    balanced = np.tile([1.0, -1.0], 20)
-    assert chance(balanced) == pytest.approx(0.55, abs=0.1)
-
-
-def test_a_run_that_failed_leaves_no_chance_to_say():
-    assert np.isnan(chance(np.array([1.0, np.inf])))
 
 
 @pytest.fixture(scope="module")
@@ -51,10 +39,10 @@ def test_on_held_out_trials_nothing_is_found_but_the_starts(inquiry, as_read, ru
 def test_the_truth_leaves_the_noise_and_nothing_else(inquiry, runs):
     before, after = runs
     floor = np.array([0.02 * inquiry.measured.observed.std()])
-    size = gap_size(before, after, floor, ("x",), 50)
+    size = gap_size(before, after, floor, ("x",), PairedTest(0.02, 9, 1.0))
     assert size.after < 1.1 * size.noise_floor < 0.5 * size.before
     assert size.channels["x"][1] == pytest.approx(float(np.sqrt((after.fit.residual**2).mean())))
-    assert size.p == chance(((before.fit.residual**2 - after.fit.residual**2) / floor**2).sum(axis=(1, 2)))
+    assert (size.p, size.pieces) == (0.02, 9)
     assert size.before == pytest.approx(size.channels["x"][0] / after.measured.std())
 
 
@@ -72,10 +60,39 @@ def test_misfits_are_those_of_the_fit(runs):
     assert replace(before).misfits.sum() == pytest.approx(before.fit.misfit)
 
 
-def test_a_long_run_counts_as_many_blocks(runs):
+def test_the_truth_is_borne_out_and_what_is_worse_is_not(inquiry, as_read, cubic):
+    def with_stiffness(factor):
+        shooting = as_read.shooting
+        account = account_for(
+            shooting, inquiry.search.base, (Part(cubic, {"factor": factor}),), as_read.account.fit.starts, 0
+        )
+        return Judged(account, shooting)
+
+    assert proof_of(inquiry, as_read, with_stiffness(-14.0), as_read).bears_out
+    worse = proof_of(inquiry, as_read, with_stiffness(2.0), as_read)
+    assert worse.test.fall < 0
+    assert worse.test.p > 0.5
+    assert not worse.bears_out
+
+
+def test_an_error_that_falls_while_the_misfit_rises_bears_nothing_out(runs):
     before, after = runs
-    whole, in_two = (gap_size(before, after, np.array([0.01]), ("x",), before.measured.shape[1] // n) for n in (1, 2))
-    assert in_two.p < whole.p
+    assert Proof(before, after, PairedTest(0.01, 9, 1.0)).bears_out
+    assert not Proof(after, before, PairedTest(0.01, 9, 1.0)).bears_out
+
+
+def test_the_past_of_what_comes_late_is_the_runs_own():
+    inquiry = begin_inquiry(mass(), record(with_load("-4*delay(x, 0.21)"), 3, Experiment(seconds=12.0)))
+    shooting = inquiry.shooting(inquiry.segments(inquiry.learned))
+    late = next(one for one in inquiry.search.candidates if one.pieces == ("delay(x, _d)",))
+    part = Part(late, {"factor": -4.0, "d": 0.21})
+    starts = inquiry.guess.starts(shooting.segments)
+    true = judged(shooting, inquiry.search.base, account_for(shooting, inquiry.search.base, (part,), starts))
+    assert true.noise.size[0] < 0.03 * inquiry.measured.observed.std()
+    rough = replace(inquiry, guess=StateGuess(inquiry.guess.states + 0.3))
+    wide = inquiry.shooting(inquiry.segments(inquiry.learned, 3.0)).with_noise(true.noise)
+    run = runs_of(rough, true, inquiry.held_out, replace(true, shooting=wide))
+    assert run.fit.residual.std() < 1.3 * true.noise.size[0]
 
 
 def test_the_start_of_a_long_run_is_found_by_way_of_short_ones():

@@ -4,8 +4,14 @@ from hidden_in_a_mass import Experiment, mass, record, with_load
 
 from gaitdisc.discovery.account import Part, account_for
 from gaitdisc.discovery.catalogue import Shape
+from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.evidence import judged
 from gaitdisc.discovery.inquiry import begin_inquiry, split_in_time
+from gaitdisc.report.discovery_page import write_discovery_report
+from gaitdisc.results.discovery_folder import save_discovery
+from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import simulation_of
 
 FALLING = """
@@ -41,6 +47,33 @@ def test_one_trial_is_split_in_time():
     np.testing.assert_array_equal(two.drive.inputs[1, :100], measured.drive.inputs[0, 300:])
     assert two.time(1)[0] == pytest.approx(measured.time(0)[300])
     assert np.isnan(two.observed[1, 100:]).all()
+
+
+def ringing(lengths: tuple[int, ...], rate: float = 10.0) -> Measured:
+    """Return trials of any lengths of a mass that is let go, about 18 samples a period."""
+    rng, count = np.random.default_rng(0), len(lengths)
+    drive, machine = Drive.of([np.zeros((length, 1)) for length in lengths], rate), compile_simulation(mass())
+    rows = Rows(np.arange(count), np.zeros(count, int), rng.normal(0, 1, (count, 2)))
+    states, _ = machine.run(drive, rows, max(lengths) - 1)
+    seen = np.where(np.isfinite(states[..., :1]), machine.observe(drive, rows, states), np.nan)
+    return Measured(drive, seen + rng.normal(0, 0.01, seen.shape), tuple("abcd"[:count]), machine.observed)
+
+
+def test_runs_are_cut_again_as_they_were():
+    inquiry = begin_inquiry(mass(), ringing((240, 200, 220, 268)))
+    for trials in (inquiry.learned, inquiry.held_out, (0, 1, 2, 3)):
+        for periods in np.linspace(0.5, 12, 60):
+            once = inquiry.segments(trials, periods)
+            again = inquiry.segments(trials, once.length / (inquiry.rhythm.period * inquiry.rhythm.rate))
+            assert (again.length, again.begin.tolist()) == (once.length, once.begin.tolist())
+
+
+def test_trials_of_unequal_length_are_answered_written_and_drawn(tmp_path):
+    found, _ = discover(mass(), ringing((240, 200, 220, 268)))
+    assert found.verdict == "no_gap"
+    assert found.runs.time.shape == found.runs.measured.shape[:2]
+    assert save_discovery(found, tmp_path).exists()
+    assert "no gap" in write_discovery_report(found, tmp_path).read_text()
 
 
 def test_what_is_learned_and_what_is_held_out_share_no_sample():

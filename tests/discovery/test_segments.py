@@ -16,6 +16,22 @@ def test_segments_lie_inside_the_trials_and_never_overlap(samples, length):
     assert set(segments.trial) == set(range(len(samples)))
 
 
+@given(st.lists(st.integers(4, 2000), min_size=1, max_size=5), st.integers(1, 3000))
+def test_cutting_again_to_the_length_that_came_of_it_changes_nothing(samples, length):
+    trials = tuple(range(len(samples)))
+    once = cut_segments(np.array(samples), trials, length)
+    again = cut_segments(np.array(samples), trials, once.length)
+    assert again.length == once.length
+    assert (again.begin.tolist(), again.trial.tolist()) == (once.begin.tolist(), once.trial.tolist())
+
+
+@given(st.integers(4, 2000), st.integers(1, 3000))
+def test_the_segments_of_the_shortest_trial_leave_less_than_one_over(shortest, length):
+    segments = cut_segments(np.array([shortest]), (0,), length)
+    assert len(segments) * segments.length > shortest - segments.length
+    assert 1 <= segments.length <= shortest
+
+
 def test_the_length_divides_the_shortest_trial_nearly_evenly():
     segments = cut_segments(np.array([100, 70]), (0, 1), 30)
     assert segments.length == 35

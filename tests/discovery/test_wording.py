@@ -132,3 +132,34 @@ def test_of_several_channels_the_one_with_the_clearest_gap_is_told():
     size = GapSize(1, 1, 1, 0.1, {"x": (1.0, 0.9, 0.9), "y": (0.5, 0.1, 0.1)})
     told = sentence(held_out=size, channels=("x", "y"), units=("m", "m"))
     assert "the held-out error of y falls from 0.50 to 0.10 m" in told
+
+
+@pytest.mark.parametrize(
+    ("size", "told"),
+    [
+        ((0.054, 0.0105, 0.0087), "falls from 3.09 to 0.60 deg (noise floor 0.50)."),
+        ((0.0105, 0.054, 0.0087), "rises from 0.60 to 3.09 deg (noise floor 0.50)."),
+        ((0.0105, 0.01051, 0.0087), "does not change: 0.60 deg (noise floor 0.50)."),
+    ],
+)
+def test_an_error_falls_rises_or_does_not_change_as_its_numbers_do(size, told):
+    sentence_now = sentence(held_out=GapSize(1, 1, 1, 0.01, {"theta": size}, 40))
+    assert sentence_now.endswith(f"With it, the held-out error {told}")
+
+
+def test_a_channel_whose_error_rises_is_not_passed_over():
+    size = GapSize(1, 1, 1, 0.01, {"x": (1.0, 0.5, 0.1), "y": (0.2, 0.4, 0.1)}, 40)
+    told = sentence(held_out=size, channels=("x", "y"), units=("m", "m"))
+    assert told.endswith("of x falls from 1.00 to 0.50 m (noise floor 0.10); that of y rises from 0.20 to 0.40 m.")
+
+
+def test_few_pieces_are_counted_in_the_sentence():
+    size = GapSize(1, 1, 1, 0.0313, {"theta": (0.054, 0.0105, 0.0087)}, 5)
+    assert sentence(held_out=size).endswith("(noise floor 0.50, p = 0.031 over 5 pieces).")
+
+
+def test_what_is_not_borne_out_says_by_which_test():
+    rival = FoundEffect("equation", "omega", "coulomb_friction", "", {}, bic=900.0)
+    size = GapSize(1, 1, 1, 0.34, {"theta": (0.054, 0.054, 0.0087)}, 9)
+    told = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=(rival,), held_out=size)
+    assert "those held out do not bear it out (p = 0.34 over 9 pieces)." in told

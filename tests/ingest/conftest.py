@@ -7,7 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.c3d import C3DReader
+from gaitdisc.ingest.reading import read_trial
 
 
 def _written(path: Path, points=None, analog=None, parameters=None, first_frame: int = 1) -> Path:
@@ -59,3 +61,18 @@ def some_points():
 def some_analog():
     """Four channels, (4, 500) [V]."""
     return np.random.default_rng(2).normal(0, 1e-3, (4, 500))
+
+
+@pytest.fixture(scope="session")
+def real_trials(gait_data, reader):
+    """Every real recording that can be read: path, names of its channels, findings."""
+    found = []
+    for path in sorted(gait_data.parent.rglob("*")):
+        if path.suffix in (".mot", ".sto", ".trc", ".c3d"):
+            try:
+                trial = read_trial(path, reader=reader)
+            except GaitdiscError:
+                continue
+            names = {name for recording in trial.streams.values() for name in recording.names}
+            found.append((path, names, trial.findings))
+    return found

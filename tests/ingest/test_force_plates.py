@@ -113,6 +113,7 @@ def test_a_plate_that_nobody_stepped_on():
     [
         ({"kind": 7}, "is of type 7; types 1 to 4 are known"),
         ({"kind": 4}, "is of type 4 and has no calibration matrix"),
+        ({"kind": 4, "CAL_MATRIX": np.full((6, 6, 1), np.nan)}, "has a calibration matrix that is not finite"),
         ({"CHANNEL": np.array([[1], [2], [3], [4], [5], [60]])}, "names channels 1, 2, 3, 4, 5, 60 of 6"),
         ({"CORNERS": np.zeros((3, 4, 1))}, "has corners that span no surface"),
         ({"CORNERS": np.zeros((3, 2, 1))}, "has no corners or no origin"),

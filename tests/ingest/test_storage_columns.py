@@ -6,10 +6,54 @@ import pytest
 
 from gaitdisc.ingest.storage_columns import naming_findings, storage_columns
 from gaitdisc.ingest.storage_header import StorageHeader
+from gaitdisc.ingest.streams import stream_of
 
 
 def _column(label, title="", channels=None, file="a.sto"):
     return storage_columns(StorageHeader(title, ("time", label), 3), file, channels)[0]
+
+
+KIND = {"v": ("force", "N"), "p": ("pressure_centre", "m"), "m": ("moment", "N m")}
+
+
+@pytest.mark.parametrize(
+    "label",
+    ["{}", "1_{}", "2_{}", "{}_r", "{}_l", "{}_1", "{}_2", "R_{}", "L_{}", "right_{}", "left_{}"],
+)
+@pytest.mark.parametrize("stem", ["ground_force", "grf", "FP1_force", "FP2"])
+def test_the_last_letters_say_force_place_or_moment(stem, label):
+    for kind, (quantity, unit) in KIND.items():
+        for axis in "xyz":
+            channel = _column(f"{label.format(stem)}_{kind}{axis}", "ground reactions").channel
+            wanted = "vertical_force" if kind + axis == "vy" else quantity
+            assert (channel.quantity, channel.unit) == (wanted, unit), channel
+
+
+@pytest.mark.parametrize(
+    "stem", ["ground_torque", "1_ground_torque", "ground_torque_2", "ground_moment_1", "FP1_moment"]
+)
+def test_a_torque_is_a_moment_whatever_its_axis(stem):
+    for axis in "xyz":
+        channel = _column(f"{stem}_{axis}", "ground reactions").channel
+        assert (channel.quantity, channel.unit) == ("moment", "N m")
+        assert stream_of(channel) == "forces"
+
+
+@pytest.mark.parametrize(
+    ("label", "name"),
+    [
+        ("ground_force_l_my", "ground_torque_l_y"),
+        ("1_ground_force_my", "ground_torque_l_y"),
+        ("ground_force_r_mz", "ground_torque_r_z"),
+        ("R_ground_torque_x", "ground_torque_r_x"),
+    ],
+)
+def test_moments_named_after_the_force_are_free_moments(label, name):
+    assert _column(label, "ground reactions").channel.name == name
+
+
+def test_a_place_in_the_name_of_a_point_is_no_ground_reaction():
+    assert _column("FP1_x").channel.quantity == "signal"
 
 
 @pytest.mark.parametrize(
@@ -21,6 +65,8 @@ def _column(label, title="", channels=None, file="a.sto"):
         ("/forceset/soleus_r/activation", "states", "/forceset/soleus_r/activation", "signal", "1"),
         ("knee_angle_r", "Speeds", "knee_angle_r/speed", "signal", "deg/s"),
         ("knee_angle_r", "Accelerations", "knee_angle_r/accel", "signal", "deg/s2"),
+        ("knee_angle_r", "Kinematics_u", "knee_angle_r/speed", "signal", "deg/s"),
+        ("pelvis_tx", "Kinematics_dudt", "pelvis_tx/accel", "signal", "m/s2"),
         ("patella_tx", "Coordinates", "patella_tx", "translation", "m"),
         ("neck_flexion", "Coordinates", "neck_flexion", "angle", "deg"),
         ("arm_flex_l_moment", "Inverse Dynamics", "arm_flex_l_moment", "moment", "N m"),

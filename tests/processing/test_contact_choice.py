@@ -7,6 +7,7 @@ from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.processing.contact_choice import chosen_contacts, named_markers
 from gaitdisc.recording import Event, Recording, Trial
+from gaitdisc.signals.contact_angles import angle_contacts
 
 
 def only(trial, *keys):
@@ -37,6 +38,59 @@ def test_two_events_do_not_outvote_a_whole_walk(trial):
     )
     choice = chosen_contacts(replace(only(trial, "kinematics"), events=events))
     assert choice.detector == "angles"
+
+
+def with_one_step(trial, late_s=0.06):
+    """Angles, and a plate that sees one step of the right foot, later than the knee marks it by a known time."""
+    by_angles = angle_contacts(trial.stream("kinematics"))["r"].time
+    forces = trial.stream("forces")
+    on = by_angles[9] + late_s
+    pressed = (forces.time > on) & (forces.time < on + 0.6)
+    plate = np.where(pressed, 700.0, 0.0)[:, None]
+    plate = np.hstack([plate, 0 * plate])
+    names = [channel for channel in forces.channels if channel.quantity == "vertical_force"]
+    return replace(
+        trial, streams={"kinematics": trial.stream("kinematics"), "forces": Recording(forces.time, plate, tuple(names))}
+    ), by_angles
+
+
+def test_one_step_on_a_plate_moves_all_contacts_by_the_offset_it_shows(trial):
+    seen, by_angles = with_one_step(only(trial, "kinematics", "forces"))
+    choice = chosen_contacts(seen)
+    assert choice.detector == "angles"
+    assert choice.offset_s == pytest.approx(0.06, abs=0.002)
+    np.testing.assert_allclose(choice.contacts["r"].time, by_angles + choice.offset_s)
+    np.testing.assert_allclose(choice.uncorrected()["r"].time, by_angles)
+    [said] = [f for f in choice.findings if f.kind == "contact offset"]
+    assert said.what == "contacts by angles moved 60 ms later, the median of the steps that a plate saw too"
+
+
+def test_without_a_plate_the_known_bias_is_said_once(trial):
+    choice = chosen_contacts(only(trial, "kinematics"))
+    assert choice.offset_s is None
+    [said] = [f for f in choice.findings if f.kind == "contact offset"]
+    assert "no plate saw a step: they lie early by some 38 ms in walking (23 to 61 ms in 14 trials" in said.what
+    assert not [f for f in chosen_contacts(trial).findings if f.kind == "contact offset"]  # force sees the ground
+
+
+def test_contacts_that_lie_apart_or_are_missed_are_a_warning(trial):
+    def against(times):
+        events = tuple(Event("initial contact", side, float(time)) for side, time in times)
+        findings = chosen_contacts(replace(only(trial, "kinematics"), events=events)).findings
+        return next(f for f in findings if f.kind == "detectors compared" and "side r" in f.what)
+
+    found = angle_contacts(trial.stream("kinematics"))
+    left, right = [("l", time) for time in found["l"].time], found["r"].time
+    alike = against([*left, *(("r", time) for time in right)])
+    assert (alike.severity, alike.spoils) == ("note", "")
+    moved = right.copy()
+    moved[12] += 0.08
+    assert "the strides of 1 contact: 50 ms or more" in against([*left, *(("r", time) for time in moved)]).spoils
+    missed = against([*left, *(("r", time) for time in np.delete(right, 12))])
+    assert missed.severity == "warning"
+    assert f"about {right[12]:.2f} s: one detector has a contact there, the other none" in missed.spoils
+    late = against([*(("l", time) for _, time in left), *(("r", time + 0.15) for time in right)])
+    assert "they disagree by 50 ms more than such detectors do" in late.spoils
 
 
 def test_nothing_to_find_contacts_in(trial):

@@ -28,6 +28,11 @@ def test_the_three_lights(folder):
     assert "empty.mot" in empty.refusal
 
 
+def test_moved_contacts_are_printed_without_asking_for_notes(folder):
+    lines = inspected_file(folder / "good.mot").grouped()
+    assert sum("contact offset: contacts by angles, and no plate saw a step" in line for line in lines) == 1
+
+
 def test_a_study_is_looked_at_whole_though_one_file_is_broken(folder):
     trials = (PlannedTrial(condition="a", files=("good.mot",)), PlannedTrial(condition="b", files=("empty.mot",)))
     lone = (PlannedTrial(condition="a", files=("gappy.mot",)), PlannedTrial(condition="unknown", files=("good.mot",)))

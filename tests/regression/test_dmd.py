@@ -50,3 +50,9 @@ def test_before_its_start_a_mode_that_dies_out_is_held_and_does_not_explode():
     s = Samples(t[:, None], np.exp(-8.0 * t)[:, None], ("t",), ("a",), t, t)
     found = fit_dmd(s, delays=20, rank=1)
     assert found(np.array([[0.0]])) == pytest.approx(found(np.array([[1.0]])))
+
+
+def test_what_a_file_rounds_away_is_no_mode():
+    t = np.arange(600) / 100
+    y = np.column_stack([np.sin(4 * t), np.cos(4 * t)]).round(5)  # two modes, however many are asked for
+    assert len(fit_dmd(samples(y), delays=60, rank=15).eigenvalues) == 2

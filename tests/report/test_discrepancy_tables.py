@@ -47,3 +47,8 @@ def test_what_some_seeds_refused_is_counted():
     row = grid_table([cell(TRUTH + 0.1, None), refused], "t").rows[0]
     assert row[6] == "50.0 (1 of 2 seeds)"
     assert row[-1] == "40 too few (1 of 2 seeds)"
+
+
+def test_an_error_of_many_times_the_known_one_is_no_number_to_four_digits():
+    cells = [cell(TRUTH + off, None, k) for k, off in enumerate((0.1, 0.05, 2.1, 2.3, 9e3))]  # known: 0.2
+    assert grid_table(cells, "t").rows[0][6] == "-950.0 [below -1000, 75.0]"

@@ -16,4 +16,4 @@ def test_one_panel_a_disturbance_and_one_line_a_model():
     noise, missing = figure.drawn.axes
     assert (len(noise.get_lines()), len(missing.get_lines())) == (1, 2)
     assert list(np.asarray(noise.get_lines()[0].get_xdata())) == [0.0, 10.0]
-    assert "masked shred is told which are lost" in figure.caption
+    assert "masked shred is given which are lost" in figure.caption

@@ -21,6 +21,20 @@ def test_runs_of_one_route_are_added_up():
     assert np.isclose(numbers[numbers["split"] == "random"]["density"].sum() * width, 1)
 
 
+def test_open_ended_bins_are_not_drawn_and_their_share_is_said():
+    """Of two errors in three that lie beyond the axis a bin would be made that looks like a peak."""
+    errors = (0.0, 0.1, 0.2, -30.0, 30.0, 40.0)
+    figure = histograms_figure([cell("fixed", "random", errors=errors)], "a", "As Fig. 5.3")
+    [line] = [line for line in figure.drawn.axes[0].lines if len(line.get_xdata()) > 2]
+    numbers, width = figure.numbers, 8 / 121
+    assert len(line.get_xdata()) == len(numbers) - 2
+    assert np.nanmax(np.abs(line.get_xdata())) < 4 - width
+    assert numbers["count"].iloc[[0, -1]].tolist() == [1, 2]
+    assert "Not drawn: errors below −3.93 or above 3.93 degC, 50 % of a route's." in figure.caption
+    inner = np.nansum(line.get_ydata()) * width
+    assert np.isclose(inner, 0.5)
+
+
 def test_every_model_is_a_point_and_the_ceiling_a_line():
     cells = [
         cell(route, split, run, 0.1 * run) for route in ("fixed", "walk") for split in ("a", "b") for run in (1, 2, 3)

@@ -22,7 +22,7 @@ def test_a_row_a_route_and_a_star_for_the_least():
     assert table.rows[0] == ("1 fixed", "0.800 (0.52; 0.30)", "0.700* (0.52; 0.30)", "0.0481")
     assert table.rows[1] == ("3 fixed", "0.500* (0.52; 0.30)", "0.800 (0.52; 0.30)", "")
     assert "Bounds: temporal, POD ceiling: 0.200 (0.52; 0.30)." in table.caption
-    assert "Judged snapshots: temporal 20." in table.caption
+    assert "Test snapshots: temporal 20." in table.caption
     assert len(table.numbers) == 5
 
 

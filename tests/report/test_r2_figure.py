@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from matplotlib.text import Text
 
 from gaitdisc.report.palette import MODELS
 from gaitdisc.report.r2_figure import LOWEST, r2_figures, r2_numbers
@@ -65,3 +66,33 @@ def test_a_null_that_is_missing_is_not_in_the_key(run_maker):
 
 def test_nobody_has_no_numbers(run_maker):
     assert list(r2_numbers(run_maker(0)).columns) == ["participant", "variable", "model", "kind", "r2"]
+
+
+def text_boxes(figure):
+    """What is written, with the box that it covers [pixels]."""
+    figure.drawn.draw_without_rendering()
+    texts = [text for axes in figure.drawn.axes for text in axes.findobj(Text) if text.get_visible()]
+    return [(text.get_text(), text.get_window_extent()) for text in texts if text.get_text().strip()]
+
+
+@pytest.mark.parametrize("people", [2, 12])
+def test_no_two_labels_lie_on_each_other(run_maker, people):
+    """Every model of both variables far below the axis, in every participant: the most labels there can be."""
+    run = run_maker(people, outputs=OUTPUTS)
+    for number, response in enumerate(run.responses):
+        response.r2["r2"] = -1.0 - 0.1 * number
+    [figure] = r2_figures(run)
+    boxes = text_boxes(figure)
+    assert sum(words.startswith("◂") for words, _ in boxes) == 6
+    over = [(one, other) for n, (one, a) in enumerate(boxes) for other, b in boxes[n + 1 :] if a.overlaps(b)]
+    assert over == []
+    assert all(figure.drawn.bbox.padded(1).contains(*corner) for _, box in boxes for corner in (box.min, box.max))
+
+
+def test_values_left_of_the_axis_share_one_label(run_maker):
+    for people, words in ((2, "◂ −1.10, −1.00"), (5, "◂ 5 values, −1.40 to −1.00")):
+        run = run_maker(people, outputs=OUTPUTS)
+        for number, response in enumerate(run.responses):
+            response.r2["r2"] = -1.0 - 0.1 * number
+        [figure] = r2_figures(run)
+        assert {text.get_text() for text in figure.drawn.axes[0].texts} == {words}

@@ -6,11 +6,11 @@ from gaitdisc.report.reconstruction_figure import reconstruction_figures
 from gaitdisc.sensing.reconstructor import KINDS, ON_REQUEST
 
 
-def test_one_panel_a_state_with_what_was_measured_and_told(reconstruction):
+def test_one_panel_a_state_with_what_was_measured_and_reconstructed(reconstruction):
     [figure] = reconstruction_figures(reconstruction, "P01", "P01")
     assert sum(axes.get_visible() for axes in figure.drawn.axes) == 1
     assert set(figure.numbers["model"]) == {"linear", "delay ridge"}
-    assert "judged windows alone, n = 5 strides" in figure.caption
+    assert "test windows alone, n = 5 strides" in figure.caption
 
 
 @pytest.mark.parametrize("kind", [*KINDS, *ON_REQUEST])

@@ -6,12 +6,15 @@ from manufactured_discovery import manufactured
 
 from gaitdisc.errors import WriteError
 from gaitdisc.results.discovery_folder import save_discovery
+from gaitdisc.results.sealed_json import check_files, read_sealed
 
 
 def test_json_and_runs_are_written_whole(tmp_path):
     discovery = manufactured()
     path = save_discovery(discovery, tmp_path / "found")
-    assert json.loads(path.read_text(encoding="utf-8")) == json.loads(json.dumps(discovery.to_json()))
+    held = read_sealed(path)
+    check_files(path.parent, held.pop("sha256"))
+    assert held == json.loads(json.dumps(discovery.to_json()))
     runs = pd.read_csv(path.parent / "held_out.csv")
     assert len(runs) == 800
     assert sorted(file.name for file in path.parent.iterdir()) == ["discovery.json", "held_out.csv"]

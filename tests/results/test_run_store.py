@@ -1,8 +1,8 @@
-import json
 from dataclasses import replace
 
 import pandas as pd
 import pytest
+from resealed import resealed
 
 from gaitdisc.errors import SchemaError
 from gaitdisc.results.response_store import save_response
@@ -35,9 +35,7 @@ def test_the_paired_tests_come_back_as_they_were(saved, pair_tests):
 
 
 def test_a_run_of_before_there_were_tests_is_still_read(saved):
-    data = json.loads((saved / "run.json").read_text(encoding="utf-8"))
-    del data["tests"]
-    (saved / "run.json").write_text(json.dumps(data), encoding="utf-8")
+    resealed(saved / "run.json", lambda data: data.pop("tests"))
     assert load_run(saved).tests is None
 
 

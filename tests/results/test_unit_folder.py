@@ -2,6 +2,7 @@ import json
 from dataclasses import asdict
 
 import pytest
+from resealed import resealed
 
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Finding
@@ -24,8 +25,7 @@ def test_a_missing_file_and_another_format(response, tmp_path):
     with pytest.raises(SchemaError, match=r"run.json is missing"):
         load_run(tmp_path)
     save_response(response, tmp_path, "key")
-    data = json.loads((tmp_path / "response.json").read_text())
-    (tmp_path / "response.json").write_text(json.dumps({**data, "format": 99}))
+    resealed(tmp_path / "response.json", lambda data: data.update(format=99))
     with pytest.raises(SchemaError, match="of format 99, not 1"):
         load_response(tmp_path)
     (tmp_path / "response.json").write_text("{")
@@ -35,8 +35,7 @@ def test_a_missing_file_and_another_format(response, tmp_path):
 
 def test_a_field_that_does_not_fit_the_schema_is_named(response, tmp_path):
     save_response(response, tmp_path, "key")
-    data = json.loads((tmp_path / "response.json").read_text())
-    (tmp_path / "response.json").write_text(json.dumps({**data, "held_out_s": -1}))
+    resealed(tmp_path / "response.json", lambda data: data.update(held_out_s=-1))
     with pytest.raises(SchemaError, match=r"at \$.held_out_s: -1"):
         load_response(tmp_path)
 

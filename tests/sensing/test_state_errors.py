@@ -54,7 +54,7 @@ def test_curves_over_the_stride(judged):
     curves = phase_curves(judged, ("knee_angle_r", "pelvis_tx"), 50)
     knee = curves[curves["state"] == "knee_angle_r"]
     assert len(knee) == 50
-    np.testing.assert_allclose(knee["told"] - knee["measured"], 2.0)
+    np.testing.assert_allclose(knee["reconstructed"] - knee["measured"], 2.0)
     np.testing.assert_allclose(knee["measured"], 30 + 10 * np.sin(2 * np.pi * knee["percent"] / 100), atol=0.6)
 
 

@@ -5,6 +5,7 @@ import pytest
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError
+from gaitdisc.ingest.reading import read_trial
 from gaitdisc.recording import Recording, Source
 from gaitdisc.signals.butterworth import (
     effective_cutoff_hz,
@@ -13,6 +14,7 @@ from gaitdisc.signals.butterworth import (
     needed_samples,
     short_run_findings,
 )
+from gaitdisc.signals.gaps import filled
 
 KNEE = Channel("knee_angle_r", "angle", "deg", "r")
 
@@ -96,3 +98,29 @@ def test_a_recording_too_short_is_refused():
 def test_a_cutoff_outside_of_the_band_is_refused(cutoff):
     with pytest.raises(SamplingError, match=r"between 0 Hz and half the rate, 50 Hz; .* walk\.mot has 100 samples"):
         lowpassed(recording(np.zeros(500)), cutoff)
+
+
+def test_a_heading_that_passes_180_deg_is_filtered_as_it_goes_on():
+    """Filtered as numbers, the leap of 360 deg rings: samples of 201 and 36 deg that nobody measured."""
+    t = np.arange(600) / 100
+    true = 170 + 8 * t + 4 * np.sin(2 * np.pi * t)
+    raw = np.stack([(true + 180) % 360 - 180, (true + 180) % 360 - 180], axis=1)
+    raw[260:265] = np.nan
+    channels = (Channel("pelvis_rotation", "angle", "deg"), Channel("RFootProgressAngles.z", "angle", "deg", "r"))
+    smooth = lowpassed(Recording(t, raw, channels))
+    plain = lowpassed(Recording(t, np.stack([true, true], axis=1), channels))
+    apart = (smooth.values - plain.values + 180) % 360 - 180
+    assert np.abs(apart[40:-40]).max() < 0.2
+    assert np.abs(smooth.values).max() <= 180
+    assert (
+        np.abs((filled(Recording(t, raw, channels)).values[260:265, 0] - true[260:265] + 180) % 360 - 180).max() < 0.1
+    )
+
+
+def test_a_real_turn_in_a_laboratory_turned_by_120_deg(gait_data):
+    """The pelvis turns from 0 to 94 deg; turned by 120 deg the same walk passes 180 deg."""
+    file = gait_data / "young_straight_and_turn" / "HC030A" / "turn" / "HC030A22.c3d"
+    pelvis = read_trial(file).stream("kinematics").selected(["LPelvisAngles.z"])
+    turned = pelvis.with_values((pelvis.values + 120 + 180) % 360 - 180)
+    there = (lowpassed(turned).values - 120 - lowpassed(pelvis).values + 180) % 360 - 180
+    assert np.nanmax(np.abs(there)) < 1e-6

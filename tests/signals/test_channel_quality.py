@@ -85,3 +85,10 @@ def test_a_real_ankle_that_jumps(gait_data, real):
     jumps = [finding for finding in channel_findings(walk) if finding.kind == "jump"]
     assert [finding.channel for finding in jumps] == ["ankle_angle_r"]
     assert jumps[0].spans[0][0] == pytest.approx(13.98, abs=0.03)
+
+
+def test_a_heading_that_passes_180_deg_does_not_leap():
+    t = np.arange(1000) / 100
+    true = 170 + 3 * t + np.sin(2 * np.pi * t)
+    walk = Recording(t, ((true + 180) % 360 - 180)[:, None], (Channel("pelvis_rotation", "angle", "deg"),))
+    assert channel_findings(walk) == []

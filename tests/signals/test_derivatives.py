@@ -5,8 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError
-from gaitdisc.recording import Strides
+from gaitdisc.recording import Recording, Strides
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.derivatives import differentiated, differentiated_recording, trajectory
 
@@ -70,3 +71,13 @@ def test_the_acceleration_of_a_made_walk_is_right(made):
     truth = (fine @ [1.0, -2.0, 1.0]) / 1e-6
     rows = path.usable[:, 0] & np.isfinite(path.phi)
     assert np.corrcoef(path.xddot[rows, 0], truth[rows])[0, 1] > 0.97
+
+
+def test_the_velocity_of_a_heading_that_passes_180_deg():
+    t = np.arange(300) / 100
+    true = 170 + 10 * t
+    walk = Recording(t, ((true + 180) % 360 - 180)[:, None], (Channel("pelvis_rotation", "angle", "deg"),))
+    np.testing.assert_allclose(differentiated_recording(walk).values[2:-2], 10.0, atol=1e-6)
+    path = trajectory(walk, Strides(np.array([0.0]), np.array([2.9]), "r", "events"))
+    np.testing.assert_allclose(path.xdot[2:-2], 10.0, atol=1e-6)
+    np.testing.assert_allclose(path.xddot[2:-2], 0.0, atol=1e-3)

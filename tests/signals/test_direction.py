@@ -24,13 +24,56 @@ def walker(forward, up=(0.0, 0.0, 1.0), speed=0.0):
     return Recording(t, np.hstack(list(parts.values())), channels)
 
 
+def turning(turn_deg):
+    """Ten seconds at 1.2 m/s that turn between the fourth and the sixth; and the heading, (time, 2)."""
+    straight = walker((1, 0, 0))
+    t = straight.time
+    angle = np.radians(turn_deg) * np.clip((t - 4) / 2, 0, 1)
+    heading = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    path = np.cumsum(1.2 / 100 * heading, axis=0)
+    values = straight.values.copy()
+    for name in ("SACR", "RHEE", "LHEE"):
+        x = straight.index(f"{name}.x")
+        values[:, [x, x + 1]] = path + straight.values[:, [x]] * heading
+    return straight.with_values(values), heading
+
+
 @pytest.mark.parametrize("speed", [0.0, 1.2])
 @pytest.mark.parametrize("forward", [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0.6, 0.8, 0)])
 def test_the_direction_is_found_on_a_treadmill_and_over_ground(forward, speed):
     found = walking_direction(walker(forward, speed=speed), HEELS, PELVIS)
     assert found.forward @ np.array(forward) > 0.999
     assert found.up.tolist() == [0, 0, 1]
-    assert "inferred: heels move faster that way" in found.how
+    said = "follows the path of the pelvis, which turns by 0 deg" if speed else "inferred: heels move faster that way"
+    assert said in found.how
+
+
+@pytest.mark.parametrize("turn_deg", [90.0, -180.0])
+def test_forward_turns_with_the_path(turn_deg):
+    walk, heading = turning(turn_deg)
+    found = walking_direction(walk, HEELS, PELVIS)
+    assert found.headings is not None
+    off = np.degrees(np.arccos(np.clip(np.sum(found.headings[:, :2] * heading, axis=1), -1, 1)))
+    assert off.max() < 12  # at the corners of a turn that begins at once
+    assert off[(walk.time < 3.5) | (walk.time > 6.5)].max() < 0.1
+    assert f"turns by {abs(turn_deg):.0f} deg" in found.how
+
+
+def test_the_direction_is_held_where_the_person_stands():
+    walk = walker((1, 0, 0), speed=1.2)
+    values = walk.values.copy()
+    values[800:] = values[800]
+    found = walking_direction(walk.with_values(values), HEELS, PELVIS)
+    assert found.headings is not None
+    assert found.headings[-1] @ [1, 0, 0] > 0.999
+
+
+def test_markers_that_are_never_there_are_named():
+    walk = walker((1, 0, 0))
+    values = walk.values.copy()
+    values[:, walk.index("SACR.x")] = np.nan
+    with pytest.raises(StrideError, match=r"a frame with a heel and the pelvis; .*none has RHEE, LHEE and SACR\. Fill"):
+        walking_direction(walk.with_values(values), HEELS, PELVIS)
 
 
 def test_the_vertical_need_not_be_z():

@@ -1,8 +1,12 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from gaitdisc.ingest.reading import read_trial
+from gaitdisc.recording import Recording, Source
 from gaitdisc.signals.plateaus import plateau_findings, plateau_marked, plateaus
 
 
@@ -28,6 +32,27 @@ def test_a_planted_limit_is_found_with_its_value(made, side, limit):
     assert found.limit == pytest.approx(limit, abs=0.05)
     assert found.marks[on].mean() > 0.9
     assert found.marks[~on].mean() < 0.2
+
+
+def test_broad_peaks_that_turn_at_one_angle_are_no_plateau(made):
+    """Rests between strides of one height, as an elbow or a foot in stance has: flat, but without a corner."""
+    t = np.arange(2000) / 100
+    rng = np.random.default_rng(0)
+    rest = np.abs(((t + 0.5) % 1.0) - 0.5)  # s from the middle of the stride
+    x = 30.0 * np.exp(-0.5 * (rest / 0.16) ** 2) + 0.02 * rng.normal(size=len(t))
+    slow = 1.5 * np.sin(2 * np.pi * t) ** 2  # a shoulder: near the extreme, not at it
+    walk = Recording(t, -(x - slow)[:, None], (made.channel("hip_flexion_r"),))
+    assert plateaus(walk) == []
+
+
+def test_real_c3d_have_none(gait_data):
+    files = sorted((gait_data / "young_straight_and_turn").glob("*/turn/*.c3d"))
+    assert files
+    for file in files:
+        kinematics = read_trial(file).stream("kinematics")
+        assert plateaus(kinematics) == [], file.name
+        unknown = replace(kinematics, source=Source(file.name))
+        assert plateaus(unknown) == [], file.name  # by their shape alone, too
 
 
 def test_marks_reach_50_ms_beyond(made):

@@ -53,3 +53,17 @@ def test_a_row_that_is_lost_at_once():
 def test_with_a_delay():
     (told,) = divergences(*_run(" + 0*delay(x, 0.1)"))
     assert told.parameter == "wild"
+
+
+@pytest.mark.parametrize(
+    ("rate", "words"),
+    [
+        (0.1, r"samples 10 s apart .*\(time is in seconds, not in milliseconds\)"),
+        (100.0, r"samples 0.01 s apart are too coarse for how fast it moves\.$"),
+    ],
+)
+def test_a_record_so_coarse_is_likelier_one_in_milliseconds(rate, words):
+    compiled = compile_simulation(simulation_of(TEXT.format(more="")))
+    drive, rows = Drive.of([np.empty((101, 0))], rate), Rows(np.array([0]), np.array([0]), np.array([[1.0, 1.0]]))
+    with pytest.raises(SimulationError, match=words):
+        refuse_divergence(compiled, drive, rows, *compiled.run(drive, rows, 80))

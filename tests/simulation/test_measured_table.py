@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 from gaitdisc.channel import Channel
@@ -160,3 +162,29 @@ def test_recordings_with_faults(ankle):
         measured_of_recordings([_recording(tau=np.where(np.arange(50) == 7, np.nan, np.arange(50.0)))], ankle)
     with pytest.raises(ChannelError, match="needs a measured column 'tau'"):
         measured_of_recordings([_recording().selected(["theta", "phase"])], ankle)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda t: t.iloc[:0], r"a trial has 20 samples or more; walk.parquet has no row. Export the record again"),
+        (lambda t: t.assign(theta="a lot"), r"column 'theta' has 'a lot'; 80 such cells. Write numbers in this column"),
+        (lambda t: t.rename(columns={"time": "time_ms"}), r"'time' in seconds; walk.parquet has 'time_ms'. Convert it"),
+        (lambda t: t.rename(columns={"time": "Time [ms]"}), r"walk.parquet has 'Time \[ms\]'. Convert it to seconds"),
+        (
+            lambda t: t.assign(time=pd.to_datetime(t["time"], unit="s")),
+            r"time in seconds; walk.parquet, column 'time' holds dates or clock times, first 1970.* Write seconds",
+        ),
+    ],
+)
+def test_columns_of_another_kind_are_refused_in_words(ankle, tmp_path, change, words):
+    change(_table()).to_parquet(tmp_path / "walk.parquet")
+    with pytest.raises(GaitdiscError, match=words):
+        read_measured(tmp_path / "walk.parquet", ankle)
+
+
+def test_a_doubled_column_of_parquet_is_refused_as_one_of_csv(ankle, tmp_path):
+    table = pa.Table.from_pandas(_table())
+    pq.write_table(table.append_column("theta", table["theta"]), tmp_path / "walk.parquet")
+    with pytest.raises(ChannelError, match=r"each column has a name of its own; walk.parquet has 'theta' twice"):
+        read_measured(tmp_path / "walk.parquet", ankle)

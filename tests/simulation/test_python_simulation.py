@@ -1,9 +1,13 @@
 """A function as right-hand side gives the same as the file of the same equations."""
 
+from dataclasses import dataclass
+
 import numpy as np
+import pytest
 
 from gaitdisc.simulation.parts import Input, Parameter, Port, State, Term
 from gaitdisc.simulation.python_simulation import python_simulation
+from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation
 
 
@@ -37,3 +41,35 @@ def test_ports_and_equations_take_effects():
     rates = compile_simulation(ball).rates(np.zeros(2), np.array([[2.0], [4.0]]), np.array([[0.0], [1.0]]))
     np.testing.assert_allclose(rates[:, 0], [-9.81 - 1 + 3, -9.81 - 2 + 1 + 3])
     assert compile_simulation(ball.without_effects()).rates(0.0, np.zeros((1, 1)), np.zeros((1, 1)))[0, 0] == -9.81
+
+
+@dataclass
+class Balloon:
+    """A callable object without a hash, and without an answer to ==."""
+
+    lift: np.ndarray
+
+    def __call__(self, t, x, u, values, ports):
+        return self.lift - x
+
+
+def test_an_object_that_computes_needs_no_hash():
+    model = python_simulation("balloon", Balloon(np.array([3.0])), [State("v")])
+    changed = model.with_starts({"v": 1.0})
+    assert changed.states[0].initial == 1.0
+    assert compile_simulation(changed).rates(0.0, np.ones((2, 1)), np.zeros((2, 0))).tolist() == [[2.0], [2.0]]
+
+
+@pytest.mark.parametrize(
+    ("given", "found"),
+    [
+        (lambda t, x, u, p, ports: x.T, r"float64 of shape \(1, 2\)"),
+        (lambda t, x, u, p, ports: None, r"object of shape \(\)"),
+        (lambda t, x, u, p, ports: x[:, 0], r"float64 of shape \(2,\)"),
+    ],
+)
+def test_a_function_gives_a_derivative_for_each_row_and_state(given, found):
+    model = python_simulation("falling", given, [State("v")])
+    needed = r"'falling' gives a number for each row and state, \(2, 1\) here; "
+    with pytest.raises(SimulationError, match=f"{needed}it gave {found}. Return an array"):
+        compile_simulation(model).rates(0.0, np.ones((2, 1)), np.zeros((2, 0)))

@@ -52,3 +52,14 @@ def test_an_input_is_replaced_wherever_it_stands(ankle):
 def test_equations_come_as_a_mapping_too():
     decay = Simulation("decay", (State("x"),), equations={"x": "-x"})  # type: ignore[arg-type]
     assert decay.equations == (("x", "-x"),)
+
+
+def test_a_start_belongs_to_a_state(ankle):
+    moved = ankle.with_starts({"omega": 0.5})
+    assert [state.initial for state in moved.states] == [ankle.states[0].initial, 0.5]
+    with pytest.raises(
+        SimulationError, match=r"a start belongs to a state of the simulation; there is none called 'k'"
+    ):
+        ankle.with_starts({"k": 1.0})
+    with pytest.raises(SimulationError, match=r"a state starts at a finite number; initial is nan"):
+        ankle.with_starts({"omega": float("nan")})

@@ -58,6 +58,6 @@ def test_units_that_do_not_fit_are_told(changed, words):
     assert any(words in what for what in _told(**changed))
 
 
-@pytest.mark.parametrize("name", [name for name in bundled_names() if not name.startswith(("lorenz", "van"))])
+@pytest.mark.parametrize("name", bundled_names())
 def test_what_comes_along_fits(name):
     assert unit_findings(bundled(name)) == ()

@@ -4,12 +4,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gaitdisc.errors import WriteError
+from gaitdisc.errors import ReadError, SchemaError, WriteError
 from gaitdisc.simulation.parts import Input, Parameter, Port, State, Term
 from gaitdisc.simulation.python_simulation import python_simulation
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.simulation_file import read_simulation, simulation_of
-from gaitdisc.simulation.writing import effects_of, simulation_text, write_simulation
+from gaitdisc.simulation.writing import read_into, simulation_text, write_simulation
 
 SPRING = Term("ankle_moment", "port", "one_sided_spring", "-286.0*max(0, theta - 0.035)")
 
@@ -87,13 +87,35 @@ def test_the_file_is_read_back(ankle, tmp_path):
         write_simulation(ankle, path / "below.toml")
 
 
-def test_a_python_object_leaves_its_effects(tmp_path):
-    model = python_simulation("ball", lambda *_: 0, [State("v")], [Input("u")], ports=[Port("drag")])
-    term = Term("drag", "port", "viscous_damping", "-0.4*v")
-    path = write_simulation(model.with_effect(term).with_input("u", "delay(u, 0.1)"), tmp_path / "ball.toml")
-    assert effects_of(path) == (term,)
+def ball(*more: Port):
+    return python_simulation(
+        "ball", lambda *_: 0, [State("v", "m/s")], [Input("u")], [Parameter("g", 9.81)], [Port("drag"), *more]
+    )
+
+
+def test_a_python_object_is_given_all_that_was_written_of_it(tmp_path):
+    changed = ball().with_effect(Term("drag", "port", "viscous_damping", "-0.4*v")).with_input("u", "delay(u, 0.1)")
+    changed = changed.with_values({"g": 1.6}).with_starts({"v": 2.5}).with_observation("v", "1.1*(v)")
+    path = write_simulation(changed, tmp_path / "ball.toml")
+    read = read_into(ball(), path)
+    assert (read.parts, read.replaced) == (changed.parts, changed.replaced)
     assert "The right-hand side is a Python object" in path.read_text()
-    assert "# the model's input u is delay(u, 0.1)" in path.read_text()
+
+
+def test_what_is_written_of_a_python_object_cannot_be_run_without_it(tmp_path):
+    path = write_simulation(ball(), tmp_path / "ball.toml")
+    with pytest.raises(SchemaError, match=r"state 'v' has one equation; it has none"):
+        read_simulation(path)
+
+
+def test_a_python_object_is_not_given_what_belongs_to_another(tmp_path):
+    path = write_simulation(ball(), tmp_path / "ball.toml")
+    with pytest.raises(
+        SchemaError, match=r"the ports are those of 'ball': drag, lift; ball.toml has drag. Read the file"
+    ):
+        read_into(ball(Port("lift")), path)
+    with pytest.raises(ReadError, match=r"read from a TOML file; absent.toml: .*No such file.*Check the path"):
+        read_into(ball(), tmp_path / "absent.toml")
 
 
 words = st.text(st.characters(codec="utf-8"), max_size=12)

@@ -5,6 +5,7 @@ import numpy as np
 
 from gaitdisc.simulation.measured_table import read_measured
 from gaitdisc.simulation.simulation_file import read_simulation
+from gaitdisc.simulation.unit_check import unit_findings
 
 STUDIES = Path(__file__).parents[2] / "studies"
 
@@ -19,4 +20,5 @@ def test_the_two_files_are_read_as_they_were_meant(tmp_path, monkeypatch):
     assert all(abs(count - 300) <= 1 for count in measured.drive.samples)
     assert 5.0 < np.degrees(np.nanmax(measured.observed)) < 20.0
     assert not model.effects
+    assert unit_findings(model) == ()  # so that the README's `gaitdisc discover` prints no warning
     assert 1.0 < model.values()["foot_mass"] < 3.0

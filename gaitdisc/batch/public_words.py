@@ -1,0 +1,286 @@
+"""What may stand in a result that is passed on: words of this package, of its vocabulary and of the study; no others.
+
+A recording brings words of its own: names of files and folders, labels, names in headers. Any of them may say who a
+person is. So a sentence that is written into a folder of results is held against the words that are known to be public,
+and every other word in it becomes `…`; a file is called by its participant, condition and number. The study file is the
+key between these and the names, and is not for passing on.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar
+
+import gaitdisc
+from gaitdisc.channel import schema_folder
+from gaitdisc.errors import GaitdiscError
+from gaitdisc.ingest.columns import split_unit
+from gaitdisc.ingest.study import Participant, PlannedTrial, Study
+from gaitdisc.recording import Finding, Recording, Trial
+
+Result = TypeVar("Result")
+HIDDEN = "…"
+WHERE = f"({HIDDEN}: words of the recording; `gaitdisc check` shows them.)"
+_TEXT = re.compile(r"\"\"\".*?\"\"\"|(?<![\"'])#[^\n]*", re.DOTALL)  # docstrings and comments, which cite people
+_LITERAL = re.compile(r"\"([^\"\n]*)\"|'([^'\n]*)'")
+_WORD = re.compile(r"\w+")
+_NUMBER = re.compile(r"\d+(e\d+)?[a-zA-Z]{0,2}")
+
+
+@dataclass(frozen=True)
+class PublicWords:
+    """Words that may be written, and what files are called instead of their names.
+
+    Parameters
+    ----------
+    words : frozenset of str
+        Beside those of the package.
+    files : mapping of str to str
+        Name of a file -> what it is called.
+    """
+
+    words: frozenset[str] = frozenset()
+    files: Mapping[str, str] = field(default_factory=dict)
+
+    def said(self, text: str) -> str:
+        """Sentence without a word of the recordings.
+
+        Parameters
+        ----------
+        text : str
+            Of an error or a finding.
+
+        Examples
+        --------
+        >>> PublicWords().said("column 'Erika' has no unit")
+        "column '…' has no unit (…: words of the recording; `gaitdisc check` shows them.)"
+        >>> PublicWords(files={"Erika.mot": "the recording"}).said("Erika.mot has no unit")
+        'the recording has no unit'
+        """
+        said = self._called(text)
+        return f"{said} {WHERE}" if HIDDEN in said and HIDDEN not in text else said
+
+    def finding(self, finding: Finding) -> Finding:
+        """Finding without a word of the recordings.
+
+        Parameters
+        ----------
+        finding : Finding
+            Of a reader or a check.
+        """
+        return replace(
+            finding,
+            file=self._called(self.files.get(finding.file, finding.file)),
+            channel=self._called(finding.channel),
+            what=self.said(finding.what),
+            spoils=self._called(finding.spoils),
+        )
+
+    def error(self, error: GaitdiscError) -> GaitdiscError:
+        """Error of the same kind without a word of the recordings.
+
+        Parameters
+        ----------
+        error : GaitdiscError
+            Any.
+        """
+        parts = [self._called(part) for part in (error.needed, error.found, error.remedy)]
+        if any(HIDDEN in part for part in parts):
+            parts[2] = f"{parts[2]} {WHERE}"
+        return type(error)(*parts)
+
+    def trial(self, trial: Trial) -> Trial:
+        """Trial whose files are called by what they may be called, and whose findings hold public words.
+
+        Parameters
+        ----------
+        trial : Trial
+            As it was read; its channels keep their names.
+        """
+        streams = {key: self._recording(recording) for key, recording in trial.streams.items()}
+        return replace(trial, streams=streams, findings=tuple(map(self.finding, trial.findings)))
+
+    def of(self, work: Callable[[], Result]) -> Result:
+        """Result of some work, whose error is said in public words.
+
+        Parameters
+        ----------
+        work : callable
+            Reads or processes recordings.
+        """
+        try:
+            return work()
+        except GaitdiscError as error:
+            raise self.error(error) from error
+
+    def known_channels(self, trial: Trial, streams: Iterable[str]) -> Trial:
+        """Trial without the channels whose labels are no public words, and a finding that says how many there are.
+
+        Parameters
+        ----------
+        trial : Trial
+            As it was read.
+        streams : iterable of str
+            Which of its streams.
+        """
+        kept, left_out = dict(trial.streams), 0
+        for key in set(streams) & set(kept):
+            names = [name for name in kept[key].names if self._called(name) == name]
+            left_out += len(kept[key].names) - len(names)
+            kept[key] = kept[key].selected(names)
+        if not left_out:
+            return trial
+        what = f"{left_out} channels, whose labels are outside the vocabulary"
+        spoils = "these channels; map them in the study's [channels], or name them"
+        kept = {key: recording for key, recording in kept.items() if recording.names}
+        finding = Finding("note", "left out", trial.name, what, spoils)
+        return replace(trial, streams=kept, findings=(*trial.findings, finding))
+
+    def _recording(self, recording: Recording) -> Recording:
+        source = recording.source
+        files = " + ".join(self.files.get(name, HIDDEN) if name else "" for name in source.file.split(" + "))
+        return replace(recording, source=replace(source, file=files))
+
+    def _called(self, text: str) -> str:
+        """Files by what they are called, and each word that is not public hidden."""
+        parts = [text]
+        for name in sorted(self.files, key=len, reverse=True):
+            split = re.compile(rf"(?<!\w){re.escape(name)}(?!\w)")
+            parts = [
+                piece
+                for i, part in enumerate(parts)
+                for piece in ([part] if i % 2 else _between(split.split(part), self.files[name]))
+            ]
+        hidden = [part if i % 2 else _WORD.sub(self._or_hidden, part) for i, part in enumerate(parts)]
+        return re.sub(rf"{HIDDEN}(?:[\s._/\\:-]*{HIDDEN})+", HIDDEN, "".join(hidden))
+
+    def _or_hidden(self, found: re.Match[str]) -> str:
+        word = found.group()
+        return word if self._public(word) or all(map(self._public, word.split("_"))) else HIDDEN
+
+    def _public(self, word: str) -> bool:
+        return word in self.words or word in package_words() or bool(_NUMBER.fullmatch(word)) or not word
+
+
+def words_of(study: Study, participant: Participant, named: Iterable[str] = ()) -> PublicWords:
+    """Public words of one participant's recordings.
+
+    Parameters
+    ----------
+    study : Study
+        Whose title, conditions, pseudonyms and channel names are public.
+    participant : Participant
+        Whose files get other names.
+    named : iterable of str
+        Channels that the user named, beside those of the study.
+    """
+    said = [study.title, *study.conditions.both, participant.excluded, *named]
+    said += [each.id for each in study.participants]
+    said += [trial.condition for each in study.participants for trial in each.trials]
+    said += [*study.models.angles, *study.models.emg, *study.models.outputs]
+    said += [split_unit(name)[0] for name in study.channels.values()]
+    words = frozenset(word for text in said for word in _WORD.findall(text))
+    files = {name: said for trial in participant.trials for name, said in _files(participant, trial).items()}
+    return PublicWords(words, files)
+
+
+def of_trial(words: PublicWords, participant: Participant, planned: PlannedTrial) -> PublicWords:
+    """Public words of one trial: its own files go before others of the same name in another folder.
+
+    Parameters
+    ----------
+    words : PublicWords
+        Of the participant.
+    participant : Participant
+        Whose trial.
+    planned : PlannedTrial
+        The trial.
+    """
+    return replace(words, files={**words.files, **_files(participant, planned)})
+
+
+def with_public_labels(recording: Recording) -> tuple[Recording, int]:
+    """Recording whose channels of other names are numbered, and how many these are.
+
+    Parameters
+    ----------
+    recording : Recording
+        Of any channels; a marker's three keep their `.x`, `.y` and `.z`.
+    """
+    public, called = PublicWords(), dict[str, str]()
+    names = []
+    for channel in recording.channels:
+        name, dot, axis = channel.name.rpartition(".") if channel.quantity == "marker" else (channel.name, "", "")
+        if public.said(name) != name:
+            name = called.setdefault(name, f"{channel.quantity}_{len(called) + 1}")
+        names.append(f"{name}{dot}{axis}")
+    renamed = tuple(replace(channel, name=name) for channel, name in zip(recording.channels, names, strict=True))
+    return replace(recording, channels=renamed), len(called)
+
+
+def public_settings(study: Study, include: set[str] | None = None) -> dict[str, Any]:
+    """Settings of a study as they may be written: files are counted, labels of the recordings numbered.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    include : set of str, optional
+        Parts of it; all of them by default.
+    """
+    settings = study.model_dump(mode="json", include=include)
+    for participant in settings.get("participants", ()):
+        for trial in participant["trials"]:
+            trial["files"] = len(trial["files"])
+    if "channels" in settings:
+        settings["channels"] = {f"label {k}": name for k, name in enumerate(settings["channels"].values(), 1)}
+    return settings
+
+
+def public_title(study: Study) -> str:
+    """Title of a study's pages; without one its conditions, never the name of its folder.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    """
+    return study.title or f"{study.conditions.nominal} against {study.conditions.device}"
+
+
+@cache
+def package_words() -> frozenset[str]:
+    """Words of this package's sentences, of its vocabulary, and of the system's own errors."""
+    literals: list[str] = [os.strerror(number) for number in errno.errorcode]
+    for path in Path(gaitdisc.__file__).parent.rglob("*.py"):
+        code = _TEXT.sub("", path.read_text(encoding="utf-8"))
+        literals += (one or other for one, other in _LITERAL.findall(code))
+    literals.append((schema_folder() / "channels.csv").read_text(encoding="utf-8"))
+    return frozenset(word for text in literals for word in _WORD.findall(text))
+
+
+def _trial_name(participant: Participant, planned: PlannedTrial) -> str:
+    """As `gaitdisc.ingest.reading.read_planned_trial` names it."""
+    alike = participant.trials_of(planned.condition)
+    number = f" {alike.index(planned) + 1}" if len(alike) > 1 else ""
+    return f"{participant.id} {planned.condition}{number}"
+
+
+def _files(participant: Participant, planned: PlannedTrial) -> dict[str, str]:
+    """What the files of a trial are called; a name without its ending counts where it can be no word of a sentence."""
+    called: dict[str, str] = {}
+    for number, file in enumerate(planned.files, 1):
+        said, path = f"{_trial_name(participant, planned)}, file {number}", Path(file)
+        called |= {path.stem: said} if len(path.stem) > 3 and re.search(r"\d", path.stem) else {}
+        called |= {path.name: said}
+    return called
+
+
+def _between(parts: list[str], word: str) -> list[str]:
+    return [piece for k, part in enumerate(parts) for piece in ((word, part) if k else (part,))]

@@ -1,0 +1,119 @@
+"""Whether held-out data bear something out: the fall of the squared error, piece by piece, by Wilcoxon's test."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+LEVEL = 0.05
+WANTED = 12  # pieces; where pieces of a period are fewer, they are cut shorter, not below the memory of what is left
+MEMORY = 0.2  # correlation at which what is left counts as forgotten
+MOST_EXACT = 60  # pieces, up to which the distribution of the sum of ranks is counted out
+
+
+@dataclass(frozen=True)
+class PairedTest:
+    """A one-sided signed-rank test of the squared errors before and after, over pieces of held-out runs.
+
+    Parameters
+    ----------
+    p : float
+        Chance of so clear a fall if each piece could as well rise; NaN where a run failed.
+    pieces : int
+        How many pieces were compared.
+    fall : float
+        Of the summed squared error over that of the noise; negative where it rises.
+    """
+
+    p: float
+    pieces: int
+    fall: float
+
+    @property
+    def bears_out(self) -> bool:
+        """Whether the error falls, and not by chance."""
+        return self.fall > 0 and self.p < LEVEL
+
+
+def paired_test(
+    before: NDArray[np.float64], after: NDArray[np.float64], floor: NDArray[np.float64], period: int
+) -> PairedTest:
+    """Compare the squared errors of two models over pieces of the same runs.
+
+    Parameters
+    ----------
+    before, after : ndarray (run, sample, channel)
+        Measured minus each model [the channel's unit]; NaN where nothing was measured.
+    floor : ndarray (channel,)
+        Standard deviation of the noise [the channel's unit].
+    period : int
+        Samples of the motion's main period.
+
+    References
+    ----------
+    Wilcoxon 1945, Biometrics Bulletin 1, 80.
+    """
+    fall = (before**2 - after**2) / floor**2
+    if np.isinf(fall).any() or (np.isnan(fall) & ~np.isnan(before)).any():
+        return PairedTest(float("nan"), 0, float("nan"))
+    fall = np.nan_to_num(fall).sum(axis=2)
+    runs, samples = fall.shape
+    length = min(period, max(runs * samples // WANTED, memory_of(after), 1))
+    blocks = max(samples // length, 1)
+    gains = np.array([part.sum() for run in fall for part in np.array_split(run, blocks)])
+    return PairedTest(signed_rank_p(gains), len(gains), float(gains.sum()))
+
+
+def memory_of(residual: NDArray[np.float64]) -> int:
+    """Return after how many samples what is left has forgotten itself, for the channel that remembers longest.
+
+    Parameters
+    ----------
+    residual : ndarray (run, sample, channel)
+        Measured minus a model.
+
+    Examples
+    --------
+    >>> memory_of(np.random.default_rng(0).normal(size=(4, 500, 1)))
+    1
+    """
+    left = np.nan_to_num(residual)
+    samples = left.shape[1]
+    power = (left**2).sum(axis=(0, 1))
+    for lag in range(1, samples // 2):
+        kept = (left[:, lag:] * left[:, :-lag]).sum(axis=(0, 1))
+        if (np.abs(kept) <= MEMORY * power).all():
+            return lag
+    return max(samples // 2, 1)
+
+
+def signed_rank_p(gains: NDArray[np.float64]) -> float:
+    """Chance of so great a sum of the ranks of what is gained, if each gain could as well have had the other sign.
+
+    Parameters
+    ----------
+    gains : ndarray (piece,)
+        Zeros are left out.
+
+    Examples
+    --------
+    >>> signed_rank_p(np.array([3.0, 2.0, 1.0])), signed_rank_p(np.array([3.0, -2.0, 1.0])), signed_rank_p(np.zeros(9))
+    (0.125, 0.375, 1.0)
+    """
+    from scipy.stats import norm, rankdata
+
+    gains = gains[gains != 0]
+    if not len(gains):
+        return 1.0
+    ranks = rankdata(np.abs(gains))
+    reached = ranks[gains > 0].sum()
+    if len(gains) > MOST_EXACT:
+        spread = np.sqrt((ranks**2).sum()) / 2
+        return float(norm.sf((reached - 0.5 - ranks.sum() / 2) / spread))
+    halves = np.rint(2 * ranks).astype(int)  # mean ranks are halves of whole numbers
+    ways = np.ones(1)
+    for rank in halves:
+        ways = (np.pad(ways, (0, rank)) + np.pad(ways, (rank, 0))) / 2
+    return float(ways[round(2 * reached) :].sum())

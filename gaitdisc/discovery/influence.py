@@ -1,0 +1,144 @@
+"""Influence: which places, parameters and states change nothing of what is measured: no data could tell of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.discovery.linearised import pushable
+from gaitdisc.discovery.places import Place
+from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.recording import Finding
+from gaitdisc.simulation.refusal import SimulationError
+from gaitdisc.simulation.simulation import Simulation
+
+NUDGE = 0.1  # of a state's or a parameter's size
+ROUNDING = 1e-13  # of a channel's size
+
+
+@dataclass(frozen=True)
+class Idle:
+    """What changes nothing in any measured channel.
+
+    Parameters
+    ----------
+    places, parameters, states : tuple of str
+        Names.
+    constant : tuple of str
+        Measured channels that no state, place, parameter or input changes.
+    """
+
+    places: tuple[str, ...] = ()
+    parameters: tuple[str, ...] = ()
+    states: tuple[str, ...] = ()
+    constant: tuple[str, ...] = ()
+
+    def findings(self, source: str, kind: str) -> tuple[Finding, ...]:
+        """One for each kind.
+
+        Parameters
+        ----------
+        source : str
+            Name of the measured data.
+        kind : str
+            Of the places: `port` or `equation`.
+        """
+        return tuple(
+            Finding(severity, "no influence", source, f"{said} no effect on what is measured", spoils)
+            for severity, said, spoils in (
+                ("warning", _said(kind, self.places), "a search there: nothing can be found where it would not show"),
+                ("note", _said("parameter", self.parameters), "nothing; these data cannot say what it is"),
+                ("note", _said("state", self.states), "nothing; these data cannot say where it starts"),
+            )
+            if said
+        )
+
+
+def _said(kind: str, names: tuple[str, ...]) -> str:
+    words = " and ".join(repr(name) for name in names)
+    return f"{kind} {words} has" if len(names) == 1 else f"{kind}s {words} have" if names else ""
+
+
+def idle_parts(
+    shooting: Shooting, simulation: Simulation, places: tuple[Place, ...], starts: NDArray[np.float64]
+) -> Idle:
+    """Find what changes nothing in any measured channel along runs that begin at the data.
+
+    Parameters
+    ----------
+    shooting : Shooting
+        The runs.
+    simulation : Simulation
+        As read.
+    places : tuple of Place
+        Where an effect may enter.
+    starts : ndarray (segment, state)
+        Where each run begins.
+    """
+    machine = pushable(simulation, places)
+    n, own = starts.shape[1], len(simulation.parameters)
+    versions = n + own + len(places)
+    many_starts = np.repeat(starts[None], 1 + versions, axis=0)
+    values = np.repeat(machine.defaults[None], 1 + versions, axis=0)
+    for state, size in enumerate(np.abs(starts).max(axis=0)):
+        many_starts[1 + state, :, state] += NUDGE * max(size, 1.0)
+    for number in range(own + len(places)):
+        size = abs(machine.defaults[number]) or 1.0
+        values[1 + n + number, number] += NUDGE * size
+    with np.errstate(all="ignore"):  # a run that leaves every bound has been changed
+        _, seen = shooting.run(machine, many_starts, values)
+        change = np.abs(seen[1:] - seen[0]).max(axis=(1, 2))
+        size = np.abs(seen[0]).max(axis=(0, 1))
+    changed = ~(change <= ROUNDING * size)
+    idle = ~changed.any(axis=1)
+    over_time = ~(np.ptp(seen[0].reshape(-1, seen.shape[3]), axis=0) <= ROUNDING * size)
+    names = [state.name for state in simulation.states]
+    return Idle(
+        tuple(place.name for place, still in zip(places, idle[n + own :], strict=True) if still),
+        tuple(part.name for part, still in zip(simulation.parameters, idle[n : n + own], strict=True) if still),
+        tuple(name for name, still in zip(names, idle[:n], strict=True) if still),
+        tuple(
+            name for name, moves in zip(machine.observed, over_time | changed[:n].any(axis=0), strict=True) if not moves
+        ),
+    )
+
+
+def refuse_idle(idle: Idle, simulation: Simulation, places: tuple[Place, ...]) -> None:
+    """Refuse a simulation of which a measured channel never changes, or in which nothing could be missing that shows.
+
+    Parameters
+    ----------
+    idle : Idle
+        What changes nothing.
+    simulation : Simulation
+        As read.
+    places : tuple of Place
+        Where an effect may enter.
+
+    Raises
+    ------
+    SimulationError
+        With the channel, or the places.
+    """
+    for name in idle.constant:
+        raise SimulationError(
+            "a measured channel depends on a state or an input",
+            f"{name!r} is {dict(simulation.observations)[name]!r}, the same in every sample of {simulation.title!r}",
+            "Correct its expression, or take the channel out.",
+            ("observations", name),
+        )
+    if places and len(idle.places) == len(places):
+        kinds = "ports" if simulation.ports else "equations"
+        raise SimulationError(
+            "an effect can be found where it changes what is measured",
+            f"no effect on any of {', '.join(name for name, _ in simulation.observations)} comes of "
+            f"{_listed(idle.places)}",
+            "Check what each is multiplied by, or measure a channel that it moves.",
+            (kinds, idle.places[0]),
+        )
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return " or ".join(repr(name) for name in names)

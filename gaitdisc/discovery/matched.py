@@ -1,0 +1,126 @@
+"""Whether measured trials are trials of a simulation: its channels, its inputs, values to compare, delays within."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gaitdisc.channel import nearest_word
+from gaitdisc.discovery.catalogue import SIGNALS, Shape
+from gaitdisc.errors import ChannelError, SamplingError, ShapeError
+from gaitdisc.simulation.delay_check import refuse_delays, refuse_delays_of
+from gaitdisc.simulation.expression import parsed
+from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.refusal import SimulationError
+from gaitdisc.simulation.simulation import Simulation
+
+FEWEST = 16  # samples of a trial
+
+
+def matched(simulation: Simulation, measured: Measured, shapes: tuple[Shape, ...] = ()) -> Simulation:
+    """Return the simulation with the observations that were measured, in their order.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        As read.
+    measured : Measured
+        Its trials.
+    shapes : tuple of Shape
+        Effects of the user's own.
+
+    Raises
+    ------
+    ChannelError
+        If a measured channel is no observation, or one stands twice.
+    ShapeError
+        If the inputs are not the simulation's, one has no value, or a channel has none in a trial or never varies.
+    SamplingError
+        If a trial is too short.
+    SimulationError
+        If a delay reaches into the future of a state, or further than the shortest trial.
+    """
+    where = measured.source or "the measured trials"
+    observations = tuple(name for name, _ in simulation.observations)
+    for name in measured.channels:
+        if name not in observations:
+            nearest = nearest_word(name, observations)
+            hint = f", the nearest is {nearest!r}" if nearest else ""
+            raise ChannelError(
+                f"every measured channel is an observation of {simulation.title!r}: {', '.join(observations)}",
+                f"{where} has {name!r}{hint}",
+                f"Add {name!r} to the observations, or leave the channel out.",
+            )
+        if measured.channels.count(name) > 1:
+            raise ChannelError("each channel has a name of its own", f"{where} has {name!r} twice", "Rename one.")
+    _check_trials(measured, where)
+    _check_inputs(simulation, measured, where)
+    _check_observed(measured, where)
+    shortest = int(np.argmin(measured.samples))
+    lasts = float(measured.samples[shortest] / measured.rate)
+    refuse_delays(simulation, lasts, measured.trials[shortest])
+    for shape in shapes:
+        for piece in shape.pieces:
+            try:
+                refuse_delays_of(parsed(piece), {}, SIGNALS, lasts, measured.trials[shortest])
+            except SimulationError as error:
+                raise error.at("shape", shape.name) from None
+    return simulation if measured.channels == observations else simulation.observing(measured.channels)
+
+
+def _check_trials(measured: Measured, where: str) -> None:
+    names = measured.trials
+    doubled = next((name for name in names if names.count(name) > 1), None)
+    if doubled is not None:
+        raise ChannelError("each trial has a name of its own", f"{where} has trial {doubled!r} twice", "Rename one.")
+    short = int(np.argmin(measured.samples))
+    if measured.samples[short] < FEWEST:
+        raise SamplingError(
+            f"a trial has {FEWEST} samples or more",
+            f"{where}, trial {names[short]!r} has {measured.samples[short]}",
+            "Leave it out, or record longer.",
+        )
+
+
+def _check_inputs(simulation: Simulation, measured: Measured, where: str) -> None:
+    names = [one.name for one in simulation.inputs]
+    given = measured.drive.inputs
+    if given.shape[2] != len(names):
+        raise ShapeError(
+            f"{simulation.title!r} is driven by {len(names)} inputs: {', '.join(names) or 'none'}",
+            f"{where} has {given.shape[2]}",
+            "Give one column for each, in this order.",
+        )
+    for trial, (name, samples) in enumerate(zip(measured.trials, measured.samples, strict=True)):
+        sample, column = _first(~np.isfinite(given[trial, :samples]))
+        if sample >= 0:
+            raise ShapeError(
+                "an input has a value in every sample",
+                f"{where}, trial {name!r}, {names[column]!r}: {given[trial, sample, column]} in sample {sample + 1}",
+                "Fill the gap, or cut the trial there.",
+            )
+
+
+def _check_observed(measured: Measured, where: str) -> None:
+    seen = np.isfinite(measured.observed)
+    trial, column = _first(~seen.any(axis=1))
+    if trial >= 0:
+        raise ShapeError(
+            "an observed channel has values in every trial",
+            f"{where}, trial {measured.trials[trial]!r} has none of {measured.channels[column]!r}",
+            "Leave the trial or the channel out.",
+        )
+    values = np.where(seen, measured.observed, np.nan)
+    low, high = np.nanmin(values, axis=(0, 1)), np.nanmax(values, axis=(0, 1))
+    for name, least, most in zip(measured.channels, low, high, strict=True):
+        if least == most:
+            raise ShapeError(
+                f"an observed channel varies: {name!r}",
+                f"{where} has {least:g} in every sample",
+                "Take the channel out of the observations, or correct it.",
+            )
+
+
+def _first(where: np.ndarray) -> tuple[int, int]:
+    """Place of the first that is true in a table; -1, -1 where none is."""
+    found = np.argwhere(where)
+    return (int(found[0][0]), int(found[0][1])) if len(found) else (-1, -1)

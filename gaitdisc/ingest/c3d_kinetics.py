@@ -1,0 +1,213 @@
+"""Forces, moments and powers that a model put into a C3D file: per kg or not, internal or not, held against plates."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel
+from gaitdisc.ingest.c3d_parameters import C3DParameters
+from gaitdisc.recording import Finding
+
+Kinetics = tuple[NDArray[np.float64], tuple[Channel, ...]]
+
+LOADED_N = 100.0  # a plate that carries a foot
+LOADED_PER_KG = 2.0  # a reaction force that is no noise, in N/kg; in N it is that all the more
+STEADY = 0.05  # spread of the ratio of plate to reaction force over a step that both saw
+AGREES = 0.05  # of a mass
+HEAVIEST_KG, LIGHTEST_KG = 300.0, 5.0
+PER_KG_AT_MOST = {"force": 40.0, "moment": 10.0}  # N/kg, four body weights; N m/kg: no joint of a walking leg
+PUSH_OFF = {"N m/kg": 0.4, "N m": 12.0}  # least ankle moment that tells a push-off from standing
+ONE_SIDED = 2.0  # impulse of the ankle's larger side over that of the other
+_PER_KG = {"N": "N/kg", "N m": "N m/kg", "W": "W/kg"}
+_REACTION = re.compile(r"[LR]GroundReactionForce\.[xyz]")
+_NORMALISED = re.compile(r"[LR]NormalisedGRF\.[xyz]")
+_ANKLE = re.compile(r"ankle_angle_[rl]_moment")
+_LEG = re.compile(r"(ankle_angle|knee_angle|hip_flexion)_[rl]_moment")
+_OF_GROUND = re.compile(r"[LR]?Ground")
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What shows whether kinetics are divided by body mass.
+
+    Parameters
+    ----------
+    per_kg : bool or None
+        None where nothing shows it.
+    words : str
+        What was seen.
+    certain : bool
+        Whether plates and reaction forces were compared.
+    mass_kg : float or None
+        Plate over reaction force, where both saw one step.
+    """
+
+    per_kg: bool | None
+    words: str = ""
+    certain: bool = False
+    mass_kg: float | None = None
+
+
+def body_mass(parameters: C3DParameters) -> float | None:
+    """Body mass that the file states [kg], or None.
+
+    Parameters
+    ----------
+    parameters : C3DParameters
+        Parameter section.
+    """
+    for group, name in (("PROCESSING", "BODYMASS"), ("SUBJECTS", "BODYMASS"), ("SUBJECT", "WEIGHT")):
+        mass = parameters.number(group, name)
+        if mass is not None and LIGHTEST_KG <= mass <= HEAVIEST_KG:
+            return mass
+    return None
+
+
+def house_kinetics(
+    kinetics: Kinetics, plates_n: NDArray[np.float64], mass_kg: float | None, file: str
+) -> tuple[Kinetics, list[Finding]]:
+    """Kinetics of a model in their true unit and with the package's sign: internal, positive as the angle is.
+
+    Plug-in Gait divides forces, moments and powers by body mass and states N, N mm and W. A reaction force that stays
+    in one ratio to a plate shows it, and which mass it was; without a plate the size of the numbers does. Nothing is
+    multiplied: the unit becomes N/kg, N m/kg, W/kg, and % for the reaction force in percent of body weight.
+
+    Its joint moments are those of the load on the joint: at push-off the ankle's is positive, where a moment of the
+    muscles towards dorsiflexion is negative. The ankle's impulse shows which of the two a file holds.
+
+    Parameters
+    ----------
+    kinetics : (values, channels)
+        Stream `moments`, (frame, channel) [N, N m, W as the file states].
+    plates_n : ndarray (frame, plate) [N]
+        Size of the force of each plate; no column where there is none.
+    mass_kg : float or None
+        Body mass that the file states.
+    file : str
+        Name of the file.
+
+    Returns
+    -------
+    kinetics : (values, channels)
+    findings : list of Finding
+
+    References
+    ----------
+    Vicon, Plug-in Gait Reference Guide: kinetic outputs are normalised by body mass.
+    """
+    kinetics, findings = _in_true_unit(kinetics, plates_n, mass_kg, file)
+    kinetics, more = _internal(kinetics, file)
+    return kinetics, findings + more
+
+
+def _in_true_unit(
+    kinetics: Kinetics, plates_n: NDArray[np.float64], mass_kg: float | None, file: str
+) -> tuple[Kinetics, list[Finding]]:
+    values, channels = kinetics
+    reaction = _by_plates(values, channels, plates_n) or _by_size(values, channels, _REACTION, "force")
+    joints = _by_size(values, channels, _LEG, "moment")
+    shown = reaction if reaction.per_kg is not None else joints
+    findings = []
+    wrong = [c.name for c in channels if c.unit in _PER_KG]
+    if wrong and shown.per_kg and joints.per_kg is not False:
+        count = len(wrong)
+        mass = f", {shown.mass_kg:.1f} kg" if shown.mass_kg else ""
+        what = (
+            f"{shown.words}; so {count} forces, moments and powers are per kg of body mass{mass}, though the unit that "
+            "the file states is not; given in N/kg, N m/kg and W/kg"
+        )
+        spoils = "" if shown.certain else "joint moments and powers if this is wrong; state the unit in the file"
+        findings.append(Finding("note" if shown.certain else "warning", "per body mass", file, what, spoils))
+        channels = tuple(replace(c, unit=_PER_KG.get(c.unit, c.unit)) for c in channels)
+    elif wrong and (reaction.per_kg, joints.per_kg) in ((True, False), (False, True)):
+        what = f"{reaction.words}, but {joints.words} N m; units are left as the file states them"
+        findings.append(Finding("warning", "per body mass", file, what, "forces, moments and powers; correct the file"))
+    if shown.mass_kg and mass_kg and abs(shown.mass_kg / mass_kg - 1) > AGREES:
+        what = f"the plates show {shown.mass_kg:.1f} kg of body mass, the file states {mass_kg:.1f} kg"
+        findings.append(Finding("warning", "body mass", file, what, "what is multiplied by body mass; correct it"))
+    of_weight = [c.name for c in channels if _NORMALISED.fullmatch(c.name) and c.unit != "%"]
+    if of_weight:
+        channels = tuple(replace(c, unit="%") if c.name in of_weight else c for c in channels)
+        what = f"{', '.join(of_weight[:2])}{', ...' * (len(of_weight) > 2)} are in percent of body weight"
+        findings.append(Finding("note", "per body mass", file, what, ""))
+    return (values, channels), findings
+
+
+def _by_plates(
+    values: NDArray[np.float64], channels: tuple[Channel, ...], plates_n: NDArray[np.float64]
+) -> Evidence | None:
+    """Ratio of a plate's force to a foot's reaction force, where it is the same over a step."""
+    for side in "LR":
+        own = [i for i, c in enumerate(channels) if _REACTION.fullmatch(c.name) and c.name[0] == side]
+        if len(own) != 3 or len(values) != len(plates_n):
+            continue
+        foot = np.linalg.norm(values[:, own], axis=1)
+        for place, plate in enumerate(plates_n.T, 1):
+            both = (foot > LOADED_PER_KG) & (plate > LOADED_N)
+            if both.sum() < 10:
+                continue
+            low, ratio, high = np.quantile(plate[both] / foot[both], [0.1, 0.5, 0.9])
+            if high - low > 2 * STEADY * ratio:
+                continue
+            at = int(np.argmax(np.where(both, plate, 0)))
+            words = f"plate {place} carries {plate[at]:.0f} N where {side}GroundReactionForce is {foot[at]:.4g}"
+            if abs(ratio - 1) <= AGREES:
+                return Evidence(False, words, True)
+            if LIGHTEST_KG <= ratio <= HEAVIEST_KG:
+                return Evidence(True, words, True, float(ratio))
+    return None
+
+
+def _by_size(
+    values: NDArray[np.float64], channels: tuple[Channel, ...], wanted: re.Pattern[str], quantity: str
+) -> Evidence:
+    own = [i for i, c in enumerate(channels) if wanted.fullmatch(c.name) and c.unit in _PER_KG]
+    sizes = np.abs(values[:, own])
+    sizes = sizes[np.isfinite(sizes)]
+    most = float(np.quantile(sizes, 0.995)) if sizes.size else 0.0
+    if most == 0:
+        return Evidence(None)
+    words = f"no {'reaction force' if quantity == 'force' else 'joint moment of a leg'} is beyond {most:.3g}"
+    if most > PER_KG_AT_MOST[quantity]:
+        return Evidence(False, words.replace("no ", "a ").replace("is beyond", "reaches"))
+    return Evidence(True, words)
+
+
+def _internal(kinetics: Kinetics, file: str) -> tuple[Kinetics, list[Finding]]:
+    values, channels = kinetics
+    joints = [i for i, c in enumerate(channels) if c.quantity == "moment" and not _OF_GROUND.match(c.name)]
+    if not joints:
+        return kinetics, []
+    sense, words = _push_off(values, channels)
+    how = "joint moments are internal (of the muscles) here, positive towards the positive angle"
+    if sense < 0:
+        what = f"{words}: plantarflexion is negative already; {how}"
+        return kinetics, [Finding("note", "moment sign", file, what, "")]
+    signs = np.ones(len(channels))
+    signs[joints] = -1.0
+    why = words + ": positive is plantarflexion" if sense else f"{words}; taken as Plug-in Gait counts them"
+    what = f"{why}; {len(joints)} joint moments turned around, {how}"
+    spoils = "" if sense else "the sign of joint moments if the file is of another model"
+    return (values * signs, channels), [Finding("note", "moment sign", file, what, spoils)]
+
+
+def _push_off(values: NDArray[np.float64], channels: tuple[Channel, ...]) -> tuple[int, str]:
+    """+1 where the ankle's moment is positive at push-off, -1 where it is negative, 0 where none is seen."""
+    ankles = [i for i, c in enumerate(channels) if _ANKLE.fullmatch(c.name) and c.unit in PUSH_OFF]
+    moments = values[:, ankles]
+    moments = moments[np.isfinite(moments)]
+    if not moments.size:
+        return 0, "no ankle moment shows the sign"
+    unit = channels[ankles[0]].unit
+    low, high = np.quantile(moments, [0.005, 0.995])
+    words = f"ankle moments go from {low:.2f} to {high:.2f} {unit}"
+    up, down = moments[moments > 0].sum(), -moments[moments < 0].sum()
+    if high > PUSH_OFF[unit] and up > ONE_SIDED * down:
+        return 1, words
+    if -low > PUSH_OFF[unit] and down > ONE_SIDED * up:
+        return -1, words
+    return 0, f"{words}, without a push-off"

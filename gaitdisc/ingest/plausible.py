@@ -1,0 +1,148 @@
+"""What a quantity can be: values beyond `data_schema/ranges.csv` are taken out before anything is filtered."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel, schema_folder
+from gaitdisc.errors import ReadError
+from gaitdisc.recording import Finding, Recording
+
+
+@dataclass(frozen=True)
+class PlausibleRange:
+    """Least and largest value that a quantity can have.
+
+    Parameters
+    ----------
+    quantity, unit : str
+        Of the channels that are meant.
+    channels : str
+        Pattern of their names; empty for all.
+    low, high : float
+        In that unit.
+
+    Examples
+    --------
+    >>> PlausibleRange("marker", "m", "", -100.0, 100.0).covers(Channel("RHEE.x", "marker", "m"))
+    True
+    """
+
+    quantity: str
+    unit: str
+    channels: str
+    low: float
+    high: float
+
+    def covers(self, channel: Channel) -> bool:
+        """Tell whether a channel is meant.
+
+        Parameters
+        ----------
+        channel : Channel
+            Any channel.
+        """
+        meant = (channel.quantity, channel.unit) == (self.quantity, self.unit)
+        return meant and (not self.channels or re.fullmatch(self.channels, channel.name) is not None)
+
+
+@cache
+def plausible_ranges() -> tuple[PlausibleRange, ...]:
+    """Ranges of `data_schema/ranges.csv`, in its order: the first that covers a channel holds.
+
+    Examples
+    --------
+    >>> next(one.high for one in plausible_ranges() if one.covers(Channel("knee_angle_r", "angle", "deg", "r")))
+    180.0
+    """
+    with (schema_folder() / "ranges.csv").open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    return tuple(
+        PlausibleRange(row["quantity"], row["unit"], row["channels"], float(row["low"]), float(row["high"]))
+        for row in rows
+    )
+
+
+def without_impossible(
+    streams: Mapping[str, Recording], begin_s: Mapping[str, float] | None = None
+) -> tuple[dict[str, Recording], list[Finding]]:
+    """Streams in which values beyond the range of their quantity are missing, and which they were.
+
+    Parameters
+    ----------
+    streams : mapping of str to Recording
+        Streams of one trial, in the units used inside.
+    begin_s : mapping of str to float, optional
+        Time of the file's first frame of each stream, where the streams are a part of the file [s].
+
+    Returns
+    -------
+    streams : dict of str to Recording
+        NaN where a value was taken out.
+    findings : list of Finding
+        One for each channel, with the first such frame, its number and its unit.
+
+    Raises
+    ------
+    ReadError
+        If it is a ground force: as for one that is missing, contacts would be wrong without a word.
+
+    Examples
+    --------
+    >>> knee = np.array([[10.0], [1e6], [30.0]])
+    >>> walk = Recording(np.arange(3) / 100, knee, (Channel("knee_angle_r", "angle", "deg", "r"),))
+    >>> kept, findings = without_impossible({"kinematics": walk})
+    >>> kept["kinematics"].values[:, 0].tolist(), findings[0].kind
+    ([10.0, nan, 30.0], 'out of range')
+    """
+    kept: dict[str, Recording] = {}
+    findings: list[Finding] = []
+    for key, recording in streams.items():
+        beyond = np.zeros(recording.values.shape, bool)
+        for place, channel in enumerate(recording.channels):
+            limits = next((one for one in plausible_ranges() if one.covers(channel)), None)
+            if limits is None:
+                continue
+            values = recording.values[:, place]
+            beyond[:, place] = (values < limits.low) | (values > limits.high)  # NaN is neither
+            if beyond[:, place].any():
+                before_s = recording.time[0] - (begin_s or {}).get(key, recording.time[0])
+                frames = round(before_s * recording.rate_hz) if before_s else 0
+                where = _where(recording, place, beyond[:, place], frames, limits)
+                findings.append(_finding(recording, place, beyond[:, place], where))
+        kept[key] = recording.with_values(np.where(beyond, np.nan, recording.values)) if beyond.any() else recording
+    return kept, findings
+
+
+def _where(recording: Recording, place: int, beyond: NDArray[np.bool_], before: int, limits: PlausibleRange) -> str:
+    """First value beyond the range, with its frame in the file, and how many there are."""
+    channel, first = recording.channels[place], int(np.argmax(beyond))
+    count, unit = int(beyond.sum()), "" if channel.unit == "1" else f" {channel.unit}"
+    more = f", as {'is' if count == 2 else 'are'} {count - 1} more of {len(beyond)} frames" if count > 1 else ""
+    return (
+        f"{recording.values[first, place]:.6g}{unit} in frame {before + first + 1} (t = {recording.time[first]:.6g} s) "
+        f"is beyond what it can be, {limits.low:g} to {limits.high:g}{unit}{more}"
+    )
+
+
+def _finding(recording: Recording, place: int, beyond: NDArray[np.bool_], where: str) -> Finding:
+    channel, file = recording.channels[place], recording.source.file
+    if channel.quantity in ("force", "vertical_force") and channel.unit == "N":
+        raise ReadError(
+            f"{file}: {channel.name} needs a plausible force in every sample",
+            where,
+            "Correct the cell or the unit and export the force again.",
+        )
+    spoils = "the unit or the name of the channel, if most of it is" if beyond.mean() > 0.5 else "these frames"
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], beyond, [False])).astype(np.int8))).reshape(-1, 2)
+    step = 1 / recording.rate_hz if len(beyond) > 1 else 0.0
+    spans = tuple((float(recording.time[a]), float(recording.time[b - 1] + step)) for a, b in edges)
+    what = f"{where}; taken as missing"
+    return Finding("warning", "out of range", file, what, f"{spoils}; correct the file", channel.name, spans)

@@ -1,0 +1,133 @@
+"""Angles that come round to where they began: a heading that passes 180 deg goes on at -180 deg, and nothing jumped.
+
+Whatever mixes neighbouring samples (a filter, a spline, a derivative, a mean over strides) has to see such an angle go
+on. A joint angle never comes round: where one leaps by 300 deg, it is bad data and stays as it is.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel
+from gaitdisc.recording.recording import Recording
+
+HEADINGS = re.compile(
+    r"^(pelvis_rotation|\w*(pelvis|thorax|trunk|head|foot_?progress(ion)?)_?angles?(_[rl])?(\.[xyz])?"
+    r"|(\w*_)?(heading|yaw)(_\w+)?)$",
+    re.IGNORECASE,
+)
+TURNS = {"deg": 360.0, "rad": 2 * np.pi}
+LEAST_LEAP = 0.75  # of a turn, from one sample to the next
+
+
+def turn_of(channel: Channel) -> float | None:
+    """One turn in the unit of a channel that may come round; None for every other channel.
+
+    Parameters
+    ----------
+    channel : Channel
+        Any.
+
+    Examples
+    --------
+    >>> turn_of(Channel("pelvis_rotation", "angle", "deg")), turn_of(Channel("knee_angle_r", "angle", "deg", "r"))
+    (360.0, None)
+    """
+    return TURNS.get(channel.unit) if channel.quantity == "angle" and HEADINGS.match(channel.name) else None
+
+
+def unwrapped(recording: Recording) -> Recording:
+    """Recording whose headings go on where they came round.
+
+    Parameters
+    ----------
+    recording : Recording
+        Any channels; only headings (of pelvis, trunk, head, foot) that leap by 270 deg or more from one sample to the
+        next, or by more than 180 deg over a gap, are changed.
+
+    Returns
+    -------
+    Recording
+        The same object where nothing came round.
+
+    Examples
+    --------
+    >>> x = np.array([[170.0], [178.0], [-174.0]])
+    >>> unwrapped(Recording(np.arange(3) / 100, x, (Channel("pelvis_rotation", "angle", "deg"),))).values.ravel()
+    array([170., 178., 186.])
+    """
+    values = recording.values
+    for column, channel in enumerate(recording.channels):
+        turn = turn_of(channel)
+        if turn is None:
+            continue
+        known = np.flatnonzero(np.isfinite(recording.values[:, column]))
+        x = recording.values[known, column]
+        leaps = np.diff(x)
+        least = np.where(np.diff(known) == 1, LEAST_LEAP, 0.5) * turn
+        back = -turn * np.round(leaps / turn) * (np.abs(leaps) > least)
+        if back.any():
+            values = np.array(values)
+            values[known[1:], column] += np.cumsum(back)
+    return recording if values is recording.values else replace(recording, values=values)
+
+
+def wrapped(recording: Recording, as_in: Recording) -> Recording:
+    """Recording whose headings come round again as those of another one do.
+
+    Parameters
+    ----------
+    recording : Recording
+        Unwrapped, then filtered or filled.
+    as_in : Recording
+        Before it was unwrapped; where its smallest value is not negative, headings run from 0 to 360 deg, else from
+        -180 to 180 deg.
+
+    Examples
+    --------
+    >>> x = np.array([[170.0], [178.0], [-174.0]])
+    >>> raw = Recording(np.arange(3) / 100, x, (Channel("pelvis_rotation", "angle", "deg"),))
+    >>> wrapped(unwrapped(raw), raw).values.ravel()
+    array([ 170.,  178., -174.])
+    """
+    plain = unwrapped(as_in)
+    if plain is as_in:
+        return recording
+    values = np.array(recording.values)
+    for column, channel in enumerate(recording.channels):
+        turn = turn_of(channel)
+        if turn is not None and not np.array_equal(plain.values[:, column], as_in.values[:, column], equal_nan=True):
+            low = 0.0 if np.nanmin(as_in.values[:, column]) >= 0 else -turn / 2
+            values[:, column] = (values[:, column] - low) % turn + low
+    return replace(recording, values=values)
+
+
+def in_one_turn(curves: NDArray[np.float64], turn: float) -> NDArray[np.float64]:
+    """Curves of a heading moved by whole turns, so that their mean is the mean of their directions.
+
+    Parameters
+    ----------
+    curves : ndarray (curve, point)
+        Each without a leap; NaN allowed.
+    turn : float
+        One turn in their unit.
+
+    Examples
+    --------
+    >>> in_one_turn(np.array([[170.0, 175.0], [-190.0, -185.0]]), 360.0)
+    array([[170., 175.],
+           [170., 175.]])
+    """
+    known = np.isfinite(curves).any(axis=1)
+    if not known.any():
+        return curves
+    middles = np.nanmean(curves[known], axis=1)
+    directions = np.exp(2j * np.pi * middles / turn)
+    middle = float(np.angle(directions.mean())) * turn / (2 * np.pi)
+    moved = np.array(curves)
+    moved[known] -= turn * np.round((middles - middle) / turn)[:, None]
+    return moved

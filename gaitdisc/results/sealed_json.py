@@ -1,0 +1,122 @@
+"""JSON that holds a hash of its own, and the hashes of the files beside it: what was changed since is refused."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from gaitdisc.results.on_disk import CHANGED, damaged
+
+OWN = "own_sha256"
+
+
+def read_sealed(path: Path) -> dict[str, Any]:
+    """Read a JSON file that `sealed_text` made, if it is as it was written.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Returns
+    -------
+    dict
+        What is named; without its own hash.
+
+    Raises
+    ------
+    SchemaError
+        If the file is missing, no JSON, without its own hash, or edited.
+    """
+    if not path.is_file():
+        raise damaged(path, "missing")
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+        own = data.pop(OWN, None) if isinstance(data, dict) else None
+        found = _own_sha256(data) if own is not None else None
+    except RecursionError:
+        raise damaged(path, "not readable as JSON (nested too deeply)") from None
+    except (OSError, ValueError) as error:
+        raise damaged(path, f"not readable as JSON ({error})") from error
+    if not isinstance(data, dict):
+        raise damaged(path, "no JSON object")
+    if own is None:
+        raise damaged(path, f"without a hash of its own: an older version of gaitdisc wrote it, or {OWN} was taken out")
+    if found != own:
+        raise damaged(path, CHANGED)
+    return data
+
+
+def sealed_text(data: Mapping[str, Any]) -> str:
+    """Write JSON with a hash of its own, which covers everything else in it.
+
+    Parameters
+    ----------
+    data : mapping
+        What is named.
+
+    Examples
+    --------
+    >>> sealed_text({"rate_hz": 100.0}) != sealed_text({"rate_hz": 999.0})
+    True
+    """
+    as_read = json.loads(json.dumps(data))
+    return json_text({**as_read, OWN: _own_sha256(as_read)})
+
+
+def json_text(data: Mapping[str, Any]) -> str:
+    """Write JSON the same way each time.
+
+    Parameters
+    ----------
+    data : mapping
+        What is named.
+    """
+    return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
+
+
+def file_sha256(path: Path) -> str:
+    """SHA-256 of a file's bytes.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    """
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def _own_sha256(data: Mapping[str, Any]) -> str:
+    """Of what is named, not of the bytes: another editor's line ends change no number."""
+    return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()
+
+
+def check_files(folder: Path, hashes: Mapping[str, str]) -> None:
+    """Refuse a folder of which a file is not as it was saved.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of a unit.
+    hashes : mapping of str to str
+        File name -> SHA-256.
+
+    Raises
+    ------
+    SchemaError
+        If a file is missing or changed.
+    """
+    for file, wanted in hashes.items():
+        path = folder / file
+        if not path.is_file():
+            raise damaged(path, "missing")
+        try:
+            found = file_sha256(path)
+        except OSError as error:
+            raise damaged(path, f"not readable ({error.strerror})") from error
+        if found != wanted:
+            raise damaged(path, CHANGED)

@@ -1,0 +1,108 @@
+"""Tables as CSV that a spreadsheet shows as they are: text that it would take for a formula begins with an apostrophe.
+
+Recordings come from elsewhere, and so do the words in them: a channel named `=HYPERLINK(...)` would be computed by the
+program that opens the table. The rule is OWASP's (CSV injection). Numbers stay numbers: -0.5 is no formula.
+"""
+
+from __future__ import annotations
+
+import csv
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from gaitdisc.whole_file import whole_file
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_FORMULA = re.compile(
+    r"'*[=+\-@\t\r\n＝＋－＠]"
+)  # apostrophes in front are counted, so that one can be taken off again
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+_NUMBERS = "biufcmM"  # kinds of a numpy column that hold no text
+_OTHER_SEPARATORS = re.compile(r"[;\t]")  # of a spreadsheet in another language
+
+
+def quoted(text: str) -> str:
+    """Text of a cell or heading, with an apostrophe in front where a spreadsheet would take it for a formula.
+
+    Parameters
+    ----------
+    text : str
+        Any; a number is given back as it is.
+
+    Examples
+    --------
+    >>> quoted("=1+1"), quoted("knee_angle_r"), quoted("-0.5"), quoted("-x")
+    ("'=1+1", 'knee_angle_r', '-0.5', "'-x")
+    """
+    return f"'{text}" if _FORMULA.match(text) and not _NUMBER.fullmatch(text) else text
+
+
+def unquoted(text: str) -> str:
+    """Text as it was before `quoted`.
+
+    Parameters
+    ----------
+    text : str
+        Of a cell or heading.
+
+    Examples
+    --------
+    >>> unquoted("'=1+1"), unquoted("it's"), unquoted(quoted("'=1"))
+    ('=1+1', "it's", "'=1")
+    """
+    return text[1:] if text.startswith("'") and _FORMULA.match(text[1:]) else text
+
+
+def write_csv(table: pd.DataFrame, path: Path, float_format: str | None = None) -> None:
+    """Write a table as CSV, whole or not at all.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Its index is not written.
+    path : Path
+        File to write.
+    float_format : str, optional
+        Of every number; by default as many digits as it takes to read the same number again.
+
+    Raises
+    ------
+    WriteError
+        If the file cannot be written.
+    """
+    safe = table.rename(columns=lambda name: quoted(str(name)))
+    for place in range(len(table.columns)):
+        if table.dtypes.iloc[place].kind not in _NUMBERS:
+            safe.isetitem(place, table.iloc[:, place].map(_safe).to_numpy(object))
+    words = [*map(str, safe.columns), *(cell for cell in safe.to_numpy(object).flat if isinstance(cell, str))]
+    quoting = csv.QUOTE_NONNUMERIC if any(map(_OTHER_SEPARATORS.search, words)) else csv.QUOTE_MINIMAL
+    with whole_file(path) as part:
+        safe.to_csv(part, index=False, lineterminator="\n", float_format=float_format, quoting=quoting)
+
+
+def read_csv(path: Path) -> pd.DataFrame:
+    """Read a table that `write_csv` wrote; an empty cell is a missing number.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    """
+    import pandas as pd
+
+    table = pd.read_csv(path, engine="python", keep_default_na=False, na_values=[""])
+    for place in range(len(table.columns)):
+        if table.dtypes.iloc[place].kind not in _NUMBERS:
+            table.isetitem(place, table.iloc[:, place].map(_plain).to_numpy())
+    return table.rename(columns=unquoted)
+
+
+def _safe(cell: Any) -> Any:
+    return quoted(cell) if isinstance(cell, str) else cell
+
+
+def _plain(cell: Any) -> Any:
+    return unquoted(cell) if isinstance(cell, str) else cell

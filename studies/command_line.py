@@ -1,0 +1,72 @@
+"""The command line of a study or a benchmark, read before its slow imports so that `--help` is quick."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from pathlib import Path
+from typing import Any, NamedTuple
+
+SHARED = Path(os.environ.get("GAITDISC_DATA", Path(__file__).parents[2] / "shared" / "data"))
+
+
+class Argument(NamedTuple):
+    """An argument by position, or with dashes an option, and what argparse is given for it."""
+
+    name: str
+    settings: dict[str, Any]
+
+
+def argument(name: str, meaning: str, default: Any = None, **settings: Any) -> Argument:
+    """An argument; the kind of its default decides how it is read, and without one it must be given.
+
+    Parameters
+    ----------
+    name : str
+        As it is typed: `folder`, `--seed`.
+    meaning : str
+        One line of help, with the unit.
+    default : bool, int, float, str, Path or list, optional
+        False makes a switch, a list takes several values.
+    **settings
+        `type`, `choices`, `metavar`, `required` or `nargs`, as argparse has them.
+    """
+    if default is False:
+        return Argument(name, {"help": meaning, "action": "store_true"})
+    if isinstance(default, list):
+        settings = {"nargs": "+", "type": type(default[0]), **settings}
+    elif default is not None:
+        settings = {"type": Path if isinstance(default, Path) else type(default), **settings}
+    if not name.startswith("-") and (default is not None or "default" in settings):
+        settings = {"nargs": "?", **settings}
+    if default is not None:
+        shown = " ".join(map(str, default)) if isinstance(default, list) else str(default)
+        meaning = f"{meaning} (default: {shown})"
+    return Argument(name, {"help": meaning.replace("%", "%%"), "default": default, **settings})
+
+
+QUICK = argument("--quick", "a small part of the study, as its test runs it", False)
+
+
+def command_line(module: str, description: str | None, *arguments: Argument) -> argparse.Namespace:
+    """What was typed; nothing where the file is imported and not run.
+
+    Parameters
+    ----------
+    module, description : str
+        `__name__` and `__doc__` of the file.
+    *arguments : Argument
+        In the order in which they are typed.
+    """
+    if module != "__main__":
+        return argparse.Namespace()
+    script = Path(sys.argv[0])
+    parser = argparse.ArgumentParser(
+        prog=f"python {script.resolve().parent.name}/{script.name}",
+        description=description,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    for name, settings in arguments:
+        parser.add_argument(name, **settings)
+    return parser.parse_args()

@@ -1,0 +1,87 @@
+"""What changes nothing of what is measured is said, or refused where nothing else is left to find."""
+
+import numpy as np
+import pytest
+from hidden_in_a_mass import MASS, Experiment, mass, record, with_load
+
+from gaitdisc.discovery.discover import discover
+from gaitdisc.discovery.inquiry import begin_inquiry
+from gaitdisc.discovery.places import places_of
+from gaitdisc.discovery.shaken import shaken
+from gaitdisc.simulation.refusal import SimulationError
+from gaitdisc.simulation.running import compile_simulation
+from gaitdisc.simulation.simulation_file import simulation_of
+
+PORT = '[ports.load]\nunit = "N"\n'
+MUTED = MASS.replace("push + load", "push + load + 0*wind").replace(PORT, PORT + '[ports.wind]\nunit = "N"\n')
+HEAT = MASS.replace("[inputs.push]", '[states.heat]\nunit = "J"\n[inputs.push]').replace(
+    "[observations]", 'heat = "c*v**2 + warmth"\n[observations]'
+)
+HEAT = HEAT.replace(PORT, PORT + '[ports.warmth]\nunit = "J/s"\n')
+
+
+@pytest.fixture(scope="module")
+def measured():
+    return record(with_load("-14*x**3"), 3, Experiment(trials=3, seconds=6.0))
+
+
+def findings_of(text, measured):
+    found, _ = discover(simulation_of(text), measured)
+    assert [(one.place, one.name) for one in found.effects] == [("load", "cubic_stiffness")]
+    return [one.line() for one in found.findings if one.kind == "no influence"]
+
+
+def test_a_port_times_0_is_said_and_the_others_are_searched(measured):
+    assert findings_of(MUTED, measured) == [
+        "warning: A mass on a spring, pushed: no influence: port 'wind' has no effect on what is measured; "
+        "spoils a search there: "
+        "nothing can be found where it would not show"
+    ]
+
+
+def test_a_state_that_nothing_sees_and_the_port_that_moves_it_are_said(measured):
+    port, state = findings_of(HEAT, measured)
+    assert "port 'warmth' has no effect on what is measured" in port
+    assert "no influence: state 'heat' has no effect on what is measured" in state
+
+
+def test_a_parameter_without_influence_is_no_candidate(measured):
+    more = MASS.replace("[ports.load]", "[parameters.colour]\nvalue = 3.0\n[ports.load]")
+    inquiry = begin_inquiry(simulation_of(more), measured)
+    assert "parameter 'colour' has no effect on what is measured" in inquiry.measured.findings[-1].what
+    assert all(one.place != "colour" for one in inquiry.search.candidates)
+    assert any(one.place == "k" for one in inquiry.search.candidates)
+
+
+def test_where_no_port_shows_the_simulation_is_refused(measured):
+    with pytest.raises(SimulationError, match=r"\[ports\] load: an effect can be found where it changes what is measured; "
+                       r"no effect on any of x comes of 'load'. Check what each is multiplied by"):  # fmt: skip
+        discover(simulation_of(MASS.replace("push + load", "push + 0*load")), measured)
+
+
+@pytest.mark.parametrize("expression", ["0*x", "k", "3.5"])
+def test_an_observation_that_never_changes_is_refused(measured, expression):
+    text = MASS.replace('[observations]\nx = "x"', f'[observations]\nx = "{expression}"')
+    with pytest.raises(SimulationError, match=r"\[observations\] x: a measured channel depends on a state or an input; "
+                       r"'x' is '.*', the same in every sample of 'A mass on a spring, pushed'. Correct"):  # fmt: skip
+        discover(simulation_of(text), measured)
+
+
+def test_a_port_that_shows_only_late_has_influence():
+    slow = MASS.replace("push + load - k*x", "push + load - k*delay(x, 5)")
+    inquiry = begin_inquiry(simulation_of(slow), record(mass(), 3, Experiment(trials=2, seconds=8.0)))
+    assert [place.name for place in inquiry.search.places] == ["load"]
+    assert inquiry.measured.findings == ()
+
+
+def test_all_has_influence_where_all_is_as_it_should_be(measured):
+    assert begin_inquiry(mass(), measured).measured.findings == ()
+
+
+def test_pushes_that_show_nowhere_explain_nothing(measured):
+    inquiry = begin_inquiry(simulation_of(MUTED), measured)
+    now = inquiry.as_read()
+    places = places_of(inquiry.search.base, compile_simulation(inquiry.search.base))
+    best, muted = shaken(now.shooting, now.account, places)
+    assert (best.place.name, muted.place.name) == ("load", "wind")
+    assert np.isfinite(best.evidence) and np.isinf(muted.evidence)

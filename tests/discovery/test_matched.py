@@ -1,0 +1,124 @@
+"""What does not fit a simulation is refused before anything is computed."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hidden_in_a_mass import Experiment, mass, record
+
+from gaitdisc.discovery.catalogue import Shape
+from gaitdisc.discovery.discover import discover
+from gaitdisc.discovery.inquiry import begin_inquiry
+from gaitdisc.discovery.matched import matched
+from gaitdisc.errors import GaitdiscError
+from gaitdisc.simulation.drive import Drive
+from gaitdisc.simulation.refusal import SimulationError
+
+
+@pytest.fixture(scope="module")
+def measured():
+    return replace(record(mass(), 3, Experiment(trials=2, seconds=4.0)), source="walk.csv")
+
+
+def with_value(measured, value, place):
+    observed = np.array(measured.observed)
+    observed[place] = value
+    return replace(measured, observed=observed)
+
+
+def with_inputs(measured, inputs):
+    return replace(measured, drive=Drive(measured.rate, measured.drive.time0, inputs, measured.drive.samples))
+
+
+def short(measured):
+    return measured.between(0, 9)
+
+
+def gap_in_push(measured):
+    inputs = np.array(measured.drive.inputs)
+    inputs[1, 7, 0] = np.nan
+    return with_inputs(measured, inputs)
+
+
+WRONG = {
+    "no observation": (
+        lambda m: replace(m, channels=("xx",)),
+        r"every measured channel is an observation of 'A mass on a spring, pushed': x; walk.csv has 'xx', the nearest "
+        r"is 'x'. Add 'xx' to the observations, or leave the channel out.",
+    ),
+    "twice": (
+        lambda m: replace(m, channels=("x", "x"), observed=np.repeat(m.observed, 2, axis=2)),
+        r"each channel has a name of its own; walk.csv has 'x' twice. Rename one.",
+    ),
+    "trial twice": (
+        lambda m: replace(m, trials=("1", "1")),
+        r"each trial has a name of its own; walk.csv has trial '1' twice. Rename one.",
+    ),
+    "inputs": (
+        lambda m: with_inputs(m, np.zeros((2, 200, 3))),
+        r"driven by 1 inputs: push; walk.csv has 3. Give one column for each, in this order.",
+    ),
+    "input gap": (
+        gap_in_push,
+        r"an input has a value in every sample; walk.csv, trial '2', 'push': nan in sample 8. Fill the gap",
+    ),
+    "no value": (
+        lambda m: with_value(m, np.nan, 1),
+        r"an observed channel has values in every trial; walk.csv, trial '2' has none of 'x'. Leave the trial",
+    ),
+    "constant": (
+        lambda m: with_value(m, 0.25, slice(None)),
+        r"an observed channel varies: 'x'; walk.csv has 0.25 in every sample. Take the channel out",
+    ),
+    "short": (short, r"a trial has 16 samples or more; walk.csv, trial '1' has 9. Leave it out, or record longer."),
+}
+
+
+@pytest.mark.parametrize("wrong", WRONG)
+def test_what_does_not_fit_is_refused_in_words(measured, wrong):
+    change, words = WRONG[wrong]
+    with pytest.raises(GaitdiscError, match=words):
+        discover(mass(), change(measured))
+
+
+def test_of_the_observations_those_that_were_measured_are_kept(measured):
+    both = mass().with_observation("v", "v")
+    assert matched(both, measured).observations == (("x", "x"),)
+    assert begin_inquiry(both, measured).search.base.observations == (("x", "x"),)
+    assert matched(mass(), measured) is not None and matched(mass(), measured) == mass()
+
+
+def test_channels_are_found_by_name_whatever_their_order(measured):
+    both = mass().with_observation("v", "v")
+    swapped = replace(
+        measured, channels=("v", "x"), observed=np.concatenate([0.5 * measured.observed, measured.observed], 2)
+    )
+    assert [name for name, _ in matched(both, swapped).observations] == ["v", "x"]
+
+
+@pytest.mark.parametrize(
+    ("piece", "words"),
+    [
+        (
+            "delay(x, -1)",
+            r"\[shape\] mine: a delay of a state is 0 s or more.*'delay\(x, -1\)' is -1 s. Write it without",
+        ),
+        (
+            "delay(x, 1e9)",
+            r"\[shape\] mine: .* the shortest, '1', lasts 4 s; 'delay\(x, .*\)' is 1e\+09 s. Write seconds",
+        ),
+    ],
+)
+def test_delays_of_the_users_own_effects_are_refused_as_those_of_the_file(measured, piece, words):
+    with pytest.raises(SimulationError, match=words):
+        discover(mass(), measured, (Shape("mine", (piece,)),))
+    discover_begins = begin_inquiry(mass(), measured, (Shape("mine", ("delay(x, 0.5*d)",), {"d": "delays"}),))
+    assert any(one.name == "mine" for one in discover_begins.search.candidates)
+
+
+def test_a_delay_of_the_simulation_longer_than_the_shortest_trial_is_refused(measured):
+    equations = (("x", "v"), ("v", "(push + load - k*delay(x, 1e9) - c*v)/m"))
+    with pytest.raises(
+        SimulationError, match=r"\[equations\] v: a delay is shorter than every trial; the shortest, '1'"
+    ):
+        discover(replace(mass(), equations=equations), measured)

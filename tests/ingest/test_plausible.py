@@ -1,0 +1,85 @@
+"""Values that cannot be are missing before anything is filtered, and named; no real file that is sound loses one."""
+
+from __future__ import annotations
+
+import csv
+
+import numpy as np
+import pytest
+
+from gaitdisc.channel import QUANTITIES, Channel, schema_folder, vocabulary
+from gaitdisc.errors import ReadError
+from gaitdisc.ingest.plausible import plausible_ranges, without_impossible
+from gaitdisc.ingest.reading import read_trial
+from gaitdisc.recording import Recording, Source
+from gaitdisc.units import known_units
+
+
+def _of(channel, *values):
+    return Recording(np.arange(len(values)) / 100, np.array(values)[:, None], (channel,), source=Source("walk.mot"))
+
+
+@pytest.mark.parametrize(
+    ("channel", "sound", "absurd"),
+    [
+        (vocabulary().named("knee_angle_r"), 140.0, 1e6),
+        (vocabulary().named("hip_flexion_l"), -40.0, -373.0),
+        (vocabulary().named("ankle_angle_l"), 40.0, 1e3),
+        (vocabulary().named("pelvis_rotation"), 720.0, 1e5),
+        (vocabulary().named("pelvis_tx"), 400.0, 1e7),
+        (Channel("RHEE.x", "marker", "m"), 9.0, 1e3),
+        (Channel("emg_sol_r", "emg", "V", "r"), -4.9, 2047.0),
+        (Channel("emg_sol_r", "emg", "1", "r"), 1790.0, 1e9),
+        (Channel("ankle_angle_r_moment", "moment", "N m/kg", "r"), -1.4, 1e3),
+        (Channel("ankle_angle_r_moment", "moment", "N m", "r"), -140.0, 1e6),
+        (Channel("RKneeForce.x", "force", "N/kg", "r"), 14.0, 1e4),
+        (Channel("RAnklePower.z", "power", "W/kg", "r"), 5.0, -1e4),
+    ],
+)
+def test_each_quantity_has_a_range(channel, sound, absurd):
+    kept, (finding,) = without_impossible({"kinematics": _of(channel, sound, absurd, sound)})
+    np.testing.assert_array_equal(kept["kinematics"].values[:, 0], [sound, np.nan, sound])
+    assert (finding.severity, finding.file, finding.channel) == ("warning", "walk.mot", channel.name)
+    unit = "" if channel.unit == "1" else f" {channel.unit}"
+    assert finding.what.startswith(f"{absurd:.6g}{unit} in frame 2 (t = 0.01 s) is beyond what it can be")
+    assert finding.spans == ((0.01, 0.02),)
+
+
+def test_a_ground_force_that_cannot_be_is_refused_as_a_missing_one_is():
+    force = vocabulary().named("ground_force_r_vy")
+    with pytest.raises(ReadError, match=r"walk\.mot: ground_force_r_vy needs .* 1e\+09 N in frame 3 \(t = 0\.02 s\)"):
+        without_impossible({"forces": _of(force, 700.0, 0.0, 1e9)})
+
+
+def test_a_channel_beyond_its_range_throughout_has_a_wrong_unit():
+    _, (finding,) = without_impossible({"emg": _of(Channel("emg_ta_r", "emg", "V", "r"), 2047.0, 2046.0, 2047.0)})
+    assert "as are 2 more of 3 frames" in finding.what
+    assert finding.spoils.startswith("the unit or the name of the channel")
+
+
+def test_the_table_of_ranges_uses_known_words():
+    with (schema_folder() / "ranges.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert {row["quantity"] for row in rows} == set(QUANTITIES) - {"signal"}
+    assert {row["unit"] for row in rows} <= set(known_units())
+    assert all(one.low < one.high for one in plausible_ranges())
+
+
+def test_every_channel_of_the_vocabulary_has_a_range():
+    assert [c.name for c in vocabulary().channels if not any(one.covers(c) for one in plausible_ranges())] == []
+
+
+def test_real_files_lose_only_what_is_wrong_in_them(real_trials):
+    """One file is not tracked outside of 1.06 to 3.23 s; three state V for EMG in counts of a converter."""
+    files = {path.name for path, _, findings in real_trials if any(f.kind == "out of range" for f in findings)}
+    assert len(real_trials) > 55
+    assert files == {"IK_gait.mot", "parameterOverflow.c3d", "sub_labels.c3d", "PlugInC3D.c3d"}
+
+
+def test_what_a_crop_leaves_out_is_not_judged(gait_data):
+    path = gait_data / "opensim_walks" / "mrs_emg_walking" / "IK_gait.mot"
+    assert "out of range" not in {f.kind for f in read_trial(path, crop_s=(1.06, 3.23)).findings}
+    (said,) = [f for f in read_trial(path, crop_s=(1.06, 4.0)).findings if f.channel == "hip_flexion_r"]
+    frame = int(said.what.split("in frame ")[1].split()[0])
+    line = path.read_text().splitlines()[10 + frame]  # eleven lines of header and labels before frame 1
+    assert float(said.what.split(" deg")[0]) == pytest.approx(float(line.split()[7]), rel=1e-5)

@@ -1,0 +1,68 @@
+"""A delay that has no meaning is refused with its seconds and its place."""
+
+import pytest
+
+from gaitdisc.errors import SchemaError
+from gaitdisc.simulation.delay_check import refuse_delays
+from gaitdisc.simulation.parts import Input, Parameter, State
+from gaitdisc.simulation.python_simulation import python_simulation
+from gaitdisc.simulation.refusal import SimulationError
+from gaitdisc.simulation.simulation_file import simulation_of
+
+TEXT = """[states.x]
+[inputs.u]
+[parameters.late]
+value = {late}
+[equations]
+x = "u - delay({what})"
+"""
+
+
+def late(what, value=0.2):
+    return TEXT.format(what=what, late=value)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (
+            late("x, -1"),
+            r"line 6, \[equations\] x: a delay of a state is 0 s or more: .*; 'delay\(x, -1\)' is -1",
+        ),
+        (late("x, -late"), r"'delay\(x, -late\)' is -0.2 s \(-late\). Write it without the sign"),
+        (late("x, late", -0.3), r"'delay\(x, late\)' is -0.3 s \(late\)"),
+        (late("x, 0/0"), r"a delay is a number of seconds; 'delay\(x, 0/0\)' is nan s. Write a number of 0 or more"),
+        (late("u, late - 1e308*10"), r"is -inf s \(late - .*Write a number of 0 or more"),
+        (
+            late("x, 1") + '[[effects]]\nequation = "x"\nterm = "delay(x, -2)"\n',
+            r"\[effects\] 0: .*'delay\(x, -2\)' is -2",
+        ),
+        (late("x, 1") + '[observations]\nseen = "delay(x, -3)"\n', r"line 8, \[observations\] seen: .* is -3 s"),
+    ],
+)
+def test_a_file_with_such_a_delay_is_refused_when_it_is_read(text, words):
+    with pytest.raises(SchemaError, match=words):
+        simulation_of(text)
+
+
+@pytest.mark.parametrize("what", ["x, 0", "x, late", "u, -0.05", "u, 0.05", "x, 2*late - 0.1"])
+def test_delays_that_have_a_meaning_are_read(what):
+    assert "delay" in simulation_of(late(what)).equations[0][1]
+
+
+@pytest.mark.parametrize("what", ["x, 1e9", "x, 40*late", "u, -8", "u, 8"])
+def test_a_delay_as_long_as_the_shortest_trial_is_refused(what):
+    simulation = simulation_of(late(what))
+    refuse_delays(simulation)
+    with pytest.raises(SimulationError, match=r"\[equations\] x: a delay is shorter than every trial; the shortest, 'b', "
+                       r"lasts 8 s; 'delay.*' is .* s.* Write seconds, or leave the trial out"):  # fmt: skip
+        refuse_delays(simulation, 8.0, "b")
+
+
+def test_a_python_object_with_such_a_delay_is_refused_as_well():
+    model = python_simulation("f", lambda t, x, u, p, ports: x, [State("x")], [Input("u")], [Parameter("d", 0.5)])
+    refuse_delays(model.with_input("u", "delay(u, -d)"), 2.0, "a")
+    with pytest.raises(SimulationError, match=r"\[inputs\] u: .*'delay\(u, 9\*d\)' is 4.5 s"):
+        refuse_delays(model.with_input("u", "delay(u, 9*d)"), 2.0, "a")
+    with pytest.raises(SimulationError, match=r"\[observations\] x: .*'delay\(x, -1\)' is -1 s"):
+        refuse_delays(model.with_observation("x", "delay(x, -1)"), 2.0, "a")

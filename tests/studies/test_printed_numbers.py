@@ -1,0 +1,96 @@
+import shlex
+
+import pytest
+from command_line import SHARED
+from printed_numbers import FORMS, Block, answer, apart, blocks, difference, first_two, pages, quoted, renewed, scores
+
+PAGES = {page.name: page.read_text(encoding="utf-8") for page in pages()}
+EVERY = [(name, block) for name, text in PAGES.items() for block in blocks(text)]
+
+
+@pytest.mark.parametrize(
+    ("printed", "words"),
+    [
+        ("falls from 1.65 to 0.22 deg", ""),
+        ("falls from 1.66 to 0.21 deg", ""),  # the last digit is what another processor rounds otherwise
+        ("falls from 1.67 to 0.22 deg", "1.65 is printed as 1.67"),
+        ("rises from 1.65 to 0.22 deg", "'falls from 1.65 to 0.22 deg' is printed as 'rises"),
+        ("falls from −1.65 to 0.22 deg", "1.65 is printed as −1.65"),
+        ("falls from 1.65 to 0.22 deg\nmore", "1 lines are printed as 2"),
+    ],
+)
+def test_words_are_compared_exactly_and_numbers_to_their_last_digit(printed, words):
+    assert apart("falls from 1.65 to 0.22 deg", printed).startswith(words)
+    assert bool(apart("falls from 1.65 to 0.22 deg", printed)) == bool(words)
+
+
+def test_numbers_of_one_machine_are_not_compared_but_their_words_are():
+    block = Block(("gaitdisc x",), "measured", "run [s] 0.41")
+    assert difference(block, "run [s] 0.95") == ""
+    assert "fit [s]" in difference(block, "fit [s] 0.41")
+
+
+def test_powers_and_thousands():
+    assert apart("1,690 calls, 9e-8", "1,691 calls, 1e-7") == ""
+    assert "1,690" in apart("1,690 calls", "1,700 calls")
+
+
+def test_a_quotation_may_be_broken_elsewhere():
+    assert apart("> a b\n> c 1.0", "> a\n> b c 1.1") == ""
+
+
+def test_a_block_is_rewritten_and_the_rest_of_the_page_left():
+    text = "before 1\n<!-- printed by: gaitdisc x; gaitdisc y | code -->\nold\n<!-- end -->\nafter 2\n"
+    [block] = blocks(text)
+    assert (block.commands, block.form, block.written) == (("gaitdisc x", "gaitdisc y"), "code", "old")
+    assert renewed(text, lambda _: "new") == text.replace("old", "new")
+    assert renewed(text, lambda _: None) == text
+
+
+def test_forms_take_what_readers_need():
+    assert quoted("One. Two. Three.\nreport: here") == "> One. Two. Three."
+    assert first_two("One 1.5 deg. Two. Three.\nreport: here") == "> One 1.5 deg. Two. …"
+    printed = "  W01\n\n        network\nW01  0.68\n────────\n\nmedian\n"
+    assert scores(printed) == "```\n        network\nW01  0.68\n```"
+
+
+def test_marks_are_whole_and_forms_known():
+    for name, text in PAGES.items():
+        assert text.count("<!-- printed by:") == text.count("<!-- end -->") == len(blocks(text)), name
+    assert {block.form for _, block in EVERY} <= set(FORMS)
+    assert {"README.md", "discover.md", "reconstruct.md", "results.md"} <= {name for name, _ in EVERY}
+
+
+def test_a_reader_finds_the_commands_of_every_block_of_the_readme():
+    for block in blocks(PAGES["README.md"]):
+        for command in block.commands:
+            assert PAGES["README.md"].replace(f"printed by: {'; '.join(block.commands)}", "").count(command), command
+
+
+def test_one_command_has_one_answer_on_all_pages():
+    answers: dict[tuple[object, ...], str] = {}
+    for name, block in EVERY:
+        first = answers.setdefault((block.commands, block.form), block.written)
+        assert apart(first, block.written) == "", name
+
+
+def test_friction_in_the_readme_is_that_of_the_results():
+    [block] = [block for _, block in EVERY if "emps.py" in block.commands[-1]]
+    assert "carriage port: 20.5 N" in block.written
+    assert "dry friction of 20.5 N, published as 20.4 N" in PAGES["README.md"]
+
+
+def test_the_first_example_of_the_readme_prints_what_stands_there(tmp_path):
+    [block] = [block for block in blocks(PAGES["README.md"]) if "gaitdisc discover" in block.commands[-1]]
+    assert difference(block, str(answer(block, tmp_path, {}))) == ""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "last", sorted({block.commands[-1] for _, block in EVERY}), ids=lambda one: shlex.split(one)[1]
+)
+def test_every_block_is_what_its_command_prints(last, tmp_path):
+    block = next(block for _, block in EVERY if block.commands[-1] == last)
+    if "DATA" in last and not SHARED.is_dir():
+        pytest.skip(f"real recordings are absent: {SHARED} (set GAITDISC_DATA)")
+    assert difference(block, str(answer(block, tmp_path, {}))) == ""

@@ -1,0 +1,135 @@
+"""Words of this house alone stay out of what a user reads."""
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+import typer.main
+
+from gaitdisc.cli import app
+
+PROJECT = Path(__file__).parents[1]
+# In the field's English: reconstructed, estimated, reported, distinguished, requested, tested, fitted, stable, added.
+PRIVATE = re.compile(
+    r"\b(told|tells?|telling|asked|asks?|tamed?|let in|lets in|accounts?|inquir(?:y|ies)|judge[sd]?|judging|manieth)\b",
+    re.IGNORECASE,
+)
+# Where the word is no private one: what stands there, and why.
+ALLOWED: dict[str, str] = {}
+# Files of branches that are not merged yet: emptied with them.
+WAITING: tuple[str, ...] = (
+    "docs/chapter3.md",
+    "docs/discover.md",
+    "docs/results.md",
+    "data_schema/channels.csv",
+    "data_schema/discovery.schema.json",
+    "gaitdisc/batch/nominal_model.py",
+    "gaitdisc/batch/reconstruct_recording.py",
+    "gaitdisc/batch/reconstruct_study.py",
+    "gaitdisc/batch/search_study.py",
+    "gaitdisc/batch/sensed_walks.py",
+    "gaitdisc/batch/target_walks.py",
+    "gaitdisc/discovery/wording.py",
+    "gaitdisc/ingest/angle_unit.py",
+    "gaitdisc/ingest/c3d_layout.py",
+    "gaitdisc/ingest/c3d_points.py",
+    "gaitdisc/ingest/new_study.py",
+    "gaitdisc/ingest/storage_columns.py",
+    "gaitdisc/ingest/streams.py",
+    "gaitdisc/ingest/turbulence_cutout.py",
+    "gaitdisc/recording/field.py",
+    "gaitdisc/recording/recording.py",
+    "gaitdisc/recording/trial.py",
+    "gaitdisc/report/discovery_tables.py",
+    "gaitdisc/report/mismatch_sentences.py",
+    "gaitdisc/report/naming_figure.py",
+    "gaitdisc/report/naming_table.py",
+    "gaitdisc/response/fit_response.py",
+    "gaitdisc/signals/butterworth.py",
+    "gaitdisc/signals/contact_force.py",
+    "gaitdisc/signals/late_change.py",
+    "gaitdisc/simulation/measured.py",
+    "gaitdisc/turbulence/box.py",
+    "gaitdisc/turbulence/isotropic.py",
+)  # end of WAITING
+
+
+def found_in(text: str) -> list[str]:
+    """Private words, each with what stands around it."""
+    for allowed in ALLOWED:
+        text = text.replace(allowed, "")
+    return [text[max(0, m.start() - 40) : m.end() + 30].replace("\n", " ") for m in PRIVATE.finditer(text)]
+
+
+def waits(path: Path) -> bool:
+    """Whether the file is another branch's."""
+    return path.relative_to(PROJECT).as_posix() in WAITING
+
+
+def prose(page: str) -> str:
+    """A page of Markdown without code, links and names of modules."""
+    page = re.sub(r"```.*?```", "", page, flags=re.DOTALL)
+    page = re.sub(r"^:::.*$", "", page, flags=re.MULTILINE)
+    return re.sub(r"`[^`\n]*`|\]\([^)]*\)", "", page)
+
+
+PAGES = [PROJECT / "README.md", PROJECT / "CONTRIBUTING.md", *sorted((PROJECT / "docs").glob("*.md"))]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_pages(page):
+    assert waits(page) or found_in(prose(page.read_text(encoding="utf-8"))) == []
+
+
+def commands(command, name="gaitdisc"):
+    """Every command with its name."""
+    yield name, command
+    for word, one in getattr(command, "commands", {}).items():
+        yield from commands(one, f"{name} {word}")
+
+
+def test_help_of_every_command():
+    helps = {
+        name: " ".join([command.help or "", *(getattr(one, "help", None) or "" for one in command.params)])
+        for name, command in commands(typer.main.get_command(app))
+    }
+    assert len(helps) > 10
+    assert {name: found for name, text in helps.items() if (found := found_in(text))} == {}
+
+
+def sentences(path: Path) -> list[str]:
+    """String literals with a space in them, docstrings apart; a text that is joined from parts is one."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    bodies = [node.body for node in ast.walk(tree) if hasattr(node, "body") and isinstance(node.body, list)]
+    docstrings = {id(body[0].value) for body in bodies if body and isinstance(body[0], ast.Expr)}
+    texts = [node for node in ast.walk(tree) if isinstance(node, ast.Constant) and id(node) not in docstrings]
+    return [node.value for node in texts if isinstance(node.value, str) and " " in node.value.strip()]
+
+
+def test_what_pages_findings_and_errors_are_made_of():
+    found = {}
+    for path in sorted((PROJECT / "gaitdisc").rglob("*.py")):
+        words = [word for text in sentences(path) for word in found_in(text)]
+        if words and not waits(path):
+            found[str(path.relative_to(PROJECT))] = words
+    assert found == {}
+
+
+def test_templates_and_files_that_users_open():
+    paths = [*(PROJECT / "gaitdisc").rglob("*.j2"), *(PROJECT / "gaitdisc").rglob("*.toml")]
+    paths += [path for path in (PROJECT / "data_schema").iterdir() if path.is_file()]
+    texts = {path.name: path.read_text(encoding="utf-8") for path in paths if not waits(path)}
+    assert {name: found for name, text in texts.items() if (found := found_in(text))} == {}
+
+
+def test_first_lines_of_studies_and_benchmarks():
+    """They are the text of `--help`."""
+    for path in [*(PROJECT / "studies").glob("*.py"), *(PROJECT / "benchmarks").glob("*.py")]:
+        assert found_in(ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or "") == [], path.name
+
+
+def test_the_list_finds_a_private_word_and_leaves_code_alone():
+    assert found_in("7 states are told with an RMSE") == ["7 states are told with an RMSE"]
+    assert found_in("Joint angles are reconstructed; untold, tellurium") == []
+    assert prose("as `told` in\n```\ntold\n```\n::: gaitdisc.account\n") == "as  in\n\n\n"
