@@ -54,7 +54,7 @@ def histograms_figure(cells: Sequence[FieldCell], name: str, source: str) -> Fig
         axes.set_yscale("log")
         axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
         axes.set_xlabel(f"reconstructed − measured [{cells[0].unit}]")
-    row[0].set_ylabel(f"density [1/{cells[0].unit}]" if cells[0].unit != "1" else "density")
+    row[0].set_ylabel(f"density [1/{cells[0].unit}]" if cells[0].unit != "1" else "density [1]")
     handles = lines_of(dict(zip(routes, ROUTE_LOOKS, strict=False)))
     drawn.legend(handles=handles, loc="upper center", ncols=min(3, len(routes)), bbox_to_anchor=(0.5, 1.0))
     caption = (
@@ -112,7 +112,7 @@ def boxes_figure(cells: Sequence[FieldCell], name: str, source: str, ceilings: d
         axes.set_xticks(range(1, len(routes) + 1), words)
         axes.set_title(split)
         axes.set_ylim(bottom=0)
-    row[0].set_ylabel("relative L2 error")
+    row[0].set_ylabel("relative L2 error [1]")
     legend(drawn, lines_of({"the field's own norm": Look("#888888", "-", ""),
                             "POD ceiling": Look("#00875a", (0, (4.0, 1.6)), "")}))  # fmt: skip
     numbers = pd.DataFrame([(c.split, c.route, c.run, c.relative_l2, c.r2) for c in cells],
@@ -140,7 +140,7 @@ def latent_figure(found: pd.DataFrame, name: str, source: str) -> Figure:
                   markersize=4, label=split)  # fmt: skip
     first = found[found["split"] == splits[0]]
     right.plot(first["nodes"], first["energy_left"], "o-", color="#111111", markersize=4)
-    for axes, words in ((left, "relative L2 error of SHRED"), (right, "share of energy beyond so many modes")):
+    for axes, words in ((left, "relative L2 error of SHRED [1]"), (right, "energy beyond so many modes, share [1]")):
         axes.set_xscale("log", base=2)
         axes.set_xticks(list(first["nodes"]), [str(n) for n in first["nodes"]])
         axes.minorticks_off()

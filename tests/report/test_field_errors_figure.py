@@ -51,4 +51,5 @@ def test_both_curves_of_the_latent_size():
     )
     left, right = latent_figure(found, "c", "As Fig. 5.1").drawn.axes
     assert [line.get_label() for line in left.lines[:2]] == ["a", "b"]
+    assert left.get_ylabel().endswith("[1]") and right.get_ylabel().endswith("[1]")
     assert right.lines[0].get_ydata().tolist() == [0.3, 0.3]

@@ -12,5 +12,7 @@ def test_the_mean_spectrum_stands_beside_the_slope():
     spectrum, slope = figure.drawn.axes[0].lines[:2]
     np.testing.assert_allclose(spectrum.get_ydata(), 3.0 * k ** (-5 / 3))
     np.testing.assert_allclose(slope.get_ydata(), spectrum.get_ydata())
+    labels = [axis.get_label_text() for axes in figure.drawn.axes for axis in (axes.xaxis, axes.yaxis)]
+    assert [label for label in labels if not label.endswith("]")] == ["snapshot"]  # a count
     assert "microscale 25.0" in figure.caption
     assert "dissipation 0.1000, power 0.1" in figure.caption
