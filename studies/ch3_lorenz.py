@@ -8,8 +8,13 @@ the accuracy until the truth first changes lobes, and the time that the forecast
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
+
+from command_line import QUICK, argument, command_line
+
+GIVEN = command_line(
+    __name__, __doc__, argument("folder", "where the report goes", Path("ch3_lorenz")), QUICK
+)  # before the slow imports
 
 import numpy as np
 import pandas as pd
@@ -104,5 +109,4 @@ def jump_table(cells: Cells) -> Table:
 
 
 if __name__ == "__main__":
-    words = [word for word in sys.argv[1:] if word != "--quick"]
-    print(run("--quick" in sys.argv, *map(Path, words[:1])).page)
+    print(run(GIVEN.quick, GIVEN.folder).page)

@@ -9,8 +9,13 @@ has the bias among its states: the chapter's neutral result.
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
+
+from command_line import QUICK, argument, command_line
+
+GIVEN = command_line(
+    __name__, __doc__, argument("folder", "where the report goes", Path("ch3_measurement_bias")), QUICK
+)  # before the slow imports
 
 import numpy as np
 from ch3_report import Result, blocks_of, written
@@ -98,5 +103,4 @@ def filters(record: Record) -> str:
 
 
 if __name__ == "__main__":
-    words = [word for word in sys.argv[1:] if word != "--quick"]
-    print(run("--quick" in sys.argv, *map(Path, words[:1])).page)
+    print(run(GIVEN.quick, GIVEN.folder).page)

@@ -1,37 +1,49 @@
 """Section 3.4 over twelve noise seeds: every cell, its forecast from the true state and from the estimated one.
 
-    python studies/ch3_seeds.py FOLDER [--seeds 12] [--sets van_der_pol_text ...]
-    python studies/ch3_seeds.py FOLDER --write-docs
+    python studies/ch3_seeds.py FOLDER [--seeds 12] [--sets van_der_pol_text lorenz]
+    python studies/ch3_seeds.py FOLDER --keep
 
-Each cell is a file of its own in FOLDER, written whole: a run that was stopped goes on where it stopped. With
-`--write-docs` nothing is computed: what FOLDER holds becomes `studies/ch3_cells.csv`, and from that table alone are
-written what `recommend` answers from and the marked tables of README.md and docs (`ch3_pages.py`).
+Each cell is a file of its own in FOLDER, written whole: a run that was stopped goes on where it stopped. With `--keep`
+nothing is computed: what FOLDER holds becomes `studies/ch3_cells.csv`, which `ch3_tables.py` prints from, and what
+`recommend` answers from.
 """
 
 from __future__ import annotations
 
-import argparse
+from pathlib import Path
+
+from command_line import argument, command_line
+
+SEEDS = 12
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument("folder", "a file for each cell that was computed", type=Path),
+    argument("--seeds", "noise seeds 0 to one less than this", SEEDS),
+    argument("--sets", "names of sets, all where absent", nargs="+"),
+    argument("--keep", "compute nothing; write studies/ch3_cells.csv and what `recommend` answers from", False),
+)  # before the slow imports
+
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import ch3_lorenz
 import ch3_measurement_bias
 import ch3_van_der_pol
 import numpy as np
 import pandas as pd
-from ch3_pages import CELLS, write_docs
+from ch3_tables import CELLS, measured
 
 from gaitdisc.discrepancy.cell import cell_of
 from gaitdisc.discrepancy.error_signal import Approach
 from gaitdisc.discrepancy.methods import Method, MethodSettings
+from gaitdisc.discrepancy.recommend import FOUND, evidence_of
 from gaitdisc.discrepancy.record import Conditions, recorded
 from gaitdisc.discrepancy.system import System
 from gaitdisc.report.table import save_table
-from gaitdisc.results.discrepancy_cell import DiscrepancyCell
+from gaitdisc.results.discrepancy_cell import METHODS, DiscrepancyCell
 
-SEEDS = 12
 NOISES = (0.0, 0.001, 0.01, 0.1)
 FOUR: tuple[Method, ...] = ("sindy", "dmd", "gp", "nn")
 LONG, SHORT = 50.0, 10.0
@@ -155,30 +167,37 @@ def rows_of(cell: DiscrepancyCell) -> pd.DataFrame:
 
 
 def gathered(folder: Path) -> pd.DataFrame:
-    """Every cell of a folder, in order.
+    """Every cell of a folder, in the order of the sets, methods, noises and seeds.
 
     Parameters
     ----------
     folder : Path
         Of `compute`.
     """
-    files = sorted(path for path in folder.glob("*.csv") if path.name.rsplit("-", 3)[0].removesuffix("_bopdmd") in cell_sets())
-    return pd.concat([pd.read_csv(path, keep_default_na=True) for path in files], ignore_index=True)
+    table = pd.concat([pd.read_csv(path) for path in sorted(folder.glob("*-*-*-*.csv"))], ignore_index=True)
+    order = {name: k for k, name in enumerate([*cell_sets(), *METHODS])}
+    rank = table.assign(set=table["set"].map(order), method=table["method"].map(order))
+    return table.loc[rank.sort_values(["set", "method", "noise", "seed"], kind="stable").index]
+
+
+def keep(folder: Path) -> None:
+    """Write the table of all cells, and what `recommend` answers from.
+
+    Parameters
+    ----------
+    folder : Path
+        Of `compute`.
+    """
+    save_table(gathered(folder), CELLS)
+    seeds = measured()
+    save_table(evidence_of(seeds[(seeds["approach"] == "dynamics") & (seeds["variant"] == "right")]), FOUND)
 
 
 if __name__ == "__main__":
-    asked = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    asked.add_argument("folder", type=Path, metavar="FOLDER", help="a file for each cell that was computed")
-    asked.add_argument("--seeds", type=int, default=SEEDS, help="noise seeds 0 to this less 1 (default: %(default)s)")
-    asked.add_argument("--sets", nargs="+", default=list(cell_sets()), choices=list(cell_sets()), metavar="SET",
-                       help="of " + ", ".join(cell_sets()))  # fmt: skip
-    asked.add_argument("--write-docs", action="store_true", help="compute nothing; write the tables from FOLDER")
-    given = asked.parse_args()
-    given.folder.mkdir(parents=True, exist_ok=True)
-    if given.write_docs:
-        save_table(gathered(given.folder), CELLS)
-        write_docs()
+    if GIVEN.keep:
+        keep(GIVEN.folder)
     else:
+        GIVEN.folder.mkdir(parents=True, exist_ok=True)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            compute(given.folder, given.sets, given.seeds)
+            compute(GIVEN.folder, GIVEN.sets or list(cell_sets()), GIVEN.seeds)

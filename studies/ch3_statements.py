@@ -108,7 +108,11 @@ def answered(cells: Cells, approach: str, noise: float) -> str:
         parts = [f"{METHOD_WORDS[m]} {_accuracy([c for c in some if c.method == m])}" for m in METHOD_WORDS]
         if some:
             said.append(f"{variant}: {', '.join(part for part in parts if not part.endswith(' '))}")
-    return "forecast from the estimated start (from the true state, an oracle; reconstruction) [%]; " + "; ".join(said) if said else "not computed"
+    return (
+        "forecast from the estimated start (from the true state, an oracle; reconstruction) [%]; " + "; ".join(said)
+        if said
+        else "not computed"
+    )
 
 
 def _accuracy(cells: Sequence[DiscrepancyCell]) -> str:

@@ -122,7 +122,8 @@ def _fitted_end(
             return lost
         normal, gradient, cost = slopes.T @ slopes, slopes.T @ error, float(error @ error)
         while damping < 1e6:
-            tried = first - np.linalg.lstsq(normal + damping * np.diag(np.diag(normal)), gradient, rcond=None)[0]
+            step = np.linalg.lstsq(normal + damping * np.diag(np.diag(normal)), gradient, rcond=None)[0]
+            tried = np.asarray(first - step, float)
             end_there, error_there = missed(tried)
             if float(error_there @ error_there) <= cost:  # never of NaN
                 break

@@ -13,7 +13,7 @@ from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import Look
 from gaitdisc.report.panels import Room, decades, in_style, legend, lines_of, panels
 from gaitdisc.report.wording import unit_text
-from gaitdisc.results.discrepancy_cell import FORECAST, PARTS, DiscrepancyCell, PartAccuracy, cells_table
+from gaitdisc.results.discrepancy_cell import FORECAST, PART_WORDS, PARTS, DiscrepancyCell, PartAccuracy, cells_table
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -35,7 +35,6 @@ METHOD_LOOKS = {
 }
 KNOWN, AUGMENTED = Look("#1f4fc8", "-", ""), Look("#111111", (0, (4.0, 1.6)), "")
 HORIZONS_S = tuple(np.round(np.geomspace(0.2, 20.0, 40), 2))
-TITLE_WORDS = dict(zip(PARTS, ("reconstruction", "forecast, true start", "forecast, estimated start"), strict=True))
 MOST_DRAWN = 1000  # points of a line
 BAR = 0.16  # of the distance between two noises, for one method
 
@@ -79,9 +78,13 @@ def _error_lines(axes: Axes, cell: DiscrepancyCell, part: str, channel: int) -> 
         table[model] = (found.truth - getattr(found, model))[some, channel]
         axes.plot(table["t_s"], table[model], color=look.colour, linestyle=look.line, linewidth=0.8)
     diverged = "" if found.diverged_s is None else f"\ndiverged at t = {found.begins_s + found.diverged_s:.2f} s"
-    axes.set_title(f"{METHOD_WORDS[cell.method]}: {TITLE_WORDS[part]}{diverged}")
+    axes.set_title(f"{METHOD_WORDS[cell.method]}: {PART_WORDS[part]}{diverged}")
     axes.set_xlim(found.begins_s, found.begins_s + found.time[-1])
     return table
+
+
+def _rate_unit(unit: str) -> str:
+    return unit_text(f"{unit}2" if unit.endswith("/s") else f"{unit}/s")
 
 
 def _unit(cell: DiscrepancyCell, channel: int) -> str:
@@ -89,9 +92,7 @@ def _unit(cell: DiscrepancyCell, channel: int) -> str:
 
 
 @in_style
-def system_figure(
-    cell: DiscrepancyCell, missing: NDArray[np.float64], name: str, source: str
-) -> Figure:
+def system_figure(cell: DiscrepancyCell, missing: NDArray[np.float64], name: str, source: str) -> Figure:
     """Phase portraits and time evolution of true and known system, and what is missing in rates and states.
 
     Parameters
@@ -124,7 +125,7 @@ def system_figure(
             panel.set_ylabel(said[k])
             panel.set_xlabel("time [s]")
     table["missing rate"], table["residual"] = missing[some, lacking], (found.truth - found.known)[some, 0]
-    rate = unit_text("1/s" if _unit(cell, lacking) == "1" else f"{_unit(cell, lacking)}/s")
+    rate = _rate_unit(_unit(cell, lacking))
     for panel, column, words, label in zip(
         (grid[0][2], grid[1][2]),
         ("missing rate", "residual"),
@@ -179,15 +180,15 @@ def accuracy_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) ->
             axes.set_xticks(range(len(noises)), [f"{noise:g}" for noise in noises])
             axes.set_ylim(-105, 105)
             axes.axhline(0, color="#111111", linewidth=0.5)
-            axes.set_title(f"{approach}: {TITLE_WORDS[part]}")
+            axes.set_title(f"{approach}: {PART_WORDS[part]}")
         row[0].set_ylabel("less RMSE than known [%]")
     for axes in grid[-1]:
         axes.set_xlabel(f"noise [{noise_unit}]")
     legend(drawn, _patches({METHOD_WORDS[method]: METHOD_LOOKS[method] for method in methods}))
     caption = (
         f"{source}. 100 (1 − RMSE augmented / RMSE known) against the noise-free truth, median of channels, clipped to "
-        f"±100; lines: least to most of n = {int(spread['size'].max())} seeds. ×: diverged, in one seed at least. True start: "
-        "the noise-free state, an oracle; estimated start: from the noisy data."
+        f"±100; lines: least to most of n = {int(spread['size'].max())} seeds. ×: diverged, in one seed at least. "
+        "Oracle start: the noise-free true state, which no user has; estimated start: from the noisy data."
     )
     return Figure(name, caption, "Bars of accuracy against noise, by method", spread, drawn)
 
@@ -226,8 +227,8 @@ def horizon_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) -> 
     methods = list(dict.fromkeys(cell.method for cell in cells))
     legend(drawn, lines_of({METHOD_WORDS[method]: METHOD_LOOKS[method] for method in methods}))
     caption = (
-        f"{source}. Median over channels, clipped to ±100, to the end of the forecast after {longest:g} s, from the start "
-        f"estimated from the data; grey: the truth’s first jump. Noise {cells[0].noise:g}."
+        f"{source}. Median over channels, clipped to ±100, to the end of the forecast after {longest:g} s, from the "
+        f"start estimated from the data; grey: the truth’s first jump. Noise {cells[0].noise:g}."
     )
     return Figure(name, caption, "Curves of accuracy against horizon", pd.concat(tables), drawn)
 
@@ -266,7 +267,8 @@ def cost_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) -> Fig
     legend(drawn, _patches({"fit": Look("#555555", "-", ""), "runs": Look("#bbbbbb", "-", "")}))
     return Figure(
         name,
-        f"{source}. Processor time: fit (dark), and estimating the start and running all parts (light); median over noises and seeds.",
+        f"{source}. Processor time: fit (dark), and estimating the start and running all parts (light); median over "
+        "noises and seeds.",
         "Bars of seconds",
         middle,
         drawn,
@@ -290,19 +292,26 @@ def field_figure(found: PartAccuracy, places: Sequence[float], name: str, source
     some = np.unique(np.linspace(0, len(found.time) - 1, 200).astype(int))
     time = found.begins_s + found.time[some]
     errors = {model: (found.truth - getattr(found, model))[some] for model in ("known", "augmented")}
-    most = float(np.nanmax(np.abs(errors["known"]))) or 1.0
+    most, drawn_maps = float(np.nanmax(np.abs(errors["known"]))) or 1.0, []
     for axes, (model, error) in zip(grid[0], errors.items(), strict=True):
-        mesh = axes.pcolormesh(places, time, error, vmin=-most, vmax=most, cmap="RdBu_r", rasterized=True)
+        map_of_error = axes.pcolormesh(places, time, error, vmin=-most, vmax=most, cmap="RdBu_r", rasterized=True)
+        drawn_maps.append(map_of_error)
         axes.set_title(f"truth − {model}")
         axes.set_xlabel("place [1]")
     grid[0][0].set_ylabel("time in the record [s]")
     beyond = "both" if np.nanmax(np.abs(errors["augmented"])) > most else "neither"
-    bar = drawn.colorbar(mesh, cax=_beside(grid[0][-1]), extend=beyond)
+    bar = drawn.colorbar(drawn_maps[-1], cax=_beside(grid[0][-1]), extend=beyond)
     bar.set_label("error of u [1]")
     numbers = pd.DataFrame({
         "t_s": time, **{f"rmse_{m}": np.sqrt(np.mean(e**2, axis=1)) for m, e in errors.items()},
     })  # fmt: skip
-    return Figure(name, f"{source}. Colours span ±{most:.3g}, the known model’s largest error; errors beyond have the last colour.", "Two maps of error over space and time", numbers, drawn)
+    return Figure(
+        name,
+        f"{source}. Colours span ±{most:.3g}, the known model’s largest error; errors beyond have the last colour.",
+        "Two maps of error over space and time",
+        numbers,
+        drawn,
+    )
 
 
 def _beside(axes: Axes) -> Axes:

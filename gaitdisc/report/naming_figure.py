@@ -62,8 +62,8 @@ def naming_figure(namings: Sequence[Naming], name: str) -> Figure:
     legend(drawn, key[4:], down=0.2)
     caption = (
         "Answer of most seeds, with its share in percent where the seeds differ; below it, how much less RMSE the "
-        f"forecast from the noise-free true state (an oracle) has than the known model’s [%], median of n = {table['seed'].nunique()} seeds "
-        "(without noise, and of the curves, one; no tile: not asked)."
+        "forecast from the noise-free true state (an oracle) has than the known model’s [%], median of "
+        f"n = {table['seed'].nunique()} seeds (without noise, and of the curves, one; no tile: not asked)."
     )
     return Figure(name, caption, "Tiles of answers by case, tool and noise", tiles, drawn)
 

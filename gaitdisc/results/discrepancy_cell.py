@@ -14,9 +14,9 @@ from gaitdisc.recording.arrays import read_only
 METHODS = ("sindy", "dmd", "bopdmd", "gp", "nn")
 RECONSTRUCTION, ORACLE, FORECAST = PARTS = ("reconstruction", "oracle forecast", "forecast")
 PART_WORDS = {
-    RECONSTRUCTION: "reconstruction, true start",
-    ORACLE: "forecast, true start (an oracle)",
-    FORECAST: "forecast, start estimated",
+    RECONSTRUCTION: "reconstruction",
+    ORACLE: "forecast, oracle start",
+    FORECAST: "forecast, estimated start",
 }
 
 
@@ -129,9 +129,9 @@ class DiscrepancyCell:
     channels : tuple of str
         Names.
     parts : dict of str to PartAccuracy
-        `reconstruction`: the training part, from the true first state. `oracle forecast`: from the noise-free true state
-        at the end of the training part, which no user has. `forecast`: from that state as it is estimated from the
-        noisy measurement. Empty where nothing was fitted.
+        `reconstruction`: the training part, from the true first state. `oracle forecast`: from the noise-free true
+        state at the end of the training part, which no user has. `forecast`: from that state as it is estimated from
+        the noisy measurement. Empty where nothing was fitted.
     fit_s, run_s : float [s]
         Of a core, to fit, and to estimate the start and run the augmented model over all parts.
     terms : str

@@ -1,3 +1,0 @@
-from pathlib import Path
-CELLS = Path(__file__).with_name("ch3_cells.csv")
-def write_docs(): ...
