@@ -12,8 +12,13 @@ function of value, slope and bend of the field at a point, one function for all 
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
+
+from command_line import QUICK, argument, command_line
+
+GIVEN = command_line(
+    __name__, __doc__, argument("folder", "where the report goes", Path("ch3_burgers")), QUICK
+)  # before the slow imports
 
 import numpy as np
 from ch3_report import Result, written
@@ -132,5 +137,4 @@ def artefact(record: Record) -> str:
 
 
 if __name__ == "__main__":
-    words = [word for word in sys.argv[1:] if word != "--quick"]
-    print(run("--quick" in sys.argv, *map(Path, words[:1])).page)
+    print(run(GIVEN.quick, GIVEN.folder).page)

@@ -8,8 +8,13 @@ the accuracy until the truth first changes lobes, and the time that the forecast
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
+
+from command_line import QUICK, argument, command_line
+
+GIVEN = command_line(
+    __name__, __doc__, argument("folder", "where the report goes", Path("ch3_lorenz")), QUICK
+)  # before the slow imports
 
 import numpy as np
 import pandas as pd
@@ -21,6 +26,7 @@ from gaitdisc.discrepancy.record import Conditions
 from gaitdisc.discrepancy.system import System, system_of
 from gaitdisc.report.block import Block
 from gaitdisc.report.table import Table
+from gaitdisc.results.discrepancy_cell import FORECAST, ORACLE, PART_WORDS
 from gaitdisc.simulation.bundled import bundled
 from gaitdisc.simulation.parts import Term
 
@@ -83,13 +89,16 @@ def jump_table(cells: Cells) -> Table:
         By variant.
     """
     rows = [
-        (variant, c.approach, c.method, c.noise, c.seed, float(np.min(part.accuracy(until_s=part.first_jump_s()))),
-         part.first_jump_s(), LYAPUNOV_PER_S * part.valid_s("augmented"), LYAPUNOV_PER_S * part.valid_s("known"))
-        for variant, found in cells.items() for c in found if c.parts for part in (c.parts["forecast"],)
+        (variant, c.approach, c.method, c.noise, PART_WORDS[name], c.seed,
+         float(np.min(part.accuracy(until_s=part.first_jump_s()))), part.first_jump_s(),
+         LYAPUNOV_PER_S * part.valid_s("augmented"), LYAPUNOV_PER_S * part.valid_s("known"))
+        for variant, found in cells.items() for c in found if c.parts
+        for name, part in c.parts.items() if name in (ORACLE, FORECAST)
     ]  # fmt: skip
-    names = ("variant", "approach", "method", "noise", "seed", "worst [%]", "jump [s]", "valid [1]", "known valid [1]")
+    names = ("variant", "approach", "method", "noise", "start", "seed", "worst [%]", "jump [s]", "valid [1]",
+             "known valid [1]")  # fmt: skip
     numbers = pd.DataFrame(rows, columns=pd.Index(names))
-    middle = numbers.groupby(list(names[:4]), sort=False)[list(names[5:])].median().reset_index()
+    middle = numbers.groupby(list(names[:5]), sort=False)[list(names[6:])].median().reset_index()
     shown = tuple(tuple(f"{v:.2f}" if isinstance(v, float) and k != 3 else f"{v}" for k, v in enumerate(row))
                   for row in middle.itertuples(index=False))  # fmt: skip
     caption = (
@@ -100,5 +109,4 @@ def jump_table(cells: Cells) -> Table:
 
 
 if __name__ == "__main__":
-    words = [word for word in sys.argv[1:] if word != "--quick"]
-    print(run("--quick" in sys.argv, *map(Path, words[:1])).page)
+    print(run(GIVEN.quick, GIVEN.folder).page)

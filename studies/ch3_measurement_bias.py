@@ -9,8 +9,13 @@ has the bias among its states: the chapter's neutral result.
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
+
+from command_line import QUICK, argument, command_line
+
+GIVEN = command_line(
+    __name__, __doc__, argument("folder", "where the report goes", Path("ch3_measurement_bias")), QUICK
+)  # before the slow imports
 
 import numpy as np
 from ch3_report import Result, blocks_of, written
@@ -81,15 +86,15 @@ def filters(record: Record) -> str:
     system, dt, y = record.system, record.conditions.dt_s, record.measured[:, 0]
     clean, settled = record.truth @ system.observation[0], slice(200, None)
     sd = max(float(np.std(y - clean)), 1e-6)
-    start, told = np.array([*system.start, 0.0]), Uncertainty(np.array([1e-6, 1e-6, 0.2]), np.full(3, 1e-6), sd)
+    start, noise = np.array([*system.start, 0.0]), Uncertainty(np.array([1e-6, 1e-6, 0.2]), np.full(3, 1e-6), sd)
 
     def turn(points: NDArray[np.float64]) -> NDArray[np.float64]:
         return np.column_stack([system.known.run(points[:, :2], dt, 1)[:, 1], points[:, 2]])
 
     jacobian = np.column_stack([(turn(np.eye(3)[[k]] * 1e-4) - turn(np.zeros((1, 3))))[0] / 1e-4 for k in range(3)])
-    walking = Uncertainty(told.first, np.array([1e-5, 1e-4, 2e-4]), sd)  # an offset that is to follow a gain
+    walking = Uncertainty(noise.first, np.array([1e-5, 1e-4, 2e-4]), sd)  # an offset that is to follow a gain
     linear = linear_kalman(jacobian, np.array([1.0, 0.0, 1.0]), y, start, walking).states
-    unscented = unscented_kalman(turn, lambda p: (1 + p[:, 2]) * p[:, 0], y, start, told)
+    unscented = unscented_kalman(turn, lambda p: (1 + p[:, 2]) * p[:, 0], y, start, noise)
     states, known = unscented.states, record.truth[:, 0]
     seen = {"linear (offset)": linear[:, 0] + linear[:, 2], "unscented (gain)": (1 + states[:, 2]) * states[:, 0]}
     gap = np.sqrt(np.mean((clean - known)[settled] ** 2))
@@ -98,5 +103,4 @@ def filters(record: Record) -> str:
 
 
 if __name__ == "__main__":
-    words = [word for word in sys.argv[1:] if word != "--quick"]
-    print(run("--quick" in sys.argv, *map(Path, words[:1])).page)
+    print(run(GIVEN.quick, GIVEN.folder).page)

@@ -21,6 +21,7 @@ from gaitdisc.report.discrepancy_figure import (
 )
 from gaitdisc.report.discrepancy_tables import grid_table, statements_table
 from gaitdisc.report.table import Table, save_table
+from gaitdisc.results.discrepancy_cell import RECONSTRUCTION
 
 ARTEFACT = (
     "As published, SINDy's map for the residual is integrated as if it gave a rate, from zero, and added; the map "
@@ -70,9 +71,9 @@ def blocks_of(
         quiet = [cell for cell in found if cell.noise == 0]
         drawn = []
         if systems and variant in systems:
-            whole, system = quiet[0].parts["reconstruction"], systems[variant]
-            missing = system.true(whole.truth) - system.known(whole.truth)
-            drawn.append(system_figure(whole, missing, quiet[0].channels, f"system-{number}", figures["system"]))
+            truth, system = quiet[0].parts[RECONSTRUCTION].truth, systems[variant]
+            missing = system.true(truth) - system.known(truth)
+            drawn.append(system_figure(quiet[0], missing, f"system-{number}", figures["system"]))
         for approach in ("dynamics", "state"):
             some = [cell for cell in quiet if cell.approach == approach and cell.parts]
             if approach in figures and some:

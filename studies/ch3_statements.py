@@ -8,7 +8,7 @@ import numpy as np
 
 from gaitdisc.report.discrepancy_figure import METHOD_WORDS
 from gaitdisc.report.discrepancy_tables import spread_words
-from gaitdisc.results.discrepancy_cell import DiscrepancyCell
+from gaitdisc.results.discrepancy_cell import FORECAST, ORACLE, RECONSTRUCTION, DiscrepancyCell
 
 Cells = Mapping[str, tuple[DiscrepancyCell, ...]]
 Stated = tuple[str, str, str, float]  # where, statement, approach, noise
@@ -42,7 +42,7 @@ def apart_words(cells: Cells) -> str:
     """
     said = []
     for variant, found in cells.items():
-        part = next(c.parts["reconstruction"] for c in found if c.parts and not c.noise)
+        part = next(c.parts[RECONSTRUCTION] for c in found if c.parts and not c.noise)
         said.append(f"{variant}: within 0.4 SD for {part.valid_s('known'):.1f} of {part.time[-1]:.0f} s")
     return "; ".join(said)
 
@@ -80,18 +80,18 @@ def horizon_words(cells: Cells) -> str:
         some = [f"{METHOD_WORDS[c.method]} {_within(c)}" for c in quiet]
         said.append(f"{variant}: " + ", ".join(some))
     horizons = "; ".join(f"{each:g}" for each in HORIZONS_S)
-    return f"[%] within {horizons} s; " + "; ".join(said)
+    return f"[%] from the estimated start, within {horizons} s; " + "; ".join(said)
 
 
 def _within(cell: DiscrepancyCell) -> str:
-    part = cell.parts["forecast"]
+    part = cell.parts[FORECAST]
     changes = part.change([each for each in HORIZONS_S if each <= part.time[-1]])
     said = f"diverged at t = {part.diverged_s:.2f} s" if part.diverged_s is not None else ""
     return "/".join([f"{each:.0f}" if np.isfinite(each) else said for each in changes])
 
 
 def answered(cells: Cells, approach: str, noise: float) -> str:
-    """Forecast (reconstruction) accuracy of each method, by variant: median and range over seeds.
+    """Forecast (oracle; reconstruction) accuracy of each method, by variant: median and range over seeds.
 
     Parameters
     ----------
@@ -108,7 +108,11 @@ def answered(cells: Cells, approach: str, noise: float) -> str:
         parts = [f"{METHOD_WORDS[m]} {_accuracy([c for c in some if c.method == m])}" for m in METHOD_WORDS]
         if some:
             said.append(f"{variant}: {', '.join(part for part in parts if not part.endswith(' '))}")
-    return "forecast (reconstruction) [%]; " + "; ".join(said) if said else "not computed"
+    return (
+        "forecast from the estimated start (from the true state, an oracle; reconstruction) [%]; " + "; ".join(said)
+        if said
+        else "not computed"
+    )
 
 
 def _accuracy(cells: Sequence[DiscrepancyCell]) -> str:
@@ -116,9 +120,9 @@ def _accuracy(cells: Sequence[DiscrepancyCell]) -> str:
     if not fitted:
         return "not fitted" if cells else ""
     words = []
-    for part in ("forecast", "reconstruction"):
+    for part in (FORECAST, ORACLE, RECONSTRUCTION):
         lost = [t for c in fitted if (t := c.parts[part].diverged_s) is not None]
         said = spread_words(np.array([np.median(c.parts[part].accuracy()) for c in fitted]))
         some = f" ({len(lost)} of {len(cells)} seeds)" * (len(cells) > 1)
         words.append(f"diverged at t = {min(lost):.2f} s{some}" if lost else said)
-    return f"{words[0]} ({words[1]})"
+    return f"{words[0]} ({words[1]}; {words[2]})"

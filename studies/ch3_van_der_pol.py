@@ -10,8 +10,13 @@ discrepancy periodic in time; it knows nothing of the state.
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
+
+from command_line import QUICK, argument, command_line
+
+GIVEN = command_line(
+    __name__, __doc__, argument("folder", "where the report goes", Path("ch3_van_der_pol")), QUICK
+)  # before the slow imports
 
 from ch3_report import Result, blocks_of, written
 
@@ -68,5 +73,4 @@ def run(quick: bool = False, folder: Path = Path("ch3_van_der_pol")) -> Result:
 
 
 if __name__ == "__main__":
-    words = [word for word in sys.argv[1:] if word != "--quick"]
-    print(run("--quick" in sys.argv, *map(Path, words[:1])).page)
+    print(run(GIVEN.quick, GIVEN.folder).page)

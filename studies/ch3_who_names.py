@@ -10,9 +10,14 @@ random pushes.
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 from pathlib import Path
+
+from command_line import QUICK, argument, command_line
+
+GIVEN = command_line(
+    __name__, __doc__, argument("folder", "where the report goes", Path("ch3_who_names")), QUICK
+)  # before the slow imports
 
 import numpy as np
 from ch3_report import Result, written
@@ -101,5 +106,4 @@ def run(quick: bool = False, folder: Path = Path("ch3_who_names")) -> Result:
 
 
 if __name__ == "__main__":
-    words = [word for word in sys.argv[1:] if word != "--quick"]
-    print(run("--quick" in sys.argv, *map(Path, words[:1])).page)
+    print(run(GIVEN.quick, GIVEN.folder).page)

@@ -10,13 +10,14 @@ from threadpoolctl import threadpool_limits
 
 from gaitdisc.discrepancy.augmented_run import AugmentedRun, on_states, with_learned_rates
 from gaitdisc.discrepancy.error_signal import Approach, error_samples, refined_samples
+from gaitdisc.discrepancy.forecast_start import forecast_start
 from gaitdisc.discrepancy.methods import OF_TIME, Method, MethodSettings, fitted
 from gaitdisc.discrepancy.record import Conditions, Record, recorded
 from gaitdisc.discrepancy.system import System
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.model import Model
 from gaitdisc.regression.sindy import Sindy
-from gaitdisc.results.discrepancy_cell import DiscrepancyCell, PartAccuracy
+from gaitdisc.results.discrepancy_cell import FORECAST, PARTS, RECONSTRUCTION, DiscrepancyCell, PartAccuracy
 
 PUBLISHED_THRESHOLDS = {"dynamics": 0.0095, "state": 0.046}
 
@@ -80,13 +81,13 @@ def cell_of(
     except GaitdiscError as error:
         return DiscrepancyCell(
             record.system.name, method, approach, variant, made.noise, made.seed, record.system.channels, {},
-            clock.process_time() - begun, 0.0, refused=str(error),
+            clock.process_time() - begun, 0.0, refused=str(error), units=record.system.units,
         )  # fmt: skip
     fit_s, begun = clock.process_time() - begun, clock.process_time()
-    parts = {name: part(record, learned, approach, name == "forecast") for name in ("reconstruction", "forecast")}
+    parts = {name: part(record, learned, approach, name) for name in PARTS}
     return DiscrepancyCell(
         record.system.name, method, approach, variant, made.noise, made.seed, record.system.channels, parts,
-        fit_s, clock.process_time() - begun, terms_of(learned),
+        fit_s, clock.process_time() - begun, terms_of(learned), units=record.system.units,
     )  # fmt: skip
 
 
@@ -109,8 +110,11 @@ def learned_model(record: Record, method: Method, approach: Approach, settings: 
     return fitted(refined, method, settings, record.conditions.seed)
 
 
-def part(record: Record, learned: Model, approach: Approach, forecast: bool) -> PartAccuracy:
+def part(record: Record, learned: Model, approach: Approach, name: str) -> PartAccuracy:
     """Judge a learned model over the training part or the forecast.
+
+    In the forecast as a user has it the known and the augmented model each begin where they fit the end of the noisy
+    training part best; in the oracle forecast both begin at the noise-free true state.
 
     Parameters
     ----------
@@ -120,20 +124,25 @@ def part(record: Record, learned: Model, approach: Approach, forecast: bool) -> 
         delta_f or delta.
     approach : str
         Which of both it is.
-    forecast : bool
-        The forecast instead of the training part.
+    name : str
+        One of `PARTS`.
     """
-    system, made = record.system, record.conditions
+    system, made, forecast = record.system, record.conditions, name != RECONSTRUCTION
     time = record.time[record.split - 1 :] if forecast else record.time[: record.split]
-    start, truth = record.start(forecast), record.target(forecast)
-    known = system.known.run(start[None], made.dt_s, len(time) - 1)[0][:, : len(system.channels)]
+    if name == FORECAST:
+        known_start, start = forecast_start(record, None, approach), forecast_start(record, learned, approach)
+        truth = record.truth[record.split - 1 :] @ system.observation.T
+    else:
+        known_start = start = record.start(forecast)
+        truth = record.target(forecast)
+    known = system.known.run(known_start[None], made.dt_s, len(time) - 1)[0][:, : len(system.channels)]
     if approach == "dynamics":
         found = with_learned_rates(system.known, learned, start, time)
     else:
         found = on_states(system, learned, start, time, summed=made.published and isinstance(learned, Sindy))
     bounded = _bounded(found, time)
     diverged = None if bounded.diverged_s is None else bounded.diverged_s - float(time[0])
-    return PartAccuracy(time - time[0], truth, known, bounded.values, diverged)
+    return PartAccuracy(time - time[0], truth, known, bounded.values, diverged, float(time[0]))
 
 
 def _bounded(run: AugmentedRun, time: np.ndarray) -> AugmentedRun:
@@ -148,7 +157,7 @@ def _bounded(run: AugmentedRun, time: np.ndarray) -> AugmentedRun:
 
 
 def terms_of(learned: Model) -> str:
-    """Terms of a learned model with their coefficients, by output; empty for a method that has none to tell.
+    """Terms of a learned model with their coefficients, by output; empty for a method without terms.
 
     Parameters
     ----------

@@ -24,7 +24,7 @@ def grid(
     seeds: Sequence[int] = (0,),
     chosen: tuple[Sequence[Method], Sequence[Approach]] = (ALL_METHODS, APPROACHES),
     settings: MethodSettings | None = None,
-    told: Callable[[DiscrepancyCell], None] = lambda _: None,
+    computed: Callable[[DiscrepancyCell], None] = lambda _: None,
 ) -> tuple[DiscrepancyCell, ...]:
     """Compute the cells; without noise one seed is enough.
 
@@ -44,7 +44,7 @@ def grid(
         Methods and approaches.
     settings : MethodSettings, optional
         Of the methods.
-    told : callable
+    computed : callable
         Takes each cell when it is done.
 
     Examples
@@ -64,7 +64,7 @@ def grid(
             for approach in chosen[1]:
                 for method in chosen[0]:
                     found.append(cell_of(record, method, approach, settings))
-                    told(found[-1])
+                    computed(found[-1])
     return tuple(found)
 
 

@@ -17,6 +17,7 @@ from gaitdisc.discrepancy.system import System
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.model import Model
 from gaitdisc.regression.sindy import Sindy
+from gaitdisc.results.discrepancy_cell import ORACLE
 from gaitdisc.results.naming import Naming
 
 NOTHING = 1e-6  # of the known model's own rates or states: an error signal below it is rounding
@@ -92,7 +93,7 @@ def method_answer(
     except GaitdiscError as error:
         return replace(asked, said=str(error), seconds=clock.process_time() - begun)
     seconds = clock.process_time() - begun
-    forecast = part(record, learned, hidden.approach, True)
+    forecast = part(record, learned, hidden.approach, ORACLE)
     accuracy = float(np.median(forecast.accuracy()))
     answer, amount = _named(hidden, learned) if isinstance(learned, Sindy) else ("curve", float("nan"))
     said = terms_of(learned) or curve_words(hidden, record, learned)

@@ -37,7 +37,7 @@ class Filtered:
 
 @dataclass(frozen=True, eq=False)
 class Uncertainty:
-    """What a filter is told of noise.
+    """Noise that a filter assumes.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class Uncertainty:
 
 def linear_kalman(
     turn: NDArray[np.float64], seen: NDArray[np.float64], y: NDArray[np.float64], start: NDArray[np.float64],
-    told: Uncertainty,
+    noise: Uncertainty,
 ) -> Filtered:  # fmt: skip
     """Kalman filter.
 
@@ -70,7 +70,7 @@ def linear_kalman(
         Measured.
     start : ndarray (state,)
         First state.
-    told : Uncertainty
+    noise : Uncertainty
         Noise.
 
     References
@@ -79,16 +79,16 @@ def linear_kalman(
 
     Examples
     --------
-    >>> told = Uncertainty(np.ones(1), np.zeros(1), 1.0)
-    >>> linear_kalman(np.eye(1), np.ones(1), np.ones(99), np.zeros(1), told).states[-1].round(2)
+    >>> noise = Uncertainty(np.ones(1), np.zeros(1), 1.0)
+    >>> linear_kalman(np.eye(1), np.ones(1), np.ones(99), np.zeros(1), noise).states[-1].round(2)
     array([0.99])
     """
-    x, p = np.array(start, float), np.diag(told.first**2)
+    x, p = np.array(start, float), np.diag(noise.first**2)
     states, sd = np.empty((len(y), len(x))), np.empty((len(y), len(x)))
     for k, value in enumerate(y):
         if k:
-            x, p = turn @ x, turn @ p @ turn.T + np.diag(told.step**2)
-        gain = p @ seen / (seen @ p @ seen + told.measured**2)
+            x, p = turn @ x, turn @ p @ turn.T + np.diag(noise.step**2)
+        gain = p @ seen / (seen @ p @ seen + noise.measured**2)
         x = x + gain * (value - seen @ x)
         p = p - np.outer(gain, seen @ p)
         states[k], sd[k] = x, np.sqrt(np.diag(p))
@@ -96,7 +96,7 @@ def linear_kalman(
 
 
 def unscented_kalman(
-    turn: Step, seen: Step, y: NDArray[np.float64], start: NDArray[np.float64], told: Uncertainty
+    turn: Step, seen: Step, y: NDArray[np.float64], start: NDArray[np.float64], noise: Uncertainty
 ) -> Filtered:
     """Unscented Kalman filter.
 
@@ -110,7 +110,7 @@ def unscented_kalman(
         Measured.
     start : ndarray (state,)
         First state.
-    told : Uncertainty
+    noise : Uncertainty
         Noise.
 
     References
@@ -119,8 +119,8 @@ def unscented_kalman(
 
     Examples
     --------
-    >>> told = Uncertainty(np.ones(1), np.zeros(1), 1.0)
-    >>> unscented_kalman(lambda x: x, lambda x: x[:, 0], np.ones(99), np.zeros(1), told).states[-1].round(2)
+    >>> noise = Uncertainty(np.ones(1), np.zeros(1), 1.0)
+    >>> unscented_kalman(lambda x: x, lambda x: x[:, 0], np.ones(99), np.zeros(1), noise).states[-1].round(2)
     array([0.99])
     """
     n = len(start)
@@ -129,17 +129,17 @@ def unscented_kalman(
     mean[0] = 1 - n / scale
     spread = mean.copy()
     spread[0] += 1 - SPREAD**2 + 2
-    x, p = np.array(start, float), np.diag(told.first**2)
+    x, p = np.array(start, float), np.diag(noise.first**2)
     states, sd = np.empty((len(y), n)), np.empty((len(y), n))
     for k, value in enumerate(y):
         if k:
             points = turn(_sigma_points(x, p, scale))
             x = mean @ points
-            p = (points - x).T * spread @ (points - x) + np.diag(told.step**2)
+            p = (points - x).T * spread @ (points - x) + np.diag(noise.step**2)
         points = _sigma_points(x, p, scale)
         found = seen(points)
         guess = float(mean @ found)
-        variance = float(spread @ (found - guess) ** 2) + told.measured**2
+        variance = float(spread @ (found - guess) ** 2) + noise.measured**2
         across = (points - x).T * spread @ (found - guess)
         x = x + across / variance * (value - guess)
         p = p - np.outer(across, across) / variance

@@ -19,7 +19,7 @@ from gaitdisc.discrepancy.record import Conditions, Record, recorded
 from gaitdisc.discrepancy.system import System
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.recording import Samples
-from gaitdisc.results.discrepancy_cell import DiscrepancyCell
+from gaitdisc.results.discrepancy_cell import PARTS, DiscrepancyCell
 
 LOCAL = ("u", "slope", "bend")  # of the field at a point
 MOST_SAMPLES = 3000  # of all points at all times
@@ -121,7 +121,7 @@ def local_cell(record: Record, method: Method, settings: MethodSettings | None =
         return DiscrepancyCell(*head, {}, clock.process_time() - begun, 0.0, refused=str(error))
     fit_s, begun = clock.process_time() - begun, clock.process_time()
     with np.errstate(all="ignore"):
-        parts = {name: part(record, learned, "dynamics", name == "forecast") for name in ("reconstruction", "forecast")}
+        parts = {name: part(record, learned, "dynamics", name) for name in PARTS}
     return DiscrepancyCell(*head, parts, fit_s, clock.process_time() - begun, learned.said)
 
 

@@ -54,6 +54,8 @@ class System:
         C of Eq. 3.15; the channels are the first states.
     assumed : ndarray (state,), optional
         Where the known model is thought to begin, if that is wrong.
+    units : tuple of str
+        Of the states; empty where they have none.
     """
 
     name: str
@@ -63,6 +65,7 @@ class System:
     start: NDArray[np.float64]
     observation: NDArray[np.float64]
     assumed: NDArray[np.float64] | None = None
+    units: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Freeze the numbers."""
@@ -101,4 +104,5 @@ def system_of(
     true = known.with_effect(hidden) if hidden else known
     first = start or tuple(float(state.initial or 0.0) for state in known.states)
     observation = np.eye(len(states)) if not gain else np.diag([*gain, *[0.0] * (len(states) - len(gain))])[: len(gain)]
-    return System(known.title, states, KnownRates(known), KnownRates(true), np.array(first), observation)
+    units = tuple(state.unit for state in known.states)
+    return System(known.title, states, KnownRates(known), KnownRates(true), np.array(first), observation, None, units)

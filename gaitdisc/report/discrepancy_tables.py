@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from gaitdisc.report.discrepancy_figure import METHOD_WORDS
 from gaitdisc.report.table import Table, words_table
-from gaitdisc.results.discrepancy_cell import DiscrepancyCell, PartAccuracy, cells_table
+from gaitdisc.results.discrepancy_cell import PARTS, DiscrepancyCell, PartAccuracy, cells_table
 
 MOST_TERMS = 110  # characters
 COEFFICIENT = r"(?<![*\w.])-?[0-9.]+(e[-+]?[0-9]+)?\*"  # of a term, but no power
 WORST_SAID = -1000.0  # %: how much worse a run is whose error is eleven times the known model's, rounding decides
-MOST_CHANNELS = 4  # that are told one by one
+MOST_CHANNELS = 4  # that are listed one by one
 
 
 def grid_table(cells: Sequence[DiscrepancyCell], name: str) -> Table:
@@ -33,24 +33,26 @@ def grid_table(cells: Sequence[DiscrepancyCell], name: str) -> Table:
         groups.setdefault((cell.variant, cell.approach, cell.method, cell.noise), []).append(cell)
     rows = []
     for (variant, approach, method, noise), found in groups.items():
-        parts = [[c.parts[part] for c in found if c.parts] for part in ("reconstruction", "forecast")]
+        parts = [[c.parts[part] for c in found if c.parts] for part in PARTS]
         rows.append((
             variant, approach, METHOD_WORDS[method], f"{noise:g}", f"{len(found)}",
             *(_cell(each, len(found)) for each in parts),
-            _median([p.valid_s("augmented") for p in parts[1]], "{:.1f}"),
-            _median([p.valid_s("known") for p in parts[1]], "{:.1f}"),
+            *(_median([p.valid_s("augmented") for p in each], "{:.1f}") for each in parts[1:]),
+            _median([p.valid_s("known") for p in parts[2]], "{:.1f}"),
             f"{np.median([c.fit_s for c in found]):.1f}", f"{np.median([c.run_s for c in found]):.1f}",
             _found(found),
         ))  # fmt: skip
     columns = (
-        "variant", "approach", "method", "noise", "n", "reconstruction [%]", "forecast [%]", "valid [s]",
+        "variant", "approach", "method", "noise", "n", "reconstruction, true start [%]",
+        "forecast, true start (oracle) [%]", "forecast, estimated start [%]", "oracle valid [s]", "valid [s]",
         "known valid [s]", "fit [s]", "run [s]", "found",
     )  # fmt: skip
     caption = (
         "100 (1 − RMSE augmented / RMSE known) by channel, unclipped, against the noise-free truth: median and "
         "[least, greatest] of n seeds; without noise there is one. "
+        "True start: the noise-free state, which no user has; estimated start: from the noisy measurement. "
         "How far below −1000 it lies depends on the machine, and is not said. "
-        "Valid: until the error passes 0.4 standard deviations, median. Seconds of a core. "
+        "Valid: until the error passes 0.4 standard deviations, median. Seconds of processor time. "
         "Found: terms of the first seed."
     )
     return Table(name, caption, columns, tuple(rows), cells_table(cells))

@@ -28,12 +28,12 @@ LOOKS = {
     "refused": (SILENT, "R", "refused"),
 }
 ROW, LEFT = 0.27, 1.75  # inch
-FEW, MANY = -999.0, 99.5  # accuracies beyond are told as such
+FEW, MANY = -999.0, 99.5  # accuracies beyond are written as such
 
 
 @in_style
 def naming_figure(namings: Sequence[Naming], name: str) -> Figure:
-    """A row a case, a column a tool and noise; the tile tells the answer, and the forecast.
+    """A row a case, a column a tool and noise; the tile shows the answer, and the forecast.
 
     Parameters
     ----------
@@ -62,14 +62,14 @@ def naming_figure(namings: Sequence[Naming], name: str) -> Figure:
     legend(drawn, key[4:], down=0.2)
     caption = (
         "Answer of most seeds, with its share in percent where the seeds differ; below it, how much less RMSE the "
-        f"forecast has than that of the known model [%], median of n = {table['seed'].nunique()} seeds "
-        "(without noise, and of the curves, one; no tile: not asked)."
+        "forecast from the noise-free true state (an oracle) has than the known model’s [%], median of "
+        f"n = {table['seed'].nunique()} seeds (without noise, and of the curves, one; no tile: not asked)."
     )
     return Figure(name, caption, "Tiles of answers by case, tool and noise", tiles, drawn)
 
 
 def _tiles(table: pd.DataFrame) -> pd.DataFrame:
-    """What each tile tells: the answer of most seeds, its share, and the forecast."""
+    """What each tile shows: the answer of most seeds, its share, and the forecast."""
     rows = []
     for tool in TOOL_WORDS:
         for (case, noise), found in table[table["tool"] == tool].groupby(["case", "noise"], sort=False):

@@ -31,8 +31,8 @@ def naming_table(namings: Sequence[Naming], name: str) -> Table:
         rows.append((str(case), str(found["hidden"].iloc[0]) or "nothing", f"{noise:.1%}", *cells))
     rows.sort(key=lambda row: list(dict.fromkeys(table["case"])).index(row[0]))
     caption = (
-        "Answers, with how many of the seeds gave them; × the true number: median of the seeds that named it. A curve "
-        "is told by how far it is off what is missing, along the record without noise (first seed)."
+        "Answers, with how many of the seeds gave them; × the true number: median of the seeds that named it. Of a "
+        "curve: how far it is from what is missing, along the record without noise (first seed)."
     )
     return Table(
         name, caption, ("case", "hidden", "noise", *(TOOL_WORDS[t] for t in tools)), tuple(rows), table
@@ -67,5 +67,5 @@ def _said(found: pd.DataFrame) -> str:
     if len(amounts):
         words += f" (× {amounts.median():.4g})"
     first = str(found["said"].iloc[0]).split(";")[0]
-    told = found["answer"].iloc[0] in ("curve", "refused") and len(first) < MOST_WORDS
-    return f"{words}: {first}" if told else words
+    shown = found["answer"].iloc[0] in ("curve", "refused") and len(first) < MOST_WORDS
+    return f"{words}: {first}" if shown else words

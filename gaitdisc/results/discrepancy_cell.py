@@ -12,7 +12,12 @@ from numpy.typing import NDArray
 from gaitdisc.recording.arrays import read_only
 
 METHODS = ("sindy", "dmd", "bopdmd", "gp", "nn")
-PARTS = ("reconstruction", "forecast")
+RECONSTRUCTION, ORACLE, FORECAST = PARTS = ("reconstruction", "oracle forecast", "forecast")
+PART_WORDS = {
+    RECONSTRUCTION: "reconstruction",
+    ORACLE: "forecast, oracle start",
+    FORECAST: "forecast, estimated start",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,6 +32,8 @@ class PartAccuracy:
         Noise-free; NaN from where a model diverged.
     diverged_s : float or None
         When the augmented model left every bound [s since the part's start].
+    begins_s : float
+        When the part begins in its record [s].
     """
 
     time: NDArray[np.float64]
@@ -34,6 +41,7 @@ class PartAccuracy:
     known: NDArray[np.float64]
     augmented: NDArray[np.float64]
     diverged_s: float | None
+    begins_s: float = 0.0
 
     def __post_init__(self) -> None:
         """Freeze the numbers."""
@@ -121,13 +129,17 @@ class DiscrepancyCell:
     channels : tuple of str
         Names.
     parts : dict of str to PartAccuracy
-        `reconstruction` and `forecast`; empty where nothing was fitted.
+        `reconstruction`: the training part, from the true first state. `oracle forecast`: from the noise-free true
+        state at the end of the training part, which no user has. `forecast`: from that state as it is estimated from
+        the noisy measurement. Empty where nothing was fitted.
     fit_s, run_s : float [s]
-        Of a core, to fit, and to run the augmented model over both parts.
+        Of a core, to fit, and to estimate the start and run the augmented model over all parts.
     terms : str
         What was found, for a method that says so.
     refused : str
         Why nothing was fitted.
+    units : tuple of str
+        Of the states, of which the channels are the first; empty where they have none.
     """
 
     system: str
@@ -142,6 +154,7 @@ class DiscrepancyCell:
     run_s: float
     terms: str = ""
     refused: str = ""
+    units: tuple[str, ...] = ()
 
     @property
     def samples(self) -> int:

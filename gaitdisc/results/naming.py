@@ -34,8 +34,8 @@ class Naming:
     amount : float
         The effect's number over its true one; NaN where the hidden effect was not named.
     accuracy : float
-        Median over channels of how much less RMSE the forecast has than that of the known model [%]; NaN where it
-        diverged or was not run.
+        Median over channels of how much less RMSE the forecast has than that of the known model, both from the
+        noise-free true state, an oracle [%]; NaN where it diverged or was not run.
     diverged_s : float or None
         When the forecast left every bound [s since its start].
     seconds : float

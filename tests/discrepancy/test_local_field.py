@@ -30,7 +30,7 @@ def test_slope_and_bend_are_read_where_they_stand(decaying):
 def test_a_cell_holds_what_was_found_and_both_parts(decaying):
     cell = local_cell(decaying, "sindy")
     assert (cell.method, cell.variant, cell.terms) == ("sindy", "at each point", "error: -0.1*u**3")
-    assert np.median(cell.parts["forecast"].accuracy()) > 99
+    assert np.median(cell.parts["oracle forecast"].accuracy()) > 99
 
 
 def test_noise_is_taken_out_over_space_as_well_as_over_time():

@@ -2,23 +2,24 @@ import pandas as pd
 import pytest
 
 from gaitdisc.discrepancy.cell import cell_of
-from gaitdisc.discrepancy.recommend import COLUMNS, measured_cells, recommend
+from gaitdisc.discrepancy.recommend import COLUMNS, ESTIMATED, FOUND, TRUE, measured_cells, recommend
 from gaitdisc.errors import SchemaError
 
 ROWS = [
-    ("Van der Pol", "sindy", 0.01, 0.01, 3001, 90.0, 85.0, 92.0, 20.0, 0.5, 0.0, 3),
-    ("Van der Pol", "dmd", 0.01, 0.01, 3001, 99.0, 98.0, 99.5, 20.0, 2.0, 0.0, 3),
-    ("Van der Pol, late", "dmd", 0.01, 0.01, 3001, 40.0, 10.0, 50.0, 20.0, 2.0, 0.0, 3),
-    ("Van der Pol", "gp", 0.01, 0.01, 3001, 97.0, 96.0, 98.0, 20.0, 5.0, 0.0, 3),
-    ("Van der Pol", "nn", 0.01, 0.01, 3001, 94.0, 90.0, 95.0, 20.0, 3.0, 0.0, 3),
-    ("Van der Pol", "gp", 0.01, 0.01, 601, 60.0, 50.0, 70.0, 4.0, 2.0, 0.0, 3),
-    ("Van der Pol", "nn", 0.01, 0.01, 601, 70.0, 65.0, 75.0, 4.0, 1.0, 0.0, 3),
-    ("Van der Pol", "sindy", 0.1, 0.01, 3001, -5.0, -9.0, 1.0, 3.0, 0.5, 0.0, 3),
-    ("Van der Pol", "gp", 0.1, 0.01, 3001, 60.0, 50.0, 70.0, 9.0, 5.0, 0.4, 3),
-    ("Van der Pol", "gp", 0.01, 0.001, 12001, 80.0, 75.0, 85.0, 8.0, 9.0, 0.0, 1),
-    ("Van der Pol", "nn", 0.01, 0.001, 12001, 88.0, 85.0, 89.0, 8.0, 9.0, 0.0, 1),
+    ("Van der Pol", "sindy", 0.01, 0.01, 3001, ESTIMATED, 90.0, 85.0, 92.0, 20.0, 0.5, 0.0, 3),
+    ("Van der Pol", "dmd", 0.01, 0.01, 3001, ESTIMATED, 99.0, 98.0, 99.5, 20.0, 2.0, 0.0, 3),
+    ("Van der Pol, late", "dmd", 0.01, 0.01, 3001, ESTIMATED, 40.0, 10.0, 50.0, 20.0, 2.0, 0.0, 3),
+    ("Van der Pol", "gp", 0.01, 0.01, 3001, ESTIMATED, 97.0, 96.0, 98.0, 20.0, 5.0, 0.0, 3),
+    ("Van der Pol", "nn", 0.01, 0.01, 3001, ESTIMATED, 94.0, 90.0, 95.0, 20.0, 3.0, 0.0, 3),
+    ("Van der Pol", "gp", 0.01, 0.01, 601, ESTIMATED, 60.0, 50.0, 70.0, 4.0, 2.0, 0.0, 3),
+    ("Van der Pol", "nn", 0.01, 0.01, 601, ESTIMATED, 70.0, 65.0, 75.0, 4.0, 1.0, 0.0, 3),
+    ("Van der Pol", "sindy", 0.1, 0.01, 3001, ESTIMATED, -5.0, -9.0, 1.0, 3.0, 0.5, 0.0, 3),
+    ("Van der Pol", "gp", 0.1, 0.01, 3001, ESTIMATED, 60.0, 50.0, 70.0, 9.0, 5.0, 0.4, 3),
+    ("Van der Pol", "gp", 0.01, 0.001, 12001, ESTIMATED, 80.0, 75.0, 85.0, 8.0, 9.0, 0.0, 1),
+    ("Van der Pol", "nn", 0.01, 0.001, 12001, ESTIMATED, 88.0, 85.0, 89.0, 8.0, 9.0, 0.0, 1),
 ]
 TABLE = pd.DataFrame(ROWS, columns=list(COLUMNS))
+WITH_ORACLE = pd.concat([TABLE, TABLE.assign(start=TRUE, accuracy=TABLE["accuracy"] + 3, valid_s=20.0)])
 
 
 @pytest.mark.parametrize(("want", "method"), [("interpretability", "sindy"), ("speed", "nn"), ("forecast", "gp")])
@@ -71,8 +72,28 @@ def test_another_want_and_other_columns_are_refused():
 
 
 def test_evidence_is_made_of_cells(quiet):
-    row = measured_cells([cell_of(quiet, "sindy", "dynamics")]).iloc[0]
+    rows = measured_cells([cell_of(quiet, "sindy", "dynamics")])
+    assert sorted(rows["start"]) == [ESTIMATED, TRUE]
+    row = rows[rows["start"] == ESTIMATED].iloc[0]
     assert (row["method"], row["diverged"], row["seeds"]) == ("sindy", 0, 1)
     assert row["accuracy"] > 99
     assert row["dt_s"] == 0.01
     assert (row["samples"], row["least"], row["greatest"]) == (1201, row["accuracy"], row["accuracy"])
+
+
+def test_the_estimated_start_decides_and_the_true_one_is_said_to_be_an_oracle():
+    better = WITH_ORACLE.copy()
+    better.loc[(better["method"] == "nn") & (better["start"] == TRUE), "accuracy"] = 100.0
+    found = recommend(0.01, 3000, "forecast", evidence=better)
+    assert found.method == "gp"
+    assert "from a start estimated from the data (from the true state, an oracle: 100.0 %, 20.0 s)" in found.why
+    starts = found.evidence["start"].tolist()
+    assert starts == [ESTIMATED] * 5 + [TRUE] * 5
+    assert "oracle" not in recommend(0.01, 3000, "forecast", evidence=TABLE).why
+
+
+def test_what_is_measured_holds_both_starts_of_every_cell():
+    table = pd.read_csv(FOUND)
+    keys = ["system", "method", "noise", "dt_s", "samples"]
+    assert tuple(table.columns) == COLUMNS
+    assert set(table.groupby(keys)["start"].agg(lambda some: tuple(sorted(some)))) == {(ESTIMATED, TRUE)}

@@ -23,5 +23,5 @@ def test_no_learned_rate_loses_before_the_first_jump_but_that_of_dmd(study, tmp_
     cells = study.run(quick=True, folder=tmp_path).cells["done right"]
     for cell in cells:
         if cell.approach == "dynamics" and cell.method not in ("dmd", "bopdmd"):
-            part = cell.parts["forecast"]
+            part = cell.parts["oracle forecast"]
             assert part.accuracy(until_s=part.first_jump_s()).min() > 80

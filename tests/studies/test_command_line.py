@@ -43,7 +43,7 @@ def is_command(file: Path) -> bool:
     return any(word in file.read_text(encoding="utf-8") for word in ("command_line(", "__main__"))
 
 
-COMMANDS = [file for file in FILES if not file.name.startswith(("command_line", "ch3_")) and is_command(file)]
+COMMANDS = [file for file in FILES if file.name != "command_line.py" and is_command(file)]
 
 
 def answers(words, folder):

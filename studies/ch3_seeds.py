@@ -1,0 +1,203 @@
+"""Section 3.4 over twelve noise seeds: every cell, its forecast from the true state and from the estimated one.
+
+    python studies/ch3_seeds.py FOLDER [--seeds 12] [--sets van_der_pol_text lorenz]
+    python studies/ch3_seeds.py FOLDER --keep
+
+Each cell is a file of its own in FOLDER, written whole: a run that was stopped goes on where it stopped. With `--keep`
+nothing is computed: what FOLDER holds becomes `studies/ch3_cells.csv`, which `ch3_tables.py` prints from, and what
+`recommend` answers from.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from command_line import argument, command_line
+
+SEEDS = 12
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument("folder", "a file for each cell that was computed", type=Path),
+    argument("--seeds", "noise seeds 0 to one less than this", SEEDS),
+    argument("--sets", "names of sets, all where absent", nargs="+"),
+    argument("--keep", "compute nothing; write studies/ch3_cells.csv and what `recommend` answers from", False),
+)  # before the slow imports
+
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import ch3_lorenz
+import ch3_measurement_bias
+import ch3_van_der_pol
+import numpy as np
+import pandas as pd
+from ch3_tables import CELLS, measured
+
+from gaitdisc.discrepancy.cell import cell_of
+from gaitdisc.discrepancy.error_signal import Approach
+from gaitdisc.discrepancy.methods import Method, MethodSettings
+from gaitdisc.discrepancy.recommend import FOUND, evidence_of
+from gaitdisc.discrepancy.record import Conditions, recorded
+from gaitdisc.discrepancy.system import System
+from gaitdisc.report.table import save_table
+from gaitdisc.results.discrepancy_cell import METHODS, DiscrepancyCell
+
+NOISES = (0.0, 0.001, 0.01, 0.1)
+FOUR: tuple[Method, ...] = ("sindy", "dmd", "gp", "nn")
+LONG, SHORT = 50.0, 10.0
+
+
+@dataclass(frozen=True, eq=False)
+class CellSet:
+    """Cells that stand in one table.
+
+    Parameters
+    ----------
+    system : System
+        What is recorded.
+    conditions : Conditions
+        Sampling; noise and seed are replaced.
+    approach : str
+        `dynamics` or `state`.
+    methods : tuple of str
+        Of every seed.
+    noises : tuple of float
+        As shares of each channel's standard deviation.
+    seeds : int
+        Most that are computed.
+    settings : MethodSettings, optional
+        Of the methods.
+    """
+
+    system: System
+    conditions: Conditions
+    approach: Approach = "dynamics"
+    methods: tuple[Method, ...] = FOUR
+    noises: tuple[float, ...] = NOISES
+    seeds: int = SEEDS
+    settings: MethodSettings | None = None
+
+
+def cell_sets() -> dict[str, CellSet]:
+    """Every set by its name, in the order in which they are computed."""
+    pol, mass = ch3_van_der_pol.systems(), ch3_measurement_bias.systems()
+    text, code, lorenz = pol["text"], pol["code"], ch3_lorenz.system()
+    long, short, swing = Conditions(duration_s=LONG), Conditions(duration_s=SHORT), Conditions(duration_s=20.0)
+    fine = Conditions(dt_s=ch3_lorenz.FINE_DT_S, duration_s=ch3_lorenz.FINE_S)
+    bias = {"approach": "state", "settings": ch3_measurement_bias.SETTINGS}
+    found = {
+        "van_der_pol_text": CellSet(text, long),
+        "lorenz": CellSet(lorenz, long),
+        "van_der_pol_code": CellSet(code, long),
+        "van_der_pol_text_short": CellSet(text, short, noises=NOISES[1:]),
+        "lorenz_short": CellSet(lorenz, short, noises=NOISES[1:]),
+        "lorenz_fine": CellSet(lorenz, fine, methods=("sindy", "gp", "nn"), noises=NOISES[:1]),
+        "mass_code": CellSet(mass["code"], swing, **bias),
+        "mass_text": CellSet(mass["text"], swing, **bias),
+        "van_der_pol_text_state": CellSet(text, long, "state"),
+        "van_der_pol_code_state": CellSet(code, long, "state"),
+        "lorenz_state": CellSet(lorenz, long, "state"),
+    }
+    return found | {
+        f"{name}_bopdmd": replace(found[name], methods=("bopdmd",), seeds=3)
+        for name in ("van_der_pol_text", "van_der_pol_code", "lorenz", "mass_code", "mass_text")
+    }
+
+
+def compute(folder: Path, names: list[str], seeds: int) -> None:
+    """Compute what is not there yet: all sets of a seed before the next seed.
+
+    Parameters
+    ----------
+    folder : Path
+        A file a cell.
+    names : list of str
+        Sets.
+    seeds : int
+        Most of each.
+    """
+    sets, warm = cell_sets(), set()
+    for seed in range(seeds):
+        for name in names:
+            for cell_set, noise, method in _asked(sets[name], seed):
+                path = folder / f"{name}-{noise:g}-{seed:02d}-{method}.csv"
+                if path.exists():
+                    continue
+                if (method, cell_set.approach) not in warm:  # no cell's seconds hold importing and compiling
+                    first = recorded(cell_set.system, replace(cell_set.conditions, duration_s=600 * 0.01, dt_s=0.01))
+                    cell_of(first, method, cell_set.approach)
+                    warm.add((method, cell_set.approach))
+                record = recorded(cell_set.system, replace(cell_set.conditions, noise=noise, seed=seed))
+                table = rows_of(cell_of(record, method, cell_set.approach, cell_set.settings))
+                table.insert(0, "set", name.removesuffix("_bopdmd"))
+                save_table(table, path)
+                print(path.name, flush=True)
+
+
+def _asked(cell_set: CellSet, seed: int) -> Iterator[tuple[CellSet, float, Method]]:
+    for noise in cell_set.noises:
+        for method in cell_set.methods:
+            if seed < (cell_set.seeds if noise else 1):  # without noise all seeds are one
+                yield cell_set, noise, method
+
+
+def rows_of(cell: DiscrepancyCell) -> pd.DataFrame:
+    """Numbers of a cell, a row a part: medians over the channels, but the worst of them until the first jump.
+
+    Parameters
+    ----------
+    cell : DiscrepancyCell
+        Fitted or refused.
+    """
+    head = {
+        "system": cell.system, "variant": cell.variant, "approach": cell.approach, "method": cell.method,
+        "noise": cell.noise, "dt_s": cell.dt_s, "samples": cell.samples, "seed": cell.seed,
+        "seconds": cell.fit_s + cell.run_s, "terms": cell.terms, "refused": cell.refused,
+    }  # fmt: skip
+    rows = [
+        head
+        | {"part": name, "accuracy": float(np.median(part.accuracy())), "diverged_s": part.diverged_s}
+        | {"valid_s": part.valid_s("augmented"), "valid_known_s": part.valid_s("known")}
+        | {"to_jump": float(np.min(part.accuracy(until_s=part.first_jump_s())))}
+        for name, part in cell.parts.items()
+    ]
+    return pd.DataFrame(rows or [head | {"part": ""}])
+
+
+def gathered(folder: Path) -> pd.DataFrame:
+    """Every cell of a folder, in the order of the sets, methods, noises and seeds.
+
+    Parameters
+    ----------
+    folder : Path
+        Of `compute`.
+    """
+    table = pd.concat([pd.read_csv(path) for path in sorted(folder.glob("*-*-*-*.csv"))], ignore_index=True)
+    order = {name: k for k, name in enumerate([*cell_sets(), *METHODS])}
+    rank = table.assign(set=table["set"].map(order), method=table["method"].map(order))
+    return table.loc[rank.sort_values(["set", "method", "noise", "seed"], kind="stable").index]
+
+
+def keep(folder: Path) -> None:
+    """Write the table of all cells, and what `recommend` answers from.
+
+    Parameters
+    ----------
+    folder : Path
+        Of `compute`.
+    """
+    save_table(gathered(folder), CELLS)
+    seeds = measured()
+    save_table(evidence_of(seeds[(seeds["approach"] == "dynamics") & (seeds["variant"] == "right")]), FOUND)
+
+
+if __name__ == "__main__":
+    if GIVEN.keep:
+        keep(GIVEN.folder)
+    else:
+        GIVEN.folder.mkdir(parents=True, exist_ok=True)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            compute(GIVEN.folder, GIVEN.sets or list(cell_sets()), GIVEN.seeds)
