@@ -21,7 +21,7 @@ _FORMULA = re.compile(
 )  # apostrophes in front are counted, so that one can be taken off again
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _NUMBERS = "biufcmM"  # kinds of a numpy column that hold no text
-_OTHER_SEPARATORS = re.compile(r"[;\t]")  # of a spreadsheet in another language
+_OTHER_SEPARATORS = re.compile(r"[;\t\r]")  # of cells in another language, of rows on another system
 
 
 def quoted(text: str) -> str:

@@ -95,7 +95,7 @@ def test_whoever_is_left_out_is_named_and_every_table_has_its_n(folder):
     code, words = said("run", folder)
     assert code == SOME_REFUSED
     assert "P02: a comparison needs one trial of 'nominal' and one of 'exo'; P02 has 1 of 'nominal', none of" in words
-    assert "refused: P03 exo: gone.mot is to be read; there is no such file, the nearest is 'exo.mot'." in words
+    assert "refused: P03 exo: P03 exo, file 1 is to be read; there is no such file, the nearest is 'exo.mot'." in words
     assert "refused: P05: the Nominal model: a fit needs outputs that vary; P05: d2(ankle_angle_r)/dt2 is" in words
     assert "n = 2 participants" in words
     page = page_of(folder)

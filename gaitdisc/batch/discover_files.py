@@ -140,6 +140,7 @@ def _discovered(
     model: Simulation, data: Measured, catalogue: Path | None, files: dict[Path, str], told: Callable[[str], None]
 ) -> tuple[Discovery, Simulation]:
     shapes = read_catalogue(catalogue) if catalogue else ()
+    data = replace(data, trials=tuple(_trial_name(name, k) for k, name in enumerate(data.trials, 1)))
     refuse_blow_up(model, data)
     found, augmented = discover(model, data, shapes, told)
     settings = {"title": model.title, "trials": len(data.trials), "rate_hz": data.rate, "channels": list(data.channels)}
@@ -150,6 +151,11 @@ def _discovered(
     public = PublicWords(_own_words(augmented), {path.name: called for path, called in files.items()})
     findings = tuple(map(public.finding, (*listed, *found.findings)))
     return replace(found, findings=findings, provenance=made), augmented
+
+
+def _trial_name(name: str, number: int) -> str:
+    """Of a trial of the measured table; what it is called there may be a person's name."""
+    return name if PublicWords().said(name) == name else f"trial {number}"
 
 
 def _own_words(model: Simulation) -> frozenset[str]:

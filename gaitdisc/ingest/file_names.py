@@ -40,7 +40,9 @@ _KIND_WORDS = {
     "electromyography", "envelope", "inverse", "dynamics", "results", "mot", "sto", "c3d",
 }  # fmt: skip
 _PERSON = re.compile(r"(?:s|p|sub|subj|subject|participant|pt)[-_]?\d{1,4}", re.IGNORECASE)
-PSEUDONYM = re.compile(r"(?=.*\d)[A-Za-z0-9_-]{1,16}")  # without a digit it may be a name
+# a short code and a number: anything longer, or without a number, may be a name
+PSEUDONYM = re.compile(r"(?:sub|subj|subject|participant|pt|[a-z]{1,4})?[-_]?\d{1,4}", re.IGNORECASE)
+_STARTS = ("noexo", "withoutexo", "nonexo", "nodevice")
 
 
 def words_in(name: str) -> list[str]:
@@ -84,8 +86,9 @@ def condition_word(path: Path) -> tuple[str, str]:
         words = words_in(name)
         joined = [a + b for a, b in itertools.pairwise(words) if a in ("no", "without", "non", "un")]
         for word in (*joined, *words):
-            if word in NOMINAL_WORDS or word.startswith(("noexo", "withoutexo", "nonexo", "nodevice")):
-                return word, "nominal"
+            start = next((start for start in _STARTS if word.startswith(start)), word)
+            if start in (*NOMINAL_WORDS, *_STARTS):
+                return start, "nominal"
         for word in words:
             if word in DEVICE_WORDS:
                 return word, "device"

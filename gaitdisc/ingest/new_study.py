@@ -175,6 +175,9 @@ def _participants(
     renamed = [new for old, new in ids.items() if old and old != new]
     if renamed:
         notes.append(f"folder names that are no pseudonyms became {', '.join(renamed)}; the paths still hold them")
+    kept = [person for person in people if person in taken]
+    if kept:
+        notes.append(f"taken as pseudonyms as they are: {', '.join(kept)}; change any that tells who a person is")
     if "" in ids:
         notes.append(f"files whose path tells no person were put under {ids['']}")
     words = {"nominal": conditions.nominal, "device": conditions.device, "": UNKNOWN}

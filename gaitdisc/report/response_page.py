@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -126,7 +127,12 @@ def _sections(run: ResponseRun, names: dict[str, str], folder: Path) -> list[Sec
         return [_section(*each) for each in alone]
     from joblib import Parallel, delayed
 
-    drawn = Parallel(n_jobs=processes, backend="loky", inner_max_num_threads=1)(delayed(_section)(*a) for a in alone)
+    try:
+        drawn = Parallel(n_jobs=processes, backend="loky", inner_max_num_threads=1)(
+            delayed(_section)(*a) for a in alone
+        )
+    except BrokenProcessPool:  # killed, mostly for its memory: one after the other takes the least
+        return [_section(*each) for each in alone]
     return [section for section in drawn if section is not None]
 
 

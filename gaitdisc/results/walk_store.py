@@ -87,12 +87,14 @@ def unit_name(subject: str, condition: str) -> str:
     Examples
     --------
     >>> unit_name("P01", "exo"), unit_name("P01", "no spring"), unit_name("P01", "no_spring")
-    ('P01-exo', 'P01-no_spring-5b9bbb7a', 'P01-no_spring')
+    ('P01-exo', 'P01-no_spring-e4cfa24e', 'P01-no_spring')
     """
+    who = "".join(letter if letter.isalnum() or letter in "-_" else "_" for letter in subject)
     plain = "".join(letter if letter.isalnum() or letter == "_" else "_" for letter in condition)
-    if plain == condition:
+    if (who, plain) == (subject, condition):
         return f"{subject}-{condition}"
-    return f"{subject}-{plain}-{hashlib.sha256(condition.encode()).hexdigest()[:8]}"
+    told_apart = hashlib.sha256(" ".join((subject, condition)).encode()).hexdigest()[:8]
+    return f"{who}-{plain}-{told_apart}"
 
 
 def _curves(arrays: Arrays) -> NDArray[np.float64]:

@@ -21,7 +21,7 @@ def test_the_spring_is_found_at_the_ankle_under_short_names(lab):
     assert (found.first, found.second) == ("exo", "free")
     assert {name[:5] for name in found.ordered()[:2]} == {"ankle"}
     assert found.provenance.settings["detector"] == "angles"
-    assert set(found.provenance.files) == {"walk_exo_ik.mot", "walk_free_ik.mot"}
+    assert set(found.provenance.files) == {"exo", "free"}
 
 
 def test_one_channel_alone(lab):

@@ -31,7 +31,8 @@ def test_the_answer_carries_what_it_rests_on(files):
     found, augmented = discover_files(files / "mass.toml", files / "walk.csv", told=steps.append)
     assert steps[0] == "reading mass.toml and walk.csv"
     assert found.provenance is not None
-    assert found.provenance.files == {name: file_sha256(files / name) for name in ("mass.toml", "walk.csv")}
+    called = {"simulation": "mass.toml", "measured table": "walk.csv"}
+    assert found.provenance.files == {role: file_sha256(files / name) for role, name in called.items()}
     assert any(one.kind == "unit" for one in found.findings)
     assert found.runs.names == ("1", "2", "3", "4")
     (term,) = augmented.effects

@@ -39,7 +39,7 @@ def test_a_run_is_saved_whole(run, finished):
     loaded = load_run(finished)
     pd.testing.assert_frame_equal(loaded.r2_table(), run.r2_table(), check_dtype=False)
     assert [response.participant for response in run.responses] == ["P01", "P02"]
-    assert set(run.provenance.files) == {f"P0{k}_{word}.mot" for k in (1, 2) for word in ("nominal", "exo")}
+    assert set(run.provenance.files) == {f"P0{k} {word}, file 1" for k in (1, 2) for word in ("nominal", "exo")}
     assert all(len(sha) == 64 for sha in run.provenance.files.values())
 
 

@@ -25,3 +25,13 @@ def test_a_refusal_is_one_sentence_and_exit_code_1(tmp_path, called):
     assert done.returncode == REFUSED
     assert done.stderr.startswith("SchemaError: a study, a recording or a folder is needed; ")
     assert "Traceback" not in done.stdout + done.stderr
+
+
+def test_a_condition_in_brackets_is_printed_as_it_is(study, tmp_path):
+    text = (study / "study.toml").read_text().replace('"exo"', '"xo[/b]"').replace('"natural"', '"[natural]"')
+    home = tmp_path / "study"
+    home.mkdir()
+    (home / "study.toml").write_text(text.replace("../..", str(study.parents[1])))
+    checked = CliRunner().invoke(app, ["check", str(home)])
+    assert checked.exception is None or isinstance(checked.exception, SystemExit), checked.exception
+    assert "xo[/b]" in checked.output and "[natural]" in checked.output

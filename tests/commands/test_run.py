@@ -17,8 +17,9 @@ def test_the_batch_goes_on_past_a_broken_file(study, recordings, tmp_path, calle
     done = called("run", folder, "--quiet")
     assert done.returncode == SOME_REFUSED, done.stderr
     assert "refused: P02 exo:" in done.stderr
-    assert "broken.mot" in done.stderr
+    assert "P02 exo, file 1" in done.stderr and "broken.mot" not in done.stderr  # the study says which file it is
     assert "1 participant in" in done.stdout
     checked = called("check", folder)
+    assert "broken.mot" in checked.stdout
     assert checked.returncode == SOME_REFUSED
     assert "Traceback" not in checked.stderr

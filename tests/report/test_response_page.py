@@ -1,5 +1,7 @@
 import base64
+import os
 import re
+import signal
 from dataclasses import replace
 
 import numpy as np
@@ -7,7 +9,7 @@ import pandas as pd
 import pytest
 
 from gaitdisc.errors import GaitdiscError
-from gaitdisc.report import write_report
+from gaitdisc.report import response_page, write_report
 from gaitdisc.results import Refusal
 
 OUTPUTS = ("hip_flexion_r", "ankle_angle_l")
@@ -149,3 +151,18 @@ def test_participants_drawn_side_by_side_are_those_drawn_alone(run_maker, tmp_pa
     assert len(alone) >= 4 * 3
     for path in alone:
         assert path.read_bytes() == (tmp_path / "all" / "figures" / path.name).read_bytes()
+
+
+def test_a_process_that_is_killed_while_it_draws_costs_its_time_alone(run_maker, tmp_path, monkeypatch):
+    run = run_maker(3, outputs=("hip_flexion_r",))
+    monkeypatch.setattr("gaitdisc.report.response_page.os.cpu_count", lambda: 2)
+    here, drawn = os.getpid(), response_page._section
+
+    def killed_elsewhere(*given):
+        if os.getpid() != here:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return drawn(*given)
+
+    monkeypatch.setattr(response_page, "_section", killed_elsewhere)
+    text = response_page.write_report(run, tmp_path).read_text(encoding="utf-8")
+    assert text.count('class="participant"') == 3

@@ -1,3 +1,5 @@
+import re
+
 import numpy as np
 import pandas as pd
 
@@ -15,4 +17,10 @@ def test_a_walk_comes_back_as_it_was(walk, tmp_path):
 
 
 def test_a_folder_name_has_no_characters_that_a_disk_refuses():
-    assert unit_name("P/1", "10 % up:hill") == "P_1-10___up_hill"
+    assert re.fullmatch(r"P_1-10___up_hill-[0-9a-f]{8}", unit_name("P/1", "10 % up:hill"))
+
+
+def test_no_two_walks_share_a_folder():
+    """Conditions that differ in signs alone, and a hyphen in the pseudonym or in the condition."""
+    walks = [("P01", "[exo]"), ("P01", "(exo)"), ("P01", "_exo_"), ("P01-a", "b"), ("P01", "a-b")]
+    assert len({unit_name(*walk) for walk in walks}) == len(walks)

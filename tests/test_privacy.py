@@ -1,0 +1,254 @@
+"""Words that a recording brings may say who a person is: planted everywhere in one, they stand in no result."""
+
+from __future__ import annotations
+
+import base64
+import re
+import zipfile
+from functools import partial
+
+import ezc3d
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+from driven_walker import DrivenWalker
+from typer.testing import CliRunner
+
+from gaitdisc.cli import app
+from gaitdisc.ingest.storage import write_storage
+from gaitdisc.ingest.table import write_table
+from gaitdisc.networks.training_settings import TrainingSettings
+
+# each is planted in one kind of place, and told from the others if it is found
+TOKENS = (
+    "Zqfolder", "Zqperson", "Zqfile", "Zqheader", "Zqcolumn", "Zqsubject", "Zqmaker", "Zqdescribed", "Zqanalog",
+    "Zqpoint", "Zqevent", "Zqgroup", "Zqtrc", "Zqmarker", "Zqcomment", "Zqcsv", "Zqmeta", "Zqbroken", "Zqhome",
+)  # fmt: skip
+ANGLES = [f"{joint}_{side}" for side in "rl" for joint in ("hip_flexion", "knee_angle", "ankle_angle")]
+
+
+def angles_with(trial, label):
+    """Angles of a walk, and a column that no vocabulary knows."""
+    kinematics = trial.stream("kinematics").selected(ANGLES)
+    return kinematics, np.column_stack([kinematics.time, kinematics.values, np.sin(kinematics.time)]), label
+
+
+def write_mot(trial, path):
+    """OpenSim's first line is the name of the motion, mostly that of the file."""
+    kinematics, table, label = angles_with(trial, "Zqcolumn_secret")
+    write_storage(kinematics, path)
+    head, _, _ = path.read_text().partition("endheader")
+    lines = [f"Zqheader {path.stem}", *head.splitlines()[1:], "Zqheader: measured by Zqheader", "endheader"]
+    lines = [re.sub(r"nColumns=.*", f"nColumns={table.shape[1]}", line) for line in lines]
+    rows = ["\t".join(map(repr, row)) for row in table.tolist()]
+    path.write_text("\n".join([*lines, "\t".join(["time", *ANGLES, label]), *rows]) + "\n")
+
+
+def write_text_table(trial, path):
+    _, table, label = angles_with(trial, "Zqcsv secret [V]")
+    heads = ["time [s]", *(f"{name} [deg]" for name in ANGLES), label]
+    rows = [",".join(map(repr, row)) for row in table.tolist()]
+    path.write_text("\n".join(["# Zqcomment, born 1970", ",".join(heads), *rows]) + "\n")
+
+
+def write_parquet(trial, path):
+    write_table(trial.stream("kinematics").selected(ANGLES), path)
+    table = pq.read_table(path)
+    pq.write_table(table.replace_schema_metadata({"patient": "Zqmeta"}), path)
+
+
+def write_trc(path, seconds=24.0):
+    """One marker that means nothing, in a file that says its own name and path."""
+    time = np.arange(round(100 * seconds)) / 100
+    rows = [f"{k + 1}\t{t:.2f}\t{1000 + 10 * np.sin(t):.3f}\t900\t5" for k, t in enumerate(time)]
+    head = [
+        f"PathFileType\t4\t(X/Y/Z)\tC:/Zqtrc/{path.name}",
+        "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames",
+        f"100\t100\t{len(rows)}\t1\tmm\t100\t1\t{len(rows)}",
+        "Frame#\tTime\tZqmarker\t\t",
+        "\t\tX1\tY1\tZ1",
+        "",
+    ]
+    path.write_text("\n".join([*head, *rows]) + "\n")
+
+
+def write_c3d(trial, path):
+    """EMG and force as any laboratory exports them, with a name in every field that holds text."""
+    emg = trial.stream("emg")
+    file = ezc3d.c3d()
+    labels = [*emg.names, "Zqanalog secret"]
+    points = ["Zqpoint", "Zqsubject:RHEE"]
+    texts = {
+        ("SUBJECTS", "NAMES"): ["Zqsubject"],
+        ("SUBJECTS", "LABEL_PREFIXES"): ["Zqsubject:"],
+        ("MANUFACTURER", "COMPANY"): ["Zqmaker"],
+        ("MANUFACTURER", "SOFTWARE"): ["Zqmaker"],
+        ("ZQGROUP", "PATIENT"): ["Zqgroup"],
+        ("POINT", "RATE"): [100.0],
+        ("POINT", "UNITS"): ["mm"],
+        ("POINT", "LABELS"): points,
+        ("POINT", "DESCRIPTIONS"): ["Zqdescribed"] * 2,
+        ("ANALOG", "RATE"): [1000.0],
+        ("ANALOG", "LABELS"): labels,
+        ("ANALOG", "DESCRIPTIONS"): ["Zqdescribed"] * len(labels),
+        ("ANALOG", "UNITS"): ["V"] * len(labels),
+        ("EVENT", "USED"): [2],
+        ("EVENT", "LABELS"): ["Zqevent", "Foot Strike"],
+        ("EVENT", "CONTEXTS"): ["Zqevent", "Right"],
+        ("EVENT", "SUBJECTS"): ["Zqsubject"] * 2,
+        ("EVENT", "DESCRIPTIONS"): ["Zqevent"] * 2,
+    }
+    for (group, name), value in texts.items():
+        file.add_parameter(group, name, value)
+    file.add_parameter("EVENT", "TIMES", np.array([[0.0, 0.0], [1.0, 2.0]]))
+    frames = len(emg.time) // 10
+    where = np.ones((4, 2, frames))
+    where[:3] = 1000 + 10 * np.sin(np.arange(frames) / 30)
+    file["data"]["points"] = where
+    values = np.column_stack([emg.values, np.sin(emg.time)])[: 10 * frames]
+    file["data"]["analogs"] = np.ascontiguousarray(values.T)[None]
+    file.write(str(path))
+
+
+@pytest.fixture(scope="module")
+def recordings(tmp_path_factory):
+    """Four people: .mot with C3D and .trc, CSV, Parquet, and one whose file will be damaged in a private column."""
+    home = tmp_path_factory.mktemp("lab") / "Zqfolder_Mustermann"
+    writers = {"a": write_mot, "b": write_text_table, "c": write_parquet, "d": write_mot}
+    endings = {"a": "mot", "b": "csv", "c": "parquet", "d": "mot"}
+    for seed, (letter, write) in enumerate(writers.items(), 1):
+        folder = home / f"Zqperson_{letter * 3}"
+        folder.mkdir(parents=True)
+        for word, spring in (("natural", 0.0), ("exo", 250.0)):
+            trial = DrivenWalker("A", seed=seed, spring_per_s2=spring).walked(24.0, word)
+            path = folder / f"Zqfile_{word}_ik.{endings[letter]}"
+            write(trial, path)
+            if letter == "a":
+                write_c3d(trial, folder / f"Zqfile_{word}_emg.c3d")
+                write_trc(folder / f"Zqfile_{word}_markers.trc")
+    return home
+
+
+@pytest.fixture(scope="module")
+def study(recordings, tmp_path_factory):
+    """As `new` makes it; after that, a file is damaged."""
+    folder = tmp_path_factory.mktemp("work") / "Zqhome"
+    done = CliRunner().invoke(app, ["new", str(folder), "--from", str(recordings)])
+    assert done.exit_code == 0, done.output
+    damaged = recordings / "Zqperson_ddd" / "Zqfile_exo_ik.mot"
+    lines = damaged.read_text().splitlines()
+    lines[500] = re.sub(r"\t[^\t]*$", "\tZqbroken", lines[500])
+    damaged.write_text("\n".join(lines) + "\n")
+    return folder
+
+
+@pytest.fixture(autouse=True)
+def quickly(monkeypatch):
+    monkeypatch.setattr("gaitdisc.batch.participant_unit.TrainingSettings", partial(TrainingSettings, epochs=1))
+
+
+def called(*words):
+    done = CliRunner().invoke(app, list(map(str, words)))
+    assert done.exception is None or isinstance(done.exception, SystemExit), done.exception
+    return done
+
+
+def planted(text, *more):
+    return sorted({token for token in (*TOKENS, *more) if re.search(token, text, re.IGNORECASE)})
+
+
+def found_in(folder):
+    """Which tokens stand in which file of a folder, in its name, its bytes, its arrays and the pictures of a page."""
+    hits = {}
+    for path in [each for each in folder.rglob("*") if each.is_file() and each.name != "study.toml"]:
+        content = path.read_bytes()
+        if zipfile.is_zipfile(path):
+            with zipfile.ZipFile(path) as packed:
+                content = b"".join([name.encode() + packed.read(name) for name in packed.namelist()])
+        pictures = re.findall(rb"base64,([A-Za-z0-9+/=]+)", content)
+        content += b"".join(map(base64.b64decode, pictures))
+        there = planted(str(path.relative_to(folder)) + content.decode("utf-8", "replace"))
+        if there:
+            hits[str(path.relative_to(folder))] = there
+    return hits
+
+
+def test_the_tokens_are_planted(recordings, study):
+    """Or nothing below could fail."""
+    everything = b"".join(path.read_bytes() for path in recordings.rglob("*") if path.is_file())
+    text = everything.decode("utf-8", "replace") + str(recordings) + str(study)
+    names = " ".join(str(path) for path in recordings.rglob("*"))
+    assert planted(text + names) == sorted(TOKENS)
+
+
+def test_check_names_the_file_to_mend_on_the_own_terminal(study):
+    done = called("check", study)
+    assert "Zqfile_exo_ik.mot" in done.output and "Zqbroken" in done.output
+
+
+def test_the_study_is_the_key_and_its_title_names_nobody(study):
+    text = (study / "study.toml").read_text()
+    assert 'title = "natural against exo"' in text
+    assert {f"P0{k}" for k in (1, 2, 3, 4)} <= set(re.findall(r'id = "([^"]*)"', text))
+    assert "Zqfile_exo_ik.mot" in text
+
+
+def test_a_run_holds_none_of_them(study):
+    done = called("run", study, "--quiet")
+    assert done.exit_code == 3, done.output
+    assert planted(done.output.replace(str(study), "")) == []
+    assert "refused: P04 exo: P04 exo, file 1" in " ".join(done.output.split())
+    assert found_in(study) == {}
+    page = (study / "run" / "report" / "report.html").read_text()
+    assert "<h1>natural against exo</h1>" in page and "P01 natural, file 1" in page and "P04 exo, file 1" in page
+
+
+def test_what_is_made_of_a_run_holds_none_of_them(study):
+    for word in ("ablate", "modalities"):
+        done = called(word, study, "--quiet", *(("--length", "5") if word == "ablate" else ()))
+        assert planted(done.output.replace(str(study), "")) == [], word
+    done = called("report", study / "run")
+    assert planted(done.output.replace(str(study), "")) == []
+    assert found_in(study) == {}
+
+
+def test_a_comparison_holds_none_of_them(study, recordings, tmp_path):
+    for what in (
+        [study, "--participant", "P01"],
+        [recordings / "Zqperson_aaa" / "Zqfile_exo_ik.mot", recordings / "Zqperson_bbb" / "Zqfile_natural_ik.csv"],
+        [recordings / "Zqperson_aaa" / "Zqfile_exo_ik.mot", recordings / "Zqperson_bbb" / "Zqfile_exo_ik.csv"],
+    ):
+        done = called("compare", *what, "--out", tmp_path / "out")
+        assert done.exit_code == 0, done.output
+        assert planted(done.output.replace(str(tmp_path), "")) == []
+        assert found_in(tmp_path) == {}
+
+
+def test_models_and_what_they_tell_hold_none_of_them(study, recordings, tmp_path):
+    options = ["--sensors", "ankle_angle_r", "--kinds", "linear", "--out", tmp_path / "out", "--quiet"]
+    done = called("reconstruct", study, *options)
+    assert (tmp_path / "out" / "models" / "P01" / "model.json").exists(), done.output
+    assert planted(done.output.replace(str(tmp_path), "")) == []
+    recording = recordings / "Zqperson_aaa" / "Zqfile_exo_ik.mot"
+    called("reconstruct", recording, "--model", tmp_path / "out" / "models" / "P01", "--out", tmp_path / "told.mot")
+    assert (tmp_path / "told.mot").exists()
+    assert found_in(tmp_path) == {}
+
+
+def test_a_discovery_from_a_study_holds_none_of_them(study, tmp_path):
+    done = called("discover", study, "--participant", "P01", "--out", tmp_path, "--no-report", "--quiet")
+    assert (tmp_path / "discovery.json").exists(), done.output
+    assert planted(done.output.replace(str(tmp_path), "")) == []
+    assert found_in(tmp_path) == {}
+
+
+@pytest.mark.parametrize("ending", ["csv", "mot", "parquet"])
+def test_an_export_numbers_labels_of_no_vocabulary_unless_it_shall_keep_them(recordings, tmp_path, ending):
+    folder = recordings / "Zqperson_aaa"
+    files = [folder / f"Zqfile_exo_{kind}" for kind in ("ik.mot", "emg.c3d", "markers.trc")]
+    done = called("export", *files, "--out", tmp_path / f"all.{ending}")
+    assert done.exit_code == 0, done.output
+    assert re.search(r"\d labels are outside the vocabulary and numbered; --labels keeps them", done.output)
+    assert found_in(tmp_path) == {}
+    called("export", *files, "--out", tmp_path / f"kept.{ending}", "--labels")
+    assert {"Zqcolumn", "Zqmarker"} <= set(found_in(tmp_path)[f"kept.{ending}"])
