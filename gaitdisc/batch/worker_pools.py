@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
@@ -65,6 +66,8 @@ def computed_in_processes(
     (person, unit)
         `Lost` in the place of a unit that could not be computed.
     """
+    from joblib.externals.loky.process_executor import TerminatedWorkerError
+
     waiting, tries = list(range(len(people)))[::-1], Counter[int]()
     free = [_pool() for _ in range(min(jobs, len(people)))]
     working: dict[Future[Unit], tuple[int, ProcessPoolExecutor]] = {}
@@ -80,7 +83,7 @@ def computed_in_processes(
                 number, pool = working.pop(future)
                 try:
                     done[number] = future.result()
-                except (BrokenProcessPool, MemoryError) as error:
+                except (TerminatedWorkerError, MemoryError) as error:
                     pool.shutdown(wait=False, kill_workers=True)
                     pool = _pool()
                     tries[number] += 1
@@ -116,11 +119,12 @@ def _begun(
 
 
 def _reason(error: BaseException, jobs: int) -> str:
-    what = "ran out of memory" if isinstance(error, MemoryError) else "was killed"
+    signals = re.search(r"\{(\w+)", str(error))
+    what = "ran out of memory" if isinstance(error, MemoryError) else f"was killed ({signals[1] if signals else '?'})"
     fewer = f"run it with --jobs {jobs - 1}, or on" if jobs > 1 else "use"
     return (
-        f"a participant needs a process that lives until its unit is computed; it {what} {TRIES} times, as a machine "
-        f"without memory does (this one has {_memory()}). What others have is kept; {fewer} a machine with more memory."
+        f"a participant needs a process that lives until its unit is computed; {TRIES} times it {what}, as where "
+        f"memory runs out (this machine has {_memory()}). What others have is kept; {fewer} a machine with more memory."
     )
 
 

@@ -36,4 +36,4 @@ def test_a_walk_that_is_refused_refuses_the_rest(study, tmp_path):
     person = person.model_copy(update={"trials": (person.trials[0], broken)})
     refused = computed_quantity(study, person, tmp_path, (5.0,), "first", lambda _: None)
     assert isinstance(refused, Refusal)
-    assert "nowhere.mot" in refused.reason
+    assert "exo, file 1 is to be read" in refused.reason and "nowhere.mot" not in refused.reason

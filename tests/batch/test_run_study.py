@@ -101,7 +101,7 @@ def test_a_participant_whose_process_is_killed_is_refused_and_the_others_stand(
     done = run_study(study, copy, Workers(jobs=2))
     assert [response.participant for response in done.responses] == ["P01"]
     [refusal] = done.refusals
-    assert refusal.participant == "P02" and "was killed 2 times" in refusal.reason
+    assert refusal.participant == "P02" and "2 times it was killed (SIGKILL)" in refusal.reason
     assert [refusal.reason for refusal in load_run(copy).refusals] == [refusal.reason]
 
 

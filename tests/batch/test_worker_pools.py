@@ -51,7 +51,10 @@ def test_a_process_that_is_killed_twice_is_lost_in_words_and_the_others_are_not(
     found = dict(computed_in_processes(2, Squared(tmp_path, victim=victim, kills=9), [1, 2, 3, 4, 5]))
     lost = found.pop(victim)
     assert isinstance(lost, Lost)
-    assert "was killed 2 times" in lost.reason and "run it with --jobs 1, or on a machine with more" in lost.reason
+    assert (
+        "2 times it was killed (SIGKILL)" in lost.reason
+        and "run it with --jobs 1, or on a machine with more" in lost.reason
+    )
     assert found == {number: number**2 for number in (1, 2, 3, 4, 5) if number != victim}
     assert computed(tmp_path) == dict.fromkeys(found, 1)
     assert len(list(tmp_path.glob("killed*"))) == 2
@@ -63,7 +66,7 @@ def too_large(_):
 
 def test_memory_that_runs_out_is_as_a_kill():
     [(_, lost)] = computed_in_processes(1, too_large, [1])
-    assert "ran out of memory 2 times" in lost.reason and "; use a machine with more memory." in lost.reason
+    assert "2 times it ran out of memory" in lost.reason and "; use a machine with more memory." in lost.reason
 
 
 def wrong(_):
@@ -73,6 +76,18 @@ def wrong(_):
 def test_a_defect_is_not_hidden():
     with pytest.raises(KeyError, match="a defect"):
         list(computed_in_processes(2, wrong, [1, 2]))
+
+
+class Unreadable:
+    """Can be sent to another process, and not be made again there."""
+
+    def __reduce__(self):
+        return too_large, ()  # which lacks an argument
+
+
+def test_what_cannot_be_sent_is_no_kill():
+    with pytest.raises(RuntimeError, match="un-serialize"):
+        list(computed_in_processes(1, squared_or_killed, [Unreadable()]))
 
 
 def test_whoever_stops_listening_stops_the_processes(tmp_path):

@@ -77,7 +77,7 @@ def test_a_participant_whose_process_is_killed_is_refused(study):
     first, second = found
     assert first == "P01"
     assert (second.participant, second.condition) == ("P02", "")
-    assert "was killed 2 times" in second.reason
+    assert "2 times it was killed (SIGKILL)" in second.reason
 
 
 def test_a_worker_that_is_killed_in_the_middle_costs_nothing(cluster, tmp_path):
