@@ -15,6 +15,8 @@ from gaitdisc.channel import Channel, schema_folder
 from gaitdisc.errors import ReadError
 from gaitdisc.recording import Finding, Recording
 
+FEW = 0.01  # of the samples; where EMG is beyond its range more often, it is counted by a converter
+
 
 @dataclass(frozen=True)
 class PlausibleRange:
@@ -75,6 +77,9 @@ def without_impossible(
 ) -> tuple[dict[str, Recording], list[Finding]]:
     """Streams in which values beyond the range of their quantity are missing, and which they were.
 
+    EMG of which a channel is often beyond the range is in another unit than the file states. It is left and named: its
+    course is right, its amplitude is not.
+
     Parameters
     ----------
     streams : mapping of str to Recording
@@ -107,23 +112,43 @@ def without_impossible(
     for key, recording in streams.items():
         beyond = np.zeros(recording.values.shape, bool)
         for place, channel in enumerate(recording.channels):
-            limits = next((one for one in plausible_ranges() if one.covers(channel)), None)
+            limits = _limits(channel)
             if limits is None:
                 continue
             values = recording.values[:, place]
             beyond[:, place] = (values < limits.low) | (values > limits.high)  # NaN is neither
-            if beyond[:, place].any():
-                before_s = recording.time[0] - (begin_s or {}).get(key, recording.time[0])
-                frames = round(before_s * recording.rate_hz) if before_s else 0
-                where = _where(recording, place, beyond[:, place], frames, limits)
-                findings.append(_finding(recording, place, beyond[:, place], where))
+        counted = [i for i, c in enumerate(recording.channels) if c.quantity == "emg" and beyond[:, i].any()]
+        if any(beyond[:, i].mean() > FEW for i in counted):
+            findings += [_other_unit(recording, i) for i in counted]
+            beyond[:, counted] = False
+        before_s = recording.time[0] - (begin_s or {}).get(key, recording.time[0]) if len(recording.time) else 0.0
+        frames = round(before_s * recording.rate_hz) if before_s else 0
+        for place in np.flatnonzero(beyond.any(axis=0)).tolist():
+            where = _where(recording, place, beyond[:, place], frames)
+            findings.append(_finding(recording, place, beyond[:, place], where))
         kept[key] = recording.with_values(np.where(beyond, np.nan, recording.values)) if beyond.any() else recording
     return kept, findings
 
 
-def _where(recording: Recording, place: int, beyond: NDArray[np.bool_], before: int, limits: PlausibleRange) -> str:
+def _limits(channel: Channel) -> PlausibleRange | None:
+    return next((one for one in plausible_ranges() if one.covers(channel)), None)
+
+
+def _other_unit(recording: Recording, place: int) -> Finding:
+    channel = recording.channels[place]
+    limits = _limits(channel)
+    assert limits is not None  # it was found beyond them
+    most = float(np.nanmax(np.abs(recording.values[:, place])))
+    what = f"reaches {most:.6g} {channel.unit}; EMG in {channel.unit} is within {limits.high:g}, so these may be counts"
+    spoils = "its amplitude; state the unit in the file or in [channels]"
+    return Finding("warning", "unit", recording.source.file, what, spoils, channel.name)
+
+
+def _where(recording: Recording, place: int, beyond: NDArray[np.bool_], before: int) -> str:
     """First value beyond the range, with its frame in the file, and how many there are."""
     channel, first = recording.channels[place], int(np.argmax(beyond))
+    limits = _limits(channel)
+    assert limits is not None  # it was found beyond them
     count, unit = int(beyond.sum()), "" if channel.unit == "1" else f" {channel.unit}"
     more = f", as {'is' if count == 2 else 'are'} {count - 1} more of {len(beyond)} frames" if count > 1 else ""
     return (

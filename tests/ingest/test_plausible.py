@@ -28,8 +28,6 @@ def _of(channel, *values):
         (vocabulary().named("pelvis_rotation"), 720.0, 1e5),
         (vocabulary().named("pelvis_tx"), 400.0, 1e7),
         (Channel("RHEE.x", "marker", "m"), 9.0, 1e3),
-        (Channel("emg_sol_r", "emg", "V", "r"), -4.9, 2047.0),
-        (Channel("emg_sol_r", "emg", "1", "r"), 1790.0, 1e9),
         (Channel("ankle_angle_r_moment", "moment", "N m/kg", "r"), -1.4, 1e3),
         (Channel("ankle_angle_r_moment", "moment", "N m", "r"), -140.0, 1e6),
         (Channel("RKneeForce.x", "force", "N/kg", "r"), 14.0, 1e4),
@@ -45,6 +43,14 @@ def test_each_quantity_has_a_range(channel, sound, absurd):
     assert finding.spans == ((0.01, 0.02),)
 
 
+@pytest.mark.parametrize(("unit", "sound", "absurd"), [("V", -4.9, 2047.0), ("1", 1790.0, 1e9), ("%", 300.0, 1e7)])
+def test_one_absurd_cell_of_emg_is_missing(unit, sound, absurd):
+    channel = Channel("emg_sol_r", "emg", unit, "r")
+    kept, (finding,) = without_impossible({"emg": _of(channel, *[sound] * 150, absurd)})
+    assert np.isnan(kept["emg"].values[:, 0]).nonzero()[0].tolist() == [150]
+    assert finding.kind == "out of range" and "in frame 151" in finding.what
+
+
 def test_a_ground_force_that_cannot_be_is_refused_as_a_missing_one_is():
     force = vocabulary().named("ground_force_r_vy")
     with pytest.raises(ReadError, match=r"walk\.mot: ground_force_r_vy needs .* 1e\+09 N in frame 3 \(t = 0\.02 s\)"):
@@ -52,9 +58,17 @@ def test_a_ground_force_that_cannot_be_is_refused_as_a_missing_one_is():
 
 
 def test_a_channel_beyond_its_range_throughout_has_a_wrong_unit():
-    _, (finding,) = without_impossible({"emg": _of(Channel("emg_ta_r", "emg", "V", "r"), 2047.0, 2046.0, 2047.0)})
+    _, (finding,) = without_impossible({"markers": _of(Channel("RHEE.x", "marker", "m"), 2047.0, 2046.0, 2047.0)})
     assert "as are 2 more of 3 frames" in finding.what
     assert finding.spoils.startswith("the unit or the name of the channel")
+
+
+def test_emg_in_counts_of_a_converter_is_left_and_named():
+    counts = _of(Channel("emg_ta_r", "emg", "V", "r"), 3.0, 2047.0, -40.0, 7.0)
+    kept, (finding,) = without_impossible({"emg": counts})
+    np.testing.assert_array_equal(kept["emg"].values, counts.values)
+    assert (finding.severity, finding.kind, finding.channel) == ("warning", "unit", "emg_ta_r")
+    assert finding.what == "reaches 2047 V; EMG in V is within 15, so these may be counts"
 
 
 def test_the_table_of_ranges_uses_known_words():
@@ -70,10 +84,15 @@ def test_every_channel_of_the_vocabulary_has_a_range():
 
 
 def test_real_files_lose_only_what_is_wrong_in_them(real_trials):
-    """One file is not tracked outside of 1.06 to 3.23 s; three state V for EMG in counts of a converter."""
+    """One file is not tracked outside of 1.06 to 3.23 s."""
     files = {path.name for path, _, findings in real_trials if any(f.kind == "out of range" for f in findings)}
     assert len(real_trials) > 55
-    assert files == {"IK_gait.mot", "parameterOverflow.c3d", "sub_labels.c3d", "PlugInC3D.c3d"}
+    assert files == {"IK_gait.mot"}
+
+
+def test_real_files_with_emg_in_counts_are_named(real_trials):
+    files = {path.name for path, _, findings in real_trials if any("may be counts" in f.what for f in findings)}
+    assert files == {"parameterOverflow.c3d", "sub_labels.c3d", "PlugInC3D.c3d"}
 
 
 def test_what_a_crop_leaves_out_is_not_judged(gait_data):
