@@ -58,7 +58,7 @@ def alignment_sentences(mismatch: Mismatch) -> list[str]:
     return [
         f"All of {mismatch.first} runs {number(abs(found.percent), 1)} % of the stride {way} {mismatch.second} (so fit "
         f"{found.agreeing} of {counted(found.channels, 'channel')}): the marks of initial contact lie that far apart, "
-        f"and {mismatch.first} was moved by it before anything was compared."
+        f"or every joint turns at another time; {mismatch.first} was moved by it before anything was compared."
     ]
 
 

@@ -5,8 +5,9 @@ it. Measured on 19 contacts of six young people with foot strikes of their own (
 walking): the knee is straightest at the end of swing at 97 % of the stride (94 to 99 %), the hip is most flexed at 86
 % (81 to 104 %). So percent stride counted from these contacts runs about 3 % ahead of that from the ground where the
 knee is used, with a standard deviation of 1.4 %, and about 14 % where only the hip is there, with one of 6 %. In
-running the order of the marks is the same; the offset was not measured. Nothing is corrected: the offset is constant
-for a person and drops out of stride durations, but not out of a comparison with percent strides counted from a plate.
+running the order of the marks is the same; the offset was not measured. Nothing is corrected here: the offset is
+constant for a person and drops out of stride durations, but not out of a comparison with percent strides counted from a
+plate; `processing.contact_choice` takes it off where a plate sees one step.
 """
 
 from __future__ import annotations
