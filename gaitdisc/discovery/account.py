@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.fitted import Fitted
+from gaitdisc.discovery.prior import prior_of
 from gaitdisc.discovery.shooting import ENOUGH, Shooting
 from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.running import compile_simulation
@@ -64,8 +65,8 @@ class Account:
 
     @property
     def size(self) -> int:
-        """How many numbers were fitted."""
-        return len(self.fit.free)
+        """How many numbers the explanations have; those with bounds are fitted in every account alike."""
+        return sum(len(part.candidate.slots) for part in self.parts)
 
     @property
     def criterion(self) -> float:
@@ -102,8 +103,11 @@ def account_for(
     starts: NDArray[np.float64],
     turns: int = 12,
     enough: float = ENOUGH,
+    like: Account | None = None,
 ) -> Account:
-    """Fit a simulation with explanations in it.
+    """Fit a simulation with explanations in it, and with them the numbers that have bounds, within these.
+
+    A number that an explanation calls wrong may leave its bounds.
 
     Parameters
     ----------
@@ -119,15 +123,21 @@ def account_for(
         Most steps of the fit.
     enough : float
         A step that takes less off the misfit is the last.
+    like : Account, optional
+        Whose numbers with bounds the fit begins with; the file's where absent.
     """
     simulation, names = with_parts(base, parts)
+    prior = prior_of(base, frozenset(part.candidate.place for part in parts if part.candidate.kind == "parameter"))
     machine = compile_simulation(simulation)
     values = machine.defaults.copy()
+    if like:
+        values[prior.places] = like.fit.values[prior.places]
+        values = prior.within(values)
     for part, slots in zip(parts, names, strict=True):
         for slot, name in slots.items():
             values[machine.parameters.index(name)] = part.values[slot]
-    free = tuple(name for slots in names for name in slots.values())
-    fit = shooting.fitted(machine, free, values, starts, turns, enough)
+    free = (*(name for slots in names for name in slots.values()), *prior.names)
+    fit = replace(shooting, prior=prior).fitted(machine, free, values, starts, turns, enough)
     found = tuple(
         Part(part.candidate, {slot: float(fit.values[machine.parameters.index(name)]) for slot, name in slots.items()})
         for part, slots in zip(parts, names, strict=True)

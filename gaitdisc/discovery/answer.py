@@ -12,6 +12,7 @@ from gaitdisc.discovery.estimates import estimates_of
 from gaitdisc.discovery.evidence import Judged
 from gaitdisc.discovery.held_out import drawn_runs, gap_size, proof_of, runs_of, tested
 from gaitdisc.discovery.inquiry import Inquiry
+from gaitdisc.discovery.moved import corrected, corrections_of, file_bounds
 from gaitdisc.discovery.odd_trials import KIND as ODD_TRIAL
 from gaitdisc.discovery.rivals import Rival, evidence_of, rivals_of
 from gaitdisc.discovery.shaken import Shaken
@@ -53,6 +54,7 @@ def answer(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> tuple[Discove
     held = proof if proof and now.account.parts else proof_of(inquiry, as_read, now, now)
     held_out = gap_size(held.before, held.after, floor, channels, (proof or held).test)
     gained = evidence_of(inquiry.search, now)
+    moved = corrections_of(now.account, base)
     discovery = Discovery(
         verdict.word,
         "",
@@ -65,8 +67,9 @@ def answer(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> tuple[Discove
         units_of(inquiry),
         drawn_runs(inquiry, held.before, held.after, inquiry.held_out),
         inquiry.measured.findings,
+        corrections=moved,
     )
-    augmented = begun_at(augmented_of(base, now.account.parts), verdict.starts)
+    augmented = begun_at(augmented_of(corrected(base, moved), now.account.parts), verdict.starts)
     said = sentence_of(discovery, base, now.account.parts)
     return replace(said, sentence=" ".join([said.sentence, *left_out(inquiry.measured.findings)])), augmented
 
@@ -172,7 +175,10 @@ def found_effects(inquiry: Inquiry, now: Judged, closed: float, gained: float) -
         candidate = part.candidate
         estimates = estimates_of(now.account, number, inquiry.search.base)
         term = candidate.term(part.written) if candidate.verdict == "missing_physics" else ""
-        found.append(FoundEffect(candidate.kind, candidate.place, candidate.name, term, estimates, closed, gained))
+        place = (candidate.kind, candidate.place, candidate.name)
+        found.append(
+            FoundEffect(*place, term, estimates, closed, gained, bounds=file_bounds(inquiry.search.base, candidate))
+        )
     return found
 
 
@@ -191,7 +197,16 @@ def told_rivals(inquiry: Inquiry, rivals: tuple[Rival, ...]) -> tuple[FoundEffec
         candidate, account = rival.part.candidate, rival.account.account
         estimates = estimates_of(account, len(account.parts) - 1, inquiry.search.base)
         place = (candidate.kind, candidate.place, candidate.name)
-        listed.append(FoundEffect(*place, "", estimates, bic=rival.gained, tied=rival.tied))
+        listed.append(
+            FoundEffect(
+                *place,
+                "",
+                estimates,
+                bic=rival.gained,
+                tied=rival.tied,
+                bounds=file_bounds(inquiry.search.base, candidate),
+            )
+        )
     return tuple(listed)
 
 

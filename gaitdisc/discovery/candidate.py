@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -57,6 +58,8 @@ class Candidate:
         For a wrong parameter, the number in the file.
     names : mapping of str to str
         For a missing term, what a person calls its numbers.
+    bounds : tuple of float
+        For a wrong parameter, `low` and `high` of the file; empty where it has not both.
     """
 
     verdict: str
@@ -69,6 +72,7 @@ class Candidate:
     means: str = ""
     value: float = 0.0
     names: Mapping[str, str] | None = None
+    bounds: tuple[float, ...] = ()
 
     @property
     def slots(self) -> tuple[str, ...]:
@@ -121,6 +125,19 @@ class Candidate:
     def is_late(self) -> bool:
         """Whether the number to be found is a delay of a signal."""
         return self.name in ("input_delay", "sensor_lag")
+
+    def beyond_bounds(self, value: float) -> float:
+        """Return how far a number lies outside its bounds; negative inside, infinite where it has none.
+
+        Parameters
+        ----------
+        value : float
+            [the parameter's unit].
+        """
+        if not self.bounds:
+            return math.inf
+        low, high = self.bounds
+        return max(low - value, value - high)
 
     def pieces_at(self, constants: Mapping[str, str]) -> tuple[str, ...]:
         """Return the pieces of a missing term with its constants written in.
@@ -218,6 +235,7 @@ def candidates_of(
             "wrong_parameter",
             means="a wrong number",
             value=parameter.value,
+            bounds=bounds_of(parameter),
         )
         for parameter in simulation.parameters
     ]
@@ -249,6 +267,18 @@ def candidates_of(
                 for role, names in _castings(shape, place)
             ]
     return tuple(found)
+
+
+def bounds_of(parameter: Parameter) -> tuple[float, ...]:
+    """Return a parameter's `low` and `high`, or nothing where it has not both.
+
+    Parameters
+    ----------
+    parameter : Parameter
+        Of the file.
+    """
+    low, high = parameter.low, parameter.high
+    return (low, high) if low is not None and high is not None and low < high else ()
 
 
 def _castings(shape: Shape, place: Place) -> list[tuple[str, dict[str, str]]]:

@@ -191,7 +191,7 @@ def lasting(inquiry: Inquiry, as_read: Judged, named: Judged) -> Judged:
     kept = pruned(inquiry.search, longer, MARGIN).account.parts
     if len(kept) == len(named.account.parts):
         return named
-    account = account_for(named.shooting, inquiry.search.base, kept, named.account.fit.starts)
+    account = account_for(named.shooting, inquiry.search.base, kept, named.account.fit.starts, like=named.account)
     return judged(named.shooting, inquiry.search.base, account)
 
 

@@ -68,7 +68,9 @@ class Judged:
         """
         if other.shooting is self.shooting:
             return self
-        account = account_for(other.shooting, base, self.account.parts, self.account.fit.starts, TURNS)
+        account = account_for(
+            other.shooting, base, self.account.parts, self.account.fit.starts, TURNS, like=self.account
+        )
         return Judged(account, other.shooting, self.gained)
 
 
@@ -91,7 +93,7 @@ def judged(shooting: Shooting, base: Simulation, account: Account, rounds: int =
         used = account.fit.starts.shape[1] / account.fit.residual.shape[2]
         noise = noise_of(account.fit.residual, used, least=least)
         shooting = shooting.with_noise(noise).with_past(account.fit.states)
-        account = account_for(shooting, base, account.parts, account.fit.starts, TURNS)
+        account = account_for(shooting, base, account.parts, account.fit.starts, TURNS, like=account)
     return Judged(account, shooting)
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
+
+from gaitdisc.discovery.prior import Prior
 
 
 @dataclass(frozen=True)
@@ -28,6 +30,8 @@ class Fitted:
         The residual as independent numbers of unit variance.
     slopes : ndarray (segment, sample times channel, state + free)
         What each start state and each constant would change in `white`; zero where a run failed.
+    prior : Prior
+        Of those of the constants that have bounds; they stand last in `free`.
     """
 
     free: tuple[str, ...]
@@ -37,11 +41,14 @@ class Fitted:
     residual: NDArray[np.float64]
     white: NDArray[np.float64]
     slopes: NDArray[np.float64]
+    prior: Prior = field(default_factory=Prior)
 
     @property
     def misfit(self) -> float:
-        """Sum of squares of `white`: minus twice the log likelihood, up to a constant."""
-        return float((self.white**2).sum()) if np.isfinite(self.white).all() else np.inf
+        """Sum of squares of `white` and of the prior: minus twice the log posterior density, up to a constant."""
+        if not np.isfinite(self.white).all():
+            return np.inf
+        return float((self.white**2).sum() + (self.prior.left(self.values) ** 2).sum())
 
     @property
     def misfits(self) -> NDArray[np.float64]:
@@ -73,7 +80,7 @@ class Fitted:
                 (self.slopes, other.slopes),
             )
         )
-        return Fitted(self.free, self.values, *parts)
+        return Fitted(self.free, self.values, *parts, prior=self.prior)
 
     @property
     def projected(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -83,12 +90,20 @@ class Fitted:
         return without(basis, self.white[..., None])[..., 0], without(basis, self.slopes[..., n:])
 
     @property
+    def stacked(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """As `projected`, flat, with a row for each number of the prior (row,), (row, free)."""
+        left, slopes = self.projected
+        rows = np.zeros((len(self.prior.names), len(self.free)))
+        rows[:, len(self.free) - len(rows) :] = np.diag(1 / self.prior.sd)
+        flat = np.vstack([slopes.reshape(left.size, len(self.free)), rows])
+        return np.concatenate([left.ravel(), self.prior.left(self.values)]), flat
+
+    @property
     def covariance(self) -> NDArray[np.float64]:
         """Covariance of the fitted constants (free, free), from the curvature of the misfit."""
         if not self.free:
             return np.zeros((0, 0))
-        _, slopes = self.projected
-        flat = slopes.reshape(-1, len(self.free))
+        flat = self.stacked[1]
         size = np.linalg.norm(flat, axis=0)
         size[size == 0] = 1.0
         return np.linalg.pinv((flat / size).T @ (flat / size), rcond=1e-12) / np.outer(size, size)

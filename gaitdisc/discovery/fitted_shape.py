@@ -90,7 +90,7 @@ def fitted_shape(now: Judged, search: Search) -> Judged | None:
     for place in search.places:
         for shape in shapes_at(place, now, search):
             part = Part(shape, dict.fromkeys(shape.slots, 0.0))
-            account = account_for(now.shooting, search.base, (part,), now.account.fit.starts, TURNS)
+            account = account_for(now.shooting, search.base, (part,), now.account.fit.starts, TURNS, like=now.account)
             if np.isfinite(account.fit.misfit):
                 tried.append(account)
     best = sorted(tried, key=lambda one: one.criterion)[:2]
@@ -103,7 +103,7 @@ def fitted_shape(now: Judged, search: Search) -> Judged | None:
 def _thinned(now: Judged, search: Search, account: Account) -> Account:
     """Leave out the bumps whose factor is lost in its error, and fit again."""
     (part,) = account.parts
-    error = np.sqrt(np.diag(account.fit.covariance))
+    error = np.sqrt(np.diag(account.fit.covariance))[: account.size]
     value = np.array([part.values[slot] for slot in part.candidate.slots])
     keep = np.abs(value) > SIGNIFICANT * error
     if keep.all() or not keep.any():
@@ -120,7 +120,7 @@ def _thinned(now: Judged, search: Search, account: Account) -> Account:
         part.candidate.means,
     )
     values = dict(zip(fewer.slots, value[keep].tolist(), strict=True))
-    return account_for(now.shooting, search.base, (Part(fewer, values),), account.fit.starts, TURNS)
+    return account_for(now.shooting, search.base, (Part(fewer, values),), account.fit.starts, TURNS, like=account)
 
 
 def _local(now: Judged, search: Search, account: Account) -> list[Account]:
@@ -150,7 +150,9 @@ def _local(now: Judged, search: Search, account: Account) -> list[Account]:
             part.candidate.role,
             part.candidate.means,
         )
-        one = account_for(now.shooting, search.base, (Part(local, begin),), now.account.fit.starts, 2 * TURNS)
+        one = account_for(
+            now.shooting, search.base, (Part(local, begin),), now.account.fit.starts, 2 * TURNS, like=now.account
+        )
         if search.sensible(one):
             found.append(one)
     return found

@@ -98,7 +98,7 @@ class Inquiry:
         begun = account_for(first, self.search.base, (), self.guess.starts(first.segments))
         guess = self.guess.with_run(first.segments, begun.fit.states)
         shooting = self.shooting(self.segments(self.learned, periods))
-        account = account_for(shooting, self.search.base, (), guess.starts(shooting.segments))
+        account = account_for(shooting, self.search.base, (), guess.starts(shooting.segments), like=begun)
         return judged(shooting.with_past(account.fit.states), self.search.base, account)
 
     def tame_periods(self) -> float:
@@ -135,8 +135,9 @@ class Inquiry:
             guess = self.guess.with_run(now.shooting.segments, now.account.fit.states)
             samples = min(LENGTHENED * now.shooting.segments.length, longest)
             shooting = self.shooting(self.segments(self.learned, samples / (self.rhythm.period * self.rhythm.rate)))
+            starts = guess.starts(shooting.segments)
             longer = account_for(
-                shooting.with_noise(now.noise), self.search.base, now.account.parts, guess.starts(shooting.segments)
+                shooting.with_noise(now.noise), self.search.base, now.account.parts, starts, like=now.account
             )
             if not np.isfinite(longer.fit.misfit):
                 break

@@ -92,5 +92,5 @@ def _best(search: Search, now: Judged, other: Judged) -> Judged:
 
 def _weighed(search: Search, now: Judged, parts: tuple[Part, ...]) -> Judged:
     """Return the simulation with explanations in it, fitted to an answer's runs under its noise."""
-    account = account_for(now.shooting, search.base, parts, now.account.fit.starts, TURNS)
+    account = account_for(now.shooting, search.base, parts, now.account.fit.starts, TURNS, like=now.account)
     return Judged(account, now.shooting)

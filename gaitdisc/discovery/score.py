@@ -90,7 +90,8 @@ class Scorer:
         basis, known, left = self._explained()
         best: dict[int, Score] = {}
         for some, columns in self._columns(candidates):
-            own = without(basis, columns).reshape(left.size, -1)
+            own = without(basis, columns).reshape(-1, columns.shape[2])
+            own = np.vstack([own, np.zeros((left.size - len(own), own.shape[1]))])
             own -= known @ (known.T @ own)
             for score, number in _gains(own, left, some, candidates):
                 if number not in best or score.gain > best[number].gain:
@@ -98,13 +99,15 @@ class Scorer:
         return sorted(best.values(), key=lambda score: -score.gain)
 
     def _explained(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-        """Basis of the start states, basis of the constants already in (number, constant), what is left (number,)."""
+        """Basis of the start states, basis of the constants already in (row, constant), what is left (row,).
+
+        After the measured numbers come the rows of the prior, in which no candidate changes anything.
+        """
         basis = start_basis(self.fit.slopes[..., : self.fit.starts.shape[1]])
-        left, slopes = self.fit.projected
-        flat = slopes.reshape(left.size, -1)
+        left, flat = self.fit.stacked
         size = np.linalg.norm(flat, axis=0)
         known = np.linalg.qr(flat[:, size > 0] / size[size > 0])[0]
-        return basis, known, left.ravel() - known @ (known.T @ left.ravel())
+        return basis, known, left - known @ (known.T @ left)
 
     def _columns(self, candidates: tuple[Candidate, ...]) -> Iterator[tuple[list[_Cell], NDArray[np.float64]]]:
         """Yield cells and what each of their slots would change, whitened (segment, number, column)."""

@@ -81,6 +81,7 @@ class Search:
                 account.fit.starts,
                 TURNS,
                 NEARLY,
+                account,
             )
             for one in worth
         ]
@@ -114,6 +115,8 @@ class Search:
                     yield part.values[slot], (0.0, self.rhythm.period)
                 else:
                     yield part.values[slot], LIMITS[kind]
+            if part.candidate.bounds:
+                yield part.candidate.beyond_bounds(part.values["value"]), (0.0, np.inf)
             if part.candidate.is_late:
                 early = -self.rhythm.period if part.candidate.verdict == "input_error" else 0.0
                 yield part.values["seconds"], (early, self.rhythm.period)
@@ -137,7 +140,8 @@ class Search:
             Which explanation goes.
         """
         parts = now.account.parts[:number] + now.account.parts[number + 1 :]
-        return Judged(account_for(now.shooting, self.base, parts, now.account.fit.starts, TURNS), now.shooting)
+        fewer = account_for(now.shooting, self.base, parts, now.account.fit.starts, TURNS, like=now.account)
+        return Judged(fewer, now.shooting)
 
 
 def is_certain(account: Account, first: int = 0) -> bool:
@@ -152,8 +156,15 @@ def is_certain(account: Account, first: int = 0) -> bool:
     """
     errors = dict(zip(account.fit.free, np.sqrt(np.diag(account.fit.covariance)), strict=True))
     return all(
-        abs(part.values[slot] - none) > CERTAIN * errors[names[slot]]
+        _off(part, slot, none) > CERTAIN * errors[names[slot]]
         for part, names in list(zip(account.parts, account.names, strict=True))[first:]
         if len(part.candidate.idle) == 1
         for slot, none in part.candidate.idle.items()
     )
+
+
+def _off(part: Part, slot: str, idle: float) -> float:
+    """How far a number is from where it changes nothing: a wrong parameter with bounds, from the nearer of these."""
+    if part.candidate.bounds:
+        return part.candidate.beyond_bounds(part.values[slot])
+    return abs(part.values[slot] - idle)

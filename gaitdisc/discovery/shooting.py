@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.fitted import Fitted
 from gaitdisc.discovery.noise import Noise
+from gaitdisc.discovery.prior import Prior
 from gaitdisc.discovery.segments import Segments
 from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.measured import Measured
@@ -38,6 +39,8 @@ class Shooting:
         Runge-Kutta steps a sample.
     past : ndarray (trial, sample, state) or None
         States before a segment begins, for what comes late.
+    prior : Prior
+        Of the parameters that have bounds and are fitted.
     """
 
     measured: Measured
@@ -45,6 +48,7 @@ class Shooting:
     noise: Noise
     substeps: int = 2
     past: NDArray[np.float64] | None = None
+    prior: Prior = field(default_factory=Prior)
 
     @property
     def seen(self) -> NDArray[np.float64]:
@@ -158,7 +162,8 @@ class Shooting:
         white[failed] = np.inf
         change = np.moveaxis((observed[1:] - observed[0]) / nudges[:, None, None, None], 0, -1)
         change[np.isnan(self.seen)] = 0.0
-        return Fitted(free, values, starts, states[0], residual, white, self.whitened(change))
+        slopes, prior = self.whitened(change), self.prior.among(free)
+        return Fitted(free, values, starts, states[0], residual, white, slopes, prior)
 
     def fitted(
         self,
@@ -222,7 +227,7 @@ class Shooting:
         if not np.isfinite(now.misfit) or not stuck.any():
             return None
         before = np.vstack([now.starts[:1], now.states[:-1, -1]])
-        best = replace(now, free=(), slopes=now.slopes[..., : starts.shape[1]])
+        best = replace(now, free=(), slopes=now.slopes[..., : starts.shape[1]], prior=Prior())
         for other in (starts, before):
             tried = np.where(stuck[:, None], other, now.starts)
             fit = self._descended(machine, self.at(machine, (), now.values, tried), FEW_TURNS)
@@ -263,17 +268,35 @@ def _step(
     values = now.values.copy()
     rest = now.white
     if now.free:
-        white, slopes = now.projected
-        flat = slopes.reshape(-1, len(now.free))
-        size = np.linalg.norm(flat, axis=0)
-        size[size == 0] = 1.0
-        flat = flat / size
-        normal = flat.T @ flat + damping.max() * np.eye(len(now.free))
-        move = np.linalg.lstsq(normal, flat.T @ white.ravel(), rcond=None)[0] / size
+        move = _move(now, damping.max())
         values[[machine.parameters.index(name) for name in now.free]] += move
         rest = rest - change @ move
+        values = now.prior.within(values)  # what rounding carries over a bound
     size = np.linalg.norm(shape, axis=1, keepdims=True)
     scaled = shape / np.where(size > 0, size, 1.0)
     normal = np.swapaxes(scaled, 1, 2) @ scaled + damping[:, None, None] * np.eye(n)
     move = np.linalg.solve(normal, np.swapaxes(scaled, 1, 2) @ rest[..., None])[..., 0]
     return values, now.starts + move / np.where(size > 0, size, 1.0)[:, 0]
+
+
+def _move(now: Fitted, damping: float) -> NDArray[np.float64]:
+    """Return the damped step of the constants (free,); one that would leave its bounds stops there."""
+    left, flat = now.stacked
+    prior, first = now.prior, len(now.free) - len(now.prior.names)
+    at = now.values[prior.places]
+    size = np.linalg.norm(flat, axis=0)
+    size[size == 0] = 1.0
+    flat = flat / size
+    move, held = np.zeros(len(now.free)), np.zeros(len(now.free), bool)
+    for _ in range(1 + len(prior.names)):
+        some = flat[:, ~held]
+        normal = some.T @ some + damping * np.eye(some.shape[1])
+        rest = left - flat[:, held] @ (move * size)[held]
+        move[~held] = np.linalg.lstsq(normal, some.T @ rest, rcond=None)[0] / size[~held]
+        reached = np.clip(at + move[first:], prior.low, prior.high)
+        beyond = ~held[first:] & (reached != at + move[first:])
+        if not beyond.any():
+            break
+        move[first:][beyond] = (reached - at)[beyond]
+        held[first:] |= beyond
+    return move

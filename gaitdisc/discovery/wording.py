@@ -10,7 +10,7 @@ from gaitdisc.discovery.account import Part
 from gaitdisc.discovery.held_out import WORTH_ASKING
 from gaitdisc.results.amounts import amount, brief_text, estimate_text, shown_unit, with_unit
 from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, Whereabouts
-from gaitdisc.results.effect_words import at_place, spoken
+from gaitdisc.results.effect_words import at_place, outside_text, spoken
 from gaitdisc.results.told_apart import would_tell_apart
 from gaitdisc.simulation.simulation import Simulation
 
@@ -33,7 +33,7 @@ def sentence_of(discovery: Discovery, base: Simulation, parts: tuple[Part, ...])
     parts : tuple of Part
         The explanations behind the effects, in their order; none for verdicts without a term, number or signal.
     """
-    said = [_said(discovery, base, parts), _tied(discovery), _shown(discovery)]
+    said = [_said(discovery, base, parts), _tied(discovery), _shown(discovery), _moved(discovery)]
     return replace(discovery, sentence=" ".join(one for one in said if one))
 
 
@@ -80,7 +80,9 @@ def _one(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whereab
         estimate = effect.estimates["value"]
         unit, factor = shown_unit(estimate.unit)
         given = with_unit(f"{factor * base.values()[effect.place]:.6g}", unit)
-        return f"the parameter {effect.place} is {estimate_text(estimate)} where the file says {given}"
+        outside = outside_text(effect, estimate)
+        said = f"the parameter {effect.place} is {estimate_text(estimate)} where the file says {given}"
+        return f"{said}, {outside}" if outside else said
     estimate = next(iter(effect.estimates.values()))
     subject = f"the {'driving signal' if kind == 'input_error' else 'measured'} {effect.place}"
     return f"{subject} {_signal(effect.name, estimate)}"
@@ -178,6 +180,18 @@ def _shown(discovery: Discovery) -> str:
     return (
         f"With it, the held-out error{of} {_goes(sizes[channel], units[channel])} ({noise}{_few(discovery)}){others}."
     )
+
+
+def _moved(discovery: Discovery) -> str:
+    """Name the numbers that clearly moved within their bounds."""
+    clear = [one for one in discovery.corrections if not one.found.low <= one.given <= one.found.high]
+    if not clear:
+        return ""
+    said = []
+    for one in clear:
+        unit, factor = shown_unit(one.found.unit)
+        said.append(f"{one.parameter} from {with_unit(f'{factor * one.given:.6g}', unit)} to {brief_text(one.found)}")
+    return f"Within their bounds moved: {', '.join(said)}."
 
 
 def _goes(size: tuple[float, float, float], channel_unit: str) -> str:

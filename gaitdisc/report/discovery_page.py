@@ -5,7 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 from gaitdisc.report.discovery_figure import discovery_figures
-from gaitdisc.report.discovery_tables import data_findings, estimates_table, gap_table, rivals_table, where_table
+from gaitdisc.report.discovery_tables import (
+    corrections_table,
+    data_findings,
+    estimates_table,
+    gap_table,
+    rivals_table,
+    where_table,
+)
 from gaitdisc.report.figure import save_figures
 from gaitdisc.report.page import write_page
 from gaitdisc.report.provenance_tables import provenance_tables
@@ -25,6 +32,8 @@ VERDICTS = {
 METHOD = (
     "Trials were cut into short runs. Each run's start was found, so that only the dynamics, the inputs and the "
     "sensors could be wrong; whole trajectories were compared with the measurement, never derivatives of it.",
+    "Numbers to which the file gives two bounds were fitted within these, in the simulation as read and in every "
+    "explanation alike (half the width is two standard deviations); a wrong parameter is one that has to leave them.",
     "Every explanation was weighed at every place where it may enter: the effects of the catalogue, and beside them "
     "wrong parameters, late or scaled inputs, and errors of the sensors. The best were fitted in full, with the "
     "constants inside them (a threshold, a delay, a frequency).",
@@ -62,6 +71,7 @@ def write_discovery_report(discovery: Discovery, folder: Path) -> Path:
     tables = {
         "estimates": estimates_table(discovery),
         "gap": gap_table(discovery),
+        "corrections": corrections_table(discovery),
         "where": where_table(discovery),
         "rivals": rivals_table(discovery),
         "findings": data_findings(discovery),

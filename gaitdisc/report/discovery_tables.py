@@ -12,7 +12,7 @@ from gaitdisc.report.table import Table
 from gaitdisc.report.wording import NONE, counted, p_cell
 from gaitdisc.results.amounts import amount, estimate_text, shown_unit
 from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect
-from gaitdisc.results.effect_words import at_place, spoken
+from gaitdisc.results.effect_words import at_place, outside_text, spoken
 from gaitdisc.results.told_apart import would_tell_apart
 
 
@@ -101,6 +101,30 @@ def where_table(discovery: Discovery) -> Table:
     )
 
 
+def corrections_table(discovery: Discovery) -> Table:
+    """Numbers of the file that moved within their own bounds.
+
+    Parameters
+    ----------
+    discovery : Discovery
+        What was found.
+    """
+    rows, records = [], []
+    for one in discovery.corrections:
+        found, unit = one.found, "" if one.found.unit == "1" else one.found.unit
+        size = (found.high - found.low) / 2
+        written = (f"{amount(each, size)} {unit}".strip() for each in (found.value, found.low, found.high))
+        rows.append((one.parameter, f"{one.given:.6g} {unit}".strip(), *written))
+        records.append((one.parameter, one.given, found.value, found.low, found.high, found.unit))
+    caption = (
+        "Numbers of the file that moved within the bounds that it gives them. They are no finding: every explanation "
+        "was fitted with them, and the simulation before as well. Low and high: 95 % interval."
+    )
+    headings = ("parameter", "in the file", "fitted", "low", "high")
+    columns = ("parameter", "from", "to", "low", "high", "unit")
+    return Table("corrections", caption, headings, tuple(rows), _frame(records, columns))
+
+
 def rivals_table(discovery: Discovery) -> Table:
     """What else was weighed, best first, and what would tell it from what was named.
 
@@ -169,7 +193,8 @@ def _degrees(one: Estimate) -> str:
 
 def _numbers(one: FoundEffect) -> str:
     told = [f"{name.replace('_', ' ')} {estimate_text(each)}" for name, each in one.estimates.items()]
-    return ", ".join(told[:2]) + (f", and {len(told) - 2} more" if len(told) > 2 else "")
+    outside = [text for each in one.estimates.values() if (text := outside_text(one, each))]
+    return ", ".join([*told[:2], *outside]) + (f", and {len(told) - 2} more" if len(told) > 2 else "")
 
 
 def _bic(value: float) -> str:

@@ -64,7 +64,9 @@ class FoundEffect:
         Fall of the Bayesian criterion from the simulation as read: of what was found, all of it together; of a rival,
         with it in the place of what it rivals.
     tied : bool
-        For a rival: the data cannot tell it from what was named.
+        For a rival: these data cannot separate it from what was named.
+    bounds : tuple of float
+        Of a wrong parameter: the file's `low` and `high`, infinite where it has but one; empty where it has neither.
     """
 
     kind: str
@@ -75,6 +77,26 @@ class FoundEffect:
     held_out: float = float("nan")
     bic: float = float("nan")
     tied: bool = False
+    bounds: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class Correction:
+    """A number of the file that moved within its own bounds; no finding.
+
+    Parameters
+    ----------
+    parameter : str
+        Its name.
+    given : float
+        In the file [the parameter's unit].
+    found : Estimate
+        What it was fitted to; the interval lies inside the bounds.
+    """
+
+    parameter: str
+    given: float
+    found: Estimate
 
 
 @dataclass(frozen=True)
@@ -202,6 +224,8 @@ class Discovery:
         What the reader must know of the data.
     provenance : Provenance, optional
         Settings, files and versions.
+    corrections : tuple of Correction
+        Numbers that moved within their own bounds.
     """
 
     verdict: str
@@ -216,6 +240,7 @@ class Discovery:
     runs: Runs
     findings: tuple[Finding, ...] = ()
     provenance: Provenance | None = None
+    corrections: tuple[Correction, ...] = ()
 
     def __post_init__(self) -> None:
         """Refuse a verdict that the contract does not know."""
@@ -228,6 +253,7 @@ class Discovery:
             "verdict": self.verdict,
             "where": [_where(one) for one in self.where],
             "effects": [_effect(one) for one in self.effects],
+            "corrections": [_correction(one) for one in self.corrections],
             "rivals": [_effect(one) | {"tied": one.tied} for one in self.rivals],
             "gap": {"train": _gap(self.train), "held_out": _gap(self.held_out)},
             "sentence": self.sentence,
@@ -252,7 +278,21 @@ def _effect(one: FoundEffect) -> dict[str, Any]:
         for name, each in one.estimates.items()
     }
     evidence = {"held_out": _number(one.held_out), "bic": _number(one.bic)}
-    return _place(one) | {"name": one.name, "term": one.term, "estimates": estimates, "evidence": evidence}
+    bounds = {"bounds": [_number(bound) for bound in one.bounds]} if one.bounds else {}
+    return _place(one) | {"name": one.name, "term": one.term, "estimates": estimates, "evidence": evidence} | bounds
+
+
+def _correction(one: Correction) -> dict[str, Any]:
+    found = one.found
+    low, high = _number(found.low), _number(found.high)
+    return {
+        "parameter": one.parameter,
+        "from": _number(one.given),
+        "to": _number(found.value),
+        "low": low,
+        "high": high,
+        "unit": found.unit,
+    }
 
 
 def _gap(one: GapSize) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from gaitdisc.discovery.account import Part
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.catalogue import known_shapes
 from gaitdisc.discovery.wording import sentence_of
-from gaitdisc.results.discovery import Estimate, FoundEffect, GapSize, Whereabouts
+from gaitdisc.results.discovery import Correction, Estimate, FoundEffect, GapSize, Whereabouts
 from gaitdisc.simulation.bundled import bundled
 
 SHAPE = next(one for one in known_shapes() if one.name == "one_sided_spring")
@@ -163,3 +163,28 @@ def test_what_is_not_borne_out_says_by_which_test():
     size = GapSize(1, 1, 1, 0.34, {"theta": (0.054, 0.054, 0.0087)}, 9)
     told = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=(rival,), held_out=size)
     assert "those held out do not bear it out (p = 0.34 over 9 pieces)." in told
+
+
+@pytest.mark.parametrize(
+    ("bounds", "told"),
+    [
+        ((20.0, 28.0), "is 31.2 N/m (95 % 30.8-31.6) where the file says 24 N/m, outside its bounds, 20 to 28 N/m."),
+        ((-float("inf"), 28.0), "where the file says 24 N/m, above its bound, 28 N/m."),
+        ((35.0, float("inf")), "where the file says 24 N/m, below its bound, 35 N/m."),
+        ((20.0, 40.0), "where the file says 24 N/m. With it"),
+    ],
+)
+def test_a_number_outside_its_bounds_is_said_to_lie_there(bounds, told):
+    found = {"value": Estimate(31.2, 30.8, 31.6, "N/m")}
+    effect = FoundEffect("parameter", "k", "wrong_parameter", "", found, bounds=bounds)
+    part = Candidate("wrong_parameter", "parameter", "k", "wrong_parameter", value=24.0)
+    assert told in sentence(mass(), (part,), verdict="wrong_parameter", effects=(effect,), where=())
+
+
+def test_what_clearly_moved_within_its_bounds_is_said():
+    clear = Correction("inertia", 0.110, Estimate(0.1126, 0.1118, 0.1134, "kg m^2"))
+    lost = Correction("b", 1.0, Estimate(1.01, 0.9, 1.1, "N m s/rad"))
+    assert sentence(corrections=(clear, lost)).endswith(
+        "Within their bounds moved: inertia from 0.11 kg m^2 to 0.1126 kg m^2."
+    )
+    assert "moved" not in sentence(corrections=(lost,))

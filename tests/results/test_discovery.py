@@ -1,4 +1,5 @@
 import json
+from dataclasses import replace
 
 import jsonschema
 import numpy as np
@@ -6,14 +7,14 @@ import pytest
 from manufactured_discovery import SPRING, manufactured
 
 from gaitdisc.channel import schema_folder
-from gaitdisc.results.discovery import VERDICTS, GapSize, Whereabouts
+from gaitdisc.results.discovery import VERDICTS, Correction, Estimate, FoundEffect, GapSize, Whereabouts
 
 SCHEMA = json.loads((schema_folder() / "discovery.schema.json").read_text(encoding="utf-8"))
-CONTRACT = ["verdict", "where", "effects", "rivals", "gap"]
+CONTRACT = ["verdict", "where", "effects", "corrections", "rivals", "gap"]
 
 
 def test_the_contracts_keys_come_first():
-    assert list(manufactured().to_json())[:5] == CONTRACT
+    assert list(manufactured().to_json())[:6] == CONTRACT
 
 
 def test_json_fits_the_schema():
@@ -58,3 +59,26 @@ def test_runs_are_told_sample_by_sample_under_the_trials_name():
 def test_another_verdict_is_a_defect():
     with pytest.raises(ValueError, match="verdict is one of"):
         manufactured(verdict="perhaps")
+
+
+def test_what_moved_within_its_bounds_stands_apart():
+    moved = Correction("inertia", 0.110, Estimate(0.1126, 0.1118, 0.1134, "kg m^2"))
+    told = manufactured(corrections=(moved,)).to_json()
+    jsonschema.validate(told, SCHEMA)
+    wanted = {"parameter": "inertia", "from": 0.11, "to": 0.1126, "low": 0.1118, "high": 0.1134, "unit": "kg m^2"}
+    assert told["corrections"] == [wanted]
+
+
+def test_a_wrong_parameter_carries_the_bounds_that_it_left():
+    wrong = FoundEffect("parameter", "g", "wrong_parameter", "", {"value": Estimate(17.0, 14.0, 20.0)})
+    for bounds, written in (((9.79, 9.83), [9.79, 9.83]), ((-np.inf, 9.83), [None, 9.83])):
+        told = manufactured(effects=(replace(wrong, bounds=bounds),)).to_json()
+        jsonschema.validate(told, SCHEMA)
+        assert told["effects"][0]["bounds"] == written
+    assert "bounds" not in manufactured().to_json()["effects"][0]
+
+
+def test_the_test_on_held_out_data_says_on_how_many_pieces():
+    told = manufactured(held_out=GapSize(1.0, 0.5, 0.4, 0.03, {}, 7)).to_json()
+    jsonschema.validate(told, SCHEMA)
+    assert (told["gap"]["held_out"]["p"], told["gap"]["held_out"]["pieces"]) == (0.03, 7)
