@@ -9,7 +9,11 @@ from numpy.typing import NDArray
 
 LEVEL = 0.05
 WANTED = 12  # pieces; where pieces of a period are fewer, they are cut shorter, not below the memory of what is left
-MEMORY = 0.2  # correlation at which what is left counts as forgotten
+FEWEST = 8  # pieces are kept all the same: fewer make the test blind, whatever they gain in independence
+MEMORY = (
+    0.2  # correlation at which what is left counts as forgotten; more, where so few samples could show it by chance
+)
+NORMAL_95 = 1.959964
 MOST_EXACT = 60  # pieces, up to which the distribution of the sum of ranks is counted out
 
 
@@ -60,7 +64,8 @@ def paired_test(
         return PairedTest(float("nan"), 0, float("nan"))
     fall = np.nan_to_num(fall).sum(axis=2)
     runs, samples = fall.shape
-    length = min(period, max(runs * samples // WANTED, memory_of(after), 1))
+    total = runs * samples
+    length = min(period, max(total // WANTED, min(memory_of(after), total // FEWEST), 1))
     blocks = max(samples // length, 1)
     gains = np.array([part.sum() for run in fall for part in np.array_split(run, blocks)])
     return PairedTest(signed_rank_p(gains), len(gains), float(gains.sum()))
@@ -82,9 +87,10 @@ def memory_of(residual: NDArray[np.float64]) -> int:
     left = np.nan_to_num(residual)
     samples = left.shape[1]
     power = (left**2).sum(axis=(0, 1))
+    forgotten = max(MEMORY, NORMAL_95 / np.sqrt(left[:, :, 0].size))
     for lag in range(1, samples // 2):
         kept = (left[:, lag:] * left[:, :-lag]).sum(axis=(0, 1))
-        if (np.abs(kept) <= MEMORY * power).all():
+        if (np.abs(kept) <= forgotten * power).all():
             return lag
     return max(samples // 2, 1)
 

@@ -68,7 +68,7 @@ def _nothing(discovery: Discovery) -> str:
     for_what = f"{spoken(first.name)} {at_place(first.kind, first.place)}"
     return (
         f"Nothing is named: the data that were learned from speak for {for_what}, and those held out do not bear it "
-        f"out{tested}. More trials of varied movement would tell."
+        f"out{tested}. More trials of varied movement would decide."
     )
 
 
@@ -158,7 +158,7 @@ def _tied(discovery: Discovery) -> str:
         return ""
     names = " or ".join(f"{spoken(one.name)} {at_place(one.kind, one.place)}" for one in tied)
     apart = would_tell_apart(discovery.effects[0].name, tied[0].name)
-    return f"These data cannot tell it from {names}; what would: {apart}."
+    return f"These data cannot distinguish it from {names}; what would: {apart}."
 
 
 def _shown(discovery: Discovery) -> str:

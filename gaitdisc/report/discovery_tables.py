@@ -94,7 +94,7 @@ def where_table(discovery: Discovery) -> Table:
         rows.append((at_place(one.kind, one.place), _percent(one.share_of_gap), phase, one.region or NONE))
         begin, end = one.phase or (math.nan, math.nan)
         records.append((one.kind, one.place, one.share_of_gap, begin, end, one.region))
-    caption = "Where the gap arises. Share: of the mean squared gap that goes when the effect is let in there."
+    caption = "Where the gap arises. Share: of the mean squared gap that goes when the effect is added there."
     columns = ("kind", "place", "share_of_gap", "phase_from", "phase_to", "region")
     return Table(
         "where", caption, ("place", "share of the gap", "stride", "region"), tuple(rows), _frame(records, columns)
@@ -126,7 +126,7 @@ def corrections_table(discovery: Discovery) -> Table:
 
 
 def rivals_table(discovery: Discovery) -> Table:
-    """What else was weighed, best first, and what would tell it from what was named.
+    """What else was weighed, best first, and what would distinguish it from what was named.
 
     Parameters
     ----------
@@ -152,10 +152,10 @@ def rivals_table(discovery: Discovery) -> Table:
     caption = (
         f"What else was weighed, {counted(len(rows), 'rival')}, best first. Evidence: fall of the Bayesian criterion "
         f"from the simulation as read{f' (what was named: {own})' if own else ''}; the larger the better. "
-        "Tied: these data cannot tell it from what was named."
+        "Tied: these data cannot distinguish it from what was named."
     )
-    headings = ("rival", "place", "its numbers", "evidence", "tied", "what would tell them apart")
-    columns = ("rival", "kind", "place", "evidence", "tied", "what_would_tell_them_apart")
+    headings = ("rival", "place", "its numbers", "evidence", "tied", "what would distinguish them")
+    columns = ("rival", "kind", "place", "evidence", "tied", "what_would_distinguish_them")
     return Table("rivals", caption, headings, tuple(rows), _frame(records, columns))
 
 

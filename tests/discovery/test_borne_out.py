@@ -66,9 +66,16 @@ def test_pieces_are_a_period_long_and_no_shorter_than_what_is_left_remembers():
     slow = lfilter([1.0], [1.0, -0.95], white, axis=1)
     assert paired_test(2 * white, white, ONE, 50).pieces == 40
     assert paired_test(2 * white, white, ONE, 800).pieces == 12
-    assert memory_of(slow) > 20
-    few = paired_test(2 * slow[:, :200], slow[:, :200], ONE, 150).pieces
-    assert few == max(200 // memory_of(slow[:, :200]), 1) * 2 < 12
+    short = slow[:, :600]
+    assert 60 < memory_of(short) < 150
+    assert paired_test(2 * short, short, ONE, 150).pieces == 2 * (600 // max(memory_of(short), 100)) <= 12
+
+
+def test_what_never_forgets_is_cut_into_eight_pieces_all_the_same():
+    after = np.sin(np.arange(80) / 40)[None, :, None]
+    test = paired_test(3 * after, after, ONE, 80)
+    assert memory_of(after) > 10
+    assert test.pieces == 8
 
 
 def test_gaps_in_the_record_count_for_nothing_and_a_run_that_failed_for_no_proof():
@@ -92,3 +99,8 @@ def test_what_is_false_is_borne_out_at_most_as_often_as_the_level_says(shrink):
         noise = lfilter([1.0], [1.0, -shrink], rng.normal(size=(1, 1000, 1)), axis=1)
         borne += paired_test(noise, noise - 0.05 * rng.normal() * noise.std() * wave, ONE, 50).bears_out
     assert borne <= 400 * 0.05 + 3 * np.sqrt(400 * 0.05 * 0.95)
+
+
+def test_what_ten_samples_show_by_chance_is_no_memory():
+    shortest = [memory_of(np.random.default_rng(seed).normal(size=(1, 10, 1))) for seed in range(200)]
+    assert np.mean(np.array(shortest) == 1) > 0.9

@@ -123,8 +123,8 @@ def test_a_shape_without_a_name_says_over_which_states():
 def test_a_tie_is_told_with_what_would_tell_them_apart():
     told = sentence(rivals=(replace(CUBIC, tied=True),))
     assert (
-        "These data cannot tell it from cubic stiffness at the ankle_moment port; what would: movement through a wider "
-        "range, to both sides of rest." in told
+        "These data cannot distinguish it from cubic stiffness at the ankle_moment port; what would: movement through "
+        "a wider range, to both sides of rest." in told
     )
 
 

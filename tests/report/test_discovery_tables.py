@@ -6,12 +6,14 @@ from manufactured_discovery import CUBIC, manufactured
 
 from gaitdisc.report.discovery_tables import (
     closed_share,
+    corrections_table,
     data_findings,
     estimates_table,
     gap_table,
     rivals_table,
     where_table,
 )
+from gaitdisc.results.discovery import Correction, Estimate, FoundEffect, GapSize
 
 
 def test_an_angle_is_told_in_degrees_too():
@@ -59,3 +61,26 @@ def test_a_rival_is_told_with_what_would_tell_it_apart():
 
 def test_findings_are_told():
     assert data_findings(manufactured()).rows[0][0] == "warning"
+
+
+def test_what_moved_within_its_bounds_has_a_table_of_its_own():
+    moved = Correction("inertia", 0.110, Estimate(0.1126, 0.1118, 0.1134, "kg m^2"))
+    table = corrections_table(manufactured(corrections=(moved,)))
+    assert table.rows == (("inertia", "0.11 kg m^2", "0.1126 kg m^2", "0.1118 kg m^2", "0.1134 kg m^2"),)
+    assert "no finding" in table.caption
+    assert corrections_table(manufactured()).rows == ()
+
+
+def test_a_rival_outside_its_bounds_is_said_to_lie_there():
+    found = {"value": Estimate(1.817, 1.7, 1.9, "N m/rad")}
+    rival = FoundEffect("parameter", "strength", "wrong_parameter", "", found, bounds=(0.3, 1.7))
+    (row,) = rivals_table(manufactured(rivals=(rival,))).rows
+    assert row[2].endswith(", outside its bounds, 0.3 to 1.7 N m/rad")
+
+
+def test_the_test_says_on_how_many_pieces_and_of_what_where_nothing_is_named():
+    size = GapSize(1, 1, 1, 0.34, {"theta": (0.054, 0.054, 0.0087)}, 9)
+    table = gap_table(manufactured(verdict="no_gap", effects=(), held_out=size))
+    assert "over pieces of the runs (held out: 9 pieces" in table.caption
+    assert table.caption.endswith("Where nothing is named, p is that of cubic stiffness at the ankle_moment port.")
+    assert "Where nothing is named" not in gap_table(manufactured()).caption
