@@ -158,7 +158,7 @@ class _Bench:
 
     def fitted(self, measured: Measured) -> tuple[Fitted, Segments]:
         """The fit of the start states, run by run."""
-        guess = guess_states(self.simulation, measured.observed, measured.rate, self.rhythm.period, self.rate_of)
+        guess = guess_states(self.simulation, measured, self.rhythm.period, self.rate_of)
         segments = cut_segments(measured.samples, tuple(range(len(measured.trials))), self.samples)
         shooting = Shooting(measured, segments, white_noise(self.spread), SUBSTEPS, guess.states)
         return account_for(shooting, self.simulation, (), guess.starts(segments)).fit, segments
