@@ -77,8 +77,8 @@ def set_table(table: pd.DataFrame, name: str, number: str) -> str:
 def _said(found: pd.DataFrame, column: str, factor: float) -> str:
     if not len(found):
         return ""
-    lost = int(found["diverged_s"].notna().sum())
-    if lost and column != "valid_s":
+    lost = int(found[column].isna().sum())  # it left every bound before the end of what is judged
+    if lost:
         return "diverged" + (f" in {lost} of {len(found)}" * (len(found) > 1))
     return spread_words(factor * found[column].to_numpy(float))
 
@@ -131,8 +131,8 @@ def evidence_table() -> str:
     """What `recommend` answers from."""
     rows = []
     for one in pd.read_csv(FOUND).itertuples(index=False):
-        said = [f"{value:.1f}" for value in (one.accuracy, one.least, one.greatest)]
-        accuracy = said[0] if one.seeds == 1 else f"{said[0]} [{said[1]}, {said[2]}]"
+        spread = [one.accuracy] if one.seeds == 1 else [one.least, one.accuracy, one.greatest]
+        accuracy = spread_words(np.array(spread, float))
         rows.append((
             one.system, METHOD_WORDS[str(one.method)], f"{one.noise:.1%}", f"{one.dt_s:g}", f"{one.samples:,}",
             one.start, accuracy, f"{one.valid_s:.1f}", f"{one.seconds:.1f}", f"{one.diverged:.0%}", f"{one.seeds}",
