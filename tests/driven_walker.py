@@ -120,15 +120,15 @@ class DrivenWalker:
         for column, joint in enumerate(JOINTS):
             spread = 60.0 if joint in ("knee_angle", "hip_flexion") else 25.0
             drive[:, column] += _wandering(rng, len(phase), 0.15, spread * 4)
-        ankle = JOINTS.index("ankle_angle")
-        theta, omega = habits[0].copy(), rate[0].copy()
         angles = np.empty_like(habits)
-        for sample, push in enumerate(drive):
-            angles[sample] = theta
-            acceleration = push - natural**2 * theta - 2 * damping * natural * omega
-            acceleration[ankle] += self.spring(theta[ankle])
-            omega += acceleration * STEP_S
-            theta += omega * STEP_S
+        for column, joint in enumerate(JOINTS):  # plain numbers are quicker than arrays of five
+            spring = self.spring_per_s2 if joint == "ankle_angle" else 0.0
+            theta, omega = float(habits[0, column]), float(rate[0, column])
+            for sample, push in enumerate(drive[:, column].tolist()):
+                angles[sample, column] = theta
+                acceleration = push - natural**2 * theta - 2 * damping * natural * omega
+                omega += (acceleration - spring * max(0.0, theta - self.engaged_deg)) * STEP_S
+                theta += omega * STEP_S
         return angles
 
     def _emg(

@@ -11,7 +11,7 @@ def test_each_trial_has_its_strides(study):
     assert checked.exit_code == 0, checked.output
     seen = json.loads(checked.stdout)
     assert sorted(one["condition"] for one in seen) == ["exo", "natural"]
-    assert all(one["strides"]["r"]["kept"] > 30 for one in seen)
+    assert all(20 < one["strides"]["r"]["kept"] <= 30 / 1.1 for one in seen)  # 30 s of strides of 1.1 s
 
 
 def test_check_writes_nothing(study):
