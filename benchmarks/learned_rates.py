@@ -37,6 +37,7 @@ from gaitdisc.discrepancy.methods import MethodSettings
 from gaitdisc.discrepancy.record import Conditions, Record, recorded
 from gaitdisc.discrepancy.system import Rates, System, system_of
 from gaitdisc.model import Model
+from gaitdisc.results.discrepancy_cell import ORACLE
 from gaitdisc.simulation.bundled import bundled
 from gaitdisc.simulation.parts import Term
 
@@ -86,7 +87,7 @@ def line(name: str, record: Record, direct_s: float) -> dict[str, object]:
     theirs_s = clock.process_time() - begun
     together = time[: len(theirs)] <= time[0] + TOGETHER_S
     apart = np.abs(ours[: len(theirs)][together] - theirs[together]).max() / ours[together].std()
-    accuracy = [np.median(part(record, each, "dynamics", True).accuracy()) for each in (network, process)]
+    accuracy = [np.median(part(record, each, "dynamics", ORACLE).accuracy()) for each in (network, process)]
     return {
         "system": name,
         "fit network [s]": fitted,

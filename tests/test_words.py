@@ -17,42 +17,8 @@ PRIVATE = re.compile(
 )
 # Where the word is no private one: what stands there, and why.
 ALLOWED: dict[str, str] = {}
-# Files of branches that are not merged yet: emptied with them.
-WAITING: tuple[str, ...] = (
-    "docs/chapter3.md",
-    "docs/discover.md",
-    "docs/results.md",
-    "data_schema/channels.csv",
-    "data_schema/discovery.schema.json",
-    "gaitdisc/batch/nominal_model.py",
-    "gaitdisc/batch/reconstruct_recording.py",
-    "gaitdisc/batch/reconstruct_study.py",
-    "gaitdisc/batch/search_study.py",
-    "gaitdisc/batch/sensed_walks.py",
-    "gaitdisc/batch/target_walks.py",
-    "gaitdisc/discovery/wording.py",
-    "gaitdisc/ingest/angle_unit.py",
-    "gaitdisc/ingest/c3d_layout.py",
-    "gaitdisc/ingest/c3d_points.py",
-    "gaitdisc/ingest/new_study.py",
-    "gaitdisc/ingest/storage_columns.py",
-    "gaitdisc/ingest/streams.py",
-    "gaitdisc/ingest/turbulence_cutout.py",
-    "gaitdisc/recording/field.py",
-    "gaitdisc/recording/recording.py",
-    "gaitdisc/recording/trial.py",
-    "gaitdisc/report/discovery_tables.py",
-    "gaitdisc/report/mismatch_sentences.py",
-    "gaitdisc/report/naming_figure.py",
-    "gaitdisc/report/naming_table.py",
-    "gaitdisc/response/fit_response.py",
-    "gaitdisc/signals/butterworth.py",
-    "gaitdisc/signals/contact_force.py",
-    "gaitdisc/signals/late_change.py",
-    "gaitdisc/simulation/measured.py",
-    "gaitdisc/turbulence/box.py",
-    "gaitdisc/turbulence/isotropic.py",
-)  # end of WAITING
+# Files that other branches still hold.
+WAITING: tuple[str, ...] = ()
 
 
 def found_in(text: str) -> list[str]:

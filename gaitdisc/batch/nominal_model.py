@@ -129,9 +129,9 @@ def stride_trials(walk: Walk, name: str, strides: int = STRIDES) -> Measured:
             first += 1
     if len(trials) < FEWEST_TRIALS:
         raise StrideError(
-            f"an inquiry needs {FEWEST_TRIALS * strides} strides, {strides} in a row at a time",
+            f"`discover` needs {FEWEST_TRIALS * strides} strides, {strides} in a row at a time",
             f"{walk.trial.name} has {len(own)}, in a row {len(trials)} times {strides}",
-            "Record longer, or ask for fewer strides in a trial.",
+            "Record longer, or use fewer strides in a trial.",
         )
     return measured_of_trials(trials, ("phase",), ("theta",), walk.trial.name)
 

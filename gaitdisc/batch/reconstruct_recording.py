@@ -97,7 +97,7 @@ def reconstruct_recording(
     known = np.isfinite(told.values).all(axis=1)
     if known.sum() < 2:
         raise SamplingError(
-            f"states are told from {what.reach_s:.2f} s of readings",
+            f"states are reconstructed from {what.reach_s:.2f} s of readings",
             f"{file.name} lasts {kinematics.duration_s:.2f} s, and no such stretch of it lacks no value",
             "Record longer, or fill the gaps.",
         )

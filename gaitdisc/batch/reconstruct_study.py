@@ -26,7 +26,7 @@ SECTION = "5.3.3, Table 5.2"
 SUBJECT, CONDITION = "subject", "condition"
 ACROSS = {
     SUBJECT: "each person by models of the others; the next in the list is who they are chosen by",
-    CONDITION: "walks of one condition judged by models of the person's other walks, the last 15 % of each checked",
+    CONDITION: "walks of one condition, by models of the person's other walks, the last 15 % of each checked",
 }
 CALIBRATION_STRIDES = 10
 
@@ -173,7 +173,7 @@ def _judged(walks: Sequence[SensedWalk], person: str, condition: str) -> list[in
     judged = [k for k, word in enumerate(words) if word == condition]
     if not judged or len(judged) == len(words):
         raise SchemaError(
-            "a split across conditions needs walks of the condition that is judged, and others to fit",
+            "a split across conditions needs walks of the condition that is tested, and others to fit",
             f"--condition is {condition!r}, {person} has {', '.join(sorted(set(words)))}",
             "Name a condition with --condition, or take another split.",
         )
@@ -206,7 +206,7 @@ def _result(
         walks.named(what.sensors),
         walks.named(what.states),
         f"{settings.split}: {rule}",
-        f"{what.lags.count} readings of each sensor, {what.lags.spacing / what.rate_hz:.2f} s apart; each model tells "
+        f"{what.lags.count} readings of each sensor, {what.lags.spacing / what.rate_hz:.2f} s apart; each model gives "
         + (f"the states {what.lags.ahead / what.rate_hz:.2f} s after" if what.lags.ahead else "the states at")
         + " the last of them",
         models,

@@ -41,7 +41,7 @@ def search_study(study: Study, most: int, settings: ReconstructionSettings | Non
     if settings.targets != STATES or settings.ahead_s:
         raise SchemaError(
             "sensors are searched for the states at their last reading",
-            f"{settings.targets} are to be told {settings.ahead_s:g} s ahead",
+            f"{settings.targets} are to be reconstructed {settings.ahead_s:g} s ahead",
             "Search without --targets and --ahead; then name the sensors with --sensors.",
         )
     walks = sensed_walks(study, (), settings.condition_read)

@@ -108,7 +108,7 @@ def refuse_unknown_targets(targets: str) -> None:
     """
     if targets not in (STATES, *TARGETS):
         known = ", ".join((STATES, *TARGETS))
-        raise SchemaError("a reconstruction tells one kind of quantity", f"{targets!r} is none", f"Use: {known}.")
+        raise SchemaError("a reconstruction has one kind of quantity", f"{targets!r} is none", f"Use: {known}.")
 
 
 def _sensors_of(trial: Trial, sensors: Sequence[str]) -> Recording:
@@ -129,12 +129,12 @@ def _targets_of(trial: Trial, study: Study, targets: str) -> tuple[Recording, li
         found = found.selected([name for name in found.names if name not in dead])
     if not found.names:
         raise ChannelError(
-            f"trial {trial.name}: {targets} are to be told",
+            f"trial {trial.name}: {targets} are to be reconstructed",
             f"none is alive: {', '.join(dead)}" if dead else f"it has no {' or '.join(quantities)}",
-            "Leave the trial out, or tell something else.",
+            "Leave the trial out, or reconstruct something else.",
         )
     findings = [
-        Finding("warning", "left out", finding.file, f"{name}: {finding.what}", "this muscle is not told", name)
+        Finding("warning", "left out", finding.file, f"{name}: {finding.what}", "this muscle is left out", name)
         for name, finding in dead.items()
     ]
     if key == "emg":

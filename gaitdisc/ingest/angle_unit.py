@@ -58,7 +58,7 @@ def judged_unit(
     if not joints:
         if stated:
             return stated, None
-        raise _undecided(file, "it has no joint angle that would tell")
+        raise _undecided(file, "it has no joint angle that would show it")
     most = _largest(values[:, joints])
     moving = [i for i in joints if re.match(r"hip_flexion|knee_angle", names[i])]
     reach = _largest_range(values[:, moving or joints])
@@ -85,7 +85,7 @@ def judged_unit(
         raise _undecided(file, f"the largest joint angle is {most:.3g}, the widest hip or knee range {reach:.3g}")
     unit = "deg" if beyond else "rad"
     what = f"the header does not say degrees or radians; taken as {unit} (largest joint angle {most:.4g})"
-    return unit, Finding("warning", "unit judged", file, what, "all angles if wrong; state inDegrees in the header")
+    return unit, Finding("warning", "unit inferred", file, what, "all angles if wrong; state inDegrees in the header")
 
 
 def copied_coordinate_unit(

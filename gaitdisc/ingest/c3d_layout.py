@@ -115,7 +115,7 @@ def expected_layout(header: C3DHeader, parameters: C3DParameters) -> tuple[C3DLa
         _refuse_truncated(layout, header)
     if layout.data_block != header.data_block:
         raise ReadError(
-            "a C3D file needs a header that tells where the data begin",
+            "a C3D file needs a header that says where the data begin",
             f"{header.file} says block {header.data_block}, POINT:DATA_START and the length of the file say "
             f"{layout.data_block}",
             "Export the trial again; this copy is damaged.",

@@ -238,7 +238,7 @@ def _doubled(names: list[str], parameters: C3DParameters, file: str) -> list[Fin
     doubled = sorted({label for label in plain if label and plain.count(label) > 1})
     if not doubled:
         return []
-    what = f"{len(doubled)} point labels stand more than once ({', '.join(doubled[:3])}); told apart by their number"
+    what = f"{len(doubled)} point labels stand more than once ({', '.join(doubled[:3])}); distinguished by their number"
     return [Finding("warning", "equal labels", file, what, "these points; give them names of their own")]
 
 

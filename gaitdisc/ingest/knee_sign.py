@@ -112,7 +112,7 @@ def _finding(name: str, reach: tuple[float, float], own: bool, moved: tuple[Reco
 def _doubt(name: str, reach: tuple[float, float], kinematics: Recording) -> Finding:
     what = (
         f"goes from {reach[0]:.0f} to {reach[1]:.0f} deg; a knee bends beyond {HYPEREXTENDED_DEG:g} deg to one side "
-        "only, so its sign cannot be told and it is left as it is"
+        "only, so its sign is not known and it is left as it is"
     )
     spoils = "whatever rests on the knee; correct the file, or leave the damaged part out by crop_s"
     return Finding("warning", "knee sign", kinematics.source.file, what, spoils, name)

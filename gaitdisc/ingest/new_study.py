@@ -157,7 +157,7 @@ def _conditions(found: Sequence[FoundTrial], notes: list[str]) -> Conditions:
             notes.append(f"{', '.join(there)} are all taken as {words[which]!r}")
         elif not there:
             notes.append(
-                f"no file or folder name tells a trial of condition {usual!r}; write it where it says 'unknown'"
+                f"no file or folder name shows a trial of condition {usual!r}; write it where it says 'unknown'"
             )
     unnamed = [trial.files[0].as_posix() for trial in found if not trial.which]
     if unnamed:
@@ -177,9 +177,9 @@ def _participants(
         notes.append(f"folder names that are no pseudonyms became {', '.join(renamed)}; the paths still hold them")
     kept = [person for person in people if person in taken]
     if kept:
-        notes.append(f"taken as pseudonyms as they are: {', '.join(kept)}; change any that tells who a person is")
+        notes.append(f"taken as pseudonyms as they are: {', '.join(kept)}; change any that shows who a person is")
     if "" in ids:
-        notes.append(f"files whose path tells no person were put under {ids['']}")
+        notes.append(f"files whose path names no person were put under {ids['']}")
     words = {"nominal": conditions.nominal, "device": conditions.device, "": UNKNOWN}
     return tuple(
         Participant(

@@ -134,7 +134,7 @@ def _muscle(label: str, plain: str) -> Column:
     of_right = vocabulary().named(f"{plain}_r")
     if of_right and of_right.quantity == "emg":
         channel = Channel(of_right.name.removesuffix("_r"), "emg", "1")
-        return Column(label, channel, "1", "the label tells no side")
+        return Column(label, channel, "1", "the label names no side")
     name = plain if plain.startswith("emg_") else f"emg_{plain}"
     return Column(label, Channel(name, "emg", "1", side_of(plain)), "1", "kept as EMG of an unknown muscle")
 

@@ -104,7 +104,7 @@ def _check_names(channels: Sequence[Channel], file: str) -> None:
         raise ChannelError(
             "each channel needs a column of its own",
             f"{file} has {doubled!r} in columns {first} and {second}",
-            "Remove one of them, or tell them apart in the study's [channels].",
+            "Remove one of them, or name them differently in the study's [channels].",
         )
 
 

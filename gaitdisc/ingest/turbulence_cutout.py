@@ -51,7 +51,7 @@ def read_cutout(paths: Sequence[Path], step_s: float, quantity: str = "velocity"
     increments in turbulence. The layout is that of the service's files in public use, not of a stated standard.
     """
     if quantity not in NAMES:
-        raise ReadError(f"a cut-out holds {' or '.join(NAMES)}", f"asked for {quantity!r}", "Name one of them.")
+        raise ReadError(f"a cut-out holds {' or '.join(NAMES)}", f"requested: {quantity!r}", "Name one of them.")
     snapshots: dict[int, NDArray[Any]] = {}
     grid: list[NDArray[Any]] = []
     for path in paths:
@@ -87,7 +87,7 @@ def _numbers(file: Any, path: Path, quantity: str) -> dict[int, str]:
         raise ReadError(
             f"a cut-out needs data sets {quantity.capitalize()}_0001, ...",
             f"{path.name} has {', '.join(there) or 'none'}",
-            f"Ask the service for {quantity}, or name the quantity that the file has.",
+            f"Request from the service {quantity}, or name the quantity that the file has.",
         )
     return found
 

@@ -220,7 +220,7 @@ class Field:
         if absent or not quantities:
             raise ChannelError(
                 f"the field has the quantities {', '.join(self.quantities)}",
-                f"asked for {', '.join(absent) or 'none'}",
+                f"requested: {', '.join(absent) or 'none'}",
                 "Name some of them.",
             )
         columns = [self.quantities.index(name) for name in quantities]

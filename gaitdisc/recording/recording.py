@@ -232,7 +232,7 @@ def _check_names(channels: Sequence[Channel], file: str) -> None:
         raise ChannelError(
             "each channel needs a name of its own",
             f"{file or 'the recording'} has {doubled[0]!r} {names.count(doubled[0])} times",
-            "Tell them apart in the study's [channels].",
+            "Name them differently in the study's [channels].",
         )
 
 

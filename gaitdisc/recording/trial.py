@@ -99,7 +99,7 @@ class Trial:
         """
         if key not in self.streams:
             raise ChannelError(
-                f"trial {self.name} is asked for its {key}",
+                f"trial {self.name} is read for its {key}",
                 f"it has {', '.join(self.streams) or 'no stream at all'}",
                 "Give the file that holds them in the study's [[trials]].",
             )

@@ -204,7 +204,7 @@ def _no_gap(mismatch: Mismatch) -> str:
         if done.unit == "participant"
         else f"{done.strides_first} and {done.strides_second} strides"
     )
-    return f"No gap: {mismatch.first} and {mismatch.second} cannot be told apart in {count} ({n}, {p_words(p)})."
+    return f"No gap: {mismatch.first} and {mismatch.second} cannot be distinguished in {count} ({n}, {p_words(p)})."
 
 
 def _visible(mismatch: Mismatch, names: list[str]) -> str:

@@ -63,7 +63,7 @@ def naming_figure(namings: Sequence[Naming], name: str) -> Figure:
     caption = (
         "Answer of most seeds, with its share in percent where the seeds differ; below it, how much less RMSE the "
         "forecast from the noise-free true state (an oracle) has than the known model’s [%], median of "
-        f"n = {table['seed'].nunique()} seeds (without noise, and of the curves, one; no tile: not asked)."
+        f"n = {table['seed'].nunique()} seeds (without noise, and of the curves, one; no tile: not run)."
     )
     return Figure(name, caption, "Tiles of answers by case, tool and noise", tiles, drawn)
 

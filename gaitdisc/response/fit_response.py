@@ -193,7 +193,7 @@ def held_out_samples(held_out: Trajectory, settings: ResponseSettings) -> Sample
     samples, dropped = gait_samples(held_out, settings.outputs)
     if len(samples) < LEAST_HELD_OUT:
         raise TrainingError(
-            f"a model is judged on {LEAST_HELD_OUT} held-out samples at least",
+            f"a model is tested on {LEAST_HELD_OUT} held-out samples at least",
             f"the last {len(held_out.time) / held_out.rate_hz:.2f} s: {dropped.finding().line()}",
             "Hold out a longer part, or mend or leave away the channels named.",
         )

@@ -189,7 +189,7 @@ def _filtered(recording: Recording, cutoff_hz: float, order: int, kind: str, max
     if not 0.0 < cutoff_hz < rate / 2:
         raise SamplingError(
             f"a {kind} cut-off must lie between 0 Hz and half the rate, {rate / 2:g} Hz",
-            f"{cutoff_hz:g} Hz is asked for and {file} has {rate:g} samples a second",
+            f"{cutoff_hz:g} Hz is requested and {file} has {rate:g} samples a second",
             "Lower the cut-off in [filters], or export the raw signal at its full rate.",
         )
     sections = np.asarray(butter(order, cutoff_hz, kind, fs=rate, output="sos"))

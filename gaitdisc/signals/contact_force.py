@@ -152,14 +152,14 @@ def plate_contacts(
             place = {side: float(np.interp(time, markers.time, heel)) for side, heel in along.items()}
             if not np.isfinite(list(place.values())).all() or len(place) < 2:
                 raise StrideError(
-                    "telling the foot on a plate needs both heel markers at contact",
+                    "identifying the foot on a plate needs both heel markers at contact",
                     f"{forces.source.file}, {channel.name}: contact at {time:.3f} s, heel missing there",
                     "Fill the marker, or say which plate is which foot.",
                 )
             side = max(place, key=lambda key: place[key])
             times[side].append(float(time))
             offs[side] += [float(t) for t in off[off > time][:1]]
-    note = f"foot told by the leading heel, {direction.how}"
+    note = f"foot identified by the leading heel, {direction.how}"
     return {s: Contacts(np.unique(times[s]), s, "force", np.unique(offs[s]), note) for s in ("r", "l")}
 
 

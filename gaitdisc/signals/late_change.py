@@ -107,7 +107,7 @@ def late_change(recording: Recording, strides: Strides, seed: int = 0) -> LateCh
         raise StrideError(
             f"a late change is looked for in {FEWEST_STRIDES} whole strides or more",
             f"{recording.source.file or 'the recording'} has {len(curves)} of side {strides.side!r}",
-            "Record longer, or judge the trial by eye.",
+            "Record longer, or inspect the trial by eye.",
         )
     scores = _components(curves)
     statistic, split, dependence = _largest(scores[None])

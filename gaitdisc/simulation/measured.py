@@ -113,7 +113,7 @@ class Measured:
             raise SamplingError(
                 f"samples {first} to {end} of a trial are needed",
                 f"the longest has {int(self.samples.max())}",
-                "Ask for fewer.",
+                "Use fewer.",
             )
         time0 = self.drive.time0[which] + first / self.rate
         drive = Drive(self.rate, time0, self.drive.inputs[which, first:end], np.full(len(which), end - first))
@@ -219,7 +219,7 @@ def _constant(
             if still:
                 what = f"constant in {len(still)} of {len(trials)} trials (first: {still[0]!r})"
                 severity = "warning" if kind == "observed" else "note"
-                found.append(Finding(severity, "constant", source, what, "what these trials tell", name))
+                found.append(Finding(severity, "constant", source, what, "what these trials show", name))
     return found
 
 

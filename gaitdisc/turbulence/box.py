@@ -41,7 +41,7 @@ class Box:
         if self.nodes < LEAST_NODES or self.nodes % 2:
             raise ShapeError(
                 f"a box of turbulence needs an even number of nodes, {LEAST_NODES} or more",
-                f"asked for {self.nodes}",
+                f"requested: {self.nodes}",
                 "Take 32, 48 or 64.",
             )
 

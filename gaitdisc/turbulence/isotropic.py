@@ -65,7 +65,7 @@ class FlowSettings:
         if not 1 < self.cut <= self.nodes or min(self.snapshots, self.every) < 1 or self.spin_up < 0:
             raise ShapeError(
                 f"a record of turbulence needs a cut of 2 to {self.nodes} nodes, and snapshots",
-                f"asked for {self.cut} nodes, {self.snapshots} snapshots {self.every} steps apart",
+                f"requested: {self.cut} nodes, {self.snapshots} snapshots {self.every} steps apart",
                 "Correct the settings.",
             )
 

@@ -65,14 +65,14 @@ def test_one_condition_is_told_from_the_other(study):
     settings = ReconstructionSettings(split="condition", condition="exo", kinds=KINDS)
     done, _ = reconstruct_study(study, ("knee_angle_r",), settings)
     within, _ = reconstruct_study(study, ("knee_angle_r",), ReconstructionSettings(kinds=KINDS))
-    assert done.split.startswith("condition: walks of one condition judged")
+    assert done.split.startswith("condition: walks of one condition, by models")
     assert done.over_participants()["rmse_deg"]["delay ridge"] > within.over_participants()["rmse_deg"]["delay ridge"]
 
 
 def test_a_split_across_conditions_needs_the_one_that_is_judged(study):
     settings = ReconstructionSettings(split="condition", kinds=KINDS)
     with pytest.raises(
-        SchemaError, match=r"needs walks of the condition that is judged.*--condition is ''.* exo, nominal"
+        SchemaError, match=r"needs walks of the condition that is tested.*--condition is ''.* exo, nominal"
     ):
         reconstruct_study(study, ("knee_angle_r",), settings)
 
@@ -81,6 +81,6 @@ def test_states_ahead_of_the_last_reading(study):
     done, people = reconstruct_study(study, ("knee_angle_r",), ReconstructionSettings(kinds=KINDS, ahead_s=0.1))
     assert "knee_angle_r" in set(done.errors["state"])
     assert {"persistence", "phase average"} < set(done.models)
-    assert done.history.endswith("each model tells the states 0.10 s after the last of them")
+    assert done.history.endswith("each model gives the states 0.10 s after the last of them")
     assert people[0].fitted[0].reconstructor.sensing.lags.ahead == 10
     assert "future states are reconstructed" in reconstruction_sentences(done)[0]

@@ -62,11 +62,11 @@ def test_a_dead_muscle_is_left_out_and_told(trial):
 
 
 def test_refusals(trial):
-    with pytest.raises(SchemaError, match="tells one kind of quantity; 'power' is none"):
+    with pytest.raises(SchemaError, match="has one kind of quantity; 'power' is none"):
         target_walk(trial, STUDY, SENSORS, "power")
     with pytest.raises(ChannelError, match="'knee_ange_r' is needed"):
         target_walk(trial, STUDY, ("knee_ange_r",), "emg")
-    with pytest.raises(ChannelError, match="asked for its moments; it has kinematics, emg, forces"):
+    with pytest.raises(ChannelError, match="read for its moments; it has kinematics, emg, forces"):
         target_walk(trial, STUDY, SENSORS, "moments")
     late = trial.stream("emg")
     late = replace(late, time=late.time + 100)

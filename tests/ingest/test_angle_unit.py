@@ -47,7 +47,7 @@ def test_a_silent_header_is_told_and_standing_still_is_refused():
     assert finding is not None and "taken as deg (largest joint angle 60)" in finding.what
     with pytest.raises(UnitError, match="header is silent and the largest joint angle is 0"):
         judged_unit(TIME, np.zeros((200, 4)), NAMES, None, "a.mot")
-    with pytest.raises(UnitError, match="no joint angle that would tell"):
+    with pytest.raises(UnitError, match="no joint angle that would show it"):
         judged_unit(TIME, _walk_deg()[:, :1], NAMES[:1], None, "a.mot")
 
 

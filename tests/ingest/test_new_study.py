@@ -49,7 +49,7 @@ def test_files_of_one_walk_are_found_together(gait_data):
     assert len(trial.files) == 5
     assert len(study.models.emg) == 24
     assert {"emg_sol_r", "emg_rf_r"} < set(study.models.outputs)
-    assert any("no file or folder name tells" in note for note in notes)
+    assert any("no file or folder name shows" in note for note in notes)
 
 
 def test_folders_become_people_and_names_pseudonyms(tmp_path):

@@ -68,7 +68,7 @@ def test_emg_without_sides(gait_data):
     assert emg.names[:2] == ("emg_sol_r", "emg_gas")
     assert emg["emg_sol_r"][0] == 9.669363727051634438e-03
     assert emg.rate_hz == 2000.0
-    assert any("the label tells no side" in finding.what for finding in trial.findings)
+    assert any("the label names no side" in finding.what for finding in trial.findings)
 
 
 def test_ground_forces_of_both_naming_habits(gait_data):
@@ -158,7 +158,7 @@ def test_translations_are_never_scaled(tmp_path):
 def test_a_silent_header_is_judged_or_refused(tmp_path):
     silent = HEAD.replace("inDegrees=yes\n", "")
     trial = read_storage(_written(tmp_path, silent + BODY))
-    assert any(finding.kind == "unit judged" and "taken as deg" in finding.what for finding in trial.findings)
+    assert any(finding.kind == "unit inferred" and "taken as deg" in finding.what for finding in trial.findings)
     still = "time\tknee_angle_r\tpelvis_tx\n" + "".join(f"{i / 100}\t0.5\t0\n" for i in range(60))
     with pytest.raises(UnitError, match=r"walk\.mot must state degrees or radians"):
         read_storage(_written(tmp_path, silent + still))

@@ -39,7 +39,7 @@ def test_what_is_wrong_is_said(tmp_path):
         read_cutout([written(tmp_path / "e.h5", [1], shape=(4, 3, 2, 3))], 0.002)
     with pytest.raises(ReadError, match=r"data sets Pressure_0001, ...; a.h5 has Velocity_0001"):
         read_cutout([one], 0.002, "pressure")
-    with pytest.raises(ReadError, match=r"asked for 'heat'"):
+    with pytest.raises(ReadError, match=r"requested: 'heat'"):
         read_cutout([one], 0.002, "heat")
     with pytest.raises(ReadError, match=r"no file was named"):
         read_cutout([], 0.002)

@@ -23,5 +23,5 @@ def test_what_is_too_fast_does_not_fold_into_the_result():
 
 def test_streams_that_are_asked_for(trial):
     assert on_one_base(trial, 100.0, ("forces",)).names == ("ground_force_r_vy", "ground_force_l_vy")
-    with pytest.raises(ValueError, match="asked for its markers"):
+    with pytest.raises(ValueError, match="read for its markers"):
         on_one_base(trial, 100.0, ("markers",))

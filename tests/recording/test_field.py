@@ -43,7 +43,7 @@ def test_snapshots_and_quantities_are_kept_as_asked():
     sea = field().snapshots(slice(1, None)).selected(["v"])
     assert (len(sea), sea.quantities, sea.units) == (2, ("v",), ("m/s",))
     assert sea.values[0, 0, 0] == 9.0
-    with pytest.raises(ChannelError, match=r"has the quantities u, v; asked for w"):
+    with pytest.raises(ChannelError, match=r"has the quantities u, v; requested: w"):
         field().selected(["w"])
 
 

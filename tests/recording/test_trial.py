@@ -34,7 +34,7 @@ def test_streams_without_common_time():
 
 
 def test_a_stream_that_is_not_there():
-    with pytest.raises(ChannelError, match="asked for its emg; it has kinematics, forces"):
+    with pytest.raises(ChannelError, match="read for its emg; it has kinematics, forces"):
         trial().stream("emg")
 
 

@@ -38,7 +38,7 @@ def test_the_first_sentence_is_the_answer():
 
 def test_no_gap_is_said_with_what_could_have_been_seen():
     first, second = mismatch_sentences(compare_walks(walk("model", 2), walk("measured", 3)))
-    assert first.startswith("No gap: model and measured cannot be told apart in 3 channels (20 and 20 strides, p = ")
+    assert first.startswith("No gap: model and measured cannot be distinguished in 3 channels (20 and 20 strides, p = ")
     assert second.startswith("That is no proof of none: a gap would have been seen, in four such comparisons of five, ")
     assert "deg" in second
 

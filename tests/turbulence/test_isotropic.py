@@ -54,7 +54,7 @@ def test_a_folder_of_another_flow_is_refused(tmp_path):
 
 
 def test_settings_that_keep_nothing_are_refused():
-    with pytest.raises(ShapeError, match="a cut of 2 to 16 nodes, and snapshots; asked for 17 nodes"):
+    with pytest.raises(ShapeError, match="a cut of 2 to 16 nodes, and snapshots; requested: 17 nodes"):
         FlowSettings(nodes=16, cut=17)
 
 
