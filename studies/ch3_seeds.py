@@ -1,6 +1,6 @@
 """Section 3.4 over twelve noise seeds: every cell, its forecast from the true state and from the estimated one.
 
-    python studies/ch3_seeds.py FOLDER [--seeds 12] [--sets van_der_pol_text lorenz]
+    python studies/ch3_seeds.py FOLDER [--seeds 12] [--sets van_der_pol_text lorenz] [--noises 0.01 0.1]
     python studies/ch3_seeds.py FOLDER --keep
 
 Each cell is a file of its own in FOLDER, written whole: a run that was stopped goes on where it stopped. With `--keep`
@@ -21,6 +21,7 @@ GIVEN = command_line(
     argument("folder", "a file for each cell that was computed", type=Path),
     argument("--seeds", "noise seeds 0 to one less than this", SEEDS),
     argument("--sets", "names of sets, all where absent", nargs="+"),
+    argument("--noises", "shares of each channel's standard deviation, all where absent", nargs="+", type=float),
     argument("--keep", "compute nothing; write studies/ch3_cells.csv and what `recommend` answers from", False),
 )  # before the slow imports
 
@@ -106,22 +107,38 @@ def cell_sets() -> dict[str, CellSet]:
     }
 
 
-def compute(folder: Path, names: list[str], seeds: int) -> None:
+def chosen_sets(names: list[str] | None, noises: list[float] | None) -> dict[str, CellSet]:
+    """Sets of these names, at these noises; all where absent.
+
+    Parameters
+    ----------
+    names : list of str, optional
+        Of `cell_sets`.
+    noises : list of float, optional
+        As in `CellSet`.
+    """
+    sets = cell_sets()
+    found = {name: sets[name] for name in names or sets}
+    some = set(noises or NOISES)
+    return {name: replace(one, noises=tuple(n for n in one.noises if n in some)) for name, one in found.items()}
+
+
+def compute(folder: Path, sets: dict[str, CellSet], seeds: int) -> None:
     """Compute what is not there yet: all sets of a seed before the next seed.
 
     Parameters
     ----------
     folder : Path
         A file a cell.
-    names : list of str
-        Sets.
+    sets : dict of str to CellSet
+        By name.
     seeds : int
         Most of each.
     """
-    sets, warm = cell_sets(), set()
+    warm = set()
     for seed in range(seeds):
-        for name in names:
-            for cell_set, noise, method in _asked(sets[name], seed):
+        for name, cell_set in sets.items():
+            for noise, method in _asked(cell_set, seed):
                 path = folder / f"{name}-{noise:g}-{seed:02d}-{method}.csv"
                 if path.exists():
                     continue
@@ -136,11 +153,11 @@ def compute(folder: Path, names: list[str], seeds: int) -> None:
                 print(path.name, flush=True)
 
 
-def _asked(cell_set: CellSet, seed: int) -> Iterator[tuple[CellSet, float, Method]]:
+def _asked(cell_set: CellSet, seed: int) -> Iterator[tuple[float, Method]]:
     for noise in cell_set.noises:
         for method in cell_set.methods:
             if seed < (cell_set.seeds if noise else 1):  # without noise all seeds are one
-                yield cell_set, noise, method
+                yield noise, method
 
 
 def rows_of(cell: DiscrepancyCell) -> pd.DataFrame:
@@ -200,4 +217,4 @@ if __name__ == "__main__":
         GIVEN.folder.mkdir(parents=True, exist_ok=True)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            compute(GIVEN.folder, GIVEN.sets or list(cell_sets()), GIVEN.seeds)
+            compute(GIVEN.folder, chosen_sets(GIVEN.sets, GIVEN.noises), GIVEN.seeds)
