@@ -93,17 +93,20 @@ class Fitted:
     def stacked(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """As `projected`, flat, with a row for each number of the prior (row,), (row, free)."""
         left, slopes = self.projected
+        return np.concatenate([left.ravel(), self.prior.left(self.values)]), self._with_prior(slopes)
+
+    def _with_prior(self, slopes: NDArray[np.float64]) -> NDArray[np.float64]:
         rows = np.zeros((len(self.prior.names), len(self.free)))
         rows[:, len(self.free) - len(rows) :] = np.diag(1 / self.prior.sd)
-        flat = np.vstack([slopes.reshape(left.size, len(self.free)), rows])
-        return np.concatenate([left.ravel(), self.prior.left(self.values)]), flat
+        return np.vstack([slopes.reshape(self.white.size, len(self.free)), rows])
 
     @property
     def covariance(self) -> NDArray[np.float64]:
         """Covariance of the fitted constants (free, free), from the curvature of the misfit."""
         if not self.free:
             return np.zeros((0, 0))
-        flat = self.stacked[1]
+        n = self.starts.shape[1]
+        flat = self._with_prior(without(start_basis(self.slopes[..., :n]), self.slopes[..., n:]))
         size = np.linalg.norm(flat, axis=0)
         size[size == 0] = 1.0
         return np.linalg.pinv((flat / size).T @ (flat / size), rcond=1e-12) / np.outer(size, size)

@@ -44,6 +44,17 @@ def discovery_figures(discovery: Discovery) -> list[Figure]:
     return figures
 
 
+def within_bounds(discovery: Discovery) -> str:
+    """Say that the simulation as read has numbers that were fitted, where it has.
+
+    Parameters
+    ----------
+    discovery : Discovery
+        What was found.
+    """
+    return ", its numbers fitted within their bounds" if discovery.corrections else ""
+
+
 def typical_stretch(gap: NDArray[np.float64], samples: int) -> tuple[int, int]:
     """Return first and end sample of the stretch whose mean squared gap is the median of all such stretches.
 
@@ -122,7 +133,8 @@ def _over_time(discovery: Discovery, table: pd.DataFrame) -> Figure:
     legend(drawn, _key(measured=True))
     caption = (
         f"Trial {trial}, held out: neither searched nor fitted, only the start of each run was found. Left: measured "
-        "(black), simulated as read (orange, dashed), with what was found (green); the gap is shaded. Right: measured "
+        f"(black), simulated as read{within_bounds(discovery)} (orange, dashed), with what was found (green); "
+        "the gap is shaded. Right: measured "
         f"minus each; grey band: two standard deviations of the noise. Typical stretch, {len(numbers)} samples."
     )
     return Figure("held_out", caption, _alt(discovery), numbers, drawn)

@@ -62,14 +62,18 @@ def gap_table(discovery: Discovery) -> Table:
             records.append((data, channel, before, after, floor, unit, closed_share(before, after, floor), size.p))
     held, fitted = (counted(size.pieces, "piece") for size in (discovery.held_out, discovery.train))
     caption = (
-        "Root mean square of measured minus simulated, before and after, and what noise alone would leave. Closed: of "
-        "the squared gap above the noise. p: one-sided signed-rank test (Wilcoxon) of the squared errors before and "
-        f"after, for all channels of those data together, over pieces of the runs (held out: {held}, fitted: {fitted})."
+        f"Root mean square of measured minus simulated, before{_before(discovery)} and after, and what noise alone "
+        "would leave. Closed: of the squared gap above the noise. p: one-sided signed-rank test (Wilcoxon) of the "
+        f"squared errors before and after, for all channels of those data together, over pieces of the runs (held out: {held}, fitted: {fitted})."
         f"{_unproven(discovery)}"
     )
     headings = ("data", "channel", "before", "after", "noise floor", "closed", "p")
     columns = ("data", "channel", "before", "after", "noise_floor", "unit", "closed", "p")
     return Table("gap", caption, headings, tuple(rows), _frame(records, columns))
+
+
+def _before(discovery: Discovery) -> str:
+    return " (as read, numbers with bounds fitted within these)" if discovery.corrections else ""
 
 
 def _unproven(discovery: Discovery) -> str:

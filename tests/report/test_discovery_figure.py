@@ -3,7 +3,7 @@ import pytest
 from manufactured_discovery import manufactured
 
 from gaitdisc.report.discovery_figure import binned, discovery_figures, typical_stretch
-from gaitdisc.results.discovery import Runs
+from gaitdisc.results.discovery import Correction, Estimate, Runs
 
 
 def test_there_is_a_figure_over_the_stride_only_where_there_is_a_phase():
@@ -31,3 +31,10 @@ def test_bins_with_few_samples_are_left_out():
     table = binned(along, np.full(8, 3.0), np.array([0.0, 0.5, 1.0]))
     assert table["at"].tolist() == [0.25]
     assert table["mean"].tolist() == [3.0]
+
+
+def test_where_numbers_were_fitted_within_their_bounds_the_figure_says_so():
+    moved = Correction("inertia", 0.110, Estimate(0.1126, 0.1118, 0.1134, "kg m^2"))
+    said = "simulated as read, its numbers fitted within their bounds (orange, dashed)"
+    assert said in discovery_figures(manufactured(corrections=(moved,)))[0].caption
+    assert said not in discovery_figures(manufactured())[0].caption
