@@ -1,0 +1,120 @@
+"""Halves of one real walk compared, with the marks of initial contact of one half moved on purpose.
+
+    python studies/compare_halves.py [DATA] [--quick]
+
+DATA holds the folders treadmill_walk_ik and exotendon_run; by default ../shared/data/gait, or GAITDISC_DATA/gait. Both
+halves are cut by contacts from hip and knee; in the second half every contact is moved by 0, 3, 7 or 10 % of its
+stride. Nothing differs but the marks, the noise, and what the person changed over a minute.
+"""
+
+from __future__ import annotations
+
+from command_line import QUICK, SHARED, argument, command_line
+
+DATA = argument("data", "folder of the real gait recordings", SHARED / "gait")
+GIVEN = command_line(__name__, __doc__, DATA, QUICK)  # before the slow imports
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from gaitdisc.channel import Channel, vocabulary
+from gaitdisc.discovery.compare import compare_walks
+from gaitdisc.ingest.reading import read_trial
+from gaitdisc.processing.walk_pair import walk_pair
+from gaitdisc.recording import Event, Recording, Source, Trial
+from gaitdisc.results.mismatch import Mismatch
+from gaitdisc.signals.contact_angles import angle_contacts
+
+SHIFTS, QUICK_SHIFTS = (0, 3, 7, 10), (0, 7)  # % of the stride
+CALIBRATION = "S01DE503"  # holds no walking
+JOINTS = tuple(f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle") for side in "rl")
+
+
+class Halves(NamedTuple):
+    """Second half, its contacts moved [% stride], against the first of one walk."""
+
+    walk: str
+    shift: int
+    mismatch: Mismatch
+
+    def largest(self) -> float:
+        """Largest gap of a named channel [deg]; 0 where none is."""
+        gaps = [abs(self.mismatch.summary_of(name)["largest_gap"]) for name in self.mismatch.ordered()]
+        return float(max(gaps, default=0.0))
+
+
+def run(data: Path, quick: bool = False) -> list[Halves]:
+    """Every walk and shift; quick: the three running trials, not moved and moved by 7 %."""
+    chosen = [*running(data)] if quick else [*walking(data), *running(data)]
+    return [halves(walk, shift) for shift in (QUICK_SHIFTS if quick else SHIFTS) for walk in chosen]
+
+
+def walking(data: Path) -> Iterator[Trial]:
+    """Twelve treadmill walks, angles at 100 Hz."""
+    stored = np.load(data / "treadmill_walk_ik" / "addbio_expert3_ik.npz")
+    channels = [vocabulary().named(str(name)) or Channel(str(name), "signal", "1") for name in stored["columns"]]
+    kept = [i for i, channel in enumerate(channels) if channel.quantity == "angle"]
+    for name in sorted(key for key in stored.files if key.startswith("S01") and key != CALIBRATION):
+        values, names = np.asarray(stored[name], float)[:, kept], tuple(channels[i] for i in kept)
+        angles = Recording(np.arange(len(values)) / 100.0, values, names, source=Source(name))
+        yield Trial(name, {"kinematics": angles})
+
+
+def running(data: Path) -> Iterator[Trial]:
+    """Three runs, two of them of one person."""
+    for file in sorted((data / "exotendon_run").rglob("*.mot")):
+        yield read_trial(file)
+
+
+def halves(walk: Trial, shift: int) -> Halves:
+    """The second half, its contacts moved, minus the first."""
+    angles = walk.stream("kinematics")
+    middle, end = angles.time[len(angles.time) // 2], angles.time[-1] + 1.0
+    first = with_contacts(walk, "first half", angles.between(angles.time[0], middle), 0)
+    second = with_contacts(walk, "second half", angles.between(middle, end), shift)
+    one, other = walk_pair(first, second, detector="events")
+    return Halves(walk.name, shift, compare_walks(other, one))
+
+
+def with_contacts(walk: Trial, name: str, part: Recording, shift: int) -> Trial:
+    """Part of a walk with contacts from hip and knee as its events, each moved by a share of its stride [%]."""
+    events = []
+    for side, found in angle_contacts(part.selected(JOINTS)).items():
+        moved = found.time[:-1] + shift / 100 * np.diff(found.time) if shift else found.time
+        events += [Event("initial contact", side, float(time)) for time in moved]
+    return replace(walk, name=name, condition=name, streams={"kinematics": part}, events=tuple(events))
+
+
+def table(found: list[Halves]) -> list[tuple[str, ...]]:
+    """A row a shift."""
+    rows = []
+    for shift in sorted({one.shift for one in found}):
+        of_shift = [one for one in found if one.shift == shift]
+        said = [one.mismatch.alignment.percent for one in of_shift]
+        channels = sum(len(one.mismatch.channels) for one in of_shift)
+        named = sum(len(one.mismatch.ordered()) for one in of_shift)
+        silent = sum(one.largest() == 0 for one in of_shift)
+        largest, off = max(one.largest() for one in of_shift), f"{min(said):.1f} to {max(said):.1f}"
+        counts = (f"{silent} of {len(of_shift)}", f"{named} of {channels}")
+        rows.append((str(shift), *counts, f"{largest:.1f}", off))
+    return rows
+
+
+def main() -> None:
+    """Print what is named by shift, and the walks in which something is."""
+    found = run(GIVEN.data, GIVEN.quick)
+    print("| contacts moved [% stride] | pairs with nothing named | channels named | largest [deg] | shift found [%] |")
+    print("|---|---|---|---|---|")
+    print("\n".join(f"| {' | '.join(row)} |" for row in table(found)))
+    print("\n| walk | contacts moved [% stride] | named: largest gap [deg] |\n|---|---|---|")
+    for one in (one for one in found if one.largest() > 0):
+        gaps = {name: one.mismatch.summary_of(name)["largest_gap"] for name in one.mismatch.ordered()}
+        print(f"| {one.walk} | {one.shift} | {', '.join(f'{name} {gap:+.1f}' for name, gap in gaps.items())} |")
+
+
+if __name__ == "__main__":
+    main()
