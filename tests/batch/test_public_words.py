@@ -1,0 +1,41 @@
+from pathlib import Path
+
+import pytest
+
+from gaitdisc.batch.public_words import PublicWords, package_words, public_settings, public_title, words_of
+from gaitdisc.errors import ReadError
+
+
+def test_a_name_is_hidden_and_a_file_is_called_by_its_participant(study):
+    [person, other] = study.participants
+    public = words_of(study, person)
+    said = public.said(
+        "P01_exo.mot, line 31: column 'Erika Mustermann' has 'x'; Zq2_exo.mot and knee_angle_r are whole"
+    )
+    assert said.startswith(
+        "P01 exo, file 1, line 31: column '…' has 'x'; ….mot and knee_angle_r are whole (…: words of"
+    )
+    assert words_of(study, other).files["P02_nominal.mot"] == "P02 nominal, file 1"
+
+
+@pytest.mark.parametrize("word", ["Mustermann", "erika", "Zqtoken_knee", "knee_Zqtoken", "19700102a3b", "Müller"])
+def test_no_word_from_outside_is_public(word):
+    assert word not in PublicWords().said(f"column {word} is damaged")
+
+
+def test_people_who_are_cited_in_the_source_are_no_public_words():
+    assert not {"Ebers", "Zeni", "Winter", "Rajagopal", "Mustermann"} & package_words()
+
+
+def test_an_error_stays_of_its_kind_and_says_where_the_words_are():
+    error = PublicWords().error(ReadError("Erika.mot is to be read", "it is empty", "Export it again."))
+    assert type(error) is ReadError
+    assert str(error).endswith("Export it again. (…: words of the recording; `gaitdisc check` shows them.)")
+
+
+def test_settings_and_title_name_no_file_no_label_and_no_folder(study):
+    labelled = study.model_copy(update={"title": "", "channels": {"Erika knee": "knee_angle_r"}})
+    settings = public_settings(labelled.placed(Path("Mustermann")))
+    assert settings["channels"] == {"label 1": "knee_angle_r"}
+    assert settings["participants"][0]["trials"][0]["files"] == 1
+    assert public_title(labelled.placed(Path("Mustermann"))) == "nominal against exo"
