@@ -8,6 +8,7 @@ key between these and the names, and is not for passing on.
 
 from __future__ import annotations
 
+import csv
 import errno
 import os
 import re
@@ -261,7 +262,8 @@ def package_words() -> frozenset[str]:
     for path in Path(gaitdisc.__file__).parent.rglob("*.py"):
         code = _TEXT.sub("", path.read_text(encoding="utf-8"))
         literals += (one or other for one, other in _LITERAL.findall(code))
-    literals.append((schema_folder() / "channels.csv").read_text(encoding="utf-8"))
+    with (schema_folder() / "channels.csv").open(newline="", encoding="utf-8") as file:
+        literals += (row[column] for row in csv.DictReader(file) for column in ("name", "quantity", "unit", "aliases"))
     return frozenset(word for text in literals for word in _WORD.findall(text))
 
 

@@ -1,52 +1,41 @@
-"""What may be written of a recording: words of the package, its vocabulary and the study; every other is hidden."""
+from pathlib import Path
 
-import numpy as np
 import pytest
 
-from gaitdisc.batch.public_words import HIDDEN, PublicWords, with_public_labels
-from gaitdisc.channel import Channel
-from gaitdisc.errors import ChannelError
-from gaitdisc.recording import Finding, Recording
-
-WORDS = PublicWords(frozenset({"W01", "nominal"}), {"Erika_2.mot": "W01 nominal, file 1"})
+from gaitdisc.batch.public_words import PublicWords, package_words, public_settings, public_title, words_of
+from gaitdisc.errors import ReadError
 
 
-def test_words_of_the_package_and_of_the_study_stay():
-    said = "trial of W01: ankle_angle_r has 12 samples, 3 are missing"
-    assert WORDS.said(said) == said
-
-
-@pytest.mark.parametrize("word", ["Mustermann", "Erika_M", "Zürich", "ログ"])
-def test_any_other_word_is_hidden_and_the_reader_hears_where_it_stands(word):
-    said = WORDS.said(f"column {word!r} has no unit")
-    assert word not in said and HIDDEN in said
-    assert said.endswith("words of the recording; `gaitdisc check` shows them.)")
-
-
-def test_files_are_called_by_participant_condition_and_number():
-    assert WORDS.said("Erika_2.mot has no unit") == "W01 nominal, file 1 has no unit"
-    finding = WORDS.finding(Finding("warning", "gap", "Erika_2.mot", "a gap of 3 samples", "what rests on it", "Erika"))
-    assert finding.file == "W01 nominal, file 1" and finding.channel == HIDDEN
-
-
-def test_an_error_keeps_its_kind_and_its_remedy():
-    error = WORDS.error(ChannelError("a channel is needed", "Erika_2.mot has 'Mustermann'", "Map it in the study."))
-    assert isinstance(error, ChannelError)
-    assert (
-        "Mustermann" not in str(error) and "W01 nominal, file 1" in str(error) and "Map it in the study." in str(error)
+def test_a_name_is_hidden_and_a_file_is_called_by_its_participant(study):
+    [person, other] = study.participants
+    public = words_of(study, person)
+    said = public.said(
+        "P01_exo.mot, line 31: column 'Erika Mustermann' has 'x'; Zq2_exo.mot and knee_angle_r are whole"
     )
+    assert said.startswith(
+        "P01 exo, file 1, line 31: column '…' has 'x'; ….mot and knee_angle_r are whole (…: words of"
+    )
+    assert words_of(study, other).files["P02_nominal.mot"] == "P02 nominal, file 1"
 
 
-def test_an_error_on_the_way_is_said_in_public_words():
-    def work():
-        raise ChannelError("a channel is needed", "found Mustermann", "Map it.")
-
-    with pytest.raises(ChannelError) as refusal:
-        WORDS.of(work)
-    assert "Mustermann" not in str(refusal.value)
+@pytest.mark.parametrize("word", ["Mustermann", "erika", "Zqtoken_knee", "knee_Zqtoken", "19700102a3b", "Müller"])
+def test_no_word_from_outside_is_public(word):
+    assert word not in PublicWords().said(f"column {word} is damaged")
 
 
-def test_labels_of_no_vocabulary_are_numbered():
-    channels = (Channel("Mustermann", "signal", "V"), Channel("ankle_angle_r", "angle", "deg", "r"))
-    named, hidden = with_public_labels(Recording(np.arange(3) / 100, np.zeros((3, 2)), channels))
-    assert named.names == ("signal_1", "ankle_angle_r") and hidden == 1
+def test_people_who_are_cited_in_the_source_are_no_public_words():
+    assert not {"Ebers", "Zeni", "Winter", "Rajagopal", "Mustermann"} & package_words()
+
+
+def test_an_error_stays_of_its_kind_and_says_where_the_words_are():
+    error = PublicWords().error(ReadError("Erika.mot is to be read", "it is empty", "Export it again."))
+    assert type(error) is ReadError
+    assert str(error).endswith("Export it again. (…: words of the recording; `gaitdisc check` shows them.)")
+
+
+def test_settings_and_title_name_no_file_no_label_and_no_folder(study):
+    labelled = study.model_copy(update={"title": "", "channels": {"Erika knee": "knee_angle_r"}})
+    settings = public_settings(labelled.placed(Path("Mustermann")))
+    assert settings["channels"] == {"label 1": "knee_angle_r"}
+    assert settings["participants"][0]["trials"][0]["files"] == 1
+    assert public_title(labelled.placed(Path("Mustermann"))) == "nominal against exo"
