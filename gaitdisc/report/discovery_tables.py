@@ -64,7 +64,8 @@ def gap_table(discovery: Discovery) -> Table:
     caption = (
         f"Root mean square of measured minus simulated, before{_before(discovery)} and after, and what noise alone "
         "would leave. Closed: of the squared gap above the noise. p: one-sided signed-rank test (Wilcoxon) of the "
-        f"squared errors before and after, for all channels of those data together, over pieces of the runs (held out: {held}, fitted: {fitted})."
+        "squared errors before and after, for all channels of those data together, over pieces of the runs (held out: "
+        f"{held}, fitted: {fitted})."
         f"{_unproven(discovery)}"
     )
     headings = ("data", "channel", "before", "after", "noise floor", "closed", "p")
