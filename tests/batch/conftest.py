@@ -24,7 +24,7 @@ def recordings(tmp_path_factory):
     return folder
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def study(recordings) -> Study:
     people = tuple(
         Participant(

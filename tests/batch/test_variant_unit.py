@@ -15,21 +15,28 @@ def computed(study, folder, question):
     return found, told
 
 
+@pytest.fixture(scope="module")
+def first_time(study, tmp_path_factory):
+    """Folder, variants and shares said, by question: computed once for all tests."""
+    folder = tmp_path_factory.mktemp("variants")
+    return {question: (folder, *computed(study, folder, question)) for question in ("modalities", "sensitivity")}
+
+
 @pytest.mark.parametrize(("question", "first"), [("modalities", ALL), ("sensitivity", AS_STUDIED)])
-def test_variants_are_computed_once_and_then_loaded(study, tmp_path, question, first):
-    found, told = computed(study, tmp_path, question)
+def test_variants_are_computed_once_and_then_loaded(study, first_time, question, first):
+    folder, found, told = first_time[question]
     assert isinstance(found, Variants)
     assert found.table["variant"].iloc[0] == first
     assert told == sorted(told)
     assert told[-1] == pytest.approx(1.0)
-    again, told = computed(study, tmp_path, question)
+    again, told = computed(study, folder, question)
     assert told == []
-    assert again.table.equals(computed(study, tmp_path, question)[0].table)
+    assert again.table.equals(computed(study, folder, question)[0].table)
     assert again.table["r2"].to_numpy() == pytest.approx(found.table["r2"].to_numpy())
 
 
-def test_a_cut_off_changes_what_is_judged(study, tmp_path):
-    found, _ = computed(study, tmp_path, "sensitivity")
+def test_a_cut_off_changes_what_is_judged(first_time):
+    _, found, _ = first_time["sensitivity"]
     middle = found.table[found.table["kind"] == "network"].groupby(["variant", "model"])["r2"].median()
     assert middle["angles 12 Hz", "exo"] < middle["angles 4 Hz", "exo"]  # faster noise is less predictable
     assert {"25% of the training part", "50% of the training part"} <= set(found.table["variant"])
