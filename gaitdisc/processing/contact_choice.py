@@ -26,6 +26,7 @@ PREFERRED = ("force", "events", "markers", "angles")
 ENOUGH = 0.8  # of the strides that the most prolific detector sees
 DISAGREEMENT_MS = 50.0  # a twentieth of a stride
 SEEN_LATE = ("markers", "angles")  # detectors that see no ground, so that their contacts need a plate to be right
+MOST_OFFSET_S = 0.15  # twice the largest bias seen: what lies farther off is no bias of a detector but another event
 EARLY_MS = {"markers": 50.0, "angles": 38.0}  # median against plates in 20 and 14 trials of walking, docs/results.md
 EARLY_RANGE = {"markers": "21 to 74 ms in 20 trials", "angles": "23 to 61 ms in 14 trials"}
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
@@ -140,7 +141,7 @@ def _offset(chosen: str, seen: Mapping[str, Mapping[str, Contacts]]) -> tuple[st
             if name in seen and side in seen[name]
         ]
         steps = np.concatenate([np.empty(0), *later])
-        if len(steps):
+        if len(steps) and abs(np.median(steps)) <= MOST_OFFSET_S:
             return name, float(np.median(steps))
     return "", None
 

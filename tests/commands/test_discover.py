@@ -170,5 +170,5 @@ def test_of_one_trial_it_says_what_cannot_be_held_out(lab, tmp_path):
     words = [str(lab / "good.toml"), str(lab / "one.csv"), "--out", str(tmp_path), "--no-report"]
     done = CliRunner().invoke(app, ["discover", *words])
     assert done.exit_code == 0, done.output
-    assert "warning: one.csv: one trial: trial '1' is the only one (400 samples)" in done.stderr
+    assert "warning: measured table: one trial: trial '1' is the only one (400 samples)" in done.stderr
     assert "only a later part of this one can be held out" in done.stderr

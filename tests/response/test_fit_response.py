@@ -143,7 +143,7 @@ def test_walks_that_are_too_short_or_unusable_at_the_end(nominal, exo, settings)
     usable[-800:, 1] = False
     short = ResponseSettings(settings.outputs, training=settings.training)
     with pytest.raises(
-        TrainingError, match=r"judged on 50 held-out samples at least; .*750 of ankle_angle_r not usable"
+        TrainingError, match=r"tested on 50 held-out samples at least; .*750 of ankle_angle_r not usable"
     ):
         fit_response(nominal, replace(exo, usable=usable), short)
 
