@@ -30,6 +30,7 @@ NEAR = 40.0  # by which a rival's evidence may be worse and still be tried on lo
 MOST_NEAR = 4
 REPEATS = 0.2  # of the misfit, which something that repeats itself has to take away where random pushes would do
 PUSHED = 0.03  # by which random pushes must be likelier than a sensor's own memory, for each number
+HALF = 0.5  # of the held-out squared error, which names must take where more were found than are named
 WORTH = 0.05  # of what was named, which a shape without a name must explain beyond it
 
 
@@ -105,7 +106,7 @@ def judge(inquiry: Inquiry, as_read: Judged) -> Verdict:
     longer, rivals = decided(inquiry, strongest(inquiry.search, named), rivals)
     longer = needed(inquiry, as_read, longer)
     proof = borne_out(inquiry, as_read, longer)
-    if not proof.bears_out:
+    if not proof.bears_out or (names > MOST_NAMES and proof.closed < HALF):
         return Verdict("no_gap", as_read, (longer, *rivals), proof=proof)
     return Verdict(longer.account.parts[0].candidate.verdict, longer, tuple(rivals), proof=proof)
 

@@ -168,6 +168,12 @@ class Proof:
         misfit = float(np.nan_to_num(self.before.misfits - self.after.misfits, nan=0.0).sum())
         return self.test.bears_out and misfit > 0
 
+    @property
+    def closed(self) -> float:
+        """Share of the plain squared error that goes, each channel over its own."""
+        before, after = ((one.fit.residual**2).reshape(-1, one.measured.shape[2]) for one in (self.before, self.after))
+        return float(1 - np.mean(np.nanmean(after, axis=0) / np.nanmean(before, axis=0)))
+
 
 def proof_of(inquiry: Inquiry, before: Judged, now: Judged, like: Judged) -> Proof:
     """Run two accounts over the held-out trials and compare their squared errors piece by piece.

@@ -7,6 +7,7 @@ import re
 from dataclasses import replace
 
 from gaitdisc.discovery.account import Part
+from gaitdisc.discovery.borne_out import LEVEL
 from gaitdisc.discovery.held_out import WORTH_ASKING
 from gaitdisc.results.amounts import amount, brief_text, estimate_text, shown_unit, with_unit
 from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, Whereabouts
@@ -66,6 +67,11 @@ def _nothing(discovery: Discovery) -> str:
     pieces = discovery.held_out.pieces
     tested = f" (p = {_chance(discovery.held_out.p)} over {pieces} pieces)" if pieces else ""
     for_what = f"{spoken(first.name)} {at_place(first.kind, first.place)}"
+    if discovery.held_out.p < LEVEL:
+        return (
+            f"Nothing is named: several things are missing at a time; {for_what} would explain the most, but less than "
+            "half of the held-out error. Trials in which fewer things act would decide."
+        )
     return (
         f"Nothing is named: the data that were learned from speak for {for_what}, and those held out do not bear it "
         f"out{tested}. More trials of varied movement would decide."

@@ -287,3 +287,22 @@ def test_a_shape_that_the_held_out_data_do_not_bear_out_is_not_handed_out(inquir
     verdict = judge(inquiry, as_read)
     assert (verdict.word, verdict.account.labels) == ("missing_physics", ("cubic_stiffness@load",))
     assert verdict.proof.test.p < 0.05
+
+
+@pytest.mark.parametrize(("half", "word"), [(0.5, "missing_physics"), (1.1, "no_gap")])
+def test_of_more_names_than_are_named_two_have_to_take_half_of_the_error(
+    inquiry, as_read, cubic, monkeypatch, half, word
+):
+    others = [
+        next(one for one in inquiry.search.candidates if one.label == label)
+        for label in ("viscous_damping@load", "sensor_drift@x")
+    ]
+    parts = (Part(cubic, {"factor": -14.0}), *(Part(one, dict.fromkeys(one.slots, 0.0)) for one in others))
+    three = _with(inquiry, as_read, parts)
+    monkeypatch.setattr("gaitdisc.discovery.discover.searched", lambda *_: (as_read, three, []))
+    monkeypatch.setattr("gaitdisc.discovery.discover.fitted_shape", lambda *_: None)
+    monkeypatch.setattr("gaitdisc.discovery.discover.HALF", half)
+    verdict = judge(inquiry, as_read)
+    assert verdict.word == word
+    assert verdict.proof.test.p < 0.05
+    assert 0.5 < verdict.proof.closed <= 1.0

@@ -54,9 +54,10 @@ def test_no_gap_says_what_is_left():
 @pytest.mark.parametrize(("evidence", "unproven"), [(1325.0, True), (9.0, False), (float("nan"), False)])
 def test_what_was_learned_from_and_not_borne_out_is_not_called_agreement(evidence, unproven):
     rival = FoundEffect("equation", "omega", "coulomb_friction", "", {}, bic=evidence)
-    told = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=(rival,))
+    size = GapSize(1, 1, 1, 0.4, {"theta": (0.054, 0.054, 0.0087)}, 14)
+    told = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=(rival,), held_out=size)
     assert told.startswith("Nothing is named: the data that were learned from speak for") == unproven
-    assert ("in the equation of omega, and those held out do not bear it out." in told) == unproven
+    assert ("in the equation of omega, and those held out do not bear it out" in told) == unproven
     assert ("agree to within the noise" in told) != unproven
 
 
@@ -188,3 +189,13 @@ def test_what_clearly_moved_within_its_bounds_is_said():
         "Within their bounds moved: inertia from 0.11 kg m^2 to 0.1126 kg m^2."
     )
     assert "moved" not in sentence(corrections=(lost,))
+
+
+def test_where_names_explain_too_little_it_is_not_said_that_the_data_do_not_bear_them_out():
+    rival = FoundEffect("equation", "omega", "coulomb_friction", "", {}, bic=900.0)
+    size = GapSize(1, 1, 1, 0.001, {"theta": (0.054, 0.054, 0.0087)}, 14)
+    told = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=(rival,), held_out=size)
+    assert (
+        "several things are missing at a time; Coulomb friction in the equation of omega would explain the most" in told
+    )
+    assert "bear it out" not in told
