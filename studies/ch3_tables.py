@@ -51,7 +51,9 @@ def measured() -> pd.DataFrame:
 
 
 def set_table(table: pd.DataFrame, name: str, number: str) -> str:
-    """One number of a set: a row a method and start, a column a noise; median and range over the seeds.
+    """One number of a set: a row a method and start, a column a noise; median and range over the n seeds with noise.
+
+    Where the noises have unlike numbers of seeds, n names each in the order of the columns.
 
     Parameters
     ----------
@@ -67,7 +69,7 @@ def set_table(table: pd.DataFrame, name: str, number: str) -> str:
         for part in parts:
             found = of_set[(of_set["method"] == method) & (of_set["part"] == part)]
             counts = found[found["noise"] > 0].groupby("noise")["seed"].nunique()
-            n = f"{counts.min()}" if len(counts) else "1"
+            n = ", ".join(map(str, counts if len(set(counts)) > 1 else counts[:1])) or "1"
             said = [_said(found[found["noise"] == noise], column, factor) for noise in noises]
             rows.append((METHOD_WORDS[method], START_WORDS[part], n, *said))
     headings = ("method", "start", "n", *(f"{noise:.1%} noise" for noise in noises))
