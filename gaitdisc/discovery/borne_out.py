@@ -110,6 +110,8 @@ def signed_rank_p(gains: NDArray[np.float64]) -> float:
     """
     from scipy.stats import norm, rankdata
 
+    from gaitdisc.statistics.signed_rank import sums_of_ranks
+
     gains = gains[gains != 0]
     if not len(gains):
         return 1.0
@@ -119,7 +121,4 @@ def signed_rank_p(gains: NDArray[np.float64]) -> float:
         spread = np.sqrt((ranks**2).sum()) / 2
         return float(norm.sf((reached - 0.5 - ranks.sum() / 2) / spread))
     halves = np.rint(2 * ranks).astype(int)  # mean ranks are halves of whole numbers
-    ways = np.ones(1)
-    for rank in halves:
-        ways = (np.pad(ways, (0, rank)) + np.pad(ways, (rank, 0))) / 2
-    return float(ways[round(2 * reached) :].sum())
+    return float(sums_of_ranks(halves)[round(2 * reached) :].sum())

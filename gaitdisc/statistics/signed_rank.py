@@ -142,7 +142,7 @@ def exact_p(differences: NDArray[np.float64]) -> float:
         return float(wilcoxon(ranked, method="exact").pvalue)  # type: ignore[attr-defined]
     halves = np.rint(2 * ranks).astype(int)  # mean ranks are halves of whole numbers
     w = min(halves[ranked > 0].sum(), halves[ranked < 0].sum())
-    return float(min(1.0, 2 * _sums_of_ranks(halves)[: w + 1].sum()))
+    return float(min(1.0, 2 * sums_of_ranks(halves)[: w + 1].sum()))
 
 
 def smallest_p(n: int) -> float:
@@ -188,7 +188,7 @@ def shift_interval(differences: NDArray[np.float64], level: float = 0.95) -> tup
     n = len(differences)
     first, second = np.triu_indices(n)
     means = np.sort((differences[first] + differences[second]) / 2)
-    below = np.cumsum(_sums_of_ranks(np.arange(1, n + 1)))  # share of W+ at or below its index
+    below = np.cumsum(sums_of_ranks(np.arange(1, n + 1)))  # share of W+ at or below its index
     outside = int(np.searchsorted(below, (1 - level) / 2, side="right"))  # means that may lie outside at each end
     if not outside:
         return float(np.median(means)), -np.inf, np.inf
@@ -222,8 +222,14 @@ def _differences(
     return differences[kept]
 
 
-def _sums_of_ranks(ranks: NDArray[np.intp]) -> NDArray[np.float64]:
-    """Share of the 2^n signs that give each sum of positive ranks, 0 to all of them; ranks are whole numbers."""
+def sums_of_ranks(ranks: NDArray[np.intp]) -> NDArray[np.float64]:
+    """Share of the 2^n signs that give each sum of positive ranks, 0 to all of them.
+
+    Parameters
+    ----------
+    ranks : ndarray of int (pair,)
+        Whole numbers; mean ranks doubled.
+    """
     shares = np.zeros(int(ranks.sum()) + 1)
     shares[0] = 1.0
     for rank in ranks:
