@@ -7,13 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.discovery.estimates import NORMAL_95
+
 LEVEL = 0.05
 WANTED = 12  # pieces; where pieces of a period are fewer, they are cut shorter, not below the memory of what is left
 FEWEST = 8  # pieces are kept all the same: fewer make the test blind, whatever they gain in independence
 MEMORY = (
     0.2  # correlation at which what is left counts as forgotten; more, where so few samples could show it by chance
 )
-NORMAL_95 = 1.959964
 MOST_EXACT = 60  # pieces, up to which the distribution of the sum of ranks is counted out
 
 

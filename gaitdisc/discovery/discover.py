@@ -60,8 +60,10 @@ def discover(
     augmented : Simulation
         The simulation with what was found in it.
     """
-    measured = agreeing_trials(simulation, measured)
     inquiry = begin_inquiry(simulation, measured, shapes)
+    agreeing = agreeing_trials(inquiry, measured)
+    if agreeing is not measured:
+        measured, inquiry = agreeing, begin_inquiry(simulation, agreeing, shapes)
     told("fitting the simulation as it was read")
     as_read = inquiry.as_read()
     told(f"weighing {len(inquiry.search.candidates)} explanations")

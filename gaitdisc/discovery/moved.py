@@ -6,10 +6,9 @@ import numpy as np
 
 from gaitdisc.discovery.account import Account
 from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.estimates import NORMAL_95
 from gaitdisc.results.discovery import Correction, Estimate
 from gaitdisc.simulation.simulation import Simulation
-
-NORMAL_95 = 1.959964
 
 
 def corrections_of(account: Account, base: Simulation) -> tuple[Correction, ...]:

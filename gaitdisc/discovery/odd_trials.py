@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from gaitdisc.discovery.account import account_for
 from gaitdisc.discovery.first_states import guess_states
 from gaitdisc.discovery.fitted import Fitted, start_basis, without
-from gaitdisc.discovery.inquiry import FEWEST_SAMPLES, SUBSTEPS, Inquiry, begin_inquiry
+from gaitdisc.discovery.inquiry import FEWEST_SAMPLES, SUBSTEPS, Inquiry
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.places import kinematic_rates
 from gaitdisc.discovery.segments import Segments, cut_segments
@@ -25,7 +25,6 @@ from gaitdisc.recording import Finding
 from gaitdisc.simulation.drive import Drive
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.running import compile_simulation
-from gaitdisc.simulation.simulation import Simulation
 
 KIND = "odd trial"
 SIGN = "the sign of "
@@ -79,21 +78,20 @@ class Change:
     measured: Measured
 
 
-def agreeing_trials(simulation: Simulation, measured: Measured) -> Measured:
+def agreeing_trials(inquiry: Inquiry, measured: Measured) -> Measured:
     """Return the trials without those that are turned in sign or shifted in time, each with a finding.
 
     Parameters
     ----------
-    simulation : Simulation
-        As read.
+    inquiry : Inquiry
+        Begun with all trials.
     measured : Measured
-        Its trials; of fewer than three, none can be said to be the odd one.
+        These, as they were given; of fewer than three, none can be said to be the odd one.
     """
-    several = len(measured.trials) > FEWEST_OTHERS
-    odd = odd_trials(begin_inquiry(simulation, measured)) if several else ()
+    odd = odd_trials(inquiry) if len(measured.trials) > FEWEST_OTHERS else ()
     if not odd:
         return measured
-    source = measured.source or simulation.title
+    source = measured.source or inquiry.search.base.title
     findings = tuple(
         Finding(
             "warning",

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from gaitdisc.discovery.estimates import NORMAL_95
 from gaitdisc.discovery.evidence import Judged
 from gaitdisc.results.discovery import Estimate
 from gaitdisc.simulation.simulation import Simulation
 
-NORMAL_95 = 1.959964
 WRONG = 5.0  # standard errors from the file's number
 
 

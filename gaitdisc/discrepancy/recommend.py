@@ -76,7 +76,8 @@ def recommend(
         `interpretability`: terms or frequencies that a person can read; `speed`: the fastest within 5 points of the
         best; `forecast`: the best forecast.
     chaotic : bool
-        Judge by the Lorenz system's valid time instead of the Van der Pol oscillator's accuracy.
+        Judge by the Lorenz system's valid time, of equal ones by the accuracy, instead of the Van der Pol oscillator's
+        accuracy.
     dt_s : float, optional
         Between samples [s], for systems that turn once in 0.7 (Lorenz) to 6 s (Van der Pol) as the measured ones;
         where absent, the step at which most was measured.
@@ -106,10 +107,11 @@ def recommend(
     table = _nearest(table[table["system"].str.contains("Lorenz") == chaotic], noise, samples, dt_s)
     near, step, length = float(table["noise"].iloc[0]), float(table["dt_s"].iloc[0]), int(table["samples"].iloc[0])
     by = "valid_s" if chaotic else "accuracy"
+    order = [by, "accuracy", "method"]
     oracle, table = table[table["start"] == TRUE], table[table["start"] == ESTIMATED]
     lost = table.loc[table["diverged"] > 0, "method"]
-    rows = table[~table["method"].isin(lost)].sort_values(by, ascending=False)
-    shown = pd.concat([rows, oracle.sort_values(by, ascending=False)], ignore_index=True)
+    rows = table[~table["method"].isin(lost)].sort_values(order, ascending=False)
+    shown = pd.concat([rows, oracle.sort_values(order, ascending=False)], ignore_index=True)
     better = _allowed(rows, want, samples)
     if not len(better):
         return Recommendation(
@@ -121,7 +123,7 @@ def recommend(
     best = better.iloc[0]
     if want == "speed":
         close = better[better[by] >= best[by] - (NEAR if by == "accuracy" else NEAR / 100 * best[by])]
-        best = close.sort_values("seconds").iloc[0]
+        best = close.sort_values("seconds", kind="stable").iloc[0]
     why = (
         f"Measured at {near:.1%} noise and {length:,} samples, {step:g} s apart, on {best['system']}: forecast error "
         f"{best['accuracy']:.1f} % smaller than the known model's ({best['least']:.1f} to {best['greatest']:.1f} %, "
@@ -146,8 +148,8 @@ def _nearest(table: pd.DataFrame, noise: float, samples: int, dt_s: float | None
     """Cells nearest in noise, of these nearest in step, and of these nearest in samples, by their ratio."""
     levels = np.sort(table["noise"].unique())
     table = table[table["noise"] == levels[np.argmin(np.abs(np.log(levels + 1e-4) - np.log(noise + 1e-4)))]]
-    steps = table["dt_s"].value_counts()
-    step = float(steps.index[0] if dt_s is None else min(steps.index, key=lambda each: abs(np.log(each / dt_s))))
+    steps = np.sort(table["dt_s"].unique())
+    step = float(table["dt_s"].mode().iloc[0] if dt_s is None else steps[np.argmin(np.abs(np.log(steps / dt_s)))])
     table = table[table["dt_s"] == step]
     lengths = np.sort(table["samples"].unique())
     return table[table["samples"] == lengths[np.argmin(np.abs(np.log(lengths / samples)))]]

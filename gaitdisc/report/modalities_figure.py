@@ -122,7 +122,7 @@ def modalities_sentences(run: VariantRun) -> tuple[str, ...]:
         own = numbers[(numbers["variables"] == group) & (numbers["model"] == "augmented")]
         if not len(own):
             continue
-        middle = own.groupby("without", sort=False)["fall"].median().sort_values(ascending=False)
+        middle = own.groupby("without", sort=False)["fall"].median().sort_values(ascending=False, kind="stable")
         most = [
             f"{family_words(str(name))} ({number(fall, 3)})"
             for name, fall in zip(middle.index[:3], middle.to_numpy(float), strict=False)

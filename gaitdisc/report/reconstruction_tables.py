@@ -154,7 +154,8 @@ def _won(done: Reconstruction, best: str, measure: str) -> list[str]:
         return []
     if own == people:
         return [f"It errs least in every one of {people} participants."]
-    others = [f"{model} in {count}" for model, count in least[least != best].value_counts().items()]
+    counts = least[least != best].value_counts(sort=False).sort_values(ascending=False, kind="stable")
+    others = [f"{model} in {count}" for model, count in counts.items()]
     return [f"It errs least in {own} of {people} participants, {listed(others)}."]
 
 

@@ -227,7 +227,7 @@ class Mismatch:
         """Names of the channels that differ, the largest gap against its own spread first."""
         differing = self.summary[self.summary["differs"].astype(bool)]
         size = differing["rms_gap"] / differing["rms_sd"].clip(lower=1e-12)
-        return [str(name) for name in differing.loc[size.sort_values(ascending=False).index, "channel"]]
+        return [str(name) for name in differing.loc[size.sort_values(ascending=False, kind="stable").index, "channel"]]
 
     def regions_of(self, name: str) -> list[dict[str, Any]]:
         """Stretches of one channel, in order of the stride: rows of `regions`.

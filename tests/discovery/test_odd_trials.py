@@ -90,12 +90,12 @@ def test_it_is_left_out_and_said_in_the_answer_and_the_report(cubic, tmp_path):
 
 def test_of_two_trials_none_is_the_odd_one(cubic):
     two = turned(cubic.selected([0, 1]), 1)
-    assert agreeing_trials(mass(), two) is two
+    assert agreeing_trials(begin_inquiry(mass(), two), two) is two
 
 
 def test_two_against_two_are_left_as_they_are(cubic):
     both = turned(turned(cubic, 0), 1)
-    assert agreeing_trials(mass(), both) is both
+    assert agreeing_trials(begin_inquiry(mass(), both), both) is both
 
 
 def test_trials_are_shifted_against_their_inputs(cubic):

@@ -64,6 +64,13 @@ def test_the_nearest_measured_step_decides_and_one_that_was_not_measured_is_said
     assert finer.method == ""
 
 
+def test_of_equal_valid_times_the_accuracy_decides_whatever_the_order_of_the_rows():
+    lorenz = TABLE.assign(system="Lorenz", valid_s=4.0)
+    for seed in range(20):
+        found = recommend(0.01, 3000, "forecast", chaotic=True, evidence=lorenz.sample(frac=1, random_state=seed))
+        assert (found.method, found.evidence["accuracy"].iloc[0]) == ("gp", 99.0), seed
+
+
 def test_another_want_and_other_columns_are_refused():
     with pytest.raises(SchemaError, match="found 'beauty'"):
         recommend(0.01, 200, "beauty", evidence=TABLE)
