@@ -108,7 +108,8 @@ def rms(runs: Trial) -> float:
 def lines(found: Result) -> list[str]:
     """What is printed, to the digits that an older processor gives too: at the corner of sign(v) rounding decides."""
     off = 100 * (found.friction_n / PUBLISHED_N - 1)
-    said = [f"named first: {found.named} at {found.place}, {found.friction_n:.0f} N ({off:+.0f} % of {PUBLISHED_N:g} N)"]
+    named = f"{found.named} at {found.place}"
+    said = [f"named first: {named}, {found.friction_n:.0f} N ({off:+.0f} % of {PUBLISHED_N:g} N)"]
     for name, (before, after) in found.left_mm.items():
         less = 100 * (1 - after / before)
         said.append(f"{name}: free-run error {before:.2f} mm -> {after:.2f} mm ({less:.0f} % less)")
