@@ -15,6 +15,7 @@ from gaitdisc.discovery.inquiry import Inquiry
 from gaitdisc.discovery.moved import corrected, corrections_of, file_bounds
 from gaitdisc.discovery.odd_trials import KIND as ODD_TRIAL
 from gaitdisc.discovery.rivals import Rival, evidence_of, rivals_of
+from gaitdisc.discovery.sensor_noise import sensor_noise
 from gaitdisc.discovery.shaken import Shaken
 from gaitdisc.discovery.verdict import Verdict
 from gaitdisc.discovery.wording import sentence_of
@@ -48,7 +49,7 @@ def answer(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> tuple[Discove
     """
     now, base = verdict.account, inquiry.search.base
     channels = tuple(name for name, _ in base.observations)
-    floor, proof = now.noise.size, verdict.proof
+    floor, proof = sensor_noise(inquiry.measured.observed), verdict.proof
     before, after = (runs_of(inquiry, one, inquiry.learned, now) for one in (as_read, now))
     train = gap_size(before, after, floor, channels, tested(inquiry, before, after, now))
     held = proof if proof and now.account.parts else proof_of(inquiry, as_read, now, now)
@@ -59,8 +60,8 @@ def answer(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> tuple[Discove
         verdict.word,
         "",
         whereabouts(inquiry, verdict, train),
-        effects_of(inquiry, verdict, closed_share(held_out), gained),
-        told_rivals(inquiry, rivals_of(inquiry.search, now, verdict.rivals, gained)),
+        effects_of(inquiry, verdict, 1 - held_out.unexplained, gained),
+        (*told_rivals(inquiry, rivals_of(inquiry.search, now, verdict.rivals, gained)), *small_ones(verdict.small)),
         train,
         held_out,
         channels,
@@ -139,23 +140,6 @@ def augmented_of(base: Simulation, parts: tuple[Part, ...]) -> Simulation:
     return base
 
 
-def closed_share(size: GapSize) -> float:
-    """Return the share of a gap's variance above the noise floor that goes.
-
-    Parameters
-    ----------
-    size : GapSize
-        Before and after.
-
-    Examples
-    --------
-    >>> closed_share(GapSize(before=3.0, after=1.0, noise_floor=1.0))
-    1.0
-    """
-    floor = size.noise_floor**2
-    return 1 - (size.after**2 - floor) / max(size.before**2 - floor, 1e-12)
-
-
 def found_effects(inquiry: Inquiry, now: Judged, closed: float, gained: float) -> list[FoundEffect]:
     """List the explanations with their numbers and intervals.
 
@@ -208,6 +192,22 @@ def told_rivals(inquiry: Inquiry, rivals: tuple[Rival, ...]) -> tuple[FoundEffec
             )
         )
     return tuple(listed)
+
+
+def small_ones(parts: tuple[Part, ...]) -> tuple[FoundEffect, ...]:
+    """List explanations that close too little of the gap to be named.
+
+    Parameters
+    ----------
+    parts : tuple of Part
+        With their numbers.
+    """
+    found = []
+    for part in parts:
+        candidate = part.candidate
+        term = candidate.term(part.written) if candidate.verdict == "missing_physics" else ""
+        found.append(FoundEffect(candidate.kind, candidate.place, candidate.name, term, small=True))
+    return tuple(found)
 
 
 def whereabouts(inquiry: Inquiry, verdict: Verdict, train: GapSize) -> tuple[Whereabouts, ...]:

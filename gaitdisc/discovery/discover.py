@@ -9,12 +9,15 @@ import numpy as np
 
 from gaitdisc.discovery.account import account_for
 from gaitdisc.discovery.answer import answer
+from gaitdisc.discovery.by_share import agrees, closing_most, leaves_noise, scale_of
 from gaitdisc.discovery.catalogue import Shape
 from gaitdisc.discovery.evidence import Judged, compared, judged
 from gaitdisc.discovery.fitted_shape import fitted_shape
+from gaitdisc.discovery.gap_share import GapScale
 from gaitdisc.discovery.growth import grown, pruned
 from gaitdisc.discovery.held_out import Proof, holding_out_others, noted, proof_of, tells_nothing
 from gaitdisc.discovery.inquiry import Inquiry, begin_inquiry, split_in_time
+from gaitdisc.discovery.nameless import NAME as NAMELESS
 from gaitdisc.discovery.odd_trials import agreeing_trials
 from gaitdisc.discovery.ranking import MARGIN, ranked
 from gaitdisc.discovery.search import Search
@@ -25,7 +28,8 @@ from gaitdisc.results.discovery import Discovery
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
 
-MOST_NAMES = 2
+MOST_NAMES = 2  # where they leave more than noise
+MOST_EXACT = 4  # where they leave nothing else
 NEAR = 40.0  # by which a rival's evidence may be worse and still be tried on long runs
 MOST_NEAR = 4
 REPEATS = 0.2  # of the misfit, which something that repeats itself has to take away where random pushes would do
@@ -91,24 +95,33 @@ def judge(inquiry: Inquiry, as_read: Judged) -> Verdict:
     as_read : Judged
         The simulation as read.
     """
-    as_read, named, rivals = searched(inquiry, as_read)
+    scale = scale_of(inquiry)
+    as_read, named, rivals = searched(inquiry, as_read, scale)
     named = lasting(inquiry, as_read, named)
+    exact = leaves_noise(scale, named)
+    plain = None if exact else plainest(inquiry, scale, named)
+    if plain:
+        return plain
     shape = fitted_shape(as_read, inquiry.search) if len(named.account.parts) > 1 or named.noise.remembers else None
     remembered = weighed_with_memory(inquiry, as_read, named, shape, rivals) if named.noise.remembers else None
-    if remembered:
+    if remembered and not (remembered.word == "process_noise" and agrees(scale, as_read)):
         return remembered
     names = len(named.account.parts)
-    if shape and (names > MOST_NAMES or (names > 1 and says_more(inquiry, shape, named))):
+    if shape and not exact and (names > MOST_NAMES or (names > 1 and says_more(inquiry, shape, named))):
         proof = borne_out(inquiry, as_read, shape)
         if proof.bears_out:
             return Verdict("unnamed", shape, (named, *rivals), proof=proof)
     if not names:
         wrong = wrong_starts(inquiry.search.base, as_read)
         return Verdict("wrong_initial_condition" if wrong else "no_gap", as_read, tuple(rivals), starts=wrong)
-    longer, rivals = decided(inquiry, strongest(inquiry.search, named), rivals)
-    longer = needed(inquiry, as_read, longer)
+    longer, rivals = decided(inquiry, named if exact else strongest(inquiry.search, named), rivals)
+    kept = needed(inquiry, as_read, longer)
+    if len(kept.account.parts) == 1 < len(longer.account.parts) and rivals:
+        longer, rivals = decided(inquiry, rivals[0], rivals)
+    elif kept is not longer:
+        longer = judged(kept.shooting, inquiry.search.base, kept.account)
     proof = borne_out(inquiry, as_read, longer)
-    if not proof.bears_out or (names > MOST_NAMES and proof.closed < HALF):
+    if not proof.bears_out or (not exact and names > MOST_NAMES and proof.closed < HALF):
         return Verdict("no_gap", as_read, (longer, *rivals), proof=proof)
     return Verdict(longer.account.parts[0].candidate.verdict, longer, tuple(rivals), proof=proof)
 
@@ -145,11 +158,40 @@ def needed(inquiry: Inquiry, as_read: Judged, now: Judged) -> Judged:
         idle = max(range(len(fewer)), key=lambda number: np.nan_to_num(tests[number].p, nan=1.0))
         if tests[idle].bears_out:
             break
-        now = judged(now.shooting, inquiry.search.base, fewer[idle].account)
+        now = fewer[idle]
     return now
 
 
-def searched(inquiry: Inquiry, as_read: Judged) -> tuple[Judged, Judged, list[Judged]]:
+def plainest(inquiry: Inquiry, scale: GapScale, named: Judged) -> Verdict | None:
+    """Return the verdict on the plainest explanations that close most of the gap; None where these close too little.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        What is asked.
+    scale : GapScale
+        What gaps are measured against.
+    named : Judged
+        The simulation with what the search let in, which leaves more than noise.
+    """
+    found = closing_most(inquiry, scale, (named.account.parts,) if named.account.parts else ())
+    if found is None or found.closed < HALF:
+        return None
+    plain, likelier = compared([found.as_read, found.now], inquiry.search.base)
+    if plain.evidence - likelier.evidence < MARGIN:
+        return None
+    now = needed(inquiry, found.as_read, found.now)
+    proof = borne_out(inquiry, found.as_read, now)
+    if now is found.now and proof.closed > HALF and not proof.bears_out:  # few pieces are held out
+        proof = replace(proof, test=found.test)
+    if not proof.bears_out:
+        return None
+    names = {part.candidate.name for part in now.account.parts}
+    word = NAMELESS if NAMELESS in names else now.account.parts[0].candidate.verdict
+    return Verdict(word, now, (found.now, *found.near), proof=proof, small=found.small)
+
+
+def searched(inquiry: Inquiry, as_read: Judged, scale: GapScale) -> tuple[Judged, Judged, list[Judged]]:
     """Search on short runs, and on longer ones where these show nothing and the system is not chaotic.
 
     Parameters
@@ -158,6 +200,8 @@ def searched(inquiry: Inquiry, as_read: Judged) -> tuple[Judged, Judged, list[Ju
         What is asked.
     as_read : Judged
         The simulation as read, on short runs.
+    scale : GapScale
+        With the sensors' noise.
 
     Returns
     -------
@@ -166,13 +210,13 @@ def searched(inquiry: Inquiry, as_read: Judged) -> tuple[Judged, Judged, list[Ju
     rivals : list of Judged
         What else stood for the first place, best first.
     """
-    named, rivals = grown(inquiry.search, as_read, MOST_NAMES + 1)
+    named, rivals = grown(inquiry.search, as_read, MOST_EXACT, scale.noise)
     if named.account.parts or not inquiry.is_tame(as_read):
         return as_read, named, rivals
     longer = inquiry.lengthened(as_read)
     if longer is as_read:
         return as_read, named, rivals
-    named, rivals = grown(inquiry.search, longer, MOST_NAMES + 1)
+    named, rivals = grown(inquiry.search, longer, MOST_EXACT, scale.noise)
     return (longer, named, rivals) if named.account.parts else (as_read, as_read, rivals)
 
 

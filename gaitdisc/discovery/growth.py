@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import numpy as np
+from numpy.typing import NDArray
+
 from gaitdisc.discovery.evidence import Judged, compared
 from gaitdisc.discovery.ranking import ALIKE, MARGIN, ranked
 from gaitdisc.discovery.search import Search, is_certain
@@ -11,10 +14,13 @@ MOST_TURNS = 5  # explanations let in, those that were thrown out again included
 FIRST_PLACES = 5  # that a second explanation is sought beside
 SAME = 0.1  # difference of evidence
 Explanations = frozenset[tuple[str, tuple[str, ...]]]
+FAR = 4.0  # times the variance of the sensors' noise
 SETTLED = 3  # turns of exchanging and throwing out
 
 
-def grown(search: Search, now: Judged, most: int) -> tuple[Judged, list[Judged]]:
+def grown(
+    search: Search, now: Judged, most: int, noise: NDArray[np.float64] | None = None
+) -> tuple[Judged, list[Judged]]:
     """Let explanations in while they earn their place.
 
     Parameters
@@ -25,6 +31,9 @@ def grown(search: Search, now: Judged, most: int) -> tuple[Judged, list[Judged]]
         What to begin with.
     most : int
         Most explanations.
+    noise : ndarray (channel,), optional
+        Standard deviation of the sensors' noise: two explanations that leave far more of an error are not refined, for
+        no set of names is exact then.
 
     Returns
     -------
@@ -47,15 +56,31 @@ def grown(search: Search, now: Judged, most: int) -> tuple[Judged, list[Judged]]
         better = more[0]
         if number == 2:
             better = beside_others(search, better, [one for one in rivals if one is not now], explored)
+        far = noise is not None and number > 1 and leaves(better, noise) > FAR
         if number > 1:
-            better = settled(search, better, worth, explored)
+            better = better if far else settled(search, better, worth, explored)
             before, better = compared([before, better], search.base)
         gained = before.evidence - better.evidence
         if gained < worth or not is_certain(better.account):
             break
         explained, now, turns = max(explained, gained), better, turns + 1
         explored.add(explanations(now))
+        if far:
+            break
     return now, rivals
+
+
+def leaves(now: Judged, noise: NDArray[np.float64]) -> float:
+    """Return the mean square of what an account leaves, over the variance of the sensors' noise.
+
+    Parameters
+    ----------
+    now : Judged
+        Fitted.
+    noise : ndarray (channel,)
+        Its standard deviation [the channel's unit].
+    """
+    return float(np.nanmean((now.account.fit.residual / noise) ** 2))
 
 
 def explanations(now: Judged) -> Explanations:

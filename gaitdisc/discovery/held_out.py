@@ -170,9 +170,10 @@ class Proof:
 
     @property
     def closed(self) -> float:
-        """Share of the plain squared error that goes, each channel over its own."""
-        before, after = ((one.fit.residual**2).reshape(-1, one.measured.shape[2]) for one in (self.before, self.after))
-        return float(1 - np.mean(np.nanmean(after, axis=0) / np.nanmean(before, axis=0)))
+        """Share of the plain squared error that goes, each channel over its spread."""
+        spread = np.nanstd(self.before.measured, axis=(0, 1))
+        before, after = (np.nanmean((one.fit.residual / spread) ** 2) for one in (self.before, self.after))
+        return float(1 - after / before)
 
 
 def proof_of(inquiry: Inquiry, before: Judged, now: Judged, like: Judged) -> Proof:

@@ -10,11 +10,14 @@ import numpy as np
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.catalogue import known_shapes
 from gaitdisc.discovery.evidence import Judged
+from gaitdisc.discovery.price import price_of
 
 MARGIN = 10.0  # by which the criterion must fall for one more explanation
 # Where two explanations fit equally well, the simpler statement first.
 PREFERENCE = ("wrong_parameter", "input_error", "sensor_error", "missing_physics")
 ALIKE = 1.0
+TIE = 6.0  # fall of the criterion below which two explanations are told apart by nothing
+PLAINER = 0.02  # of the gap, by which the price of one of them must be less for it to stand first
 NEARLY = 4.0  # between shapes of one kind: the one that stands first in the catalogue is the simpler
 
 
@@ -46,11 +49,17 @@ def ranked(accounts: list[Judged], candidates: tuple[Candidate, ...]) -> list[Ju
     alike = [one for one in equal if abs(paid(one) - paid(first)) < ALIKE]
     alike.sort(key=lambda one: [PREFERENCE.index(verdict) for verdict in one.verdicts])
     first = alike[0]
+    plainer = [one for one in equal if paid(one) <= paid(first) + TIE and _price(one) < _price(first) - PLAINER]
+    first = min(plainer, key=paid) if plainer else first
     near = [one for one in equal if paid(one) <= paid(first) + NEARLY and one.verdicts == first.verdicts]
     order = {shape.name: number for number, shape in reversed(list(enumerate(known_shapes())))}
     near.sort(key=lambda one: [order.get(part.candidate.name, len(order)) for part in one.account.parts])
     head = [near[0], *(one for one in alike if one is not near[0])]
     return head + [one for one in accounts if all(one is not other for other in head)]
+
+
+def _price(one: Judged) -> float:
+    return sum(price_of(part) for part in one.account.parts)
 
 
 def _paid(one: Judged, members: Counter[str]) -> float:

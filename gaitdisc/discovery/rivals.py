@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 from gaitdisc.discovery.account import Part, account_for
 from gaitdisc.discovery.evidence import Judged
+from gaitdisc.discovery.ranking import TIE
 from gaitdisc.discovery.search import TURNS, Search
 
-TIE = 6.0  # fall of the criterion below which two explanations are told apart by nothing
 MOST = 6
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from gaitdisc.discovery.account import Part
 from gaitdisc.discovery.evidence import Judged
 from gaitdisc.discovery.held_out import Proof
 from gaitdisc.discovery.shaken import Shaken
@@ -28,6 +29,8 @@ class Verdict:
         For wrong initial conditions: where the trials begin.
     proof : Proof or None
         Held-out runs that bear the account out; where nothing is named, those that do not bear the first rival out.
+    small : tuple of Part
+        Explanations that close too little of the gap to be named.
     """
 
     word: str
@@ -36,3 +39,4 @@ class Verdict:
     shaking: Shaken | None = None
     starts: dict[str, Estimate] = field(default_factory=dict)
     proof: Proof | None = None
+    small: tuple[Part, ...] = ()

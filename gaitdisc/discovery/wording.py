@@ -8,14 +8,17 @@ from dataclasses import replace
 
 from gaitdisc.discovery.account import Part
 from gaitdisc.discovery.borne_out import LEVEL
+from gaitdisc.discovery.by_share import AGREES
+from gaitdisc.discovery.gap_share import MODEL_ERROR
 from gaitdisc.discovery.held_out import WORTH_ASKING
 from gaitdisc.results.amounts import amount, brief_text, estimate_text, shown_unit, with_unit
-from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, Whereabouts
+from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, GapSize, Whereabouts
 from gaitdisc.results.effect_words import at_place, outside_text, spoken
 from gaitdisc.results.told_apart import would_tell_apart
 from gaitdisc.simulation.simulation import Simulation
 
 FEW = 12  # pieces of held-out data
+SMALL = 0.05  # of the squared error
 DIRECTIONS = re.compile(
     r"\b(dorsiflexion|plantarflexion|flexion|extension|abduction|adduction|inversion|eversion|pronation|supination|"
     r"internal rotation|external rotation|tilt|obliquity)\b"
@@ -63,7 +66,12 @@ def _nothing(discovery: Discovery) -> str:
     """Say that nothing is named, and whether the data that were learned from speak for something all the same."""
     first = discovery.rivals[0] if discovery.rivals else None
     if first is None or not first.bic >= WORTH_ASKING:
-        return "Simulation and data agree to within the noise: nothing is missing that these data could show."
+        if _agree(discovery.held_out):
+            return "Simulation and data agree to within the noise: nothing is missing that these data could show."
+        return (
+            "Nothing is named: simulation and data differ by more than the sensors' noise, and nothing weighed here "
+            "explains it beyond chance."
+        )
     pieces = discovery.held_out.pieces
     tested = f" (p = {_chance(discovery.held_out.p)} over {pieces} pieces)" if pieces else ""
     for_what = f"{spoken(first.name)} {at_place(first.kind, first.place)}"
@@ -76,6 +84,11 @@ def _nothing(discovery: Discovery) -> str:
         f"Nothing is named: the data that were learned from speak for {for_what}, and those held out do not bear it "
         f"out{tested}. More trials of varied movement would decide."
     )
+
+
+def _agree(size: GapSize) -> bool:
+    """Whether an error is no more than the sensors' noise and a hundredth of the measurement's spread explain."""
+    return size.before < AGREES * math.hypot(size.noise_floor, MODEL_ERROR)
 
 
 def _one(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whereabouts, ...]) -> str:
@@ -185,7 +198,16 @@ def _shown(discovery: Discovery) -> str:
     others = "".join(f"; that of {name} {_goes(sizes[name], units[name])}" for name in worse)
     return (
         f"With it, the held-out error{of} {_goes(sizes[channel], units[channel])} ({noise}{_few(discovery)}){others}."
+        f"{_unexplained(discovery.held_out)}"
     )
+
+
+def _unexplained(size: GapSize) -> str:
+    """Say what share of the gap is left, where it is more than a few percent and more than a simulation may err by."""
+    left = size.unexplained
+    if left < SMALL or size.after < AGREES * math.hypot(size.noise_floor, MODEL_ERROR):
+        return ""
+    return f" {100 * left:.0f} % of the squared error above the noise stays unexplained."
 
 
 def _moved(discovery: Discovery) -> str:

@@ -148,19 +148,19 @@ def rivals_table(discovery: Discovery) -> Table:
                 at_place(one.kind, one.place),
                 _numbers(one),
                 _bic(one.bic),
-                "yes" if one.tied else "no",
+                "small" if one.small else "yes" if one.tied else "no",
                 apart,
             )
         )
-        records.append((one.name, one.kind, one.place, one.bic, one.tied, apart))
+        records.append((one.name, one.kind, one.place, one.bic, one.tied, one.small, apart))
     own = ", ".join(_bic(one.bic) for one in discovery.effects[:1])
     caption = (
         f"What else was weighed, {counted(len(rows), 'rival')}, best first. Evidence: fall of the Bayesian criterion "
         f"from the simulation as read{f' (what was named: {own})' if own else ''}; the larger the better. "
-        "Tied: these data cannot distinguish it from what was named."
+        "Tied: these data cannot distinguish it from what was named; small: it closes too little to be named."
     )
     headings = ("rival", "place", "its numbers", "evidence", "tied", "what would distinguish them")
-    columns = ("rival", "kind", "place", "evidence", "tied", "what_would_distinguish_them")
+    columns = ("rival", "kind", "place", "evidence", "tied", "small", "what_would_distinguish_them")
     return Table("rivals", caption, headings, tuple(rows), _frame(records, columns))
 
 

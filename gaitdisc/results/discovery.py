@@ -65,6 +65,8 @@ class FoundEffect:
         with it in the place of what it rivals.
     tied : bool
         For a rival: these data cannot separate it from what was named.
+    small : bool
+        For a rival: it closes too little of the gap to be named, or not beyond chance.
     bounds : tuple of float
         Of a wrong parameter: the file's `low` and `high`, infinite where it has but one; empty where it has neither.
     """
@@ -77,6 +79,7 @@ class FoundEffect:
     held_out: float = float("nan")
     bic: float = float("nan")
     tied: bool = False
+    small: bool = False
     bounds: tuple[float, ...] = ()
 
 
@@ -131,7 +134,7 @@ class GapSize:
     before, after : float
         Without and with what was found.
     noise_floor : float
-        What noise alone would leave.
+        What the sensors' noise alone would leave.
     p : float
         Chance of so clear a fall of the squared error without any effect (Wilcoxon's signed ranks over pieces of the
         runs, one-sided). Where nothing is named: of what the data that were fitted spoke for most.
@@ -147,6 +150,18 @@ class GapSize:
     p: float = float("nan")
     channels: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
     pieces: int = 0
+
+    @property
+    def unexplained(self) -> float:
+        """Share of the variance above the noise floor that is left; 0 where nothing is.
+
+        Examples
+        --------
+        >>> GapSize(before=3.0, after=1.0, noise_floor=1.0).unexplained
+        0.0
+        """
+        floor = self.noise_floor**2
+        return max(self.after**2 - floor, 0.0) / max(self.before**2 - floor, 1e-12)
 
 
 @dataclass(frozen=True)
@@ -254,7 +269,7 @@ class Discovery:
             "where": [_where(one) for one in self.where],
             "effects": [_effect(one) for one in self.effects],
             "corrections": [_correction(one) for one in self.corrections],
-            "rivals": [_effect(one) | {"tied": one.tied} for one in self.rivals],
+            "rivals": [_effect(one) | {"tied": one.tied, "small": one.small} for one in self.rivals],
             "gap": {"train": _gap(self.train), "held_out": _gap(self.held_out)},
             "sentence": self.sentence,
             "channels": dict(zip(self.channels, self.units, strict=True)),
@@ -302,6 +317,7 @@ def _gap(one: GapSize) -> dict[str, Any]:
         "before": _number(one.before),
         "after": _number(one.after),
         "noise_floor": _number(one.noise_floor),
+        "unexplained": _number(one.unexplained),
         "p": _number(one.p),
         "pieces": one.pieces,
         "channels": channels,

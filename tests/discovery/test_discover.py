@@ -302,6 +302,8 @@ def test_of_more_names_than_are_named_two_have_to_take_half_of_the_error(
     monkeypatch.setattr("gaitdisc.discovery.discover.searched", lambda *_: (as_read, three, []))
     monkeypatch.setattr("gaitdisc.discovery.discover.fitted_shape", lambda *_: None)
     monkeypatch.setattr("gaitdisc.discovery.discover.HALF", half)
+    monkeypatch.setattr("gaitdisc.discovery.discover.leaves_noise", lambda *_: False)
+    monkeypatch.setattr("gaitdisc.discovery.discover.plainest", lambda *_: None)
     verdict = judge(inquiry, as_read)
     assert verdict.word == word
     assert verdict.proof.test.p < 0.05

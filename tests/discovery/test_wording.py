@@ -45,10 +45,20 @@ def test_a_coupling_says_to_what():
     assert told.startswith("The simulation lacks a linear coupling (x) in the equation of v: 0.2 1/s^2 (95 % 0.1-0.3).")
 
 
-def test_no_gap_says_what_is_left():
-    told = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=())
-    assert told.startswith("Simulation and data agree to within the noise")
+@pytest.mark.parametrize(("before", "agrees"), [(0.11, True), (0.4, False)])
+def test_no_gap_says_what_is_left(before, agrees):
+    size = GapSize(before, before, 0.1, 0.4, {"theta": (0.054, 0.054, 0.0087)}, 14)
+    told = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=(), held_out=size)
+    assert told.startswith("Simulation and data agree to within the noise") == agrees
+    assert told.startswith("Nothing is named: simulation and data differ by more than the sensors' noise") != agrees
     assert told.endswith("Held-out error: 3.09 deg (noise floor 0.50).")
+
+
+def test_what_stays_unexplained_is_said_where_it_is_more_than_a_few_percent():
+    sizes = {"theta": (0.054, 0.0105, 0.0087)}
+    left = sentence(held_out=GapSize(0.5, 0.25, 0.01, 0.001, sizes, 14))
+    assert left.endswith("25 % of the squared error above the noise stays unexplained.")
+    assert "unexplained" not in sentence(held_out=GapSize(0.5, 0.02, 0.01, 0.001, sizes, 14))
 
 
 @pytest.mark.parametrize(("evidence", "unproven"), [(1325.0, True), (9.0, False), (float("nan"), False)])

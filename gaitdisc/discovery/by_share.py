@@ -1,0 +1,162 @@
+"""What an inquiry comes to where no explanation leaves mere noise: the plainest set that closes most of the gap."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gaitdisc.discovery.account import Part
+from gaitdisc.discovery.beam import Beam, errs_more
+from gaitdisc.discovery.borne_out import PairedTest
+from gaitdisc.discovery.evidence import Judged
+from gaitdisc.discovery.gap_share import GapScale, Weighed, weighed
+from gaitdisc.discovery.growth import leaves
+from gaitdisc.discovery.held_out import proof_of
+from gaitdisc.discovery.inquiry import Inquiry
+from gaitdisc.discovery.nameless import nameless_terms
+from gaitdisc.discovery.segments import cut_segments
+from gaitdisc.discovery.sensor_noise import sensor_noise
+from gaitdisc.discovery.windows import as_read_on, longest_run, near_runs, on_longer_runs
+
+MERE_NOISE = 1.3  # times the variance of the sensors' noise: its own estimate errs
+AGREES = 1.5  # times the root mean square that a simulation that lacks nothing may leave
+LOST = 4.0  # squared spreads, which a run that has left the data errs by
+TIED = 0.02  # of the gap, by which another set may cost more
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """A set of explanations, and what was weighed beside it.
+
+    Parameters
+    ----------
+    as_read, now : Judged
+        The simulation as read and with the set, on the same runs.
+    closed : float
+        Share of the gap that goes, on runs left out of the fit.
+    test : PairedTest
+        Of the errors left out of the fit, with and without the set; its p times the number of explanations that were
+        open (Bonferroni), for the same runs chose among these.
+    small : tuple of Part
+        Explanations that close too little to be named, or not beyond chance.
+    near : tuple of Judged
+        Other sets that cost hardly more.
+    """
+
+    as_read: Judged
+    now: Judged
+    closed: float
+    test: PairedTest
+    small: tuple[Part, ...]
+    near: tuple[Judged, ...]
+
+
+def scale_of(inquiry: Inquiry) -> GapScale:
+    """Return what gaps are measured against.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        The trials.
+    """
+    observed = inquiry.measured.observed
+    spread = np.nanstd(observed, axis=(0, 1))
+    return GapScale(sensor_noise(observed), np.where(spread > 0, spread, 1.0))
+
+
+def leaves_noise(scale: GapScale, now: Judged) -> bool:
+    """Whether what an account leaves is no larger than the noise of the sensors.
+
+    Parameters
+    ----------
+    scale : GapScale
+        With that noise.
+    now : Judged
+        Fitted.
+    """
+    return leaves(now, scale.noise) < MERE_NOISE
+
+
+def agrees(scale: GapScale, now: Judged) -> bool:
+    """Whether an account leaves no more than noise and a hundredth of the measurement's spread.
+
+    Parameters
+    ----------
+    scale : GapScale
+        What gaps are measured against.
+    now : Judged
+        Fitted.
+    """
+    return scale.mean_square(now.account.fit) < AGREES**2 * scale.least
+
+
+def closing_most(inquiry: Inquiry, scale: GapScale, also: tuple[tuple[Part, ...], ...]) -> Outcome | None:
+    """Search the plainest set of explanations that closes most of the gap; None where none closes enough.
+
+    First on runs on which the simulation as read stays near the data, then on longer ones, where losses show that are
+    small in a short run.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        The trials.
+    scale : GapScale
+        What the gap is measured against.
+    also : tuple of tuple of Part
+        Sets that another search found, weighed beside those that are found here.
+    """
+    search = inquiry.search
+    search = replace(search, candidates=(*search.candidates, *nameless_terms(search.base, search.places)))
+    as_read = near_runs(inquiry, scale)
+    if scale.mean_square(as_read.account.fit) < AGREES**2 * scale.least:
+        return None
+    beam = Beam(search, scale, as_read)
+    for parts in also:
+        one = weighed(scale, as_read.shooting, search.base, parts, as_read)
+        beam.known[one.explanations] = one
+    best = beam.grown(as_read)
+    longer = on_longer_runs(inquiry, scale, best) if best.explanations else None
+    if longer:
+        beam = Beam(search, scale, as_read_on(inquiry, scale, as_read, longer))
+        best = beam.grown(longer)
+    now, small = beam.material(best)
+    now = beam.plainest(now)
+    if not now.explanations or not whole_runs_err_less(inquiry, beam.as_read, now):
+        return None
+    near = tuple(judged_of(one) for one in beam.near(now, TIED))
+    closed = 1 - now.gap / beam.as_read.gap
+    p = min(len(search.candidates) * errs_more(beam.as_read, now), 1.0)
+    test = PairedTest(p, len(now.errors), float((beam.as_read.errors - now.errors).sum()))
+    return Outcome(judged_of(beam.as_read), judged_of(now), closed, test, tuple(small), near)
+
+
+def judged_of(one: Weighed) -> Judged:
+    """Return a weighed set as the rest of the inquiry takes it.
+
+    Parameters
+    ----------
+    one : Weighed
+        The set.
+    """
+    return Judged(one.account, one.shooting)
+
+
+def whole_runs_err_less(inquiry: Inquiry, as_read: Weighed, now: Weighed) -> bool:
+    """Whether held-out trials, run as a whole from the best start, err less with a set than without.
+
+    A delay of what was measured observes the state and closes any gap of a short run.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        The trials.
+    as_read, now : Weighed
+        The simulation as read and with the set.
+    """
+    whole = cut_segments(inquiry.measured.drive.samples, inquiry.learned, longest_run(inquiry))
+    like = Judged(now.account, replace(now.shooting, segments=whole))
+    proof = proof_of(inquiry, judged_of(as_read), judged_of(now), like)
+    spread = np.nanstd(inquiry.measured.observed, axis=(0, 1))
+    before, after = (np.fmin((one.fit.residual / spread) ** 2, LOST).mean() for one in (proof.before, proof.after))
+    return bool(after < before)

@@ -1,0 +1,180 @@
+"""Explanations weighed by the share of the gap that they close on data left out of the fit, less a price for each.
+
+Where no simulation is exact, evidence under the noise goes on growing with every explanation that is let in. What a
+person can use is another question: how much of the disagreement goes, and with how plain a statement.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.discovery.account import Account, Part, account_for
+from gaitdisc.discovery.fitted import Fitted
+from gaitdisc.discovery.left_out import left_out_errors
+from gaitdisc.discovery.noise import Noise, white_noise
+from gaitdisc.discovery.price import price_of
+from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.simulation.simulation import Simulation
+
+MODEL_ERROR = 0.01  # of a channel's spread: no simulation of hardware is exact
+REMEMBERED = 20.0  # samples of what a wrong simulation leaves say as much as one independent number
+CONVERGED = 1e-4  # of a number's share of the misfit
+TURNS, AGAIN = 15, 6
+
+Explanations = frozenset[tuple[str, tuple[str, ...]]]
+
+
+@dataclass(frozen=True)
+class GapScale:
+    """What a gap is measured against.
+
+    Parameters
+    ----------
+    noise : ndarray (channel,)
+        Standard deviation of the sensors' noise [the channel's unit].
+    spread : ndarray (channel,)
+        Standard deviation of the measurement [the channel's unit].
+    """
+
+    noise: NDArray[np.float64]
+    spread: NDArray[np.float64]
+
+    @property
+    def size(self) -> NDArray[np.float64]:
+        """What a simulation that lacks nothing may leave (channel,): noise, and a model error of a hundredth."""
+        return np.sqrt(self.noise**2 + (MODEL_ERROR * self.spread) ** 2)
+
+    @property
+    def floor(self) -> float:
+        """Mean square that the noise alone leaves, in squares of `size`."""
+        return float(np.mean((self.noise / self.size) ** 2))
+
+    @property
+    def least(self) -> float:
+        """Mean square that a simulation that lacks nothing may leave, in squares of `size`."""
+        return float(np.mean((np.maximum(self.noise, MODEL_ERROR * self.spread) / self.size) ** 2))
+
+    def mean_square(self, fit: Fitted) -> float:
+        """Mean square of a residual, in squares of `size`.
+
+        Parameters
+        ----------
+        fit : Fitted
+            Any.
+        """
+        return float(np.nanmean((fit.residual / self.size) ** 2))
+
+    def relative(self, fit: Fitted) -> float:
+        """Root mean square of a residual over the spread of its channel.
+
+        Parameters
+        ----------
+        fit : Fitted
+            Any.
+        """
+        return float(np.sqrt(np.nanmean((fit.residual / self.spread) ** 2)))
+
+    def error_of(self, fit: Fitted) -> Noise:
+        """Return white noise as large as a residual that remembers itself weighs against a prior.
+
+        Parameters
+        ----------
+        fit : Fitted
+            Of which it is the residual.
+        """
+        return white_noise(self.size * np.sqrt(REMEMBERED * max(self.mean_square(fit), 1e-12)))
+
+
+@dataclass(frozen=True, eq=False)
+class Weighed:
+    """A simulation with some explanations in it, and what it leaves of runs that it was not fitted to.
+
+    Parameters
+    ----------
+    account : Account
+        Fitted under white noise.
+    shooting : Shooting
+        Its segments, with that noise.
+    errors : ndarray (piece,)
+        Mean squares left out of the fit, in squares of the scale's size.
+    gap : float
+        Their root mean square above the sensors' noise.
+    """
+
+    account: Account
+    shooting: Shooting
+    errors: NDArray[np.float64]
+    gap: float
+
+    @property
+    def explanations(self) -> Explanations:
+        """Which explanations are in, whatever their order and numbers."""
+        return frozenset((part.candidate.label, part.candidate.pieces) for part in self.account.parts)
+
+    @property
+    def price(self) -> float:
+        """What its explanations have to close [of the gap of the simulation as read]."""
+        return sum(price_of(part) for part in self.account.parts)
+
+
+def weighed(
+    scale: GapScale, shooting: Shooting, base: Simulation, parts: tuple[Part, ...], like: Account | Weighed
+) -> Weighed:
+    """Fit a simulation with explanations in it, and measure what it leaves of runs left out of the fit.
+
+    Parameters
+    ----------
+    scale : GapScale
+        What the gap is measured against.
+    shooting : Shooting
+        The segments; their noise is not used.
+    base : Simulation
+        As read.
+    parts : tuple of Part
+        The explanations, with numbers to begin from.
+    like : Account or Weighed
+        Of the same segments: where start states and numbers with bounds begin.
+    """
+    account = like.account if isinstance(like, Weighed) else like
+    enough = CONVERGED * shooting.seen.size / REMEMBERED
+    shooting = shooting.with_noise(scale.error_of(account.fit))
+    account = account_for(shooting, base, parts, account.fit.starts, TURNS, enough, account)
+    if np.isfinite(account.fit.misfit):
+        shooting = shooting.with_noise(scale.error_of(account.fit)).with_past(account.fit.states)
+        account = account_for(shooting, base, account.parts, account.fit.starts, AGAIN, enough, account)
+    return measured(scale, shooting, account)
+
+
+def measured(scale: GapScale, shooting: Shooting, account: Account) -> Weighed:
+    """Measure what an account leaves of runs left out of its fit.
+
+    Parameters
+    ----------
+    scale : GapScale
+        What the gap is measured against.
+    shooting : Shooting
+        The segments, under the white noise that the account was fitted with.
+    account : Account
+        Fitted.
+    """
+    if not np.isfinite(account.fit.misfit):
+        return Weighed(account, shooting, np.full(1, np.inf), float("inf"))
+    square = float(np.mean((shooting.noise.size / scale.size) ** 2))
+    errors = left_out_errors(account.fit) * square
+    return Weighed(account, shooting, errors, gap_above(scale, float(errors.mean())))
+
+
+def gap_above(scale: GapScale, mean_square: float) -> float:
+    """Return the root of a mean square above what the sensors' noise leaves.
+
+    Parameters
+    ----------
+    scale : GapScale
+        What the gap is measured against.
+    mean_square : float
+        In squares of its size.
+    """
+    return float(np.sqrt(max(mean_square - scale.floor, 0.0)))

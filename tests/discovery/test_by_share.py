@@ -1,0 +1,50 @@
+import pytest
+from hidden_in_a_mass import Experiment, mass, record, with_load
+
+from gaitdisc.discovery.by_share import agrees, closing_most, leaves_noise, scale_of
+from gaitdisc.discovery.discover import discover
+from gaitdisc.discovery.inquiry import begin_inquiry
+
+CLEAN = Experiment(noise=0.001)
+
+
+def test_what_leaves_the_sensors_noise_is_known_from_the_record_alone(inquiry, as_read, named):
+    scale = scale_of(inquiry)
+    assert leaves_noise(scale, named[0])
+    assert not leaves_noise(scale, as_read)
+    assert not agrees(scale, as_read)
+
+
+def test_where_nothing_is_missing_nothing_is_weighed():
+    inquiry = begin_inquiry(mass(), record(mass(), 3, CLEAN))
+    scale = scale_of(inquiry)
+    assert agrees(scale, inquiry.as_read())
+    assert closing_most(inquiry, scale, ()) is None
+
+
+@pytest.fixture(scope="module")
+def answered():
+    """Return what is found of a loss between viscous and quadratic, which no name is exact for."""
+    return discover(mass(), record(with_load("-1.2*v*abs(v)**0.5"), 5, CLEAN))
+
+
+def test_a_loss_that_no_name_is_exact_for_is_named_by_the_nearest(answered):
+    found, augmented = answered
+    assert found.verdict in ("missing_physics", "wrong_parameter")
+    losses = {"viscous_damping", "quadratic_drag", "coulomb_friction", "wrong_parameter"}
+    assert {one.name for one in found.effects} <= losses
+    assert found.held_out.after < 0.3 * found.held_out.before
+    assert found.held_out.p < 0.05
+    assert augmented != mass()
+
+
+def test_the_noise_floor_is_the_sensors(answered):
+    found, _ = answered
+    assert found.held_out.noise_floor == pytest.approx(CLEAN.noise, rel=0.25)
+
+
+def test_what_is_left_is_told_as_a_share(answered):
+    found, _ = answered
+    size = found.held_out
+    left = (size.after**2 - size.noise_floor**2) / (size.before**2 - size.noise_floor**2)
+    assert found.to_json()["gap"]["held_out"]["unexplained"] == pytest.approx(max(left, 0.0))
