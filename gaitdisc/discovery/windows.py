@@ -34,7 +34,13 @@ def shooting_of(inquiry: Inquiry, samples: int) -> Shooting:
 
 
 def longest_run(inquiry: Inquiry) -> int:
-    """Samples of the shortest of the learned trials."""
+    """Return the samples of the shortest of the learned trials.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        The trials.
+    """
     return int(min(inquiry.measured.drive.samples[trial] for trial in inquiry.learned))
 
 

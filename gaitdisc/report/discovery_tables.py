@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+import numpy as np
 import pandas as pd
 
 from gaitdisc.report.seen_tables import seen_table
@@ -71,6 +72,33 @@ def gap_table(discovery: Discovery) -> Table:
     headings = ("data", "channel", "before", "after", "noise floor", "closed", "p")
     columns = ("data", "channel", "before", "after", "noise_floor", "unit", "closed", "p")
     return Table("gap", caption, headings, tuple(rows), _frame(records, columns))
+
+
+def trials_table(discovery: Discovery) -> Table:
+    """Root mean square error of each held-out trial, before and after, channel by channel.
+
+    Parameters
+    ----------
+    discovery : Discovery
+        What was found.
+    """
+    runs, rows, records = discovery.runs, [], []
+    errors = [(runs.measured - one) ** 2 for one in (runs.simulated, runs.augmented)]
+    for number in np.unique(runs.trial):
+        name = runs.names[number] if runs.names else str(number + 1)
+        for place, (channel, unit) in enumerate(zip(discovery.channels, discovery.units, strict=True)):
+            shown, factor = shown_unit(unit)
+            of_trial = (one[runs.trial == number][:, :, place] for one in errors)
+            before, after = (float(np.sqrt(np.nanmean(one))) for one in of_trial)
+            told = (f"{amount(factor * one, factor * before / 20)} {shown}".strip() for one in (before, after))
+            rows.append((name, channel, *told))
+            records.append((name, channel, before, after, unit))
+    caption = (
+        "Root mean square of measured minus simulated, before and after, trial by trial of what was held out "
+        f"({counted(len(runs.trial), 'run')}, each from its own start)."
+    )
+    columns = ("trial", "channel", "before", "after", "unit")
+    return Table("trials", caption, columns[:-1], tuple(rows), _frame(records, columns))
 
 
 def _before(discovery: Discovery) -> str:

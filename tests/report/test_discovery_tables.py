@@ -1,6 +1,7 @@
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from manufactured_discovery import CUBIC, manufactured
 
@@ -11,6 +12,7 @@ from gaitdisc.report.discovery_tables import (
     estimates_table,
     gap_table,
     rivals_table,
+    trials_table,
     where_table,
 )
 from gaitdisc.results.discovery import Correction, Estimate, FoundEffect, GapSize
@@ -84,3 +86,20 @@ def test_the_test_says_on_how_many_pieces_and_of_what_where_nothing_is_named():
     assert "over pieces of the runs (held out: 9 pieces" in table.caption
     assert table.caption.endswith("Where nothing is named, p is that of cubic stiffness at the ankle_moment port.")
     assert "Where nothing is named" not in gap_table(manufactured()).caption
+
+
+def test_every_held_out_trial_has_its_errors():
+    found = manufactured()
+    table = trials_table(found)
+    assert set(table.numbers["trial"]) == {found.runs.names[one] if found.runs.names else str(one + 1)
+                                           for one in found.runs.trial}  # fmt: skip
+    first = found.runs.trial == found.runs.trial[0]
+    before = np.sqrt(np.mean((found.runs.measured[first] - found.runs.simulated[first])[..., 0] ** 2))
+    assert table.numbers["before"].iloc[0] == pytest.approx(before)
+
+
+def test_a_small_rival_is_said_to_be_small():
+    small = FoundEffect("port", "load", "constant_load", "0.1", small=True)
+    table = rivals_table(manufactured(rivals=(small,)))
+    assert table.rows[0][4] == "small"
+    assert table.numbers["small"].tolist() == [True]
