@@ -80,8 +80,8 @@ def _estimated_without(
         slopes = without(basis, fit.slopes[number : number + 1, rows, n:])[0]
         normal, match = normal + slopes.T @ slopes, match + slopes.T @ left
     moved = _solved(normal, match)
-    own = fit.slopes[run, kept]
-    start = np.linalg.lstsq(own[:, :n], fit.white[run, kept] - own[:, n:] @ moved, rcond=None)[0]
+    own, right = fit.slopes[run, kept], fit.white[run, kept]
+    start: NDArray[np.float64] = np.linalg.lstsq(own[:, :n], right - own[:, n:] @ moved, rcond=None)[0]
     return start, moved
 
 
