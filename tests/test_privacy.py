@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import re
 import zipfile
-from functools import partial
 
 import ezc3d
 import numpy as np
@@ -17,8 +16,8 @@ from typer.testing import CliRunner
 from gaitdisc.cli import app
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.table import write_table
-from gaitdisc.networks.training_settings import TrainingSettings
 
+pytestmark = pytest.mark.usefixtures("trained_briefly")
 # each is planted in one kind of place, and told from the others if it is found
 TOKENS = (
     "Zqfolder", "Zqperson", "Zqfile", "Zqheader", "Zqcolumn", "Zqsubject", "Zqmaker", "Zqdescribed", "Zqanalog",
@@ -140,11 +139,6 @@ def study(recordings, tmp_path_factory):
     lines[500] = re.sub(r"\t[^\t]*$", "\tZqbroken", lines[500])
     damaged.write_text("\n".join(lines) + "\n")
     return folder
-
-
-@pytest.fixture(autouse=True)
-def quickly(monkeypatch):
-    monkeypatch.setattr("gaitdisc.batch.participant_unit.TrainingSettings", partial(TrainingSettings, epochs=1))
 
 
 def called(*words):
