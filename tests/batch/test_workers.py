@@ -86,6 +86,7 @@ def test_a_worker_that_is_killed_in_the_middle_costs_nothing(cluster, tmp_path):
     assert (tmp_path / "died").exists()
 
 
+@pytest.mark.slow
 def test_a_cluster_gives_the_same_tables(cluster, study, tmp_path):
     import pandas as pd  # here, for every process beside this one imports this module
 
