@@ -27,3 +27,10 @@ def trained_briefly(monkeypatch):
     In this process only: one that is started beside it trains whole.
     """
     monkeypatch.setattr("gaitdisc.networks.schedule.epochs_of", lambda *_: 2)
+
+
+@pytest.fixture
+def unpainted(monkeypatch):
+    """Figures are laid out and not painted, which is most of the time that a report takes: for tests of a page's words."""
+    monkeypatch.setattr("gaitdisc.report.figure._svg", lambda _: b"<svg/>")
+    monkeypatch.setattr("gaitdisc.report.figure._png", lambda _: b"")

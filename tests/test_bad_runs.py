@@ -23,7 +23,7 @@ from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial,
 from gaitdisc.ingest.study_file import write_study
 from gaitdisc.networks.training_settings import TrainingSettings
 
-pytestmark = pytest.mark.usefixtures("trained_briefly")
+pytestmark = pytest.mark.usefixtures("trained_briefly", "unpainted")
 ANGLES = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", "hip_flexion_l", "knee_angle_l", "ankle_angle_l")
 
 
