@@ -31,6 +31,6 @@ def trained_briefly(monkeypatch):
 
 @pytest.fixture
 def unpainted(monkeypatch):
-    """Figures are laid out and not painted, which is most of the time that a report takes: for tests of a page's words."""
+    """Figures are laid out and not painted, most of the time of a report: for tests of what a page says."""
     monkeypatch.setattr("gaitdisc.report.figure._svg", lambda _: b"<svg/>")
     monkeypatch.setattr("gaitdisc.report.figure._png", lambda _: b"")

@@ -5,7 +5,6 @@ from gaitdisc.batch.workers import Workers
 from gaitdisc.errors import SchemaError
 from gaitdisc.results.variant_store import load_variant_run
 
-
 pytestmark = pytest.mark.usefixtures("trained_briefly")
 
 

@@ -130,7 +130,7 @@ def test_a_place_that_cannot_be_written_is_said(run, tmp_path):
 
 def test_the_paired_tests_have_their_section_and_the_same_bytes(tested_maker, tmp_path, monkeypatch):
     """Without the figures of each participant, which are drawn and compared above."""
-    none = dict.fromkeys(("held_out", "residual", "curves", "strides"), [])
+    none = {subject: [] for subject in ("held_out", "residual", "curves", "strides")}
     brief = partial(response_page.Section, sentences=[], r2=None, reasons=[], dropped=None, figures=none)
     monkeypatch.setattr(response_page, "MOST_PROCESSES", 1)
     monkeypatch.setattr(response_page, "_section", lambda _, person, name, *__: brief(person, f"participant-{name}"))
