@@ -49,6 +49,19 @@ def folder(recordings, tmp_path):
     return tmp_path
 
 
+@pytest.fixture(scope="module")
+def ran(recordings, tmp_path_factory):
+    """A finished run of one participant, to be copied."""
+    folder = tmp_path_factory.mktemp("ran")
+    for word in ("nominal", "exo"):
+        shutil.copy(recordings / f"{word}.mot", folder)
+    written(folder, walker("P01"))
+    with pytest.MonkeyPatch.context() as brief:
+        brief.setattr("gaitdisc.networks.schedule.epochs_of", lambda *_: 2)
+        assert said("run", folder)[0] == 0
+    return folder
+
+
 def walker(name, nominal="nominal.mot", exo="exo.mot"):
     files = {"nominal": nominal, "exo": exo}
     trials = tuple(PlannedTrial(condition=word, files=(file,)) for word, file in files.items() if file)
@@ -201,9 +214,8 @@ def test_a_run_that_was_moved_to_another_machine_goes_on_there(folder, monkeypat
 
 
 @pytest.mark.parametrize("file", ["response.json", "r2.csv", "arrays.npz"])
-def test_a_damaged_unit_is_told_by_report_and_mended_by_run(folder, monkeypatch, capsys, file):
-    written(folder, walker("P01"))
-    said("run", folder)
+def test_a_damaged_unit_is_told_by_report_and_mended_by_run(ran, tmp_path, monkeypatch, capsys, file):
+    folder = shutil.copytree(ran, tmp_path / "copy")
     damaged = folder / "run" / "responses" / "P01" / file
     whole = damaged.read_bytes()
     damaged.write_bytes(whole[: len(whole) // 2])
