@@ -5,10 +5,11 @@ VENV   ?= .venv
 TORCH  ?= torch==2.13.0
 BIN    := $(VENV)/bin
 DEMO   ?= demo
-# Test processes side by side; the tests of one file stay in one of them.
+# Test processes side by side; each begins with its own rooms, and whichever is done takes over from the other.
 JOBS   ?= 2
-PYTEST := OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q
-BESIDE := -n $(JOBS) --dist loadfile
+# Bytecode is kept, also where the environment says no: tests start many processes, and each would compile the package.
+PYTEST := PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q
+BESIDE := -n $(JOBS) --dist worksteal
 
 .PHONY: demo test elsewhere slow lint format bench docs clean
 

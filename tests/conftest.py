@@ -18,3 +18,19 @@ def gait_data() -> Path:
     if not folder.is_dir():
         pytest.skip(f"real recordings are absent: {folder} (set GAITDISC_DATA)")
     return folder
+
+
+@pytest.fixture
+def trained_briefly(monkeypatch):
+    """Networks take two passes over their samples: for tests of what is made of a network, not of what it learns.
+
+    In this process only: one that is started beside it trains whole.
+    """
+    monkeypatch.setattr("gaitdisc.networks.schedule.epochs_of", lambda *_: 2)
+
+
+@pytest.fixture
+def unpainted(monkeypatch):
+    """Figures are laid out and not painted, most of the time of a report: for tests of what a page says."""
+    monkeypatch.setattr("gaitdisc.report.figure._svg", lambda _: b"<svg/>")
+    monkeypatch.setattr("gaitdisc.report.figure._png", lambda _: b"")

@@ -23,6 +23,7 @@ from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial,
 from gaitdisc.ingest.study_file import write_study
 from gaitdisc.networks.training_settings import TrainingSettings
 
+pytestmark = pytest.mark.usefixtures("trained_briefly", "unpainted")
 ANGLES = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", "hip_flexion_l", "knee_angle_l", "ankle_angle_l")
 
 
@@ -46,6 +47,19 @@ def folder(recordings, tmp_path):
     for file in recordings.iterdir():
         (tmp_path / file.name).symlink_to(file)
     return tmp_path
+
+
+@pytest.fixture(scope="module")
+def ran(recordings, tmp_path_factory):
+    """A finished run of one participant, to be copied."""
+    folder = tmp_path_factory.mktemp("ran")
+    for word in ("nominal", "exo"):
+        shutil.copy(recordings / f"{word}.mot", folder)
+    written(folder, walker("P01"))
+    with pytest.MonkeyPatch.context() as brief:
+        brief.setattr("gaitdisc.networks.schedule.epochs_of", lambda *_: 2)
+        assert said("run", folder)[0] == 0
+    return folder
 
 
 def walker(name, nominal="nominal.mot", exo="exo.mot"):
@@ -200,9 +214,8 @@ def test_a_run_that_was_moved_to_another_machine_goes_on_there(folder, monkeypat
 
 
 @pytest.mark.parametrize("file", ["response.json", "r2.csv", "arrays.npz"])
-def test_a_damaged_unit_is_told_by_report_and_mended_by_run(folder, monkeypatch, capsys, file):
-    written(folder, walker("P01"))
-    said("run", folder)
+def test_a_damaged_unit_is_told_by_report_and_mended_by_run(ran, tmp_path, monkeypatch, capsys, file):
+    folder = shutil.copytree(ran, tmp_path / "copy")
     damaged = folder / "run" / "responses" / "P01" / file
     whole = damaged.read_bytes()
     damaged.write_bytes(whole[: len(whole) // 2])

@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import re
 import zipfile
-from functools import partial
 
 import ezc3d
 import numpy as np
@@ -15,10 +14,11 @@ from driven_walker import DrivenWalker
 from typer.testing import CliRunner
 
 from gaitdisc.cli import app
+from gaitdisc.discovery.verdict import Verdict
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.table import write_table
-from gaitdisc.networks.training_settings import TrainingSettings
 
+pytestmark = pytest.mark.usefixtures("trained_briefly")
 # each is planted in one kind of place, and told from the others if it is found
 TOKENS = (
     "Zqfolder", "Zqperson", "Zqfile", "Zqheader", "Zqcolumn", "Zqsubject", "Zqmaker", "Zqdescribed", "Zqanalog",
@@ -131,20 +131,20 @@ def recordings(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def study(recordings, tmp_path_factory):
-    """As `new` makes it; after that, a file is damaged."""
+    """As `new` makes it, with few channels to fit; after that, a file is damaged."""
     folder = tmp_path_factory.mktemp("work") / "Zqhome"
     done = CliRunner().invoke(app, ["new", str(folder), "--from", str(recordings)])
     assert done.exit_code == 0, done.output
+    text = (folder / "study.toml").read_text()
+    for key in ("angles", "outputs"):
+        text, changed = re.subn(rf"(?s)(?<=\n{key} = \[).*?(?=\])", '"knee_angle_r", "ankle_angle_r"', text)
+        assert changed == 1
+    (folder / "study.toml").write_text(text)
     damaged = recordings / "Zqperson_ddd" / "Zqfile_exo_ik.mot"
     lines = damaged.read_text().splitlines()
     lines[500] = re.sub(r"\t[^\t]*$", "\tZqbroken", lines[500])
     damaged.write_text("\n".join(lines) + "\n")
     return folder
-
-
-@pytest.fixture(autouse=True)
-def quickly(monkeypatch):
-    monkeypatch.setattr("gaitdisc.batch.participant_unit.TrainingSettings", partial(TrainingSettings, epochs=1))
 
 
 def called(*words):
@@ -235,7 +235,9 @@ def test_models_and_what_they_tell_hold_none_of_them(study, recordings, tmp_path
     assert found_in(tmp_path) == {}
 
 
-def test_a_discovery_from_a_study_holds_none_of_them(study, tmp_path):
+def test_a_discovery_from_a_study_holds_none_of_them(study, tmp_path, monkeypatch):
+    """Whatever is found: the words come from the study, and the search for what is missing has none of them."""
+    monkeypatch.setattr("gaitdisc.discovery.discover.judge", lambda _, as_read: Verdict("no_gap", as_read, ()))
     done = called("discover", study, "--participant", "P01", "--out", tmp_path, "--no-report", "--quiet")
     assert (tmp_path / "discovery.json").exists(), done.output
     assert planted(done.output.replace(str(tmp_path), "")) == []

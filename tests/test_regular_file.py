@@ -108,7 +108,7 @@ def test_check_of_a_pipe_ends_with_a_refusal(tmp_path):
             [sys.executable, "-m", "gaitdisc", "check", str(path), "--json"],
             capture_output=True,
             text=True,
-            timeout=100,
+            timeout=600,  # a pipe would hold it for ever
             check=False,
             cwd=Path(__file__).parents[1],
         )

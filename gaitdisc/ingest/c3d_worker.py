@@ -12,8 +12,10 @@ from __future__ import annotations
 import contextlib
 import faulthandler
 import json
+import math
 import os
 import sys
+import time
 import warnings
 from importlib.metadata import version
 from pathlib import Path
@@ -137,22 +139,25 @@ def serve(requests: IO[bytes], answers: IO[bytes]) -> None:
     """
     for line in iter(requests.readline, b""):
         request = json.loads(line)
-        _limit(request["cap_bytes"])
+        _limit(request["cap_bytes"], request["limit_s"])
         with Path(os.devnull).open("w") as nowhere:
-            # If the parent is gone there is nobody to stop a reader that hangs in C++ but this.
-            faulthandler.dump_traceback_later(request["limit_s"] + 5, exit=True, file=nowhere)
+            # If the parent is gone there is nobody to stop a reader that waits for ever but this.
+            faulthandler.dump_traceback_later(request["clock_s"] + 5, exit=True, file=nowhere)
             head, arrays = answer(request)
             _send(head, arrays[:2], answers)
             del arrays
             faulthandler.cancel_dump_traceback_later()
 
 
-def _limit(cap_bytes: int) -> None:
+def _limit(cap_bytes: int, limit_s: float) -> None:
+    """Let the system end this process when it takes more memory, or more processor time from now on."""
     with contextlib.suppress(ImportError, ValueError, OSError):  # Windows has no `resource`
         import resource
 
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         resource.setrlimit(resource.RLIMIT_AS, (cap_bytes, resource.getrlimit(resource.RLIMIT_AS)[1]))
+        until_s = math.ceil(time.process_time() + limit_s)
+        resource.setrlimit(resource.RLIMIT_CPU, (until_s, resource.getrlimit(resource.RLIMIT_CPU)[1]))
 
 
 def _send(head: dict[str, Any], arrays: tuple[NDArray[np.float64], ...], answers: IO[bytes]) -> None:

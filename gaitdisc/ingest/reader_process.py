@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import signal
 import subprocess
 import sys
 import threading
@@ -18,6 +19,7 @@ from numpy.typing import NDArray
 WORKER = Path(__file__).with_name("c3d_worker.py")
 FILES_A_PROCESS = 100  # ezc3d leaks: a long loop in one process dies (pyomeca/ezc3d#314)
 SECONDS_AT_LEAST = 10.0
+CLOCK = 6.0  # times the processor time: so long is waited by the clock, for others may use the machine as well
 MEBIBYTE = 2**20
 
 
@@ -34,7 +36,7 @@ class ReadRequest:
     frames, points, channels, samples : int
         Counts that the file's header promises; `samples` are those of one analog channel.
     limit_s : float
-        Seconds after which the reader is stopped.
+        Processor time after which the reader is stopped; by the clock it is given `CLOCK` times as long.
     cap_bytes : int
         Address space that the reader may take, where the system can cap it.
 
@@ -52,6 +54,11 @@ class ReadRequest:
     samples: int
     limit_s: float
     cap_bytes: int
+
+    @property
+    def clock_s(self) -> float:
+        """Seconds by the clock after which the reader is stopped, also one that waits for what never comes."""
+        return CLOCK * self.limit_s
 
     @classmethod
     def of_size(cls, path: str, reader: str, counts: tuple[int, int, int, int], size: int) -> ReadRequest:
@@ -117,7 +124,7 @@ class ReaderProcess:
         thread = threading.Thread(target=_converse, args=(process, request, answers), daemon=True)
         thread.start()
         try:
-            thread.join(request.limit_s)
+            thread.join(request.clock_s)
             if not thread.is_alive() and answers:
                 return answers[0]
             late = thread.is_alive()
@@ -126,7 +133,12 @@ class ReaderProcess:
             raise
         code = self._stop()
         thread.join(5)
-        said = f"it had not finished after {request.limit_s:.3g} s" if late else f"it crashed (exit code {code})"
+        if late:
+            said = f"it had not finished after {request.clock_s:.3g} s"
+        elif code == -getattr(signal, "SIGXCPU", np.inf):
+            said = f"it had not finished after {request.limit_s:.3g} s of processor time"
+        else:
+            said = f"it crashed (exit code {code})"
         return RawTrial(_NOTHING, _NOTHING, said=said)
 
     def close(self) -> None:
@@ -166,7 +178,7 @@ class ReaderProcess:
 def _converse(process: subprocess.Popen[bytes], request: ReadRequest, answers: list[RawTrial]) -> None:
     assert process.stdin is not None and process.stdout is not None  # both are pipes
     with contextlib.suppress(OSError, ValueError, EOFError):
-        process.stdin.write(json.dumps(asdict(request)).encode() + b"\n")
+        process.stdin.write(json.dumps({**asdict(request), "clock_s": request.clock_s}).encode() + b"\n")
         process.stdin.flush()
         head: dict[str, Any] = json.loads(process.stdout.readline())
         if "said" in head:

@@ -39,3 +39,11 @@ def study(recordings) -> Study:
         models=Models(angles=ANGLES, outputs=("knee_angle_r", "ankle_angle_r")),
         participants=people,
     ).placed(recordings)
+
+
+@pytest.fixture(scope="session")
+def small(study) -> Study:
+    """The study with as few inputs and outputs as leave something to vary."""
+    return study.model_copy(
+        update={"models": Models(angles=("knee_angle_r", "ankle_angle_r"), outputs=("ankle_angle_r",))}
+    )

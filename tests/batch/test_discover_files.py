@@ -61,6 +61,7 @@ HIDDEN = {
 }
 
 
+@pytest.mark.usefixtures("unpainted")
 @pytest.mark.parametrize("verdict", HIDDEN)
 def test_a_simulation_that_is_a_function_goes_all_the_way(tmp_path, verdict):
     model = tank(initial=3.0 if verdict == "wrong_initial_condition" else None)

@@ -115,8 +115,7 @@ def test_a_run_that_was_killed_goes_on(run, study, finished, tmp_path):
     command = [sys.executable, "-m", "gaitdisc", "run", str(tmp_path), "--quiet"]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     first = tmp_path / "run" / "responses" / "P01" / "response.json"
-    deadline = time.monotonic() + 120
-    while not first.exists() and process.poll() is None and time.monotonic() < deadline:
+    while not first.exists() and process.poll() is None:
         time.sleep(0.05)
     os.kill(process.pid, signal.SIGKILL)
     process.wait()

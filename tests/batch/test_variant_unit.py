@@ -16,22 +16,25 @@ def computed(study, folder, question):
 
 
 @pytest.fixture(scope="module")
-def first_time(study, tmp_path_factory):
-    """Folder, variants and shares said, by question: computed once for all tests."""
+def first_time(small, tmp_path_factory):
+    """Folder, variants and shares said, by question: computed once for all tests; what is learnt counts in one."""
     folder = tmp_path_factory.mktemp("variants")
-    return {question: (folder, *computed(study, folder, question)) for question in ("modalities", "sensitivity")}
+    with pytest.MonkeyPatch.context() as brief:
+        brief.setattr("gaitdisc.networks.schedule.epochs_of", lambda *_: 2)
+        modalities = computed(small, folder, "modalities")
+    return {"modalities": (folder, *modalities), "sensitivity": (folder, *computed(small, folder, "sensitivity"))}
 
 
 @pytest.mark.parametrize(("question", "first"), [("modalities", ALL), ("sensitivity", AS_STUDIED)])
-def test_variants_are_computed_once_and_then_loaded(study, first_time, question, first):
+def test_variants_are_computed_once_and_then_loaded(small, first_time, question, first):
     folder, found, told = first_time[question]
     assert isinstance(found, Variants)
     assert found.table["variant"].iloc[0] == first
     assert told == sorted(told)
     assert told[-1] == pytest.approx(1.0)
-    again, told = computed(study, folder, question)
+    again, told = computed(small, folder, question)
     assert told == []
-    assert again.table.equals(computed(study, folder, question)[0].table)
+    assert again.table.equals(computed(small, folder, question)[0].table)
     assert again.table["r2"].to_numpy() == pytest.approx(found.table["r2"].to_numpy())
 
 

@@ -3,16 +3,9 @@ import pytest
 from gaitdisc.batch.vary_study import vary_study
 from gaitdisc.batch.workers import Workers
 from gaitdisc.errors import SchemaError
-from gaitdisc.ingest.study import Models
 from gaitdisc.results.variant_store import load_variant_run
 
-
-@pytest.fixture(scope="module")
-def small(study):
-    """The study with as few inputs and outputs as leave something to vary."""
-    return study.model_copy(
-        update={"models": Models(angles=("knee_angle_r", "ankle_angle_r"), outputs=("ankle_angle_r",))}
-    )
+pytestmark = pytest.mark.usefixtures("trained_briefly")
 
 
 def test_every_participant_of_the_run_is_varied(small, tmp_path):

@@ -3,10 +3,8 @@ import signal
 import time
 from pathlib import Path
 
-import pandas as pd
 import pytest
 
-from gaitdisc.batch.run_study import run_study
 from gaitdisc.batch.workers import ClusterError, Workers, computed_side_by_side, computed_units
 
 distributed = pytest.importorskip("distributed", reason="the extra 'cluster' is not installed")
@@ -88,7 +86,12 @@ def test_a_worker_that_is_killed_in_the_middle_costs_nothing(cluster, tmp_path):
     assert (tmp_path / "died").exists()
 
 
+@pytest.mark.slow
 def test_a_cluster_gives_the_same_tables(cluster, study, tmp_path):
+    import pandas as pd  # here, for every process beside this one imports this module
+
+    from gaitdisc.batch.run_study import run_study
+
     here = run_study(study, tmp_path / "here")
     there = run_study(study, tmp_path / "there", Workers(cluster=cluster))
     pd.testing.assert_frame_equal(there.r2_table(), here.r2_table(), check_dtype=False)

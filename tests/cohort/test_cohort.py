@@ -95,6 +95,7 @@ def test_who_changes_late_is_found_by_the_quality_checks_alone():
     assert kinds == {CHANGES: ["warning"], CHANGES + 1: []}
 
 
+@pytest.mark.slow
 def test_no_spring_and_no_adaptation_is_no_discrepancy(person):
     own, other = nominal_on_both(person.unadapted(), person.unadapted(), Spring(0.0), 240.0, 31)
     assert other == pytest.approx(own, abs=0.015)  # one person; the mean of twelve is held to 0.01 below

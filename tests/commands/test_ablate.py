@@ -1,3 +1,8 @@
+import pytest
+
+pytestmark = pytest.mark.usefixtures("unpainted")
+
+
 def test_ablate_keeps_what_less_data_gave_and_draws_it(study, called):
     done = called("ablate", study, "--length", "5", "--quiet")
     assert done.returncode == 0, done.stderr

@@ -4,6 +4,7 @@ from typer.testing import CliRunner
 from gaitdisc.cli import app
 from gaitdisc.commands.exit_codes import REFUSED
 
+pytestmark = pytest.mark.usefixtures("unpainted")
 USAGE = 2
 
 

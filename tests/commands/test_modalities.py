@@ -1,3 +1,8 @@
+import pytest
+
+pytestmark = pytest.mark.usefixtures("unpainted")
+
+
 def test_modalities(study, called):
     done = called("modalities", study, "--quiet")
     assert done.returncode == 0, done.stderr

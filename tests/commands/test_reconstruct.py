@@ -7,6 +7,7 @@ from gaitdisc.cli import app
 from gaitdisc.commands.exit_codes import REFUSED
 from gaitdisc.errors import SchemaError
 
+pytestmark = pytest.mark.usefixtures("unpainted")
 FAST = ("--kinds", "linear,delay ridge")  # no network, where none is asked about
 
 

@@ -1,4 +1,8 @@
+import pytest
+
 from gaitdisc.commands.exit_codes import SOME_REFUSED
+
+pytestmark = pytest.mark.usefixtures("unpainted")
 
 
 def test_the_batch_goes_on_past_a_broken_file(study, recordings, tmp_path, called):

@@ -1,3 +1,8 @@
+import pytest
+
+pytestmark = pytest.mark.usefixtures("unpainted")
+
+
 def test_sensitivity(study, called):
     done = called("sensitivity", study, "--quiet")
     assert done.returncode == 0, done.stderr

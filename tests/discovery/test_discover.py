@@ -133,7 +133,7 @@ def test_of_forty_nulls_at_most_two_are_named():
 
 def test_two_effects_are_both_named():
     truth = with_load("-14*x**3").with_effect(Term("load", "port", "second", "-1.5*sign(v)"))
-    discovery, augmented = _found(truth)
+    discovery, augmented = _found(truth, Experiment(seconds=10.0))
     verdict, effects = _named(discovery)
     assert (verdict, set(effects)) == ("missing_physics", {("cubic_stiffness", "load"), ("coulomb_friction", "load")})
     assert len(augmented.effects) == 2
@@ -147,7 +147,7 @@ def test_one_trial_is_enough_and_its_last_quarter_proves_it():
 
 
 def test_an_effect_outside_the_catalogue_is_answered_by_a_shape_that_closes_the_gap():
-    discovery, augmented = _found(with_load("-6*exp(-((x - 0.3)/0.2)**2)"), Experiment(trials=6))
+    discovery, augmented = _found(with_load("-6*exp(-((x - 0.3)/0.2)**2)"), Experiment(trials=6, seconds=9.0))
     assert _named(discovery) == ("unnamed", [("unnamed", "load")])
     size = discovery.held_out
     closed = 1 - (size.after**2 - size.noise_floor**2) / (size.before**2 - size.noise_floor**2)
@@ -231,7 +231,7 @@ def test_every_step_is_told():
 def test_one_record_in_degrees_gives_the_same_name_and_estimates():
     knee = simulation_of(KNEE, "knee.toml")
     stop = knee.with_effect(Term("knee", "port", "hidden", "-110*max(0, theta - 0.25)"))
-    seen = record(stop, SEED)
+    seen = record(stop, SEED, Experiment(seconds=10.0))
     plain, degrees = (
         discover(knee.with_observation("theta", text), replace(seen, observed=factor * seen.observed))[0]
         for text, factor in (("theta", 1.0), ("57.2958*theta", 57.2958))

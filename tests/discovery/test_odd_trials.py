@@ -67,7 +67,7 @@ CLEAN = {
 }
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("seed", [0, 1])
 @pytest.mark.parametrize("case", CLEAN)
 def test_trials_that_were_recorded_alike_draw_no_finding(case, seed):
     given, truth, how = CLEAN[case]

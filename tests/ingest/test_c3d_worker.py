@@ -11,7 +11,11 @@ from gaitdisc.ingest.c3d_worker import READERS, answer, points_in_rows, serve
 
 def _request(path, **changes):
     counts = {"frames": 50, "points": 3, "channels": 4, "samples": 500}
-    return {"path": str(path), "reader": "ezc3d", "cap_bytes": 2**40, "limit_s": 600.0} | counts | changes
+    return (
+        {"path": str(path), "reader": "ezc3d", "cap_bytes": 2**40, "limit_s": 600.0, "clock_s": 600.0}
+        | counts
+        | changes
+    )
 
 
 def test_coordinates_come_with_time_first_and_gaps_are_nan():
@@ -44,7 +48,7 @@ def test_what_a_reader_raises_is_its_opinion(tmp_path):
 
 
 def test_serving_ends_with_the_requests(tmp_path, write_c3d, some_points, some_analog, monkeypatch):
-    monkeypatch.setattr("gaitdisc.ingest.c3d_worker._limit", lambda cap: None)  # would cap this very process
+    monkeypatch.setattr("gaitdisc.ingest.c3d_worker._limit", lambda *_: None)  # would cap this very process
     path = write_c3d(tmp_path / "a.c3d", some_points, some_analog)
     answers = io.BytesIO()
     serve(io.BytesIO(json.dumps(_request(path)).encode() + b"\n"), answers)

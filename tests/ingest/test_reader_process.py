@@ -74,9 +74,37 @@ def test_a_crash_is_said(playing, process):
     assert process.ask(_request("a.c3d")).said == "it crashed (exit code -11)"
 
 
-def test_a_hang_is_ended(playing, process):
+def test_what_waits_for_ever_is_ended_by_the_clock(playing, process):
     playing("time.sleep(100)")
-    assert process.ask(_request("a.c3d", limit_s=0.5)).said == "it had not finished after 0.5 s"
+    assert process.ask(_request("a.c3d", limit_s=0.1)).said == "it had not finished after 0.6 s"
+
+
+@pytest.fixture
+def reading(monkeypatch, tmp_path):
+    """The true worker, with another reader in the place of ezc3d."""
+
+    def read(script: str) -> None:
+        worker = tmp_path / "worker.py"
+        real = f"sys.path.insert(0, {str(reader_process.WORKER.parent)!r})"
+        lines = ["import sys, time", real, "import c3d_worker, numpy as np", "def read(path):", script]
+        served = ["c3d_worker.READERS['ezc3d'] = read", "c3d_worker.serve(sys.stdin.buffer, sys.stdout.buffer)"]
+        worker.write_text("\n".join([*lines, *served]))
+        monkeypatch.setattr(reader_process, "WORKER", worker)
+
+    return read
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="the system ends what takes too much processor time")
+def test_what_computes_for_ever_is_ended_by_its_processor_time(reading, process):
+    reading("    while True: pass")
+    said = "it had not finished after 1 s of processor time"
+    assert process.ask(_request("a.c3d", limit_s=1.0)).said == said
+
+
+def test_a_file_is_not_refused_because_others_use_the_machine(reading, process):
+    """By the clock it takes longer than the processor time that it may; nearly all of that is waiting."""
+    reading("    time.sleep(1.5); return np.ones((50, 9)), np.ones((4, 500)), None")
+    assert process.ask(_request("a.c3d", limit_s=1.0)).points.shape == (50, 9)
 
 
 def test_an_answer_that_breaks_off_is_a_crash(playing, process):

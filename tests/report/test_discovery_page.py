@@ -1,6 +1,7 @@
 import re
 
 import pandas as pd
+import pytest
 from manufactured_discovery import manufactured
 
 from gaitdisc.report.discovery_page import VERDICTS, write_discovery_report
@@ -15,6 +16,7 @@ def test_the_answer_comes_first_and_the_page_needs_nothing_else(tmp_path):
     assert "<script" not in text
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_every_table_lies_beside_the_page(tmp_path):
     write_discovery_report(manufactured(), tmp_path)
     names = {path.stem for path in (tmp_path / "tables").iterdir()}
@@ -23,6 +25,7 @@ def test_every_table_lies_beside_the_page(tmp_path):
     assert (tmp_path / "figures" / "over_stride.csv").is_file()
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_no_gap_is_a_page_too(tmp_path):
     empty = manufactured(verdict="no_gap", where=(), effects=(), rivals=(), findings=(), provenance=None)
     text = write_discovery_report(empty, tmp_path).read_text(encoding="utf-8")
@@ -30,6 +33,7 @@ def test_no_gap_is_a_page_too(tmp_path):
     assert "What else it could be" not in text
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_what_a_file_says_is_text_and_never_markup(tmp_path):
     text = write_discovery_report(manufactured(sentence="<b>lacks</b>"), tmp_path).read_text(encoding="utf-8")
     assert "&lt;b&gt;lacks" in text

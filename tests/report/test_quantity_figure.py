@@ -53,12 +53,14 @@ def test_sentences_say_how_much_is_enough_and_what_was_left_away(run):
     assert left.endswith("180 s.")
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_a_run_that_was_not_ablated_has_no_such_figure(run_maker, tmp_path):
     assert quantity_figure(run_maker(1, outputs=ONE)) is None
     assert quantity_sentences(run_maker(1, outputs=ONE)) == []
     assert "How much data" not in write_report(run_maker(1, outputs=ONE), tmp_path).read_text(encoding="utf-8")
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_the_page_shows_it(run, tmp_path):
     page = write_report(run, tmp_path).read_text(encoding="utf-8")
     assert "How much data is enough" in page

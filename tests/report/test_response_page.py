@@ -3,6 +3,7 @@ import os
 import re
 import signal
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -72,6 +73,7 @@ def test_writing_again_gives_the_same_bytes(page, run, tmp_path):
         assert (tmp_path / file).read_bytes() == (page.parent / file).read_bytes(), file
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_hostile_words_are_only_words(run_maker, tmp_path):
     evil = '<script>alert(1)</script> $\\frac{x}$ "quoted" {{ 7 * 7 }}'
     run = run_maker(outputs=("hip_flexion_r",), title=evil, refusals=(Refusal(evil, evil, evil),))
@@ -84,6 +86,7 @@ def test_hostile_words_are_only_words(run_maker, tmp_path):
     assert all(path.parent == tmp_path / "figures" for path in (tmp_path / "figures").iterdir())
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_everybody_refused(run_maker, refusal, tmp_path):
     text = write_report(run_maker(0, refusals=(refusal,)), tmp_path).read_text(encoding="utf-8")
     assert "No participant could be analysed" in text
@@ -91,6 +94,7 @@ def test_everybody_refused(run_maker, refusal, tmp_path):
     assert "<img" not in text
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_walks_without_a_response_are_still_shown(run_maker, refusal, tmp_path):
     run = replace(run_maker(outputs=("hip_flexion_r",), refusals=(refusal,)), responses=())
     text = write_report(run, tmp_path).read_text(encoding="utf-8")
@@ -98,7 +102,9 @@ def test_walks_without_a_response_are_still_shown(run_maker, refusal, tmp_path):
     assert text.count("<img") == 2
 
 
-def test_several_participants_are_folded_and_none_is_lost(run_maker, tmp_path):
+@pytest.mark.usefixtures("unpainted")
+def test_several_participants_are_folded_and_none_is_lost(run_maker, tmp_path, monkeypatch):
+    monkeypatch.setattr("gaitdisc.report.response_page.MOST_PROCESSES", 1)
     text = write_report(run_maker(3, outputs=("hip_flexion_r",)), tmp_path).read_text(encoding="utf-8")
     assert text.count("<summary>Tables and figures of P0") == 3
     assert "3 participants were analysed" in text
@@ -106,6 +112,7 @@ def test_several_participants_are_folded_and_none_is_lost(run_maker, tmp_path):
     assert (tmp_path / "tables" / "r2-study.csv").is_file()
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_numbers_that_were_not_computed(run_maker, tmp_path):
     run = run_maker(outputs=OUTPUTS)
     run.responses[0].r2["r2"] = np.nan
@@ -114,13 +121,19 @@ def test_numbers_that_were_not_computed(run_maker, tmp_path):
     assert ">nan<" not in text.lower()
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_a_place_that_cannot_be_written_is_said(run, tmp_path):
     (tmp_path / "report").write_text("a file stands where the folder shall be")
     with pytest.raises(GaitdiscError, match="to be written whole"):
         write_report(run, tmp_path / "report")
 
 
-def test_the_paired_tests_have_their_section_and_the_same_bytes(tested_maker, tmp_path):
+def test_the_paired_tests_have_their_section_and_the_same_bytes(tested_maker, tmp_path, monkeypatch):
+    """Without the figures of each participant, which are drawn and compared above."""
+    none = {subject: [] for subject in ("held_out", "residual", "curves", "strides")}
+    brief = partial(response_page.Section, sentences=[], r2=None, reasons=[], dropped=None, figures=none)
+    monkeypatch.setattr(response_page, "MOST_PROCESSES", 1)
+    monkeypatch.setattr(response_page, "_section", lambda _, person, name, *__: brief(person, f"participant-{name}"))
     run = tested_maker(6, ("hip_flexion_r",))
     text = write_report(run, tmp_path / "a").read_text(encoding="utf-8")
     assert text.index("What the models explain") < text.index("Which model explains more") < text.index(">P01</h2>")
@@ -131,12 +144,14 @@ def test_the_paired_tests_have_their_section_and_the_same_bytes(tested_maker, tm
         assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes()
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_too_few_for_a_test_is_said(tested_maker, tmp_path):
     text = write_report(tested_maker(2, ("hip_flexion_r",)), tmp_path).read_text(encoding="utf-8")
     assert "2 participants are too few for a test: the smallest p is 0.5" in text
     assert "figures/comparison.csv" not in text
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_a_run_of_before_there_were_tests_has_no_such_section(run_maker, tmp_path):
     text = write_report(run_maker(2, outputs=("hip_flexion_r",)), tmp_path).read_text(encoding="utf-8")
     assert "Which model explains more" not in text
@@ -153,6 +168,7 @@ def test_participants_drawn_side_by_side_are_those_drawn_alone(run_maker, tmp_pa
         assert path.read_bytes() == (tmp_path / "all" / "figures" / path.name).read_bytes()
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_a_process_that_is_killed_while_it_draws_costs_its_time_alone(run_maker, tmp_path, monkeypatch):
     run = run_maker(3, outputs=("hip_flexion_r",))
     monkeypatch.setattr("gaitdisc.report.response_page.os.cpu_count", lambda: 2)

@@ -72,12 +72,14 @@ def test_an_electrode_that_jumps_is_left_out_by_name(study):
     assert ratios.loc["S03", "tibialis anterior"] == pytest.approx(0.0)
 
 
+@pytest.mark.slow
 def test_the_recordings_are_those_of_the_source(found):
     walks, _, _ = found
     assert walks.strides == 3548
     assert walks.energy_w.mean().round().tolist() == [313, 333, 349, 364, 360, 381, 345, 321, 323]
 
 
+@pytest.mark.slow
 def test_broken_electrodes_are_found(found):
     _, faulty, _ = found
     assert len(faulty) == 12
@@ -85,6 +87,7 @@ def test_broken_electrodes_are_found(found):
     assert faulty["S04", "RF_R"].startswith("no burst")
 
 
+@pytest.mark.slow
 def test_nothing_is_below_what_eight_people_allow(found):
     _, _, tests = found
     assert len(tests) == 8 * 3 * 6
@@ -93,6 +96,7 @@ def test_nothing_is_below_what_eight_people_allow(found):
     assert (tests.loc[tests["different"], "p"] == 2 / 2**8).all()
 
 
+@pytest.mark.slow
 def test_the_hardest_against_the_easiest(found):
     tests = found[2]
     hardest = tests[tests["setting"] == "C6"]

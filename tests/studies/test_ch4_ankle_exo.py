@@ -24,6 +24,7 @@ def test_every_printed_number_has_ours_and_its_source(study):
     assert all(value["source"] for value in printed if value["printed"] != "not printed")
 
 
+@pytest.mark.slow
 def test_the_quick_study_is_the_whole_way_for_one_person(study, tmp_path):
     result = study.run(quick=True, folder=tmp_path, jobs=1)
     assert len(result.run.responses) == len(result.run.quantities) == 1

@@ -50,7 +50,7 @@ def answers(words, folder):
     """Exit code, output and error output of every command, given these words, in an empty folder."""
     given = json.dumps([[str(file), words] for file in COMMANDS])
     command = [sys.executable, "-c", CHILD]
-    done = subprocess.run(command, input=given, cwd=folder, capture_output=True, text=True, timeout=120, check=True)
+    done = subprocess.run(command, input=given, cwd=folder, capture_output=True, text=True, timeout=600, check=True)
     return {Path(file): answer for file, answer in json.loads(done.stdout).items()}
 
 

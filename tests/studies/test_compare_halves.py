@@ -13,6 +13,7 @@ def study(name):
     return module
 
 
+@pytest.mark.slow
 def test_a_planted_shift_is_found_and_nothing_is_named(gait_data):
     found = study("compare_halves").run(gait_data, quick=True)
     percent = {(one.walk, one.shift): one.mismatch.alignment.percent for one in found}
