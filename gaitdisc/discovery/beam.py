@@ -107,6 +107,8 @@ class Beam:
     def _promising(self, now: Weighed, most: int) -> list[Score]:
         """Explanations that could, to first order, make a set cheaper than the cheapest known."""
         fit, account = now.account.fit, now.account
+        if not np.isfinite(now.gap):
+            return []
         scorer = Scorer(now.shooting, account.simulation, account.machine, fit, self.search.places, self.search.rhythm)
         present = now.explanations
         scores = scorer.scores(tuple(one for one in self.search.candidates if identity(one) not in present))
