@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from gaitdisc.discovery.account import Part
-from gaitdisc.discovery.effect_units import channel_unit, places_unit
+from gaitdisc.discovery.effect_units import places_unit, unit_of_channel
 from gaitdisc.discovery.estimates import estimates_of
 from gaitdisc.discovery.evidence import Judged
 from gaitdisc.discovery.held_out import drawn_runs, gap_size, proof_of, runs_of, tested
@@ -48,7 +48,7 @@ def answer(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> tuple[Discove
     """
     now, base = verdict.account, inquiry.search.base
     channels = tuple(name for name, _ in base.observations)
-    floor, proof = now.noise.size, verdict.proof
+    floor, proof = inquiry.noise_floor(now.noise.size), verdict.proof
     before, after = (runs_of(inquiry, one, inquiry.learned, now) for one in (as_read, now))
     train = gap_size(before, after, floor, channels, tested(inquiry, before, after, now))
     held = proof if proof and now.account.parts else proof_of(inquiry, as_read, now, now)
@@ -296,5 +296,4 @@ def units_of(inquiry: Inquiry) -> tuple[str, ...]:
         What was asked.
     """
     base = inquiry.search.base
-    units = {part.name: part.unit for part in (*base.states, *base.inputs, *base.parameters)} | {"t": "s"}
-    return tuple(channel_unit(text, units) for _, text in base.observations)
+    return tuple(unit_of_channel(base, name) for name, _ in base.observations)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gaitdisc.discovery.account import account_for
 from gaitdisc.discovery.candidate import candidates_of
@@ -17,6 +18,7 @@ from gaitdisc.discovery.linearised import linearise, linearise_along
 from gaitdisc.discovery.matched import matched
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.places import kinematic_rates, places_of
+from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.segments import Segments, cut_segments
 from gaitdisc.discovery.shooting import Shooting
@@ -26,6 +28,8 @@ from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
 FEWEST_SAMPLES = 16  # of a segment
+FEWEST_COMPARED = 8  # samples of a segment that went through a filter
+SHORT = 6  # margins in a trial, at least
 GROWTH = 5.0  # of a small change of the start, by which a run is cut
 WILD = 300.0  # growth at which the likelihood has so many hills that none can be trusted
 FIRST_SHARE = 0.3  # of that length, is fitted first, so that the fit of the whole begins near its end
@@ -49,6 +53,8 @@ class Inquiry:
         Trials that are searched and fitted, and trials that are only judged on.
     guess : StateGuess
         States, roughly.
+    record_filter : RecordFilter
+        What the measured channels went through.
     """
 
     search: Search
@@ -56,11 +62,31 @@ class Inquiry:
     learned: tuple[int, ...]
     held_out: tuple[int, ...]
     guess: StateGuess
+    record_filter: RecordFilter
 
     @property
     def rhythm(self) -> Rhythm:
         """The record's times."""
         return self.search.rhythm
+
+    @property
+    def sensor_noise(self) -> NDArray[np.float64]:
+        """Standard deviation of each sensor's noise in the record (channel,), as the file says; NaN where it does not.
+
+        What the file says is that of the sensor; the record's filter leaves less.
+        """
+        given = [self.search.base.sensor(name).sd for name in self.measured.channels]
+        return np.array([np.nan if one is None else one for one in given]) * self.record_filter.gains
+
+    def noise_floor(self, noise: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the size of the noise (channel,): the sensors', or where the file says none, what was estimated.
+
+        Parameters
+        ----------
+        noise : ndarray (channel,)
+            As it was estimated [the channel's unit].
+        """
+        return np.where(np.isnan(self.sensor_noise), noise, self.sensor_noise)
 
     def segments(self, trials: tuple[int, ...], periods: float = 1.0) -> Segments:
         """Cut trials into runs.
@@ -75,7 +101,10 @@ class Inquiry:
         samples = int(
             round(periods * self.rhythm.period * self.rhythm.rate, 6)
         )  # 88 / period / rate * ... may be 87.99
-        return cut_segments(self.measured.drive.samples, trials, max(samples, FEWEST_SAMPLES))
+        passed, lengths = self.record_filter, self.measured.drive.samples
+        wanted = max(samples, FEWEST_SAMPLES, FEWEST_COMPARED * passed.every)
+        margin = min(passed.margin, int(min(lengths[trial] for trial in trials)) // SHORT)
+        return cut_segments(lengths, trials, wanted, margin, passed.every)
 
     def shooting(self, segments: Segments) -> Shooting:
         """Return the segments, ready to be fitted, under noise of unit size.
@@ -86,7 +115,8 @@ class Inquiry:
             The runs.
         """
         channels = self.measured.observed.shape[2]
-        return Shooting(self.measured, segments, white_noise(np.ones(channels)), SUBSTEPS, self.guess.states)
+        noise = white_noise(np.ones(channels))
+        return Shooting(self.measured, segments, noise, SUBSTEPS, self.guess.states, record_filter=self.record_filter)
 
     def as_read(self) -> Judged:
         """Return the simulation as read, fitted to short runs and judged.
@@ -118,7 +148,7 @@ class Inquiry:
         now : Judged
             Fitted to such runs.
         """
-        return now.shooting.segments.length >= TAME * self.rhythm.period * self.rhythm.rate
+        return now.shooting.segments.span >= TAME * self.rhythm.period * self.rhythm.rate
 
     def lengthened(self, now: Judged, most: int = 10**9) -> Judged:
         """Return an account fitted to runs as long as it can follow.
@@ -130,10 +160,11 @@ class Inquiry:
         most : int
             Longest run wanted [samples].
         """
-        longest = min(most, int(min(self.measured.drive.samples[trial] for trial in self.learned)))
-        while now.shooting.segments.length * 2 < longest:
+        shortest = int(min(self.measured.drive.samples[trial] for trial in self.learned))
+        longest = min(most, shortest - 2 * now.shooting.segments.margin)
+        while now.shooting.segments.span * 2 < longest:
             guess = self.guess.with_run(now.shooting.segments, now.account.fit.states)
-            samples = min(LENGTHENED * now.shooting.segments.length, longest)
+            samples = min(LENGTHENED * now.shooting.segments.span, longest)
             shooting = self.shooting(self.segments(self.learned, samples / (self.rhythm.period * self.rhythm.rate)))
             starts = guess.starts(shooting.segments)
             longer = account_for(
@@ -181,8 +212,22 @@ def begin_inquiry(simulation: Simulation, measured: Measured, shapes: tuple[Shap
     trials = len(measured.drive.samples)
     held = max(round(trials / 4), 1)
     guess = guess_states(simulation, measured, rhythm.period, rate_of)
-    inquiry = Inquiry(search, measured, tuple(range(trials - held)), tuple(range(trials - held, trials)), guess)
+    passed = record_filter_of(simulation, measured)
+    inquiry = Inquiry(search, measured, tuple(range(trials - held)), tuple(range(trials - held, trials)), guess, passed)
     return _less_idle(inquiry)
+
+
+def record_filter_of(simulation: Simulation, measured: Measured) -> RecordFilter:
+    """Return what the measured channels went through, as the file says.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        With the measured observations.
+    measured : Measured
+        Its trials.
+    """
+    return RecordFilter(tuple(simulation.sensor(name).lowpass for name, _ in simulation.observations), measured.rate)
 
 
 def _less_idle(inquiry: Inquiry) -> Inquiry:

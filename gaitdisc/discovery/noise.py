@@ -51,23 +51,28 @@ class Noise:
         """Whether what went before says more than next to nothing of what comes."""
         return any(spread[0] > MEMORY * spread[-1] for spread in self.spread)
 
-    def whitened(self, residual: NDArray[np.float64]) -> NDArray[np.float64]:
+    def whitened(self, residual: NDArray[np.float64], known: NDArray[np.bool_] | None = None) -> NDArray[np.float64]:
         """Return residuals as independent numbers of unit variance, if the noise is what it is taken for.
 
         Parameters
         ----------
         residual : ndarray (segment, sample, channel, ...)
-            Each segment begins afresh: its first samples are predicted from the few before them.
+            Each segment begins afresh: its first samples are predicted from the few before them. So it does after
+            samples that are not known.
+        known : ndarray of bool (segment, sample, channel), optional
+            Where there is a residual; nothing is left elsewhere.
         """
         wide = np.ascontiguousarray(residual, float).reshape(*residual.shape[:3], -1)
         if not any(self.lags):
-            return (wide / self.size[:, None]).reshape(residual.shape)
+            white = wide / self.size[:, None]
+            return (white if known is None else white * known[..., None]).reshape(residual.shape)
         out = np.empty_like(wide)
+        there = np.ones(wide.shape[:3], bool) if known is None else known
         for channel, (predictors, spread) in enumerate(zip(self.predictors, self.spread, strict=True)):
             table = np.zeros((len(spread), max(len(spread) - 1, 1)))
             for order, predictor in enumerate(predictors):
                 table[order, :order] = predictor
-            whiten(wide, channel, table, spread, out)
+            whiten(wide, channel, there, table, spread, out)
         return out.reshape(residual.shape)
 
 
@@ -90,7 +95,7 @@ def noise_of(
     Parameters
     ----------
     residual : ndarray (segment, sample, channel)
-        Measured minus fitted. Segments are not joined.
+        Measured minus fitted; NaN where nothing was measured. Segments are not joined.
     used : float
         Numbers that the fit took from each segment and channel; the variance is enlarged accordingly.
     white_share : float
@@ -106,15 +111,16 @@ def noise_of(
     ((0,), True)
     """
     predictors, spread = [], []
-    _, samples, channels = residual.shape
-    enlarge = samples / max(samples - used, 1.0)
+    segments, samples, channels = residual.shape
     always = np.broadcast_to(np.square(least), channels)
     for channel in range(channels):
-        e = residual[:, :, channel]
-        most = min(MOST_LAGS, samples // 4)
-        covariance = (
-            np.array([(e[:, : samples - lag] * e[:, lag:]).sum() / e.size for lag in range(most + 1)]) * enlarge
-        )
+        known = np.isfinite(residual[:, :, channel])
+        e = np.where(known, residual[:, :, channel], 0.0)
+        count = max(int(known.sum()), 1)
+        each = count / segments
+        most = min(MOST_LAGS, int(each) // 4)
+        enlarge = each / max(each - used, 1.0)
+        covariance = np.array([(e[:, : samples - lag] * e[:, lag:]).sum() / count for lag in range(most + 1)]) * enlarge
         covariance[0] = max(covariance[0] + always[channel], np.finfo(float).tiny)
         covariance[1:] /= 1 + white_share
         orders = [np.zeros(0)] + [
@@ -122,7 +128,7 @@ def noise_of(
         ]
         left = np.array([covariance[0] - order @ covariance[1 : len(order) + 1] for order in orders])
         left = np.maximum(left, 1e-12 * covariance[0])
-        best = int(np.argmin(e.size * np.log(left) + np.arange(most + 1) * np.log(e.size)))
+        best = int(np.argmin(count * np.log(left) + np.arange(most + 1) * np.log(count)))
         predictors.append(tuple(orders[: best + 1]))
         spread.append(np.sqrt(left[: best + 1]))
     return Noise(tuple(predictors), tuple(spread))

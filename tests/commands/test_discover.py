@@ -74,7 +74,7 @@ def lab(tmp_path_factory):
     write(folder / "column.csv", table, "trial,time,y")
     write(folder / "short.csv", [row for row in table if row[1] < 0.2])
     write(folder / "constant.csv", [(*row[:2], 1.0) for row in table])
-    write(folder / "nan.csv", [*table[:7], (1, 7 / RATE, float("nan")), *table[8:]])
+    write(folder / "nan.csv", [*table[:7], (1, 7 / RATE, "?"), *table[8:]])
     return folder
 
 
@@ -140,7 +140,7 @@ def test_a_simulation_that_blows_up_names_the_parameter(lab):
         ("column", "the simulation needs a measured column 'x'; column.csv has trial, time, y."),
         ("short", "a trial has 20 samples or more; short.csv, trial '1' has 10."),
         ("constant", "an observed channel varies: 'x'; constant.csv has 1 in every sample."),
-        ("nan", "nan.csv, line 9 (trial '1'), column 'x' has an empty cell."),
+        ("nan", "nan.csv, line 9 (trial '1'), column 'x' has '?'."),
         ("absent", "measured data are read from a table; absent.csv: No such file"),
     ],
 )
