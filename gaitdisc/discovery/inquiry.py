@@ -35,7 +35,7 @@ WILD = 300.0  # growth at which the likelihood has so many hills that none can b
 FIRST_SHARE = 0.3  # of that length, is fitted first, so that the fit of the whole begins near its end
 LENGTHENED = 3  # times as long, again and again, while a run stays with the data
 TAME = 0.8
-FOLLOWED = 1.08  # times the noise of the shorter runs, beyond which a run does not follow the data
+FOLLOWED = 1.08  # times the noise of the shorter runs before any filter, beyond which a run does not follow the data
 SUBSTEPS = 2
 
 
@@ -162,6 +162,7 @@ class Inquiry:
         """
         shortest = int(min(self.measured.drive.samples[trial] for trial in self.learned))
         longest = min(most, shortest - 2 * now.shooting.segments.margin)
+        followed = np.sqrt(1 + (FOLLOWED**2 - 1) / self.record_filter.gains**2)
         while now.shooting.segments.span * 2 < longest:
             guess = self.guess.with_run(now.shooting.segments, now.account.fit.states)
             samples = min(LENGTHENED * now.shooting.segments.span, longest)
@@ -173,7 +174,7 @@ class Inquiry:
             if not np.isfinite(longer.fit.misfit):
                 break
             longer = replace(judged(shooting.with_past(longer.fit.states), self.search.base, longer), gained=now.gained)
-            if (longer.noise.size > FOLLOWED * now.noise.size).any() or not self.search.sensible(longer.account):
+            if (longer.noise.size > followed * now.noise.size).any() or not self.search.sensible(longer.account):
                 break
             fit = longer.account.fit
             if (

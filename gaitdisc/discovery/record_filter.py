@@ -53,9 +53,28 @@ class RecordFilter:
     @property
     def gains(self) -> NDArray[np.float64]:
         """What the filter leaves of white noise (channel,): the standard deviation after over that before."""
+        return np.sqrt((self._response**2).sum(axis=0))
+
+    def memory(self, lags: int) -> NDArray[np.float64]:
+        """Autocorrelation of what the filter leaves of white noise (lag, channel), between the samples compared.
+
+        Parameters
+        ----------
+        lags : int
+            How many, besides lag 0.
+        """
+        response = self._response
+        late = [np.roll(response, lag * self.every, axis=0) for lag in range(lags + 1)]
+        for lag, one in enumerate(late):
+            one[: lag * self.every] = 0.0
+        return np.array([(response * one).sum(axis=0) for one in late]) / (response**2).sum(axis=0)
+
+    @property
+    def _response(self) -> NDArray[np.float64]:
+        """To an impulse (sample, channel)."""
         impulse = np.zeros((1, 8 * max(self.margin, 1) + 1, len(self.cutoffs_hz)))
         impulse[:, impulse.shape[1] // 2] = 1.0
-        return np.sqrt((self.filtered(impulse, 1)[0] ** 2).sum(axis=0))
+        return self.filtered(impulse, 1)[0]
 
     def filtered(self, observed: NDArray[np.float64], axis: int) -> NDArray[np.float64]:
         """Simulated channels as the record would have them.

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.fitted import Fitted
-from gaitdisc.discovery.noise import Noise
+from gaitdisc.discovery.noise import MOST_LAGS, Noise
 from gaitdisc.discovery.prior import Prior
 from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.segments import Segments
@@ -64,6 +64,11 @@ class Shooting:
     def known(self) -> NDArray[np.bool_]:
         """Where there is a measurement (segment, sample, channel)."""
         return np.isfinite(self.seen)
+
+    @cached_property
+    def filter_memory(self) -> NDArray[np.float64] | None:
+        """Autocorrelation of what the record's filter leaves of white noise (lag, channel); None without a filter."""
+        return self.record_filter.memory(MOST_LAGS) if self.record_filter and self.record_filter.margin else None
 
     def run(
         self, machine: Compiled, starts: NDArray[np.float64], values: NDArray[np.float64]

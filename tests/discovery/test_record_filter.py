@@ -56,3 +56,11 @@ def test_without_a_cut_off_nothing_is_done():
 @pytest.mark.parametrize(("cutoffs", "every"), [((6.0,), 4), ((6.0, 3.0), 4), ((6.0, None), 1), ((40.0,), 1)])
 def test_only_as_many_samples_are_compared_as_hold_what_passes(cutoffs, every):
     assert RecordFilter(cutoffs, 100.0).every == every
+
+
+def test_the_memory_of_filtered_noise_is_that_of_its_samples():
+    passed = RecordFilter((6.0,), 100.0)
+    noise = passed.filtered(np.random.default_rng(2).normal(size=(1, 200000, 1)), 1)[0, :: passed.every, 0]
+    measured = [np.mean(noise[: len(noise) - lag] * noise[lag:]) / noise.var() for lag in range(5)]
+    np.testing.assert_allclose(passed.memory(4)[:, 0], measured, atol=0.03)
+    assert RecordFilter((None,), 100.0).memory(2)[:, 0].tolist() == [1.0, 0.0, 0.0]
