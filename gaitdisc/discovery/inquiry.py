@@ -12,6 +12,7 @@ from gaitdisc.discovery.candidate import candidates_of
 from gaitdisc.discovery.catalogue import Shape, known_shapes
 from gaitdisc.discovery.evidence import Judged, judged
 from gaitdisc.discovery.first_states import StateGuess, guess_states
+from gaitdisc.discovery.found_filter import record_filter_of
 from gaitdisc.discovery.grids import Rhythm, rhythm_of
 from gaitdisc.discovery.influence import Idle, idle_parts, refuse_idle
 from gaitdisc.discovery.linearised import linearise, linearise_along
@@ -213,22 +214,10 @@ def begin_inquiry(simulation: Simulation, measured: Measured, shapes: tuple[Shap
     trials = len(measured.drive.samples)
     held = max(round(trials / 4), 1)
     guess = guess_states(simulation, measured, rhythm.period, rate_of)
-    passed = record_filter_of(simulation, measured)
+    passed, findings = record_filter_of(simulation, measured, rhythm.period, guess)
+    measured = replace(measured, findings=(*measured.findings, *findings))
     inquiry = Inquiry(search, measured, tuple(range(trials - held)), tuple(range(trials - held, trials)), guess, passed)
     return _less_idle(inquiry)
-
-
-def record_filter_of(simulation: Simulation, measured: Measured) -> RecordFilter:
-    """Return what the measured channels went through, as the file says.
-
-    Parameters
-    ----------
-    simulation : Simulation
-        With the measured observations.
-    measured : Measured
-        Its trials.
-    """
-    return RecordFilter(tuple(simulation.sensor(name).lowpass for name, _ in simulation.observations), measured.rate)
 
 
 def _less_idle(inquiry: Inquiry) -> Inquiry:

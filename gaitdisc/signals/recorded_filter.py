@@ -1,9 +1,9 @@
 """Which zero-lag low-pass a record went through, read off its spectrum.
 
-White sensor noise that went through a Butterworth filter forwards and backwards falls as 1/(1 + w^2n)^2 above the cut-off,
-w = tan(pi f / rate) / tan(pi fc / rate): by 48 dB an octave for n = 2. Nothing that walks does that by itself. The power
-spectrum (Welch 1967, Blackman-Harris window: side lobes 92 dB down) is fitted by the likelihood of Whittle (1953): signal
-and noise behind a filter and above a floor of rounding, against the same without the filter.
+White sensor noise that went through a Butterworth filter of order 2 forwards and backwards falls as 1/(1 + w^4)^2
+above the cut-off, w = tan(pi f / rate) / tan(pi fc / rate): by 48 dB an octave. Nothing that walks does that by itself.
+The power spectrum (Welch 1967, Blackman-Harris window: side lobes 92 dB down) is fitted by the likelihood of Whittle
+(1953): signal and noise behind a filter and above a floor of rounding, against the same without the filter.
 """
 
 from __future__ import annotations
@@ -16,10 +16,18 @@ from numpy.typing import NDArray
 
 WINDOW = 512  # samples
 FEWEST = 128  # samples of a trial whose spectrum is looked at
+FEWEST_LINES = 24
 BLACKMAN_HARRIS = (0.35875, -0.48829, 0.14128, -0.01168)
 SIGNAL = 1e-2  # of the strongest line: above it all is signal
-BEGINNINGS = (0.03, 0.06, 0.12, 0.2)  # cut-offs that a search begins from, of the rate
+BEGINNINGS = (0.02, 0.04, 0.07, 0.11, 0.17)  # cut-offs that a search begins from, of the rate
+LEAST = 1e-32  # power, of the strongest line: beyond the digits of a number
+BOUNDS = ((-90, 9), (-90, 9), (-5, 8), (-90, 9), (np.log(2e-3), np.log(0.45)))  # logarithms
+HIGHEST = 0.2  # cut-off, of the rate: one above leaves too little to be seen
 FALLEN = 1e3  # times the power just below half the rate, which there is just above the cut-off at least
+FALLING = (
+    30.0  # times the power just below half the rate, which there is at a quarter of the rate, where nothing is rounded
+)
+ROUNDED = 100.0  # times the power of rounding, below which a floor is one of digits and not of a sensor
 CLEARLY = 60.0  # by which the log likelihood must be better with the filter than without
 
 
@@ -41,27 +49,39 @@ class Spectrum:
     power: NDArray[np.float64]
     windows: int
 
+    def lines(self, kept: slice) -> Spectrum:
+        """Return some of the lines.
+
+        Parameters
+        ----------
+        kept : slice
+            Which.
+        """
+        return Spectrum(self.frequency[kept], self.power[kept], self.windows)
+
 
 @dataclass(frozen=True)
 class RecordedFilter:
-    """A filter that was found in a record.
+    """A filter that was found in a record: a Butterworth low-pass of order 2, forwards and back.
 
     Parameters
     ----------
     cutoff_hz : float
         -3 dB frequency of one pass.
-    order : int
-        Of one pass; it ran forwards and backwards.
     gained : float
         Log likelihood with it less that without it.
+    signal : float
+        Power of the signal over that of the noise at the cut-off: where it is far above 1, the number is rough.
     """
 
     cutoff_hz: float
-    order: int
     gained: float
+    signal: float
 
 
-def recorded_filter(trials: Sequence[NDArray[np.float64]], rate_hz: float) -> RecordedFilter | None:
+def recorded_filter(
+    trials: Sequence[NDArray[np.float64]], rate_hz: float, like: Sequence[NDArray[np.float64]] | None = None
+) -> RecordedFilter | None:
     """Find the zero-lag low-pass that a channel went through.
 
     Parameters
@@ -70,11 +90,13 @@ def recorded_filter(trials: Sequence[NDArray[np.float64]], rate_hz: float) -> Re
         One channel of each trial, evenly sampled; NaN where nothing was measured.
     rate_hz : float
         Samples a second.
+    like : sequence of ndarray (sample,), optional
+        The same channel as a simulation has it, before any filter: the signal's spectrum is like that of these.
 
     Returns
     -------
     RecordedFilter or None
-        None where the spectrum shows none. Where the signal reaches far above the cut-off, its number is rough.
+        None where the spectrum shows none.
 
     References
     ----------
@@ -85,25 +107,25 @@ def recorded_filter(trials: Sequence[NDArray[np.float64]], rate_hz: float) -> Re
     >>> from scipy.signal import butter, sosfiltfilt
     >>> noise = np.random.default_rng(0).normal(size=4000)
     >>> low = sosfiltfilt(butter(2, 6.0, fs=100.0, output="sos"), noise)
-    >>> found = recorded_filter([low], 100.0)
-    >>> found.order, bool(abs(found.cutoff_hz - 6.0) < 0.5), recorded_filter([noise], 100.0)
-    (2, True, None)
+    >>> bool(abs(recorded_filter([low], 100.0).cutoff_hz - 6.0) < 0.5), recorded_filter([noise], 100.0)
+    (True, None)
     """
     spectrum = spectrum_of(trials)
-    if spectrum is None:
+    if spectrum is None or not _may_be_filtered(spectrum, trials):
         return None
-    above = _above_the_signal(spectrum)
-    if len(above.frequency) < 24:
+    kept = _above_the_signal(spectrum)
+    above = spectrum.lines(kept)
+    if len(above.frequency) < FEWEST_LINES:
         return None
-    without = max(_likelihood(above, 0, 0, share)[0] for share in BEGINNINGS)
-    found = []
-    for order, passes in ((2, 1), (2, 2), (4, 2)):
-        likelihood, cutoff = max(_likelihood(above, order, passes, share) for share in BEGINNINGS)
-        found.append((likelihood - without, order, passes, cutoff))
-    gained, order, passes, cutoff = max(found)
-    if gained < CLEARLY or passes < 2 or not 0.005 < cutoff < 0.45 or not _falls_far(above, cutoff):
+    model = spectrum_of(like) if like is not None else None
+    shape = np.ones(len(above.power)) if model is None else np.interp(above.frequency, model.frequency, model.power)
+    fit = _Fit(above, shape / shape[0])
+    without = fit.best(())
+    found = max(fit.best((begin,)) for begin in BEGINNINGS)
+    gained, cutoff = (found[0] - without[0]) * spectrum.windows, found[1]
+    if gained < CLEARLY or not 0.005 < cutoff < HIGHEST or not _falls_far(above, cutoff):
         return None
-    return RecordedFilter(cutoff * rate_hz, order, gained)
+    return RecordedFilter(cutoff * rate_hz, gained, found[2])
 
 
 def spectrum_of(trials: Sequence[NDArray[np.float64]]) -> Spectrum | None:
@@ -135,11 +157,22 @@ def _whole_stretches(trial: NDArray[np.float64]) -> list[NDArray[np.float64]]:
     return [trial[first:end] for first, end in edges.reshape(-1, 2)]
 
 
-def _above_the_signal(spectrum: Spectrum) -> Spectrum:
+def _may_be_filtered(spectrum: Spectrum, trials: Sequence[NDArray[np.float64]]) -> bool:
+    """Whether the power falls up to half the rate, or ends on the floor of the digits that were written."""
+    quarter = float(np.median(spectrum.power[(spectrum.frequency > 0.2) & (spectrum.frequency < 0.28)]))
+    end = float(np.median(spectrum.power[(spectrum.frequency > 0.42) & (spectrum.frequency < 0.48)]))
+    if quarter > FALLING * end:
+        return True
+    steps = np.abs(np.concatenate([np.diff(trial[np.isfinite(trial)]) for trial in trials]))
+    step = float(steps[steps > 0].min()) if (steps > 0).any() else 0.0
+    length = 2 * (len(spectrum.frequency) - 1)
+    return end < ROUNDED * step**2 / 12 * length * float(np.square(BLACKMAN_HARRIS) @ [1.0, 0.5, 0.5, 0.5])
+
+
+def _above_the_signal(spectrum: Spectrum) -> slice:
     """Return the lines beyond the last one that is surely signal, without those next to half the rate."""
     surely = np.flatnonzero(spectrum.power > SIGNAL * spectrum.power[2:].max())
-    kept = slice(int(surely[-1]) + 1, len(spectrum.power) - 3)
-    return Spectrum(spectrum.frequency[kept], np.maximum(spectrum.power[kept], 1e-300), spectrum.windows)
+    return slice(int(surely[-1]) + 1, len(spectrum.power) - 3)
 
 
 def _falls_far(spectrum: Spectrum, cutoff: float) -> bool:
@@ -148,23 +181,54 @@ def _falls_far(spectrum: Spectrum, cutoff: float) -> bool:
     return bool(near.size) and float(np.median(near)) > FALLEN * float(np.median(spectrum.power[-12:]))
 
 
-def _likelihood(spectrum: Spectrum, order: int, passes: int, begin: float) -> tuple[float, float]:
-    """Whittle's log likelihood of signal and white noise behind a filter, above a floor, and the cut-off found."""
-    from scipy.optimize import minimize
+class _Fit:
+    """Whittle's likelihood of signal and white noise behind a filter, above a floor.
 
-    frequency, power = spectrum.frequency, spectrum.power
-    low = frequency < 2 * begin
-    level = np.log(np.median(power[low] if low.any() else power))
-    first = np.array([level, np.log(begin), np.log(power[:3].mean()), np.log(30.0), np.log(np.median(power[-12:]))])
+    The numbers: logarithms of the noise, of the signal at the first line, of its decay, of the floor, of the cut-off.
+    """
 
-    def misfit(values: NDArray[np.float64]) -> float:
-        noise, cutoff, signal, decay, floor = values
-        w = np.tan(np.pi * frequency) / np.tan(np.pi * np.clip(np.exp(cutoff), 1e-4, 0.49))
-        passed = (1 + w ** (2 * order)) ** -float(passes) if passes else 1.0
-        falling = np.exp(np.clip(signal, -600, 600) - np.exp(np.clip(decay, -5, 8)) * (frequency - frequency[0]))
-        expected = (falling + np.exp(np.clip(noise, -600, 600))) * passed + np.exp(np.clip(floor, -600, 600))
-        return float(np.sum(np.log(expected) + power / expected))
+    def __init__(self, spectrum: Spectrum, shape: NDArray[np.float64]) -> None:
+        self.frequency, self.shape = spectrum.frequency, shape
+        self.power = np.maximum(spectrum.power / spectrum.power.max(), LEAST)
+        self.tan, self.beyond = np.tan(np.pi * spectrum.frequency), spectrum.frequency - spectrum.frequency[0]
 
-    options = {"maxiter": 1500, "maxfev": 1500, "xatol": 1e-3, "fatol": 1e-2 / spectrum.windows}
-    found = minimize(misfit, first, method="Nelder-Mead", options=options)
-    return -float(found.fun) * spectrum.windows, float(np.exp(found.x[1]))
+    def best(self, cutoff: tuple[float, ...]) -> tuple[float, float, float]:
+        """Likelihood of a window, cut-off, and the signal over the noise there; no filter where none is begun with."""
+        from scipy.optimize import minimize
+
+        begun = self._begun(cutoff)
+        found = minimize(
+            self._misfit, begun, method="L-BFGS-B", jac=True, bounds=BOUNDS[: len(begun)], options={"maxiter": 200}
+        )
+        noise, signal, decay, _ = found.x[:4]
+        at = float(np.exp(found.x[4])) if cutoff else float(self.frequency[-1])
+        shape = float(np.interp(at, self.frequency, self.shape))
+        over = signal - noise - np.exp(decay) * (at - self.frequency[0]) + np.log(max(shape, 1e-300))
+        return -float(found.fun), at, float(np.exp(np.clip(over, -99, 99)))
+
+    def _begun(self, cutoff: tuple[float, ...]) -> NDArray[np.float64]:
+        low = self.frequency < 2 * cutoff[0] if cutoff else np.zeros(len(self.power), bool)
+        level = np.log(np.median(self.power[low] if low.any() else self.power))
+        floor = np.log(np.median(self.power[-12:]))
+        begun = [level, np.log(self.power[:3].mean()), np.log(30.0), floor, *np.log(cutoff)]
+        return np.clip(begun, *zip(*BOUNDS[: len(begun)], strict=True))
+
+    def _misfit(self, values: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
+        """Minus the log likelihood and its slopes."""
+        passed, steeper = self._passed(values[4:])
+        decay = np.exp(values[2]) * self.beyond
+        noise, signal = np.exp(values[0]) * passed, np.exp(values[1] - decay) * self.shape * passed
+        floor = np.exp(values[3])
+        expected = noise + signal + floor
+        over = 1 / expected - self.power / expected**2
+        slopes = [noise, signal, -decay * signal, np.full(len(expected), floor)]
+        slopes += [] if steeper is None else [(noise + signal) * steeper]
+        return float(np.sum(np.log(expected) + self.power / expected)), np.array([over @ one for one in slopes])
+
+    def _passed(self, cutoff: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
+        """What the filter passes of the power, and by which share that grows with the logarithm of the cut-off."""
+        if not len(cutoff):
+            return np.ones(len(self.power)), None
+        at = np.exp(cutoff[0])
+        ratio = (self.tan / np.tan(np.pi * at)) ** 4
+        return (1 + ratio) ** -2.0, 8 * ratio / (1 + ratio) * 2 * np.pi * at / np.sin(2 * np.pi * at)
