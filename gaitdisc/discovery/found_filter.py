@@ -22,7 +22,7 @@ from gaitdisc.signals.recorded_filter import RecordedFilter, recorded_filter
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
 
-SURE = 0.1  # of the noise's power at the cut-off, up to which a signal there is not in the way
+SURE = 4.0  # times the noise's power at the cut-off, up to which a signal there is not in the way
 ALIKE = 1.3  # between the cut-offs of channels that went through one filter
 OVERLAP = 4  # times as long a run is as what it shares with the next on either side
 FEWEST_SAMPLES = 16  # of a run
@@ -72,7 +72,8 @@ def _inputs_are_filtered(measured: Measured) -> bool:
     drive = measured.drive
     trials = [each[:samples] for each, samples in zip(drive.inputs, drive.samples, strict=True)]
     count = drive.inputs.shape[2]
-    return any(recorded_filter([each[:, number] for each in trials], drive.rate) for number in range(count))
+    found = [recorded_filter([each[:, number] for each in trials], drive.rate) for number in range(count)]
+    return any(one is not None and one.signal < SURE for one in found)
 
 
 def _together(cutoffs: dict[int, float]) -> dict[int, float]:

@@ -28,6 +28,7 @@ FALLING = (
     30.0  # times the power just below half the rate, which there is at a quarter of the rate, where nothing is rounded
 )
 ROUNDED = 100.0  # times the power of rounding, below which a floor is one of digits and not of a sensor
+SPREAD = 1e-8  # of the strongest line: what the window itself spreads, and no sensor is so quiet
 CLEARLY = 60.0  # by which the log likelihood must be better with the filter than without
 
 
@@ -123,7 +124,7 @@ def recorded_filter(
     without = fit.best(())
     found = max(fit.best((begin,)) for begin in BEGINNINGS)
     gained, cutoff = (found[0] - without[0]) * spectrum.windows, found[1]
-    if gained < CLEARLY or not 0.005 < cutoff < HIGHEST or not _falls_far(above, cutoff):
+    if gained < CLEARLY or cutoff > HIGHEST or not _falls_far(above, cutoff):
         return None
     return RecordedFilter(cutoff * rate_hz, gained, found[2])
 
@@ -161,7 +162,7 @@ def _may_be_filtered(spectrum: Spectrum, trials: Sequence[NDArray[np.float64]]) 
     """Whether the power falls up to half the rate, or ends on the floor of the digits that were written."""
     quarter = float(np.median(spectrum.power[(spectrum.frequency > 0.2) & (spectrum.frequency < 0.28)]))
     end = float(np.median(spectrum.power[(spectrum.frequency > 0.42) & (spectrum.frequency < 0.48)]))
-    if quarter > FALLING * end:
+    if quarter > FALLING * end or end < SPREAD * float(spectrum.power.max()):
         return True
     steps = np.abs(np.concatenate([np.diff(trial[np.isfinite(trial)]) for trial in trials]))
     step = float(steps[steps > 0].min()) if (steps > 0).any() else 0.0
