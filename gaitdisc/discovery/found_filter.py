@@ -1,4 +1,4 @@
-"""The low-pass that a record went through, where the file does not say: found in its spectrum, and told.
+"""The low-pass that a record went through, where the file does not say: found in its spectrum, with a finding.
 
 Where noise shows at the cut-off, the record's spectrum alone shows it. Where the signal reaches beyond it, the signal's
 own fall is in the way; then the simulation as read, laid over the record run by run, says how the signal falls.
