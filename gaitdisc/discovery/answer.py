@@ -65,7 +65,7 @@ def answer(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> tuple[Discove
         held_out,
         channels,
         units_of(inquiry),
-        drawn_runs(inquiry, held.before, held.after, inquiry.held_out),
+        drawn_runs(inquiry, held.before, held.after),
         inquiry.measured.findings,
         corrections=moved,
     )

@@ -234,7 +234,7 @@ def gap_size(
     return GapSize(whole[0], whole[1], whole[2], test.p, sizes, test.pieces)
 
 
-def drawn_runs(inquiry: Inquiry, before: Trial, after: Trial, trials: tuple[int, ...]) -> Runs:
+def drawn_runs(inquiry: Inquiry, before: Trial, after: Trial) -> Runs:
     """Return the runs as a report draws them.
 
     Parameters
@@ -243,8 +243,6 @@ def drawn_runs(inquiry: Inquiry, before: Trial, after: Trial, trials: tuple[int,
         The trials.
     before, after : Trial
         The same runs of the simulation as read and with what was found.
-    trials : tuple of int
-        Which trials they lie in.
     """
     segments, drive = before.segments, inquiry.measured.drive
     names = [one.name for one in inquiry.search.base.inputs]

@@ -146,8 +146,8 @@ def noise_of(
 
 def _predicted(covariance: NDArray[np.float64]) -> tuple[list[NDArray[np.float64]], NDArray[np.float64]]:
     """Predictors of each order from a covariance (lag,), and what each leaves (order,)."""
-    orders = [np.zeros(0)] + [
-        solve_toeplitz(covariance[:order], covariance[1 : order + 1]) for order in range(1, len(covariance))
-    ]
-    left = np.array([covariance[0] - order @ covariance[1 : len(order) + 1] for order in orders])
+    orders = [np.zeros(0)]
+    for order in range(1, len(covariance)):
+        orders.append(np.asarray(solve_toeplitz(covariance[:order], covariance[1 : order + 1]), np.float64))
+    left = np.array([float(covariance[0] - order @ covariance[1 : len(order) + 1]) for order in orders])
     return orders, np.maximum(left, 1e-12 * covariance[0])

@@ -134,7 +134,7 @@ def _likelihood(
     """(-2 log restricted likelihood, level) of residuals whose variance is level times a covariance."""
     count = known - starts.shape[0] * starts.shape[2]
     factor = np.linalg.cholesky(covariance)
-    white = np.linalg.solve(factor, np.concatenate([residual[..., None], starts], axis=2))
+    white = np.asarray(np.linalg.solve(factor, np.concatenate([residual[..., None], starts], axis=2)), np.float64)
     basis = start_basis(white[..., 1:])
     left = white[..., 0] - (basis @ (np.swapaxes(basis, 1, 2) @ white[..., :1]))[..., 0]
     level = float((left**2).sum()) / count

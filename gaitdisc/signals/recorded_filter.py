@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+ORDER, OTHER = 2, 4  # of one pass: the filter that is sought, and a steeper one
 WINDOW = 512  # samples
 FEWEST = 128  # samples of a trial whose spectrum is looked at
 FEWEST_LINES = 24
@@ -97,7 +98,7 @@ def recorded_filter(
     Returns
     -------
     RecordedFilter or None
-        None where the spectrum shows none.
+        None where the spectrum shows none, or one of order 4.
 
     References
     ----------
@@ -120,11 +121,11 @@ def recorded_filter(
         return None
     model = spectrum_of(like) if like is not None else None
     shape = np.ones(len(above.power)) if model is None else np.interp(above.frequency, model.frequency, model.power)
-    fit = _Fit(above, shape / shape[0])
-    without = fit.best(())
-    found = max(fit.best((begin,)) for begin in BEGINNINGS)
-    gained, cutoff = (found[0] - without[0]) * spectrum.windows, found[1]
-    if gained < CLEARLY or cutoff > HIGHEST or not _falls_far(above, cutoff):
+    fits = [_Fit(above, shape / shape[0], order) for order in (ORDER, OTHER)]
+    found, other = (max(fit.best((begin,)) for begin in BEGINNINGS) for fit in fits)
+    gained, cutoff = (found[0] - fits[0].best(())[0]) * spectrum.windows, found[1]
+    steeper = (other[0] - found[0]) * spectrum.windows > CLEARLY
+    if gained < CLEARLY or cutoff > HIGHEST or not _falls_far(above, cutoff) or steeper:
         return None
     return RecordedFilter(cutoff * rate_hz, gained, found[2])
 
@@ -150,7 +151,7 @@ def spectrum_of(trials: Sequence[NDArray[np.float64]]) -> Spectrum | None:
             part = stretch[begin : begin + length]
             part = part - line @ np.linalg.lstsq(line, part, rcond=None)[0]
             powers.append(np.abs(np.fft.rfft(part * window)) ** 2)
-    return Spectrum(np.fft.rfftfreq(length), np.mean(powers, axis=0), len(powers))
+    return Spectrum(np.arange(length // 2 + 1) / length, np.mean(powers, axis=0), len(powers))
 
 
 def _whole_stretches(trial: NDArray[np.float64]) -> list[NDArray[np.float64]]:
@@ -188,8 +189,8 @@ class _Fit:
     The numbers: logarithms of the noise, of the signal at the first line, of its decay, of the floor, of the cut-off.
     """
 
-    def __init__(self, spectrum: Spectrum, shape: NDArray[np.float64]) -> None:
-        self.frequency, self.shape = spectrum.frequency, shape
+    def __init__(self, spectrum: Spectrum, shape: NDArray[np.float64], order: int = ORDER) -> None:
+        self.frequency, self.shape, self.order = spectrum.frequency, shape, order
         self.power = np.maximum(spectrum.power / spectrum.power.max(), LEAST)
         self.tan, self.beyond = np.tan(np.pi * spectrum.frequency), spectrum.frequency - spectrum.frequency[0]
 
@@ -211,8 +212,9 @@ class _Fit:
         low = self.frequency < 2 * cutoff[0] if cutoff else np.zeros(len(self.power), bool)
         level = np.log(np.median(self.power[low] if low.any() else self.power))
         floor = np.log(np.median(self.power[-12:]))
-        begun = [level, np.log(self.power[:3].mean()), np.log(30.0), floor, *np.log(cutoff)]
-        return np.clip(begun, *zip(*BOUNDS[: len(begun)], strict=True))
+        begun = np.array([level, np.log(self.power[:3].mean()), np.log(30.0), floor, *np.log(cutoff)])
+        low, high = np.array(BOUNDS[: len(begun)]).T
+        return np.clip(begun, low, high)
 
     def _misfit(self, values: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
         """Minus the log likelihood and its slopes."""
@@ -231,5 +233,6 @@ class _Fit:
         if not len(cutoff):
             return np.ones(len(self.power)), None
         at = np.exp(cutoff[0])
-        ratio = (self.tan / np.tan(np.pi * at)) ** 4
-        return (1 + ratio) ** -2.0, 8 * ratio / (1 + ratio) * 2 * np.pi * at / np.sin(2 * np.pi * at)
+        ratio = (self.tan / np.tan(np.pi * at)) ** (2 * self.order)
+        steeper = 4 * self.order * ratio / (1 + ratio) * 2 * np.pi * at / np.sin(2 * np.pi * at)
+        return (1 + ratio) ** -2.0, steeper

@@ -76,7 +76,8 @@ def on_even_time(
         rate, off = _shaken(trial.time, place, where)
         worst = 100 * float(np.abs(off).max())
         if worst > 100 * EVEN:
-            even, what = _resampled(trial, (place + float(np.median(trial.time * rate - place))) / rate, inputs)
+            first = float(np.median(trial.time * rate - place))
+            even, what = _resampled(trial, np.asarray((place + first) / rate, np.float64), inputs)
             what = f"trial {trial.name!r}: times lie up to {worst:.1f} % of a step beside an even clock; {what}"
             findings.append(Finding("note", "clock", source, what, "nothing at this size"))
     missing = int(place[-1]) + 1 - len(place)

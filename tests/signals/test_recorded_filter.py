@@ -72,3 +72,7 @@ def test_the_spectrum_is_that_of_whole_stretches():
     spectrum = spectrum_of([trial])
     assert spectrum.frequency[np.argmax(spectrum.power)] == pytest.approx(0.1, abs=0.003)
     assert spectrum.windows == 2 + 6
+
+
+def test_a_steeper_filter_is_not_taken_for_one_of_order_2():
+    assert recorded_filter(_trials(0.1, 6.0, order=4), RATE) is None
