@@ -46,7 +46,10 @@ def rows(trials=4, samples=400):
 
 
 def write(path, table, head="trial,time,x"):
-    path.write_text("\n".join([head, *(",".join(cell if isinstance(cell, str) else f"{cell:.7g}" for cell in row) for row in table)]) + "\n")
+    lines = [",".join(cell if isinstance(cell, str) else f"{cell:.7g}" for cell in row) for row in table]
+    path.write_text("\n".join([head, *lines]) + "\n")
+        + "\n"
+    )
 
 
 @pytest.fixture(scope="module")
