@@ -48,8 +48,6 @@ def rows(trials=4, samples=400):
 def write(path, table, head="trial,time,x"):
     lines = [",".join(cell if isinstance(cell, str) else f"{cell:.7g}" for cell in row) for row in table]
     path.write_text("\n".join([head, *lines]) + "\n")
-        + "\n"
-    )
 
 
 @pytest.fixture(scope="module")
