@@ -102,6 +102,8 @@ class Experiment:
         Samples by which the recorded push is ahead of the true one; negative where it is behind.
     shaking : float
         Standard deviation of a random push that nobody records [N].
+    lowpass_hz : float
+        Of the zero-lag low-pass (order 2, forwards and back) that signal and noise go through; 0 for none.
     """
 
     trials: int = 4
@@ -110,6 +112,7 @@ class Experiment:
     cutoff_hz: float = 0.0
     late: int = 0
     shaking: float = 0.0
+    lowpass_hz: float = 0.0
 
 
 def mass() -> Simulation:
@@ -151,12 +154,18 @@ def record(truth: Simulation, seed: int, how: Experiment | None = None) -> Measu
     error = _noise(rng, seen.shape, how.cutoff_hz) * how.noise * seen.std(axis=(0, 1))
     names = tuple(str(trial + 1) for trial in range(how.trials))
     told = Drive.of([push[recorded] for push in pushes], RATE)
-    return Measured(told, seen + error, names, machine.observed)
+    return Measured(told, _passed(seen + error, how.lowpass_hz), names, machine.observed)
 
 
 def _push(rng: np.random.Generator, t: NDArray[np.float64]) -> NDArray[np.float64]:
     frequencies = rng.uniform(0.15, 1.2, 6)
     return (rng.uniform(2, 5, 6) * np.sin(2 * np.pi * np.outer(t, frequencies) + rng.uniform(0, 6.3, 6))).sum(axis=1)
+
+
+def _passed(seen: NDArray[np.float64], lowpass_hz: float) -> NDArray[np.float64]:
+    if not lowpass_hz:
+        return seen
+    return sosfiltfilt(butter(2, lowpass_hz, fs=RATE, output="sos"), seen, axis=1)
 
 
 def _noise(rng: np.random.Generator, shape: tuple[int, ...], cutoff_hz: float) -> NDArray[np.float64]:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from gaitdisc.discovery.account import Part
-from gaitdisc.discovery.effect_units import channel_unit, places_unit
+from gaitdisc.discovery.effect_units import places_unit, unit_of_channel
 from gaitdisc.discovery.estimates import estimates_of
 from gaitdisc.discovery.evidence import Judged
 from gaitdisc.discovery.held_out import drawn_runs, gap_size, proof_of, runs_of, tested
@@ -15,7 +15,6 @@ from gaitdisc.discovery.inquiry import Inquiry
 from gaitdisc.discovery.moved import corrected, corrections_of, file_bounds
 from gaitdisc.discovery.odd_trials import KIND as ODD_TRIAL
 from gaitdisc.discovery.rivals import Rival, evidence_of, rivals_of
-from gaitdisc.discovery.sensor_noise import sensor_noise
 from gaitdisc.discovery.shaken import Shaken
 from gaitdisc.discovery.verdict import Verdict
 from gaitdisc.discovery.wording import sentence_of
@@ -49,7 +48,7 @@ def answer(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> tuple[Discove
     """
     now, base = verdict.account, inquiry.search.base
     channels = tuple(name for name, _ in base.observations)
-    floor, proof = sensor_noise(inquiry.measured.observed), verdict.proof
+    floor, proof = inquiry.noise_floor(now.noise.size), verdict.proof
     before, after = (runs_of(inquiry, one, inquiry.learned, now) for one in (as_read, now))
     train = gap_size(before, after, floor, channels, tested(inquiry, before, after, now))
     held = proof if proof and now.account.parts else proof_of(inquiry, as_read, now, now)
@@ -66,7 +65,7 @@ def answer(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> tuple[Discove
         held_out,
         channels,
         units_of(inquiry),
-        drawn_runs(inquiry, held.before, held.after, inquiry.held_out),
+        drawn_runs(inquiry, held.before, held.after),
         inquiry.measured.findings,
         corrections=moved,
     )
@@ -296,5 +295,4 @@ def units_of(inquiry: Inquiry) -> tuple[str, ...]:
         What was asked.
     """
     base = inquiry.search.base
-    units = {part.name: part.unit for part in (*base.states, *base.inputs, *base.parameters)} | {"t": "s"}
-    return tuple(channel_unit(text, units) for _, text in base.observations)
+    return tuple(unit_of_channel(base, name) for name, _ in base.observations)

@@ -15,9 +15,8 @@ from gaitdisc.discovery.growth import leaves
 from gaitdisc.discovery.held_out import proof_of
 from gaitdisc.discovery.inquiry import Inquiry
 from gaitdisc.discovery.nameless import nameless_terms
-from gaitdisc.discovery.segments import cut_segments
 from gaitdisc.discovery.sensor_noise import sensor_noise
-from gaitdisc.discovery.windows import as_read_on, longest_run, near_runs, on_longer_runs
+from gaitdisc.discovery.windows import as_read_on, longest_run, near_runs, on_longer_runs, shooting_of
 
 MERE_NOISE = 1.3  # times the variance of the sensors' noise: its own estimate errs
 AGREES = 1.5  # times the root mean square that a simulation that lacks nothing may leave
@@ -62,20 +61,27 @@ def scale_of(inquiry: Inquiry) -> GapScale:
     """
     observed = inquiry.measured.observed
     spread = np.nanstd(observed, axis=(0, 1))
-    return GapScale(sensor_noise(observed), np.where(spread > 0, spread, 1.0))
+    known = inquiry.sensor_noise
+    noise = np.where(np.isnan(known), sensor_noise(observed), known)
+    return GapScale(noise, np.where(spread > 0, spread, 1.0))
 
 
-def leaves_noise(scale: GapScale, now: Judged) -> bool:
+def leaves_noise(inquiry: Inquiry, now: Judged) -> bool:
     """Whether what an account leaves is no larger than the noise of the sensors.
+
+    Where this is not known (a filtered record whose file does not say it): whether it remembers no more than the filter.
 
     Parameters
     ----------
-    scale : GapScale
-        With that noise.
+    inquiry : Inquiry
+        The trials.
     now : Judged
         Fitted.
     """
-    return leaves(now, scale.noise) < MERE_NOISE
+    known = np.isfinite(inquiry.sensor_noise)
+    if not known.all():
+        return not now.noise.remembers
+    return leaves(now, inquiry.sensor_noise) < MERE_NOISE
 
 
 def agrees(scale: GapScale, now: Judged) -> bool:
@@ -154,7 +160,7 @@ def whole_runs_err_less(inquiry: Inquiry, as_read: Weighed, now: Weighed) -> boo
     as_read, now : Weighed
         The simulation as read and with the set.
     """
-    whole = cut_segments(inquiry.measured.drive.samples, inquiry.learned, longest_run(inquiry))
+    whole = shooting_of(inquiry, longest_run(inquiry)).segments
     like = Judged(now.account, replace(now.shooting, segments=whole))
     proof = proof_of(inquiry, judged_of(as_read), judged_of(now), like)
     spread = np.nanstd(inquiry.measured.observed, axis=(0, 1))

@@ -98,7 +98,7 @@ def judge(inquiry: Inquiry, as_read: Judged) -> Verdict:
     scale = scale_of(inquiry)
     as_read, named, rivals = searched(inquiry, as_read, scale)
     named = lasting(inquiry, as_read, named)
-    exact = leaves_noise(scale, named)
+    exact = leaves_noise(inquiry, named)
     plain = None if exact else plainest(inquiry, scale, named)
     if plain:
         return plain
@@ -306,8 +306,8 @@ def decided(inquiry: Inquiry, named: Judged, rivals: list[Judged]) -> tuple[Judg
     if len(named.account.parts) > 1:
         return longer, rivals
     near = [one for one in rivals if one is not named and one.evidence < named.evidence + NEAR][:MOST_NEAR]
-    near = [inquiry.lengthened(one, longer.shooting.segments.length) for one in near]
-    near = [one for one in near if one.shooting.segments.length == longer.shooting.segments.length]
+    near = [inquiry.lengthened(one, longer.shooting.segments.span) for one in near]
+    near = [one for one in near if one.shooting.segments.span == longer.shooting.segments.span]
     first, *others = ranked(compared([longer, *near], inquiry.search.base), inquiry.search.candidates)
     others = [replace(one, gained=first.gained + first.evidence - one.evidence) for one in others]
     decided_on = {one.labels for one in (first, *others)}

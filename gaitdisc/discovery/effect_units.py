@@ -95,6 +95,27 @@ def channel_unit(expression: str, units: Mapping[str, str]) -> str:
     return "1"
 
 
+def unit_of_channel(simulation: Simulation, channel: str) -> str:
+    """Return the unit of an observed channel: the file's, or what follows from its expression.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        As read.
+    channel : str
+        Name of the observation.
+
+    Examples
+    --------
+    >>> from gaitdisc.simulation.bundled import bundled
+    >>> unit_of_channel(bundled("ankle"), "theta")
+    'rad'
+    """
+    units = {part.name: part.unit for part in (*simulation.states, *simulation.inputs, *simulation.parameters)}
+    expression = dict(simulation.observations).get(channel, channel)
+    return simulation.sensor(channel).unit or channel_unit(expression, units | {"t": "s"})
+
+
 def _factor(tree: Tree) -> float:
     """Return the bare number by which an expression is multiplied; of a sum, that of its first signal."""
     if isinstance(tree, Number):

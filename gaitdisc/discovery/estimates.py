@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.discovery.account import Account, Part
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.effect_units import channel_unit, divided, places_unit, unit_of
+from gaitdisc.discovery.effect_units import divided, places_unit, unit_of, unit_of_channel
 from gaitdisc.results.discovery import Estimate
 from gaitdisc.simulation.simulation import Simulation
 
@@ -102,7 +102,7 @@ def slot_units(candidate: Candidate, base: Simulation) -> dict[str, str]:
         return {slot: "1" if slot == "gain" else "s"}
     if candidate.verdict == "wrong_parameter":
         return {slot: own[candidate.place]}
-    channel = channel_unit(dict(base.observations).get(candidate.place, candidate.place), own)
+    channel = unit_of_channel(base, candidate.place)
     return {slot: divided(channel, "s") if slot == "rate" else channel}
 
 

@@ -91,7 +91,7 @@ def judged(shooting: Shooting, base: Simulation, account: Account, rounds: int =
     least = INTEGRATED * np.nanstd(shooting.measured.observed, axis=(0, 1))
     for _ in range(rounds):
         used = account.fit.starts.shape[1] / account.fit.residual.shape[2]
-        noise = noise_of(account.fit.residual, used, least=least)
+        noise = noise_of(account.fit.residual, used, least=least, memory=shooting.filter_memory)
         shooting = shooting.with_noise(noise).with_past(account.fit.states)
         account = account_for(shooting, base, account.parts, account.fit.starts, TURNS, like=account)
     return Judged(account, shooting)

@@ -51,9 +51,7 @@ class StateGuess:
         states : ndarray (segment, sample, state)
             Their states.
         """
-        better = self.states.copy()
-        better[segments.trial[:, None], segments.begin[:, None] + np.arange(segments.length)] = states
-        return StateGuess(better)
+        return StateGuess(segments.put(self.states, states))
 
 
 def guess_states(simulation: Simulation, measured: Measured, period: float, rate_of: dict[str, str]) -> StateGuess:
@@ -85,7 +83,7 @@ def guess_states(simulation: Simulation, measured: Measured, period: float, rate
     initial = np.array([state.initial or 0.0 for state in simulation.states])
     out = np.full((*observed.shape[:2], len(machine.states)), np.nan)
     for trial, record in enumerate(observed):
-        length = int(np.isfinite(record).any(axis=1).sum())
+        length = int(measured.samples[trial])
         width = min(window, length // 2 * 2 - 1)
         whole = [_bridged(channel, np.isfinite(channel)) for channel in record[:length].T]
         smooth = np.column_stack([savgol_filter(one, width, 3) for one in whole]) / spread

@@ -163,7 +163,7 @@ def measured(scale: GapScale, shooting: Shooting, account: Account) -> Weighed:
     if not np.isfinite(account.fit.misfit):
         return Weighed(account, shooting, np.full(1, np.inf), float("inf"))
     square = float(np.mean((shooting.noise.size / scale.size) ** 2))
-    errors = left_out_errors(account.fit) * square
+    errors = left_out_errors(account.fit) * square / shooting.known.mean()
     return Weighed(account, shooting, errors, gap_above(scale, float(errors.mean())))
 
 

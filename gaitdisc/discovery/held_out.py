@@ -11,6 +11,7 @@ from gaitdisc.discovery.borne_out import PairedTest, paired_test
 from gaitdisc.discovery.evidence import Judged
 from gaitdisc.discovery.fitted import Fitted
 from gaitdisc.discovery.inquiry import LENGTHENED, Inquiry
+from gaitdisc.discovery.segments import Segments
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording.finding import Finding
 from gaitdisc.results.discovery import GapSize, Runs
@@ -26,12 +27,15 @@ class Trial:
 
     Parameters
     ----------
+    segments : Segments
+        The runs.
     fit : Fitted
         Of the start states alone.
     measured : ndarray (run, sample, channel)
         The measurement.
     """
 
+    segments: Segments
     fit: Fitted
     measured: NDArray[np.float64]
 
@@ -55,7 +59,7 @@ def runs_of(inquiry: Inquiry, now: Judged, trials: tuple[int, ...], like: Judged
     like : Judged
         Whose noise and whose length of runs are used.
     """
-    periods = like.shooting.segments.length / (inquiry.rhythm.period * inquiry.rhythm.rate)
+    periods = like.shooting.segments.span / (inquiry.rhythm.period * inquiry.rhythm.rate)
     *shorter, whole = _lengths(periods)
     guess = inquiry.guess
     for length in shorter:
@@ -64,7 +68,7 @@ def runs_of(inquiry: Inquiry, now: Judged, trials: tuple[int, ...], like: Judged
         guess = guess.with_run(segments, _started(shooting, now, guess.starts(segments)).states)
     segments = inquiry.segments(trials, whole)
     shooting = replace(inquiry.shooting(segments).with_noise(like.noise), past=guess.states)
-    return Trial(_started(shooting, now, guess.starts(segments)), shooting.seen)
+    return Trial(segments, _started(shooting, now, guess.starts(segments)), shooting.seen)
 
 
 def tells_nothing(inquiry: Inquiry, as_read: Judged, now: Judged) -> bool:
@@ -204,7 +208,7 @@ def tested(inquiry: Inquiry, before: Trial, after: Trial, like: Judged) -> Paire
     like : Judged
         Whose noise is used.
     """
-    period = int(inquiry.rhythm.period * inquiry.rhythm.rate) + 1
+    period = int(inquiry.rhythm.period * inquiry.rhythm.rate / like.shooting.segments.every) + 1
     return paired_test(before.fit.residual, after.fit.residual, like.noise.size, period)
 
 
@@ -231,7 +235,7 @@ def gap_size(
     return GapSize(whole[0], whole[1], whole[2], test.p, sizes, test.pieces)
 
 
-def drawn_runs(inquiry: Inquiry, before: Trial, after: Trial, trials: tuple[int, ...]) -> Runs:
+def drawn_runs(inquiry: Inquiry, before: Trial, after: Trial) -> Runs:
     """Return the runs as a report draws them.
 
     Parameters
@@ -240,20 +244,15 @@ def drawn_runs(inquiry: Inquiry, before: Trial, after: Trial, trials: tuple[int,
         The trials.
     before, after : Trial
         The same runs of the simulation as read and with what was found.
-    trials : tuple of int
-        Which trials they lie in.
     """
-    runs, length = before.measured.shape[:2]
-    periods = length / (inquiry.rhythm.period * inquiry.rhythm.rate)
-    segments = inquiry.segments(trials, periods)
-    drive = inquiry.measured.drive
+    segments, drive = before.segments, inquiry.measured.drive
     names = [one.name for one in inquiry.search.base.inputs]
     time = drive.time0[segments.trial][:, None] + segments.samples / drive.rate
-    phase = segments.of(drive.inputs)[:, :, names.index("phase")] if "phase" in names else np.zeros((runs, 0))
+    phase = segments.of(drive.inputs)[:, :, names.index("phase")] if "phase" in names else np.zeros((len(segments), 0))
     return Runs(
         segments.trial,
-        time,
-        phase,
+        time[:, segments.compared],
+        phase[:, segments.compared],
         before.measured,
         before.measured - before.fit.residual,
         after.measured - after.fit.residual,

@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gaitdisc.discovery.account import account_for
 from gaitdisc.discovery.candidate import candidates_of
 from gaitdisc.discovery.catalogue import Shape, known_shapes
 from gaitdisc.discovery.evidence import Judged, judged
 from gaitdisc.discovery.first_states import StateGuess, guess_states
+from gaitdisc.discovery.found_filter import record_filter_of
 from gaitdisc.discovery.grids import Rhythm, rhythm_of
 from gaitdisc.discovery.influence import Idle, idle_parts, refuse_idle
 from gaitdisc.discovery.linearised import linearise, linearise_along
 from gaitdisc.discovery.matched import matched
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.places import kinematic_rates, places_of
+from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.segments import Segments, cut_segments
+from gaitdisc.discovery.sensor_noise import sensor_noise
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.simulation.drive import Drive
 from gaitdisc.simulation.measured import Measured
@@ -26,12 +31,14 @@ from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
 FEWEST_SAMPLES = 16  # of a segment
+FEWEST_COMPARED = 8  # samples of a segment that went through a filter
+SHORT = 6  # margins in a trial, at least
 GROWTH = 5.0  # of a small change of the start, by which a run is cut
 WILD = 300.0  # growth at which the likelihood has so many hills that none can be trusted
 FIRST_SHARE = 0.3  # of that length, is fitted first, so that the fit of the whole begins near its end
 LENGTHENED = 3  # times as long, again and again, while a run stays with the data
 TAME = 0.8
-FOLLOWED = 1.08  # times the noise of the shorter runs, beyond which a run does not follow the data
+FOLLOWED = 1.08  # times the noise of the shorter runs before any filter, beyond which a run does not follow the data
 SUBSTEPS = 2
 
 
@@ -49,6 +56,8 @@ class Inquiry:
         Trials that are searched and fitted, and trials that are only judged on.
     guess : StateGuess
         States, roughly.
+    record_filter : RecordFilter
+        What the measured channels went through.
     """
 
     search: Search
@@ -56,11 +65,35 @@ class Inquiry:
     learned: tuple[int, ...]
     held_out: tuple[int, ...]
     guess: StateGuess
+    record_filter: RecordFilter
 
     @property
     def rhythm(self) -> Rhythm:
         """The record's times."""
         return self.search.rhythm
+
+    @cached_property
+    def sensor_noise(self) -> NDArray[np.float64]:
+        """Standard deviation of each sensor's noise in the record (channel,): as the file says, or else as the record.
+
+        What the file says is that of the sensor; the record's filter leaves less. NaN where the file says nothing and a
+        filter has made the noise as smooth as the signal.
+        """
+        given = [self.search.base.sensor(name).sd for name in self.measured.channels]
+        said = np.array([np.nan if one is None else one for one in given]) * self.record_filter.gains
+        unfiltered = np.array([one is None for one in self.record_filter.cutoffs_hz])
+        estimated = np.where(unfiltered, sensor_noise(self.measured.observed), np.nan)
+        return np.where(np.isnan(said), estimated, said)
+
+    def noise_floor(self, noise: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the size of the sensors' noise (channel,), or where it is not known, what a simulation leaves.
+
+        Parameters
+        ----------
+        noise : ndarray (channel,)
+            What a simulation leaves [the channel's unit].
+        """
+        return np.where(np.isnan(self.sensor_noise), noise, self.sensor_noise)
 
     def segments(self, trials: tuple[int, ...], periods: float = 1.0) -> Segments:
         """Cut trials into runs.
@@ -75,7 +108,10 @@ class Inquiry:
         samples = int(
             round(periods * self.rhythm.period * self.rhythm.rate, 6)
         )  # 88 / period / rate * ... may be 87.99
-        return cut_segments(self.measured.drive.samples, trials, max(samples, FEWEST_SAMPLES))
+        passed, lengths = self.record_filter, self.measured.drive.samples
+        wanted = max(samples, FEWEST_SAMPLES, FEWEST_COMPARED * passed.every)
+        margin = min(passed.margin, int(min(lengths[trial] for trial in trials)) // SHORT)
+        return cut_segments(lengths, trials, wanted, margin, passed.every)
 
     def shooting(self, segments: Segments) -> Shooting:
         """Return the segments, ready to be fitted, under noise of unit size.
@@ -86,7 +122,8 @@ class Inquiry:
             The runs.
         """
         channels = self.measured.observed.shape[2]
-        return Shooting(self.measured, segments, white_noise(np.ones(channels)), SUBSTEPS, self.guess.states)
+        noise = white_noise(np.ones(channels))
+        return Shooting(self.measured, segments, noise, SUBSTEPS, self.guess.states, record_filter=self.record_filter)
 
     def as_read(self) -> Judged:
         """Return the simulation as read, fitted to short runs and judged.
@@ -118,7 +155,7 @@ class Inquiry:
         now : Judged
             Fitted to such runs.
         """
-        return now.shooting.segments.length >= TAME * self.rhythm.period * self.rhythm.rate
+        return now.shooting.segments.span >= TAME * self.rhythm.period * self.rhythm.rate
 
     def lengthened(self, now: Judged, most: int = 10**9) -> Judged:
         """Return an account fitted to runs as long as it can follow.
@@ -130,10 +167,12 @@ class Inquiry:
         most : int
             Longest run wanted [samples].
         """
-        longest = min(most, int(min(self.measured.drive.samples[trial] for trial in self.learned)))
-        while now.shooting.segments.length * 2 < longest:
+        shortest = int(min(self.measured.drive.samples[trial] for trial in self.learned))
+        longest = min(most, shortest - 2 * now.shooting.segments.margin)
+        followed = np.sqrt(1 + (FOLLOWED**2 - 1) / self.record_filter.gains**2)
+        while now.shooting.segments.span * 2 < longest:
             guess = self.guess.with_run(now.shooting.segments, now.account.fit.states)
-            samples = min(LENGTHENED * now.shooting.segments.length, longest)
+            samples = min(LENGTHENED * now.shooting.segments.span, longest)
             shooting = self.shooting(self.segments(self.learned, samples / (self.rhythm.period * self.rhythm.rate)))
             starts = guess.starts(shooting.segments)
             longer = account_for(
@@ -142,7 +181,7 @@ class Inquiry:
             if not np.isfinite(longer.fit.misfit):
                 break
             longer = replace(judged(shooting.with_past(longer.fit.states), self.search.base, longer), gained=now.gained)
-            if (longer.noise.size > FOLLOWED * now.noise.size).any() or not self.search.sensible(longer.account):
+            if (longer.noise.size > followed * now.noise.size).any() or not self.search.sensible(longer.account):
                 break
             fit = longer.account.fit
             if (
@@ -181,7 +220,9 @@ def begin_inquiry(simulation: Simulation, measured: Measured, shapes: tuple[Shap
     trials = len(measured.drive.samples)
     held = max(round(trials / 4), 1)
     guess = guess_states(simulation, measured, rhythm.period, rate_of)
-    inquiry = Inquiry(search, measured, tuple(range(trials - held)), tuple(range(trials - held, trials)), guess)
+    passed, findings = record_filter_of(simulation, measured, rhythm.period, guess)
+    measured = replace(measured, findings=(*measured.findings, *findings))
+    inquiry = Inquiry(search, measured, tuple(range(trials - held)), tuple(range(trials - held, trials)), guess, passed)
     return _less_idle(inquiry)
 
 

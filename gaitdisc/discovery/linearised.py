@@ -63,6 +63,16 @@ class Linearised:
                 return step + 1
         return None
 
+    def among(self, some: NDArray[np.intp]) -> Linearised:
+        """Return the maps of some of the segments.
+
+        Parameters
+        ----------
+        some : ndarray of int
+            Their numbers.
+        """
+        return Linearised(self.onward[some], self.pushed[some], self.landed[some])
+
     def of_push(self, place: int, push: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the change of state (segment, sample, state, candidate) that pushes at a place cause.
 
@@ -184,9 +194,9 @@ def seen_change(shooting: Shooting, machine: Compiled, fit: Fitted, change: NDAr
     versions = np.repeat(fit.states[None], n + 1, axis=0)
     for state in range(n):
         versions[1 + state, ..., state] += spans[state]
-    seen = shooting.observed(machine, versions, np.repeat(fit.values[None], n + 1, axis=0))
+    seen = shooting.unfiltered(machine, versions, np.repeat(fit.values[None], n + 1, axis=0))
     slopes = np.moveaxis((seen[1:] - seen[0]) / spans[:, None, None, None], 0, -1)
-    return slopes @ change
+    return shooting.filtered(slopes @ change, 1)
 
 
 def _seen_late(shooting: Shooting, machine: Compiled, fit: Fitted, change: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -36,7 +36,7 @@ def matched(simulation: Simulation, measured: Measured, shapes: tuple[Shape, ...
     ShapeError
         If the inputs are not the simulation's, one has no value, or a channel has none in a trial or never varies.
     SamplingError
-        If a trial is too short.
+        If a trial is too short, or a filter is beyond half the rate.
     SimulationError
         If a delay reaches into the future of a state, or further than the shortest trial.
     """
@@ -56,6 +56,7 @@ def matched(simulation: Simulation, measured: Measured, shapes: tuple[Shape, ...
     _check_trials(measured, where)
     _check_inputs(simulation, measured, where)
     _check_observed(measured, where)
+    _check_filters(simulation, measured, where)
     shortest = int(np.argmin(measured.samples))
     lasts = float(measured.samples[shortest] / measured.rate)
     refuse_delays(simulation, lasts, measured.trials[shortest])
@@ -118,6 +119,19 @@ def _check_observed(measured: Measured, where: str) -> None:
                 f"an observed channel varies: {name!r}",
                 f"{where} has {least:g} in every sample",
                 "Take the channel out of the observations, or correct it.",
+            )
+
+
+def _check_filters(simulation: Simulation, measured: Measured, where: str) -> None:
+    file = simulation.source.name if simulation.source else simulation.title
+    for name in measured.channels:
+        cutoff = simulation.sensor(name).lowpass
+        if cutoff is not None and cutoff >= measured.rate / 2:
+            raise SamplingError(
+                f"the low-pass of an observation lies below half the rate, {measured.rate / 2:g} Hz",
+                f"{file}, [observations.{name}] has lowpass = {cutoff:g} where {where} has {measured.rate:g} samples a "
+                "second",
+                "Correct lowpass [Hz], or leave it out.",
             )
 
 

@@ -25,6 +25,9 @@ class Noise:
         For each channel, the predictor of each order 0, 1, ..., p (p,): what the samples before say of the next.
     spread : tuple of ndarray
         For each channel, the standard deviation of what each of these predictors leaves [the channel's unit].
+    filtered : tuple of float
+        For each channel, how much less than all the past leaves where white noise went through the record's filter;
+        1 where there is none.
 
     Examples
     --------
@@ -35,6 +38,7 @@ class Noise:
 
     predictors: tuple[tuple[NDArray[np.float64], ...], ...]
     spread: tuple[NDArray[np.float64], ...]
+    filtered: tuple[float, ...] = ()
 
     @property
     def size(self) -> NDArray[np.float64]:
@@ -48,26 +52,32 @@ class Noise:
 
     @property
     def remembers(self) -> bool:
-        """Whether what went before says more than next to nothing of what comes."""
-        return any(spread[0] > MEMORY * spread[-1] for spread in self.spread)
+        """Whether what went before says more than next to nothing of what comes, the record's filter apart."""
+        filtered = self.filtered or (1.0,) * len(self.spread)
+        return any(all_of[0] > MEMORY * by * all_of[-1] for all_of, by in zip(self.spread, filtered, strict=True))
 
-    def whitened(self, residual: NDArray[np.float64]) -> NDArray[np.float64]:
+    def whitened(self, residual: NDArray[np.float64], known: NDArray[np.bool_] | None = None) -> NDArray[np.float64]:
         """Return residuals as independent numbers of unit variance, if the noise is what it is taken for.
 
         Parameters
         ----------
         residual : ndarray (segment, sample, channel, ...)
-            Each segment begins afresh: its first samples are predicted from the few before them.
+            Each segment begins afresh: its first samples are predicted from the few before them. So it does after
+            samples that are not known.
+        known : ndarray of bool (segment, sample, channel), optional
+            Where there is a residual; nothing is left elsewhere.
         """
         wide = np.ascontiguousarray(residual, float).reshape(*residual.shape[:3], -1)
         if not any(self.lags):
-            return (wide / self.size[:, None]).reshape(residual.shape)
+            white = wide / self.size[:, None]
+            return (white if known is None else white * known[..., None]).reshape(residual.shape)
         out = np.empty_like(wide)
+        there = np.ones(wide.shape[:3], bool) if known is None else known
         for channel, (predictors, spread) in enumerate(zip(self.predictors, self.spread, strict=True)):
             table = np.zeros((len(spread), max(len(spread) - 1, 1)))
             for order, predictor in enumerate(predictors):
                 table[order, :order] = predictor
-            whiten(wide, channel, table, spread, out)
+            whiten(wide, channel, there, table, spread, out)
         return out.reshape(residual.shape)
 
 
@@ -83,20 +93,26 @@ def white_noise(size: NDArray[np.float64]) -> Noise:
 
 
 def noise_of(
-    residual: NDArray[np.float64], used: float = 0.0, white_share: float = WHITE_SHARE, least: ArrayLike = 0.0
+    residual: NDArray[np.float64],
+    used: float = 0.0,
+    white_share: float = WHITE_SHARE,
+    least: ArrayLike = 0.0,
+    memory: NDArray[np.float64] | None = None,
 ) -> Noise:
     """Learn the noise from residuals (Yule-Walker; the order by the Bayesian criterion).
 
     Parameters
     ----------
     residual : ndarray (segment, sample, channel)
-        Measured minus fitted. Segments are not joined.
+        Measured minus fitted; NaN where nothing was measured. Segments are not joined.
     used : float
         Numbers that the fit took from each segment and channel; the variance is enlarged accordingly.
     white_share : float
         Of the variance, taken as white whatever the residuals say.
     least : float or ndarray (channel,)
         Standard deviation of white noise that is there in any case: what integration and rounding leave.
+    memory : ndarray (lag, channel), optional
+        Autocorrelation of what the record's filter leaves of white noise.
 
     Examples
     --------
@@ -105,24 +121,33 @@ def noise_of(
     >>> noise.lags, bool(abs(noise.size[0] - 3) < 0.1)
     ((0,), True)
     """
-    predictors, spread = [], []
-    _, samples, channels = residual.shape
-    enlarge = samples / max(samples - used, 1.0)
+    predictors, spread, filtered = [], [], []
+    segments, samples, channels = residual.shape
     always = np.broadcast_to(np.square(least), channels)
     for channel in range(channels):
-        e = residual[:, :, channel]
-        most = min(MOST_LAGS, samples // 4)
-        covariance = (
-            np.array([(e[:, : samples - lag] * e[:, lag:]).sum() / e.size for lag in range(most + 1)]) * enlarge
-        )
+        known = np.isfinite(residual[:, :, channel])
+        e = np.where(known, residual[:, :, channel], 0.0)
+        count = max(int(known.sum()), 1)
+        each = count / segments
+        most = min(MOST_LAGS, int(each) // 4)
+        enlarge = each / max(each - used, 1.0)
+        covariance = np.array([(e[:, : samples - lag] * e[:, lag:]).sum() / count for lag in range(most + 1)]) * enlarge
         covariance[0] = max(covariance[0] + always[channel], np.finfo(float).tiny)
         covariance[1:] /= 1 + white_share
-        orders = [np.zeros(0)] + [
-            solve_toeplitz(covariance[:order], covariance[1 : order + 1]) for order in range(1, most + 1)
-        ]
-        left = np.array([covariance[0] - order @ covariance[1 : len(order) + 1] for order in orders])
-        left = np.maximum(left, 1e-12 * covariance[0])
-        best = int(np.argmin(e.size * np.log(left) + np.arange(most + 1) * np.log(e.size)))
+        orders, left = _predicted(covariance)
+        best = int(np.argmin(count * np.log(left) + np.arange(most + 1) * np.log(count)))
         predictors.append(tuple(orders[: best + 1]))
         spread.append(np.sqrt(left[: best + 1]))
-    return Noise(tuple(predictors), tuple(spread))
+        own = np.ones(1) if memory is None else memory[: best + 1, channel] * (1 - np.arange(best + 1) / each)
+        own[1:] /= 1 + white_share
+        filtered.append(float(1 / np.sqrt(_predicted(own)[1][-1])))
+    return Noise(tuple(predictors), tuple(spread), tuple(filtered) if memory is not None else ())
+
+
+def _predicted(covariance: NDArray[np.float64]) -> tuple[list[NDArray[np.float64]], NDArray[np.float64]]:
+    """Predictors of each order from a covariance (lag,), and what each leaves (order,)."""
+    orders = [np.zeros(0)]
+    for order in range(1, len(covariance)):
+        orders.append(np.asarray(solve_toeplitz(covariance[:order], covariance[1 : order + 1]), np.float64))
+    left = np.array([float(covariance[0] - order @ covariance[1 : len(order) + 1]) for order in orders])
+    return orders, np.maximum(left, 1e-12 * covariance[0])

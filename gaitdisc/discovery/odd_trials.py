@@ -163,9 +163,9 @@ class _Bench:
 
     def errors(self, fit: Fitted, segments: Segments) -> NDArray[np.float64]:
         """Root mean square of what is left of each trial [standard deviations]; infinite where a run failed."""
-        square = np.nanmean((fit.residual / self.spread) ** 2, axis=(1, 2))
-        square = np.where(np.isfinite(fit.white).all(axis=1), square, np.inf)
-        return np.sqrt([square[segments.trial == trial].mean() for trial in np.unique(segments.trial)])
+        square = (fit.residual / self.spread) ** 2
+        square[~np.isfinite(fit.white).all(axis=1)] = np.inf
+        return np.sqrt([np.nanmean(square[segments.trial == trial]) for trial in np.unique(segments.trial)])
 
 
 def _turned(inquiry: Inquiry) -> Iterator[Change]:

@@ -1,8 +1,12 @@
-"""Segments: a long record cut into short runs, so that a wrong model stays near the data and its error can be read."""
+"""Segments: a long record cut into short runs, so that a wrong model stays near the data and its error can be read.
+
+Where the record went through a filter without lag, each run goes on for a margin before and after what is compared, so
+that the simulated channel can go through the same filter.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,12 +26,18 @@ class Segments:
     begin : ndarray of int (segment,)
         Its first sample.
     length : int
-        Samples of each.
+        Samples of each, margins included.
+    margin : int
+        Samples at either end that are run and not compared.
+    every : int
+        Of the others, which are compared: every one, every other, ...
     """
 
     trial: NDArray[np.intp]
     begin: NDArray[np.intp]
     length: int
+    margin: int = 0
+    every: int = 1
 
     def __len__(self) -> int:
         return len(self.begin)
@@ -41,6 +51,43 @@ class Segments:
             Of every trial.
         """
         return records[self.trial[:, None], self.samples]
+
+    def put(self, records: NDArray[np.float64], runs: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return records (trial, sample, ...) with runs in their places; of two that overlap, the one that is compared.
+
+        Parameters
+        ----------
+        records : ndarray (trial, sample, ...)
+            Of every trial.
+        runs : ndarray (segment, sample, ...)
+            One for each segment.
+        """
+        out = records.copy()
+        out[self.trial[:, None], self.samples] = runs
+        if self.margin:
+            inner = slice(self.margin, self.length - self.margin)
+            out[self.trial[:, None], self.samples[:, inner]] = runs[:, inner]
+        return out
+
+    @property
+    def compared(self) -> slice:
+        """Which samples of each are compared with the measurement."""
+        return slice(self.margin, self.length - self.margin, self.every)
+
+    @property
+    def span(self) -> int:
+        """Samples of each without the margins."""
+        return self.length - 2 * self.margin
+
+    def among(self, some: NDArray[np.intp]) -> Segments:
+        """Return some of the segments.
+
+        Parameters
+        ----------
+        some : ndarray of int
+            Their numbers.
+        """
+        return replace(self, trial=self.trial[some], begin=self.begin[some])
 
     @property
     def samples(self) -> NDArray[np.intp]:
@@ -72,7 +119,9 @@ class Segments:
         )
 
 
-def cut_segments(samples: NDArray[np.intp], trials: tuple[int, ...], length: int) -> Segments:
+def cut_segments(
+    samples: NDArray[np.intp], trials: tuple[int, ...], length: int, margin: int = 0, every: int = 1
+) -> Segments:
     """Cut trials into segments of about a length.
 
     Parameters
@@ -82,8 +131,12 @@ def cut_segments(samples: NDArray[np.intp], trials: tuple[int, ...], length: int
     trials : tuple of int
         The trials to cut.
     length : int
-        Samples wanted; the shortest of the trials decides what divides it evenly. A length that came of a cut comes of
-        it again.
+        Samples wanted without the margins; the shortest of the trials decides what divides it evenly. A length that
+        came of a cut comes of it again.
+    margin : int
+        Samples that are run before and after these; as many at either end of a trial are not compared.
+    every : int
+        Which samples are compared.
 
     Raises
     ------
@@ -95,11 +148,14 @@ def cut_segments(samples: NDArray[np.intp], trials: tuple[int, ...], length: int
     >>> cut_segments(np.array([100, 70]), (0, 1), 30).begin.tolist()
     [0, 35, 0, 35]
     """
-    shortest = int(min(samples[trial] for trial in trials))
+    shortest = int(min(samples[trial] for trial in trials)) - 2 * margin
     if shortest < 4:
-        raise SamplingError("a trial needs at least 4 samples", f"one has {shortest}", "Leave it out.")
+        found = f"one has {shortest + 2 * margin}"
+        raise SamplingError(f"a trial needs at least {4 + 2 * margin} samples", found, "Leave it out.")
     if shortest // max(shortest // length, 1) != length:
         length = shortest // max(round(shortest / length), 1)
-    pairs = [(trial, begin) for trial in trials for begin in range(0, int(samples[trial]) - length + 1, length)]
+    pairs = [
+        (trial, begin) for trial in trials for begin in range(0, int(samples[trial]) - 2 * margin - length + 1, length)
+    ]
     trial, begin = np.array(pairs, dtype=np.intp).T
-    return Segments(trial, begin, length)
+    return Segments(trial, begin, length + 2 * margin, margin, every)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.account import Account
-from gaitdisc.discovery.fitted import start_basis
+from gaitdisc.discovery.fitted import Fitted, start_basis
 from gaitdisc.discovery.linearised import linearise, seen_change
 from gaitdisc.discovery.noise import noise_of, white_noise
 from gaitdisc.discovery.places import Place
@@ -17,6 +17,7 @@ from gaitdisc.discovery.shooting import Shooting
 SHARES = np.logspace(-3, 3, 19)  # of the shaking's variance in what is seen, against the sensor's
 MOST_SEGMENTS = 24
 MOST_NUMBERS = 400
+ROUNDED = 1e-3  # of the variance is taken as white: what is left of a record above its filter's cut-off
 
 
 @dataclass(frozen=True)
@@ -61,68 +62,112 @@ def shaken(shooting: Shooting, account: Account, places: tuple[Place, ...]) -> l
     list of Shaken
         Pushes are independent from sample to sample; the sensors' noise beside them is white.
     """
-    fit = account.fit
+    fit, segments = account.fit, shooting.segments
     most = max(MOST_NUMBERS // fit.residual.shape[2], 8)
-    length = min(shooting.segments.length, most)
-    some = np.unique(np.linspace(0, len(shooting.segments) - 1, MOST_SEGMENTS).astype(int))
+    length = min(fit.residual.shape[1], most)
+    some = np.unique(np.linspace(0, len(segments) - 1, MOST_SEGMENTS).astype(int))
     line = linearise(shooting, account.simulation, places, fit)
-    plain = fit.residual[some, :length]
-    size = plain.std(axis=(0, 1))
-    starts = _raw_slopes(shooting, account)[some, :length] / size[:, None]
-    rival = _autoregressive(fit.residual, starts * size[:, None], some, length)
+    known = shooting.known[some, :length]
+    plain = np.where(known, fit.residual[some, :length], 0.0)
+    count = known.sum(axis=(0, 1))
+    size = np.sqrt((plain**2).sum(axis=(0, 1)) / count - (plain.sum(axis=(0, 1)) / count) ** 2)
+    starts = _raw_slopes(shooting, account)[some, :length] / size[:, None] * known[..., None]
+    rival = _autoregressive(fit.residual, starts * size[:, None], some, known)
+    sensors = _sensor_covariance(shooting, known)
+    price = 2 * float(count @ np.log(size)) + np.log(count.sum())
+    flat = (plain / size).reshape(len(some), -1), starts.reshape(len(some), plain[0].size, -1)
+    if segments.margin:  # the filter is a memory of the sensor's noise as well, and a known one
+        rival = min(rival, _likelihood(*flat, sensors, int(count.sum()))[0] + float(price))
     found = []
     for number, place in enumerate(places):
         steps = fit.states.shape[1] - 1
-        change = line.pushed[:, :, :, number, None] * np.eye(steps)[None, :, None, :]
-        seen = seen_change(shooting, account.machine, fit, line.of_change(change))[some, :length, :, : length - 1]
-        flat = (seen / size[:, None]).reshape(len(some), -1, length - 1)
-        pushes = flat @ np.swapaxes(flat, 1, 2)
-        unit = np.trace(pushes, axis1=1, axis2=2).mean() / flat.shape[1]
+        last = min((length - 1) * segments.every + 2 * segments.margin, steps)  # later pushes change nothing here
+        change = line.pushed[some][:, :, :, number, None] * np.eye(steps)[None, :, None, :last]
+        seen = _seen_in(shooting, account, some, line.among(some).of_change(change))[:, :length]
+        pushed = (seen / size[:, None] * known[..., None]).reshape(len(some), -1, last)
+        pushes = pushed @ np.swapaxes(pushed, 1, 2)
+        unit = np.trace(pushes, axis1=1, axis2=2).sum() / count.sum()
         if unit == 0:  # pushes there change nothing of what is measured
-            found.append(Shaken(place, np.inf, rival, 0.0, plain.size))
+            found.append(Shaken(place, np.inf, rival, 0.0, int(count.sum())))
             continue
-        best, share, level = _best_share(
-            (plain / size).reshape(len(some), -1), starts.reshape(*flat.shape[:2], -1), pushes / unit
-        )
-        best += 2 * plain.size / plain.shape[2] * float(np.log(size).sum()) + 2 * np.log(plain.size)
-        found.append(Shaken(place, best, rival, float(np.sqrt(level * share / unit)), plain.size))
+        tried = [(*_likelihood(*flat, sensors + share * pushes / unit, int(count.sum())), share) for share in SHARES]
+        best, level, share = min(tried)
+        best += float(price + np.log(count.sum()))
+        found.append(Shaken(place, best, rival, float(np.sqrt(level * share / unit)), int(count.sum())))
     return sorted(found, key=lambda one: one.evidence)
 
 
-def _best_share(
-    residual: NDArray[np.float64], starts: NDArray[np.float64], pushes: NDArray[np.float64]
-) -> tuple[float, float, float]:
-    """(-2 log restricted likelihood, share, level) of variance level * (I + share * pushes), best over the shares."""
-    results = []
-    count = residual.size - starts.shape[0] * starts.shape[2]
-    for share in SHARES:
-        covariance = np.eye(residual.shape[1]) + share * pushes
-        factor = np.linalg.cholesky(covariance)
-        white = np.linalg.solve(factor, np.concatenate([residual[..., None], starts], axis=2))
-        basis = start_basis(white[..., 1:])
-        left = white[..., 0] - (basis @ (np.swapaxes(basis, 1, 2) @ white[..., :1]))[..., 0]
-        level = float((left**2).sum()) / count
-        volume = 2 * np.log(np.maximum(np.linalg.svd(white[..., 1:], compute_uv=False), 1e-12)).sum()
-        scale = 2 * np.log(np.diagonal(factor, axis1=1, axis2=2)).sum()
-        results.append((float(scale + volume + count * (np.log(level) + 1)), float(share), level))
-    return min(results)
+def _seen_in(
+    shooting: Shooting, account: Account, some: NDArray[np.intp], change: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """What changes of state change in some of the segments (segment, sample, channel, step)."""
+    fit = account.fit
+    few = replace(shooting, segments=shooting.segments.among(some))
+    part = Fitted(
+        fit.free, fit.values, fit.starts[some], fit.states[some], fit.residual[some], fit.white[some], fit.slopes[some]
+    )
+    return seen_change(few, account.machine, part, change)
+
+
+def _sensor_covariance(shooting: Shooting, known: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Covariance of noise that was white before the filter (segment, number, number), of unit size.
+
+    What was not measured is taken for independent of all else.
+    """
+    segments, length, channels = known.shape
+    whole = shooting.segments.length
+    unit = np.broadcast_to(np.eye(whole)[None, :, None, :], (1, whole, channels, whole))
+    passed = shooting.filtered(unit, 1)[0, :length]
+    out = np.zeros((length, channels, length, channels))
+    for channel in range(channels):
+        own = passed[:, channel] @ passed[:, channel].T
+        own /= np.diag(own).mean()
+        out[:, channel, :, channel] = (own + ROUNDED * np.eye(length)) / (1 + ROUNDED)
+    flat = known.reshape(segments, -1)
+    both = flat[:, :, None] & flat[:, None, :]
+    return np.where(both, out.reshape(length * channels, -1), np.eye(length * channels))
+
+
+def _likelihood(
+    residual: NDArray[np.float64], starts: NDArray[np.float64], covariance: NDArray[np.float64], known: int
+) -> tuple[float, float]:
+    """(-2 log restricted likelihood, level) of residuals whose variance is level times a covariance."""
+    count = known - starts.shape[0] * starts.shape[2]
+    factor = np.linalg.cholesky(covariance)
+    white = np.asarray(np.linalg.solve(factor, np.concatenate([residual[..., None], starts], axis=2)), np.float64)
+    basis = start_basis(white[..., 1:])
+    left = white[..., 0] - (basis @ (np.swapaxes(basis, 1, 2) @ white[..., :1]))[..., 0]
+    level = float((left**2).sum()) / count
+    volume = 2 * np.log(np.maximum(np.linalg.svd(white[..., 1:], compute_uv=False), 1e-12)).sum()
+    scale = 2 * np.log(np.diagonal(factor, axis1=1, axis2=2)).sum()
+    return float(scale + volume + count * (np.log(level) + 1)), level
 
 
 def _autoregressive(
-    residual: NDArray[np.float64], slopes: NDArray[np.float64], some: NDArray[np.intp], length: int
+    residual: NDArray[np.float64], slopes: NDArray[np.float64], some: NDArray[np.intp], known: NDArray[np.bool_]
 ) -> float:
     """Return the evidence of the account's own noise, a memory of each sensor, over the same numbers."""
     noise = noise_of(residual, slopes.shape[-1] / residual.shape[2], white_share=0.0)
-    white = noise.whitened(residual[some, :length]).reshape(len(some), -1)
-    starts = noise.whitened(slopes).reshape(*white.shape, -1)
+    plain = np.where(known, residual[some, : known.shape[1]], 0.0)
+    white = noise.whitened(plain, known).reshape(len(some), -1)
+    starts = noise.whitened(slopes, known).reshape(*white.shape, -1)
     basis = start_basis(starts)
     left = white - (basis @ (np.swapaxes(basis, 1, 2) @ white[..., None]))[..., 0]
     volume = 2 * np.log(np.maximum(np.linalg.svd(starts, compute_uv=False), 1e-12)).sum()
-    scale = sum(
-        2 * len(some) * (np.log(spread).sum() + (length - len(spread)) * np.log(spread[-1])) for spread in noise.spread
+    scale = 2 * sum(
+        np.log(spread[np.minimum(_known_before(known[..., channel]), len(spread) - 1)])[known[..., channel]].sum()
+        for channel, spread in enumerate(noise.spread)
     )
     numbers = sum(noise.lags) + len(noise.lags)
-    return float((left**2).sum() + scale + volume + numbers * np.log(white.size))
+    return float((left**2).sum() + scale + volume + numbers * np.log(known.sum()))
+
+
+def _known_before(known: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """How many samples without a gap stand before each (segment, sample)."""
+    out = np.zeros(known.shape, np.intp)
+    for sample in range(1, known.shape[1]):
+        out[:, sample] = (out[:, sample - 1] + 1) * known[:, sample - 1]
+    return out
 
 
 def _raw_slopes(shooting: Shooting, account: Account) -> NDArray[np.float64]:

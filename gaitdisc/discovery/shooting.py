@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.fitted import Fitted
-from gaitdisc.discovery.noise import Noise
+from gaitdisc.discovery.noise import MOST_LAGS, Noise
 from gaitdisc.discovery.prior import Prior
+from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.discovery.segments import Segments
 from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.measured import Measured
@@ -41,6 +43,8 @@ class Shooting:
         States before a segment begins, for what comes late.
     prior : Prior
         Of the parameters that have bounds and are fitted.
+    record_filter : RecordFilter or None
+        What the measured channels went through.
     """
 
     measured: Measured
@@ -49,11 +53,22 @@ class Shooting:
     substeps: int = 2
     past: NDArray[np.float64] | None = None
     prior: Prior = field(default_factory=Prior)
+    record_filter: RecordFilter | None = None
 
-    @property
+    @cached_property
     def seen(self) -> NDArray[np.float64]:
-        """The measurement in each segment (segment, sample, channel)."""
-        return self.segments.of(self.measured.observed)
+        """The measurement in each segment, where it is compared (segment, sample, channel)."""
+        return self.segments.of(self.measured.observed)[:, self.segments.compared]
+
+    @cached_property
+    def known(self) -> NDArray[np.bool_]:
+        """Where there is a measurement (segment, sample, channel)."""
+        return np.isfinite(self.seen)
+
+    @cached_property
+    def filter_memory(self) -> NDArray[np.float64] | None:
+        """Autocorrelation of what the record's filter leaves of white noise (lag, channel); None without a filter."""
+        return self.record_filter.memory(MOST_LAGS) if self.record_filter and self.record_filter.margin else None
 
     def run(
         self, machine: Compiled, starts: NDArray[np.float64], values: NDArray[np.float64]
@@ -74,7 +89,7 @@ class Shooting:
         states : ndarray (version, segment, sample, state)
             NaN from where a run left every bound.
         observed : ndarray (version, segment, sample, channel)
-            What would be measured.
+            What would be recorded, where it is compared.
         """
         rows, drive = self.segments.rows(starts, values), self.measured.drive
         states, _ = machine.run(drive, rows, self.segments.length - 1, substeps=self.substeps, past=self.past)
@@ -102,7 +117,36 @@ class Shooting:
     def observed(
         self, machine: Compiled, states: NDArray[np.float64], values: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Return what would be measured along given states (version, segment, sample, channel).
+        """Return what would be recorded along given states, where it is compared (version, segment, sample, channel).
+
+        Parameters
+        ----------
+        machine : Compiled
+            The simulation.
+        states : ndarray (version, segment, sample, state)
+            Its states.
+        values : ndarray (version, parameter)
+            Its parameters.
+        """
+        return self.filtered(self.unfiltered(machine, states, values), 2)
+
+    def filtered(self, observed: NDArray[np.float64], axis: int) -> NDArray[np.float64]:
+        """Return channels as they come out of the filter that the record went through, where they are compared.
+
+        Parameters
+        ----------
+        observed : ndarray (..., sample, channel, ...)
+            Channels of whole segments.
+        axis : int
+            Of the samples.
+        """
+        recorded = self.record_filter.filtered(observed, axis) if self.record_filter else observed
+        return recorded[(slice(None),) * axis + (self.segments.compared,)]
+
+    def unfiltered(
+        self, machine: Compiled, states: NDArray[np.float64], values: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Return what the sensors see along given states, before any filter (version, segment, sample, channel).
 
         Parameters
         ----------
@@ -118,16 +162,18 @@ class Shooting:
         return seen.reshape(*states.shape[:3], -1)
 
     def whitened(self, residual: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return residuals whitened and flat (segment, sample times channel, ...); what is not finite counts as none.
+        """Return residuals whitened and flat (segment, sample times channel, ...).
+
+        What is not finite counts as none, and so does what was not measured.
 
         Parameters
         ----------
         residual : ndarray (segment, sample, channel, ...)
-            [the channel's unit].
+            Where it is compared [the channel's unit].
         """
         if not np.isfinite(residual).all():
             residual = np.nan_to_num(residual, nan=0.0, posinf=0.0, neginf=0.0)
-        white = self.noise.whitened(residual)
+        white = self.noise.whitened(residual, None if self.known.all() else self.known)
         return white.reshape(white.shape[0], -1, *white.shape[3:])
 
     def at(
@@ -161,7 +207,6 @@ class Shooting:
         white = self.whitened(residual)
         white[failed] = np.inf
         change = np.moveaxis((observed[1:] - observed[0]) / nudges[:, None, None, None], 0, -1)
-        change[np.isnan(self.seen)] = 0.0
         slopes, prior = self.whitened(change), self.prior.among(free)
         return Fitted(free, values, starts, states[0], residual, white, slopes, prior)
 
@@ -244,9 +289,7 @@ class Shooting:
         """
         if self.past is None:
             return self
-        past = self.past.copy()
-        past[self.segments.trial[:, None], self.segments.samples] = states
-        return replace(self, past=past)
+        return replace(self, past=self.segments.put(self.past, states))
 
     def with_noise(self, noise: Noise) -> Shooting:
         """Return the same segments, divided by other noise.

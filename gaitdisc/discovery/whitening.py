@@ -12,6 +12,7 @@ from gaitdisc.compiled import compiled
 def whiten(
     residual: NDArray[np.float64],
     channel: int,
+    known: NDArray[np.bool_],
     predictors: NDArray[np.float64],
     spread: NDArray[np.float64],
     out: NDArray[np.float64],
@@ -21,9 +22,11 @@ def whiten(
     Parameters
     ----------
     residual : ndarray (segment, sample, channel, column)
-        What is left; each segment begins afresh.
+        What is left; each segment begins afresh, and so does what follows a gap.
     channel : int
         Which channel.
+    known : ndarray of bool (segment, sample, channel)
+        Where there is a residual; nothing is left elsewhere.
     predictors : ndarray (order + 1, order)
         Row p predicts from the p samples before.
     spread : ndarray (order + 1,)
@@ -34,8 +37,14 @@ def whiten(
     segments, samples, _, columns = residual.shape
     last = len(spread) - 1
     for segment in range(segments):
+        run = 0
         for sample in range(samples):
-            order = min(sample, last)
+            if not known[segment, sample, channel]:
+                run = 0
+                out[segment, sample, channel, :] = 0.0
+                continue
+            order = min(run, last)
+            run += 1
             for column in range(columns):
                 out[segment, sample, channel, column] = residual[segment, sample, channel, column]
             for lag in range(order):

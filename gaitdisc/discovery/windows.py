@@ -10,7 +10,6 @@ from gaitdisc.discovery.account import Account, account_for
 from gaitdisc.discovery.gap_share import CONVERGED, TURNS, GapScale, Weighed, gap_above, weighed
 from gaitdisc.discovery.inquiry import Inquiry
 from gaitdisc.discovery.noise import white_noise
-from gaitdisc.discovery.segments import cut_segments
 from gaitdisc.discovery.shooting import Shooting
 
 NEAR = 0.25  # of a channel's spread
@@ -30,7 +29,8 @@ def shooting_of(inquiry: Inquiry, samples: int) -> Shooting:
     samples : int
         Length wanted.
     """
-    return inquiry.shooting(cut_segments(inquiry.measured.drive.samples, inquiry.learned, samples))
+    rhythm = inquiry.rhythm
+    return inquiry.shooting(inquiry.segments(inquiry.learned, samples / (rhythm.period * rhythm.rate)))
 
 
 def longest_run(inquiry: Inquiry) -> int:
@@ -89,7 +89,7 @@ def on_longer_runs(inquiry: Inquiry, scale: GapScale, now: Weighed) -> Weighed |
         On shorter runs.
     """
     longest, guess, found = longest_run(inquiry), inquiry.guess, None
-    samples = now.shooting.segments.length
+    samples = now.shooting.segments.span
     while samples < longest:
         before, samples = found or now, min(2 * samples, longest)
         guess = guess.with_run(before.shooting.segments, before.account.fit.states)
@@ -120,6 +120,6 @@ def as_read_on(inquiry: Inquiry, scale: GapScale, as_read: Weighed, longer: Weig
     starts = longer.account.fit.starts
     account = account_for(shooting, inquiry.search.base, (), starts, TURNS, like=as_read.account)
     most = MOST_ERROR * (scale.spread / scale.size) ** 2
-    square = np.fmin((account.fit.residual / scale.size) ** 2, most)
-    mean = float(np.mean(np.where(np.isfinite(account.fit.residual), square, most)))
+    square = np.fmin((account.fit.residual / scale.size) ** 2, most)  # the greater where a run has failed
+    mean = float(square[shooting.known].mean())
     return Weighed(account, shooting, np.full(len(longer.errors), mean), gap_above(scale, mean))

@@ -41,6 +41,7 @@ def check(simulation: Simulation) -> None:
     _check_equations(simulation)
     _check_expressions(simulation)
     _check_ports(simulation)
+    _check_sensors(simulation)
 
 
 def _check_size(simulation: Simulation) -> None:
@@ -229,3 +230,19 @@ def _check_ports(simulation: Simulation) -> None:
                 "Add it to the equation of the place that it means, or take it away.",
                 ("ports", port.name),
             )
+
+
+def _check_sensors(simulation: Simulation) -> None:
+    observed = [name for name, _ in simulation.observations]
+    for sensor in simulation.sensors:
+        place = ("observations", sensor.channel)
+        if sensor.channel not in observed:
+            known = f"Known: {', '.join(observed)}."
+            raise SimulationError("a sensor records an observation", f"{sensor.channel!r} is none", known, place)
+        for key, unit in (("sd", sensor.unit or "the column's unit"), ("lowpass", "Hz")):
+            number = getattr(sensor, key)
+            if number is not None and not (math.isfinite(number) and number > 0):
+                found = f"found {key} = {number:g}"
+                raise SimulationError(
+                    f"{key} is a number above 0 [{unit}]", found, "Correct it, or leave it out.", place
+                )

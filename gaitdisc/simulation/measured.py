@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.errors import SamplingError, ShapeError
+from gaitdisc.errors import ReadError, SamplingError, ShapeError
 from gaitdisc.recording import Finding
 from gaitdisc.recording.arrays import read_only
 from gaitdisc.simulation.drive import Drive
-
-SHORTEST = 20  # samples of a trial
+from gaitdisc.simulation.even_time import SHORTEST, TrialColumns, clock_findings, on_even_time
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,26 +120,6 @@ class Measured:
         return Measured(drive, self.observed[which, first:end], names, self.channels, self.findings, self.source)
 
 
-@dataclass(frozen=True, eq=False)
-class TrialColumns:
-    """What one trial gives before it is checked.
-
-    Parameters
-    ----------
-    name : str
-        Of the trial.
-    time : ndarray (sample,) [s]
-        As measured.
-    inputs, observed : ndarray (sample, input), (sample, channel)
-        Columns that the simulation needs.
-    """
-
-    name: str
-    time: NDArray[np.float64]
-    inputs: NDArray[np.float64]
-    observed: NDArray[np.float64]
-
-
 def measured_of_trials(
     trials: Sequence[TrialColumns],
     inputs: Sequence[str],
@@ -165,6 +144,8 @@ def measured_of_trials(
     ------
     SamplingError
         If a trial is too short, its time is uneven or doubled, or the rates differ.
+    ReadError
+        If an input has a gap too long to be bridged, or a trial next to nothing of a channel.
     ShapeError
         If an observed channel never varies.
     """
@@ -174,7 +155,8 @@ def measured_of_trials(
             f"{source} has no row",
             "Export the record again, with its samples.",
         )
-    rates = [_rate(trial, source) for trial in trials]
+    even = [on_even_time(trial, tuple(inputs), source) for trial in trials]
+    trials, rates = [one for one, _, _ in even], [rate for _, rate, _ in even]
     apart = int(np.argmax(np.abs(np.array(rates) - rates[0])))
     if abs(rates[apart] - rates[0]) > 2e-3 * rates[0]:
         raise SamplingError(
@@ -186,9 +168,11 @@ def measured_of_trials(
     longest = max(len(trial.time) for trial in trials)
     observed = np.full((len(trials), longest, len(channels)), np.nan)
     for number, trial in enumerate(trials):
-        observed[number, : len(trial.time)] = trial.observed
+        observed[number, : len(trial.time)] = np.where(np.isfinite(trial.observed), trial.observed, np.nan)
     drive = Drive.of([trial.inputs for trial in trials], rates[0], [float(trial.time[0]) for trial in trials])
-    seen = [*findings, *_constant(trials, inputs, channels, source)]
+    seen = [*findings, *_together([note for _, _, notes in even for note in notes])]
+    seen += clock_findings(trials, rates[0], source)
+    seen += [*_empty(trials, channels, source), *_constant(trials, inputs, channels, source)]
     if len(trials) == 1:
         seen.append(
             Finding(
@@ -202,6 +186,43 @@ def measured_of_trials(
     return Measured(drive, observed, tuple(trial.name for trial in trials), tuple(channels), tuple(seen), source)
 
 
+def _together(notes: list[Finding]) -> list[Finding]:
+    """One finding for several trials of which the same is to be known: the first, and how many there are."""
+    alike: dict[tuple[str, str], list[Finding]] = {}
+    for note in notes:
+        alike.setdefault((note.kind, note.channel), []).append(note)
+    return [
+        replace(some[0], what=some[0].what + (f"; {len(some) - 1} more trials alike" if len(some) > 1 else ""))
+        for some in alike.values()
+    ]
+
+
+def _still(values: NDArray[np.float64]) -> bool:
+    """Whether what there is of a channel never varies."""
+    return bool(np.ptp(values[np.isfinite(values)]) == 0)
+
+
+def _empty(trials: Sequence[TrialColumns], channels: Sequence[str], source: str) -> list[Finding]:
+    """Refuse a channel that is as good as empty in a trial; tell of empty cells."""
+    found = []
+    for column, name in enumerate(channels):
+        missing = {trial.name: int((~np.isfinite(trial.observed[:, column])).sum()) for trial in trials}
+        for trial in trials:
+            there = len(trial.time) - missing[trial.name]
+            if there < SHORTEST:
+                raise ReadError(
+                    f"an observed channel has {SHORTEST} values or more in every trial",
+                    f"{source}, trial {trial.name!r}, column {name!r} has {there} in {len(trial.time)} rows",
+                    "Leave the trial out, or take the channel out of [observations].",
+                )
+        worst = max(missing, key=lambda trial: missing[trial])
+        if missing[worst]:
+            rows = sum(len(trial.time) for trial in trials)
+            what = f"{sum(missing.values())} of {rows} samples are missing, most in trial {worst!r} ({missing[worst]})"
+            found.append(Finding("note", "empty cells", source, what, "nothing: they are left out", name))
+    return found
+
+
 def _constant(
     trials: Sequence[TrialColumns], inputs: Sequence[str], channels: Sequence[str], source: str
 ) -> list[Finding]:
@@ -209,7 +230,7 @@ def _constant(
     found = []
     for kind, names in (("observed", channels), ("inputs", inputs)):
         for column, name in enumerate(names):
-            still = [trial.name for trial in trials if np.ptp(getattr(trial, kind)[:, column]) == 0]
+            still = [trial.name for trial in trials if _still(getattr(trial, kind)[:, column])]
             if len(still) == len(trials) and kind == "observed":
                 raise ShapeError(
                     f"an observed channel varies: {name!r}",
@@ -221,38 +242,3 @@ def _constant(
                 severity = "warning" if kind == "observed" else "note"
                 found.append(Finding(severity, "constant", source, what, "what these trials show", name))
     return found
-
-
-def _rate(trial: TrialColumns, source: str) -> float:
-    """Samples a second of an evenly sampled trial."""
-    time, where = trial.time, f"{source}, trial {trial.name!r}"
-    if len(time) < SHORTEST:
-        raise SamplingError(
-            f"a trial has {SHORTEST} samples or more", f"{where} has {len(time)}", "Leave it out, or record longer."
-        )
-    steps = np.diff(time)
-    back = int(np.argmin(steps))
-    if steps[back] <= 0:
-        what = "stands twice" if steps[back] == 0 else f"is followed by {time[back + 1]:.6g} s"
-        raise SamplingError(
-            "time increases within a trial",
-            f"{where}: t = {time[back]:.6g} s {what} (sample {back + 2} of the trial)",
-            "Take the doubled rows away, or give each trial a name of its own in the column 'trial'.",
-        )
-    mean = (time[-1] - time[0]) / (len(time) - 1)
-    off = np.abs(time - time[0] - mean * np.arange(len(time)))
-    printed = 0.51 * 10.0 ** -_decimals(time)
-    if off.max() > max(1e-3 * mean, min(2 * printed, 0.25 * mean)):
-        worst = int(np.argmax(np.abs(steps - mean)))
-        raise SamplingError(
-            "a trial is sampled evenly",
-            f"{where}: a step of {steps[worst]:.6g} s after t = {time[worst]:.6g} s where the mean is {mean:.6g} s "
-            f"(steps from {steps.min():.6g} to {steps.max():.6g} s)",
-            "Resample it to an even rate, or cut it at the gap into two trials.",
-        )
-    return float(np.round(1.0 / mean, 9)) if abs(1 / mean - round(1 / mean)) > 1e-4 else float(round(1 / mean))
-
-
-def _decimals(time: NDArray[np.float64]) -> int:
-    """Decimals that the times were printed with, 9 at most."""
-    return next((d for d in range(9) if np.all(np.abs(time - np.round(time, d)) < 1e-12 * (1 + np.abs(time)))), 9)

@@ -14,7 +14,8 @@ from gaitdisc.channel import nearest_word
 from gaitdisc.errors import ChannelError, GaitdiscError, ReadError, UnitError
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.regular_file import LARGEST_TEXT_BYTES, check_regular
-from gaitdisc.simulation.measured import Measured, TrialColumns, measured_of_trials
+from gaitdisc.simulation.even_time import TrialColumns
+from gaitdisc.simulation.measured import Measured, measured_of_trials
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.unit_factor import unit_factor
 
@@ -41,7 +42,7 @@ def read_measured(path: Path | str, simulation: Simulation) -> Measured:
     Raises
     ------
     ReadError
-        If the file cannot be read, a cell is no number, or one is empty or NaN: trial, line and column are told.
+        If the file cannot be read, or a cell is no number: trial, line and column are named.
     ChannelError
         If a column is missing; the nearest one is named.
     SamplingError, ShapeError
@@ -63,6 +64,7 @@ def read_measured(path: Path | str, simulation: Simulation) -> Measured:
             raise _missing(name, columns, path.name)
     trial = _trials(table, path.name)
     numbers = {name: _numbers(table, name, trial, path.name) for name in dict.fromkeys(("time", *inputs, *channels))}
+    _refuse_timeless(numbers["time"], trial, path.name)
     order = list(dict.fromkeys(trial.tolist()))
     parts = []
     for name in order:
@@ -91,8 +93,6 @@ def measured_of_recordings(recordings: Sequence[Recording], simulation: Simulati
         If a channel is missing.
     UnitError
         If a channel's unit measures something else than the simulation's.
-    ReadError
-        If a value is NaN.
 
     Examples
     --------
@@ -110,14 +110,6 @@ def measured_of_recordings(recordings: Sequence[Recording], simulation: Simulati
             if wanted not in recording.names:
                 raise _missing(wanted, recording.names, name)
             values = _converted(recording, wanted, simulation, (name, findings))
-            bad = np.flatnonzero(~np.isfinite(values))
-            if bad.size:
-                raise ReadError(
-                    "a measured channel has a value in every sample",
-                    f"{name}, {wanted}: {bad.size} of {len(values)} are missing, "
-                    f"first at t = {recording.time[bad[0]]:.4g} s",
-                    "Cut the trial there, or fill the gap before.",
-                )
             doubtful = int(np.count_nonzero(np.asarray(recording.suspect)[:, recording.names.index(wanted)]))
             if doubtful:
                 what = f"{doubtful} of {len(values)} samples are marked as not to be trusted"
@@ -232,20 +224,26 @@ def _numbers(table: pd.DataFrame, name: str, trial: NDArray[np.object_], file: s
             "Write seconds since the trial's start." if name == "time" else "Write numbers.",
         )
     values = pd.to_numeric(table[name], errors="coerce").to_numpy(float)
-    bad = np.flatnonzero(~np.isfinite(values))
+    bad = np.flatnonzero(~np.isfinite(values) & ~table[name].isna().to_numpy())
     if bad.size:
         row = int(bad[0])
-        cell = table[name].iloc[row]
-        shown = "an empty cell" if pd.isna(cell) else repr(str(cell))
         raise ReadError(
-            "every cell of a measured column is a number",
-            f"{file}, line {row + 2} (trial {trial[row]!r}), column {name!r} has {shown}"
+            "every cell of a measured column is a number, or empty",
+            f"{file}, line {row + 2} (trial {trial[row]!r}), column {name!r} has {str(table[name].iloc[row])!r}"
             + (f"; {bad.size} such cells" if bad.size > 1 else ""),
-            "Fill or cut the gap; a trial has no missing samples."
-            if pd.isna(cell)
-            else "Write numbers in this column.",
+            "Write a number, or leave the cell empty.",
         )
     return values
+
+
+def _refuse_timeless(time: NDArray[np.float64], trial: NDArray[np.object_], file: str) -> None:
+    bad = np.flatnonzero(~np.isfinite(time))
+    if bad.size:
+        raise ReadError(
+            "every row has its time",
+            f"{file}, line {bad[0] + 2} (trial {trial[bad[0]]!r}) has none",
+            "Fill the column 'time', or take the row away.",
+        )
 
 
 def _left_out(simulation: Simulation, columns: Sequence[str], channels: tuple[str, ...], file: str) -> list[Finding]:
@@ -273,7 +271,7 @@ def _converted(
     channel = recording.channels[recording.names.index(name)]
     units = {part.name: part.unit for part in (*simulation.states, *simulation.inputs)}
     observed = dict(simulation.observations).get(name, name)
-    to = units.get(name, units.get(observed.strip()))
+    to = simulation.sensor(name).unit or units.get(name, units.get(observed.strip()))
     factor = None if to is None else unit_factor(channel.unit, to)
     if factor is None:
         what = f"{channel.unit!r} is not compared with the simulation's {to!r}" if to else f"{channel.unit!r} as it is"

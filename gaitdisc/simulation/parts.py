@@ -104,3 +104,36 @@ class Term:
     kind: str
     name: str
     term: str
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """How one observed channel was recorded.
+
+    Parameters
+    ----------
+    channel : str
+        The observation that it belongs to.
+    unit : str
+        Of the column; empty where it follows from the expression.
+    sd : float, optional
+        Standard deviation of the sensor's noise, before any filter [unit].
+    lowpass : float, optional
+        Cut-off of the zero-lag low-pass that the record went through [Hz]: Butterworth of order 2, forwards and back;
+        the -3 dB frequency of one pass.
+
+    Examples
+    --------
+    >>> Sensor("ankle_angle_r", "deg", sd=0.3).known, Sensor("theta").known
+    (True, False)
+    """
+
+    channel: str
+    unit: str = ""
+    sd: float | None = None
+    lowpass: float | None = None
+
+    @property
+    def known(self) -> bool:
+        """Whether anything is said of it."""
+        return bool(self.unit) or self.sd is not None or self.lowpass is not None

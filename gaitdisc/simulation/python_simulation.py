@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gaitdisc.simulation.parts import Input, Parameter, Port, State, Term
+from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Term
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Lines, Simulation
 
@@ -87,6 +87,31 @@ class PythonSimulation:
         return self.parts.observations
 
     @property
+    def sensors(self) -> tuple[Sensor, ...]:
+        """How observed channels were recorded."""
+        return self.parts.sensors
+
+    def sensor(self, channel: str) -> Sensor:
+        """How an observed channel was recorded.
+
+        Parameters
+        ----------
+        channel : str
+            Name of the observation.
+        """
+        return self.parts.sensor(channel)
+
+    def with_sensor(self, sensor: Sensor) -> PythonSimulation:
+        """Simulation in which an observed channel was recorded in another way.
+
+        Parameters
+        ----------
+        sensor : Sensor
+            Of the channel that it names.
+        """
+        return replace(self, parts=self.parts.with_sensor(sensor))
+
+    @property
     def effects(self) -> tuple[Term, ...]:
         """What was added, and where."""
         return self.parts.effects
@@ -110,7 +135,7 @@ class PythonSimulation:
             sums[f"d/dt {state.name}"] = " + ".join(own) or "0"
         given = dict(self.replaced)
         sums |= {f"input {each.name}": given.get(each.name, each.name) for each in self.inputs}
-        return replace(self.parts, observations=tuple(sums.items()))
+        return replace(self.parts, observations=tuple(sums.items()), sensors=())
 
     def values(self) -> dict[str, float]:
         """Parameters by name."""

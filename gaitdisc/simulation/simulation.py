@@ -9,7 +9,7 @@ from typing import Any
 
 from gaitdisc.simulation.checking import check
 from gaitdisc.simulation.expression import parsed
-from gaitdisc.simulation.parts import Input, Parameter, Port, State, Term
+from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Term
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.rewriting import substituted, written
 
@@ -40,6 +40,8 @@ class Simulation:
         Measured column and expression; by default each state under its own name.
     effects : tuple of Term
         What was added, and where.
+    sensors : tuple of Sensor
+        How observed channels were recorded, for those of which the file says it.
     source : Path, optional
         File it was read from.
     layout : str
@@ -66,18 +68,26 @@ class Simulation:
     equations: Lines = ()
     observations: Lines = ()
     effects: tuple[Term, ...] = ()
+    sensors: tuple[Sensor, ...] = ()
     source: Path | None = field(default=None, compare=False)
     layout: str = field(default="", compare=False, repr=False)
 
     def __post_init__(self) -> None:
         """Make every part a tuple, and refuse what does not hold together."""
-        for part in ("states", "inputs", "parameters", "ports", "effects"):
+        for part in ("states", "inputs", "parameters", "ports", "effects", "sensors"):
             object.__setattr__(self, part, tuple(getattr(self, part)))
         for part in ("definitions", "equations", "observations"):
             object.__setattr__(self, part, _lines(getattr(self, part)))
         if not self.observations:
             object.__setattr__(self, "observations", tuple((state.name, state.name) for state in self.states))
+        object.__setattr__(self, "sensors", self._known_sensors())
         check(self)
+
+    def _known_sensors(self) -> tuple[Sensor, ...]:
+        """Those of which something is said, in the order of the observations; what belongs to none stands last."""
+        order = [name for name, _ in self.observations]
+        known = (one for one in self.sensors if one.known)
+        return tuple(sorted(known, key=lambda one: order.index(one.channel) if one.channel in order else len(order)))
 
     @property
     def signals(self) -> tuple[str, ...]:
@@ -87,6 +97,26 @@ class Simulation:
     def values(self) -> dict[str, float]:
         """Parameters by name."""
         return {parameter.name: parameter.value for parameter in self.parameters}
+
+    def sensor(self, channel: str) -> Sensor:
+        """How an observed channel was recorded; nothing is known of one that the file says nothing of.
+
+        Parameters
+        ----------
+        channel : str
+            Name of the observation.
+        """
+        return next((one for one in self.sensors if one.channel == channel), Sensor(channel))
+
+    def with_sensor(self, sensor: Sensor) -> Simulation:
+        """Simulation in which an observed channel was recorded in another way.
+
+        Parameters
+        ----------
+        sensor : Sensor
+            Of the channel that it names.
+        """
+        return replace(self, sensors=(*(one for one in self.sensors if one.channel != sensor.channel), sensor))
 
     def with_effect(self, term: Term) -> Simulation:
         """Simulation with one effect more.
@@ -199,7 +229,8 @@ class Simulation:
                 raise SimulationError(
                     "an observation of the simulation", f"{name!r} is none", f"Known: {', '.join(has)}."
                 )
-        return replace(self, observations=tuple((name, has[name]) for name in names))
+        sensors = tuple(one for one in self.sensors if one.channel in names)
+        return replace(self, observations=tuple((name, has[name]) for name in names), sensors=sensors)
 
     def with_input(self, name: str, expression: str) -> Simulation:
         """Simulation in which an input is replaced by an expression of itself wherever it stands.

@@ -12,7 +12,8 @@ from gaitdisc.channel import nearest_word
 from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.regular_file import check_regular
 from gaitdisc.simulation.delay_check import refuse_delays
-from gaitdisc.simulation.parts import Input, Parameter, Port, State, Term
+from gaitdisc.simulation.observed_units import refuse_units
+from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Term
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.toml_text import parsed_toml
@@ -28,6 +29,7 @@ _TABLES = {
 _EXPRESSIONS = ("definitions", "equations", "observations")
 _SECTIONS = ("title", *_TABLES, *_EXPRESSIONS, "effects")
 _EFFECT = ("port", "equation", "name", "term")
+_OBSERVATION = ("expression", "unit", "sd", "lowpass")
 
 
 def read_simulation(path: Path | str) -> Simulation:
@@ -107,6 +109,7 @@ def simulation_of(text: str, file: str = "the simulation", source: Path | None =
     try:
         simulation = _simulation(table, text, source)
         refuse_delays(simulation)
+        refuse_units(simulation)
         return simulation
     except SimulationError as error:
         raise _located(error, text, file) from None
@@ -127,6 +130,8 @@ def _simulation(table: Mapping[str, Any], text: str, source: Path | None) -> Sim
         raise SimulationError(
             "effects are a list of tables", "found something else", "Write [[effects]].", ("effects",)
         )
+    sensors = tuple(_sensor(name, e) for name, e in parts["observations"].items() if isinstance(e, dict))
+    parts["observations"] = {n: e["expression"] if isinstance(e, dict) else e for n, e in parts["observations"].items()}
     lines = {
         section: tuple((name, _expression(value, (section, name))) for name, value in parts[section].items())
         for section in _EXPRESSIONS
@@ -146,6 +151,7 @@ def _simulation(table: Mapping[str, Any], text: str, source: Path | None) -> Sim
         lines["equations"],
         lines["observations"],
         tuple(_effect(entry, number) for number, entry in enumerate(effects)),
+        sensors,
         source,
         text,
     )
@@ -158,6 +164,15 @@ def _parameter(name: str, entry: Mapping[str, Any]) -> Parameter:
         raise SimulationError("a parameter has a value", "it has none", "Write value = ...", place)
     low, high = _number(entry, "low", place), _number(entry, "high", place)
     return Parameter(name, value, _unit(entry, place), low, high, _text(entry, "meaning", place))
+
+
+def _sensor(name: str, entry: Mapping[str, Any]) -> Sensor:
+    place = ("observations", name)
+    _check_keys(entry, _OBSERVATION, place)
+    if "expression" not in entry:
+        raise SimulationError("an observation has an expression", "it has none", 'Write expression = "...".', place)
+    sd, lowpass = _number(entry, "sd", place), _number(entry, "lowpass", place)
+    return Sensor(name, _text(entry, "unit", place), sd, lowpass)
 
 
 def _effect(entry: Any, number: int) -> Term:

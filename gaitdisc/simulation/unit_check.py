@@ -45,6 +45,22 @@ def unit_findings(simulation: Simulation) -> tuple[Finding, ...]:
     return tuple(check.findings)
 
 
+def dimension_in(simulation: Simulation, text: str) -> Dimension | None:
+    """Dimension of an expression in a simulation's names; None where it may be any.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        Whose names have units.
+    text : str
+        Expression.
+    """
+    check = _Check(simulation)
+    for name, definition in simulation.definitions:
+        check.known[name] = check.unit(parsed(definition), name)
+    return check.unit(parsed(text), text)
+
+
 def _unit_of(simulation: Simulation, state: str) -> str:
     return next(each.unit for each in simulation.states if each.name == state)
 

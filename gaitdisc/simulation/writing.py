@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from gaitdisc.errors import GaitdiscError, ReadError, SchemaError
-from gaitdisc.simulation.parts import Parameter, Term
+from gaitdisc.simulation.parts import Parameter, Sensor, Term
 from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.simulation import Lines, Simulation
 from gaitdisc.simulation.simulation_file import simulation_of
@@ -170,8 +170,17 @@ def _with_expressions(lines: list[str], section: str, old: Lines, new: Lines) ->
 def _with_observations(lines: list[str], before: Simulation, after: Simulation) -> list[str]:
     if before.observations == after.observations:
         return lines
-    start, end = _table(lines, "observations")
     has, wanted = dict(before.observations), dict(after.observations)
+    long = False
+    for name in has:
+        span = _table(lines, rf"observations\s*\.\s*[\"']?{re.escape(name)}[\"']?")
+        long = long or span[0] >= 0
+        if span[0] >= 0 and name in wanted:
+            lines = _with_values(lines, span, {"expression": _quoted(wanted[name])})
+    start, end = _table(lines, "observations")
+    if start < 0 and long:
+        added = [["", *_observation(text, after.sensor(name))] for name, text in after.observations if name not in has]
+        return [*lines, *(line for one in added for line in one)]
     if start < 0:
         return [*lines, "", "[observations]", *_expressions(after.observations)]
     if [name for name in wanted if name in has] != list(has):
@@ -224,7 +233,10 @@ def _new_text(simulation: Simulation, sections: Iterable[str] = ("definitions", 
     for port in simulation.ports:
         lines += ["", f"[ports.{port.name}]", f"unit = {_quoted(port.unit)}", *_meaning(port.meaning)]
     for section in sections:
-        if getattr(simulation, section):
+        if section == "observations" and simulation.sensors:
+            for name, text in simulation.observations:
+                lines += ["", *_observation(text, simulation.sensor(name))]
+        elif getattr(simulation, section):
             lines += ["", f"[{section}]", *_expressions(getattr(simulation, section))]
     for term in simulation.effects:
         lines += ["", *_effect(term)]
@@ -240,6 +252,12 @@ def _parameter(parameter: Parameter) -> list[str]:
     return [f"[parameters.{parameter.name}]", f"value = {parameter.value!r}", unit, *bounds, *meaning]
 
 
+def _observation(expression: str, sensor: Sensor) -> list[str]:
+    unit = [f"unit = {_quoted(sensor.unit)}"] if sensor.unit else []
+    numbers = [f"{key} = {value!r}" for key in ("sd", "lowpass") if (value := getattr(sensor, key)) is not None]
+    return [f"[observations.{_key(sensor.channel)}]", f"expression = {_quoted(expression)}", *unit, *numbers]
+
+
 def _effect(term: Term) -> list[str]:
     return [
         "[[effects]]",
@@ -250,9 +268,11 @@ def _effect(term: Term) -> list[str]:
 
 
 def _expressions(lines: Iterable[tuple[str, str]]) -> list[str]:
-    return [
-        f"{name if re.match(r'[A-Za-z0-9_-]+$', name) else _quoted(name)} = {_quoted(text)}" for name, text in lines
-    ]
+    return [f"{_key(name)} = {_quoted(text)}" for name, text in lines]
+
+
+def _key(name: str) -> str:
+    return name if re.match(r"[A-Za-z0-9_-]+$", name) else _quoted(name)
 
 
 def _meaning(text: str) -> list[str]:

@@ -47,7 +47,8 @@ def rows(trials=4, samples=400):
 
 
 def write(path, table, head="trial,time,x"):
-    path.write_text("\n".join([head, *(",".join(f"{cell:.7g}" for cell in row) for row in table)]) + "\n")
+    lines = [",".join(cell if isinstance(cell, str) else f"{cell:.7g}" for cell in row) for row in table]
+    path.write_text("\n".join([head, *lines]) + "\n")
 
 
 @pytest.fixture(scope="module")
@@ -75,7 +76,7 @@ def lab(tmp_path_factory):
     write(folder / "column.csv", table, "trial,time,y")
     write(folder / "short.csv", [row for row in table if row[1] < 0.2])
     write(folder / "constant.csv", [(*row[:2], 1.0) for row in table])
-    write(folder / "nan.csv", [*table[:7], (1, 7 / RATE, float("nan")), *table[8:]])
+    write(folder / "nan.csv", [*table[:7], (1, 7 / RATE, "?"), *table[8:]])
     return folder
 
 
@@ -143,7 +144,7 @@ def test_a_simulation_that_blows_up_names_the_parameter(lab):
         ("column", "the simulation needs a measured column 'x'; column.csv has trial, time, y."),
         ("short", "a trial has 20 samples or more; short.csv, trial '1' has 10."),
         ("constant", "an observed channel varies: 'x'; constant.csv has 1 in every sample."),
-        ("nan", "nan.csv, line 9 (trial '1'), column 'x' has an empty cell."),
+        ("nan", "nan.csv, line 9 (trial '1'), column 'x' has '?'."),
         ("absent", "measured data are read from a table; absent.csv: No such file"),
     ],
 )

@@ -10,8 +10,8 @@ CLEAN = Experiment(noise=0.001)
 
 def test_what_leaves_the_sensors_noise_is_known_from_the_record_alone(inquiry, as_read, named):
     scale = scale_of(inquiry)
-    assert leaves_noise(scale, named[0])
-    assert not leaves_noise(scale, as_read)
+    assert leaves_noise(inquiry, named[0])
+    assert not leaves_noise(inquiry, as_read)
     assert not agrees(scale, as_read)
 
 

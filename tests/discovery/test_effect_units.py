@@ -2,8 +2,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gaitdisc.discovery.effect_units import channel_unit, divided, places_unit, unit_of
+from gaitdisc.discovery.effect_units import channel_unit, divided, places_unit, unit_of, unit_of_channel
 from gaitdisc.simulation.bundled import bundled
+from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.unit_factor import unit_factor
 
 UNITS = ("N m", "N", "rad", "rad/s", "m/s", "kg m^2", "1", "N m s/rad", "1/s")
@@ -56,3 +57,9 @@ def test_what_is_added_to_an_equation_is_a_rate():
 )
 def test_a_channel_in_other_units_is_never_told_in_those_of_its_state(text, unit):
     assert channel_unit(text, {"theta": "rad", "omega": "rad/s"}) == unit
+
+
+def test_the_unit_of_a_channel_is_the_one_that_the_file_says():
+    told = bundled("ankle").with_observation("ankle_angle_r", "1000*theta")
+    assert unit_of_channel(told, "ankle_angle_r") == "1"
+    assert unit_of_channel(told.with_sensor(Sensor("ankle_angle_r", "mrad")), "ankle_angle_r") == "mrad"

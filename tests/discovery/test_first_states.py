@@ -14,7 +14,8 @@ X, V = np.sin(2 * np.pi * T / PERIOD), 2 * np.pi / PERIOD * np.cos(2 * np.pi * T
 
 
 def _guess(observed, simulation=None):
-    drive = Drive.of([0.1 * T[:, None]] * len(observed), RATE)
+    ends = [int(np.flatnonzero(np.isfinite(one).any(axis=1))[-1]) + 1 for one in observed]
+    drive = Drive.of([0.1 * T[:end, None] for end in ends], RATE)
     measured = Measured(drive, observed, tuple(map(str, range(len(observed)))), ("x",))
     return guess_states(simulation or mass(), measured, PERIOD, {"x": "v"})
 

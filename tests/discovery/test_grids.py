@@ -68,3 +68,11 @@ def test_cells_are_every_combination():
     made = cells({"c": "phases", "w": "phase widths"}, ALONG, RHYTHM)
     assert len(made) == 20 * 4 == len({(one["c"], one["w"]) for one in made})
     assert cells({}, ALONG, RHYTHM) == [{}]
+
+
+def test_gaps_of_one_channel_after_the_other_leave_the_period():
+    t = np.arange(1000) / 50
+    seen = np.stack([np.sin(2 * np.pi * t / 2), np.cos(2 * np.pi * t / 2)], axis=1)
+    seen[::2, 0] = np.nan
+    seen[1::2, 1] = np.nan
+    assert rhythm_of(seen[None], 50.0).period == pytest.approx(2.0, rel=0.05)

@@ -48,7 +48,7 @@ def test_the_truth_leaves_the_noise_and_nothing_else(inquiry, runs):
 
 def test_runs_are_drawn_at_their_own_times(inquiry, runs):
     before, after = runs
-    drawn = drawn_runs(inquiry, before, after, inquiry.held_out)
+    drawn = drawn_runs(inquiry, before, after)
     assert set(drawn.trial) == set(inquiry.held_out)
     np.testing.assert_allclose(np.diff(drawn.time, axis=1), 1 / inquiry.rhythm.rate)
     np.testing.assert_allclose(drawn.measured - drawn.augmented, after.fit.residual)

@@ -6,11 +6,13 @@ from gaitdisc.discovery.account import Part, account_for
 from gaitdisc.discovery.catalogue import Shape
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.evidence import judged
-from gaitdisc.discovery.inquiry import begin_inquiry, split_in_time
+from gaitdisc.discovery.inquiry import SHORT, begin_inquiry, split_in_time
+from gaitdisc.discovery.record_filter import RecordFilter
 from gaitdisc.report.discovery_page import write_discovery_report
 from gaitdisc.results.discovery_folder import save_discovery
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import simulation_of
 
@@ -116,3 +118,22 @@ def test_no_run_is_longer_than_wanted(inquiry, as_read):
 def test_shapes_of_the_users_own_are_searched():
     inquiry = begin_inquiry(mass(), record(with_load("0"), 0, Experiment(2, 4.0)), (Shape("quintic", ("x**5",)),))
     assert "quintic@load" in {one.label for one in inquiry.search.candidates}
+
+
+def test_the_noise_of_the_sensors_is_what_the_file_says_behind_the_filter():
+    measured = record(mass(), 3, Experiment(trials=2, seconds=6.0))
+    told = mass().with_sensor(Sensor("x", "m", 0.03, 3.0))
+    inquiry = begin_inquiry(told, measured)
+    assert inquiry.record_filter == RecordFilter((3.0,), measured.rate)
+    assert inquiry.sensor_noise == pytest.approx(0.03 * inquiry.record_filter.gains)
+    assert inquiry.noise_floor(np.array([0.5])) == inquiry.sensor_noise
+    plain = begin_inquiry(mass(), measured)
+    assert np.isnan(plain.sensor_noise).all() and plain.noise_floor(np.array([0.5])) == 0.5
+
+
+def test_a_trial_too_short_for_whole_margins_is_cut_all_the_same():
+    measured = record(mass(), 3, Experiment(trials=3, seconds=1.6))
+    inquiry = begin_inquiry(mass().with_sensor(Sensor("x", lowpass=1.0)), measured)
+    segments = inquiry.segments((0, 1))
+    assert segments.margin == 80 // SHORT and segments.span >= 8
+    assert np.isfinite(inquiry.as_read().account.fit.misfit)

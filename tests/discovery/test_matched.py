@@ -10,8 +10,9 @@ from gaitdisc.discovery.catalogue import Shape
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.inquiry import begin_inquiry
 from gaitdisc.discovery.matched import matched
-from gaitdisc.errors import GaitdiscError
+from gaitdisc.errors import GaitdiscError, SamplingError
 from gaitdisc.simulation.drive import Drive
+from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.refusal import SimulationError
 
 
@@ -122,3 +123,14 @@ def test_a_delay_of_the_simulation_longer_than_the_shortest_trial_is_refused(mea
         SimulationError, match=r"\[equations\] v: a delay is shorter than every trial; the shortest, '1'"
     ):
         discover(replace(mass(), equations=equations), measured)
+
+
+def test_a_filter_beyond_half_the_rate_is_refused(measured):
+    told = mass().with_sensor(Sensor("x", lowpass=25.0))
+    with pytest.raises(
+        SamplingError,
+        match=r"below half the rate, 25 Hz; A mass on a spring, pushed, \[observations.x\] "
+        r"has lowpass = 25 where walk.csv has 50 samples a second. Correct lowpass",
+    ):
+        matched(told, measured)
+    assert matched(mass().with_sensor(Sensor("x", lowpass=24.0)), measured).sensors

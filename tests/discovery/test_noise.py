@@ -3,6 +3,7 @@ import pytest
 from scipy.signal import lfilter
 
 from gaitdisc.discovery.noise import MOST_LAGS, Noise, noise_of, white_noise
+from gaitdisc.discovery.record_filter import RecordFilter
 
 FIRST, SECOND = 1.2, -0.5  # x[k] = 1.2 x[k-1] - 0.5 x[k-2] + e[k], e of variance 1
 
@@ -82,3 +83,28 @@ def test_what_integration_leaves_is_white_and_there_in_any_case():
     noise = noise_of(np.zeros((2, 40, 2)), least=np.array([0.5, 2.0]))
     assert noise.size == pytest.approx([0.5, 2.0])
     assert noise.lags == (0, 0)
+
+
+def test_gaps_do_not_count_and_what_follows_begins_afresh(remembering):
+    gaps = remembering.copy()
+    gaps[:, 100:120] = np.nan
+    noise, whole = noise_of(gaps, white_share=0.0), noise_of(remembering, white_share=0.0)
+    assert noise.lags == whole.lags
+    assert noise.size[0] == pytest.approx(whole.size[0], rel=0.03)
+    known = np.isfinite(gaps)
+    white = whole.whitened(np.nan_to_num(gaps), known)
+    np.testing.assert_array_equal(white[:, :100], whole.whitened(remembering)[:, :100])
+    np.testing.assert_array_equal(white[:, 120:], whole.whitened(remembering[:, 120:]))
+    assert not white[:, 100:120].any()
+    assert not white_noise(np.ones(1)).whitened(np.ones_like(gaps), known)[:, 100:120].any()
+
+
+def test_a_memory_that_the_records_filter_explains_is_none():
+    passed = RecordFilter((6.0,), 100.0)
+    white = np.random.default_rng(2).normal(size=(40, 600, 1))
+    slow = lfilter([1.0], [1.0, -0.97], white, axis=1)
+    memory = passed.memory(MOST_LAGS)
+    for noise, beyond in ((white, False), (slow, True)):
+        seen = passed.filtered(noise, 1)[:, 40 : -40 : passed.every]
+        assert noise_of(seen).remembers
+        assert noise_of(seen, memory=memory).remembers == beyond

@@ -66,3 +66,26 @@ def test_rows_are_tiled_version_by_version():
     assert rows.begin.tolist() == [5, 7] * 3
     assert rows.starts.tolist() == starts.reshape(6, 2).tolist()
     assert np.ravel(rows.values).tolist() == [1.0, 1.0, 2.0, 2.0, 3.0, 3.0]
+
+
+def test_margins_are_run_and_not_compared():
+    segments = cut_segments(np.array([100, 70]), (0, 1), 18, 10, 3)
+    assert (segments.margin, segments.every, segments.span, segments.length) == (10, 3, 16, 36)
+    assert segments.begin.tolist() == [0, 16, 32, 48, 64, 0, 16, 32]
+    inner = segments.of(np.stack([np.arange(100), np.arange(100)]))[:, segments.compared]
+    assert inner[:2].tolist() == [[10, 13, 16, 19, 22, 25], [26, 29, 32, 35, 38, 41]]
+    with pytest.raises(SamplingError, match="a trial needs at least 24 samples; one has 23"):
+        cut_segments(np.array([23]), (0,), 18, 10)
+
+
+def test_where_runs_overlap_what_is_compared_is_put():
+    segments = cut_segments(np.array([40]), (0,), 10, 10)
+    runs = np.arange(len(segments))[:, None] + np.zeros((1, segments.length))
+    put = segments.put(np.full((1, 40), -1.0), runs)
+    assert put[0].tolist() == [0.0] * 20 + [1.0] * 20
+
+
+def test_some_of_the_segments():
+    segments = cut_segments(np.array([100, 70]), (0, 1), 18, 10, 3)
+    few = segments.among(np.array([1, 5]))
+    assert (few.trial.tolist(), few.begin.tolist(), few.every) == ([0, 1], [16, 0], 3)

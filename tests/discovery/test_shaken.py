@@ -1,9 +1,12 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hidden_in_a_mass import Experiment, mass, record
 
 from gaitdisc.discovery.inquiry import begin_inquiry
 from gaitdisc.discovery.shaken import shaken
+from gaitdisc.simulation.parts import Sensor
 
 
 def _weighed(how, seed=3):
@@ -30,3 +33,24 @@ def test_the_strength_of_pushes_follows_theirs():
     weak, strong = (_weighed(Experiment(shaking=size)).strength for size in (3.0, 12.0))
     assert strong / weak == pytest.approx(4.0, rel=0.3)
     assert np.isfinite(weak)
+
+
+def test_filtered_noise_of_the_sensor_is_not_taken_for_pushes_and_pushes_are_found_all_the_same():
+    told = mass().with_sensor(Sensor("x", lowpass=3.0))
+    for how, pushed in ((Experiment(lowpass_hz=3.0), False), (Experiment(lowpass_hz=3.0, shaking=6.0), True)):
+        inquiry = begin_inquiry(told, record(mass(), 3, how))
+        now = inquiry.as_read()
+        best = shaken(now.shooting, now.account, inquiry.search.places)[0]
+        gained = (best.rival - best.evidence) / best.numbers
+        assert gained > 0.1 if pushed else gained < 0.01
+
+
+def test_gaps_change_little():
+    measured = record(mass(), 3, Experiment(shaking=6.0))
+    observed = np.array(measured.observed)
+    observed[:, 100:112] = observed[0, 300:309] = np.nan
+    gaps = begin_inquiry(mass(), replace(measured, observed=observed))
+    now = gaps.as_read()
+    best = shaken(now.shooting, now.account, gaps.search.places)[0]
+    assert best.rival - best.evidence > 0.1 * best.numbers
+    assert best.strength == pytest.approx(6.0, rel=0.3)

@@ -6,6 +6,7 @@ from hidden_in_a_mass import Experiment, mass, neuron, record
 
 from gaitdisc.discovery.inquiry import begin_inquiry
 from gaitdisc.discovery.noise import white_noise
+from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.running import compile_simulation
 
 COVERED = 20
@@ -110,3 +111,33 @@ def test_a_fitted_run_becomes_the_past_of_what_comes_late():
     assert past is not None
     assert (shooting.segments.of(past) == 1).all()
     assert replace(shooting, past=None).with_past(states).past is None
+
+
+FILTERED = Experiment(3, 10.0, 0.02, lowpass_hz=0.7)
+
+
+def _filtered(told):
+    simulation = mass().with_sensor(Sensor("x", lowpass=0.7)) if told else mass()
+    inquiry = begin_inquiry(simulation, record(mass().with_values({"k": 31.0, "c": 1.4}), 5, FILTERED))
+    segments = inquiry.segments((0, 1, 2))
+    return inquiry.shooting(segments), inquiry.guess.starts(segments)
+
+
+@pytest.mark.parametrize("told", [True, False])
+def test_a_filtered_record_gives_the_true_numbers_where_the_simulation_is_filtered_alike(told):
+    shooting, starts = _filtered(told)
+    machine = compile_simulation(mass())
+    fit = shooting.fitted(machine, ("k", "c"), machine.defaults, starts, 30, 1e-9)
+    off = np.abs(fit.values[[machine.parameters.index(name) for name in ("k", "c")]] / [31.0, 1.4] - 1).max()
+    assert off < 0.03 if told else off > 0.08
+
+
+def test_slopes_of_a_filtered_record_are_those_of_finite_differences():
+    shooting, starts = _filtered(True)
+    machine = compile_simulation(mass())
+    fit = shooting.at(machine, ("k",), machine.defaults, starts)
+    values = machine.defaults.copy()
+    values[machine.parameters.index("k")] += 0.01
+    more = shooting.at(machine, (), values, starts)
+    np.testing.assert_allclose(fit.slopes[..., -1], (fit.white - more.white) / 0.01, atol=2e-4)
+    assert fit.residual.shape[1] == len(range(*shooting.segments.compared.indices(shooting.segments.length)))

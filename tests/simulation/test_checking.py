@@ -2,7 +2,7 @@
 
 import pytest
 
-from gaitdisc.simulation.parts import Input, Parameter, Port, State, Term
+from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Term
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
 
@@ -67,3 +67,10 @@ def test_what_does_not_hold_together(changed, place, words):
 def test_an_equation_effect_may_use_definitions_and_a_delay_parameters():
     made = _made(effects=(Term("v", "equation", "a", "-0.1*spring + delay(v, 2*d)"),))
     assert made.effects[0].kind == "equation"
+
+
+def test_a_sensor_belongs_to_an_observation_and_its_numbers_are_above_0():
+    with pytest.raises(SimulationError, match=r"a sensor records an observation; 'y' is none. Known: x, v."):
+        _made(sensors=(Sensor("y", sd=1.0),))
+    with pytest.raises(SimulationError, match=r"sd is a number above 0 \[mm\]; found sd = nan"):
+        _made(sensors=(Sensor("x", "mm", float("nan")),))

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from gaitdisc.errors import SamplingError, ShapeError
+from gaitdisc.errors import ReadError, SamplingError, ShapeError
 from gaitdisc.simulation.drive import Drive
-from gaitdisc.simulation.measured import Measured, TrialColumns, measured_of_trials
+from gaitdisc.simulation.even_time import TrialColumns
+from gaitdisc.simulation.measured import Measured, measured_of_trials
 
 
 def _trial(name="1", count=50, rate=100.0, time=None, observed=None):
@@ -53,7 +54,7 @@ def test_printed_times_are_even_enough():
     ("trials", "words"),
     [
         ([_trial(count=7)], "trial '1' has 7"),
-        ([_trial(time=np.arange(50) / 100 + (np.arange(50) > 30) * 0.05)], "a step of 0.06 s after t = 0.3 s"),
+        ([_trial(time=np.arange(50) / 100 + (np.arange(50) > 30) * 0.053)], "a step of 0.063 s after t = 0.3 s"),
         ([_trial(time=np.sort(np.random.default_rng(0).uniform(0, 1, 50)))], "sampled evenly"),
         ([_trial(time=np.repeat(np.arange(25) / 100, 2))], "t = 0 s stands twice"),
         ([_trial(time=np.arange(50) % 25 / 100)], r"t = 0.24 s is followed by 0 s \(sample 26"),
@@ -76,3 +77,32 @@ def test_a_constant_channel_is_refused_a_constant_trial_told():
 def test_shapes_are_checked():
     with pytest.raises(ShapeError, match=r"\(1, 30, 2\) where \(1, 30, 1\)"):
         Measured(Drive.of([np.empty((30, 0))], 100.0), np.zeros((1, 30, 2)), ("1",), ("x",))
+
+
+def test_empty_cells_are_left_out_with_one_finding():
+    observed = np.sin(5 * np.arange(50) / 100)[:, None]
+    observed[[3, 4, 30]] = np.nan
+    measured = _measured(_trial("a", observed=observed), _trial("b"))
+    assert np.isnan(measured.observed[0, [3, 4, 30], 0]).all()
+    (finding,) = measured.findings
+    assert finding.line().startswith(
+        "note: walk.csv, x: empty cells: 3 of 100 samples are missing, most in trial 'a' (3)"
+    )
+
+
+def test_a_channel_that_is_as_good_as_empty_is_refused():
+    observed = np.full((50, 1), np.nan)
+    observed[:19, 0] = np.arange(19)
+    with pytest.raises(
+        ReadError, match=r"20 values or more in every trial; walk.csv, trial 'a', column 'x' has 19 in 50"
+    ):
+        _measured(_trial("a", observed=observed), _trial("b"))
+
+
+def test_trials_whose_clocks_shake_alike_have_one_finding():
+    rng = np.random.default_rng(0)
+    shaken = [_trial(name, time=np.arange(50) / 100 + rng.uniform(-5e-4, 5e-4, 50)) for name in "abc"]
+    measured = _measured(*shaken)
+    (finding,) = measured.findings
+    assert measured.rate == 100.0
+    assert finding.kind == "clock" and finding.what.endswith("; 2 more trials alike")

@@ -14,6 +14,7 @@ from gaitdisc.ingest.reading import read_trial
 from gaitdisc.recording import Recording, Source
 from gaitdisc.simulation.drive import Rows
 from gaitdisc.simulation.measured_table import measured_of_recordings, read_measured
+from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import simulation_of
 
@@ -89,7 +90,7 @@ def _set(row, column, value):
         (_table().rename(columns={"time": "t"}), ChannelError, "needs a measured column 'time'"),
         (_table().rename(columns={"trial": "Trial"}), ChannelError, "the nearest is 'Trial'"),
         (_table().assign(extra=1).rename(columns={"extra": " tau"}), ChannelError, "'tau' twice"),
-        (_broken(_set(47, "theta", None)), ReadError, "line 49 (trial '2'), column 'theta' has an empty cell"),
+        (_broken(_set(47, "time", None)), ReadError, "every row has its time; walk.csv, line 49 (trial '2') has none"),
         (_broken(_set(5, "tau", "n.a.")), ReadError, "line 7 (trial '1'), column 'tau' has 'n.a.'"),
         (_broken(_set(5, "tau", "inf")), ReadError, "line 7 (trial '1'), column 'tau' has"),
         (_broken(_set(9, "trial", None)), ReadError, "line 11 has none"),
@@ -158,8 +159,9 @@ def test_a_real_walk_drives_a_knee(gait_data):
 def test_recordings_with_faults(ankle):
     with pytest.raises(UnitError, match=r"'theta'.*'rad'; walk.mot has it in 'N m'"):
         measured_of_recordings([_recording("N m")], ankle)
-    with pytest.raises(ReadError, match=r"walk.mot, tau: 1 of 50 are missing, first at t = 0.07 s"):
-        measured_of_recordings([_recording(tau=np.where(np.arange(50) == 7, np.nan, np.arange(50.0)))], ankle)
+    with pytest.raises(ReadError, match=r"walk.mot'?, column 'tau': 21 rows \(0.21 s\) without one from t = 0.07 s on"):
+        absent = (np.arange(50) >= 7) & (np.arange(50) < 28)
+        measured_of_recordings([_recording(tau=np.where(absent, np.nan, np.arange(50.0)))], ankle)
     with pytest.raises(ChannelError, match="needs a measured column 'tau'"):
         measured_of_recordings([_recording().selected(["theta", "phase"])], ankle)
 
@@ -168,7 +170,10 @@ def test_recordings_with_faults(ankle):
     ("change", "words"),
     [
         (lambda t: t.iloc[:0], r"a trial has 20 samples or more; walk.parquet has no row. Export the record again"),
-        (lambda t: t.assign(theta="a lot"), r"column 'theta' has 'a lot'; 80 such cells. Write numbers in this column"),
+        (
+            lambda t: t.assign(theta="a lot"),
+            r"column 'theta' has 'a lot'; 80 such cells. Write a number, or leave the cell empty",
+        ),
         (lambda t: t.rename(columns={"time": "time_ms"}), r"'time' in seconds; walk.parquet has 'time_ms'. Convert it"),
         (lambda t: t.rename(columns={"time": "Time [ms]"}), r"walk.parquet has 'Time \[ms\]'. Convert it to seconds"),
         (
@@ -188,3 +193,16 @@ def test_a_doubled_column_of_parquet_is_refused_as_one_of_csv(ankle, tmp_path):
     pq.write_table(table.append_column("theta", table["theta"]), tmp_path / "walk.parquet")
     with pytest.raises(ChannelError, match=r"each column has a name of its own; walk.parquet has 'theta' twice"):
         read_measured(tmp_path / "walk.parquet", ankle)
+
+
+def test_empty_cells_of_a_channel_are_read_as_missing(ankle, tmp_path):
+    _broken(_set(47, "theta", None)).to_csv(tmp_path / "walk.csv", index=False)
+    measured = read_measured(tmp_path / "walk.csv", ankle)
+    assert np.argwhere(np.isnan(measured.observed)).tolist() == [[1, 7, 0]]
+    assert "empty cells" in [one.kind for one in measured.findings]
+
+
+def test_recordings_are_converted_to_the_unit_of_the_observation(ankle):
+    told = ankle.with_observation("theta", "57.2958*theta").observing(["theta"]).with_sensor(Sensor("theta", "deg"))
+    observed = measured_of_recordings([_recording("rad"), _recording("deg")], told).observed
+    np.testing.assert_allclose(observed[0], observed[1] / (math.pi / 180), atol=1e-9)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from gaitdisc.simulation.parts import Input, Parameter, Port, State, Term
+from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Term
 from gaitdisc.simulation.python_simulation import python_simulation
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation
@@ -73,3 +73,10 @@ def test_a_function_gives_a_derivative_for_each_row_and_state(given, found):
     needed = r"'falling' gives a number for each row and state, \(2, 1\) here; "
     with pytest.raises(SimulationError, match=f"{needed}it gave {found}. Return an array"):
         compile_simulation(model).rates(0.0, np.ones((2, 1)), np.zeros((2, 0)))
+
+
+def test_how_a_channel_was_recorded_is_kept():
+    ball = _ball().with_sensor(Sensor("speed", "m/s", 0.1, 8.0))
+    assert ball.sensors == (Sensor("speed", "m/s", 0.1, 8.0),) and ball.sensor("speed").sd == 0.1
+    assert ball.feeds.sensors == ()
+    assert ball.with_observation("v", "v").observing(["v"]).sensors == ()

@@ -2,7 +2,7 @@
 
 import pytest
 
-from gaitdisc.simulation.parts import Parameter, State, Term
+from gaitdisc.simulation.parts import Parameter, Sensor, State, Term
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
 
@@ -63,3 +63,11 @@ def test_a_start_belongs_to_a_state(ankle):
         ankle.with_starts({"k": 1.0})
     with pytest.raises(SimulationError, match=r"a state starts at a finite number; initial is nan"):
         ankle.with_starts({"omega": float("nan")})
+
+
+def test_sensors_stand_in_the_order_of_the_observations_and_go_with_them(ankle):
+    told = ankle.with_sensor(Sensor("omega", lowpass=6.0)).with_sensor(Sensor("theta", sd=0.01))
+    assert [one.channel for one in told.sensors] == ["theta", "omega"]
+    assert told.observing(["omega"]).sensors == (Sensor("omega", lowpass=6.0),)
+    assert told.with_sensor(Sensor("theta")).sensors == (Sensor("omega", lowpass=6.0),)
+    assert told.with_observation("theta", "1.1*theta").sensor("theta").sd == 0.01

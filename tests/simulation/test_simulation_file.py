@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.errors import GaitdiscError, ReadError
-from gaitdisc.simulation.parts import Parameter, Term
+from gaitdisc.simulation.parts import Parameter, Sensor, Term
 from gaitdisc.simulation.simulation_file import read_simulation, simulation_of
 
 
@@ -128,3 +128,40 @@ def test_an_exponent_without_end_is_a_row_without_end():
     from gaitdisc.simulation.running import compile_simulation
 
     assert np.isinf(compile_simulation(simulation_of(text)).rates(np.zeros(1), np.ones((1, 1)), np.empty((1, 0)))[0, 0])
+
+
+LONG = """
+[observations]
+omega = "omega"
+[observations.ankle_angle_r]
+expression = "57.2958*theta"   # as the cameras see it
+unit = "deg"
+sd = 0.3
+lowpass = 6.0
+"""
+
+
+def test_an_observation_in_the_long_form_is_read(ankle_text):
+    read = simulation_of(ankle_text + LONG)
+    assert read.observations == (("omega", "omega"), ("ankle_angle_r", "57.2958*theta"))
+    assert read.sensors == (Sensor("ankle_angle_r", "deg", 0.3, 6.0),)
+    assert read.sensor("omega") == Sensor("omega")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("sd = 0.3", "sd = 0", "[observations] ankle_angle_r: sd is a number above 0 [deg]; found sd = 0. Correct it"),
+        ("lowpass = 6.0", "lowpass = -6", "lowpass is a number above 0 [Hz]; found lowpass = -6"),
+        ("lowpass = 6.0", "cutoff = 6", "only keys of the simulation file stand here; found 'cutoff'"),
+        ("sd = 0.3", 'sd = "small"', "sd is a finite number; found small. Write it without quotes"),
+        ('unit = "deg"', 'unit = "kg"', "'theta' is of another kind, rad. Correct the unit"),
+        ('expression = "57.2958*theta" ', "", "an observation has an expression; it has none"),
+        ('theta"   #', 'thetta"   #', "Did you mean 'theta'?"),
+    ],
+)
+def test_a_fault_of_an_observation_is_told_with_its_line(ankle_text, old, new, words):
+    line = (ankle_text + LONG).split("\n").index("[observations.ankle_angle_r]") + 1
+    with pytest.raises(GaitdiscError) as refusal:
+        simulation_of((ankle_text + LONG).replace(old, new), "ankle.toml")
+    assert f"ankle.toml, line {line}, " in str(refusal.value) and words in str(refusal.value)

@@ -1,11 +1,13 @@
 """What is written is read back the same, and what a person wrote around it stays."""
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from gaitdisc.errors import ReadError, SchemaError, WriteError
-from gaitdisc.simulation.parts import Input, Parameter, Port, State, Term
+from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Term
 from gaitdisc.simulation.python_simulation import python_simulation
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.simulation_file import read_simulation, simulation_of
@@ -143,11 +145,47 @@ def simulations(draw):
     )
 
 
-@given(simulations(), numbers, expressions)
-def test_what_is_written_is_read(simulation, value, expression):
+sensors = st.builds(
+    Sensor, st.just("x"), st.sampled_from(["", "mm"]), st.none() | st.just(0.3), st.none() | st.just(6.0)
+)
+
+
+@given(simulations(), sensors, numbers, expressions)
+def test_what_is_written_is_read(simulation, sensor, value, expression):
+    first = simulation.observations[0][0]
+    simulation = simulation.with_sensor(replace(sensor, channel=first))
     text = simulation_text(simulation)
     read = simulation_of(text)
     assert read == simulation
     changed = read.with_values({"k": value}).with_input("u", "2*delay(u, 0.1)").with_observation("seen", expression)
     changed = changed.with_effect(Term("v", "equation", "more", expression))
     assert simulation_of(simulation_text(changed)) == changed
+
+
+LONG = """
+[observations.ankle_angle_r]   # cameras
+expression = "57.2958*theta"   # seen
+unit = "deg"
+sd = 0.3
+lowpass = 6.0
+"""
+
+
+def test_an_observation_in_the_long_form_is_written_back(ankle_text):
+    read = simulation_of(ankle_text + LONG)
+    assert simulation_text(read) == read.layout
+    changed = read.with_observation("ankle_angle_r", "1.1*57.2958*theta").with_observation("rate", "omega")
+    text = simulation_text(changed)
+    assert simulation_of(text) == changed
+    assert 'expression = "1.1*57.2958*theta"   # seen' in text and "# cameras" in text
+
+
+def test_a_sensor_that_was_not_in_the_file_is_written_into_it(ankle):
+    changed = ankle.with_sensor(Sensor("theta", "rad", 0.005)).with_sensor(Sensor("omega", lowpass=6.0))
+    assert simulation_of(simulation_text(changed)) == changed
+
+
+def test_the_sensors_of_a_python_object_are_written_with_it(tmp_path):
+    changed = ball().with_observation("fall", "-v").with_sensor(Sensor("fall", "m/s", 0.1, 8.0))
+    path = write_simulation(changed, tmp_path / "ball.toml")
+    assert read_into(ball(), path).parts == changed.parts

@@ -1,0 +1,142 @@
+"""The low-pass that a record went through, where the file does not say: found in its spectrum, with a finding.
+
+Where noise shows at the cut-off, the record's spectrum alone shows it. Where the signal reaches beyond it, the signal's
+own fall is in the way; then the simulation as read, laid over the record run by run, says how the signal falls.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.discovery.account import Account, account_for
+from gaitdisc.discovery.first_states import StateGuess
+from gaitdisc.discovery.noise import white_noise
+from gaitdisc.discovery.record_filter import RecordFilter
+from gaitdisc.discovery.segments import cut_segments
+from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.recording import Finding
+from gaitdisc.signals.recorded_filter import RecordedFilter, recorded_filter
+from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.simulation import Simulation
+
+SURE = 4.0  # times the noise's power at the cut-off, up to which a signal there is not in the way
+ALIKE = 1.3  # between the cut-offs of channels that went through one filter
+OVERLAP = 4  # times as long a run is as what it shares with the next on either side
+FEWEST_SAMPLES = 16  # of a run
+
+
+def record_filter_of(
+    simulation: Simulation, measured: Measured, period: float, guess: StateGuess
+) -> tuple[RecordFilter, tuple[Finding, ...]]:
+    """Return what the measured channels went through: as the file says, or as their spectra show.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        As read, with the measured observations.
+    measured : Measured
+        Its trials.
+    period : float
+        The motion's main period [s].
+    guess : StateGuess
+        States, roughly.
+
+    Returns
+    -------
+    record_filter : RecordFilter
+        Of each channel.
+    findings : tuple of Finding
+        About filters that the file does not tell of.
+    """
+    told = tuple(simulation.sensor(name).lowpass for name in measured.channels)
+    unknown = [number for number, cutoff in enumerate(told) if cutoff is None]
+    seen = {number: found for number in unknown if (found := recorded_filter(_trials(measured, number), measured.rate))}
+    inputs = bool(seen) and _inputs_are_filtered(measured)
+    if inputs or any(one.signal > SURE for one in seen.values()):
+        seen = _beside_the_simulation((simulation, measured), (period, guess), seen, inputs)
+    cutoffs = _together({number: one.cutoff_hz for number, one in seen.items()})
+    passed = RecordFilter(tuple(cutoffs.get(number, cutoff) for number, cutoff in enumerate(told)), measured.rate)
+    return passed, tuple(_finding(measured, number, cutoff) for number, cutoff in cutoffs.items())
+
+
+def _trials(measured: Measured, channel: int) -> list[NDArray[np.float64]]:
+    """One channel of each trial."""
+    return [seen[:samples, channel] for seen, samples in zip(measured.observed, measured.samples, strict=True)]
+
+
+def _inputs_are_filtered(measured: Measured) -> bool:
+    """Whether an input went through a filter: of a linear system, the record has then gone through no other."""
+    drive = measured.drive
+    trials = [each[:samples] for each, samples in zip(drive.inputs, drive.samples, strict=True)]
+    count = drive.inputs.shape[2]
+    found = [recorded_filter([each[:, number] for each in trials], drive.rate) for number in range(count)]
+    return any(one is not None and one.signal < SURE for one in found)
+
+
+def _together(cutoffs: dict[int, float]) -> dict[int, float]:
+    """Cut-offs, one in the place of several that are alike."""
+    if cutoffs and max(cutoffs.values()) < ALIKE * min(cutoffs.values()):
+        return dict.fromkeys(cutoffs, float(np.exp(np.mean(np.log(list(cutoffs.values()))))))
+    return cutoffs
+
+
+def _finding(measured: Measured, channel: int, cutoff: float) -> Finding:
+    what = f"taken as low-passed at {cutoff:.3g} Hz without lag (order 2, forwards and back), as its spectrum falls"
+    spoils = "what rests on a filter that was not there: say lowpass in the simulation file where you know it"
+    return Finding("note", "low-pass", measured.source, what, spoils, measured.channels[channel])
+
+
+def _beside_the_simulation(
+    both: tuple[Simulation, Measured],
+    roughly: tuple[float, StateGuess],
+    seen: dict[int, RecordedFilter],
+    inputs: bool,
+) -> dict[int, RecordedFilter]:
+    """Find the cut-offs anew, the signal falling as that of the simulation.
+
+    Where inputs were filtered too, none are found if the simulation goes better with the record as it is.
+    """
+    simulation, measured = both
+    shooting, account = _laid_over(simulation, measured, *roughly)
+    like = _stitched(shooting, account, measured)
+    found = dict(seen)
+    for number, one in seen.items():
+        if one.signal > SURE:
+            again = recorded_filter(_trials(measured, number), measured.rate, [each[:, number] for each in like])
+            found.pop(number)
+            found |= {number: again} if again else {}
+    if not inputs or not found:
+        return found
+    cutoffs = tuple(found[number].cutoff_hz if number in found else None for number in range(len(measured.channels)))
+    filtered = replace(shooting, record_filter=RecordFilter(cutoffs, measured.rate))
+    other = account_for(filtered, simulation, (), account.fit.starts, like=account)
+    return found if other.fit.misfit < account.fit.misfit else {}
+
+
+def _laid_over(
+    simulation: Simulation, measured: Measured, period: float, guess: StateGuess
+) -> tuple[Shooting, Account]:
+    """The simulation as read, fitted to runs of a period that overlap."""
+    length = max(int(period * measured.rate), FEWEST_SAMPLES)
+    length = min(length, int(measured.samples.min()) // 2)
+    segments = cut_segments(measured.samples, tuple(range(len(measured.trials))), length, length // OVERLAP)
+    shooting = Shooting(measured, segments, white_noise(np.nanstd(measured.observed, axis=(0, 1))), past=guess.states)
+    return shooting, account_for(shooting, simulation, (), guess.starts(segments))
+
+
+def _stitched(shooting: Shooting, account: Account, measured: Measured) -> NDArray[np.float64]:
+    """Overlapping runs as whole trials (trial, sample, channel): one fades out while the next fades in."""
+    segments, fit = shooting.segments, account.fit
+    runs = shooting.unfiltered(account.machine, fit.states[None], fit.values[None])[0]
+    weight, shared = np.ones(segments.length), 2 * segments.margin
+    ramp = np.sin(np.linspace(0, np.pi / 2, shared + 2)[1:-1]) ** 2
+    weight[:shared], weight[segments.length - shared :] = ramp, ramp[::-1]
+    total, weights = np.zeros(measured.observed.shape), np.zeros(measured.observed.shape[:2])
+    for trial, samples, run in zip(segments.trial, segments.samples, runs, strict=True):
+        total[trial, samples] += weight[:, None] * run
+        weights[trial, samples] += weight
+    with np.errstate(invalid="ignore"):
+        return total / weights[..., None]

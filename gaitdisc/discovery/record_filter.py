@@ -1,0 +1,157 @@
+"""The zero-lag low-pass that a record went through: what is simulated goes through the same before it is compared.
+
+A laboratory's record is y = F (h(x, u) + noise), F a Butterworth filter of order 2 run forwards and backwards. F is
+linear, so that what a start state, a constant or an effect changes in the record is what it changes in h, filtered.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.compiled import compiled
+
+MEMORY_PERIODS = 1.0  # of the cut-off, after which the filter has forgotten all but 1 % (exp(-2 pi / sqrt 2))
+DENSE = 4.0  # samples a period of the cut-off hold all that passes: at half that rate 0.4 % of the power is left
+ROOT_TWO = math.sqrt(2.0)
+
+
+@dataclass(frozen=True)
+class RecordFilter:
+    """Filters of the observed channels.
+
+    Parameters
+    ----------
+    cutoffs_hz : tuple of float or None
+        -3 dB frequency of one pass, channel by channel; None where a channel was not filtered.
+    rate_hz : float
+        Samples a second.
+
+    Examples
+    --------
+    >>> RecordFilter((6.0, None), 100.0).margin, RecordFilter((None,), 100.0).margin
+    (17, 0)
+    """
+
+    cutoffs_hz: tuple[float | None, ...]
+    rate_hz: float
+
+    @property
+    def margin(self) -> int:
+        """Samples at either end of a run in which its filtered channels cannot be trusted."""
+        return max([math.ceil(MEMORY_PERIODS * self.rate_hz / one) for one in self.cutoffs_hz if one], default=0)
+
+    @property
+    def every(self) -> int:
+        """Which samples hold all that the filter passes: 1 where they are all needed, 2 where every other is enough."""
+        highest = max([one or math.inf for one in self.cutoffs_hz], default=math.inf)
+        return max(int(self.rate_hz / (DENSE * highest)), 1)
+
+    @property
+    def gains(self) -> NDArray[np.float64]:
+        """What the filter leaves of white noise (channel,): the standard deviation after over that before."""
+        return np.sqrt((self._response**2).sum(axis=0))
+
+    def memory(self, lags: int) -> NDArray[np.float64]:
+        """Autocorrelation of what the filter leaves of white noise (lag, channel), between the samples compared.
+
+        Parameters
+        ----------
+        lags : int
+            How many, besides lag 0.
+        """
+        response = self._response
+        late = [np.roll(response, lag * self.every, axis=0) for lag in range(lags + 1)]
+        for lag, one in enumerate(late):
+            one[: lag * self.every] = 0.0
+        return np.array([(response * one).sum(axis=0) for one in late]) / (response**2).sum(axis=0)
+
+    @property
+    def _response(self) -> NDArray[np.float64]:
+        """To an impulse (sample, channel)."""
+        impulse = np.zeros((1, 8 * max(self.margin, 1) + 1, len(self.cutoffs_hz)))
+        impulse[:, impulse.shape[1] // 2] = 1.0
+        return self.filtered(impulse, 1)[0]
+
+    def filtered(self, observed: NDArray[np.float64], axis: int) -> NDArray[np.float64]:
+        """Simulated channels as the record would have them.
+
+        Parameters
+        ----------
+        observed : ndarray (..., sample, channel, ...)
+            Runs; the channels follow the samples.
+        axis : int
+            Of the samples.
+        """
+        if not self.margin:
+            return observed
+        samples = observed.shape[axis]
+        out = np.ascontiguousarray(observed, float).reshape(
+            math.prod(observed.shape[:axis]), samples, observed.shape[axis + 1], -1
+        )
+        out = out.copy() if np.shares_memory(out, observed) else out
+        for channel, cutoff in enumerate(self.cutoffs_hz):
+            if cutoff:
+                run_both_ways(out, channel, _coefficients(cutoff / self.rate_hz), min(2 * self.margin, samples - 1))
+        return out.reshape(observed.shape)
+
+
+def _coefficients(cutoff: float) -> NDArray[np.float64]:
+    """b0, a1, a2 of a Butterworth low-pass of order 2 (b1 = 2 b0, b2 = b0), its cut-off as a share of the rate."""
+    k = math.tan(math.pi * cutoff)
+    whole = 1 + ROOT_TWO * k + k * k
+    return np.array([k * k / whole, 2 * (k * k - 1) / whole, (1 - ROOT_TWO * k + k * k) / whole])
+
+
+@compiled(nogil=True)
+def run_both_ways(values: NDArray[np.float64], channel: int, coefficients: NDArray[np.float64], padding: int) -> None:
+    """Filter one channel forwards and backwards, in place; runs are continued beyond their ends by turning them over.
+
+    Parameters
+    ----------
+    values : ndarray (run, sample, channel, column)
+        Runs.
+    channel : int
+        Which channel.
+    coefficients : ndarray (3,)
+        b0, a1, a2.
+    padding : int
+        Samples by which a run is continued.
+    """
+    b, a1, a2 = coefficients[0], coefficients[1], coefficients[2]
+    runs, samples, _, columns = values.shape
+    long = np.empty(samples + 2 * padding)
+    for run in range(runs):
+        for column in range(columns):
+            for sample in range(samples):
+                long[padding + sample] = values[run, sample, channel, column]
+            first, last = long[padding], long[padding + samples - 1]
+            for sample in range(padding):
+                long[sample] = 2 * first - long[2 * padding - sample]
+                long[padding + samples + sample] = 2 * last - long[padding + samples - 2 - sample]
+            for _ in range(2):  # each pass turns the run over: forwards, then backwards
+                x1 = x2 = y1 = y2 = long[0]
+                for sample in range(len(long)):
+                    x0 = long[sample]
+                    y0 = b * (x0 + 2 * x1 + x2) - a1 * y1 - a2 * y2
+                    x2, x1, y2, y1 = x1, x0, y1, y0
+                    long[sample] = y0
+                long[:] = long[::-1].copy()
+            for sample in range(samples):
+                values[run, sample, channel, column] = long[padding + sample]
+
+
+def no_filter(channels: int, rate_hz: float) -> RecordFilter:
+    """Channels that went through no filter.
+
+    Parameters
+    ----------
+    channels : int
+        How many.
+    rate_hz : float
+        Samples a second.
+    """
+    return RecordFilter((None,) * channels, rate_hz)

@@ -1,0 +1,238 @@
+"""Which zero-lag low-pass a record went through, read off its spectrum.
+
+White sensor noise that went through a Butterworth filter of order 2 forwards and backwards falls as 1/(1 + w^4)^2
+above the cut-off, w = tan(pi f / rate) / tan(pi fc / rate): by 48 dB an octave. Nothing that walks does that by itself.
+The power spectrum (Welch 1967, Blackman-Harris window: side lobes 92 dB down) is fitted by the likelihood of Whittle
+(1953): signal and noise behind a filter and above a floor of rounding, against the same without the filter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+ORDER, OTHER = 2, 4  # of one pass: the filter that is sought, and a steeper one
+WINDOW = 512  # samples
+FEWEST = 128  # samples of a trial whose spectrum is looked at
+FEWEST_LINES = 24
+BLACKMAN_HARRIS = (0.35875, -0.48829, 0.14128, -0.01168)
+SIGNAL = 1e-2  # of the strongest line: above it all is signal
+BEGINNINGS = (0.02, 0.04, 0.07, 0.11, 0.17)  # cut-offs that a search begins from, of the rate
+LEAST = 1e-32  # power, of the strongest line: beyond the digits of a number
+BOUNDS = ((-90, 9), (-90, 9), (-5, 8), (-90, 9), (np.log(2e-3), np.log(0.45)))  # logarithms
+HIGHEST = 0.2  # cut-off, of the rate: one above leaves too little to be seen
+FALLEN = 1e3  # times the power just below half the rate, which there is just above the cut-off at least
+FALLING = (
+    30.0  # times the power just below half the rate, which there is at a quarter of the rate, where nothing is rounded
+)
+ROUNDED = 100.0  # times the power of rounding, below which a floor is one of digits and not of a sensor
+SPREAD = 1e-8  # of the strongest line: what the window itself spreads, and no sensor is so quiet
+CLEARLY = 60.0  # by which the log likelihood must be better with the filter than without
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """Power of a channel over frequency.
+
+    Parameters
+    ----------
+    frequency : ndarray (line,)
+        As a share of the rate.
+    power : ndarray (line,)
+        [the channel's unit squared].
+    windows : int
+        How many were averaged.
+    """
+
+    frequency: NDArray[np.float64]
+    power: NDArray[np.float64]
+    windows: int
+
+    def lines(self, kept: slice) -> Spectrum:
+        """Return some of the lines.
+
+        Parameters
+        ----------
+        kept : slice
+            Which.
+        """
+        return Spectrum(self.frequency[kept], self.power[kept], self.windows)
+
+
+@dataclass(frozen=True)
+class RecordedFilter:
+    """A filter that was found in a record: a Butterworth low-pass of order 2, forwards and back.
+
+    Parameters
+    ----------
+    cutoff_hz : float
+        -3 dB frequency of one pass.
+    gained : float
+        Log likelihood with it less that without it.
+    signal : float
+        Power of the signal over that of the noise at the cut-off: where it is far above 1, the number is rough.
+    """
+
+    cutoff_hz: float
+    gained: float
+    signal: float
+
+
+def recorded_filter(
+    trials: Sequence[NDArray[np.float64]], rate_hz: float, like: Sequence[NDArray[np.float64]] | None = None
+) -> RecordedFilter | None:
+    """Find the zero-lag low-pass that a channel went through.
+
+    Parameters
+    ----------
+    trials : sequence of ndarray (sample,)
+        One channel of each trial, evenly sampled; NaN where nothing was measured.
+    rate_hz : float
+        Samples a second.
+    like : sequence of ndarray (sample,), optional
+        The same channel as a simulation has it, before any filter: the signal's spectrum is like that of these.
+
+    Returns
+    -------
+    RecordedFilter or None
+        None where the spectrum shows none, or one of order 4.
+
+    References
+    ----------
+    Welch (1967), IEEE Trans. Audio Electroacoust. 15:70-73. Whittle (1953), Ark. Mat. 2:423-434.
+
+    Examples
+    --------
+    >>> from scipy.signal import butter, sosfiltfilt
+    >>> noise = np.random.default_rng(0).normal(size=4000)
+    >>> low = sosfiltfilt(butter(2, 6.0, fs=100.0, output="sos"), noise)
+    >>> bool(abs(recorded_filter([low], 100.0).cutoff_hz - 6.0) < 0.5), recorded_filter([noise], 100.0)
+    (True, None)
+    """
+    spectrum = spectrum_of(trials)
+    if spectrum is None or not _may_be_filtered(spectrum, trials):
+        return None
+    kept = _above_the_signal(spectrum)
+    above = spectrum.lines(kept)
+    if len(above.frequency) < FEWEST_LINES:
+        return None
+    model = spectrum_of(like) if like is not None else None
+    shape = np.ones(len(above.power)) if model is None else np.interp(above.frequency, model.frequency, model.power)
+    fits = [_Fit(above, shape / shape[0], order) for order in (ORDER, OTHER)]
+    found, other = (max(fit.best((begin,)) for begin in BEGINNINGS) for fit in fits)
+    gained, cutoff = (found[0] - fits[0].best(())[0]) * spectrum.windows, found[1]
+    steeper = (other[0] - found[0]) * spectrum.windows > CLEARLY
+    if gained < CLEARLY or cutoff > HIGHEST or not _falls_far(above, cutoff) or steeper:
+        return None
+    return RecordedFilter(cutoff * rate_hz, gained, found[2])
+
+
+def spectrum_of(trials: Sequence[NDArray[np.float64]]) -> Spectrum | None:
+    """Power spectrum of a channel, averaged over windows that overlap by half; None where all trials are too short.
+
+    Parameters
+    ----------
+    trials : sequence of ndarray (sample,)
+        NaN where nothing was measured: a window takes the longest stretch without any.
+    """
+    stretches = [stretch for trial in trials for stretch in _whole_stretches(trial)]
+    length = min(max((len(one) for one in stretches), default=0), WINDOW)
+    if length < FEWEST:
+        return None
+    angle = 2 * np.pi * np.arange(length) / length
+    window = sum(weight * np.cos(turn * angle) for turn, weight in enumerate(BLACKMAN_HARRIS))
+    line = np.stack([np.ones(length), np.linspace(-1, 1, length)], axis=1)
+    powers = []
+    for stretch in stretches:
+        for begin in range(0, len(stretch) - length + 1, length // 2):
+            part = stretch[begin : begin + length]
+            part = part - line @ np.linalg.lstsq(line, part, rcond=None)[0]
+            powers.append(np.abs(np.fft.rfft(part * window)) ** 2)
+    return Spectrum(np.arange(length // 2 + 1) / length, np.mean(powers, axis=0), len(powers))
+
+
+def _whole_stretches(trial: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], np.isfinite(trial), [False]]).astype(int)))
+    return [trial[first:end] for first, end in edges.reshape(-1, 2)]
+
+
+def _may_be_filtered(spectrum: Spectrum, trials: Sequence[NDArray[np.float64]]) -> bool:
+    """Whether the power falls up to half the rate, or ends on the floor of the digits that were written."""
+    quarter = float(np.median(spectrum.power[(spectrum.frequency > 0.2) & (spectrum.frequency < 0.28)]))
+    end = float(np.median(spectrum.power[(spectrum.frequency > 0.42) & (spectrum.frequency < 0.48)]))
+    if quarter > FALLING * end or end < SPREAD * float(spectrum.power.max()):
+        return True
+    steps = np.abs(np.concatenate([np.diff(trial[np.isfinite(trial)]) for trial in trials]))
+    step = float(steps[steps > 0].min()) if (steps > 0).any() else 0.0
+    length = 2 * (len(spectrum.frequency) - 1)
+    return end < ROUNDED * step**2 / 12 * length * float(np.square(BLACKMAN_HARRIS) @ [1.0, 0.5, 0.5, 0.5])
+
+
+def _above_the_signal(spectrum: Spectrum) -> slice:
+    """Return the lines beyond the last one that is surely signal, without those next to half the rate."""
+    surely = np.flatnonzero(spectrum.power > SIGNAL * spectrum.power[2:].max())
+    return slice(int(surely[-1]) + 1, len(spectrum.power) - 3)
+
+
+def _falls_far(spectrum: Spectrum, cutoff: float) -> bool:
+    """Whether the power above the cut-off goes on falling, instead of ending on the noise of a sensor."""
+    near = spectrum.power[(spectrum.frequency > cutoff) & (spectrum.frequency < 1.5 * cutoff)]
+    return bool(near.size) and float(np.median(near)) > FALLEN * float(np.median(spectrum.power[-12:]))
+
+
+class _Fit:
+    """Whittle's likelihood of signal and white noise behind a filter, above a floor.
+
+    The numbers: logarithms of the noise, of the signal at the first line, of its decay, of the floor, of the cut-off.
+    """
+
+    def __init__(self, spectrum: Spectrum, shape: NDArray[np.float64], order: int = ORDER) -> None:
+        self.frequency, self.shape, self.order = spectrum.frequency, shape, order
+        self.power = np.maximum(spectrum.power / spectrum.power.max(), LEAST)
+        self.tan, self.beyond = np.tan(np.pi * spectrum.frequency), spectrum.frequency - spectrum.frequency[0]
+
+    def best(self, cutoff: tuple[float, ...]) -> tuple[float, float, float]:
+        """Likelihood of a window, cut-off, and the signal over the noise there; no filter where none is begun with."""
+        from scipy.optimize import minimize
+
+        begun = self._begun(cutoff)
+        found = minimize(
+            self._misfit, begun, method="L-BFGS-B", jac=True, bounds=BOUNDS[: len(begun)], options={"maxiter": 200}
+        )
+        noise, signal, decay, _ = found.x[:4]
+        at = float(np.exp(found.x[4])) if cutoff else float(self.frequency[-1])
+        shape = float(np.interp(at, self.frequency, self.shape))
+        over = signal - noise - np.exp(decay) * (at - self.frequency[0]) + np.log(max(shape, 1e-300))
+        return -float(found.fun), at, float(np.exp(np.clip(over, -99, 99)))
+
+    def _begun(self, cutoff: tuple[float, ...]) -> NDArray[np.float64]:
+        low = self.frequency < 2 * cutoff[0] if cutoff else np.zeros(len(self.power), bool)
+        level = np.log(np.median(self.power[low] if low.any() else self.power))
+        floor = np.log(np.median(self.power[-12:]))
+        begun = np.array([level, np.log(self.power[:3].mean()), np.log(30.0), floor, *np.log(cutoff)])
+        low, high = np.array(BOUNDS[: len(begun)]).T
+        return np.clip(begun, low, high)
+
+    def _misfit(self, values: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
+        """Minus the log likelihood and its slopes."""
+        passed, steeper = self._passed(values[4:])
+        decay = np.exp(values[2]) * self.beyond
+        noise, signal = np.exp(values[0]) * passed, np.exp(values[1] - decay) * self.shape * passed
+        floor = np.exp(values[3])
+        expected = noise + signal + floor
+        over = 1 / expected - self.power / expected**2
+        slopes = [noise, signal, -decay * signal, np.full(len(expected), floor)]
+        slopes += [] if steeper is None else [(noise + signal) * steeper]
+        return float(np.sum(np.log(expected) + self.power / expected)), np.array([over @ one for one in slopes])
+
+    def _passed(self, cutoff: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
+        """What the filter passes of the power, and by which share that grows with the logarithm of the cut-off."""
+        if not len(cutoff):
+            return np.ones(len(self.power)), None
+        at = np.exp(cutoff[0])
+        ratio = (self.tan / np.tan(np.pi * at)) ** (2 * self.order)
+        steeper = 4 * self.order * ratio / (1 + ratio) * 2 * np.pi * at / np.sin(2 * np.pi * at)
+        return (1 + ratio) ** -2.0, steeper

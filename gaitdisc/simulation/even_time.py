@@ -1,0 +1,250 @@
+"""One trial as a logger wrote it, on an even time base: a clock that shakes, rows that are missing, empty cells."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.errors import ReadError, SamplingError
+from gaitdisc.recording import Finding
+
+SHORTEST = 20  # samples of a trial
+SHAKEN = 0.1  # of a step: how far a sample may lie from its place on the even time base
+EVEN = 1e-3  # of a step, which is even enough
+BRIDGED_S = 0.2  # longest gap of an input that is bridged
+SLOW_HZ = 0.5  # rates below are rare where time is in seconds, and what milliseconds look like
+
+
+@dataclass(frozen=True, eq=False)
+class TrialColumns:
+    """What one trial gives before it is checked.
+
+    Parameters
+    ----------
+    name : str
+        Of the trial.
+    time : ndarray (sample,) [s]
+        As measured.
+    inputs, observed : ndarray (sample, input), (sample, channel)
+        Columns that the simulation needs; NaN where a cell is empty.
+    """
+
+    name: str
+    time: NDArray[np.float64]
+    inputs: NDArray[np.float64]
+    observed: NDArray[np.float64]
+
+
+def on_even_time(
+    trial: TrialColumns, inputs: tuple[str, ...], source: str
+) -> tuple[TrialColumns, float, list[Finding]]:
+    """Put one trial on an even time base.
+
+    Parameters
+    ----------
+    trial : TrialColumns
+        As measured.
+    inputs : tuple of str
+        Names of its inputs; one called `phase` wraps at 1.
+    source : str
+        Name of the file.
+
+    Returns
+    -------
+    trial : TrialColumns
+        At even times; rows that were missing are NaN in the observed channels, and bridged in the inputs.
+    rate : float
+        Samples a second [Hz].
+    findings : list of Finding
+        What was resampled or bridged.
+
+    Raises
+    ------
+    SamplingError
+        If the trial is too short, or its time is doubled, runs backwards or is uneven.
+    ReadError
+        If a gap of an input is too long to be bridged.
+    """
+    where = f"{source}, trial {trial.name!r}"
+    _refuse_short(trial, where)
+    rate, place = _places(trial.time, where)
+    findings: list[Finding] = []
+    even = trial
+    if rate is None:
+        rate, off = _shaken(trial.time, place, where)
+        worst = 100 * float(np.abs(off).max())
+        if worst > 100 * EVEN:
+            first = float(np.median(trial.time * rate - place))
+            even, what = _resampled(trial, np.asarray((place + first) / rate, np.float64), inputs)
+            what = f"trial {trial.name!r}: times lie up to {worst:.1f} % of a step beside an even clock; {what}"
+            findings.append(Finding("note", "clock", source, what, "nothing at this size"))
+    missing = int(place[-1]) + 1 - len(place)
+    if missing:
+        even = _with_rows(even, place, rate)
+        what = f"trial {trial.name!r}: {missing} rows of {len(even.time)} are missing"
+        findings.append(Finding("warning", "gap in time", source, what, "what happened there: it is left out"))
+    return _bridged(even, inputs, rate, (source, findings)), rate, findings
+
+
+def clock_findings(trials: list[TrialColumns], rate: float, source: str) -> list[Finding]:
+    """Note times that look like milliseconds.
+
+    Parameters
+    ----------
+    trials : list of TrialColumns
+        At even times.
+    rate : float
+        Samples a second [Hz].
+    source : str
+        Name of the file.
+    """
+    whole = all(np.array_equal(trial.time, np.rint(trial.time)) for trial in trials)
+    if rate >= SLOW_HZ or not whole:
+        return []
+    what = f"a step of {1 / rate:g} s, {len(trials[0].time) / rate:g} s in all"
+    return [Finding("warning", "clock", source, what, "everything, if these are milliseconds: divide 'time' by 1000")]
+
+
+def _refuse_short(trial: TrialColumns, where: str) -> None:
+    if len(trial.time) < SHORTEST:
+        raise SamplingError(
+            f"a trial has {SHORTEST} samples or more",
+            f"{where} has {len(trial.time)}",
+            "Leave it out, or record longer.",
+        )
+    steps = np.diff(trial.time)
+    back = int(np.argmin(steps))
+    if steps[back] <= 0:
+        what = "stands twice" if steps[back] == 0 else f"is followed by {trial.time[back + 1]:.6g} s"
+        raise SamplingError(
+            "time increases within a trial",
+            f"{where}: t = {trial.time[back]:.6g} s {what} (sample {back + 2} of the trial)",
+            "Take the doubled rows away, or give each trial a name of its own in the column 'trial'.",
+        )
+
+
+def _places(time: NDArray[np.float64], where: str) -> tuple[float | None, NDArray[np.intp]]:
+    """Rate of a clock that is even but for the digits that it was printed with (else None), and each row's place."""
+    mean = (time[-1] - time[0]) / (len(time) - 1)
+    off = np.abs(time - time[0] - mean * np.arange(len(time)))
+    printed = 0.51 * 10.0 ** -_decimals(time)
+    if off.max() <= max(EVEN * mean, min(2 * printed, 0.25 * mean)):
+        return _rounded(1.0 / mean), np.arange(len(time))
+    steps = np.diff(time)
+    place = np.concatenate([[0], np.cumsum(np.maximum(np.rint(steps / np.median(steps)), 1).astype(np.intp))])
+    if place[-1] > 2 * len(time):
+        raise _uneven(time, where)
+    return None, place
+
+
+def _shaken(time: NDArray[np.float64], place: NDArray[np.intp], where: str) -> tuple[float, NDArray[np.float64]]:
+    """Rate of the even clock next to a shaken one, and how far each time lies beside it (sample,) [steps]."""
+    slope, first = np.polyfit(place, time, 1)
+    off = (time - first) / slope - place
+    if np.abs(off).max() > SHAKEN:
+        raise _uneven(time, where)
+    rate = 1.0 / float(slope)
+    return _rounded(rate, SHAKEN * rate / len(time)), off
+
+
+def _uneven(time: NDArray[np.float64], where: str) -> SamplingError:
+    steps = np.diff(time)
+    worst = int(np.argmax(np.abs(steps - np.median(steps))))
+    return SamplingError(
+        f"a trial is sampled evenly, to {SHAKEN:g} of a step",
+        f"{where}: a step of {steps[worst]:.6g} s after t = {time[worst]:.6g} s where most are "
+        f"{np.median(steps):.6g} s (steps from {steps.min():.6g} to {steps.max():.6g} s)",
+        "Resample it to an even rate, or cut it there into two trials.",
+    )
+
+
+def _resampled(trial: TrialColumns, time: NDArray[np.float64], inputs: tuple[str, ...]) -> tuple[TrialColumns, str]:
+    """The trial at even times, and how: its samples moved, or its times alone where moving makes the channels rougher.
+
+    A shaken clock is one of two things: the samples were taken at these times, or they were taken evenly and marked
+    with the times of their arrival. The channels show which: wrong times make them rough.
+    """
+    even, late_s = replace(trial, time=time), trial.time - time
+    moved = replace(
+        even,
+        inputs=_along(trial.inputs, trial.time, late_s, tuple(name == "phase" for name in inputs)),
+        observed=_along(trial.observed, trial.time, late_s, (False,) * trial.observed.shape[1]),
+    )
+    if _roughness(moved.observed, trial.observed) <= _roughness(trial.observed, trial.observed):
+        return moved, "the samples are moved to even times"
+    return even, "the samples themselves lie evenly, and are taken as even"
+
+
+def _along(
+    values: NDArray[np.float64], time: NDArray[np.float64], late_s: NDArray[np.float64], wraps: tuple[bool, ...]
+) -> NDArray[np.float64]:
+    """Columns moved along their own slopes to where an even clock would have taken them (sample, column)."""
+    out = values.copy()
+    for column, turns in enumerate(wraps):
+        known = np.isfinite(values[:, column])
+        if known.sum() > 1:
+            there = np.unwrap(values[known, column], period=1.0) if turns else values[known, column]
+            whole = np.interp(time, time[known], there)
+            at = whole - late_s * np.gradient(whole, time)
+            out[:, column] = np.where(known, at % 1.0 if turns else at, np.nan)
+    return out
+
+
+def _roughness(values: NDArray[np.float64], like: NDArray[np.float64]) -> float:
+    """Sum over the columns of the squared third differences, each over that of another table."""
+    sums = [np.nansum(np.diff(one, 3, axis=0) ** 2, axis=0) for one in (values, like)]
+    return float(np.sum(sums[0] / np.where(sums[1] > 0, sums[1], 1.0)))
+
+
+def _with_rows(trial: TrialColumns, place: NDArray[np.intp], rate: float) -> TrialColumns:
+    """Insert empty rows where the clock jumped."""
+    count = int(place[-1]) + 1
+    inputs, observed = (np.full((count, each.shape[1]), np.nan) for each in (trial.inputs, trial.observed))
+    inputs[place], observed[place] = trial.inputs, trial.observed
+    return TrialColumns(trial.name, trial.time[0] + np.arange(count) / rate, inputs, observed)
+
+
+def _bridged(
+    trial: TrialColumns, inputs: tuple[str, ...], rate: float, noted: tuple[str, list[Finding]]
+) -> TrialColumns:
+    """Bridge gaps of inputs by straight lines, with a finding."""
+    source, findings = noted
+    filled = trial.inputs.copy()
+    for column, name in enumerate(inputs):
+        empty = ~np.isfinite(filled[:, column])
+        if not empty.any():
+            continue
+        first, longest = _longest_run(empty)
+        if longest / rate > BRIDGED_S + 1e-9 or empty[0] or empty[-1]:
+            raise ReadError(
+                f"an input has a value in every row, but for gaps of at most {BRIDGED_S:g} s between others",
+                f"{source}, trial {trial.name!r}, column {name!r}: {longest} rows ({longest / rate:.3g} s) without one "
+                f"from t = {trial.time[first]:.4g} s on",
+                "Cut the trial there into two, or fill the gap before.",
+            )
+        known, at = ~empty, np.arange(len(empty))
+        values = np.unwrap(filled[known, column], period=1.0) if name == "phase" else filled[known, column]
+        whole = np.interp(at, at[known], values)
+        filled[:, column] = whole % 1.0 if name == "phase" else whole
+        what = f"trial {trial.name!r}: {int(empty.sum())} samples are missing, at most {longest / rate:.3g} s together"
+        findings.append(Finding("warning", "bridged", source, what, "what the simulation does there", name))
+    return replace(trial, inputs=filled)
+
+
+def _longest_run(flags: NDArray[np.bool_]) -> tuple[int, int]:
+    """First sample and length of the longest stretch of true values."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(int))).reshape(-1, 2)
+    first, end = edges[np.argmax(edges[:, 1] - edges[:, 0])]
+    return int(first), int(end - first)
+
+
+def _rounded(rate: float, to: float = 1e-4) -> float:
+    """A rate, whole where it is as good as that [Hz]."""
+    return float(np.round(rate, 9)) if abs(rate - round(rate)) > to or rate < 0.5 else float(round(rate))
+
+
+def _decimals(time: NDArray[np.float64]) -> int:
+    """Decimals that the times were printed with, 9 at most."""
+    return next((d for d in range(9) if np.all(np.abs(time - np.round(time, d)) < 1e-12 * (1 + np.abs(time)))), 9)

@@ -1,0 +1,64 @@
+"""What a record went through: as the file says, or found and told."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hidden_in_a_mass import RATE, Experiment, mass, record, with_load
+from scipy.signal import butter, sosfiltfilt
+
+from gaitdisc.discovery.inquiry import begin_inquiry
+from gaitdisc.simulation.drive import Drive
+from gaitdisc.simulation.parts import Sensor
+
+LONG = Experiment(seconds=30.0, lowpass_hz=3.0)
+
+
+@pytest.fixture(scope="module")
+def filtered():
+    return record(with_load("-14*x**3"), 3, LONG)
+
+
+def test_a_filter_that_the_file_does_not_tell_of_is_found_and_told(filtered):
+    inquiry = begin_inquiry(mass(), filtered)
+    assert inquiry.record_filter.cutoffs_hz[0] == pytest.approx(3.0, rel=0.15)
+    (finding,) = (one for one in inquiry.measured.findings if one.kind == "low-pass")
+    assert finding.channel == "x"
+    assert "without lag (order 2, forwards and back)" in finding.what and "say lowpass" in finding.spoils
+
+
+def test_what_the_file_says_stands(filtered):
+    inquiry = begin_inquiry(mass().with_sensor(Sensor("x", lowpass=5.0)), filtered)
+    assert inquiry.record_filter.cutoffs_hz == (5.0,)
+    assert not [one for one in inquiry.measured.findings if one.kind == "low-pass"]
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.02])
+def test_a_raw_record_went_through_none(noise):
+    inquiry = begin_inquiry(mass(), record(with_load("-14*x**3"), 3, Experiment(seconds=30.0, noise=noise)))
+    assert inquiry.record_filter.cutoffs_hz == (None,)
+    assert not inquiry.measured.findings
+
+
+def test_of_a_linear_system_whose_inputs_were_filtered_alike_nothing_is_filtered_again():
+    raw = record(mass(), 3, Experiment(seconds=30.0))
+    rng = np.random.default_rng(1)
+    sections = butter(2, 3.0, fs=RATE, output="sos")
+    pushes = [one + rng.normal(0, 0.3, one.shape) for one in raw.drive.inputs]
+    both = [sosfiltfilt(sections, one, axis=1) for one in (np.array(pushes), raw.observed)]
+    passed = replace(raw, drive=Drive.of(list(both[0]), RATE), observed=both[1])
+    assert begin_inquiry(mass(), passed).record_filter.cutoffs_hz == (None,)
+    alone = replace(raw, observed=both[1])
+    assert begin_inquiry(mass(), alone).record_filter.cutoffs_hz[0] == pytest.approx(3.0, rel=0.15)
+
+
+def test_a_filtered_record_of_a_stop_gives_the_strength_of_the_raw_one():
+    truth = with_load("-60*max(0, x - 0.25)", "one_sided_spring")
+    found = {}
+    for lowpass in (0.0, 3.0):
+        inquiry = begin_inquiry(mass(), record(truth, 5, Experiment(seconds=30.0, lowpass_hz=lowpass)))
+        now = inquiry.search.extended(inquiry.as_read())[1]
+        found[lowpass] = abs(next(iter(now.account.parts[0].values.values())))
+    assert now.labels == ("one_sided_spring@load",)
+    assert found[3.0] == pytest.approx(found[0.0], rel=0.05)
+    assert found[0.0] == pytest.approx(60, rel=0.05)
