@@ -69,7 +69,8 @@ def scale_of(inquiry: Inquiry) -> GapScale:
 def leaves_noise(inquiry: Inquiry, now: Judged) -> bool:
     """Whether what an account leaves is no larger than the noise of the sensors.
 
-    Where this is not known (a filtered record whose file does not say it): whether it remembers no more than the filter.
+    Where this is not known (a filtered record whose file does not say it), whether it remembers no more than the
+    filter.
 
     Parameters
     ----------

@@ -81,8 +81,8 @@ def _estimated_without(
         normal, match = normal + slopes.T @ slopes, match + slopes.T @ left
     moved = _solved(normal, match)
     own, right = fit.slopes[run, kept], fit.white[run, kept]
-    start: NDArray[np.float64] = np.linalg.lstsq(own[:, :n], right - own[:, n:] @ moved, rcond=None)[0]
-    return start, moved
+    start = np.linalg.lstsq(own[:, :n], right - own[:, n:] @ moved, rcond=None)[0]
+    return np.asarray(start, np.float64), moved
 
 
 def _prior(fit: Fitted) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
