@@ -62,17 +62,16 @@ def paired_test(
     ----------
     Wilcoxon 1945, Biometrics Bulletin 1, 80.
     """
-    squares = [(one / floor) ** 2 for one in (before, after)]
-    if np.isinf(squares[1]).any() or (np.isnan(squares[1]) & ~np.isnan(squares[0])).any():
+    fall = (before**2 - after**2) / floor**2
+    if np.isinf(fall).any() or (np.isnan(fall) & ~np.isnan(before)).any():
         return PairedTest(float("nan"), 0, float("nan"))
-    squares = [np.nan_to_num(one).sum(axis=2) for one in squares]
-    runs, samples = squares[0].shape
+    fall = np.nan_to_num(fall).sum(axis=2)
+    runs, samples = fall.shape
     total = runs * samples
     length = min(period, max(total // WANTED, min(memory_of(after), total // FEWEST), 1))
     blocks = max(samples // length, 1)
-    sums = [np.array([part.sum() for run in one for part in np.array_split(run, blocks)]) for one in squares]
-    gains = speaking(np.sqrt(sums[0]) - np.sqrt(sums[1]))
-    return PairedTest(signed_rank_p(gains), len(gains), float((sums[0] - sums[1]).sum()))
+    gains = np.array([part.sum() for run in fall for part in np.array_split(run, blocks)])
+    return PairedTest(signed_rank_p(gains), len(gains), float(gains.sum()))
 
 
 def speaking(gains: NDArray[np.float64]) -> NDArray[np.float64]:
