@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
@@ -8,6 +10,7 @@ from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.evidence import judged
 from gaitdisc.discovery.inquiry import SHORT, begin_inquiry, split_in_time
 from gaitdisc.discovery.record_filter import RecordFilter
+from gaitdisc.discovery.sensor_noise import sensor_noise
 from gaitdisc.report.discovery_page import write_discovery_report
 from gaitdisc.results.discovery_folder import save_discovery
 from gaitdisc.simulation.drive import Drive, Rows
@@ -128,7 +131,9 @@ def test_the_noise_of_the_sensors_is_what_the_file_says_behind_the_filter():
     assert inquiry.sensor_noise == pytest.approx(0.03 * inquiry.record_filter.gains)
     assert inquiry.noise_floor(np.array([0.5])) == inquiry.sensor_noise
     plain = begin_inquiry(mass(), measured)
-    assert np.isnan(plain.sensor_noise).all() and plain.noise_floor(np.array([0.5])) == 0.5
+    assert plain.sensor_noise == pytest.approx(sensor_noise(measured.observed))
+    silent = replace(plain, record_filter=RecordFilter((3.0,), measured.rate))
+    assert np.isnan(silent.sensor_noise).all() and silent.noise_floor(np.array([0.5])) == 0.5
 
 
 def test_a_trial_too_short_for_whole_margins_is_cut_all_the_same():
