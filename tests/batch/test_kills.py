@@ -69,13 +69,14 @@ def runs():
 
 
 def tables(folder):
-    """Every file of a run but the moment of its making and its lock."""
+    """Every file of a run but its lock, the moment of its making, and the seal that holds this moment too."""
     found = {}
     for path in sorted(folder.rglob("*")):
         if path.is_file() and path.name not in (".lock", "run.json"):
             found[str(path.relative_to(folder))] = path.read_bytes()
     run = json.loads((folder / "run.json").read_text())
     run["provenance"].pop("created")
+    run.pop("own_sha256")
     return found, run
 
 
