@@ -7,13 +7,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.candidate import Candidate, Identity
 from gaitdisc.discovery.fitted import Fitted
+from gaitdisc.discovery.price import price_of
 from gaitdisc.discovery.prior import prior_of
 from gaitdisc.discovery.shooting import ENOUGH, Shooting
 from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
+
+Explanations = frozenset[Identity]
 
 
 @dataclass(frozen=True)
@@ -35,6 +38,11 @@ class Part:
     def written(self) -> dict[str, str]:
         """Slot -> its number as it is written into a file."""
         return {slot: f"{value:.6g}" for slot, value in self.values.items()}
+
+    @property
+    def term(self) -> str:
+        """The missing term as it is written into a file; empty for what is none."""
+        return self.candidate.term(self.written) if self.candidate.verdict == "missing_physics" else ""
 
 
 @dataclass(frozen=True)
@@ -62,6 +70,16 @@ class Account:
     def names(self) -> tuple[dict[str, str], ...]:
         """For each explanation, slot -> the parameter that it is in the simulation."""
         return tuple(part.candidate.named(_tag(number)) for number, part in enumerate(self.parts))
+
+    @property
+    def explanations(self) -> Explanations:
+        """Which explanations are in, whatever their order and numbers."""
+        return frozenset(part.candidate.identity for part in self.parts)
+
+    @property
+    def price(self) -> float:
+        """What its explanations have to close [of the gap of the simulation as read]."""
+        return sum(price_of(part.candidate, part.values) for part in self.parts)
 
     @property
     def size(self) -> int:

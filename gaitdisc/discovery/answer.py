@@ -157,10 +157,11 @@ def found_effects(inquiry: Inquiry, now: Judged, closed: float, gained: float) -
     for number, part in enumerate(now.account.parts):
         candidate = part.candidate
         estimates = estimates_of(now.account, number, inquiry.search.base)
-        term = candidate.term(part.written) if candidate.verdict == "missing_physics" else ""
         place = (candidate.kind, candidate.place, candidate.name)
         found.append(
-            FoundEffect(*place, term, estimates, closed, gained, bounds=file_bounds(inquiry.search.base, candidate))
+            FoundEffect(
+                *place, part.term, estimates, closed, gained, bounds=file_bounds(inquiry.search.base, candidate)
+            )
         )
     return found
 
@@ -201,12 +202,10 @@ def small_ones(parts: tuple[Part, ...]) -> tuple[FoundEffect, ...]:
     parts : tuple of Part
         With their numbers.
     """
-    found = []
-    for part in parts:
-        candidate = part.candidate
-        term = candidate.term(part.written) if candidate.verdict == "missing_physics" else ""
-        found.append(FoundEffect(candidate.kind, candidate.place, candidate.name, term, small=True))
-    return tuple(found)
+    return tuple(
+        FoundEffect(part.candidate.kind, part.candidate.place, part.candidate.name, part.term, small=True)
+        for part in parts
+    )
 
 
 def whereabouts(inquiry: Inquiry, verdict: Verdict, train: GapSize) -> tuple[Whereabouts, ...]:

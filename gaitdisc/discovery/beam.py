@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from gaitdisc.discovery.account import Part
+from gaitdisc.discovery.account import Explanations, Part
 from gaitdisc.discovery.borne_out import LEVEL, signed_rank_p, speaking
-from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.gap_share import Explanations, GapScale, Weighed, weighed
+from gaitdisc.discovery.candidate import Identity
+from gaitdisc.discovery.gap_share import GapScale, Weighed, weighed
 from gaitdisc.discovery.price import price_of
 from gaitdisc.discovery.score import Score, Scorer
 from gaitdisc.discovery.search import Search
@@ -57,7 +57,7 @@ class Beam:
         now : Weighed
             Any set.
         """
-        return now.gap / self.as_read.gap + now.price
+        return now.gap / self.as_read.gap + now.account.price
 
     @property
     def best(self) -> Weighed:
@@ -72,11 +72,11 @@ class Beam:
         begin : Weighed
             On the same runs as the simulation as read.
         """
-        self.known.setdefault(self.as_read.explanations, self.as_read)
-        self.known[begin.explanations] = begin
+        self.known.setdefault(self.as_read.account.explanations, self.as_read)
+        self.known[begin.account.explanations] = begin
         most = min(MOST, max(1, len(begin.errors) // 3))
         beam = [begin]
-        for _ in range(len(begin.explanations), most):
+        for _ in range(len(begin.account.explanations), most):
             longer = self._extended(beam)
             if not longer:
                 break
@@ -101,7 +101,7 @@ class Beam:
             for score in self._promising(now, FIRST if len(beam) == 1 else NEXT):
                 longer = self._with(now, score)
                 if longer:
-                    found[longer.explanations] = longer
+                    found[longer.account.explanations] = longer
         return list(found.values())
 
     def _promising(self, now: Weighed, most: int) -> list[Score]:
@@ -110,30 +110,29 @@ class Beam:
         if not np.isfinite(now.gap):
             return []
         scorer = Scorer(now.shooting, account.simulation, account.machine, fit, self.search.places, self.search.rhythm)
-        present = now.explanations
-        scores = scorer.scores(tuple(one for one in self.search.candidates if identity(one) not in present))
+        scores = scorer.scores(self.search.open_beside(account))
         whole = float((fit.projected[0] ** 2).sum())
         wanted = self.cost(self.best) + SLACK
         promising = []
         for score in scores:
             left = math.sqrt(max(1 - score.gain / whole, 0.0))
-            promised = now.gap / self.as_read.gap * left + now.price + price_of(Part(score.candidate, score.values))
+            promised = now.gap / self.as_read.gap * left + account.price + price_of(score.candidate, score.values)
             if score.gain > LEAST_FALL * whole and promised < wanted:
                 promising.append(score)
         return promising[:most]
 
     def _with(self, now: Weighed, score: Score) -> Weighed | None:
         """Fit a set with one explanation more; None where its numbers would not mean what its name says."""
-        wanted = now.explanations | {identity(score.candidate)}
+        wanted = now.account.explanations | {score.candidate.identity}
         if wanted not in self.known:
             parts = (*now.account.parts, Part(score.candidate, score.values))
-            longer = weighed(self.scale, now.shooting, self.search.base, parts, now)
+            longer = weighed(self.scale, now.shooting, self.search.base, parts, now.account)
             if not self.search.sensible(longer.account):
                 return None
             self.known[wanted] = longer
         return self.known[wanted]
 
-    def without(self, now: Weighed, gone: tuple[str, tuple[str, ...]]) -> Weighed:
+    def without(self, now: Weighed, gone: Identity) -> Weighed:
         """Fit a set less one of its explanations.
 
         Parameters
@@ -143,17 +142,17 @@ class Beam:
         gone : tuple
             Which explanation goes.
         """
-        wanted = now.explanations - {gone}
+        wanted = now.account.explanations - {gone}
         if wanted not in self.known:
-            parts = tuple(part for part in now.account.parts if identity(part.candidate) != gone)
-            self.known[wanted] = weighed(self.scale, now.shooting, self.search.base, parts, now)
+            parts = tuple(part for part in now.account.parts if part.candidate.identity != gone)
+            self.known[wanted] = weighed(self.scale, now.shooting, self.search.base, parts, now.account)
         return self.known[wanted]
 
     def _exchange(self, best: Weighed) -> None:
         """Fit the sets with another explanation in the place of each of a set's own."""
-        if len(best.explanations) < 2:
+        if len(best.account.explanations) < 2:
             return
-        for gone in sorted(best.explanations):
+        for gone in sorted(best.account.explanations):
             fewer = self.without(best, gone)
             for score in self._promising(fewer, NEXT):
                 self._with(fewer, score)
@@ -167,12 +166,12 @@ class Beam:
             The set.
         """
         small: list[Part] = []
-        while now.explanations:
+        while now.account.explanations:
             losses = []
             for part in now.account.parts:
-                fewer = self.without(now, identity(part.candidate))
+                fewer = self.without(now, part.candidate.identity)
                 share = (fewer.gap - now.gap) / self.as_read.gap
-                worth = max(MATTERS, ABOVE_PRICE * price_of(part))
+                worth = max(MATTERS, ABOVE_PRICE * price_of(part.candidate, part.values))
                 if share < worth or errs_more(fewer, now) >= LEVEL:
                     losses.append((share, part, fewer))
             if not losses:
@@ -193,12 +192,12 @@ class Beam:
         equal = [
             one
             for one in self.known.values()
-            if 0 < len(one.explanations) <= len(now.explanations)
-            and one.price < now.price - 1e-9
+            if 0 < len(one.account.explanations) <= len(now.account.explanations)
+            and one.account.price < now.account.price - 1e-9
             and self.as_read.gap - one.gap > AS_MUCH * closed
             and errs_more(one, now) >= LEVEL
         ]
-        return min(equal, key=lambda one: (round(one.price, 3), one.gap)) if equal else now
+        return min(equal, key=lambda one: (round(one.account.price, 3), one.gap)) if equal else now
 
     def near(self, now: Weighed, within: float) -> list[Weighed]:
         """Return other sets that cost hardly more, the cheapest first.
@@ -210,19 +209,12 @@ class Beam:
         within : float
             How much more, in shares of the gap as read.
         """
-        others = [one for one in self.known.values() if one.explanations and one.explanations != now.explanations]
+        others = [
+            one
+            for one in self.known.values()
+            if one.account.explanations and one.account.explanations != now.account.explanations
+        ]
         return sorted((one for one in others if self.cost(one) <= self.cost(now) + within), key=self.cost)
-
-
-def identity(candidate: Candidate) -> tuple[str, tuple[str, ...]]:
-    """Return what distinguishes an explanation from others: name, place and shape.
-
-    Parameters
-    ----------
-    candidate : Candidate
-        Any.
-    """
-    return candidate.label, candidate.pieces
 
 
 def errs_more(one: Weighed, other: Weighed) -> float:

@@ -16,10 +16,9 @@ from gaitdisc.discovery.held_out import proof_of
 from gaitdisc.discovery.inquiry import Inquiry
 from gaitdisc.discovery.nameless import nameless_terms
 from gaitdisc.discovery.sensor_noise import sensor_noise
-from gaitdisc.discovery.windows import as_read_on, longest_run, near_runs, on_longer_runs, shooting_of
+from gaitdisc.discovery.windows import as_read_on, near_runs, on_longer_runs
 
 MERE_NOISE = 1.3  # times the variance of the sensors' noise: its own estimate errs
-AGREES = 1.5  # times the root mean square that a simulation that lacks nothing may leave
 LOST = 4.0  # squared spreads, which a run that has left the data errs by
 TIED = 0.02  # of the gap, by which another set may cost more
 
@@ -85,19 +84,6 @@ def leaves_noise(inquiry: Inquiry, now: Judged) -> bool:
     return leaves(now, inquiry.sensor_noise) < MERE_NOISE
 
 
-def agrees(scale: GapScale, now: Judged) -> bool:
-    """Whether an account leaves no more than noise and a hundredth of the measurement's spread.
-
-    Parameters
-    ----------
-    scale : GapScale
-        What gaps are measured against.
-    now : Judged
-        Fitted.
-    """
-    return scale.mean_square(now.account.fit) < AGREES**2 * scale.least
-
-
 def closing_most(inquiry: Inquiry, scale: GapScale, also: tuple[tuple[Part, ...], ...]) -> Outcome | None:
     """Search the plainest set of explanations that closes most of the gap; None where none closes enough.
 
@@ -116,40 +102,29 @@ def closing_most(inquiry: Inquiry, scale: GapScale, also: tuple[tuple[Part, ...]
     search = inquiry.search
     search = replace(search, candidates=(*search.candidates, *nameless_terms(search.base, search.places)))
     as_read = near_runs(inquiry, scale)
-    if scale.mean_square(as_read.account.fit) < AGREES**2 * scale.least:
+    if scale.agrees(as_read.account.fit):
         return None
     beam = Beam(search, scale, as_read)
     for parts in also:
-        one = weighed(scale, as_read.shooting, search.base, parts, as_read)
-        beam.known[one.explanations] = one
+        one = weighed(scale, as_read.shooting, search.base, parts, as_read.account)
+        beam.known[one.account.explanations] = one
     best = beam.grown(as_read)
-    longer = on_longer_runs(inquiry, scale, best) if best.explanations else None
+    longer = on_longer_runs(inquiry, scale, best) if best.account.explanations else None
     if longer:
         beam = Beam(search, scale, as_read_on(inquiry, scale, as_read, longer))
         best = beam.grown(longer)
     now, small = beam.material(best)
     now = beam.plainest(now)
-    if not now.explanations or not whole_runs_err_less(inquiry, beam.as_read, now):
+    if not now.account.explanations or not whole_runs_err_less(inquiry, scale, beam.as_read, now):
         return None
-    near = tuple(judged_of(one) for one in beam.near(now, TIED))
+    near = tuple(one.judged for one in beam.near(now, TIED))
     closed = 1 - now.gap / beam.as_read.gap
     p = min(len(search.candidates) * errs_more(beam.as_read, now), 1.0)
     test = PairedTest(p, len(now.errors), float((beam.as_read.errors - now.errors).sum()))
-    return Outcome(judged_of(beam.as_read), judged_of(now), closed, test, tuple(small), near)
+    return Outcome(beam.as_read.judged, now.judged, closed, test, tuple(small), near)
 
 
-def judged_of(one: Weighed) -> Judged:
-    """Return a weighed set as the rest of the inquiry takes it.
-
-    Parameters
-    ----------
-    one : Weighed
-        The set.
-    """
-    return Judged(one.account, one.shooting)
-
-
-def whole_runs_err_less(inquiry: Inquiry, as_read: Weighed, now: Weighed) -> bool:
+def whole_runs_err_less(inquiry: Inquiry, scale: GapScale, as_read: Weighed, now: Weighed) -> bool:
     """Whether held-out trials, run as a whole from the best start, err less with a set than without.
 
     A delay of what was measured observes the state and closes any gap of a short run.
@@ -158,12 +133,15 @@ def whole_runs_err_less(inquiry: Inquiry, as_read: Weighed, now: Weighed) -> boo
     ----------
     inquiry : Inquiry
         The trials.
+    scale : GapScale
+        With the spread of the channels.
     as_read, now : Weighed
         The simulation as read and with the set.
     """
-    whole = shooting_of(inquiry, longest_run(inquiry)).segments
+    whole = inquiry.learned_runs(inquiry.longest).segments
     like = Judged(now.account, replace(now.shooting, segments=whole))
-    proof = proof_of(inquiry, judged_of(as_read), judged_of(now), like)
-    spread = np.nanstd(inquiry.measured.observed, axis=(0, 1))
-    before, after = (np.fmin((one.fit.residual / spread) ** 2, LOST).mean() for one in (proof.before, proof.after))
+    proof = proof_of(inquiry, as_read.judged, now.judged, like)
+    before, after = (
+        np.fmin((one.fit.residual / scale.spread) ** 2, LOST).mean() for one in (proof.before, proof.after)
+    )
     return bool(after < before)

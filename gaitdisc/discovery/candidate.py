@@ -31,6 +31,8 @@ SIGNAL_ERRORS = {
     "sensor_lag": ("seconds", 0.0, "{s}"),
 }
 
+Identity = tuple[str, tuple[str, ...]]
+
 
 @dataclass(frozen=True)
 class Candidate:
@@ -98,6 +100,11 @@ class Candidate:
     def label(self) -> str:
         """Name and place, as one word."""
         return f"{self.name}@{self.place}"
+
+    @property
+    def identity(self) -> Identity:
+        """What distinguishes it from others, whatever its numbers: name, place and shape."""
+        return self.label, self.pieces
 
     def written(self, simulation: Simulation, numbers: Mapping[str, str]) -> Simulation:
         """Return the simulation with this explanation in it.

@@ -9,7 +9,8 @@ import numpy as np
 
 from gaitdisc.discovery.account import account_for
 from gaitdisc.discovery.answer import answer
-from gaitdisc.discovery.by_share import agrees, closing_most, leaves_noise, scale_of
+from gaitdisc.discovery.beam import MOST
+from gaitdisc.discovery.by_share import closing_most, leaves_noise, scale_of
 from gaitdisc.discovery.catalogue import Shape
 from gaitdisc.discovery.evidence import Judged, compared, judged
 from gaitdisc.discovery.fitted_shape import fitted_shape
@@ -28,8 +29,7 @@ from gaitdisc.results.discovery import Discovery
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
 
-MOST_NAMES = 2  # where they leave more than noise
-MOST_EXACT = 4  # where they leave nothing else
+MOST_NAMES = 2  # where they leave more than noise; where they leave nothing else, MOST
 NEAR = 40.0  # by which a rival's evidence may be worse and still be tried on long runs
 MOST_NEAR = 4
 REPEATS = 0.2  # of the misfit, which something that repeats itself has to take away where random pushes would do
@@ -104,7 +104,7 @@ def judge(inquiry: Inquiry, as_read: Judged) -> Verdict:
         return plain
     shape = fitted_shape(as_read, inquiry.search) if len(named.account.parts) > 1 or named.noise.remembers else None
     remembered = weighed_with_memory(inquiry, as_read, named, shape, rivals) if named.noise.remembers else None
-    if remembered and not (remembered.word == "process_noise" and agrees(scale, as_read)):
+    if remembered and not (remembered.word == "process_noise" and scale.agrees(as_read.account.fit)):
         return remembered
     names = len(named.account.parts)
     if shape and not exact and (names > MOST_NAMES or (names > 1 and says_more(inquiry, shape, named))):
@@ -210,13 +210,13 @@ def searched(inquiry: Inquiry, as_read: Judged, scale: GapScale) -> tuple[Judged
     rivals : list of Judged
         What else stood for the first place, best first.
     """
-    named, rivals = grown(inquiry.search, as_read, MOST_EXACT, scale.noise)
+    named, rivals = grown(inquiry.search, as_read, MOST, scale.noise)
     if named.account.parts or not inquiry.is_tame(as_read):
         return as_read, named, rivals
     longer = inquiry.lengthened(as_read)
     if longer is as_read:
         return as_read, named, rivals
-    named, rivals = grown(inquiry.search, longer, MOST_EXACT, scale.noise)
+    named, rivals = grown(inquiry.search, longer, MOST, scale.noise)
     return (longer, named, rivals) if named.account.parts else (as_read, as_read, rivals)
 
 

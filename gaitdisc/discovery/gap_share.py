@@ -12,19 +12,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.account import Account, Part, account_for
+from gaitdisc.discovery.evidence import Judged
 from gaitdisc.discovery.fitted import Fitted
 from gaitdisc.discovery.left_out import left_out_errors
 from gaitdisc.discovery.noise import Noise, white_noise
-from gaitdisc.discovery.price import price_of
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.simulation.simulation import Simulation
 
 MODEL_ERROR = 0.01  # of a channel's spread: no simulation of hardware is exact
+AGREES = 1.5  # times the root mean square that a simulation that lacks nothing may leave
 REMEMBERED = 20.0  # samples of what a wrong simulation leaves say as much as one independent number
 CONVERGED = 1e-4  # of a number's share of the misfit
 TURNS, AGAIN = 15, 6
-
-Explanations = frozenset[tuple[str, tuple[str, ...]]]
 
 
 @dataclass(frozen=True)
@@ -77,6 +76,26 @@ class GapScale:
         """
         return float(np.sqrt(np.nanmean((fit.residual / self.spread) ** 2)))
 
+    def agrees(self, fit: Fitted) -> bool:
+        """Whether a residual is no more than noise and a hundredth of the measurement's spread explain.
+
+        Parameters
+        ----------
+        fit : Fitted
+            Any.
+        """
+        return self.mean_square(fit) < AGREES**2 * self.least
+
+    def gap_above(self, mean_square: float) -> float:
+        """Return the root of a mean square above what the sensors' noise leaves.
+
+        Parameters
+        ----------
+        mean_square : float
+            In squares of `size`.
+        """
+        return float(np.sqrt(max(mean_square - self.floor, 0.0)))
+
     def error_of(self, fit: Fitted) -> Noise:
         """Return white noise as large as a residual that remembers itself weighs against a prior.
 
@@ -110,19 +129,12 @@ class Weighed:
     gap: float
 
     @property
-    def explanations(self) -> Explanations:
-        """Which explanations are in, whatever their order and numbers."""
-        return frozenset((part.candidate.label, part.candidate.pieces) for part in self.account.parts)
-
-    @property
-    def price(self) -> float:
-        """What its explanations have to close [of the gap of the simulation as read]."""
-        return sum(price_of(part) for part in self.account.parts)
+    def judged(self) -> Judged:
+        """The same as the rest of an inquiry takes it."""
+        return Judged(self.account, self.shooting)
 
 
-def weighed(
-    scale: GapScale, shooting: Shooting, base: Simulation, parts: tuple[Part, ...], like: Account | Weighed
-) -> Weighed:
+def weighed(scale: GapScale, shooting: Shooting, base: Simulation, parts: tuple[Part, ...], like: Account) -> Weighed:
     """Fit a simulation with explanations in it, and measure what it leaves of runs left out of the fit.
 
     Parameters
@@ -135,46 +147,18 @@ def weighed(
         As read.
     parts : tuple of Part
         The explanations, with numbers to begin from.
-    like : Account or Weighed
+    like : Account
         Of the same segments: where start states and numbers with bounds begin.
     """
-    account = like.account if isinstance(like, Weighed) else like
     enough = CONVERGED * shooting.seen.size / REMEMBERED
-    shooting = shooting.with_noise(scale.error_of(account.fit))
-    account = account_for(shooting, base, parts, account.fit.starts, TURNS, enough, account)
-    if np.isfinite(account.fit.misfit):
-        shooting = shooting.with_noise(scale.error_of(account.fit)).with_past(account.fit.states)
-        account = account_for(shooting, base, account.parts, account.fit.starts, AGAIN, enough, account)
-    return measured(scale, shooting, account)
-
-
-def measured(scale: GapScale, shooting: Shooting, account: Account) -> Weighed:
-    """Measure what an account leaves of runs left out of its fit.
-
-    Parameters
-    ----------
-    scale : GapScale
-        What the gap is measured against.
-    shooting : Shooting
-        The segments, under the white noise that the account was fitted with.
-    account : Account
-        Fitted.
-    """
+    shooting = shooting.with_noise(scale.error_of(like.fit))
+    account = account_for(shooting, base, parts, like.fit.starts, TURNS, enough, like)
+    if not np.isfinite(account.fit.misfit):
+        return Weighed(account, shooting, np.full(1, np.inf), float("inf"))
+    shooting = shooting.with_noise(scale.error_of(account.fit)).with_past(account.fit.states)
+    account = account_for(shooting, base, account.parts, account.fit.starts, AGAIN, enough, account)
     if not np.isfinite(account.fit.misfit):
         return Weighed(account, shooting, np.full(1, np.inf), float("inf"))
     square = float(np.mean((shooting.noise.size / scale.size) ** 2))
     errors = left_out_errors(account.fit) * square / shooting.known.mean()
-    return Weighed(account, shooting, errors, gap_above(scale, float(errors.mean())))
-
-
-def gap_above(scale: GapScale, mean_square: float) -> float:
-    """Return the root of a mean square above what the sensors' noise leaves.
-
-    Parameters
-    ----------
-    scale : GapScale
-        What the gap is measured against.
-    mean_square : float
-        In squares of its size.
-    """
-    return float(np.sqrt(max(mean_square - scale.floor, 0.0)))
+    return Weighed(account, shooting, errors, scale.gap_above(float(errors.mean())))

@@ -35,6 +35,11 @@ class Rhythm:
     duration: float
     rate: float
 
+    @property
+    def samples(self) -> float:
+        """Samples of a period."""
+        return self.period * self.rate
+
 
 def rhythm_of(observed: NDArray[np.float64], rate: float) -> Rhythm:
     """Read the main period off the measured channels.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.discovery.account import Explanations
 from gaitdisc.discovery.evidence import Judged, compared
 from gaitdisc.discovery.ranking import ALIKE, MARGIN, ranked
 from gaitdisc.discovery.search import Search, is_certain
@@ -13,7 +14,6 @@ MATERIAL = (0.0, 0.001, 0.01)  # of what is explained already, which the first, 
 MOST_TURNS = 5  # explanations let in, those that were thrown out again included
 FIRST_PLACES = 5  # that a second explanation is sought beside
 SAME = 0.1  # difference of evidence
-Explanations = frozenset[tuple[str, tuple[str, ...]]]
 FAR = 4.0  # times the variance of the sensors' noise
 SETTLED = 3  # turns of exchanging and throwing out
 
@@ -43,7 +43,7 @@ def grown(
         What else stood for the first place, best first.
     """
     rivals: list[Judged] = []
-    explored = {explanations(now)}
+    explored = {now.account.explanations}
     explained, turns = 0.0, 0
     while len(now.account.parts) < most and turns < MOST_TURNS:
         before, *more = search.extended(now) or [now]
@@ -64,7 +64,7 @@ def grown(
         if gained < worth or not is_certain(better.account):
             break
         explained, now, turns = max(explained, gained), better, turns + 1
-        explored.add(explanations(now))
+        explored.add(now.account.explanations)
         if far:
             break
     return now, rivals
@@ -81,17 +81,6 @@ def leaves(now: Judged, noise: NDArray[np.float64]) -> float:
         Its standard deviation [the channel's unit].
     """
     return float(np.nanmean((now.account.fit.residual / noise) ** 2))
-
-
-def explanations(now: Judged) -> Explanations:
-    """Return which explanations are in an account, whatever their order and numbers.
-
-    Parameters
-    ----------
-    now : Judged
-        Any.
-    """
-    return frozenset((part.candidate.label, part.candidate.pieces) for part in now.account.parts)
 
 
 def beside_others(search: Search, pair: Judged, firsts: list[Judged], explored: set[Explanations]) -> Judged:
@@ -114,7 +103,7 @@ def beside_others(search: Search, pair: Judged, firsts: list[Judged], explored: 
     unlike = [one for number, one in enumerate(firsts) if not any(_alike(one, other) for other in firsts[:number])]
     for first in unlike[: FIRST_PLACES - 1]:
         pairs += ranked(search.extended(first)[1:], search.candidates)[:1]
-        explored.add(explanations(first))
+        explored.add(first.account.explanations)
     return ranked(compared(pairs, search.base), search.candidates)[0]
 
 
@@ -159,9 +148,9 @@ def exchanged(search: Search, now: Judged, explored: set[Explanations]) -> Judge
     """
     for number in range(len(now.account.parts)):
         rest = search.without(now, number)
-        if explanations(rest) in explored:
+        if rest.account.explanations in explored:
             continue
-        explored.add(explanations(rest))
+        explored.add(rest.account.explanations)
         others = search.extended(rest)[1:]
         if others:
             now, *others = compared([now, *others], search.base)

@@ -59,7 +59,7 @@ def runs_of(inquiry: Inquiry, now: Judged, trials: tuple[int, ...], like: Judged
     like : Judged
         Whose noise and whose length of runs are used.
     """
-    periods = like.shooting.segments.span / (inquiry.rhythm.period * inquiry.rhythm.rate)
+    periods = like.shooting.segments.span / inquiry.rhythm.samples
     *shorter, whole = _lengths(periods)
     guess = inquiry.guess
     for length in shorter:
@@ -208,7 +208,7 @@ def tested(inquiry: Inquiry, before: Trial, after: Trial, like: Judged) -> Paire
     like : Judged
         Whose noise is used.
     """
-    period = int(inquiry.rhythm.period * inquiry.rhythm.rate / like.shooting.segments.every) + 1
+    period = int(inquiry.rhythm.samples / like.shooting.segments.every) + 1
     return paired_test(before.fit.residual, after.fit.residual, like.noise.size, period)
 
 

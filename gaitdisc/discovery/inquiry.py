@@ -105,9 +105,7 @@ class Inquiry:
         periods : float
             Length of a run, in main periods.
         """
-        samples = int(
-            round(periods * self.rhythm.period * self.rhythm.rate, 6)
-        )  # 88 / period / rate * ... may be 87.99
+        samples = int(round(periods * self.rhythm.samples, 6))  # 88 / period / rate * ... may be 87.99
         passed, lengths = self.record_filter, self.measured.drive.samples
         wanted = max(samples, FEWEST_SAMPLES, FEWEST_COMPARED * passed.every)
         margin = min(passed.margin, int(min(lengths[trial] for trial in trials)) // SHORT)
@@ -124,6 +122,21 @@ class Inquiry:
         channels = self.measured.observed.shape[2]
         noise = white_noise(np.ones(channels))
         return Shooting(self.measured, segments, noise, SUBSTEPS, self.guess.states, record_filter=self.record_filter)
+
+    @property
+    def longest(self) -> int:
+        """Samples of the longest run that every learned trial holds."""
+        return int(min(self.measured.drive.samples[trial] for trial in self.learned))
+
+    def learned_runs(self, samples: int) -> Shooting:
+        """Return the learned trials cut into runs, ready to be fitted.
+
+        Parameters
+        ----------
+        samples : int
+            Length wanted.
+        """
+        return self.shooting(self.segments(self.learned, samples / self.rhythm.samples))
 
     def as_read(self) -> Judged:
         """Return the simulation as read, fitted to short runs and judged.
@@ -145,7 +158,7 @@ class Inquiry:
         machine = compile_simulation(self.search.base)
         line = linearise_along(shooting, self.search.base, (), states, machine.defaults)
         step = line.first_growth(GROWTH, states)
-        return 1.0 if step is None else step / (self.rhythm.period * self.rhythm.rate)
+        return 1.0 if step is None else step / self.rhythm.samples
 
     def is_tame(self, now: Judged) -> bool:
         """Whether runs were cut at a whole period, and not earlier for fear of chaos.
@@ -155,7 +168,7 @@ class Inquiry:
         now : Judged
             Fitted to such runs.
         """
-        return now.shooting.segments.span >= TAME * self.rhythm.period * self.rhythm.rate
+        return now.shooting.segments.span >= TAME * self.rhythm.samples
 
     def lengthened(self, now: Judged, most: int = 10**9) -> Judged:
         """Return an account fitted to runs as long as it can follow.
@@ -167,13 +180,12 @@ class Inquiry:
         most : int
             Longest run wanted [samples].
         """
-        shortest = int(min(self.measured.drive.samples[trial] for trial in self.learned))
-        longest = min(most, shortest - 2 * now.shooting.segments.margin)
+        longest = min(most, self.longest - 2 * now.shooting.segments.margin)
         followed = np.sqrt(1 + (FOLLOWED**2 - 1) / self.record_filter.gains**2)
         while now.shooting.segments.span * 2 < longest:
             guess = self.guess.with_run(now.shooting.segments, now.account.fit.states)
             samples = min(LENGTHENED * now.shooting.segments.span, longest)
-            shooting = self.shooting(self.segments(self.learned, samples / (self.rhythm.period * self.rhythm.rate)))
+            shooting = self.learned_runs(samples)
             starts = guess.starts(shooting.segments)
             longer = account_for(
                 shooting.with_noise(now.noise), self.search.base, now.account.parts, starts, like=now.account

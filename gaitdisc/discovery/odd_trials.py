@@ -151,7 +151,7 @@ class _Bench:
         self.simulation, self.rhythm = inquiry.search.base, inquiry.rhythm
         self.rate_of = kinematic_rates(self.simulation, compile_simulation(self.simulation))
         self.spread = np.nanstd(inquiry.measured.observed, axis=(0, 1))
-        self.samples = max(int(inquiry.tame_periods() * self.rhythm.period * self.rhythm.rate), FEWEST_SAMPLES)
+        self.samples = max(int(inquiry.tame_periods() * self.rhythm.samples), FEWEST_SAMPLES)
         self.measured = inquiry.measured
 
     def fitted(self, measured: Measured) -> tuple[Fitted, Segments]:
@@ -189,7 +189,7 @@ def _shifted(bench: _Bench, fit: Fitted, segments: Segments) -> Iterator[Change]
     if not bench.simulation.inputs:  # a system that is left to itself has no clock to be shifted against
         return
     measured = bench.measured
-    most = min(int(LONGEST_SHIFT * bench.rhythm.period * bench.rhythm.rate), int(measured.samples.min()) // 3)
+    most = min(int(LONGEST_SHIFT * bench.rhythm.samples), int(measured.samples.min()) // 3)
     shifts = [shift for shift in range(-most, most + 1) if abs(shift) >= SMALLEST_SHIFT]
     likely = set()
     for trial in range(len(measured.trials)):

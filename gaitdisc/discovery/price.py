@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from gaitdisc.discovery.account import Part
+from collections.abc import Mapping
+
+from gaitdisc.discovery.candidate import Candidate
 
 PLAIN = 0.03  # of the gap
 PRICES = {
@@ -27,14 +29,15 @@ LOSSES = ("viscous_damping", "coulomb_friction", "quadratic_drag")
 DRIVES = 0.05  # more, for a friction that drives the motion
 
 
-def price_of(part: Part) -> float:
+def price_of(candidate: Candidate, values: Mapping[str, float]) -> float:
     """Return the share of the gap that an explanation must close to be worth its statement.
 
     Parameters
     ----------
-    part : Part
-        With its numbers: a friction that drives costs more than one that resists.
+    candidate : Candidate
+        The explanation.
+    values : mapping of str to float
+        Its numbers: a friction that drives costs more than one that resists.
     """
-    name = part.candidate.name
-    drives = name in LOSSES and part.values.get("factor", 0.0) > 0
-    return PRICES.get(name, PLAIN) + DRIVES * drives
+    drives = candidate.name in LOSSES and values.get("factor", 0.0) > 0
+    return PRICES.get(candidate.name, PLAIN) + DRIVES * drives

@@ -10,7 +10,6 @@ import numpy as np
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.catalogue import known_shapes
 from gaitdisc.discovery.evidence import Judged
-from gaitdisc.discovery.price import price_of
 
 MARGIN = 10.0  # by which the criterion must fall for one more explanation
 # Where two explanations fit equally well, the simpler statement first.
@@ -49,17 +48,15 @@ def ranked(accounts: list[Judged], candidates: tuple[Candidate, ...]) -> list[Ju
     alike = [one for one in equal if abs(paid(one) - paid(first)) < ALIKE]
     alike.sort(key=lambda one: [PREFERENCE.index(verdict) for verdict in one.verdicts])
     first = alike[0]
-    plainer = [one for one in equal if paid(one) <= paid(first) + TIE and _price(one) < _price(first) - PLAINER]
+    plainer = [
+        one for one in equal if paid(one) <= paid(first) + TIE and one.account.price < first.account.price - PLAINER
+    ]
     first = min(plainer, key=paid) if plainer else first
     near = [one for one in equal if paid(one) <= paid(first) + NEARLY and one.verdicts == first.verdicts]
     order = {shape.name: number for number, shape in reversed(list(enumerate(known_shapes())))}
     near.sort(key=lambda one: [order.get(part.candidate.name, len(order)) for part in one.account.parts])
     head = [near[0], *(one for one in alike if one is not near[0])]
     return head + [one for one in accounts if all(one is not other for other in head)]
-
-
-def _price(one: Judged) -> float:
-    return sum(price_of(part) for part in one.account.parts)
 
 
 def _paid(one: Judged, members: Counter[str]) -> float:

@@ -68,8 +68,7 @@ class Search:
         """
         account, shooting = now.account, now.shooting
         scorer = Scorer(shooting, account.simulation, account.machine, account.fit, self.places, self.rhythm)
-        present = {(part.candidate.label, part.candidate.pieces) for part in account.parts}
-        open_ones = tuple(one for one in self.candidates if (one.label, one.pieces) not in present)
+        open_ones = self.open_beside(account)
         price = float(np.log(account.fit.white.size))
         scores = sorted(scorer.scores(open_ones), key=lambda one: price * len(one.candidate.slots) - one.gain)
         worth = [one for one in scores if one.gain > price * len(one.candidate.slots)][:REFITTED]
@@ -92,6 +91,17 @@ class Search:
             return []
         before, *more = compared([now, *(Judged(one, shooting) for one in tried)], self.base)
         return [before, *(replace(one, gained=before.evidence - one.evidence) for one in more)]
+
+    def open_beside(self, account: Account) -> tuple[Candidate, ...]:
+        """Return the explanations that are not in an account.
+
+        Parameters
+        ----------
+        account : Account
+            Any.
+        """
+        present = account.explanations
+        return tuple(one for one in self.candidates if one.identity not in present)
 
     def sensible(self, account: Account) -> bool:
         """Whether every number of an account lies where it means what its name says.

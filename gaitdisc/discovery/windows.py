@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from gaitdisc.discovery.account import Account, account_for
-from gaitdisc.discovery.gap_share import CONVERGED, TURNS, GapScale, Weighed, gap_above, weighed
+from gaitdisc.discovery.gap_share import CONVERGED, TURNS, GapScale, Weighed, weighed
 from gaitdisc.discovery.inquiry import Inquiry
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.shooting import Shooting
@@ -17,31 +17,6 @@ WORTH_HALVING = 0.7  # of the error, which shorter runs must leave at most
 HALF_PERIOD = 0.5
 FEWEST = 12  # samples
 MOST_ERROR = 2.0  # of the squared spread, which a run that has left the data counts as
-
-
-def shooting_of(inquiry: Inquiry, samples: int) -> Shooting:
-    """Cut the learned trials into runs of about a length.
-
-    Parameters
-    ----------
-    inquiry : Inquiry
-        The trials.
-    samples : int
-        Length wanted.
-    """
-    rhythm = inquiry.rhythm
-    return inquiry.shooting(inquiry.segments(inquiry.learned, samples / (rhythm.period * rhythm.rate)))
-
-
-def longest_run(inquiry: Inquiry) -> int:
-    """Return the samples of the shortest of the learned trials.
-
-    Parameters
-    ----------
-    inquiry : Inquiry
-        The trials.
-    """
-    return int(min(inquiry.measured.drive.samples[trial] for trial in inquiry.learned))
 
 
 def near_runs(inquiry: Inquiry, scale: GapScale) -> Weighed:
@@ -57,9 +32,9 @@ def near_runs(inquiry: Inquiry, scale: GapScale) -> Weighed:
         What the gap is measured against.
     """
     period = min(inquiry.rhythm.period, inquiry.rhythm.duration / 2) * inquiry.rhythm.rate
-    samples, tried = longest_run(inquiry), []
+    samples, tried = inquiry.longest, []
     while True:
-        shooting = shooting_of(inquiry, samples)
+        shooting = inquiry.learned_runs(samples)
         now = weighed(scale, shooting, inquiry.search.base, (), _as_read(inquiry, scale, shooting))
         tried.append((scale.relative(now.account.fit), now))
         if tried[-1][0] < NEAR or samples / 2 < max(FEWEST, HALF_PERIOD * period):
@@ -88,12 +63,12 @@ def on_longer_runs(inquiry: Inquiry, scale: GapScale, now: Weighed) -> Weighed |
     now : Weighed
         On shorter runs.
     """
-    longest, guess, found = longest_run(inquiry), inquiry.guess, None
+    longest, guess, found = inquiry.longest, inquiry.guess, None
     samples = now.shooting.segments.span
     while samples < longest:
         before, samples = found or now, min(2 * samples, longest)
         guess = guess.with_run(before.shooting.segments, before.account.fit.states)
-        shooting = replace(shooting_of(inquiry, samples), past=guess.states)
+        shooting = replace(inquiry.learned_runs(samples), past=guess.states)
         shooting = shooting.with_noise(scale.error_of(before.account.fit))
         starts = guess.starts(shooting.segments)
         begun = account_for(shooting, inquiry.search.base, before.account.parts, starts, TURNS, like=before.account)
@@ -122,4 +97,4 @@ def as_read_on(inquiry: Inquiry, scale: GapScale, as_read: Weighed, longer: Weig
     most = MOST_ERROR * (scale.spread / scale.size) ** 2
     square = np.fmin((account.fit.residual / scale.size) ** 2, most)  # the greater where a run has failed
     mean = float(square[shooting.known].mean())
-    return Weighed(account, shooting, np.full(len(longer.errors), mean), gap_above(scale, mean))
+    return Weighed(account, shooting, np.full(len(longer.errors), mean), scale.gap_above(mean))

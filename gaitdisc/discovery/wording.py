@@ -8,8 +8,7 @@ from dataclasses import replace
 
 from gaitdisc.discovery.account import Part
 from gaitdisc.discovery.borne_out import LEVEL
-from gaitdisc.discovery.by_share import AGREES
-from gaitdisc.discovery.gap_share import MODEL_ERROR
+from gaitdisc.discovery.gap_share import AGREES, MODEL_ERROR
 from gaitdisc.discovery.held_out import WORTH_ASKING
 from gaitdisc.results.amounts import amount, brief_text, estimate_text, shown_unit, with_unit
 from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, GapSize, Whereabouts
@@ -66,7 +65,7 @@ def _nothing(discovery: Discovery) -> str:
     """Say that nothing is named, and whether the data that were learned from speak for something all the same."""
     first = discovery.rivals[0] if discovery.rivals else None
     if first is None or not first.bic >= WORTH_ASKING:
-        if _agree(discovery.held_out):
+        if _may_be_left(discovery.held_out.before, discovery.held_out):
             return "Simulation and data agree to within the noise: nothing is missing that these data could show."
         return (
             "Nothing is named: simulation and data differ by more than the sensors' noise, and nothing weighed here "
@@ -86,9 +85,9 @@ def _nothing(discovery: Discovery) -> str:
     )
 
 
-def _agree(size: GapSize) -> bool:
+def _may_be_left(error: float, size: GapSize) -> bool:
     """Whether an error is no more than the sensors' noise and a hundredth of the measurement's spread explain."""
-    return size.before < AGREES * math.hypot(size.noise_floor, MODEL_ERROR)
+    return error < AGREES * math.hypot(size.noise_floor, MODEL_ERROR)
 
 
 def _one(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whereabouts, ...]) -> str:
@@ -205,7 +204,7 @@ def _shown(discovery: Discovery) -> str:
 def _unexplained(size: GapSize) -> str:
     """Say what share of the gap is left, where it is more than a few percent and more than a simulation may err by."""
     left = size.unexplained
-    if left < SMALL or size.after < AGREES * math.hypot(size.noise_floor, MODEL_ERROR):
+    if left < SMALL or _may_be_left(size.after, size):
         return ""
     return f" {100 * left:.0f} % of the squared error above the noise stays unexplained."
 

@@ -28,14 +28,14 @@ def best(beam):
 
 def test_a_spring_and_a_loss_are_found_though_none_is_exact(beam, best):
     now, _ = beam.material(best)
-    names = {label.split("@")[0] for label, _ in now.explanations}
+    names = {label.split("@")[0] for label, _ in now.account.explanations}
     assert "cubic_stiffness" in names
     assert names - {"cubic_stiffness"} <= {"viscous_damping", "quadratic_drag", "wrong_parameter"}
     assert now.gap < 0.1 * beam.as_read.gap
 
 
 def test_what_is_dear_is_not_named_where_plain_words_close_as_much(beam, best):
-    assert beam.plainest(best).price <= best.price
+    assert beam.plainest(best).account.price <= best.account.price
     assert beam.cost(best) == min(map(beam.cost, beam.known.values()))
     assert beam.cost(beam.as_read) == pytest.approx(1.0)
 
@@ -44,7 +44,7 @@ def test_an_explanation_that_closes_next_to_nothing_is_small(beam, best):
     load = next(one for one in beam.search.candidates if one.label == "constant_load@load")
     more = beam._with(best, Score(load, {"factor": 0.001}, 0.0))
     kept, small = beam.material(more)
-    assert kept.explanations == beam.material(best)[0].explanations
+    assert kept.account.explanations == beam.material(best)[0].account.explanations
     assert "constant_load" in {part.candidate.name for part in small}
 
 

@@ -1,7 +1,7 @@
 import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
-from gaitdisc.discovery.by_share import agrees, closing_most, leaves_noise, scale_of
+from gaitdisc.discovery.by_share import closing_most, leaves_noise, scale_of
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.inquiry import begin_inquiry
 
@@ -12,13 +12,13 @@ def test_what_leaves_the_sensors_noise_is_known_from_the_record_alone(inquiry, a
     scale = scale_of(inquiry)
     assert leaves_noise(inquiry, named[0])
     assert not leaves_noise(inquiry, as_read)
-    assert not agrees(scale, as_read)
+    assert not scale.agrees(as_read.account.fit)
 
 
 def test_where_nothing_is_missing_nothing_is_weighed():
     inquiry = begin_inquiry(mass(), record(mass(), 3, CLEAN))
     scale = scale_of(inquiry)
-    assert agrees(scale, inquiry.as_read())
+    assert scale.agrees(inquiry.as_read().account.fit)
     assert closing_most(inquiry, scale, ()) is None
 
 

@@ -21,16 +21,16 @@ def test_the_scale_is_noise_and_a_hundredth_of_the_spread():
 def test_the_true_explanation_closes_the_gap_and_a_wrong_one_does_not(inquiry, as_read, cubic, scale):
     shooting, base = as_read.shooting, inquiry.search.base
     before = weighed(scale, shooting, base, (), as_read.account)
-    after = weighed(scale, shooting, base, (Part(cubic, {"factor": -10.0}),), before)
+    after = weighed(scale, shooting, base, (Part(cubic, {"factor": -10.0}),), before.account)
     assert after.account.parts[0].values["factor"] == pytest.approx(-14.0, rel=0.05)
     assert after.gap < 0.15 * before.gap
     load = next(one for one in inquiry.search.candidates if one.label == "constant_load@load")
-    wrong = weighed(scale, shooting, base, (Part(load, {"factor": 0.0}),), before)
+    wrong = weighed(scale, shooting, base, (Part(load, {"factor": 0.0}),), before.account)
     assert wrong.gap > 0.8 * before.gap
 
 
 def test_what_was_not_fitted_leaves_the_sensors_noise(inquiry, as_read, cubic, scale):
     found = weighed(scale, as_read.shooting, inquiry.search.base, (Part(cubic, {"factor": -14.0}),), as_read.account)
     assert found.errors.mean() == pytest.approx(scale.floor, rel=0.15)
-    assert found.explanations == {("cubic_stiffness@load", ("x**3",))}
-    assert found.price == pytest.approx(0.03)
+    assert found.account.explanations == {("cubic_stiffness@load", ("x**3",))}
+    assert found.account.price == pytest.approx(0.03)

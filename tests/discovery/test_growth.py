@@ -4,7 +4,7 @@ from hidden_in_a_mass import Experiment, mass, record, with_load
 from gaitdisc.discovery.account import Part, account_for
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.evidence import Judged
-from gaitdisc.discovery.growth import beside_others, exchanged, explanations, grown, pruned, settled
+from gaitdisc.discovery.growth import beside_others, exchanged, grown, pruned, settled
 from gaitdisc.discovery.inquiry import begin_inquiry
 from gaitdisc.discovery.ranking import MARGIN, ranked
 
@@ -49,7 +49,7 @@ def test_what_is_settled_holds_the_true_one_alone(inquiry, as_read):
 
 def test_beside_what_was_explored_already_nothing_is_sought_again(inquiry, as_read):
     now = _wrong_and_idle(inquiry, as_read)
-    explored = {explanations(inquiry.search.without(now, number)) for number in range(2)}
+    explored = {inquiry.search.without(now, number).account.explanations for number in range(2)}
     assert len(explored) == 2
     assert exchanged(inquiry.search, now, explored) is now
 
@@ -77,4 +77,4 @@ def test_a_pair_whose_first_was_not_the_best_alone_is_found_beside_it(two):
     explored = set()
     pair = beside_others(inquiry.search, wrong, [*cubic, *cubic], explored)
     assert sorted(pair.labels) == ["cubic_stiffness@load", "quadratic_stiffness@load"]
-    assert explored == {explanations(cubic[0])}
+    assert explored == {cubic[0].account.explanations}
