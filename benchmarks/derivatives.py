@@ -25,9 +25,10 @@ from scipy.signal import savgol_filter
 
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Recording, Strides
+from gaitdisc.recording.runs import runs
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.derivatives import differentiated
-from gaitdisc.signals.gaps import filled, runs
+from gaitdisc.signals.gaps import filled
 
 RATE_HZ = 100.0
 DURATION_S = 60.0

@@ -51,14 +51,14 @@ def record_filter_of(
     findings : tuple of Finding
         About filters that the file does not tell of.
     """
-    told = tuple(simulation.sensor(name).lowpass for name in measured.channels)
-    unknown = [number for number, cutoff in enumerate(told) if cutoff is None]
+    stated = tuple(simulation.sensor(name).lowpass for name in measured.channels)
+    unknown = [number for number, cutoff in enumerate(stated) if cutoff is None]
     seen = {number: found for number in unknown if (found := recorded_filter(_trials(measured, number), measured.rate))}
     inputs = bool(seen) and _inputs_are_filtered(measured)
     if inputs or any(one.signal > SURE for one in seen.values()):
-        seen = _beside_the_simulation((simulation, measured), (period, guess), seen, inputs)
+        seen = _beside_the_simulation(simulation, measured, period, guess, seen, inputs)
     cutoffs = _together({number: one.cutoff_hz for number, one in seen.items()})
-    passed = RecordFilter(tuple(cutoffs.get(number, cutoff) for number, cutoff in enumerate(told)), measured.rate)
+    passed = RecordFilter(tuple(cutoffs.get(number, cutoff) for number, cutoff in enumerate(stated)), measured.rate)
     return passed, tuple(_finding(measured, number, cutoff) for number, cutoff in cutoffs.items())
 
 
@@ -90,8 +90,10 @@ def _finding(measured: Measured, channel: int, cutoff: float) -> Finding:
 
 
 def _beside_the_simulation(
-    both: tuple[Simulation, Measured],
-    roughly: tuple[float, StateGuess],
+    simulation: Simulation,
+    measured: Measured,
+    period: float,
+    guess: StateGuess,
     seen: dict[int, RecordedFilter],
     inputs: bool,
 ) -> dict[int, RecordedFilter]:
@@ -99,8 +101,7 @@ def _beside_the_simulation(
 
     Where inputs were filtered too, none are found if the simulation goes better with the record as it is.
     """
-    simulation, measured = both
-    shooting, account = _laid_over(simulation, measured, *roughly)
+    shooting, account = _laid_over(simulation, measured, period, guess)
     like = _stitched(shooting, account, measured)
     found = dict(seen)
     for number, one in seen.items():

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel, schema_folder
 from gaitdisc.errors import ReadError
 from gaitdisc.recording import Finding, Recording
+from gaitdisc.recording.runs import spans_s
 
 FEW = 0.01  # of the samples; where EMG is beyond its range more often, it is counted by a converter
 
@@ -166,8 +167,5 @@ def _finding(recording: Recording, place: int, beyond: NDArray[np.bool_], where:
             "Correct the cell or the unit and export the force again.",
         )
     spoils = "the unit or the name of the channel, if most of it is" if beyond.mean() > 0.5 else "these frames"
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], beyond, [False])).astype(np.int8))).reshape(-1, 2)
-    step = 1 / recording.rate_hz if len(beyond) > 1 else 0.0
-    spans = tuple((float(recording.time[a]), float(recording.time[b - 1] + step)) for a, b in edges)
-    what = f"{where}; taken as missing"
+    spans, what = spans_s(recording.time, beyond), f"{where}; taken as missing"
     return Finding("warning", "out of range", file, what, f"{spoils}; correct the file", channel.name, spans)

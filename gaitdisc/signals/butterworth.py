@@ -17,8 +17,9 @@ from scipy.signal import butter, sosfiltfilt
 
 from gaitdisc.errors import SamplingError
 from gaitdisc.recording import Finding, Recording
+from gaitdisc.recording.runs import runs, spans_s
 from gaitdisc.recording.wrapping import unwrapped, wrapped
-from gaitdisc.signals.gaps import MAX_SPLINE_S, filled, runs, spans_s
+from gaitdisc.signals.gaps import MAX_SPLINE_S, filled
 
 KINEMATICS_HZ = 6.0
 EDGE_PERIODS = 1.8  # of the cut-off: 0.3 s at 6 Hz; measured in docs/derivatives.md

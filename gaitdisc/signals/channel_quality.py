@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.recording import Finding, Recording
+from gaitdisc.recording.runs import runs, spans_s
 from gaitdisc.recording.wrapping import unwrapped
-from gaitdisc.signals.gaps import gap_findings, runs, spans_s
+from gaitdisc.signals.gaps import gap_findings
 
 FROZEN_S = 0.1
 CLIPPED_SHARE = 1e-3

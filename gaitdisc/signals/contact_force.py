@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.recording import Recording
+from gaitdisc.recording.runs import runs
 from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.direction import Direction, marker_position
-from gaitdisc.signals.gaps import runs
 
 RISE_N = 50.0
 RISE_OF_BODY_WEIGHT = 0.05

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Finding, Recording
+from gaitdisc.recording.runs import spans_s
 from gaitdisc.signals.butterworth import highpassed, lowpassed
 from gaitdisc.signals.envelope import ENVELOPE_HZ, HIGHPASS_HZ
-from gaitdisc.signals.gaps import spans_s
 
 DEAD_SHARE = 0.001  # standard deviation, of the range: 1.25 mV of 1.25 V
 WEAK_SHARE = 0.004  # 5 mV of 1.25 V

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from gaitdisc.recording import PERCENT, Finding, Recording, Strides
+from gaitdisc.recording.runs import runs, spans_s
 from gaitdisc.recording.wrapping import unwrapped, wrapped
 
 MAX_SPLINE_S = 0.1
@@ -14,46 +15,6 @@ MAX_TEMPLATE_S = 0.2
 BESIDE_GAP_S = 0.15  # docs/derivatives.md: how far beside a gap that stays open an acceleration is spoiled
 SUPPORT_S = 0.2  # what a spline sees on either side of a gap
 FEWEST_TEMPLATE_STRIDES = 5
-
-
-def runs(mask: NDArray[np.bool_]) -> NDArray[np.intp]:
-    """First sample of each run of True, and the one after its last.
-
-    Parameters
-    ----------
-    mask : ndarray of bool (time,)
-        Any condition on the samples.
-
-    Returns
-    -------
-    ndarray (run, 2) [sample]
-
-    Examples
-    --------
-    >>> runs(np.array([False, True, True, False, True])).tolist()
-    [[1, 3], [4, 5]]
-    """
-    steps = np.flatnonzero(np.diff(np.concatenate(([False], mask, [False])).astype(np.int8)))
-    return steps.reshape(-1, 2)
-
-
-def spans_s(time: NDArray[np.float64], mask: NDArray[np.bool_]) -> tuple[tuple[float, float], ...]:
-    """Spans of the runs of True, from the first sample of each to one step after its last.
-
-    Parameters
-    ----------
-    time : ndarray (time,) [s]
-        Even.
-    mask : ndarray of bool (time,)
-        Any condition on the samples.
-
-    Examples
-    --------
-    >>> spans_s(np.arange(4.0), np.array([False, True, True, False]))
-    ((1.0, 3.0),)
-    """
-    step = (time[-1] - time[0]) / (len(time) - 1) if len(time) > 1 else 0.0
-    return tuple((round(float(time[a]), 6), round(float(time[b - 1] + step), 6)) for a, b in runs(mask))
 
 
 def gap_spans(recording: Recording, name: str) -> tuple[tuple[float, float], ...]:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.signals.gaps import runs, spans_s
+from gaitdisc.recording.runs import runs, spans_s
 
 BAND_SHARE = 0.01  # of the angle's reach: how near the limit counts as on it
 DWELL_TIMES = 2.0  # what a sine of the same reach stays in the band

@@ -14,6 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.recording.runs import runs
+
 ORDER, OTHER = 2, 4  # of one pass: the filter that is sought, and a steeper one
 WINDOW = 512  # samples
 FEWEST = 128  # samples of a trial whose spectrum is looked at
@@ -155,8 +157,7 @@ def spectrum_of(trials: Sequence[NDArray[np.float64]]) -> Spectrum | None:
 
 
 def _whole_stretches(trial: NDArray[np.float64]) -> list[NDArray[np.float64]]:
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], np.isfinite(trial), [False]]).astype(int)))
-    return [trial[first:end] for first, end in edges.reshape(-1, 2)]
+    return [trial[first:end] for first, end in runs(np.isfinite(trial))]
 
 
 def _may_be_filtered(spectrum: Spectrum, trials: Sequence[NDArray[np.float64]]) -> bool:

@@ -7,8 +7,8 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from gaitdisc.recording import Finding, Recording
+from gaitdisc.recording.runs import runs, spans_s
 from gaitdisc.recording.wrapping import unwrapped
-from gaitdisc.signals.gaps import runs, spans_s
 
 HALF_S = 0.03  # of the window of the running median: spikes of up to three samples at 100 Hz
 MAD_TIMES = 8.0  # of the robust standard deviation of the differences from sample to sample

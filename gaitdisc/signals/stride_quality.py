@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.recording import DroppedStride, Finding, Recording, Strides
-from gaitdisc.signals.gaps import runs
+from gaitdisc.recording.runs import runs
 
 OUTLYING = 3.5  # robust standard deviations of the logarithm of a stride's distance
 FEWEST_STRIDES = 8

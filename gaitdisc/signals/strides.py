@@ -6,8 +6,9 @@ import numpy as np
 
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import DroppedStride, Recording, Strides
+from gaitdisc.recording.runs import runs
 from gaitdisc.signals.contacts import Contacts
-from gaitdisc.signals.gaps import filled, runs
+from gaitdisc.signals.gaps import filled
 
 MIN_S, MAX_S = 0.4, 2.5
 OUTLIER_SD = 6.0

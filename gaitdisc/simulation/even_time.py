@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import ReadError, SamplingError
 from gaitdisc.recording import Finding
+from gaitdisc.recording.runs import runs
 
 SHORTEST = 20  # samples of a trial
 SHAKEN = 0.1  # of a step: how far a sample may lie from its place on the even time base
@@ -85,7 +86,7 @@ def on_even_time(
         even = _with_rows(even, place, rate)
         what = f"trial {trial.name!r}: {missing} rows of {len(even.time)} are missing"
         findings.append(Finding("warning", "gap in time", source, what, "what happened there: it is left out"))
-    return _bridged(even, inputs, rate, (source, findings)), rate, findings
+    return _bridged(even, inputs, rate, source, findings), rate, findings
 
 
 def clock_findings(trials: list[TrialColumns], rate: float, source: str) -> list[Finding]:
@@ -207,10 +208,9 @@ def _with_rows(trial: TrialColumns, place: NDArray[np.intp], rate: float) -> Tri
 
 
 def _bridged(
-    trial: TrialColumns, inputs: tuple[str, ...], rate: float, noted: tuple[str, list[Finding]]
+    trial: TrialColumns, inputs: tuple[str, ...], rate: float, source: str, findings: list[Finding]
 ) -> TrialColumns:
     """Bridge gaps of inputs by straight lines, with a finding."""
-    source, findings = noted
     filled = trial.inputs.copy()
     for column, name in enumerate(inputs):
         empty = ~np.isfinite(filled[:, column])
@@ -235,8 +235,8 @@ def _bridged(
 
 def _longest_run(flags: NDArray[np.bool_]) -> tuple[int, int]:
     """First sample and length of the longest stretch of true values."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(int))).reshape(-1, 2)
-    first, end = edges[np.argmax(edges[:, 1] - edges[:, 0])]
+    spans = runs(flags)
+    first, end = spans[np.argmax(spans[:, 1] - spans[:, 0])]
     return int(first), int(end - first)
 
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Recording, Strides
-from gaitdisc.signals.gaps import filled, gap_findings, gap_spans, runs, spans_s
+from gaitdisc.signals.gaps import filled, gap_findings, gap_spans
 
 KNEE = Channel("knee_angle_r", "angle", "deg", "r")
 TIME = np.arange(1000) / 100
@@ -21,20 +21,6 @@ def broken(x, start, length):
     x = x.copy()
     x[start : start + length] = np.nan
     return recording(x)
-
-
-@given(st.lists(st.booleans(), max_size=40))
-def test_runs_give_the_mask_back(mask):
-    mask = np.array(mask, bool)
-    back = np.zeros(len(mask), bool)
-    for start, end in runs(mask):
-        assert end > start
-        back[start:end] = True
-    assert np.array_equal(back, mask)
-
-
-def test_spans_reach_one_step_past_the_last_sample():
-    assert spans_s(TIME, (TIME >= 1.0) & (TIME < 1.2)) == ((1.0, 1.2),)
 
 
 def test_gap_spans_are_in_seconds():
