@@ -10,7 +10,7 @@ from scipy.signal import butter, sosfiltfilt
 
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.measured import Measured
-from gaitdisc.simulation.parts import Term
+from gaitdisc.simulation.parts import State, Term
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.simulation_file import simulation_of
@@ -133,6 +133,17 @@ def neuron() -> Simulation:
 def with_load(term: str, name: str = "hidden") -> Simulation:
     """The mass with an effect on its port."""
     return mass().with_effect(Term("load", "port", name, term))
+
+
+def remembering(rate: str, term: str) -> Simulation:
+    """The mass with an effect on its port that has a state z of its own."""
+    return mass().with_state(State("z", "m", initial=0.0), rate).with_effect(Term("load", "port", "hidden", term))
+
+
+def lagging(seconds: float) -> Simulation:
+    """The mass whose push acts through a first-order lag."""
+    late = mass().with_state(State("slow", "N", initial=0.0), "0").with_input("push", "slow")
+    return late.with_equation("slow", f"(push - slow)/{seconds}")
 
 
 def record(truth: Simulation, seed: int, how: Experiment | None = None) -> Measured:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate, Identity
 from gaitdisc.discovery.fitted import Fitted
+from gaitdisc.discovery.own_states import with_own_states
 from gaitdisc.discovery.price import price_of
 from gaitdisc.discovery.prior import prior_of
 from gaitdisc.discovery.shooting import ENOUGH, Shooting
@@ -155,6 +156,8 @@ def account_for(
         for slot, name in slots.items():
             values[machine.parameters.index(name)] = part.values[slot]
     free = (*(name for slots in names for name in slots.values()), *prior.names)
+    if like is None or like.machine.states != machine.states or starts.shape[1] != len(machine.states):
+        starts = with_own_states(shooting, machine, values, starts)
     fit = replace(shooting, prior=prior).fitted(machine, free, values, starts, turns, enough)
     found = tuple(
         Part(part.candidate, {slot: float(fit.values[machine.parameters.index(name)]) for slot, name in slots.items()})

@@ -160,7 +160,13 @@ def found_effects(inquiry: Inquiry, now: Judged, closed: float, gained: float) -
         place = (candidate.kind, candidate.place, candidate.name)
         found.append(
             FoundEffect(
-                *place, part.term, estimates, closed, gained, bounds=file_bounds(inquiry.search.base, candidate)
+                *place,
+                part.term,
+                estimates,
+                closed,
+                gained,
+                bounds=file_bounds(inquiry.search.base, candidate),
+                states=candidate.states_at(part.written),
             )
         )
     return found
@@ -260,7 +266,7 @@ def phase_of(inquiry: Inquiry, now: Judged, part: Part) -> tuple[float, ...]:
     term = part.candidate.term({slot: f"{value:.9g}" for slot, value in part.values.items()})
     if "delay(" in term:
         return ()
-    push = np.abs(evaluate(inquiry.search.base, term, Points(time, states, inputs)))
+    push = np.abs(evaluate(now.account.simulation, term, Points(time, states, inputs, now.account.fit.values)))
     phase = inputs[:, names.index("phase")]
     bins = np.minimum((phase * 100).astype(int), 99)
     mean = np.bincount(bins, push, 100) / np.maximum(np.bincount(bins, minlength=100), 1)

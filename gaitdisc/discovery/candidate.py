@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
 
-from gaitdisc.discovery.catalogue import Shape
+from gaitdisc.discovery.catalogue import Shape, with_names
+from gaitdisc.discovery.effect_units import unit_of_state
 from gaitdisc.discovery.places import Place
 from gaitdisc.simulation.expression import Tree, parsed
-from gaitdisc.simulation.parts import Parameter, Term
+from gaitdisc.simulation.parts import Parameter, State, Term
 from gaitdisc.simulation.rewriting import substituted, written
 from gaitdisc.simulation.simulation import Simulation
 
@@ -25,6 +26,7 @@ PLACE_OF = {
 SIGNAL_ERRORS = {
     "input_gain": ("gain", 1.0, "{gain}*{s}"),
     "input_delay": ("seconds", 0.0, "delay({s}, {seconds})"),
+    "input_lag": ("seconds", 0.0, ""),
     "sensor_gain": ("gain", 1.0, "{gain}*({s})"),
     "sensor_offset": ("offset", 0.0, "({s}) + {offset}"),
     "sensor_drift": ("rate", 0.0, "({s}) + {rate}*t"),
@@ -62,6 +64,8 @@ class Candidate:
         For a missing term, what a person calls its numbers.
     bounds : tuple of float
         For a wrong parameter, `low` and `high` of the file; empty where it has not both.
+    states : mapping of str to str
+        States that it brings along, and the time derivative of each; its constants in them as in `pieces`.
     """
 
     verdict: str
@@ -75,6 +79,7 @@ class Candidate:
     value: float = 0.0
     names: Mapping[str, str] | None = None
     bounds: tuple[float, ...] = ()
+    states: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def slots(self) -> tuple[str, ...]:
@@ -117,10 +122,16 @@ class Candidate:
             For each slot, a number or the name of a parameter, as text.
         """
         if self.verdict == "missing_physics":
+            for name, rate in self.states_at(numbers).items():
+                simulation = simulation.with_state(State(name, unit_of_state(simulation, rate), initial=0.0), rate)
             return simulation.with_effect(Term(self.place, self.kind, self.name, self.term(numbers)))
         if self.verdict == "wrong_parameter":
             return simulation.with_values({self.place: float(numbers["value"])})
         form = SIGNAL_ERRORS[self.name][2]
+        for name, rate in self.states_at(numbers).items():
+            unit = next(each.unit for each in simulation.inputs if each.name == self.place)
+            late = simulation.with_state(State(name, unit, initial=0.0), "0").with_input(self.place, name)
+            return late.with_equation(name, rate)
         if self.verdict == "input_error":
             return simulation.with_input(self.place, form.format(s=self.place, **numbers))
         seen = dict(simulation.observations)[self.place]
@@ -131,7 +142,7 @@ class Candidate:
     @property
     def is_late(self) -> bool:
         """Whether the number to be found is a delay of a signal."""
-        return self.name in ("input_delay", "sensor_lag")
+        return self.name in ("input_delay", "input_lag", "sensor_lag")
 
     def beyond_bounds(self, value: float) -> float:
         """Return how far a number lies outside its bounds; negative inside, infinite where it has none.
@@ -156,6 +167,17 @@ class Candidate:
         """
         marked = {f"_{slot}": text for slot, text in constants.items()}
         return Shape(self.name, self.pieces).written(marked)
+
+    def states_at(self, numbers: Mapping[str, str]) -> dict[str, str]:
+        """Return the states that it brings along, and the time derivative of each.
+
+        Parameters
+        ----------
+        numbers : mapping of str to str
+            For each slot, a number or the name of a parameter, as text.
+        """
+        marked = {f"_{slot}": text for slot, text in numbers.items()}
+        return {name: with_names(rate, marked) for name, rate in self.states.items()}
 
     def term(self, numbers: Mapping[str, str]) -> str:
         """Return the missing term as an expression.
@@ -249,31 +271,68 @@ def candidates_of(
     for name in (one.name for one in simulation.inputs):
         if _occurs(name, used):
             found += [Candidate("input_error", "input", name, error) for error in ("input_delay", "input_gain")]
+    if isinstance(simulation, Simulation):
+        found += [
+            _lagged(simulation, each.name) for each in simulation.inputs if _occurs(each.name, used) and not each.wraps
+        ]
     for name, _ in simulation.observations:
         found += [
             Candidate("sensor_error", "observation", name, error)
             for error in ("sensor_gain", "sensor_offset", "sensor_lag", "sensor_drift")
         ]
+    driving = tuple(each.name for each in simulation.inputs if not each.wraps)
     has_phase = any(one.name == "phase" for one in simulation.inputs)
     for place in places:
         for shape in shapes:
             if (shape.needs == "angle" and not place.angle) or (shape.uses_phase and not has_phase):
                 continue
-            found += [
-                Candidate(
-                    "missing_physics",
-                    place.kind,
-                    place.name,
-                    shape.name,
-                    shape.written(names | {one: f"_{one}" for one in shape.constants}),
-                    shape.constants,
-                    role,
-                    shape.means,
-                    names=shape.names,
+            if shape.states and not isinstance(simulation, Simulation):
+                continue  # the states of a Python object are its own
+            for role, names in _castings(shape, place, driving):
+                taken = {*simulation.signals, *(name for one in found for name in one.states)}
+                written = names | {one: f"_{one}" for one in shape.constants}
+                written |= {one: free_name(f"{shape.name}_{place.name}", taken) for one in shape.states}
+                found.append(
+                    Candidate(
+                        "missing_physics",
+                        place.kind,
+                        place.name,
+                        shape.name,
+                        shape.written(written),
+                        shape.constants,
+                        role,
+                        shape.means,
+                        names=shape.names,
+                        states={written[one]: with_names(rate, written) for one, rate in shape.states.items()},
+                    )
                 )
-                for role, names in _castings(shape, place)
-            ]
     return tuple(found)
+
+
+def _lagged(simulation: Simulation, name: str) -> Candidate:
+    """An input that acts through a first-order lag."""
+    own = free_name(f"{name}_lagged", {*simulation.signals})
+    states, names = {own: f"({name} - {own})/_seconds"}, {"seconds": "time_constant"}
+    return Candidate("input_error", "input", name, "input_lag", names=names, states=states)
+
+
+def free_name(name: str, taken: Collection[str]) -> str:
+    """Return a name, with a number behind it where it is taken.
+
+    Parameters
+    ----------
+    name : str
+        As wanted.
+    taken : collection of str
+        Names that are in use.
+
+    Examples
+    --------
+    >>> free_name("hysteresis_knee", ["hysteresis_knee"])
+    'hysteresis_knee_2'
+    """
+    numbered = (name, *(f"{name}_{number}" for number in range(2, len(taken) + 3)))
+    return next(one for one in numbered if one not in taken)
 
 
 def bounds_of(parameter: Parameter) -> tuple[float, ...]:
@@ -288,9 +347,13 @@ def bounds_of(parameter: Parameter) -> tuple[float, ...]:
     return (low, high) if low is not None and high is not None and low < high else ()
 
 
-def _castings(shape: Shape, place: Place) -> list[tuple[str, dict[str, str]]]:
-    """What may stand for the roles of a shape at a place: (what stands for x, names)."""
+def _castings(shape: Shape, place: Place, driving: tuple[str, ...]) -> list[tuple[str, dict[str, str]]]:
+    """What may stand for the roles of a shape at a place, given the inputs: (what the grids go along, names)."""
     roles = set(shape.roles)
+    if "u" in roles:
+        (x, v), *_ = place.motions
+        moving = {"x": x} | ({"v": v} if v else {})
+        return [(each, moving | {"u": each}) for each in driving if roles <= {"u", *moving}]
     if roles <= {"x", "v"}:
         castings = []
         for x, v in place.motions:

@@ -18,13 +18,13 @@ from gaitdisc.simulation.expression import parsed
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.toml_text import parsed_toml
 
-ROLES = ("x", "v", "y", "a", "b")
+ROLES = ("x", "v", "y", "a", "b", "u")
 SIGNALS = ("t", "phase")
 GRIDS = ("quantiles of x", "half widths of x", "delays", "frequencies", "phases", "phase widths")
 NEEDS = ("", "angle")
 LARGEST_CATALOGUE_BYTES = 2**20
 _NAME = re.compile(r"[a-z_][a-z0-9_]*")
-_ENTRIES = ("name", "pieces", "constants", "needs", "names", "means")
+_ENTRIES = ("name", "pieces", "states", "constants", "needs", "names", "means")
 
 
 @dataclass(frozen=True)
@@ -36,8 +36,8 @@ class Shape:
     name : str
         The effect's name; several shapes may share one (a spring engaging above or below).
     pieces : tuple of str
-        Expressions of the roles x (a position-like state), v (its rate), y (another state), a and b (two states), of
-        `t`, `phase` and the constants. Each piece has its own factor in the fit.
+        Expressions of the roles x (a position-like state), v (its rate), y (another state), a and b (two states), u (an
+        input), of `t`, `phase` and the constants. Each piece has its own factor in the fit.
     constants : mapping of str to str
         Unknown numbers inside the shape, and the grid on which the search for each begins.
     needs : str
@@ -46,6 +46,8 @@ class Shape:
         One clause that a person understands; `{x0}` in it is the constant x0.
     names : mapping of str to str
         What a person calls its numbers: those of `factor`, `factor_1`, ... and of the constants.
+    states : mapping of str to str
+        States that the effect brings along, and the time derivative of each; they may stand in the pieces.
 
     Examples
     --------
@@ -60,11 +62,13 @@ class Shape:
     needs: str = ""
     means: str = ""
     names: Mapping[str, str] = field(default_factory=dict)
+    states: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def roles(self) -> tuple[str, ...]:
-        """The roles that occur in the pieces, in the order x, v, y, a, b."""
-        seen = {word for piece in self.pieces for word in _NAME.findall(piece)} - set(self.constants)
+        """The roles that occur in it, in the order of ROLES."""
+        texts = (*self.pieces, *self.states.values())
+        seen = {word for text in texts for word in _NAME.findall(text)} - {*self.constants, *self.states}
         return tuple(role for role in ROLES if role in seen)
 
     @property
@@ -81,12 +85,30 @@ class Shape:
             A state's name, or a difference of two, for each role; a parameter's name or a number for each constant.
             What is not mentioned stays.
         """
+        return tuple(with_names(piece, names) for piece in self.pieces)
 
-        def put(match: re.Match[str]) -> str:
-            text = names.get(match.group(), match.group())
-            return text if _NAME.fullmatch(text) or _is_number(text) else f"({text})"
 
-        return tuple(_NAME.sub(put, piece) for piece in self.pieces)
+def with_names(expression: str, names: Mapping[str, str]) -> str:
+    """Return an expression with other names, or numbers, in the place of some of its names.
+
+    Parameters
+    ----------
+    expression : str
+        Of a shape.
+    names : mapping of str to str
+        A name, a number or an expression for each; what is not mentioned stays.
+
+    Examples
+    --------
+    >>> with_names("max(0, x - x0)", {"x": "hip - knee", "x0": "0.2"})
+    'max(0, (hip - knee) - 0.2)'
+    """
+
+    def put(match: re.Match[str]) -> str:
+        text = names.get(match.group(), match.group())
+        return text if _NAME.fullmatch(text) or _is_number(text) else f"({text})"
+
+    return _NAME.sub(put, expression)
 
 
 @cache
@@ -163,6 +185,7 @@ def _shape(entry: Any, where: str) -> Shape:
             hint = f"Did you mean {near[0]}?" if near else "Remove it."
             raise SchemaError(f"a shape has the entries {', '.join(_ENTRIES)}", f"{where} has {key!r}", hint)
     name, pieces, constants = entry.get("name"), entry.get("pieces"), entry.get("constants", {})
+    states = entry.get("states", {})
     if not isinstance(name, str) or not _NAME.fullmatch(name):
         raise SchemaError(
             "a shape's name is lower-case words joined by _", f"{where} has {name!r}", 'Write name = "my_effect".'
@@ -171,8 +194,14 @@ def _shape(entry: Any, where: str) -> Shape:
         raise SchemaError(
             "a shape's pieces are a list of expressions", f"{where} has {pieces!r}", 'Write pieces = ["x**2"].'
         )
-    for piece in pieces:
-        _check_piece(piece, (*ROLES, *SIGNALS, *(constants if isinstance(constants, dict) else ())), where)
+    if not isinstance(states, dict) or not all(_is_name(key) and isinstance(states[key], str) for key in states):
+        raise SchemaError(
+            "a shape's states are names, and the time derivative of each as an expression",
+            f"{where} has {states!r}",
+            'Write states = { z = "v - z/tau" }.',
+        )
+    for piece in (*pieces, *states.values()):
+        _check_piece(piece, (*ROLES, *SIGNALS, *states, *(constants if isinstance(constants, dict) else ())), where)
     if not isinstance(constants, dict) or not all(grid in GRIDS for grid in constants.values()):
         raise SchemaError(
             f"a constant's search begins on one of {', '.join(GRIDS)}",
@@ -190,7 +219,7 @@ def _shape(entry: Any, where: str) -> Shape:
             'Write names = { factor = "stiffness" }.',
         )
     means = str(entry.get("means", name.replace("_", " ")))
-    return Shape(name, tuple(pieces), dict(constants), entry.get("needs", ""), means, dict(names))
+    return Shape(name, tuple(pieces), dict(constants), entry.get("needs", ""), means, dict(names), dict(states))
 
 
 def _check_piece(piece: str, known: tuple[str, ...], where: str) -> None:

@@ -71,6 +71,26 @@ def unit_of(expression: str, units: Mapping[str, str]) -> str:
     return _written(_of(parsed(expression), {name: _powers(unit) for name, unit in units.items()}) or {})
 
 
+def unit_of_state(simulation: Simulation, rate: str) -> str:
+    """Return the unit of a state whose time derivative is an expression.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        Whose names it is written in.
+    rate : str
+        The time derivative.
+
+    Examples
+    --------
+    >>> from gaitdisc.simulation.bundled import bundled
+    >>> unit_of_state(bundled("ankle"), "omega - abs(omega)*z/0.1")
+    'rad'
+    """
+    units = {part.name: part.unit for part in (*simulation.states, *simulation.inputs)}
+    return divided(unit_of(rate, units), "1/s")
+
+
 def channel_unit(expression: str, units: Mapping[str, str]) -> str:
     """Return the unit of an observed channel; of one in other units than its states', `1` where it is not known.
 

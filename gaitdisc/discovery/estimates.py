@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.discovery.account import Account, Part
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.effect_units import divided, places_unit, unit_of, unit_of_channel
+from gaitdisc.discovery.effect_units import divided, places_unit, unit_of, unit_of_channel, unit_of_state
 from gaitdisc.results.discovery import Estimate
 from gaitdisc.simulation.simulation import Simulation
 
@@ -95,6 +95,7 @@ def slot_units(candidate: Candidate, base: Simulation) -> dict[str, str]:
         position = unit_of(candidate.role, own) if candidate.role else "1"
         constants = {slot: UNIT_OF_GRID.get(grid, position) for slot, grid in (candidate.constants or {}).items()}
         known = own | {f"_{slot}": unit for slot, unit in constants.items()}
+        known |= {name: unit_of_state(base, rate) for name, rate in candidate.states.items()}
         factors = [divided(place, "1" if piece == "1" else unit_of(piece, known)) for piece in candidate.pieces]
         return dict(zip(candidate.slots, [*factors, *constants.values()], strict=True))
     (slot,) = candidate.slots

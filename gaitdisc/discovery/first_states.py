@@ -49,9 +49,9 @@ class StateGuess:
         segments : Segments
             The runs.
         states : ndarray (segment, sample, state)
-            Their states.
+            Their states; those that effects bring along, after the others, are left out.
         """
-        return StateGuess(segments.put(self.states, states))
+        return StateGuess(segments.put(self.states, states[..., : self.states.shape[2]]))
 
 
 def guess_states(simulation: Simulation, measured: Measured, period: float, rate_of: dict[str, str]) -> StateGuess:

@@ -164,7 +164,8 @@ def _slot_of(part: Part, piece: str) -> str:
 
 def _visited(axis: str, now: Judged, search: Search) -> tuple[float, float]:
     """Return where a state or difference mostly lies."""
-    states = now.account.fit.states.reshape(-1, now.account.fit.starts.shape[1])
+    known = len(search.base.states)
+    states = now.account.fit.states[..., :known].reshape(-1, known)
     inputs = np.zeros((len(states), len(search.base.inputs)))
     along = evaluate_many(search.base, [axis], Points(np.zeros(len(states)), states, inputs))[0]
     low, high = np.quantile(along, [0.02, 0.98])

@@ -11,6 +11,7 @@ from gaitdisc.discovery.borne_out import PairedTest, paired_test
 from gaitdisc.discovery.evidence import Judged
 from gaitdisc.discovery.fitted import Fitted
 from gaitdisc.discovery.inquiry import LENGTHENED, Inquiry
+from gaitdisc.discovery.own_states import with_own_states
 from gaitdisc.discovery.segments import Segments
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording.finding import Finding
@@ -131,7 +132,8 @@ def _apart(inquiry: Inquiry, as_read: Judged, now: Judged, trials: tuple[int, ..
 
 def _started(shooting: Shooting, now: Judged, starts: NDArray[np.float64]) -> Fitted:
     """Return an account run over segments from the start states that suit it best, its constants as they are."""
-    return shooting.fitted(now.account.machine, (), now.account.fit.values, starts, TURNS)
+    machine, values = now.account.machine, now.account.fit.values
+    return shooting.fitted(machine, (), values, with_own_states(shooting, machine, values, starts), TURNS)
 
 
 def _lengths(periods: float) -> list[float]:

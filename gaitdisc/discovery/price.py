@@ -10,6 +10,7 @@ PLAIN = 0.03  # of the gap
 PRICES = {
     "input_gain": 0.04,
     "input_delay": 0.04,
+    "input_lag": 0.05,
     "sensor_gain": 0.04,
     "sensor_offset": 0.04,
     "sensor_lag": 0.05,
@@ -19,13 +20,25 @@ PRICES = {
     "one_sided_spring": 0.05,
     "dead_zone_spring": 0.05,
     "one_sided_damper": 0.06,
+    "contact_damper": 0.08,
+    "hysteresis": 0.08,
+    "series_elasticity": 0.08,
     "phase_locked_moment": 0.08,
     "unnamed": 0.08,
+    "input_saturation": 0.08,
+    "input_product": 0.10,
     "periodic_forcing": 0.10,
     "delayed_feedback": 0.10,
     "product_coupling": 0.10,
 }
-LOSSES = ("viscous_damping", "coulomb_friction", "quadratic_drag")
+LOSSES = (
+    "viscous_damping",
+    "coulomb_friction",
+    "quadratic_drag",
+    "contact_damper",
+    "hysteresis",
+    "series_elasticity",
+)
 DRIVES = 0.05  # more, for a friction that drives the motion
 
 

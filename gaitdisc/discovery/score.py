@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.fitted import Fitted, start_basis, without
 from gaitdisc.discovery.grids import Rhythm, cells, delays
 from gaitdisc.discovery.linearised import Linearised, linearise, seen_change
+from gaitdisc.discovery.own_states import followed
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.simulation.compiled_simulation import Compiled
@@ -21,6 +22,7 @@ from gaitdisc.simulation.simulation import Simulation
 
 AT_ONCE = 96
 NUDGE = 1e-4
+TRIED = "tried"  # begins the names of the numbers of what is scored
 
 
 @dataclass(frozen=True)
@@ -115,7 +117,12 @@ class Scorer:
         roles = sorted({one.role for one in candidates if one.constants})
         along = dict(zip(roles, np.moveaxis(self._along(roles), -1, 0), strict=True))
         for number, place in enumerate(self.places):
-            here = [i for i, one in enumerate(candidates) if (one.kind, one.place) == (place.kind, place.name)]
+            all_here = [i for i, one in enumerate(candidates) if (one.kind, one.place) == (place.kind, place.name)]
+            here = [i for i in all_here if not candidates[i].states]
+            for i in all_here:
+                if candidates[i].states:
+                    some, push = self._with_own_states(i, candidates[i], along)
+                    yield some, self._white(line.of_push(number, push))
             jobs = [(cell, pieces) for i in here for cell, pieces in self._cells(i, candidates[i], along)]
             for first in range(0, len(jobs), AT_ONCE):
                 some = jobs[first : first + AT_ONCE]
@@ -137,6 +144,38 @@ class Scorer:
             )
             for cell in cells(constants, x, self.rhythm)
         ]
+
+    def _with_own_states(
+        self, number: int, candidate: Candidate, along: dict[str, NDArray[np.float64]]
+    ) -> tuple[list[_Cell], NDArray[np.float64]]:
+        """Cells of a term with states of its own, and its pieces along the run (segment, sample, cell times piece)."""
+        some = [cell for cell, _ in self._cells(number, candidate, along)]
+        machine, values, states = self._extended(candidate, [candidate.idle | cell.constants for cell in some])
+        pieces = candidate.pieces_at({slot: candidate.named(TRIED)[slot] for slot in candidate.constants or {}})
+        seen = tuple((f"piece_{i}", piece) for i, piece in enumerate(pieces))
+        observing = compile_simulation(replace(machine.simulation, observations=seen, sensors=()))
+        push = np.moveaxis(self.shooting.unfiltered(observing, states, values), 0, -2)
+        return some, push.reshape(*push.shape[:2], -1)
+
+    def _extended(
+        self, candidate: Candidate, tried: list[dict[str, float]]
+    ) -> tuple[Compiled, NDArray[np.float64], NDArray[np.float64]]:
+        """The simulation with a candidate in it, and for each try parameters and states along the run.
+
+        Parameters are (version, parameter), states (version, segment, sample, state), the candidate's own last.
+        """
+        simulation, names = candidate.in_fit(self.simulation, TRIED, dict.fromkeys(candidate.slots, 1.0))
+        machine = compile_simulation(simulation)
+        values = np.repeat(machine.defaults[None], len(tried), axis=0)
+        values[:, : len(self.fit.values)] = self.fit.values
+        for version, slots in enumerate(tried):
+            for slot, value in slots.items():
+                values[version, machine.parameters.index(names[slot])] = value
+        states = np.repeat(self.fit.states[None], len(tried), axis=0)
+        if candidate.states:
+            own = followed(self.shooting, simulation, values)[..., -len(candidate.states) :]
+            states = np.concatenate([states, np.stack([self.shooting.segments.of(one) for one in own])], axis=-1)
+        return machine, values, states
 
     def _along(self, expressions: list[str]) -> NDArray[np.float64]:
         """Return expressions along the run (segment, sample, expression)."""
@@ -160,31 +199,30 @@ class Scorer:
     ) -> tuple[list[_Cell], NDArray[np.float64]]:
         """What a wrong number, input or sensor changes: in each step's landing, and in what is seen."""
         (slot, none), late = next(iter(candidate.idle.items())), candidate.is_late
-        simulation, names = candidate.in_fit(self.simulation, "tried", {slot: none})
-        machine = compile_simulation(simulation)
-        place = machine.parameters.index(names[slot])
-        values = machine.defaults.copy()
-        values[: len(self.fit.values)] = self.fit.values
-        none = float(values[place])
-        either_way = candidate.verdict == "input_error"
+        if candidate.verdict == "wrong_parameter":
+            none = float(self.fit.values[self.machine.parameters.index(candidate.place)])
+        either_way = candidate.name == "input_delay"
         tried = delays(self.rhythm, either_way) if late else np.array([none + NUDGE * max(abs(none), 1e-2)])
-        values = np.repeat(values[None], len(tried), axis=0)
-        values[:, place] = tried
         over = np.ones(len(tried)) if late else tried - none
-        columns = self.shooting.whitened(np.moveaxis(self._seen_over(machine, values, over), 0, -1))
+        machine, values, states = self._extended(candidate, [{slot: float(one)} for one in tried])
+        columns = self.shooting.whitened(np.moveaxis(self._seen_over(machine, states, values, over), 0, -1))
         if candidate.verdict != "sensor_error":
-            states = np.repeat(self.fit.states[None, :, :-1], len(tried), axis=0)
-            landed = self.shooting.landed(machine, states, values) - line.landed
+            landed = (
+                self.shooting.landed(machine, states[:, :, :-1], values)[..., : line.landed.shape[-1]] - line.landed
+            )
             columns += self._white(line.of_change(np.moveaxis(landed / over[:, None, None, None], 0, -1)))
         return [_Cell(number, {}, {slot: none}, float(one) if late else 0.0) for one in tried], columns
 
     def _seen_over(
-        self, machine: Compiled, values: NDArray[np.float64], over: NDArray[np.float64]
+        self,
+        machine: Compiled,
+        states: NDArray[np.float64],
+        values: NDArray[np.float64],
+        over: NDArray[np.float64],
     ) -> NDArray[np.float64]:
         """What is seen to change though no state does (version, segment, sample, channel)."""
-        states = np.repeat(self.fit.states[None], len(values), axis=0)
         seen = self.shooting.observed(machine, states, values)
-        base = self.shooting.observed(self.machine, states[:1], self.fit.values[None])
+        base = self.shooting.observed(self.machine, self.fit.states[None], self.fit.values[None])
         return (seen - base) / over[:, None, None, None]
 
 

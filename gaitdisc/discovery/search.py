@@ -16,15 +16,15 @@ from gaitdisc.discovery.score import Scorer
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.simulation import Simulation
 
-REFITTED = 14
+REFITTED = 18
 JUDGED = 5
 LIMITS = {
-    "half widths of x": (0.0, np.inf),
     "frequencies": (0.0, np.inf),
     "phases": (-np.inf, np.inf),
     "phase widths": (0.0, 1.0),
 }
 VISITED = (0.01, 0.99)  # quantiles of a state between which a threshold has a meaning
+WIDEST = 2.0  # times how far a state goes, beyond which no half width shows
 TURNS = 15
 NEARLY = 0.5  # off the misfit: too little to tell explanations apart by
 CERTAIN = 2.5  # standard errors
@@ -121,6 +121,8 @@ class Search:
             for slot, kind in (part.candidate.constants or {}).items():
                 if kind == "quantiles of x":
                     yield part.values[slot], self._visited(account, part.candidate.role)
+                elif kind == "half widths of x":
+                    yield part.values[slot], (0.0, self._widest(account, part.candidate.role))
                 elif kind == "delays":
                     yield part.values[slot], (0.0, self.rhythm.period)
                 else:
@@ -128,16 +130,22 @@ class Search:
             if part.candidate.bounds:
                 yield part.candidate.beyond_bounds(part.values["value"]), (0.0, np.inf)
             if part.candidate.is_late:
-                early = -self.rhythm.period if part.candidate.verdict == "input_error" else 0.0
+                early = -self.rhythm.period if part.candidate.name == "input_delay" else 0.0
                 yield part.values["seconds"], (early, self.rhythm.period)
 
     def _visited(self, account: Account, role: str) -> tuple[float, float]:
         """Return where the run goes: a threshold beyond makes a one-sided spring a linear one, or nothing."""
-        states = account.fit.states.reshape(-1, account.fit.starts.shape[1])
+        known = len(self.base.states)
+        states = account.fit.states[..., :known].reshape(-1, known)
         nothing = np.zeros((len(states), len(self.base.inputs)))
         along = evaluate(self.base, role, Points(np.zeros(len(states)), states, nothing))
         low, high = np.quantile(along, VISITED)
         return float(low), float(high)
+
+    def _widest(self, account: Account, role: str) -> float:
+        """Return the half width that a run can show; of an input, one that it never reaches does nothing anyway."""
+        driven = any(each.name == role for each in self.base.inputs)
+        return np.inf if driven else WIDEST * max(map(abs, self._visited(account, role)))
 
     def without(self, now: Judged, number: int) -> Judged:
         """Return the account less one explanation.
@@ -164,7 +172,9 @@ def is_certain(account: Account, first: int = 0) -> bool:
     first : int
         Explanations before this one are not looked at.
     """
-    errors = dict(zip(account.fit.free, np.sqrt(np.diag(account.fit.covariance)), strict=True))
+    variance = np.diag(account.fit.covariance)
+    error = np.sqrt(np.where(variance >= 0, variance, np.inf))  # rounding makes that of what is not determined negative
+    errors = dict(zip(account.fit.free, error, strict=True))
     return all(
         _off(part, slot, none) > CERTAIN * errors[names[slot]]
         for part, names in list(zip(account.parts, account.names, strict=True))[first:]

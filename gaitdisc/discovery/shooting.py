@@ -285,11 +285,11 @@ class Shooting:
         Parameters
         ----------
         states : ndarray (segment, sample, state)
-            A fitted run.
+            A fitted run; states that effects bring along, after the others, are left out.
         """
         if self.past is None:
             return self
-        return replace(self, past=self.segments.put(self.past, states))
+        return replace(self, past=self.segments.put(self.past, states[..., : self.past.shape[2]]))
 
     def with_noise(self, noise: Noise) -> Shooting:
         """Return the same segments, divided by other noise.

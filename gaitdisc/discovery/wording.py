@@ -116,6 +116,8 @@ def _signal(name: str, estimate: Estimate) -> str:
     size = estimate_text(Estimate(-estimate.value, -estimate.high, -estimate.low, estimate.unit) if low else estimate)
     if name == "sensor_lag":
         return f"is seen late by {size}"
+    if name == "input_lag":
+        return f"acts through a first-order lag of {size}"
     if name == "input_delay":
         return f"acts earlier than recorded, by {size}" if low else f"acts late by {size}"
     return f"{'reads' if name == 'sensor_offset' else 'drifts'} {'low' if low else 'high'} by {size}"

@@ -69,6 +69,8 @@ class FoundEffect:
         For a rival: it closes too little of the gap to be named, or not beyond chance.
     bounds : tuple of float
         Of a wrong parameter: the file's `low` and `high`, infinite where it has but one; empty where it has neither.
+    states : mapping of str to str
+        States that the effect brings along, and the time derivative of each.
     """
 
     kind: str
@@ -81,6 +83,7 @@ class FoundEffect:
     tied: bool = False
     small: bool = False
     bounds: tuple[float, ...] = ()
+    states: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -293,8 +296,9 @@ def _effect(one: FoundEffect) -> dict[str, Any]:
         for name, each in one.estimates.items()
     }
     evidence = {"held_out": _number(one.held_out), "bic": _number(one.bic)}
-    bounds = {"bounds": [_number(bound) for bound in one.bounds]} if one.bounds else {}
-    return _place(one) | {"name": one.name, "term": one.term, "estimates": estimates, "evidence": evidence} | bounds
+    some: dict[str, Any] = {"bounds": [_number(bound) for bound in one.bounds]} if one.bounds else {}
+    some |= {"states": dict(one.states)} if one.states else {}
+    return _place(one) | {"name": one.name, "term": one.term, "estimates": estimates, "evidence": evidence} | some
 
 
 def _correction(one: Correction) -> dict[str, Any]:

@@ -183,6 +183,31 @@ class Simulation:
         )
         return replace(self, states=tuple(changed))
 
+    def with_state(self, state: State, equation: str) -> Simulation:
+        """Simulation with one state more, after the others; nothing observes it.
+
+        Parameters
+        ----------
+        state : State
+            Name, unit, start.
+        equation : str
+            Its time derivative, in the simulation's names and its own.
+        """
+        return replace(self, states=(*self.states, state), equations=(*self.equations, (state.name, equation)))
+
+    def with_equation(self, state: str, equation: str) -> Simulation:
+        """Simulation with another time derivative of one state.
+
+        Parameters
+        ----------
+        state : str
+            Its name.
+        equation : str
+            In the simulation's names.
+        """
+        kept = ((name, equation if name == state else text) for name, text in self.equations)
+        return replace(self, equations=tuple(kept))
+
     def with_parameter(self, parameter: Parameter) -> Simulation:
         """Simulation with a further parameter, or with another in the place of one of the same name.
 

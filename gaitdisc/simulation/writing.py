@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from gaitdisc.errors import GaitdiscError, ReadError, SchemaError
-from gaitdisc.simulation.parts import Parameter, Sensor, Term
+from gaitdisc.simulation.parts import Parameter, Sensor, State, Term
 from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.simulation import Lines, Simulation
 from gaitdisc.simulation.simulation_file import simulation_of
@@ -143,6 +143,9 @@ def _changed_text(simulation: Simulation) -> str:
     for section in ("definitions", "equations"):
         lines = _with_expressions(lines, section, getattr(before, section), getattr(simulation, section))
     lines = _with_observations(lines, before, simulation)
+    for state in simulation.states[len(before.states) :]:
+        lines = _with_line(lines, "equations", state.name, dict(simulation.equations)[state.name])
+        added += ["", *_state(state)]
     kept = before.effects == simulation.effects[: len(before.effects)]
     if not kept:
         lines = _without_effects(lines)
@@ -168,7 +171,9 @@ def _with_expressions(lines: list[str], section: str, old: Lines, new: Lines) ->
 
 
 def _with_observations(lines: list[str], before: Simulation, after: Simulation) -> list[str]:
-    if before.observations == after.observations:
+    said = re.compile(r"\s*\[\s*observations\s*[.\]]")
+    implied = len(after.states) > len(before.states) and not any(said.match(line) for line in lines)
+    if before.observations == after.observations and not implied:
         return lines
     has, wanted = dict(before.observations), dict(after.observations)
     long = False
@@ -186,10 +191,18 @@ def _with_observations(lines: list[str], before: Simulation, after: Simulation) 
     if [name for name in wanted if name in has] != list(has):
         return [*lines[: start + 1], *_expressions(after.observations), "", *lines[end:]]
     lines = _with_expressions(lines, "observations", before.observations, after.observations)
+    for name, text in after.observations:
+        if name not in has:
+            lines = _with_line(lines, "observations", name, text)
+    return lines
+
+
+def _with_line(lines: list[str], section: str, name: str, expression: str) -> list[str]:
+    """One line more at the end of a table."""
+    end = _table(lines, section)[1]
     while not lines[end - 1].strip():
         end -= 1
-    new = tuple((name, text) for name, text in after.observations if name not in has)
-    return [*lines[:end], *_expressions(new), *lines[end:]]
+    return [*lines[:end], *_expressions([(name, expression)]), *lines[end:]]
 
 
 def _without_effects(lines: list[str]) -> list[str]:
@@ -223,11 +236,10 @@ def _with_values(lines: list[str], span: tuple[int, int], values: dict[str, str]
 
 def _new_text(simulation: Simulation, sections: Iterable[str] = ("definitions", "equations", "observations")) -> str:
     lines = [f"title = {_quoted(simulation.title)}"]
-    for section in ("states", "inputs"):
-        for part in getattr(simulation, section):
-            lines += ["", f"[{section}.{part.name}]", f"unit = {_quoted(part.unit)}", *_meaning(part.meaning)]
-            if section == "states" and part.initial is not None:
-                lines.append(f"initial = {part.initial!r}")
+    for state in simulation.states:
+        lines += ["", *_state(state)]
+    for each in simulation.inputs:
+        lines += ["", f"[inputs.{each.name}]", f"unit = {_quoted(each.unit)}", *_meaning(each.meaning)]
     for parameter in simulation.parameters:
         lines += ["", *_parameter(parameter)]
     for port in simulation.ports:
@@ -241,6 +253,11 @@ def _new_text(simulation: Simulation, sections: Iterable[str] = ("definitions", 
     for term in simulation.effects:
         lines += ["", *_effect(term)]
     return "\n".join([*lines, ""])
+
+
+def _state(state: State) -> list[str]:
+    initial = [] if state.initial is None else [f"initial = {state.initial!r}"]
+    return [f"[states.{state.name}]", f"unit = {_quoted(state.unit)}", *_meaning(state.meaning), *initial]
 
 
 def _parameter(parameter: Parameter) -> list[str]:

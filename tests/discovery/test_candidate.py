@@ -125,3 +125,31 @@ def test_a_lag_reaches_what_stands_inside_a_definition():
     lag = Candidate("sensor_error", "observation", "x", "sensor_lag")
     late = lag.written(simulation, {"seconds": "0.05"})
     assert dict(late.observations)["x"] == "3*(delay(x, 0.05)/2 + delay(v, 0.05)) - delay(push, 0.05)"
+
+
+def test_an_effect_with_a_state_of_its_own_adds_it_under_a_name_that_is_free():
+    (bent,) = [one for one in _candidates(mass()) if one.label == "hysteresis@load"]
+    once = bent.written(mass(), {"factor": "-25", "width": "0.25"})
+    assert [state.name for state in once.states] == ["x", "v", "hysteresis_load"]
+    assert once.states[2].unit == "m"
+    assert dict(once.equations)["hysteresis_load"] == "v - abs(v)*hysteresis_load/0.25"
+    (again,) = [one for one in _candidates(once) if one.label == "hysteresis@load"]
+    assert list(again.states) == ["hysteresis_load_2"]
+
+
+def test_a_lagged_input_replaces_the_input_everywhere_but_in_its_own_equation():
+    lag = next(one for one in _candidates(mass()) if one.label == "input_lag@push")
+    late = lag.written(mass(), {"seconds": "0.2"})
+    assert dict(late.equations) == dict(mass().equations) | {
+        "v": "(push_lagged + load - k*x - c*v)/m",
+        "push_lagged": "(push - push_lagged)/0.2",
+    }
+
+
+def test_the_share_of_the_stride_does_not_lag():
+    text = MASS.replace("[parameters.m]", '[inputs.phase]\nunit = "1"\n[parameters.m]').replace(
+        "push + load", "push + load + phase"
+    )
+    labels = {one.label for one in _candidates(simulation_of(text, "stride.toml"))}
+    assert "input_delay@phase" in labels
+    assert "input_lag@phase" not in labels

@@ -9,10 +9,16 @@ CONTRACT = {
     *("gravity_moment", "linear_coupling", "product_coupling", "periodic_forcing", "phase_locked_moment"),
     "delayed_feedback",
 }
+BEYOND_IT = {"contact_damper", "hysteresis", "series_elasticity", "input_product", "input_saturation"}
 
 
-def test_the_catalogue_holds_the_names_of_the_contract_and_no_others():
-    assert {shape.name for shape in known_shapes()} == CONTRACT
+def test_the_catalogue_holds_the_names_of_the_contract_and_few_others():
+    assert {shape.name for shape in known_shapes()} == CONTRACT | BEYOND_IT
+
+
+def test_a_state_of_the_effects_own_is_no_role_and_its_derivative_names_roles():
+    shape = Shape("slow", ("z",), {"tau": "delays"}, states={"z": "v - z/tau"})
+    assert shape.roles == ("v",)
 
 
 def test_every_shape_has_a_clause_for_a_reader():
@@ -57,6 +63,11 @@ def _refusal(tmp_path, text):
         ('name = "x"', 'mine.toml holds name. Begin each effect with a line "[[shape]]"'),
         ("shape = [1]", "mine.toml, shape 1 is not one"),
         ('[[shape]]\nname = "a"\npiece = ["x"]', "mine.toml, shape 1 has 'piece'. Did you mean pieces?"),
+        (
+            '[[shape]]\nname = "a"\npieces = ["z"]\nstates = ["z"]',
+            "are names, and the time derivative of each as an expression; mine.toml, shape 1 has ['z']",
+        ),
+        ('[[shape]]\nname = "a"\npieces = ["z"]\nstates = { z = "v - z/tau" }', "has 'tau'"),
         ('[[shape]]\nname = "a"\ncolour = 1', "mine.toml, shape 1 has 'colour'. Remove it."),
         ('[[shape]]\nname = "My Effect"\npieces = ["x"]', "mine.toml, shape 1 has 'My Effect'"),
         (

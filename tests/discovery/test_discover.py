@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hidden_in_a_mass import Experiment, mass, record, two_rods, with_load
+from hidden_in_a_mass import Experiment, lagging, mass, record, remembering, two_rods, with_load
 
 from gaitdisc.discovery.account import Part, account_for
 from gaitdisc.discovery.catalogue import read_catalogue
@@ -15,6 +15,7 @@ from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import Term
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import simulation_of
+from gaitdisc.simulation.writing import simulation_text
 
 SEED = 3
 KNEE = """
@@ -88,6 +89,59 @@ def test_what_is_wrong_but_not_missing_is_named(truth, how, verdict, name, place
     assert _named(discovery)[1] == [(name, place)]
     (estimate,) = discovery.effects[0].estimates.values()
     assert estimate.value == pytest.approx(value, rel=0.02 if name != "process_noise" else 0.3)
+
+
+@pytest.mark.parametrize(
+    ("truth", "verdict", "name", "place", "numbers"),
+    [
+        (
+            remembering("v - abs(v)*z/0.25", "-25*z"),
+            "missing_physics",
+            "hysteresis",
+            "load",
+            {"stiffness": 25.0, "yield": 0.25},
+        ),
+        (
+            remembering("v - z/0.4", "-18*z"),
+            "missing_physics",
+            "series_elasticity",
+            "load",
+            {"stiffness": 18.0, "relaxation": 0.4},
+        ),
+        (lagging(0.15), "input_error", "input_lag", "push", {"time_constant": 0.15}),
+        (
+            with_load("-9*max(0, x - 0.1)*v"),
+            "missing_physics",
+            "contact_damper",
+            "load",
+            {"damping": 9.0, "engagement": 0.1},
+        ),
+        (
+            with_load("-0.6*(max(0, push - 6) + min(0, push + 6))"),
+            "missing_physics",
+            "input_saturation",
+            "load",
+            {"slope": -0.6, "limit": 6.0},
+        ),
+    ],
+    ids=["hysteresis", "series elasticity", "lag", "contact damper", "saturation"],
+)
+def test_effects_with_states_of_their_own_and_of_inputs_are_named_and_written(truth, verdict, name, place, numbers):
+    discovery, augmented = _found(truth)
+    assert _named(discovery) == (verdict, [(name, place)])
+    assert {key: one.value for key, one in discovery.effects[0].estimates.items()} == pytest.approx(numbers, rel=0.05)
+    assert discovery.held_out.after < 1.2 * discovery.held_out.noise_floor
+    states = discovery.effects[0].states
+    assert [state.name for state in augmented.states] == ["x", "v", *states]
+    again = simulation_of(simulation_text(augmented))
+    assert again == augmented
+
+
+def test_a_spring_beside_hysteresis_is_named_with_it():
+    both = remembering("v - abs(v)*z/0.25", "-25*z").with_effect(Term("load", "port", "hidden", "-14*x**3"))
+    discovery, augmented = _found(both)
+    assert sorted(_named(discovery)[1]) == [("cubic_stiffness", "load"), ("hysteresis", "load")]
+    assert [state.name for state in augmented.states] == ["x", "v", "hysteresis_load"]
 
 
 def test_a_load_and_an_offset_that_a_linear_spring_cannot_tell_apart_are_both_given():

@@ -56,6 +56,15 @@ def test_observations(ankle_text, names):
     assert ("# goniometer" in text) == (names[0] == "theta")
 
 
+def test_a_state_that_an_effect_brings_along_is_written_beside_the_others(ankle, ankle_text):
+    more = ankle.with_state(State("bent", "rad", initial=0.0), "omega - abs(omega)*bent/0.1")
+    text = simulation_text(more)
+    kept = [line for line in text.splitlines() if line in ankle_text.splitlines()]
+    assert len(kept) >= len(ankle_text.splitlines())
+    assert simulation_of(text) == more
+    assert more.observations == ankle.observations
+
+
 def test_effects_that_were_there_are_taken_away(ankle, ankle_text):
     augmented = simulation_of(simulation_text(ankle.with_effect(SPRING)))
     assert simulation_text(augmented) == augmented.layout

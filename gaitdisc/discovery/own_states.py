@@ -1,0 +1,96 @@
+"""States that an effect brings along: no channel shows them, so they begin where the data before put them.
+
+Along the states of the record, known already, each is a differential equation driven by measured signals; its course
+over whole trials gives the start of every run, from which the fit goes on.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.discovery.shooting import Shooting
+from gaitdisc.simulation.compiled_simulation import Compiled
+from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.simulation.parts import Input
+from gaitdisc.simulation.running import compile_simulation
+from gaitdisc.simulation.simulation import Simulation
+
+
+def with_own_states(
+    shooting: Shooting, machine: Compiled, values: NDArray[np.float64], starts: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return start states (segment, state) with those of the effects' own states, where these are not yet among them.
+
+    Parameters
+    ----------
+    shooting : Shooting
+        The segments, and the states of the record.
+    machine : Compiled
+        The simulation with its effects.
+    values : ndarray (parameter,)
+        Its parameters.
+    starts : ndarray (segment, state)
+        Of the simulation as read, first; what follows is replaced.
+    """
+    if shooting.past is None or len(machine.states) == shooting.past.shape[2]:
+        return starts[:, : len(machine.states)]
+    segments = shooting.segments
+    own = followed(shooting, machine.simulation, values[None])[0][segments.trial, segments.begin]
+    return np.concatenate([starts[:, : shooting.past.shape[2]], own], axis=1)
+
+
+def followed(shooting: Shooting, simulation: Simulation, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the effects' own states along the states of the record (version, trial, sample, own state).
+
+    Parameters
+    ----------
+    shooting : Shooting
+        With the states of the record.
+    simulation : Simulation
+        With its effects.
+    values : ndarray (version, parameter)
+        Its parameters, several versions of them.
+    """
+    assert shooting.past is not None
+    drive = shooting.measured.drive
+    inputs = np.concatenate([_bridged(shooting.past, drive.samples), drive.inputs], axis=2)
+    along = Drive(drive.rate, drive.time0, inputs, drive.samples)
+    machine = compile_simulation(_driven_by_states(simulation, shooting.past.shape[2]))
+    trials, versions, steps = len(drive.samples), len(values), int(drive.samples.max()) - 1
+    begin = np.zeros(trials * versions, np.int64)
+    trial = np.tile(np.arange(trials), versions)
+    many = np.repeat(values, trials, axis=0)
+    starts = np.tile([state.initial or 0.0 for state in machine.simulation.states], (len(trial), 1))
+    before, _ = machine.run(along, Rows(trial, begin, starts, many), steps, substeps=shooting.substeps)
+    starts = np.nan_to_num(before[np.arange(len(trial)), drive.samples[trial] - 1], nan=0.0, posinf=0.0, neginf=0.0)
+    runs, _ = machine.run(along, Rows(trial, begin, starts, many), steps, substeps=shooting.substeps)
+    runs = np.nan_to_num(runs, nan=0.0, posinf=0.0, neginf=0.0)  # begun as the trial ends: it has forgotten its start
+    return runs.reshape(versions, trials, steps + 1, -1)
+
+
+def _driven_by_states(simulation: Simulation, count: int) -> Simulation:
+    """The equations of the states after the first ones, these being inputs."""
+    known, own = simulation.states[:count], simulation.states[count:]
+    equations = dict(simulation.equations)
+    return Simulation(
+        simulation.title,
+        own,
+        (*(Input(state.name, state.unit) for state in known), *simulation.inputs),
+        tuple(replace(one, low=None, high=None) for one in simulation.parameters),
+        equations=tuple((state.name, equations[state.name]) for state in own),
+    )
+
+
+def _bridged(states: NDArray[np.float64], samples: NDArray[np.int64]) -> NDArray[np.float64]:
+    """States of every trial, unknown samples bridged by straight lines, zero beyond the end (trial, sample, state)."""
+    out = np.zeros(states.shape)
+    for trial, length in enumerate(samples):
+        at = np.arange(length)
+        for state in range(states.shape[2]):
+            known = np.isfinite(states[trial, :length, state])
+            if known.any():
+                out[trial, :length, state] = np.interp(at, at[known], states[trial, :length, state][known])
+    return out
