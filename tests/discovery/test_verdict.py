@@ -1,6 +1,6 @@
 from hidden_in_a_mass import Experiment, mass, record
 
-from gaitdisc.discovery.discover import judge
+from gaitdisc.discovery.decision import judge
 from gaitdisc.discovery.inquiry import begin_inquiry
 
 
