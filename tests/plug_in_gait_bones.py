@@ -1,0 +1,35 @@
+"""Segments as Plug-in Gait itself put them into a C3D file: kinetics alone, whatever makes the poses elsewhere."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gaitdisc.kinematics.pose import Pose
+from gaitdisc.kinetics.segment_motion import nearest_rotations
+from gaitdisc.signals.direction import marker_position
+
+FEET = {side: (f"{side.upper()}HEE", f"{side.upper()}TOE") for side in "rl"}
+
+
+def bones(trial):
+    """Poses of pelvis, thighs, shanks, feet from the points O (origin), A, L, P (forward, left, proximal) of each."""
+    markers = trial.stream("markers")
+
+    def frame(name):
+        origin = marker_position(markers, f"{name}O")
+        return origin, *((marker_position(markers, f"{name}{axis}") - origin) for axis in "ALP")
+
+    def pose(origin, forward, up, left):
+        axes = np.stack([forward, up, -left], axis=2)
+        return Pose(origin, nearest_rotations(axes / np.linalg.norm(axes, axis=1, keepdims=True)))
+
+    origin, ahead, left, up = frame("PEL")
+    poses = {"pelvis": pose(origin, ahead, up, left)}
+    for side in "lr":
+        knee, ahead, left, up = frame(f"{side.upper()}FE")
+        poses[f"thigh_{side}"] = pose(knee + up, ahead, up, left)
+        ankle, ahead, left, up = frame(f"{side.upper()}TI")
+        poses[f"shank_{side}"] = pose(knee, ahead, up, left)
+        _, dorsal, left, heelwards = frame(f"{side.upper()}FO")
+        poses[f"foot_{side}"] = pose(ankle, -heelwards, dorsal, left)
+    return poses
