@@ -18,6 +18,11 @@ def test_printed_digit_is_the_finest_one():
     assert printed_digit(["0,25"]) == 0.01
 
 
+def test_zeros_that_end_every_number_are_padding():
+    assert printed_digit(["0.000000", "0.017000", "0.050000"]) == 1e-3
+    assert printed_digit(["0.000000", "0.017000", "0.016667"]) == 1e-6
+
+
 @given(
     st.sampled_from([50.0, 59.94, 60.0, 100.0, 120.0, 148.148, 200.0, 250.0, 1000.0]),
     st.integers(3, 3000),
