@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 
 from gaitdisc.kinematics.pose import Pose
 from gaitdisc.kinetics.segment_motion import nearest_rotations
+from gaitdisc.recording import Trial
 from gaitdisc.signals.direction import marker_position
 
+WALKERS = ("HC002D", "HC030A", "HC031A", "HC032A", "HC033A", "HC036A")
+TRUNK = ("C7", "T10", "CLAV", "STRN")
 FEET = {side: (f"{side.upper()}HEE", f"{side.upper()}TOE") for side in "rl"}
 
 
-def bones(trial):
+def static_file(gait: Path, person: str) -> Path:
+    """Static trial of a person, which lies in one of two folders."""
+    folders = gait / "young_static" / person, gait / "young_straight_and_turn" / person / "static"
+    return next(file for folder in folders for file in folder.glob("*.c3d"))
+
+
+def bones(trial: Trial) -> dict[str, Pose]:
     """Poses of pelvis, thighs, shanks, feet from the points O (origin), A, L, P (forward, left, proximal) of each."""
     markers = trial.stream("markers")
 

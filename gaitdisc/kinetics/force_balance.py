@@ -1,10 +1,10 @@
 """Does the ground push as hard as the body's motion needs? The check that no part of inverse dynamics passes by luck.
 
-The sum of m (a - g) over all segments is what the ground must give. Legs have their own poses; head, arms and trunk are
-taken as one mass that moves with the mean of markers on the trunk, or with the middle of the hips where only legs
+The sum of m (a - g) over all segments is what the ground must give. Legs have their own poses; head, arms and trunk
+are taken as one mass that moves with the mean of markers on the trunk, or with the middle of the hips where only legs
 have markers. That is right on the whole and wrong in what arms and head do by themselves: it shows a wrong mass, sign,
-unit, clock or assignment of feet, and no error of a few per cent of body weight. Forces are filtered as the markers are,
-whatever filter the moments have: else an impact would count as an error of the body.
+unit, clock or assignment of feet, and no error of a few per cent of body weight. Forces are filtered as the markers
+are, whatever filter the moments have: else an impact would count as an error of the body.
 """
 
 from __future__ import annotations
