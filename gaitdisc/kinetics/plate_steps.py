@@ -18,6 +18,7 @@ from gaitdisc.signals.gaps import runs
 
 BESIDE_FOOT_M = 0.10  # a centre of pressure farther from the line from heel to toes than this is another foot's
 BEYOND_EDGE_M = 0.01  # a marker lies a little beside the sole
+SOLE_AROUND_M = 0.02  # the sole reaches at least this far around its centre of pressure
 STILL_M_PER_S = 0.35  # a part of the foot that bears load hardly moves; one that swings is five times as fast
 STANDS_S = 0.05  # shorter is a foot that passes
 CLEAR_LOAD = 0.2  # of the greatest load: where the centre of pressure is the foot's
@@ -140,7 +141,8 @@ def plate_steps(
 
     The foot is the one whose line from heel to toes the centre of pressure follows. A step is left out where the
     centre of pressure follows no foot's line; where the other foot stands on the same platform meanwhile; where the
-    heel or the toes bear load beyond the platform's edge; where the recording begins or ends in it.
+    heel or the toes bear load beyond the platform's edge, or the centre of pressure comes within 2 cm of it; where the
+    recording begins or ends in it.
 
     Parameters
     ----------
@@ -202,8 +204,7 @@ def _foot(
     side = min(known, key=lambda key: known[key])
     if known[side] > BESIDE_FOOT_M:
         return "", f"the centre of pressure is {100 * known[side]:.0f} cm beside the nearest foot ({side})"
-    over = _over_edge(feet[side], platform, span)
-    return side, f"{over} beyond its edge" if over else ""
+    return side, _over_edge(feet[side], platform, span) or _near_edge(platform, span, least_load_n)
 
 
 def _frames(foot: FootPath, span: tuple[float, float]) -> NDArray[np.bool_]:
@@ -234,7 +235,7 @@ def _stands_s(foot: FootPath, platform: Platform, span: tuple[float, float]) -> 
 
 
 def _over_edge(foot: FootPath, platform: Platform, span: tuple[float, float]) -> str:
-    """Which part of a foot bears load beside the platform, and how far; empty where none does."""
+    """Say which part of a foot bears load beside the platform, and how far; empty where none does."""
     if platform.surface is None:
         return ""
     for name, part in (("the heel stands", foot.heel), ("the toes stand", foot.toe)):
@@ -242,5 +243,16 @@ def _over_edge(foot: FootPath, platform: Platform, span: tuple[float, float]) ->
         outside = platform.surface.outside(part)[frames]
         outside = outside[np.isfinite(outside)]
         if len(outside) and np.median(outside) > BEYOND_EDGE_M:
-            return f"{name} {100 * np.median(outside):.0f} cm"
+            return f"{name} {100 * np.median(outside):.0f} cm beyond its edge"
     return ""
+
+
+def _near_edge(platform: Platform, span: tuple[float, float], least_load_n: float) -> str:
+    """Say how near to the edge the centre of pressure comes where a part of the sole must reach over it."""
+    if platform.surface is None:
+        return ""
+    step = (platform.time >= span[0]) & (platform.time <= span[1])
+    load = platform.load_n[step]
+    pressure = platform.pressure_centre(least_load_n)[step][load > CLEAR_LOAD * load.max()]
+    nearest = -float(np.nanmax(platform.surface.outside(pressure)))
+    return f"its centre of pressure comes within {100 * nearest:.1f} cm of the edge" if nearest < SOLE_AROUND_M else ""

@@ -66,6 +66,11 @@ def test_a_step_that_the_edge_cuts():
     assert (beyond.side, beyond.reason) == ("r", "the toes stand 8 cm beyond its edge")
 
 
+def test_toes_that_reach_over_the_edge_show_in_the_centre_of_pressure():
+    reached = step(plate((0.2, 0.585)), r=foot("r", heel_y=0.4), l=AWAY)
+    assert (reached.side, reached.reason) == ("r", "its centre of pressure comes within 1.5 cm of the edge")
+
+
 def test_a_force_that_no_foot_makes():
     found = step(plate((0.2, 0.58)), r=foot("r", heel_y=0.05), l=AWAY)
     assert (found.side, found.reason) == ("", "the centre of pressure is 30 cm beside the nearest foot (r)")
@@ -109,6 +114,7 @@ REAL = {
     "HC030A/turn/HC030A22": [("r", ""), ("l", "")],
     "HC031A/turn/HC031A23": [("r", ""), ("", "both feet stand on it, l for 0.53 s, r for 0.47 s")],
     "HC032A/turn/HC032A18": [("r", ""), ("l", "the toes stand 8 cm beyond its edge")],
+    "HC033A/turn/HC033A22": [("r", ""), ("l", "its centre of pressure comes within 1.9 cm of the edge")],
     "HC036A/straight/HC036A10": [("r", ""), ("l", "")],
     "HC036A/turn/HC036A23": [("r", "")],
 }
