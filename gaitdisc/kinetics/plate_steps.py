@@ -102,6 +102,8 @@ class PlateStep:
         Of the loading.
     reason : str
         Why it cannot be used; empty where one foot alone stepped on it with all of its sole.
+    whole : bool
+        False where the recording begins or ends in it: its forces are right, and it is no whole stance.
 
     Examples
     --------
@@ -114,10 +116,11 @@ class PlateStep:
     start: float
     end: float
     reason: str = ""
+    whole: bool = True
 
     @property
     def clean(self) -> bool:
-        """Whether the force is that of one known foot, for the whole step."""
+        """Whether the force is that of one known foot, with all of its sole."""
         return not self.reason
 
     def finding(self, file: str) -> Finding | None:
@@ -141,8 +144,7 @@ def plate_steps(
 
     The foot is the one whose line from heel to toes the centre of pressure follows. A step is left out where the
     centre of pressure follows no foot's line; where the other foot stands on the same platform meanwhile; where the
-    heel or the toes bear load beyond the platform's edge, or the centre of pressure comes within 2 cm of it; where the
-    recording begins or ends in it.
+    heel or the toes bear load beyond the platform's edge, or the centre of pressure comes within 2 cm of it.
 
     Parameters
     ----------
@@ -157,11 +159,9 @@ def plate_steps(
     for platform in found:
         for start, end in platform.loadings(least_load_n):
             span = float(platform.time[start]), float(platform.time[end - 1])
-            cut = start == 0 or end == len(platform.time)
+            cut = bool(start == 0 or end == len(platform.time))
             side, reason = (platform.side, "") if platform.side else _foot(platform, span, feet, least_load_n)
-            if not reason and cut and not platform.side:
-                reason = "the recording begins or ends in it"
-            steps.append(PlateStep(platform.name, side, *span, reason))
+            steps.append(PlateStep(platform.name, side, *span, reason, not cut))
     return sorted(steps, key=lambda step: step.start)
 
 

@@ -81,9 +81,10 @@ def test_feet_without_markers_then():
     assert step(r=blind).reason == "no foot has its markers then"
 
 
-def test_a_step_that_the_recording_cuts():
+def test_a_step_that_the_recording_cuts_has_right_forces_and_is_no_whole_stance():
     found = step(plate(start=1.5, end=2.6), r=foot("r", start=1.5, end=2.6), l=AWAY)
-    assert (found.side, found.reason) == ("r", "the recording begins or ends in it")
+    assert (found.side, found.clean, found.whole) == ("r", True, False)
+    assert step().whole
 
 
 def test_a_platform_that_names_its_foot_needs_no_markers():
