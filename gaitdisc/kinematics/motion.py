@@ -14,11 +14,12 @@ from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError
 from gaitdisc.kinematics.calibration import Calibration, calibrated
 from gaitdisc.kinematics.cardan import clinical_angles
+from gaitdisc.kinematics.held_joints import held_together
 from gaitdisc.kinematics.laboratory import WalkingFrame, check_right_handed, up_axis, walking_frame
 from gaitdisc.kinematics.marker_set import METHODS, MarkerSet, marker_set, recognised_marker_set
 from gaitdisc.kinematics.markers import marker_labels, marker_places
 from gaitdisc.kinematics.pose import JOINTS, SEGMENTS, Pose
-from gaitdisc.kinematics.rigid_fit import RigidFit, fitted_pose
+from gaitdisc.kinematics.rigid_fit import RigidFit, fitted_pose, residual_m
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.recording.body_measures import BodyMeasures
 
@@ -167,7 +168,10 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
     ]
     for segment in SEGMENTS:  # the pelvis first, then downwards: each carries the joint below it
         fits[segment] = _fit(segment, markers, names, calibration, fits)
-        findings += _doubts(segment, fits[segment], markers)
+    if calibration.marker_set.joints == "held":
+        fits = _held(fits, markers, names, calibration)
+    for segment, fit in fits.items():
+        findings += _doubts(segment, fit, markers)
     poses = {segment: fit.pose for segment, fit in fits.items()}
     feet = (poses["foot_l"].origin + poses["foot_r"].origin) / 2
     up = up_axis(poses["pelvis"].origin, feet, file)
@@ -220,6 +224,24 @@ def _fit(
     return fitted_pose(np.array([body[point] for point in points]), places)
 
 
+def _held(
+    fits: Mapping[str, RigidFit], markers: Recording, names: Mapping[str, str], calibration: Calibration
+) -> dict[str, RigidFit]:
+    """The same segments with their joints held together, by the markers alone."""
+    placed = {}
+    for segment, body in calibration.body.items():
+        points = [point for point in body if point in names]
+        labels = [names[point] for point in points]
+        placed[segment] = np.array([body[point] for point in points]), marker_places(markers, labels)
+    poses = held_together({segment: fit.pose for segment, fit in fits.items()}, placed, calibration.points)
+    return {
+        segment: RigidFit(
+            poses[segment], np.asarray(np.isfinite(seen).all(axis=2)), residual_m(poses[segment], body, seen)
+        )
+        for segment, (body, seen) in placed.items()
+    }
+
+
 def _doubts(segment: str, fit: RigidFit, markers: Recording) -> list[Finding]:
     file = markers.source.file or "the trial"
     findings = []
@@ -229,7 +251,7 @@ def _doubts(segment: str, fit: RigidFit, markers: Recording) -> list[Finding]:
         what = f"{segment}: a marker was missing in {int(bridged.sum())} of {len(bridged)} frames; the others carry it"
         findings.append(Finding("note", "bridged", file, what, "", spans=_spans(bridged, markers.time)))
     if unknown.any():
-        what = f"{segment} is not known in {int(unknown.sum())} of {len(unknown)} frames: fewer than three markers"
+        what = f"{segment} is not known in {int(unknown.sum())} of {len(unknown)} frames: too few markers"
         spoils = "its joints there; fill the gaps, or use more markers"
         findings.append(Finding("warning", "gap", file, what, spoils, spans=_spans(unknown, markers.time)))
     typical = float(np.nanmedian(fit.residual_m)) if not unknown.all() else float("nan")
