@@ -19,12 +19,18 @@ Placed = Mapping[str, tuple[NDArray[np.float64], NDArray[np.float64]]]
 Turns = dict[str, NDArray[np.float64]]
 
 
-def held_together(first: Mapping[str, Pose], placed: Placed, points: Mapping[str, Points]) -> dict[str, Pose]:
+def held_together(
+    first: Mapping[str, Pose],
+    placed: Placed,
+    points: Mapping[str, Points],
+    plane: NDArray[np.float64] | None = None,
+) -> dict[str, Pose]:
     """Poses with the joint centre of each segment where the segment above has it, nearest to all markers at once.
 
     Skin moves over bone: a thigh that is laid over its own markers leaves its hip by centimetres, and its angles are
     wrong by some degrees. Held together at the joints, each segment is steadied by those beside it, and one that has
-    lost markers is carried by them. Joints turn freely about all three axes.
+    lost markers is carried by them. Joints turn freely about all three axes; in a plane, all turn about its normal, and
+    the pelvis stays beside it.
 
     Parameters
     ----------
@@ -35,6 +41,8 @@ def held_together(first: Mapping[str, Pose], placed: Placed, points: Mapping[str
         Segment -> its markers in its own frame, and in the laboratory; NaN where one is missing.
     points : mapping of str to mapping of str to ndarray (3,) [m]
         Segment -> joint centre (`hip_r`, ...) -> place in its frame, for the segments on both sides of the joint.
+    plane : ndarray (frame, 3, 3), optional
+        The walker's forward, up and right, as columns, where only the plane of forward and up is wanted.
 
     Returns
     -------
@@ -46,10 +54,13 @@ def held_together(first: Mapping[str, Pose], placed: Placed, points: Mapping[str
     Lu & O'Connor 1999, J Biomech 32:129. Differs from the source: all markers weigh the same.
     """
     turns, origin = _beginning(first)
+    if plane is not None:
+        turns = {segment: _upright(turn, plane) for segment, turn in turns.items()}
+    allowed = _allowed(len(origin), plane)
     for _ in range(ROUNDS):
         origins = _origins(origin, turns, points)
         gradient, normal = _normal_equations(turns, origins, placed)
-        step = _solved(normal, gradient)
+        step = _solved(normal, gradient, allowed)
         origin = origin + step[:, :3]
         for segment in SEGMENTS:
             for above in reversed(_chain(segment)):  # what is nearest turns first, the pelvis last
@@ -58,7 +69,7 @@ def held_together(first: Mapping[str, Pose], placed: Placed, points: Mapping[str
             break
     origins = _origins(origin, turns, points)
     _, normal = _normal_equations(turns, origins, placed)
-    told = np.linalg.eigvalsh(normal)[:, 0] > STEADY_M**2
+    told = np.linalg.eigvalsh(_among(normal, allowed))[:, 0] > STEADY_M**2
     for segment in SEGMENTS:
         origins[segment][~told], turns[segment][~told] = np.nan, np.nan
     return {segment: Pose(origins[segment], turns[segment]) for segment in SEGMENTS}
@@ -129,10 +140,36 @@ def _normal_equations(turns: Turns, origins: Turns, placed: Placed) -> tuple[NDA
     return gradient, normal
 
 
-def _solved(normal: NDArray[np.float64], gradient: NDArray[np.float64]) -> NDArray[np.float64]:
+def _upright(turn: NDArray[np.float64], plane: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The turn about the normal of the plane that is nearest to a turn."""
+    inside = np.swapaxes(plane, 1, 2) @ turn
+    angle = np.arctan2(inside[:, 1, 0] - inside[:, 0, 1], inside[:, 0, 0] + inside[:, 1, 1])
+    return _turn(angle[:, None] * plane[:, :, 2]) @ plane
+
+
+def _allowed(frames: int, plane: NDArray[np.float64] | None) -> NDArray[np.float64]:
+    """Columns of the steps that may be taken, (frame, all, allowed): all, or those in the plane."""
+    width = 3 + 3 * len(SEGMENTS)
+    if plane is None:
+        return np.broadcast_to(np.eye(width), (frames, width, width))
+    columns = np.zeros((frames, width, 2 + len(SEGMENTS)))
+    columns[:, :3, :2] = plane[:, :, :2]
+    for place in range(len(SEGMENTS)):
+        columns[:, 3 + 3 * place : 6 + 3 * place, 2 + place] = plane[:, :, 2]
+    return columns
+
+
+def _among(normal: NDArray[np.float64], allowed: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.swapaxes(allowed, 1, 2) @ normal @ allowed
+
+
+def _solved(
+    normal: NDArray[np.float64], gradient: NDArray[np.float64], allowed: NDArray[np.float64]
+) -> NDArray[np.float64]:
     """Gauss-Newton steps, the smallest where the markers do not tell all, none turning by more than half a radian."""
-    damped = normal + 1e-9 * np.eye(normal.shape[1])
-    step = np.linalg.solve(damped, gradient[..., None])[..., 0]
+    some = _among(normal, allowed)
+    right = np.swapaxes(allowed, 1, 2) @ gradient[..., None]
+    step = (allowed @ np.linalg.solve(some + 1e-9 * np.eye(some.shape[1]), right))[..., 0]
     longest = np.abs(step[:, 3:]).max(axis=1, initial=0.0)
     return step * np.minimum(1.0, LONGEST_STEP_RAD / np.maximum(longest, 1e-12))[:, None]
 

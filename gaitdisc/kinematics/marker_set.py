@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -35,7 +35,7 @@ METHODS = {
     "ankle": ("midpoint", "chord"),
 }
 AXES = {"shank": ("ankle", "knee"), "foot": ("flat", "as placed")}
-JOINTS = ("free", "held")
+JOINTS = ("free", "held", "planar")
 PARTS = ("pelvis", "thigh", "shank", "foot")
 FEWEST_POINTS = 3
 LARGEST_BYTES = 2**20
@@ -61,7 +61,8 @@ class MarkerSet:
     axes : mapping of str to str
         `shank`: whose medial-lateral axis it takes; `foot`: `flat` on the floor, or `as placed` from heel to toe.
     joints : str
-        `free`: each segment is laid over its own points; `held`: all at once, with the joints held together.
+        `free`: each segment is laid over its own points; `held`: all at once, with the joints held together; `planar`:
+        the same, and everything moves in the plane of walking, as a planar model's body does.
     tracked : mapping of str to tuple of str
         `pelvis`, `thigh`, `shank`, `foot` -> markers that follow the segment; `hip`, `knee`, `ankle` are the
         joint centres that the segment above carries.
@@ -81,6 +82,22 @@ class MarkerSet:
     axes: Mapping[str, str]
     joints: str
     tracked: Mapping[str, tuple[str, ...]]
+
+    def with_joints(self, joints: str) -> MarkerSet:
+        """Return the same set with its joints free, held, or moving in a plane.
+
+        Parameters
+        ----------
+        joints : str
+            `free`, `held` or `planar`.
+
+        Raises
+        ------
+        SchemaError
+            If it is none of these words.
+        """
+        _check_words([joints], JOINTS, "joints = ", "the choice")
+        return replace(self, joints=joints)
 
     def names(self, labels: Iterable[str]) -> dict[str, str]:
         """Names in this set of the labels of a recording: set's name -> label.

@@ -65,6 +65,7 @@ def joint_angles(
     marker_set: MarkerSet | str | Path | None = None,
     measures: BodyMeasures | None = None,
     forward: Sequence[float] | None = None,
+    joints: str | None = None,
 ) -> Recording:
     """Joint angles of a trial from its markers.
 
@@ -80,6 +81,8 @@ def joint_angles(
         Widths and lengths that the set needs.
     forward : sequence of 3 floats, optional
         Direction of walking in the laboratory's axes; found from the pelvis where it is not given.
+    joints : str, optional
+        `free`, `held` or `planar`; as the marker set says where it is not given.
 
     Returns
     -------
@@ -99,6 +102,7 @@ def joint_angles(
     >>> angles = joint_angles(walk.stream("markers"), static.stream("markers"))  # doctest: +SKIP
     """
     chosen = chosen_marker_set(markers, static, marker_set)
+    chosen = chosen if joints is None else chosen.with_joints(joints)
     return motion(markers, calibrated(static, chosen, measures), forward).angles
 
 
@@ -168,19 +172,22 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
     ]
     for segment in SEGMENTS:  # the pelvis first, then downwards: each carries the joint below it
         fits[segment] = _fit(segment, markers, names, calibration, fits)
-    if calibration.marker_set.joints == "held":
-        fits = _held(fits, markers, names, calibration)
+    feet = (fits["foot_l"].pose.origin + fits["foot_r"].pose.origin) / 2
+    pelvis = fits["pelvis"].pose
+    up = up_axis(pelvis.origin, feet, file)
+    check_right_handed(pelvis.rotation, up, file)
+    walking = walking_frame(pelvis.origin, pelvis.rotation[:, :, 0], up, markers.rate_hz, forward)
+    joints = calibration.marker_set.joints
+    if joints != "free":
+        plane = walking.rotation if joints == "planar" else None
+        fits = _held(fits, markers, names, calibration, plane)
     for segment, fit in fits.items():
         findings += _doubts(segment, fit, markers)
     poses = {segment: fit.pose for segment, fit in fits.items()}
-    feet = (poses["foot_l"].origin + poses["foot_r"].origin) / 2
-    up = up_axis(poses["pelvis"].origin, feet, file)
-    check_right_handed(poses["pelvis"].rotation, up, file)
-    walking = walking_frame(poses["pelvis"].origin, poses["pelvis"].rotation[:, :, 0], up, markers.rate_hz, forward)
     findings.append(Finding("note", "direction", file, walking.how, ""))
     centres = {joint: _carried(joint, poses, calibration) for joint in JOINTS}
     return Motion(
-        _angles(markers, fits, walking),
+        _of_the_plane(_angles(markers, fits, walking)) if joints == "planar" else _angles(markers, fits, walking),
         MappingProxyType(poses),
         MappingProxyType(centres),
         walking,
@@ -225,7 +232,11 @@ def _fit(
 
 
 def _held(
-    fits: Mapping[str, RigidFit], markers: Recording, names: Mapping[str, str], calibration: Calibration
+    fits: Mapping[str, RigidFit],
+    markers: Recording,
+    names: Mapping[str, str],
+    calibration: Calibration,
+    plane: NDArray[np.float64] | None,
 ) -> dict[str, RigidFit]:
     """The same segments with their joints held together, by the markers alone."""
     placed = {}
@@ -233,7 +244,7 @@ def _held(
         points = [point for point in body if point in names]
         labels = [names[point] for point in points]
         placed[segment] = np.array([body[point] for point in points]), marker_places(markers, labels)
-    poses = held_together({segment: fit.pose for segment, fit in fits.items()}, placed, calibration.points)
+    poses = held_together({segment: fit.pose for segment, fit in fits.items()}, placed, calibration.points, plane)
     return {
         segment: RigidFit(
             poses[segment], np.asarray(np.isfinite(seen).all(axis=2)), residual_m(poses[segment], body, seen)
@@ -296,6 +307,12 @@ def _angles(markers: Recording, fits: Mapping[str, RigidFit], walking: WalkingFr
         channels=tuple(channel for channel, _, _ in columns),
         suspect=np.stack([doubt for _, _, doubt in columns], axis=1),
     )
+
+
+def _of_the_plane(angles: Recording) -> Recording:
+    """Only what a planar body has."""
+    flexions = {f"{names[0]}_{side}" for names, _ in JOINT_CHANNELS.values() for side in "rl"}
+    return angles.selected_by(lambda one: one.name in flexions | {"pelvis_tilt", "pelvis_tx", "pelvis_ty"})
 
 
 SEGMENTS_OF = {"hip": ("pelvis", "thigh"), "knee": ("thigh", "shank"), "ankle": ("shank", "foot")}

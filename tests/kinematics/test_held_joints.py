@@ -5,19 +5,25 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from manufactured_body import RAJAGOPAL, known_angles, markers_of, static_of
 from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 
+from gaitdisc.errors import SchemaError
+from gaitdisc.ingest.reading import read_trial
 from gaitdisc.kinematics.calibration import calibrated
 from gaitdisc.kinematics.marker_set import marker_set
-from gaitdisc.kinematics.motion import Motion, motion
+from gaitdisc.kinematics.motion import Motion, joint_angles, motion
 from gaitdisc.kinematics.pose import SEGMENTS
 from gaitdisc.recording import Recording
 
 HELD = marker_set("rajagopal")
-FREE = replace(HELD, joints="free")
+FREE = HELD.with_joints("free")
+FLEXIONS = ("hip_flexion", "knee_angle", "ankle_angle")
+ANGLES = known_angles(60)
 CALIBRATION = calibrated(static_of(RAJAGOPAL), HELD)
+PLANAR = calibrated(static_of(RAJAGOPAL), HELD.with_joints("planar"))
 JOINTS = {"thigh": "hip", "shank": "knee", "foot": "ankle"}
 
 
@@ -76,6 +82,38 @@ def test_the_squares_are_the_least_that_an_independent_minimiser_finds():
     )
     best = least_squares(apart, start + 0.05, xtol=1e-14, ftol=1e-14, gtol=1e-14)
     np.testing.assert_allclose((apart(start) ** 2).sum(), 2 * best.cost, rtol=1e-9)
+
+
+def test_a_body_that_moves_in_a_plane_is_followed_in_it():
+    """Out of the plane nothing is reported; in it the angles are exact though the markers shake across it."""
+    known = {name: values * (name[:-2] in FLEXIONS or name == "pelvis_tilt") for name, values in ANGLES.items()}
+    markers = markers_of(known, RAJAGOPAL)
+    across = np.array([name.endswith(".z") for name in markers.names])
+    shaking = 0.02 * np.random.default_rng(2).normal(size=markers.values.shape) * across
+    found = motion(markers.with_values(markers.values + shaking), PLANAR, (1, 0, 0)).angles
+    assert set(found.names) == {*(f"{name}_{side}" for name in FLEXIONS for side in "rl"), "pelvis_tilt",
+                                "pelvis_tx", "pelvis_ty"}  # fmt: skip
+    for name in set(found.names) & set(known):
+        np.testing.assert_allclose(found[name], known[name], atol=1e-8, err_msg=name)
+
+
+def test_a_planar_body_agrees_with_opensim_s_planar_model(gait_data):
+    """gait10dof's own inverse kinematics of the same markers: after the mean difference, sagittal rms <= 3 deg."""
+    folder = gait_data.parent / "opensim_gait10dof"
+    if not folder.is_dir():
+        pytest.skip(f"real recordings are absent: {folder}")
+    files = (folder / "ExperimentalData" / "subject01_static.trc", folder / "ExperimentalData" / "subject01_walk.trc")
+    static, walk = (read_trial(file).stream("markers") for file in files)
+    theirs = read_trial(folder / "IK" / "subject01_walk_IK.mot").stream("kinematics")
+    ours = joint_angles(walk, static, joints="planar")
+    for name in ("pelvis_tilt", *(f"{flexion}_{side}" for flexion in FLEXIONS for side in "rl")):
+        apart = ours[name] - np.interp(walk.time, theirs.time, theirs[name])
+        assert apart.std() <= 3.0, f"{name} {apart.std():.2f} deg"
+
+
+def test_a_word_for_the_joints_that_is_none():
+    with pytest.raises(SchemaError, match="joints = takes free, held, planar; the choice: found 'hold', the nearest"):
+        HELD.with_joints("hold")
 
 
 def test_a_thigh_laid_over_sliding_skin_leaves_its_hip_and_a_held_one_does_not():
