@@ -165,7 +165,7 @@ class _Builder:
 
     def _pelvis(self, asis: Points) -> None:
         middle = (asis["l"] + asis["r"]) / 2
-        sacrum = np.mean([self._place("sacrum", side) for side in "lr"], axis=0)
+        sacrum: NDArray[np.float64] = np.mean([self._place("sacrum", side) for side in "lr"], axis=0)
         across, ahead = asis["r"] - asis["l"], middle - sacrum
         self.static["pelvis"] = Pose(middle[None], _axes(across, np.cross(across, ahead), self.file, "pelvis"))
         width, depth = float(np.linalg.norm(across)), float(np.linalg.norm(ahead))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -35,6 +35,7 @@ METHODS = {
     "ankle": ("midpoint", "chord"),
 }
 AXES = {"shank": ("ankle", "knee"), "foot": ("flat", "as placed")}
+JOINTS = ("free", "held", "planar")
 PARTS = ("pelvis", "thigh", "shank", "foot")
 FEWEST_POINTS = 3
 LARGEST_BYTES = 2**20
@@ -59,6 +60,9 @@ class MarkerSet:
         `hip`, `knee`, `ankle` -> methods, the first that the static trial has markers for is taken.
     axes : mapping of str to str
         `shank`: whose medial-lateral axis it takes; `foot`: `flat` on the floor, or `as placed` from heel to toe.
+    joints : str
+        `free`: each segment is laid over its own points; `held`: all at once, with the joints held together; `planar`:
+        the same, and everything moves in the plane of walking, as a planar model's body does.
     tracked : mapping of str to tuple of str
         `pelvis`, `thigh`, `shank`, `foot` -> markers that follow the segment; `hip`, `knee`, `ankle` are the
         joint centres that the segment above carries.
@@ -76,7 +80,24 @@ class MarkerSet:
     landmarks: Mapping[str, str]
     joint_centres: Mapping[str, tuple[str, ...]]
     axes: Mapping[str, str]
+    joints: str
     tracked: Mapping[str, tuple[str, ...]]
+
+    def with_joints(self, joints: str) -> MarkerSet:
+        """Return the same set with its joints free, held, or moving in a plane.
+
+        Parameters
+        ----------
+        joints : str
+            `free`, `held` or `planar`.
+
+        Raises
+        ------
+        SchemaError
+            If it is none of these words.
+        """
+        _check_words([joints], JOINTS, "joints = ", "the choice")
+        return replace(self, joints=joints)
 
     def names(self, labels: Iterable[str]) -> dict[str, str]:
         """Names in this set of the labels of a recording: set's name -> label.
@@ -267,7 +288,8 @@ def read_marker_set(path: Path) -> MarkerSet:
     Parameters
     ----------
     path : Path
-        File with the tables `[landmarks]`, `[joint_centres]`, `[tracked]`; `[aliases]` and `[axes]` may be left out.
+        File with the tables `[landmarks]`, `[joint_centres]`, `[tracked]`; `[aliases]`, `[axes]` and `joints` may be
+        left out.
 
     Raises
     ------
@@ -293,7 +315,9 @@ def read_marker_set(path: Path) -> MarkerSet:
 
 def _checked(table: dict[str, Any], path: Path) -> MarkerSet:
     file = path.name
-    _check_words(table, ("title", "citation", "aliases", "landmarks", "joint_centres", "axes", "tracked"), "", file)
+    _check_words(
+        table, ("title", "citation", "aliases", "landmarks", "joint_centres", "axes", "joints", "tracked"), "", file
+    )
     parts = {key: _table(table, key, file) for key in ("aliases", "landmarks", "joint_centres", "axes", "tracked")}
     landmarks = {key: _text(value, f"landmarks.{key}", file) for key, value in parts["landmarks"].items()}
     _check_landmarks(landmarks, file)
@@ -306,6 +330,8 @@ def _checked(table: dict[str, Any], path: Path) -> MarkerSet:
     _check_words(axes, tuple(AXES), "axes.", file)
     for key, value in axes.items():
         _check_words([value], AXES[key], f"axes.{key} = ", file)
+    joints = _text(table.get("joints", JOINTS[0]), "joints", file)
+    _check_words([joints], JOINTS, "joints = ", file)
     tracked = {key: _texts(value, f"tracked.{key}", file) for key, value in parts["tracked"].items()}
     _check_tracked(tracked, file)
     return MarkerSet(
@@ -316,6 +342,7 @@ def _checked(table: dict[str, Any], path: Path) -> MarkerSet:
         landmarks,
         methods,
         {"shank": "ankle", "foot": "flat", **axes},
+        joints,
         tracked,
     )
 

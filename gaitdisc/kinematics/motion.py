@@ -14,11 +14,12 @@ from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError
 from gaitdisc.kinematics.calibration import Calibration, calibrated
 from gaitdisc.kinematics.cardan import clinical_angles
+from gaitdisc.kinematics.held_joints import held_together
 from gaitdisc.kinematics.laboratory import WalkingFrame, check_right_handed, up_axis, walking_frame
 from gaitdisc.kinematics.marker_set import METHODS, MarkerSet, marker_set, recognised_marker_set
 from gaitdisc.kinematics.markers import marker_labels, marker_places
 from gaitdisc.kinematics.pose import JOINTS, SEGMENTS, Pose
-from gaitdisc.kinematics.rigid_fit import RigidFit, fitted_pose
+from gaitdisc.kinematics.rigid_fit import RigidFit, fitted_pose, residual_m
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.recording.body_measures import BodyMeasures
 
@@ -64,6 +65,7 @@ def joint_angles(
     marker_set: MarkerSet | str | Path | None = None,
     measures: BodyMeasures | None = None,
     forward: Sequence[float] | None = None,
+    joints: str | None = None,
 ) -> Recording:
     """Joint angles of a trial from its markers.
 
@@ -79,6 +81,8 @@ def joint_angles(
         Widths and lengths that the set needs.
     forward : sequence of 3 floats, optional
         Direction of walking in the laboratory's axes; found from the pelvis where it is not given.
+    joints : str, optional
+        `free`, `held` or `planar`; as the marker set says where it is not given.
 
     Returns
     -------
@@ -98,6 +102,7 @@ def joint_angles(
     >>> angles = joint_angles(walk.stream("markers"), static.stream("markers"))  # doctest: +SKIP
     """
     chosen = chosen_marker_set(markers, static, marker_set)
+    chosen = chosen if joints is None else chosen.with_joints(joints)
     return motion(markers, calibrated(static, chosen, measures), forward).angles
 
 
@@ -167,16 +172,22 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
     ]
     for segment in SEGMENTS:  # the pelvis first, then downwards: each carries the joint below it
         fits[segment] = _fit(segment, markers, names, calibration, fits)
-        findings += _doubts(segment, fits[segment], markers)
+    feet = (fits["foot_l"].pose.origin + fits["foot_r"].pose.origin) / 2
+    pelvis = fits["pelvis"].pose
+    up = up_axis(pelvis.origin, feet, file)
+    check_right_handed(pelvis.rotation, up, file)
+    walking = walking_frame(pelvis.origin, pelvis.rotation[:, :, 0], up, markers.rate_hz, forward)
+    joints = calibration.marker_set.joints
+    if joints != "free":
+        plane = walking.rotation if joints == "planar" else None
+        fits = _held(fits, markers, names, calibration, plane)
+    for segment, fit in fits.items():
+        findings += _doubts(segment, fit, markers)
     poses = {segment: fit.pose for segment, fit in fits.items()}
-    feet = (poses["foot_l"].origin + poses["foot_r"].origin) / 2
-    up = up_axis(poses["pelvis"].origin, feet, file)
-    check_right_handed(poses["pelvis"].rotation, up, file)
-    walking = walking_frame(poses["pelvis"].origin, poses["pelvis"].rotation[:, :, 0], up, markers.rate_hz, forward)
     findings.append(Finding("note", "direction", file, walking.how, ""))
     centres = {joint: _carried(joint, poses, calibration) for joint in JOINTS}
     return Motion(
-        _angles(markers, fits, walking),
+        _of_the_plane(_angles(markers, fits, walking)) if joints == "planar" else _angles(markers, fits, walking),
         MappingProxyType(poses),
         MappingProxyType(centres),
         walking,
@@ -220,6 +231,28 @@ def _fit(
     return fitted_pose(np.array([body[point] for point in points]), places)
 
 
+def _held(
+    fits: Mapping[str, RigidFit],
+    markers: Recording,
+    names: Mapping[str, str],
+    calibration: Calibration,
+    plane: NDArray[np.float64] | None,
+) -> dict[str, RigidFit]:
+    """The same segments with their joints held together, by the markers alone."""
+    placed = {}
+    for segment, body in calibration.body.items():
+        points = [point for point in body if point in names]
+        labels = [names[point] for point in points]
+        placed[segment] = np.array([body[point] for point in points]), marker_places(markers, labels)
+    poses = held_together({segment: fit.pose for segment, fit in fits.items()}, placed, calibration.points, plane)
+    return {
+        segment: RigidFit(
+            poses[segment], np.asarray(np.isfinite(seen).all(axis=2)), residual_m(poses[segment], body, seen)
+        )
+        for segment, (body, seen) in placed.items()
+    }
+
+
 def _doubts(segment: str, fit: RigidFit, markers: Recording) -> list[Finding]:
     file = markers.source.file or "the trial"
     findings = []
@@ -229,7 +262,7 @@ def _doubts(segment: str, fit: RigidFit, markers: Recording) -> list[Finding]:
         what = f"{segment}: a marker was missing in {int(bridged.sum())} of {len(bridged)} frames; the others carry it"
         findings.append(Finding("note", "bridged", file, what, "", spans=_spans(bridged, markers.time)))
     if unknown.any():
-        what = f"{segment} is not known in {int(unknown.sum())} of {len(unknown)} frames: fewer than three markers"
+        what = f"{segment} is not known in {int(unknown.sum())} of {len(unknown)} frames: too few markers"
         spoils = "its joints there; fill the gaps, or use more markers"
         findings.append(Finding("warning", "gap", file, what, spoils, spans=_spans(unknown, markers.time)))
     typical = float(np.nanmedian(fit.residual_m)) if not unknown.all() else float("nan")
@@ -274,6 +307,12 @@ def _angles(markers: Recording, fits: Mapping[str, RigidFit], walking: WalkingFr
         channels=tuple(channel for channel, _, _ in columns),
         suspect=np.stack([doubt for _, _, doubt in columns], axis=1),
     )
+
+
+def _of_the_plane(angles: Recording) -> Recording:
+    """Only what a planar body has."""
+    flexions = {f"{names[0]}_{side}" for names, _ in JOINT_CHANNELS.values() for side in "rl"}
+    return angles.selected_by(lambda one: one.name in flexions | {"pelvis_tilt", "pelvis_tx", "pelvis_ty"})
 
 
 SEGMENTS_OF = {"hip": ("pelvis", "thigh"), "knee": ("thigh", "shank"), "ankle": ("shank", "foot")}

@@ -75,6 +75,24 @@ def fitted_pose(body: NDArray[np.float64], observed: NDArray[np.float64]) -> Rig
     return RigidFit(Pose(origin, rotation), seen, residual)
 
 
+def residual_m(pose: Pose, body: NDArray[np.float64], observed: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Root mean square distance of observed points from those of a body in a pose, frame by frame [m].
+
+    Parameters
+    ----------
+    pose : Pose
+        Of the body.
+    body : ndarray (point, 3) [m]
+        Points in the frame of the segment.
+    observed : ndarray (frame, point, 3) [m]
+        The same points in the laboratory; NaN where they are not seen.
+    """
+    apart = ((observed - pose.to_laboratory(body)) ** 2).sum(axis=2)
+    seen = np.isfinite(apart)
+    mean = np.where(seen, apart, 0.0).sum(axis=1) / np.maximum(seen.sum(axis=1), 1)
+    return np.where(seen.any(axis=1), np.sqrt(mean), np.nan)
+
+
 def _determined(body: NDArray[np.float64], seen: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Frames whose points that are seen show a turn about every axis; each pattern of missing points once."""
     patterns, which = np.unique(seen, axis=0, return_inverse=True)

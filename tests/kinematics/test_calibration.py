@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from manufactured_body import (
@@ -36,9 +38,7 @@ from gaitdisc.recording.body_measures import BodyMeasures
 def with_methods(name: str, **methods: str) -> MarkerSet:
     plain = marker_set(name)
     centres = {**plain.joint_centres, **{joint: (method,) for joint, method in methods.items()}}
-    return MarkerSet(
-        plain.name, plain.title, plain.citation, plain.aliases, plain.landmarks, centres, plain.axes, plain.tracked
-    )
+    return replace(plain, joint_centres=centres)
 
 
 def test_joint_centres_and_landmarks_lie_where_the_bones_have_them():

@@ -1,0 +1,185 @@
+"""Segments whose joints are held together: one least squares over all markers of pelvis and legs, frame by frame."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.kinematics.pose import SEGMENTS, Pose
+
+ROUNDS = 60
+SETTLED = 1e-11  # rad and m
+STEADY_M = 0.01  # a turn that moves no marker by more than this a radian is not known
+LONGEST_STEP_RAD = 0.5
+
+Points = Mapping[str, NDArray[np.float64]]
+Placed = Mapping[str, tuple[NDArray[np.float64], NDArray[np.float64]]]
+Turns = dict[str, NDArray[np.float64]]
+
+
+def held_together(
+    first: Mapping[str, Pose],
+    placed: Placed,
+    points: Mapping[str, Points],
+    plane: NDArray[np.float64] | None = None,
+) -> dict[str, Pose]:
+    """Poses with the joint centre of each segment where the segment above has it, nearest to all markers at once.
+
+    Skin moves over bone: a thigh that is laid over its own markers leaves its hip by centimetres, and its angles are
+    wrong by some degrees. Held together at the joints, each segment is steadied by those beside it, and one that has
+    lost markers is carried by them. Joints turn freely about all three axes; in a plane, all turn about its normal, and
+    the pelvis stays beside it.
+
+    Parameters
+    ----------
+    first : mapping of str to Pose
+        Each segment laid over its own markers, where the search begins; where one is unknown, it begins as in the
+        nearest frame in which it is known.
+    placed : mapping of str to (ndarray (marker, 3), ndarray (frame, marker, 3)) [m]
+        Segment -> its markers in its own frame, and in the laboratory; NaN where one is missing.
+    points : mapping of str to mapping of str to ndarray (3,) [m]
+        Segment -> joint centre (`hip_r`, ...) -> place in its frame, for the segments on both sides of the joint.
+    plane : ndarray (frame, 3, 3), optional
+        The walker's forward, up and right, as columns, where only the plane of forward and up is wanted.
+
+    Returns
+    -------
+    dict of str to Pose
+        NaN in frames whose markers do not tell every segment.
+
+    References
+    ----------
+    Lu & O'Connor 1999, J Biomech 32:129. Differs from the source: all markers weigh the same.
+    """
+    turns, origin = _beginning(first)
+    if plane is not None:
+        turns = {segment: _upright(turn, plane) for segment, turn in turns.items()}
+    allowed = _allowed(len(origin), plane)
+    for _ in range(ROUNDS):
+        origins = _origins(origin, turns, points)
+        gradient, normal = _normal_equations(turns, origins, placed)
+        step = _solved(normal, gradient, allowed)
+        origin = origin + step[:, :3]
+        for segment in SEGMENTS:
+            for above in reversed(_chain(segment)):  # what is nearest turns first, the pelvis last
+                turns[segment] = _turn(_part(step, above)) @ turns[segment]
+        if not np.abs(step).max(initial=0.0) > SETTLED:
+            break
+    origins = _origins(origin, turns, points)
+    _, normal = _normal_equations(turns, origins, placed)
+    told = np.linalg.eigvalsh(_among(normal, allowed))[:, 0] > STEADY_M**2
+    for segment in SEGMENTS:
+        origins[segment][~told], turns[segment][~told] = np.nan, np.nan
+    return {segment: Pose(origins[segment], turns[segment]) for segment in SEGMENTS}
+
+
+def _chain(segment: str) -> tuple[str, ...]:
+    """A segment and those that carry it, from the pelvis down."""
+    if segment == "pelvis":
+        return ("pelvis",)
+    part, side = segment.split("_")
+    parts = ("thigh", "shank", "foot")
+    return ("pelvis", *(f"{one}_{side}" for one in parts[: parts.index(part) + 1]))
+
+
+def _part(step: NDArray[np.float64], segment: str) -> NDArray[np.float64]:
+    first = 3 + 3 * SEGMENTS.index(segment)
+    return step[:, first : first + 3]
+
+
+def _beginning(first: Mapping[str, Pose]) -> tuple[Turns, NDArray[np.float64]]:
+    """Rotations and the place of the pelvis, each from the nearest frame in which it is known."""
+    turns: Turns = {}
+    origin = np.empty(0)
+    for segment in SEGMENTS:
+        pose = first[segment]
+        known = np.flatnonzero(pose.known)
+        if not len(known):
+            turns[segment] = np.tile(np.eye(3), (len(pose), 1, 1))
+            nearest = None
+        else:
+            nearest = known[np.rint(np.interp(np.arange(len(pose)), known, np.arange(len(known)))).astype(int)]
+            turns[segment] = np.array(pose.rotation[nearest])
+        if segment == "pelvis":
+            origin = np.zeros((len(pose), 3)) if nearest is None else np.array(pose.origin[nearest])
+    return turns, origin
+
+
+def _origins(origin: NDArray[np.float64], turns: Turns, points: Mapping[str, Points]) -> Turns:
+    """Places of the proximal joints, from the pelvis down."""
+    origins = {"pelvis": np.array(origin)}
+    for segment in SEGMENTS[1:]:
+        above = _chain(segment)[-2]
+        joint = {"thigh": "hip", "shank": "knee", "foot": "ankle"}[segment[:-2]] + segment[-2:]
+        centre = origins[above] + turns[above] @ points[above][joint]
+        origins[segment] = centre - turns[segment] @ points[segment][joint]
+    return origins
+
+
+def _normal_equations(turns: Turns, origins: Turns, placed: Placed) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Right side and matrix of the normal equations of each frame; columns: place of the pelvis, then turns."""
+    frames, width = len(origins["pelvis"]), 3 + 3 * len(SEGMENTS)
+    gradient, normal = np.zeros((frames, width)), np.zeros((frames, width, width))
+    for segment, (body, seen) in placed.items():
+        there = np.asarray(np.isfinite(seen).all(axis=2))
+        places = origins[segment][:, None] + np.einsum("fij,pj->fpi", turns[segment], body)
+        apart = np.where(there[..., None], seen - places, 0.0)
+        slope = np.zeros((frames, len(body), 3, width))
+        slope[..., :3] = np.eye(3)
+        for above in _chain(segment):
+            arm = places - origins[above][:, None]
+            first = 3 + 3 * SEGMENTS.index(above)
+            for axis in range(3):
+                slope[..., first + axis] = np.cross(np.eye(3)[axis], arm)
+        slope *= there[..., None, None]
+        flat = slope.reshape(frames, -1, width)
+        gradient += np.einsum("fkc,fk->fc", flat, apart.reshape(frames, -1))
+        normal += np.swapaxes(flat, 1, 2) @ flat
+    return gradient, normal
+
+
+def _upright(turn: NDArray[np.float64], plane: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The turn about the normal of the plane that is nearest to a turn."""
+    inside = np.swapaxes(plane, 1, 2) @ turn
+    angle = np.arctan2(inside[:, 1, 0] - inside[:, 0, 1], inside[:, 0, 0] + inside[:, 1, 1])
+    return _turn(angle[:, None] * plane[:, :, 2]) @ plane
+
+
+def _allowed(frames: int, plane: NDArray[np.float64] | None) -> NDArray[np.float64]:
+    """Columns of the steps that may be taken, (frame, all, allowed): all, or those in the plane."""
+    width = 3 + 3 * len(SEGMENTS)
+    if plane is None:
+        return np.broadcast_to(np.eye(width), (frames, width, width))
+    columns = np.zeros((frames, width, 2 + len(SEGMENTS)))
+    columns[:, :3, :2] = plane[:, :, :2]
+    for place in range(len(SEGMENTS)):
+        columns[:, 3 + 3 * place : 6 + 3 * place, 2 + place] = plane[:, :, 2]
+    return columns
+
+
+def _among(normal: NDArray[np.float64], allowed: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.swapaxes(allowed, 1, 2) @ normal @ allowed
+
+
+def _solved(
+    normal: NDArray[np.float64], gradient: NDArray[np.float64], allowed: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Gauss-Newton steps, the smallest where the markers do not tell all, none turning by more than half a radian."""
+    some = _among(normal, allowed)
+    right = np.swapaxes(allowed, 1, 2) @ gradient[..., None]
+    step = (allowed @ np.linalg.solve(some + 1e-9 * np.eye(some.shape[1]), right))[..., 0]
+    longest = np.abs(step[:, 3:]).max(axis=1, initial=0.0)
+    return step * np.minimum(1.0, LONGEST_STEP_RAD / np.maximum(longest, 1e-12))[:, None]
+
+
+def _turn(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Rotations about vectors by their length [rad] (Rodrigues)."""
+    angle = np.linalg.norm(vectors, axis=1)
+    axis = vectors / np.maximum(angle, 1e-300)[:, None]
+    cross = np.zeros((len(vectors), 3, 3))
+    cross[:, 0, 1], cross[:, 0, 2], cross[:, 1, 2] = -axis[:, 2], axis[:, 1], -axis[:, 0]
+    cross -= np.swapaxes(cross, 1, 2)
+    sine, cosine = np.sin(angle)[:, None, None], np.cos(angle)[:, None, None]
+    return np.eye(3) + sine * cross + (1 - cosine) * (cross @ cross)
