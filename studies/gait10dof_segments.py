@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -145,18 +146,23 @@ def against_opensim(folder: Path) -> list[tuple[str, ...]]:
     own = generalised_forces(model, solved.stream("kinematics"), ground)
     trial = read_trial([walk / "subject01_walk.trc", walk / "subject01_walk_grf.mot"])
     static = read_trial(walk / "subject01_static.trc").stream("markers")
-    poses = motion(trial.stream("markers"), calibrated(static, marker_set("gait2354"))).poses
-    made = trial_kinetics(trial, poses, FEET, Person(model.mass_kg), KineticsSettings()).moments
-    theirs, rows = solved.stream("moments"), []
+    theirs, sources = solved.stream("moments"), {"the model": own}
+    for joints in ("free", "held", "planar"):
+        body = calibrated(static, replace(marker_set("gait2354"), joints=joints))
+        poses = motion(trial.stream("markers"), body).poses
+        made = trial_kinetics(trial, poses, FEET, Person(model.mass_kg), KineticsSettings()).moments
+        moments = [name for name in made.names if name in theirs.names]
+        there = {name: np.interp(theirs.time, made.time, made[name]) * model.mass_kg for name in moments}
+        sources[f"markers, joints {joints}"] = there
+    rows = []
     for name in JOINTS:
-        for side in "rl":
-            channel = f"{name}_{side}_moment"
-            by_markers = np.interp(theirs.time, made.time, made[channel]) * model.mass_kg
-            for source, ours in (("the model", own[channel]), ("markers", by_markers)):
-                apart = (ours - theirs[channel])[EDGE:-EDGE]
-                size = float(np.sqrt(np.nanmean(apart**2)))
-                largest = float(np.nanmax(np.abs(apart)))
-                rows.append((name, side, source, f"{size:.2f}", f"{largest:.2f}", f"{size / model.mass_kg:.4f}"))
+        for source, ours in sources.items():
+            inner = slice(EDGE, -EDGE)
+            apart = [(ours[full] - theirs[full])[inner] for full in (f"{name}_{side}_moment" for side in "rl")]
+            size = [float(np.sqrt(np.nanmean(one**2))) for one in apart]
+            largest = max(float(np.nanmax(np.abs(one))) for one in apart)
+            per_kg = " ".join(f"{one / model.mass_kg:.4f}" for one in size)
+            rows.append((name, source, f"{size[0]:.2f} {size[1]:.2f}", f"{largest:.2f}", per_kg))
     return rows
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from gaitdisc.kinetics.joint_moments import KineticsSettings
 from gaitdisc.kinetics.trial_kinetics import TrialKinetics
 
-KEPT_BACK = ("HC032A", "HC036A")
+KEPT_BACK = ("HC033A", "HC036A")  # by whom markers to angles were not written either
 PARTS = ("ankle_angle", "knee_angle", "hip_flexion", "ankle_inversion", "knee_adduction", "hip_adduction")
 PARTS += ("ankle_rotation", "knee_rotation", "hip_rotation")
 NAMES = tuple(f"{part}_{{}}_moment" for part in PARTS) + tuple(
@@ -50,8 +50,8 @@ def against_plug_in_gait(found: list[Walk]) -> list[tuple[str, ...]]:
     for source, settings in sources:
         for name in NAMES:
             cells = []
-            for kind, back in (("straight", False), ("straight", True), ("turn", False), ("turn", True)):
-                chosen = [w for w in found if w[1:4] == (kind, source, settings) and w.kept_back == back]
+            for kind, only in (("straight", False), ("straight", True), ("turn", False), ("turn", True)):
+                chosen = [w for w in found if w[1:4] == (kind, source, settings) and w.kept_back >= only]
                 errors = [rms(*curves[name]) for walk in chosen for curves in walk.steps]
                 size = f"{np.median(errors):.3f} ({max(errors):.3f}), {len(errors)}" if errors else "-"
                 cells.append(size)

@@ -90,4 +90,3 @@ def test_a_trial_without_forces_is_refused(gait_data):
     markers = replace(trial, streams={"markers": trial.stream("markers")})
     with pytest.raises(ChannelError, match="read for its forces; it has markers"):
         trial_kinetics(markers, bones(trial), FEET, Person(45.8))
-
