@@ -70,7 +70,7 @@ def steps(trial: Trial, made: TrialKinetics) -> list[Curves]:
 
 
 HEADS = (
-    "segments from|settings|channel|straight, all: median (largest), steps|straight, kept back|turn, all|turn, kept back",
+    "segments from|settings|channel|straight: median (largest), steps|straight, kept back|turn, all|turn, kept back",
     "person|walk|force balance, trunk from its markers",
     "OpenSim's gait10dof|segments from|rms, right and left [N m]|largest [N m]|rms [N m/kg]",
 )
