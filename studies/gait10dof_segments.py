@@ -20,6 +20,7 @@ from gaitdisc.kinematics.pose import Pose
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
 from gaitdisc.kinetics.newton_euler import RigidBody, joint_wrenches
+from gaitdisc.kinetics.plate_steps import foot_paths
 from gaitdisc.kinetics.platform import platforms
 from gaitdisc.kinetics.segment_motion import segment_motion
 from gaitdisc.kinetics.trial_kinetics import trial_kinetics
@@ -146,11 +147,12 @@ def against_opensim(folder: Path) -> list[tuple[str, ...]]:
     own = generalised_forces(model, solved.stream("kinematics"), ground)
     trial = read_trial([walk / "subject01_walk.trc", walk / "subject01_walk_grf.mot"])
     static = read_trial(walk / "subject01_static.trc").stream("markers")
+    feet = foot_paths(trial.stream("markers"), FEET)
     theirs, sources = solved.stream("moments"), {"the model": own}
     for joints in ("free", "held", "planar"):
         body = calibrated(static, replace(marker_set("gait2354"), joints=joints))
         poses = motion(trial.stream("markers"), body).poses
-        made = trial_kinetics(trial, poses, FEET, Person(model.mass_kg), KineticsSettings()).moments
+        made = trial_kinetics(trial, poses, feet, Person(model.mass_kg), KineticsSettings()).moments
         moments = [name for name in made.names if name in theirs.names]
         there = {name: np.interp(theirs.time, made.time, made[name]) * model.mass_kg for name in moments}
         sources[f"markers, joints {joints}"] = there

@@ -21,7 +21,7 @@ from pathlib import Path
 from curves_over_each_other import over_each_other
 from gait10dof_segments import against_opensim
 from moments_tables import NAMES, SETS, SETTINGS, Curves, Walk, against_plug_in_gait, balances, filter_effect
-from plug_in_gait_bones import FEET, TRUNK, WALKERS, bones, static_file
+from plug_in_gait_bones import TRUNK, WALKERS, bones, feet, static_file
 
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.c3d_measures import read_body_measures
@@ -54,7 +54,7 @@ def walks(data: Path, quick: bool = False) -> list[Walk]:
                 segments = {one: motion(trial.stream("markers"), body).poses for one, body in bodies.items()}
                 for source, poses in {**segments, "bones": bones(trial)}.items():
                     for name, settings in SETTINGS.items():
-                        made = trial_kinetics(trial, poses, FEET, who, settings, TRUNK)
+                        made = trial_kinetics(trial, poses, feet(trial), who, settings, TRUNK)
                         found.append(Walk(person, kind, source, name, made, steps(trial, made)))
     return found
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from gaitdisc.kinematics.pose import Pose
+from gaitdisc.kinetics.plate_steps import FootPath, foot_paths
 from gaitdisc.kinetics.segment_motion import nearest_rotations
 from gaitdisc.recording import Trial
 from gaitdisc.signals.direction import marker_position
@@ -14,6 +15,11 @@ from gaitdisc.signals.direction import marker_position
 WALKERS = ("HC002D", "HC030A", "HC031A", "HC032A", "HC033A", "HC036A")
 TRUNK = ("C7", "T10", "CLAV", "STRN")
 FEET = {side: (f"{side.upper()}HEE", f"{side.upper()}TOE") for side in "rl"}
+
+
+def feet(trial: Trial) -> dict[str, FootPath]:
+    """Paths of both feet by their markers."""
+    return foot_paths(trial.stream("markers"), FEET)
 
 
 def static_file(gait: Path, person: str) -> Path:

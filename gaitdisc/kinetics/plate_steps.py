@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from gaitdisc.errors import ShapeError
 from gaitdisc.kinetics.platform import Platform
 from gaitdisc.kinetics.wrench import LEAST_LOAD_N
-from gaitdisc.recording import Finding
+from gaitdisc.recording import Finding, Recording
 from gaitdisc.recording.arrays import read_only
 from gaitdisc.signals.derivatives import differentiated
+from gaitdisc.signals.direction import marker_position
 from gaitdisc.signals.gaps import runs
 
 BESIDE_FOOT_M = 0.10  # a centre of pressure farther from the line from heel to toes than this is another foot's
@@ -86,6 +87,27 @@ class FootPath:
         line, off = (self.toe - self.heel) @ level, (points - self.heel) @ level
         share = np.einsum("fx,fx->f", line, off) / np.einsum("fx,fx->f", line, line)
         return np.linalg.norm(off - np.clip(share, 0.0, 1.3)[:, None] * line, axis=1)  # toes reach beyond the marker
+
+
+def foot_paths(markers: Recording, names: Mapping[str, tuple[str, str]]) -> dict[str, FootPath]:
+    """Paths of the feet by their markers.
+
+    Parameters
+    ----------
+    markers : Recording
+        Channels `<marker>.x`, `<marker>.y`, `<marker>.z` [m].
+    names : mapping of str to (str, str)
+        Side (`r`, `l`) to the heel marker and the toe marker.
+
+    Raises
+    ------
+    ChannelError
+        If a marker is not there.
+    """
+    return {
+        side: FootPath(side, markers.time, *(marker_position(markers, name) for name in pair))
+        for side, pair in names.items()
+    }
 
 
 @dataclass(frozen=True)

@@ -54,7 +54,7 @@ class TrialKinetics:
 def trial_kinetics(
     trial: Trial,
     poses: Mapping[str, Pose],
-    feet: Mapping[str, tuple[str, str]],
+    feet: Mapping[str, FootPath],
     person: Person,
     settings: KineticsSettings | None = None,
     trunk: Sequence[str] = (),
@@ -68,8 +68,8 @@ def trial_kinetics(
     poses : mapping of str to Pose
         On the frames of the markers; unfiltered, as they are filtered here. Origins of `thigh_r`, `shank_r`, `foot_r`
         are the centres of hip, knee and ankle.
-    feet : mapping of str to (str, str)
-        Side to the names of the heel marker and of the toe marker.
+    feet : mapping of str to FootPath
+        `r`, `l`: heel and toes, as `foot_paths` takes them from markers.
     person : Person
         Mass, sex, stature.
     settings : KineticsSettings, optional
@@ -80,13 +80,14 @@ def trial_kinetics(
     Raises
     ------
     ChannelError
-        If there are no forces, no markers, or no step of which the foot is known.
+        If there are no forces, no markers, or no step of one foot alone.
     GaitdiscError
         If what is given fits no leg, or not together.
 
     Examples
     --------
-    >>> result = trial_kinetics(trial, poses, {"r": ("RHEE", "RTOE")}, Person(56.8, "f"))  # doctest: +SKIP
+    >>> feet = foot_paths(trial.stream("markers"), {"r": ("RHEE", "RTOE")})  # doctest: +SKIP
+    >>> result = trial_kinetics(trial, poses, feet, Person(56.8, "f"))  # doctest: +SKIP
     >>> result.moments["ankle_angle_r_moment"].min()  # doctest: +SKIP
     -1.31
     """
@@ -94,11 +95,7 @@ def trial_kinetics(
     markers = trial.stream("markers")
     time, file = markers.time, markers.source.file or trial.name
     found = platforms(trial)
-    paths = {
-        side: FootPath(side, time, marker_position(markers, heel), marker_position(markers, toe))
-        for side, (heel, toe) in feet.items()
-    }
-    steps = plate_steps(found, paths, settings.least_load_n)
+    steps = plate_steps(found, feet, settings.least_load_n)
     left_out = [finding for step in steps if (finding := step.finding(file))]
     if not any(step.clean for step in steps):
         reasons = "; ".join(f"{one.platform} at {one.start:.2f} s: {one.reason}" for one in steps[:3])
@@ -109,7 +106,7 @@ def trial_kinetics(
         )
     loads = foot_loads(found, steps, time, settings.force_cutoff_hz, swings(trial))
     up = found[0].up
-    both = legs(poses, paths, person, settings)
+    both = legs(poses, feet, person, settings)
     moments = joint_moments(both, loads, time, up, person, settings)
     balance = ForceBalance(0, *[float("nan")] * 3)
     if len(both) == 2:

@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from plug_in_gait_bones import FEET, bones
+from plug_in_gait_bones import bones, feet
 
 from gaitdisc.errors import ChannelError
 from gaitdisc.ingest.c3d import read_c3d
@@ -76,10 +76,10 @@ def test_one_leg_cannot_be_balanced():
 def test_a_walk_is_balanced_and_exchanged_plates_or_a_wrong_mass_are_not(gait_data):
     trial = read_c3d(gait_data / "young_straight_and_turn" / "HC030A" / "straight" / "HC030A05.c3d")
     poses = bones(trial)
-    right = trial_kinetics(trial, poses, FEET, Person(45.8), trunk=("C7", "T10", "CLAV", "STRN")).balance
+    right = trial_kinetics(trial, poses, feet(trial), Person(45.8), trunk=("C7", "T10", "CLAV", "STRN")).balance
     assert right.frames > 80
     assert (right.rms, right.level_rms, abs(right.mean)) < (5.0, 5.0, 2.0)
-    heavier = trial_kinetics(trial, poses, FEET, Person(52.7))
+    heavier = trial_kinetics(trial, poses, feet(trial), Person(52.7))
     assert any(f.kind == "force balance" and f.severity == "warning" for f in heavier.findings)
 
 

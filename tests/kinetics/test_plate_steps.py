@@ -4,11 +4,10 @@ from plug_in_gait_bones import FEET
 
 from gaitdisc.errors import ShapeError
 from gaitdisc.ingest.c3d import read_c3d
-from gaitdisc.kinetics.plate_steps import FootPath, PlateStep, empty_findings, plate_steps
+from gaitdisc.kinetics.plate_steps import FootPath, PlateStep, empty_findings, foot_paths, plate_steps
 from gaitdisc.kinetics.platform import Platform, platforms
 from gaitdisc.kinetics.wrench import Wrench
 from gaitdisc.recording import Surface
-from gaitdisc.signals.direction import marker_position
 
 FRAMES, SAMPLES = np.arange(200) / 100, np.arange(2000) / 1000
 CORNERS = np.array([[0.0, 0, 0], [0.4, 0, 0], [0.4, 0.6, 0], [0, 0.6, 0]])
@@ -125,7 +124,7 @@ REAL = {
 def test_steps_of_real_walks(gait_data, walk):
     trial = read_c3d(gait_data / "young_straight_and_turn" / f"{walk}.c3d")
     markers = trial.stream("markers")
-    feet = {s: FootPath(s, markers.time, *(marker_position(markers, one) for one in FEET[s])) for s in "rl"}
+    feet = foot_paths(markers, FEET)
     steps: list[PlateStep] = plate_steps(platforms(trial), feet)
     said = [(one.side, set(one.reason.split(", "))) for one in steps]
     assert said == [(side, set(reason.split(", "))) for side, reason in REAL[walk]]

@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from plug_in_gait_bones import FEET, bones
+from plug_in_gait_bones import bones, feet
 
 from gaitdisc.errors import ChannelError
 from gaitdisc.ingest.c3d import read_c3d
@@ -34,7 +34,7 @@ def apart(trial, result, name, written):
 @pytest.mark.parametrize("walk", WALKS)
 def test_sagittal_moments_and_powers_are_those_of_plug_in_gait(gait_data, walk):
     trial = read_c3d(gait_data / "young_straight_and_turn" / f"{walk}.c3d")
-    result = trial_kinetics(trial, bones(trial), FEET, Person(WALKS[walk]))
+    result = trial_kinetics(trial, bones(trial), feet(trial), Person(WALKS[walk]))
     limits = {"ankle_angle": 0.03, "knee_angle": 0.09, "hip_flexion": 0.12}
     for name, written in WRITTEN.items():
         assert apart(trial, result, name + "_{s}_moment", written) < limits[name], name
@@ -44,7 +44,9 @@ def test_sagittal_moments_and_powers_are_those_of_plug_in_gait(gait_data, walk):
 
 def test_in_the_distal_frame_all_parts_are_those_of_plug_in_gait(gait_data):
     trial = read_c3d(gait_data / "young_straight_and_turn" / "HC030A" / "straight" / "HC030A05.c3d")
-    result = trial_kinetics(trial, bones(trial), FEET, Person(45.8), KineticsSettings(20.0, np.inf, frame="distal"))
+    result = trial_kinetics(
+        trial, bones(trial), feet(trial), Person(45.8), KineticsSettings(20.0, np.inf, frame="distal")
+    )
     others = {
         "ankle_inversion": "ankle_inversion_{s}_moment",
         "ankle_rotation": "ankle_rotation_{s}_moment",
@@ -59,7 +61,7 @@ def test_in_the_distal_frame_all_parts_are_those_of_plug_in_gait(gait_data):
 
 def test_a_straight_walk_pushes_off_and_says_what_it_rests_on(gait_data):
     trial = read_c3d(gait_data / "young_straight_and_turn" / "HC030A" / "straight" / "HC030A05.c3d")
-    result = trial_kinetics(trial, bones(trial), FEET, Person(45.8))
+    result = trial_kinetics(trial, bones(trial), feet(trial), Person(45.8))
     for side in "rl":
         assert -1.5 < np.nanmin(result.moments[f"ankle_angle_{side}_moment"]) < -1.0
         assert 2.0 < np.nanmax(result.moments[f"ankle_power_{side}"]) < 5.0
@@ -70,7 +72,7 @@ def test_a_straight_walk_pushes_off_and_says_what_it_rests_on(gait_data):
 
 def test_a_turn_keeps_the_clean_step_and_names_the_other(gait_data):
     trial = read_c3d(gait_data / "young_straight_and_turn" / "HC032A" / "turn" / "HC032A18.c3d")
-    result = trial_kinetics(trial, bones(trial), FEET, Person(56.8))
+    result = trial_kinetics(trial, bones(trial), feet(trial), Person(56.8))
     left_out = next(step for step in result.steps if not step.clean)
     rows = (result.moments.time > left_out.start) & (result.moments.time < left_out.end)
     assert left_out.side == "l"
@@ -82,11 +84,11 @@ def test_a_trial_without_a_clean_step_is_refused(gait_data):
     trial = read_c3d(gait_data / "young_static" / "HC030A" / "HC030A01.c3d")
     words = "step of one foot alone on a force platform; HC030A01.c3d has plate_1 at 0.00 s: both feet stand on it"
     with pytest.raises(ChannelError, match=words):
-        trial_kinetics(trial, {}, FEET, Person(45.8))
+        trial_kinetics(trial, {}, feet(trial), Person(45.8))
 
 
 def test_a_trial_without_forces_is_refused(gait_data):
     trial = read_c3d(gait_data / "young_straight_and_turn" / "HC030A" / "straight" / "HC030A05.c3d")
     markers = replace(trial, streams={"markers": trial.stream("markers")})
     with pytest.raises(ChannelError, match="read for its forces; it has markers"):
-        trial_kinetics(markers, bones(trial), FEET, Person(45.8))
+        trial_kinetics(markers, bones(trial), feet(trial), Person(45.8))
