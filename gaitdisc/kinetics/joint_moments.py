@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
-from gaitdisc.errors import SamplingError, SchemaError
+from gaitdisc.errors import SamplingError, SchemaError, ShapeError
 from gaitdisc.kinematics.pose import Pose
 from gaitdisc.kinetics.body_inertia import LEG, TABLES, FootPoints, Person, leg_inertia, segment_lengths
 from gaitdisc.kinetics.foot_loads import FootLoad
@@ -119,18 +119,30 @@ def legs(
     GaitdiscError
         If a length is none of a leg, the frames do not fit together, or the recording is too short.
     """
-    found = {}
-    for side, path in feet.items():
-        names = {"pelvis": "pelvis", **{segment: f"{segment}_{side}" for segment in LEG}}
-        if not set(names.values()) <= set(poses):
-            continue
-        moving = segment_motions(dict(poses), path.time, settings.marker_cutoff_hz, list(names.values()))
-        foot = poses[f"foot_{side}"]
-        points = FootPoints(*(np.nanmedian(foot.to_segment(part), axis=0) for part in (path.heel, path.toe)))
+    names = {side: {"pelvis": "pelvis", **{one: f"{one}_{side}" for one in LEG}} for side in feet}
+    whole = {side: own for side, own in names.items() if set(own.values()) <= set(poses)}
+    found, moving = {}, {}
+    for side, own in whole.items():
+        path = feet[side]
+        wanted = [name for name in own.values() if name not in moving]  # the pelvis is filtered once
+        moving |= segment_motions(dict(poses), path.time, settings.marker_cutoff_hz, wanted)
         lengths = segment_lengths(poses, side)
-        bodies = leg_inertia(person, side, lengths, points, settings.inertia)
-        found[side] = Leg(side, {short: moving[name] for short, name in names.items()}, bodies)
+        bodies = leg_inertia(person, side, lengths, _foot_points(path, poses[f"foot_{side}"]), settings.inertia)
+        found[side] = Leg(side, {short: moving[name] for short, name in own.items()}, bodies)
     return found
+
+
+def _foot_points(path: FootPath, foot: Pose) -> FootPoints:
+    """Heel and toes in the foot's frame, the median over the frames."""
+    places = [foot.to_segment(part) for part in (path.heel, path.toe)]
+    seen = np.isfinite(places).all(axis=(0, 2))
+    if not seen.any():
+        raise ShapeError(
+            f"the inertia of foot_{path.side} needs a frame with heel, toes and the foot's pose",
+            "no frame has all three",
+            "Fill the markers of this foot, or name others.",
+        )
+    return FootPoints(*(np.median(place[seen], axis=0) for place in places))
 
 
 def joint_moments(

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from gaitdisc.errors import SamplingError, SchemaError
+from gaitdisc.errors import SamplingError, SchemaError, ShapeError
 from gaitdisc.kinematics.pose import Pose
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.foot_loads import FootLoad
@@ -113,6 +113,13 @@ def test_a_leg_without_a_segment_is_left_out():
     poses, paths, _, _ = walker()
     del poses["shank_r"]
     assert legs(poses, paths, PERSON, RAW) == {}
+
+
+def test_a_foot_without_its_heel_is_refused():
+    poses, paths, _, _ = walker()
+    blind = FootPath("r", TIME, np.full((len(TIME), 3), np.nan), paths["r"].toe)
+    with pytest.raises(ShapeError, match="foot_r needs a frame with heel, toes and the foot's pose; no frame has all"):
+        legs(poses, {"r": blind}, PERSON, RAW)
 
 
 def test_settings_that_cannot_be_are_refused():
