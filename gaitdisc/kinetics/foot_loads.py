@@ -78,8 +78,8 @@ def foot_loads(
             if spans:
                 total += _at(platform.smoothed(cutoff_hz, spans), platform, time)
         named = any(platform.side == side for platform in found)
-        known = _known(steps, side, time, (airborne or {}).get(side, ())) | named
-        loads[side] = FootLoad(total, known)
+        spans = [(time[0], time[-1])] if named else list((airborne or {}).get(side, ()))
+        loads[side] = FootLoad(total, _known(steps, side, time, spans))
     return loads
 
 
@@ -107,10 +107,10 @@ def _at(wrench: Wrench, platform: Platform, time: NDArray[np.float64]) -> Wrench
 
 
 def _known(
-    steps: Sequence[PlateStep], side: str, time: NDArray[np.float64], airborne: Sequence[tuple[float, float]]
+    steps: Sequence[PlateStep], side: str, time: NDArray[np.float64], known_spans: Sequence[tuple[float, float]]
 ) -> NDArray[np.bool_]:
     own = [step for step in steps if step.side == side and step.clean]
-    spans = [(step.start, step.end) for step in own] + list(airborne)
+    spans = [(step.start, step.end) for step in own] + list(known_spans)
     spans += [
         (one.end, after.start) for one, after in itertools.pairwise(own) if 0 < after.start - one.end < SWING_AT_MOST_S
     ]

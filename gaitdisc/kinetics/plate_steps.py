@@ -173,7 +173,7 @@ def plate_steps(
     found : sequence of Platform
         As `platforms` gives them.
     feet : mapping of str to FootPath
-        `r`, `l`; not needed for a platform that names its foot.
+        `r`, `l`; a platform that names its foot is only held against them.
     least_load_n : float
         Force at which a loading ends [N].
     """
@@ -182,7 +182,8 @@ def plate_steps(
         for start, end in platform.loadings(least_load_n):
             span = float(platform.time[start]), float(platform.time[end - 1])
             cut = bool(start == 0 or end == len(platform.time))
-            side, reason = (platform.side, "") if platform.side else _foot(platform, span, feet, least_load_n)
+            find = _named_foot if platform.side else _foot
+            side, reason = find(platform, span, feet, least_load_n)
             steps.append(PlateStep(platform.name, side, *span, reason, not cut))
     return sorted(steps, key=lambda step: step.start)
 
@@ -227,6 +228,21 @@ def _foot(
     if known[side] > BESIDE_FOOT_M:
         return "", f"the centre of pressure is {100 * known[side]:.0f} cm beside the nearest foot ({side})"
     return side, _over_edge(feet[side], platform, span) or _near_edge(platform, span, least_load_n)
+
+
+def _named_foot(
+    platform: Platform, span: tuple[float, float], feet: Mapping[str, FootPath], least_load_n: float
+) -> tuple[str, str]:
+    """Side that a platform names, and why that cannot be: another foot, or none, stands where the force is."""
+    beside = {side: _distance(platform, span, foot, least_load_n) for side, foot in feet.items()}
+    own = beside.get(platform.side, np.nan)
+    if not own > BESIDE_FOOT_M:
+        return platform.side, ""
+    nearest = min((side for side in beside if np.isfinite(beside[side])), key=lambda side: beside[side])
+    whose = f"it is named the foot's of side {platform.side}, and its centre of pressure"
+    if nearest != platform.side:
+        return platform.side, f"{whose} follows the other foot ({nearest}), {100 * own:.0f} cm away"
+    return platform.side, f"{whose} is {100 * own:.0f} cm beside it"
 
 
 def _frames(foot: FootPath, span: tuple[float, float]) -> NDArray[np.bool_]:

@@ -4,6 +4,7 @@ from plug_in_gait_bones import FEET
 
 from gaitdisc.errors import ShapeError
 from gaitdisc.ingest.c3d import read_c3d
+from gaitdisc.ingest.reading import read_trial
 from gaitdisc.kinetics.plate_steps import FootPath, PlateStep, empty_findings, foot_paths, plate_steps
 from gaitdisc.kinetics.platform import Platform, platforms
 from gaitdisc.kinetics.wrench import Wrench
@@ -93,6 +94,20 @@ def test_a_platform_that_names_its_foot_needs_no_markers():
     assert (found.side, found.clean) == ("l", True)
 
 
+def test_a_platform_that_names_the_wrong_foot_is_found_out():
+    force = plate()
+    named = Platform("ground_force_l", force.time, force.wrench, UP, force.point, None, "l")
+    (exchanged,) = plate_steps([named], {"r": foot("r"), "l": foot("l", heel_y=0.85)})
+    assert (exchanged.side, exchanged.reason) == (
+        "l",
+        "it is named the foot's of side l, and its centre of pressure follows the other foot (r), 55 cm away",
+    )
+    (apart,) = plate_steps([named], {"l": foot("l", x=0.5)})
+    assert apart.reason == "it is named the foot's of side l, and its centre of pressure is 30 cm beside it"
+    (own,) = plate_steps([named], {"l": foot("l"), "r": AWAY})
+    assert own.clean
+
+
 def test_a_plate_that_nobody_stepped_on_is_said():
     empty = plate(peak=12.0)
     assert plate_steps([empty], {"r": foot("r"), "l": AWAY}) == []
@@ -131,3 +146,15 @@ def test_steps_of_real_walks(gait_data, walk):
     for one in steps:
         landed = [e.side for e in trial.events if e.label == "initial contact" and abs(e.time - one.start) < 0.04]
         assert not one.clean or not trial.events or landed == [one.side]
+
+
+def test_sides_exchanged_in_an_opensim_file_are_found_out(gait_data):
+    walk = gait_data.parent / "opensim_gait10dof" / "ExperimentalData"
+    trial = read_trial([walk / "subject01_walk.trc", walk / "subject01_walk_grf.mot"])
+    names = {"r": ("R.Heel", "R.Toe.Tip"), "l": ("L.Heel", "L.Toe.Tip")}
+    feet = foot_paths(trial.stream("markers"), names)
+    whole = [one for one in plate_steps(platforms(trial), feet) if one.end - one.start > 0.3]
+    assert len(whole) >= 4 and all(one.clean for one in whole)
+    exchanged = foot_paths(trial.stream("markers"), {"r": names["l"], "l": names["r"]})
+    found = [one for one in plate_steps(platforms(trial), exchanged) if one.end - one.start > 0.3]
+    assert all("follows the other foot" in one.reason for one in found)
