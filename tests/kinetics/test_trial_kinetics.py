@@ -59,6 +59,25 @@ def test_in_the_distal_frame_all_parts_are_those_of_plug_in_gait(gait_data):
         assert apart(trial, result, name + "_{s}_moment", written) < 0.05, name
 
 
+def test_an_adult_of_another_laboratory_on_three_plates(gait_data):
+    trial = read_c3d(gait_data / "c3d_reader_samples" / "gait" / "PiG_Motion3_FF.c3d")
+    result = trial_kinetics(trial, bones(trial), feet(trial), Person(74.0), KineticsSettings(frame="distal"))
+    assert [(step.platform, step.side, step.clean) for step in result.steps] == [
+        ("plate_1", "l", True),
+        ("plate_2", "r", True),
+        ("plate_3", "l", True),
+    ]
+    limits = {
+        "ankle_angle": 0.03,
+        "knee_angle": 0.05,
+        "hip_flexion": 0.1,
+        "knee_adduction": 0.03,
+        "hip_adduction": 0.05,
+    }
+    for name, limit in limits.items():
+        assert apart(trial, result, name + "_{s}_moment", name + "_{s}_moment") < limit, name
+
+
 def test_a_straight_walk_pushes_off_and_says_what_it_rests_on(gait_data):
     trial = read_c3d(gait_data / "young_straight_and_turn" / "HC030A" / "straight" / "HC030A05.c3d")
     result = trial_kinetics(trial, bones(trial), feet(trial), Person(45.8))
