@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
-from gaitdisc.errors import ChannelError, UnitError
+from gaitdisc.errors import ChannelError, ReadError, UnitError
 from gaitdisc.kinetics.wrench import LEAST_LOAD_N, Wrench
 from gaitdisc.recording import Recording, Surface, Trial
 from gaitdisc.signals.butterworth import lowpassed
@@ -126,6 +126,8 @@ def platforms(trial: Trial) -> list[Platform]:
     ------
     ChannelError
         If there is no force platform, or one lacks a channel or its corners.
+    ReadError
+        If a force presses at a point that is missing.
     UnitError
         If a loaded platform pulls its foot down: the force is that of the foot on the ground.
 
@@ -169,7 +171,15 @@ def _foot_force(forces: Recording, key: str) -> Platform:
     force = _three(forces, f"ground_force_{key}_v{{}}")
     point, moment = _three(forces, f"ground_force_{key}_p{{}}"), _three(forces, f"ground_torque_{key}_{{}}")
     up = np.array([0.0, 1.0, 0.0])
-    pressed = (np.abs(force[:, 1]) > LEAST_LOAD_N) & np.isfinite(point).all(axis=1)
+    pressed = np.abs(force[:, 1]) > LEAST_LOAD_N
+    lost = pressed & ~np.isfinite(np.hstack([point, moment])).all(axis=1)
+    if lost.any():
+        first, file = int(np.argmax(lost)), forces.source.file or "the trial"
+        raise ReadError(
+            f"ground_force_{key} needs its point and moment wherever it presses",
+            f"{file} has {force[first, 1]:.0f} N at {forces.time[first]:.3f} s without one, {lost.sum()} samples in all",
+            "Export the centre of pressure in m, and 0 where the foot is in the air.",
+        )
     floor = float(np.median(point[pressed, 1])) if pressed.any() else 0.0
     wrench = Wrench.at(np.nan_to_num(point), force, np.nan_to_num(moment))
     side = key if key in ("r", "l") else ""

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.channel import Channel
-from gaitdisc.errors import ChannelError, UnitError
+from gaitdisc.errors import ChannelError, ReadError, UnitError
 from gaitdisc.ingest.c3d import read_c3d
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.kinetics.platform import platforms
@@ -75,6 +75,19 @@ def test_forces_without_a_place_are_refused():
     other = Recording(TIME, stance()[:, None], (Channel("load", "force", "N"),))
     with pytest.raises(ChannelError, match=r"force and moment of the ground in three directions; walk has load"):
         platforms(Trial("walk", {"forces": other}))
+
+
+def test_a_force_without_its_point_is_refused(gait_data):
+    trial = read_trial(gait_data.parent / "opensim_gait10dof" / "ExperimentalData" / "subject01_walk_grf.mot")
+    forces = trial.stream("forces")
+    values = np.array(forces.values)
+    values[120:130, forces.index("ground_force_l_px")] = np.nan
+    broken = replace(trial, streams={"forces": replace(forces, values=values)})
+    words = (
+        r"ground_force_l needs its point and moment wherever it presses; .*_grf.mot has \d+ N at 0\.200 s .* 10 samples"
+    )
+    with pytest.raises(ReadError, match=words):
+        platforms(broken)
 
 
 # Each weighs its person: mass from PROCESSING of the file; young_straight_and_turn and young_static, all of them
