@@ -4,7 +4,7 @@
 
 DATA holds gait/young_straight_and_turn, gait/young_static and opensim_gait10dof; by default ../shared/data. Errors are
 rms over a clean step on a plate, median and largest over the steps [N m/kg, W/kg]. `markers`: segments from the markers
-by the package; `bones`: Plug-in Gait's own segments, so that kinetics alone is judged. Two people are kept back.
+by the package; `bones`: Plug-in Gait's own segments, to test kinetics alone. Two people are kept back.
 """
 
 from __future__ import annotations

@@ -54,14 +54,14 @@ class ForceBalance:
     mean: float
 
     @property
-    def told(self) -> bool:
-        """Whether there are enough frames to tell anything."""
+    def tested(self) -> bool:
+        """Whether there are enough frames for a balance."""
         return self.frames >= FEWEST_FRAMES
 
     def line(self) -> str:
         """Return the balance as one line of text."""
-        if not self.told:
-            return f"force balance: the load of both feet is known together in {self.frames} frames only; not judged"
+        if not self.tested:
+            return f"force balance: the load of both feet is known together in {self.frames} frames only; not tested"
         return (
             f"force balance over {self.frames} frames: vertical rms {self.rms:.1f} % of body weight "
             f"(mean {self.mean:+.1f} %), horizontal rms {self.level_rms:.1f} %"
@@ -75,7 +75,7 @@ class ForceBalance:
         file : str
             Name of the trial's file.
         """
-        wrong = self.told and (self.rms > LARGEST_RMS or abs(self.mean) > LARGEST_MEAN)
+        wrong = self.tested and (self.rms > LARGEST_RMS or abs(self.mean) > LARGEST_MEAN)
         spoils = "joint moments: check body mass, clocks, and which foot is on which plate" if wrong else ""
         return Finding("warning" if wrong else "note", "force balance", file, self.line(), spoils)
 

@@ -177,7 +177,7 @@ def _foot_force(forces: Recording, key: str) -> Platform:
         first, file = int(np.argmax(lost)), forces.source.file or "the trial"
         raise ReadError(
             f"ground_force_{key} needs its point and moment wherever it presses",
-            f"{file} has {force[first, 1]:.0f} N at {forces.time[first]:.3f} s without one, {lost.sum()} samples in all",
+            f"{file} has {force[first, 1]:.0f} N at {forces.time[first]:.3f} s without, and {lost.sum()} such samples",
             "Export the centre of pressure in m, and 0 where the foot is in the air.",
         )
     floor = float(np.median(point[pressed, 1])) if pressed.any() else 0.0

@@ -62,8 +62,8 @@ def test_few_frames_tell_nothing():
     found, loads = bobbing(person)
     loads["l"] = replace(loads["l"], known=np.full(len(TIME), False))
     balance = force_balance(found, loads, UP, person)
-    assert (balance.frames, balance.told) == (0, False)
-    assert balance.line() == "force balance: the load of both feet is known together in 0 frames only; not judged"
+    assert (balance.frames, balance.tested) == (0, False)
+    assert balance.line() == "force balance: the load of both feet is known together in 0 frames only; not tested"
 
 
 def test_one_leg_cannot_be_balanced():
