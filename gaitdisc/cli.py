@@ -12,6 +12,7 @@ import typer
 
 import gaitdisc
 from gaitdisc.commands.ablate import ablate
+from gaitdisc.commands.angles import angles
 from gaitdisc.commands.check import check
 from gaitdisc.commands.compare import compare
 from gaitdisc.commands.demo import demo
@@ -26,7 +27,21 @@ from gaitdisc.commands.run import run
 from gaitdisc.commands.sensitivity import sensitivity
 from gaitdisc.errors import GaitdiscError
 
-COMMANDS = (new, check, compare, discover, reconstruct, run, ablate, modalities, sensitivity, report, export, demo)
+COMMANDS = (
+    new,
+    check,
+    angles,
+    compare,
+    discover,
+    reconstruct,
+    run,
+    ablate,
+    modalities,
+    sensitivity,
+    report,
+    export,
+    demo,
+)
 
 app = typer.Typer(add_completion=False, no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False)
 for _command in COMMANDS:

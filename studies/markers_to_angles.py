@@ -17,7 +17,7 @@ DATA = argument("data", "folder of the real recordings", SHARED)
 OUT = argument("--out", "folder of the pictures; none are drawn without it")
 GIVEN = command_line(__name__, __doc__, DATA, OUT, QUICK)  # before the slow imports
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -25,9 +25,9 @@ import numpy as np
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.c3d_measures import read_body_measures
 from gaitdisc.ingest.reading import read_trial
-from gaitdisc.kinematics.calibration import Calibration, calibrated
-from gaitdisc.kinematics.marker_set import marker_set
-from gaitdisc.kinematics.motion import motion
+from gaitdisc.kinematics.calibration import calibrated
+from gaitdisc.kinematics.marker_set import JOINTS, marker_set
+from gaitdisc.kinematics.motion import joint_angles, motion
 from gaitdisc.recording import Recording, Trial
 from gaitdisc.recording.body_measures import BodyMeasures
 
@@ -140,8 +140,7 @@ def opensim(data: Path) -> tuple[Recording, Recording, Recording]:
 def opensim_curves(data: Path, joints: str) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Ours and OpenSim's sagittal angles of the same markers, ours without the mean difference."""
     static, walk, inverse = opensim(data)
-    calibration: Calibration = calibrated(static, replace(marker_set("gait2354"), joints=joints))
-    ours = motion(walk, calibration, (1, 0, 0)).angles
+    ours = joint_angles(walk, static, "gait2354", joints=joints)
     found = {}
     for name in ("pelvis_tilt", *(f"{joint}_{side}" for joint in SAGITTAL for side in "rl")):
         other = np.interp(walk.time, inverse.time, inverse[name])
@@ -150,8 +149,8 @@ def opensim_curves(data: Path, joints: str) -> dict[str, tuple[np.ndarray, np.nd
 
 
 def against_opensim(data: Path) -> list[Row]:
-    """Differences with segments free and with joints held together."""
-    both = {joints: opensim_curves(data, joints) for joints in ("free", "held")}
+    """Differences with segments free, with joints held together, and in the plane of OpenSim's model."""
+    both = {joints: opensim_curves(data, joints) for joints in JOINTS}
     return [(name, "3", *(f"{rms(both[joints][name]):.2f}" for joints in both)) for name in both["free"]]
 
 
@@ -170,11 +169,13 @@ def draw(several: list[Person], data: Path, folder: Path) -> None:
         panels[0][column].set_title(person.name + " (held back)" * (person.name in HELD_BACK))
     panels[0][0].legend(("Plug-in Gait, in the file", "gaitdisc, from the markers"), fontsize=7)
     drawn.savefig(folder / "markers_to_angles_plug_in_gait.png", dpi=90)
-    pairs = opensim_curves(data, "held")
+    pairs = opensim_curves(data, "planar")
     drawn = Figure(figsize=(10, 8), layout="constrained")
-    for place, (name, pair) in zip(drawn.subplots(4, 2).ravel(), pairs.items(), strict=False):
+    places = drawn.subplots(4, 2).ravel()
+    for place, (name, pair) in zip(places, pairs.items(), strict=False):
         panel(place, pair, f"{name} [deg]")
-    drawn.legend(("OpenSim, inverse kinematics", "gaitdisc, joints held"), loc="lower right")
+    places[0].legend(("OpenSim, planar model", "gaitdisc, planar"), fontsize=7)
+    places[-1].remove()
     drawn.savefig(folder / "markers_to_angles_opensim.png", dpi=90)
 
 
@@ -196,7 +197,7 @@ def main() -> None:
         for row in against_plug_in_gait(several, chosen):
             print(f"| {' | '.join(row)} |")
     print("\nrms difference to OpenSim's inverse kinematics after the mean difference [deg]\n")
-    print("| angle | goal | segments free | joints held |\n|---|---|---|---|")
+    print("| angle | goal | segments free | joints held | held, planar as the model |\n|---|---|---|---|---|")
     for row in against_opensim(GIVEN.data):
         print(f"| {' | '.join(row)} |")
     if GIVEN.out:

@@ -6,12 +6,15 @@ from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation, Slerp
 
 from gaitdisc.kinematics.pose import SEGMENTS, Pose
 
 ROUNDS = 60
+FARTHEST_M = 0.04  # root mean square over all markers; beyond it another minimum was found
+DAMPING = 1e-9  # m2; keeps what no marker tells where it is
 SETTLED = 1e-11  # rad and m
-STEADY_M = 0.01  # a turn that moves no marker by more than this a radian is not known
+STEADY_M = 0.02  # lever of a turn; where all markers of a segment are off by 2 mm it is off by 6 deg
 LONGEST_STEP_RAD = 0.5
 
 Points = Mapping[str, NDArray[np.float64]]
@@ -24,6 +27,7 @@ def held_together(
     placed: Placed,
     points: Mapping[str, Points],
     plane: NDArray[np.float64] | None = None,
+    steady_m: float = STEADY_M,
 ) -> dict[str, Pose]:
     """Poses with the joint centre of each segment where the segment above has it, nearest to all markers at once.
 
@@ -35,19 +39,21 @@ def held_together(
     Parameters
     ----------
     first : mapping of str to Pose
-        Each segment laid over its own markers, where the search begins; where one is unknown, it begins as in the
-        nearest frame in which it is known.
+        Each segment laid over its own markers, where the search begins; where one is unknown, it begins between the
+        frames before and after.
     placed : mapping of str to (ndarray (marker, 3), ndarray (frame, marker, 3)) [m]
         Segment -> its markers in its own frame, and in the laboratory; NaN where one is missing.
     points : mapping of str to mapping of str to ndarray (3,) [m]
         Segment -> joint centre (`hip_r`, ...) -> place in its frame, for the segments on both sides of the joint.
     plane : ndarray (frame, 3, 3), optional
         The walker's forward, up and right, as columns, where only the plane of forward and up is wanted.
+    steady_m : float
+        A segment whose turn is told by a shorter lever is unknown (`levers_m`) [m].
 
     Returns
     -------
     dict of str to Pose
-        NaN in frames whose markers do not tell every segment.
+        A segment is NaN in frames whose markers do not tell how it is turned; all are where no pose is near them.
 
     References
     ----------
@@ -69,9 +75,10 @@ def held_together(
             break
     origins = _origins(origin, turns, points)
     _, normal = _normal_equations(turns, origins, placed)
-    told = np.linalg.eigvalsh(_among(normal, allowed))[:, 0] > STEADY_M**2
-    for segment in SEGMENTS:
-        origins[segment][~told], turns[segment][~told] = np.nan, np.nan
+    far = ~(_apart_m(turns, origins, placed) <= FARTHEST_M)
+    for segment, lever in levers_m(normal, allowed).items():
+        unknown = far | ~(lever >= steady_m)
+        origins[segment][unknown], turns[segment][unknown] = np.nan, np.nan
     return {segment: Pose(origins[segment], turns[segment]) for segment in SEGMENTS}
 
 
@@ -90,20 +97,23 @@ def _part(step: NDArray[np.float64], segment: str) -> NDArray[np.float64]:
 
 
 def _beginning(first: Mapping[str, Pose]) -> tuple[Turns, NDArray[np.float64]]:
-    """Rotations and the place of the pelvis, each from the nearest frame in which it is known."""
+    """Rotations and the place of the pelvis, where they are unknown between those before and after."""
     turns: Turns = {}
     origin = np.empty(0)
     for segment in SEGMENTS:
         pose = first[segment]
-        known = np.flatnonzero(pose.known)
+        known, frames = np.flatnonzero(pose.known), np.arange(len(pose))
         if not len(known):
             turns[segment] = np.tile(np.eye(3), (len(pose), 1, 1))
-            nearest = None
+        elif len(known) == 1:
+            turns[segment] = np.tile(pose.rotation[known[0]], (len(pose), 1, 1))
         else:
-            nearest = known[np.rint(np.interp(np.arange(len(pose)), known, np.arange(len(known)))).astype(int)]
-            turns[segment] = np.array(pose.rotation[nearest])
-        if segment == "pelvis":
-            origin = np.zeros((len(pose), 3)) if nearest is None else np.array(pose.origin[nearest])
+            between = Slerp(known, Rotation.from_matrix(pose.rotation[known]))
+            turns[segment] = between(np.clip(frames, known[0], known[-1])).as_matrix()
+        if segment == "pelvis" and len(known):
+            origin = np.stack([np.interp(frames, known, pose.origin[known, axis]) for axis in range(3)], axis=1)
+        elif segment == "pelvis":
+            origin = np.zeros((len(pose), 3))
     return turns, origin
 
 
@@ -159,6 +169,41 @@ def _allowed(frames: int, plane: NDArray[np.float64] | None) -> NDArray[np.float
     return columns
 
 
+def _apart_m(turns: Turns, origins: Turns, placed: Placed) -> NDArray[np.float64]:
+    """Root mean square distance of all markers from their bodies in each frame."""
+    squares, count = 0.0, 0
+    for segment, (body, seen) in placed.items():
+        places = origins[segment][:, None] + np.einsum("fij,pj->fpi", turns[segment], body)
+        apart = ((seen - places) ** 2).sum(axis=2)
+        squares, count = squares + np.nansum(apart, axis=1), count + np.isfinite(apart).sum(axis=1)
+    return np.sqrt(squares / np.maximum(count, 1))
+
+
+def levers_m(normal: NDArray[np.float64], allowed: NDArray[np.float64]) -> Turns:
+    """How well the markers tell the turn of each segment: error of a marker over the error of the turn that it makes.
+
+    Parameters
+    ----------
+    normal : ndarray (frame, all, all)
+        Matrix of the normal equations.
+    allowed : ndarray (frame, all, allowed)
+        Steps that may be taken.
+
+    Returns
+    -------
+    dict of str to ndarray (frame,) [m]
+        About the axis that is told least.
+    """
+    some = _among(normal, allowed)
+    spread = allowed @ np.linalg.inv(some + DAMPING * np.eye(some.shape[1])) @ np.swapaxes(allowed, 1, 2)
+    levers = {}
+    for segment in SEGMENTS:
+        of_chain = np.concatenate([np.arange(3) + 3 + 3 * SEGMENTS.index(above) for above in _chain(segment)])
+        parts = spread[:, of_chain[:, None], of_chain].reshape(len(spread), -1, 3, len(of_chain) // 3, 3)
+        levers[segment] = 1 / np.sqrt(np.linalg.eigvalsh(parts.sum(axis=(1, 3)))[:, -1])
+    return levers
+
+
 def _among(normal: NDArray[np.float64], allowed: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.swapaxes(allowed, 1, 2) @ normal @ allowed
 
@@ -169,7 +214,7 @@ def _solved(
     """Gauss-Newton steps, the smallest where the markers do not tell all, none turning by more than half a radian."""
     some = _among(normal, allowed)
     right = np.swapaxes(allowed, 1, 2) @ gradient[..., None]
-    step = (allowed @ np.linalg.solve(some + 1e-9 * np.eye(some.shape[1]), right))[..., 0]
+    step = (allowed @ np.linalg.solve(some + DAMPING * np.eye(some.shape[1]), right))[..., 0]
     longest = np.abs(step[:, 3:]).max(axis=1, initial=0.0)
     return step * np.minimum(1.0, LONGEST_STEP_RAD / np.maximum(longest, 1e-12))[:, None]
 

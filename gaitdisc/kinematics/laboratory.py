@@ -50,7 +50,8 @@ def up_axis(pelvis: NDArray[np.float64], feet: NDArray[np.float64], file: str = 
     Raises
     ------
     ShapeError
-        If no axis is within 32 deg of the line from feet to pelvis: the person lies, or the frame is tilted.
+        If no axis is within 32 deg of the line from feet to pelvis (the person lies, or the frame is tilted), or
+        pelvis and feet are never seen together.
 
     Examples
     --------
@@ -59,9 +60,15 @@ def up_axis(pelvis: NDArray[np.float64], feet: NDArray[np.float64], file: str = 
     """
     lines = pelvis - feet
     lines = lines[np.isfinite(lines).all(axis=1)]
-    mean = lines.mean(axis=0) if len(lines) else np.full(3, np.nan)
+    if not len(lines):
+        raise ShapeError(
+            "up is found from a frame with markers of the pelvis and of a foot",
+            f"{file or 'the recording'} has none",
+            "Fill the markers, or give another trial.",
+        )
+    mean = lines.mean(axis=0)
     size = float(np.linalg.norm(mean))
-    axis = int(np.argmax(np.abs(np.nan_to_num(mean))))
+    axis = int(np.argmax(np.abs(mean)))
     if not size > 0 or abs(mean[axis]) < UPRIGHT * size:
         raise ShapeError(
             "one axis of the laboratory points up, along which the pelvis is above the feet",

@@ -14,18 +14,16 @@ from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError
 from gaitdisc.kinematics.calibration import Calibration, calibrated
 from gaitdisc.kinematics.cardan import clinical_angles
-from gaitdisc.kinematics.held_joints import held_together
 from gaitdisc.kinematics.laboratory import WalkingFrame, check_right_handed, up_axis, walking_frame
-from gaitdisc.kinematics.marker_set import METHODS, MarkerSet, marker_set, recognised_marker_set
-from gaitdisc.kinematics.markers import marker_labels, marker_places
+from gaitdisc.kinematics.marker_set import MarkerSet, marker_set, recognised_marker_set
+from gaitdisc.kinematics.markers import marker_labels
 from gaitdisc.kinematics.pose import JOINTS, SEGMENTS, Pose
-from gaitdisc.kinematics.rigid_fit import RigidFit, fitted_pose, residual_m
+from gaitdisc.kinematics.rigid_fit import residual_m
+from gaitdisc.kinematics.segment_poses import PlacedMarkers, carried_joint, free_poses, joined_poses, placed_markers
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.recording.body_measures import BodyMeasures
 
-FEWEST_POINTS = 3
 ANOTHER_SHAPE_M = 0.02  # median residual; skin and wands move less, another person's static trial more
-PARENT = {"thigh": "pelvis", "shank": "thigh", "foot": "shank"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,113 +162,69 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
         If a given direction is none, or the pelvis is never seen whole.
     """
     file = markers.source.file or "the trial"
-    names = calibration.marker_set.names(marker_labels(markers))
-    fits: dict[str, RigidFit] = {}
+    placed = placed_markers(markers, calibration)
+    free = free_poses(placed, calibration)
+    up = up_axis(_middle(placed, ("pelvis",)), _middle(placed, ("foot_l", "foot_r")), file)
+    check_right_handed(free["pelvis"].rotation, up, file)
+    facing = free["pelvis"].rotation[:, :, 0]
+    walking = walking_frame(free["pelvis"].origin, facing, up, markers.rate_hz, forward)
+    poses = joined_poses(free, placed, calibration, walking.rotation)
+    residuals = {segment: residual_m(poses[segment], *placed[segment]) for segment in SEGMENTS}
+    bridged = {segment: _bridged(poses[segment], placed[segment][1]) for segment in SEGMENTS}
+    chosen = calibration.marker_set
     findings = [
         *calibration.findings,
-        Finding("note", "marker set", file, f"{calibration.marker_set.name}: {calibration.marker_set.title}", ""),
+        Finding("note", "marker set", file, f"{chosen.name}: {chosen.title}; joints {chosen.joints}", ""),
+        Finding("note", "direction", file, walking.how, ""),
     ]
-    for segment in SEGMENTS:  # the pelvis first, then downwards: each carries the joint below it
-        fits[segment] = _fit(segment, markers, names, calibration, fits)
-    feet = (fits["foot_l"].pose.origin + fits["foot_r"].pose.origin) / 2
-    pelvis = fits["pelvis"].pose
-    up = up_axis(pelvis.origin, feet, file)
-    check_right_handed(pelvis.rotation, up, file)
-    walking = walking_frame(pelvis.origin, pelvis.rotation[:, :, 0], up, markers.rate_hz, forward)
-    joints = calibration.marker_set.joints
-    if joints != "free":
-        plane = walking.rotation if joints == "planar" else None
-        fits = _held(fits, markers, names, calibration, plane)
-    for segment, fit in fits.items():
-        findings += _doubts(segment, fit, markers)
-    poses = {segment: fit.pose for segment, fit in fits.items()}
-    findings.append(Finding("note", "direction", file, walking.how, ""))
-    centres = {joint: _carried(joint, poses, calibration) for joint in JOINTS}
+    for segment in SEGMENTS:
+        findings += _gaps(segment, ~poses[segment].known, bridged[segment], markers)
+        findings += _other_shape(segment, residuals[segment], file)
+    angles = _angles(markers, poses, bridged, walking)
     return Motion(
-        _of_the_plane(_angles(markers, fits, walking)) if joints == "planar" else _angles(markers, fits, walking),
+        _of_the_plane(angles) if chosen.joints == "planar" else angles,
         MappingProxyType(poses),
-        MappingProxyType(centres),
+        MappingProxyType({joint: carried_joint(joint, poses, calibration) for joint in JOINTS}),
         walking,
-        MappingProxyType({segment: fit.residual_m for segment, fit in fits.items()}),
-        calibration.marker_set.name,
+        MappingProxyType(residuals),
+        chosen.name,
         tuple(findings),
     )
 
 
-def _carried(joint: str, poses: Mapping[str, Pose], calibration: Calibration) -> NDArray[np.float64]:
-    """A joint centre as the segment above it carries it."""
-    name, side = joint.split("_")
-    above = {"hip": "pelvis", "knee": f"thigh_{side}", "ankle": f"shank_{side}"}[name]
-    return poses[above].to_laboratory(calibration.points[above][joint])
+def _middle(placed: PlacedMarkers, segments: Sequence[str]) -> NDArray[np.float64]:
+    """Mean place of those markers of some segments that are seen in a frame (frame, 3) [m]."""
+    places = np.concatenate([placed[segment][1] for segment in segments], axis=1)
+    seen = np.isfinite(places).all(axis=2, keepdims=True)
+    count = seen.sum(axis=1)
+    return np.where(count > 0, np.where(seen, places, 0.0).sum(axis=1) / np.maximum(count, 1), np.nan)
 
 
-def _fit(
-    segment: str,
-    markers: Recording,
-    names: Mapping[str, str],
-    calibration: Calibration,
-    fits: Mapping[str, RigidFit],
-) -> RigidFit:
-    body = calibration.body[segment]
-    points = [point for point in body if point in METHODS or point in names]
-    if len(points) < FEWEST_POINTS:
-        absent = [point for point in body if point not in points]
-        raise ChannelError(
-            f"segment {segment} needs {FEWEST_POINTS} points that follow it",
-            f"{markers.source.file or 'the trial'} has {', '.join(points) or 'none'}, and no {', '.join(absent)}",
-            "Give the marker set of these labels, or name the markers in its [aliases].",
-        )
-    side = segment[-2:]
-    places = np.empty((len(markers.time), len(points), 3))
-    for column, point in enumerate(points):
-        if point in METHODS:
-            poses = {name: fit.pose for name, fit in fits.items()}
-            places[:, column] = _carried(f"{point}{side}", poses, calibration)
-        else:
-            places[:, column] = marker_places(markers, [names[point]])[:, 0]
-    return fitted_pose(np.array([body[point] for point in points]), places)
+def _bridged(pose: Pose, places: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Frames in which a segment is known although a marker of it is missing."""
+    return np.asarray(pose.known & ~np.isfinite(places).all(axis=(1, 2)))
 
 
-def _held(
-    fits: Mapping[str, RigidFit],
-    markers: Recording,
-    names: Mapping[str, str],
-    calibration: Calibration,
-    plane: NDArray[np.float64] | None,
-) -> dict[str, RigidFit]:
-    """The same segments with their joints held together, by the markers alone."""
-    placed = {}
-    for segment, body in calibration.body.items():
-        points = [point for point in body if point in names]
-        labels = [names[point] for point in points]
-        placed[segment] = np.array([body[point] for point in points]), marker_places(markers, labels)
-    poses = held_together({segment: fit.pose for segment, fit in fits.items()}, placed, calibration.points, plane)
-    return {
-        segment: RigidFit(
-            poses[segment], np.asarray(np.isfinite(seen).all(axis=2)), residual_m(poses[segment], body, seen)
-        )
-        for segment, (body, seen) in placed.items()
-    }
-
-
-def _doubts(segment: str, fit: RigidFit, markers: Recording) -> list[Finding]:
-    file = markers.source.file or "the trial"
+def _gaps(segment: str, unknown: NDArray[np.bool_], bridged: NDArray[np.bool_], markers: Recording) -> list[Finding]:
+    file, frames = markers.source.file or "the trial", len(markers.time)
     findings = []
-    unknown = ~fit.pose.known
-    bridged = ~fit.seen.all(axis=1) & ~unknown
     if bridged.any():
-        what = f"{segment}: a marker was missing in {int(bridged.sum())} of {len(bridged)} frames; the others carry it"
+        what = f"{segment}: a marker was missing in {int(bridged.sum())} of {frames} frames; the others carry it"
         findings.append(Finding("note", "bridged", file, what, "", spans=_spans(bridged, markers.time)))
     if unknown.any():
-        what = f"{segment} is not known in {int(unknown.sum())} of {len(unknown)} frames: too few markers"
+        what = f"{segment} is not known in {int(unknown.sum())} of {frames} frames: too few markers"
         spoils = "its joints there; fill the gaps, or use more markers"
         findings.append(Finding("warning", "gap", file, what, spoils, spans=_spans(unknown, markers.time)))
-    typical = float(np.nanmedian(fit.residual_m)) if not unknown.all() else float("nan")
-    if typical > ANOTHER_SHAPE_M:
-        what = f"the markers of {segment} lie {typical * 1000:.0f} mm from where the static trial has them"
-        spoils = "its angles; is the static trial of this person and session, and no label exchanged?"
-        findings.append(Finding("warning", "another shape", file, what, spoils))
     return findings
+
+
+def _other_shape(segment: str, residual: NDArray[np.float64], file: str) -> list[Finding]:
+    typical = float(np.nanmedian(residual)) if np.isfinite(residual).any() else 0.0
+    if typical <= ANOTHER_SHAPE_M:
+        return []
+    what = f"the markers of {segment} lie {typical * 1000:.0f} mm from where the static trial has them"
+    spoils = "its angles; is the static trial of this person and session, and no label exchanged?"
+    return [Finding("warning", "another shape", file, what, spoils)]
 
 
 def _spans(marked: NDArray[np.bool_], time: NDArray[np.float64]) -> tuple[tuple[float, float], ...]:
@@ -278,9 +232,10 @@ def _spans(marked: NDArray[np.bool_], time: NDArray[np.float64]) -> tuple[tuple[
     return tuple((float(time[first]), float(time[last - 1])) for first, last in edges.reshape(-1, 2))
 
 
-def _angles(markers: Recording, fits: Mapping[str, RigidFit], walking: WalkingFrame) -> Recording:
-    turns = {segment: fit.pose.rotation for segment, fit in fits.items()}
-    bridged = {segment: np.asarray(~fit.seen.all(axis=1)) for segment, fit in fits.items()}
+def _angles(
+    markers: Recording, poses: Mapping[str, Pose], bridged: Mapping[str, NDArray[np.bool_]], walking: WalkingFrame
+) -> Recording:
+    turns = {segment: pose.rotation for segment, pose in poses.items()}
     columns: list[tuple[Channel, NDArray[np.float64], NDArray[np.bool_]]] = []
 
     def add(names: Sequence[str], side: str, values: NDArray[np.float64], doubt: NDArray[np.bool_]) -> None:
@@ -298,7 +253,7 @@ def _angles(markers: Recording, fits: Mapping[str, RigidFit], walking: WalkingFr
             add(names, side, values, bridged[above] | bridged[below])
         foot = clinical_angles(walking.rotation, turns[f"foot_{side}"])
         add(("foot_progression_angle",), side, foot[:, 2:] * mirror[2], bridged[f"foot_{side}"])
-    place = np.einsum("fji,fj->fi", walking.rotation, fits["pelvis"].pose.origin)
+    place = np.einsum("fji,fj->fi", walking.rotation, poses["pelvis"].origin)
     for name, column in zip(("pelvis_tx", "pelvis_ty", "pelvis_tz"), place.T, strict=True):
         columns.append((Channel(name, "translation", "m"), column, bridged["pelvis"]))
     return replace(

@@ -36,6 +36,11 @@ def test_a_tilted_frame_is_refused():
         up_axis(np.array([[0, 0.6, 0.7]]), np.zeros((1, 3)), "lying.c3d")
 
 
+def test_a_trial_that_never_shows_pelvis_and_feet_is_refused():
+    with pytest.raises(ShapeError, match=r"markers of the pelvis and of a foot; a\.c3d has none"):
+        up_axis(np.full((2, 3), np.nan), np.zeros((2, 3)), "a.c3d")
+
+
 def test_a_mirrored_pelvis_is_refused():
     mirrored = np.diag([1.0, -1.0, 1.0])[None]
     with pytest.raises(ShapeError, match="frame is mirrored, or left and right are exchanged"):
