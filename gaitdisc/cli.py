@@ -20,6 +20,7 @@ from gaitdisc.commands.discover import discover
 from gaitdisc.commands.exit_codes import REFUSED
 from gaitdisc.commands.export import export
 from gaitdisc.commands.modalities import modalities
+from gaitdisc.commands.moments import moments
 from gaitdisc.commands.new import new
 from gaitdisc.commands.reconstruct import reconstruct
 from gaitdisc.commands.report import report
@@ -31,6 +32,7 @@ COMMANDS = (
     new,
     check,
     angles,
+    moments,
     compare,
     discover,
     reconstruct,
