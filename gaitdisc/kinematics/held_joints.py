@@ -12,7 +12,7 @@ from gaitdisc.kinematics.pose import SEGMENTS, Pose
 
 ROUNDS = 60
 FARTHEST_M = 0.04  # root mean square over all markers; beyond it another minimum was found
-DAMPING = 1e-9  # m2; keeps what no marker tells where it is
+DAMPING = 1e-9  # m2; keeps what no marker determines where it is
 SETTLED = 1e-11  # rad and m
 STEADY_M = 0.02  # lever of a turn; where all markers of a segment are off by 2 mm it is off by 6 deg
 LONGEST_STEP_RAD = 0.5
@@ -48,12 +48,12 @@ def held_together(
     plane : ndarray (frame, 3, 3), optional
         The walker's forward, up and right, as columns, where only the plane of forward and up is wanted.
     steady_m : float
-        A segment whose turn is told by a shorter lever is unknown (`levers_m`) [m].
+        A segment whose turn has a shorter lever is unknown (`levers_m`) [m].
 
     Returns
     -------
     dict of str to Pose
-        A segment is NaN in frames whose markers do not tell how it is turned; all are where no pose is near them.
+        A segment is NaN in frames whose markers do not determine it; all are where no pose is near them.
 
     References
     ----------
@@ -180,7 +180,7 @@ def _apart_m(turns: Turns, origins: Turns, placed: Placed) -> NDArray[np.float64
 
 
 def levers_m(normal: NDArray[np.float64], allowed: NDArray[np.float64]) -> Turns:
-    """How well the markers tell the turn of each segment: error of a marker over the error of the turn that it makes.
+    """How well markers determine each segment: error of a marker over the error of the turn that it makes.
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ def levers_m(normal: NDArray[np.float64], allowed: NDArray[np.float64]) -> Turns
     Returns
     -------
     dict of str to ndarray (frame,) [m]
-        About the axis that is told least.
+        About the axis for which it is shortest.
     """
     some = _among(normal, allowed)
     spread = allowed @ np.linalg.inv(some + DAMPING * np.eye(some.shape[1])) @ np.swapaxes(allowed, 1, 2)
@@ -211,7 +211,7 @@ def _among(normal: NDArray[np.float64], allowed: NDArray[np.float64]) -> NDArray
 def _solved(
     normal: NDArray[np.float64], gradient: NDArray[np.float64], allowed: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Gauss-Newton steps, the smallest where the markers do not tell all, none turning by more than half a radian."""
+    """Gauss-Newton steps, the smallest where markers do not determine all, none turning by more than half a radian."""
     some = _among(normal, allowed)
     right = np.swapaxes(allowed, 1, 2) @ gradient[..., None]
     step = (allowed @ np.linalg.solve(some + DAMPING * np.eye(some.shape[1]), right))[..., 0]
