@@ -30,7 +30,7 @@ def held_in_gaps(free: Mapping[str, Pose], placed: Placed, points: Mapping[str, 
     Returns
     -------
     dict of str to Pose
-        NaN in all other frames, and where the markers do not tell the segment.
+        NaN in all other frames, and where the markers do not determine the segment.
     """
     unknown = ~np.logical_and.reduce([free[segment].known for segment in SEGMENTS])
     beside = np.convolve(unknown, np.ones(3), "same") > 0
@@ -48,7 +48,7 @@ def held_in_gaps(free: Mapping[str, Pose], placed: Placed, points: Mapping[str, 
 def carried_over(free: Pose, held: Pose) -> Pose:
     """A segment's pose whose gaps are those of the held body, led over from known to known frame.
 
-    Held together, two markers and a joint tell a pose. It differs from that of the segment's own points, since skin
+    Held together, two markers and a joint determine a pose. It differs from that of the segment's own points: skin
     moves; the difference at both ends of a gap is led over it, so that no step is made.
 
     Parameters
@@ -56,7 +56,7 @@ def carried_over(free: Pose, held: Pose) -> Pose:
     free : Pose
         Laid over its own points; NaN where these are too few.
     held : Pose
-        Of the body held together; NaN where it is not told.
+        Of the body held together; NaN where it is not determined.
 
     Returns
     -------

@@ -12,8 +12,8 @@ from gaitdisc.kinematics.pose import SEGMENTS, Pose
 
 ROUNDS = 60
 FARTHEST_M = 0.04  # root mean square over all markers; beyond it another minimum was found
-DAMPING = 1e-9  # m2; keeps what no marker tells where it is
-SETTLED = 1e-11  # rad and m
+DAMPING = 1e-9  # m2; keeps what no marker determines where it is
+SETTLED = 1e-9  # rad and m; the step after is smaller by far
 STEADY_M = 0.02  # lever of a turn; where all markers of a segment are off by 2 mm it is off by 6 deg
 LONGEST_STEP_RAD = 0.5
 
@@ -48,12 +48,12 @@ def held_together(
     plane : ndarray (frame, 3, 3), optional
         The walker's forward, up and right, as columns, where only the plane of forward and up is wanted.
     steady_m : float
-        A segment whose turn is told by a shorter lever is unknown (`levers_m`) [m].
+        A segment whose turn has a shorter lever is unknown (`levers_m`) [m].
 
     Returns
     -------
     dict of str to Pose
-        A segment is NaN in frames whose markers do not tell how it is turned; all are where no pose is near them.
+        A segment is NaN in frames whose markers do not determine it; all are where no pose is near them.
 
     References
     ----------
@@ -63,15 +63,19 @@ def held_together(
     if plane is not None:
         turns = {segment: _upright(turn, plane) for segment, turn in turns.items()}
     allowed = _allowed(len(origin), plane)
+    moving: NDArray[np.intp] = np.arange(len(origin))
     for _ in range(ROUNDS):
-        origins = _origins(origin, turns, points)
-        gradient, normal = _normal_equations(turns, origins, placed)
-        step = _solved(normal, gradient, allowed)
-        origin = origin + step[:, :3]
+        some = {segment: turn[moving] for segment, turn in turns.items()}
+        there = {segment: (body, seen[moving]) for segment, (body, seen) in placed.items()}
+        gradient, normal = _normal_equations(some, _origins(origin[moving], some, points), there)
+        step = _solved(normal, gradient, allowed[moving])
+        origin[moving] += step[:, :3]
         for segment in SEGMENTS:
             for above in reversed(_chain(segment)):  # what is nearest turns first, the pelvis last
-                turns[segment] = _turn(_part(step, above)) @ turns[segment]
-        if not np.abs(step).max(initial=0.0) > SETTLED:
+                some[segment] = _turn(step[:, _columns(above)]) @ some[segment]
+            turns[segment][moving] = some[segment]
+        moving = moving[np.abs(step).max(axis=1) > SETTLED]
+        if not len(moving):
             break
     origins = _origins(origin, turns, points)
     _, normal = _normal_equations(turns, origins, placed)
@@ -89,11 +93,6 @@ def _chain(segment: str) -> tuple[str, ...]:
     part, side = segment.split("_")
     parts = ("thigh", "shank", "foot")
     return ("pelvis", *(f"{one}_{side}" for one in parts[: parts.index(part) + 1]))
-
-
-def _part(step: NDArray[np.float64], segment: str) -> NDArray[np.float64]:
-    first = 3 + 3 * SEGMENTS.index(segment)
-    return step[:, first : first + 3]
 
 
 def _beginning(first: Mapping[str, Pose]) -> tuple[Turns, NDArray[np.float64]]:
@@ -136,18 +135,25 @@ def _normal_equations(turns: Turns, origins: Turns, placed: Placed) -> tuple[NDA
         there = np.asarray(np.isfinite(seen).all(axis=2))
         places = origins[segment][:, None] + np.einsum("fij,pj->fpi", turns[segment], body)
         apart = np.where(there[..., None], seen - places, 0.0)
-        slope = np.zeros((frames, len(body), 3, width))
+        columns = np.concatenate([np.arange(3), *(_columns(above) for above in _chain(segment))])
+        slope = np.zeros((frames, len(body), 3, len(columns)))
         slope[..., :3] = np.eye(3)
-        for above in _chain(segment):
-            arm = places - origins[above][:, None]
-            first = 3 + 3 * SEGMENTS.index(above)
-            for axis in range(3):
-                slope[..., first + axis] = np.cross(np.eye(3)[axis], arm)
-        slope *= there[..., None, None]
-        flat = slope.reshape(frames, -1, width)
-        gradient += np.einsum("fkc,fk->fc", flat, apart.reshape(frames, -1))
-        normal += np.swapaxes(flat, 1, 2) @ flat
+        for place, above in enumerate(_chain(segment)):
+            x, y, z = np.moveaxis(places - origins[above][:, None], 2, 0)
+            first = 3 + 3 * place  # columns of a turn: the axis it is about, crossed with the arm
+            slope[..., 1, first], slope[..., 2, first] = -z, y
+            slope[..., 0, first + 1], slope[..., 2, first + 1] = z, -x
+            slope[..., 0, first + 2], slope[..., 1, first + 2] = -y, x
+        flat = (slope * there[..., None, None]).reshape(frames, -1, len(columns))
+        across = np.swapaxes(flat, 1, 2)
+        gradient[:, columns] += (across @ apart.reshape(frames, -1, 1))[..., 0]
+        normal[:, columns[:, None], columns] += across @ flat
     return gradient, normal
+
+
+def _columns(segment: str) -> NDArray[np.intp]:
+    """Columns of the turn of a segment's joint."""
+    return np.arange(3) + 3 + 3 * SEGMENTS.index(segment)
 
 
 def _upright(turn: NDArray[np.float64], plane: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -180,7 +186,7 @@ def _apart_m(turns: Turns, origins: Turns, placed: Placed) -> NDArray[np.float64
 
 
 def levers_m(normal: NDArray[np.float64], allowed: NDArray[np.float64]) -> Turns:
-    """How well the markers tell the turn of each segment: error of a marker over the error of the turn that it makes.
+    """How well markers determine each segment: error of a marker over the error of the turn that it makes.
 
     Parameters
     ----------
@@ -192,13 +198,13 @@ def levers_m(normal: NDArray[np.float64], allowed: NDArray[np.float64]) -> Turns
     Returns
     -------
     dict of str to ndarray (frame,) [m]
-        About the axis that is told least.
+        About the axis for which it is shortest.
     """
     some = _among(normal, allowed)
     spread = allowed @ np.linalg.inv(some + DAMPING * np.eye(some.shape[1])) @ np.swapaxes(allowed, 1, 2)
     levers = {}
     for segment in SEGMENTS:
-        of_chain = np.concatenate([np.arange(3) + 3 + 3 * SEGMENTS.index(above) for above in _chain(segment)])
+        of_chain = np.concatenate([_columns(above) for above in _chain(segment)])
         parts = spread[:, of_chain[:, None], of_chain].reshape(len(spread), -1, 3, len(of_chain) // 3, 3)
         levers[segment] = 1 / np.sqrt(np.linalg.eigvalsh(parts.sum(axis=(1, 3)))[:, -1])
     return levers
@@ -211,7 +217,7 @@ def _among(normal: NDArray[np.float64], allowed: NDArray[np.float64]) -> NDArray
 def _solved(
     normal: NDArray[np.float64], gradient: NDArray[np.float64], allowed: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Gauss-Newton steps, the smallest where the markers do not tell all, none turning by more than half a radian."""
+    """Gauss-Newton steps, the smallest where markers do not determine all, none turning by more than half a radian."""
     some = _among(normal, allowed)
     right = np.swapaxes(allowed, 1, 2) @ gradient[..., None]
     step = (allowed @ np.linalg.solve(some + DAMPING * np.eye(some.shape[1]), right))[..., 0]

@@ -103,7 +103,7 @@ def joined_poses(
     Returns
     -------
     dict of str to Pose
-        Free segments that lost markers are carried by the others where these tell them.
+        Free segments that lost markers are carried by the others where these determine them.
     """
     joints = calibration.marker_set.joints
     if joints != "free":

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import pytest
 from manufactured_body import MEASURES, PLUG_IN_GAIT, known_angles, markers_of, renamed, static_of
 
@@ -77,6 +80,12 @@ def test_a_laboratory_writes_its_own_in_twenty_lines(tmp_path):
     angles = joint_angles(markers, static, path, MEASURES, (1, 0, 0))
     for name, values in known.items():
         assert abs(angles[name] - values).max() < 1e-9, name
+
+
+def test_the_set_on_the_page_can_be_read(tmp_path):
+    page = (Path(__file__).parents[2] / "docs" / "kinematics.md").read_text(encoding="utf-8")
+    [text] = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
+    assert read_marker_set(written(tmp_path, text)).followers("pelvis") == ("LASI", "RASI", "SACR")
 
 
 def test_the_nearest_name_is_given():

@@ -261,6 +261,31 @@ def test_the_pelvis_of_a_real_walk_has_the_signs_of_the_package(person):
         np.testing.assert_allclose(found[ours], sign * theirs[label], atol=1.0, err_msg=ours)
 
 
+def test_the_feet_of_a_real_walk_have_the_signs_of_the_package(person):
+    static, walk, measures = person
+    calibration = calibrated(static.stream("markers"), marker_set("plug_in_gait"), measures)
+    found, theirs = motion(walk.stream("markers"), calibration, (0, 1, 0)).angles, walk.stream("kinematics")
+    for side in "rl":
+        for ours, label in ((f"foot_progression_angle_{side}", "FootProgressAngles.z"),
+                            (f"ankle_rotation_{side}", "AnkleAngles.z")):  # fmt: skip
+            other = theirs[f"{side.upper()}{label}"]
+            assert np.corrcoef(found[ours], other)[0, 1] > 0.8, ours
+            assert np.sqrt(np.mean((found[ours] - other) ** 2)) < 4.0, ours
+
+
+def test_a_real_static_trial_of_another_person_is_said(person, gait_data):
+    static, walk, measures = person
+    path = gait_data / "young_static" / "HC031A" / "HC031A01.c3d"
+    own = calibrated(static.stream("markers"), marker_set("plug_in_gait"), measures)
+    other = calibrated(read_trial(path).stream("markers"), marker_set("plug_in_gait"), read_body_measures(path))
+    said = [
+        [finding.severity for finding in motion(walk.stream("markers"), calibration).findings
+         if finding.kind == "another shape"] for calibration in (own, other)
+    ]  # fmt: skip
+    assert said[0] == []
+    assert "warning" in said[1]
+
+
 def test_pelvis_list_is_that_of_opensim(gait_data):
     """The right side down is positive: height of the right spine over the left one against OpenSim's own angle."""
     folder = gait_data / "opensim_walks" / "mrs_emg_walking"

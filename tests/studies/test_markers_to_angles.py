@@ -12,7 +12,7 @@ def data(gait_data):
 
 def test_one_person_agrees_with_plug_in_gait(data):
     rows = against_plug_in_gait(people(data, WRITTEN_WITH[1:2]), "plug_in_gait")
-    found = {angle: (float(goal), straight, turn) for angle, goal, straight, _, turn, _ in rows}
+    found = {row[0]: (float(row[1]), row[2], row[5]) for row in rows}
     for angle, (goal, *cells) in found.items():
         for cell in cells:
             assert cell == "-" or float(cell.split()[0]) <= goal, angle
