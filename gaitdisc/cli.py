@@ -12,6 +12,7 @@ import typer
 
 import gaitdisc
 from gaitdisc.commands.ablate import ablate
+from gaitdisc.commands.angles import angles
 from gaitdisc.commands.check import check
 from gaitdisc.commands.compare import compare
 from gaitdisc.commands.demo import demo
@@ -19,6 +20,7 @@ from gaitdisc.commands.discover import discover
 from gaitdisc.commands.exit_codes import REFUSED
 from gaitdisc.commands.export import export
 from gaitdisc.commands.modalities import modalities
+from gaitdisc.commands.moments import moments
 from gaitdisc.commands.new import new
 from gaitdisc.commands.reconstruct import reconstruct
 from gaitdisc.commands.report import report
@@ -26,7 +28,22 @@ from gaitdisc.commands.run import run
 from gaitdisc.commands.sensitivity import sensitivity
 from gaitdisc.errors import GaitdiscError
 
-COMMANDS = (new, check, compare, discover, reconstruct, run, ablate, modalities, sensitivity, report, export, demo)
+COMMANDS = (
+    new,
+    check,
+    angles,
+    moments,
+    compare,
+    discover,
+    reconstruct,
+    run,
+    ablate,
+    modalities,
+    sensitivity,
+    report,
+    export,
+    demo,
+)
 
 app = typer.Typer(add_completion=False, no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False)
 for _command in COMMANDS:

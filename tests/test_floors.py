@@ -12,7 +12,19 @@ PACKAGE = Path(gaitdisc.__file__).parent
 FLOORS = (
     ("errors", "units", "channel", "whole_file", "regular_file", "toml_text", "spreadsheet", "compiled"),
     ("recording", "model"),
-    ("ingest", "signals", "simulation", "cohort", "regression", "networks", "statistics", "results", "turbulence"),
+    (
+        "ingest",
+        "signals",
+        "kinematics",
+        "simulation",
+        "cohort",
+        "regression",
+        "networks",
+        "statistics",
+        "results",
+        "turbulence",
+    ),
+    ("kinetics",),
     ("processing", "discrepancy", "discovery", "sensing", "response"),
     ("batch", "report"),
     ("commands",),
@@ -80,6 +92,6 @@ def test_the_report_reads_results_and_computes_none():
         f"{path.relative_to(PACKAGE)} imports {name}"
         for path, room in _modules()
         for name in _imported(path)
-        if room == "report" and name.startswith("gaitdisc.") and name.split(".")[1] in FLOORS[3]
+        if room == "report" and name.startswith("gaitdisc.") and name.split(".")[1] in (*FLOORS[3], *FLOORS[4])
     ]
     assert not strays, "\n".join(strays)

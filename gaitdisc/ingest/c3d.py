@@ -23,7 +23,7 @@ from gaitdisc.ingest.c3d_scales import check_common_scales, unscaled_channels
 from gaitdisc.ingest.file_hash import file_sha256
 from gaitdisc.ingest.force_plates import force_plates, plate_loads, plate_streams
 from gaitdisc.ingest.reader_process import RawTrial, ReaderProcess, ReadRequest
-from gaitdisc.recording import Finding, Recording, Source, Trial
+from gaitdisc.recording import Finding, Recording, Source, Surface, Trial
 
 ANALOG_STREAMS = ("emg", "forces", "signals")
 
@@ -112,7 +112,7 @@ class C3DReader:
             raw, more = self._raw(path, header, layout)
         findings += [*doubts, *more]
         labels = LabelMap(channels)
-        streams, seen = _streams(raw, layout, parameters, labels, header.file)
+        streams, surfaces, seen = _streams(raw, layout, parameters, labels, header.file)
         first = parameters.field("ACTUAL_START_FIELD") or max(header.first_frame, 1)
         events, more = file_events(parameters, layout.frames, rate_hz, first, header.file)
         findings += [*seen, *more, *labels.unused(_all_labels(parameters, layout), header.file)]
@@ -126,7 +126,7 @@ class C3DReader:
             key: Recording(times["analog" if key in ANALOG_STREAMS else "points"], values, columns, source=source)
             for key, (values, columns) in streams.items()
         }
-        return Trial(path.stem, recordings, events, tuple(findings))
+        return Trial(path.stem, recordings, events, tuple(findings), surfaces=surfaces)
 
     def _raw(self, path: Path, header: C3DHeader, layout: C3DLayout) -> tuple[RawTrial, list[Finding]]:
         """What ezc3d reads or, where it cannot, the second reader; both are held to the counts of the header."""
@@ -178,7 +178,7 @@ def read_c3d(path: str | Path, channels: Mapping[str, str] | None = None) -> Tri
 
 def _streams(
     raw: RawTrial, layout: C3DLayout, parameters: C3DParameters, labels: LabelMap, file: str
-) -> tuple[Streams, list[Finding]]:
+) -> tuple[Streams, tuple[Surface, ...], list[Finding]]:
     unscaled, seen = unscaled_channels(parameters, layout.channels, file)
     raw.analog[:, sorted(unscaled)] = np.nan
     findings = [
@@ -201,7 +201,8 @@ def _streams(
                 streams[key] = (np.hstack([before, values]), (*earlier, *channels))
             else:
                 streams[key] = (values, channels)
-    return streams, [*findings, *doubts, *described, *told, *asked]
+    surfaces = tuple(plate.surface for plate in plates if columns.issuperset(plate.columns))
+    return streams, surfaces, [*findings, *doubts, *described, *told, *asked]
 
 
 def _rate(header: C3DHeader, parameters: C3DParameters, layout: C3DLayout) -> tuple[float, list[Finding]]:

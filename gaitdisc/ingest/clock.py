@@ -16,7 +16,7 @@ ALREADY_EVEN = 1e-6  # of a step
 
 
 def printed_digit(texts: Iterable[str]) -> float:
-    """Size of the last printed digit, the finest of a column.
+    """Size of the last digit in use, the finest of a column; zeros that only fill up a number are none.
 
     Parameters
     ----------
@@ -25,14 +25,14 @@ def printed_digit(texts: Iterable[str]) -> float:
 
     Examples
     --------
-    >>> printed_digit(["0", "0.017", "0.033"]), printed_digit(["5.00e-04"])
-    (0.001, 1e-06)
+    >>> printed_digit(["0", "0.017", "0.033"]), printed_digit(["0.000000", "0.017000"]), printed_digit(["5.25e-04"])
+    (0.001, 0.001, 1e-06)
     """
     finest = 0
     for text in texts:
         found = _NUMBER.fullmatch(text.strip())
         if found:
-            finest = max(finest, len(found[1] or "") - int(found[2] or 0))
+            finest = max(finest, len((found[1] or "").rstrip("0")) - int(found[2] or 0))
     return float(10.0 ** -min(finest, 300))
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.recording import Surface
 from gaitdisc.units import convert, inner_unit
 
 LEAST_LOAD_N = 20.0  # below it a centre of pressure is noise divided by noise
@@ -48,6 +49,11 @@ class ForcePlate:
     corners: NDArray[np.float64]
     origin: NDArray[np.float64]
     calibration: NDArray[np.float64]
+
+    @property
+    def surface(self) -> Surface:
+        """What a foot can step on, under the first part of its channels' names."""
+        return Surface(f"plate_{self.number}", self.corners)
 
     @property
     def centre(self) -> NDArray[np.float64]:

@@ -97,7 +97,8 @@ def read_trial(
     events = tuple(sorted((event for part in parts for event in part.events), key=lambda event: event.time))
     if not any(Path(file).suffix.lower() == ".c3d" for file in files):  # that reader tells unused labels itself
         findings += _unused(channels, named, parts[0].name)
-    trial = Trial(parts[0].name, named, events, tuple(findings), subject, condition)
+    surfaces = tuple(surface for part in parts for surface in part.surfaces)
+    trial = Trial(parts[0].name, named, events, tuple(findings), subject, condition, surfaces)
     begin_s = {key: float(recording.time[0]) for key, recording in trial.streams.items() if len(recording.time)}
     return _judged(trial if crop_s is None else _cropped(trial, *crop_s), begin_s)
 

@@ -6,6 +6,7 @@ from gaitdisc.recording.recording import Recording, Source
 from gaitdisc.recording.samples import Samples
 from gaitdisc.recording.scale import Scale, scale_of
 from gaitdisc.recording.strides import PERCENT, DroppedStride, Strides
+from gaitdisc.recording.surface import Surface
 from gaitdisc.recording.trajectory import Trajectory
 from gaitdisc.recording.trial import Event, Trial
 
@@ -21,6 +22,7 @@ __all__ = [
     "Scale",
     "Source",
     "Strides",
+    "Surface",
     "Trajectory",
     "Trial",
     "scale_of",

@@ -13,6 +13,7 @@ from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.recording.finding import Finding
 from gaitdisc.recording.recording import Recording
 from gaitdisc.recording.strides import interpolated
+from gaitdisc.recording.surface import Surface
 from gaitdisc.recording.wrapping import unwrapped, wrapped
 
 STREAMS = ("kinematics", "markers", "emg", "forces", "moments", "signals")
@@ -54,6 +55,8 @@ class Trial:
         What the reader saw that a user must know.
     subject, condition : str
         Pseudonym and condition.
+    surfaces : tuple of Surface
+        Where the force plates or belts of `forces` lie, as far as the file says it.
 
     Raises
     ------
@@ -72,6 +75,7 @@ class Trial:
     findings: tuple[Finding, ...] = ()
     subject: str = ""
     condition: str = ""
+    surfaces: tuple[Surface, ...] = ()
 
     def __post_init__(self) -> None:
         """Freeze the mapping and refuse unknown streams."""

@@ -136,6 +136,6 @@ def test_internal_moments_times_angular_velocity_are_the_power_of_the_file(gait_
         for side in "rl":
             velocity = np.gradient(np.radians(kinematics[f"ankle_angle_{side}"]), kinematics.time)
             made = moments[f"ankle_angle_{side}_moment"] * velocity
-            power = moments[f"{side.upper()}AnklePower.z"]
+            power = moments[f"ankle_power_{side}"]
             both = np.isfinite(made) & np.isfinite(power) & (np.abs(power) > 0.2)
             assert np.corrcoef(made[both], power[both])[0, 1] > 0.9, (path.name, side)

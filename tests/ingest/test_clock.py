@@ -13,9 +13,15 @@ from gaitdisc.ingest.clock import even_time, printed_digit
 
 def test_printed_digit_is_the_finest_one():
     assert printed_digit(["0", "0.45", "0.451"]) == 1e-3
-    assert printed_digit(["  1.500e-03"]) == pytest.approx(1e-6)
+    assert printed_digit(["  1.501e-03"]) == pytest.approx(1e-6)
     assert printed_digit(["3", "words", "nan"]) == 1.0
     assert printed_digit(["0,25"]) == 0.01
+
+
+def test_zeros_that_fill_up_a_number_are_no_digits():
+    """Times rounded to ms and printed with six digits, as OpenSim's own marker files have them."""
+    assert printed_digit(["0.000000", "0.017000", "0.033000"]) == 1e-3
+    assert printed_digit(["100", "200"]) == 1.0
 
 
 @given(

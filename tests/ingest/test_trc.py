@@ -41,6 +41,15 @@ def test_shifted_labels_and_zeros_of_a_real_file(gait_data):
     assert int(np.isnan(markers["LASI.x"]).sum()) == 106
 
 
+def test_milliseconds_printed_with_six_digits_are_a_clock_of_60_hz(gait_data):
+    folder = gait_data.parent / "opensim_gait10dof" / "ExperimentalData"
+    if not folder.is_dir():
+        pytest.skip(f"real recordings are absent: {folder}")
+    for name, frames in (("subject01_static.trc", 300), ("subject01_walk.trc", 151)):
+        markers = read_trc(folder / name).streams["markers"]
+        assert (len(markers.time), markers.rate_hz) == (frames, 60.0)
+
+
 def test_units_blanks_and_clock(tmp_path):
     markers = _read(tmp_path, TEXT).streams["markers"]
     assert markers.names == ("RHEE.x", "RHEE.y", "RHEE.z", "LHEE.x", "LHEE.y", "LHEE.z")

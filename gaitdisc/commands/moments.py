@@ -1,0 +1,51 @@
+"""`gaitdisc moments`: joint moments and powers of a trial from its markers, its force platforms and a static trial."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def moments(
+    trial: Annotated[list[Path], typer.Argument(help="One .c3d, or .trc and .mot of one walk.")],
+    static: Annotated[Path, typer.Option("--static", help="Markers of the same person standing: .c3d or .trc.")],
+    out: Annotated[Path, typer.Option("--out", help="File to write: .csv, .tsv, .parquet, .mot, .sto.")],
+    mass: Annotated[float | None, typer.Option(help="Body mass [kg], where the static C3D has none.")] = None,
+    sex: Annotated[str, typer.Option(help="f or m, for the segments' inertia; the mean of both by default.")] = "",
+    marker_set: Annotated[
+        str, typer.Option(help="plug_in_gait, oxford_foot, ..., or a .toml file; recognised by the labels by default.")
+    ] = "",
+    force_hz: Annotated[
+        float, typer.Option(help="Low-pass of the ground's force [Hz]; 6 filters it as the markers are.")
+    ] = 20.0,
+) -> None:
+    """Joint moments [N m/kg] and powers [W/kg], internal; frames without a known load of the foot are empty."""
+    from gaitdisc.ingest.c3d_measures import read_body_measures
+    from gaitdisc.ingest.reading import read_trial
+    from gaitdisc.ingest.storage import write_storage
+    from gaitdisc.ingest.table import write_table
+    from gaitdisc.kinematics.calibration import calibrated
+    from gaitdisc.kinematics.motion import chosen_marker_set, motion
+    from gaitdisc.kinetics.body_inertia import Person
+    from gaitdisc.kinetics.joint_moments import KineticsSettings
+    from gaitdisc.kinetics.trial_kinetics import trial_kinetics
+    from gaitdisc.processing.markers_to_moments import foot_paths_of
+    from gaitdisc.recording.body_measures import BodyMeasures
+
+    walk, standing = read_trial(trial), read_trial(static).stream("markers")
+    measures = read_body_measures(static) if static.suffix.lower() == ".c3d" else BodyMeasures()
+    person = Person(measures.mass_kg if mass is None else mass, sex, measures.height_m)
+    markers = walk.stream("markers")
+    body = calibrated(standing, chosen_marker_set(markers, standing, marker_set or None), measures)
+    moved = motion(markers, body)
+    settings = KineticsSettings(force_cutoff_hz=force_hz)
+    found = trial_kinetics(walk, moved.poses, foot_paths_of(moved, body), person, settings)
+    write = write_storage if out.suffix.lower() in (".mot", ".sto") else write_table
+    write(found.moments, out)
+    for finding in (*moved.findings, *found.findings):
+        typer.echo(finding.line())
+    for step in (one for one in found.steps if one.clean):
+        typer.echo(f"side {step.side} alone on {step.platform} from {step.start:.2f} to {step.end:.2f} s")
+    typer.echo(f"{out}: {len(found.moments.names)} channels, {len(found.moments.time)} samples")

@@ -1,0 +1,1 @@
+"""From markers to the body's motion: marker sets, joint centres, segments in space, joint angles."""

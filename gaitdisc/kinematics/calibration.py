@@ -1,0 +1,319 @@
+"""A person's segments as the static trial shows them: frames, joint centres, and where the markers lie in them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.errors import ChannelError, SamplingError, ShapeError
+from gaitdisc.kinematics.joint_centres import DavisHip, chord_centre, harrington_hip
+from gaitdisc.kinematics.laboratory import check_right_handed, up_axis
+from gaitdisc.kinematics.marker_set import METHODS, MarkerSet
+from gaitdisc.kinematics.markers import marker_labels, still_places
+from gaitdisc.kinematics.pose import SEGMENTS, Pose
+from gaitdisc.recording import Finding, Recording
+from gaitdisc.recording.body_measures import BodyMeasures
+
+STANDS_M = 0.03  # who stands sways less than this in half a second
+USUAL_DIAMETER_M = 0.014
+FEWEST_POINTS = 3
+SIDE_BY_SIDE_M = 0.01  # a right marker this far to the left of its left one is exchanged
+
+Points = Mapping[str, NDArray[np.float64]]
+
+
+@dataclass(frozen=True, eq=False)
+class Calibration:
+    """What the static trial says of a person; trials of the same session and markers are read with it.
+
+    Parameters
+    ----------
+    marker_set : MarkerSet
+        The set that was used.
+    body : mapping of str to mapping of str to ndarray (3,) [m]
+        Segment -> point that follows it (marker, by the name of the set, or `hip`, `knee`, `ankle`) -> place in the
+        segment's frame.
+    points : mapping of str to mapping of str to ndarray (3,) [m]
+        Segment -> joint centre or landmark (`hip_r`, `knee_r`, `heel_r`, `asis_l`, ...) -> place in its frame.
+    static : mapping of str to Pose
+        Segment -> its one frame in the static trial.
+    findings : tuple of Finding
+        What was inferred or left out.
+    """
+
+    marker_set: MarkerSet
+    body: Mapping[str, Points]
+    points: Mapping[str, Points]
+    static: Mapping[str, Pose]
+    findings: tuple[Finding, ...] = ()
+
+
+def calibrated(static: Recording | None, marker_set: MarkerSet, measures: BodyMeasures | None = None) -> Calibration:
+    """Frames, joint centres and marker places of a person from the static trial.
+
+    Parameters
+    ----------
+    static : Recording or None
+        Markers of the person standing; None is refused.
+    marker_set : MarkerSet
+        Which marker lies where.
+    measures : BodyMeasures, optional
+        Widths of knee and ankle, distance of the iliac spines, leg lengths, diameter of the markers. What the static
+        trial shows itself (both condyles, both malleoli) needs none.
+
+    Returns
+    -------
+    Calibration
+
+    Raises
+    ------
+    ChannelError
+        If there is no static trial, a marker is missing in it, or a width that the set needs is not known.
+    ShapeError
+        If the frame is mirrored, left and right are exchanged, or markers that should make a plane lie on a line.
+    SamplingError
+        If the person does not stand in it.
+    """
+    if static is None:
+        raise ChannelError(
+            "angles from markers need a static trial of the person",
+            "there is none",
+            "Record one with all markers of the set, the person standing, or name it.",
+        )
+    file = static.source.file or "the static trial"
+    names = marker_set.names(marker_labels(static))
+    _check_complete(marker_set, names, file)
+    needed = _needed_markers(marker_set, names)
+    places, moved, start = still_places(static, names, needed)
+    _check_complete(marker_set, places, file)
+    if moved > STANDS_M:
+        raise SamplingError(
+            f"in a static trial the person stands, markers within {STANDS_M * 1000:.0f} mm for half a second",
+            f"in {file} they move by {moved * 1000:.0f} mm in the stillest half second, at {start:.2f} s",
+            "Give the trial in which the person stands.",
+        )
+    builder = _Builder(marker_set, places, measures or BodyMeasures(), file)
+    return builder.calibration()
+
+
+def _check_complete(marker_set: MarkerSet, names: Mapping, file: str) -> None:
+    lacking = marker_set.lacking(names)
+    if lacking:
+        several = f" and {len(lacking) - 1} more: {', '.join(lacking[1:6])}" if len(lacking) > 1 else ""
+        raise ChannelError(
+            f"the static trial needs every landmark of the marker set {marker_set.name}",
+            f"{file} has no {lacking[0]}{several}",
+            "Name the marker in the set's [aliases], or give the marker set of these labels.",
+        )
+
+
+def _needed_markers(marker_set: MarkerSet, names: Mapping[str, str]) -> list[str]:
+    needed = [
+        marker
+        for key in marker_set.needed_landmarks(names)
+        for side in "lr"
+        for marker in marker_set.landmark(key, side, names)
+    ]
+    return list(dict.fromkeys(needed))
+
+
+class _Builder:
+    """Builds the segments of one static trial, from the pelvis down."""
+
+    def __init__(self, marker_set: MarkerSet, places: Points, measures: BodyMeasures, file: str) -> None:
+        self.marker_set, self.places, self.measures, self.file = marker_set, places, measures, file
+        self.findings: list[Finding] = []
+        self.centres: dict[str, NDArray[np.float64]] = {}
+        self.static: dict[str, Pose] = {}
+        self.up = np.zeros(3)
+
+    def calibration(self) -> Calibration:
+        """Frames of all segments, and what lies where in them."""
+        asis = {side: self._place("asis", side) for side in "lr"}
+        feet = np.mean([self._place(key, side) for key in ("heel", "toe") for side in "lr"], axis=0)
+        self.up = up_axis(((asis["l"] + asis["r"]) / 2)[None], feet[None], self.file)
+        self._pelvis(asis)
+        check_right_handed(self.static["pelvis"].rotation, self.up, self.file)
+        self._check_sides()
+        for side in "lr":
+            self._knee(side)
+            self._ankle(side)
+            self._foot(side)
+        body = {segment: self._followers(segment) for segment in SEGMENTS}
+        points = {segment: self._points(segment) for segment in SEGMENTS}
+        return Calibration(
+            self.marker_set,
+            MappingProxyType(body),
+            MappingProxyType(points),
+            MappingProxyType(self.static),
+            tuple(self.findings),
+        )
+
+    def _place(self, key: str, side: str) -> NDArray[np.float64]:
+        markers = self.marker_set.landmark(key, side, self.places)
+        return np.mean([self.places[marker] for marker in markers], axis=0)
+
+    def _has(self, key: str) -> bool:
+        return all(self.marker_set.landmark(key, side, self.places) for side in "lr")
+
+    def _note(self, kind: str, what: str, spoils: str = "", severity: str = "note") -> None:
+        self.findings.append(Finding(severity, kind, self.file, what, spoils))
+
+    def _pelvis(self, asis: Points) -> None:
+        middle = (asis["l"] + asis["r"]) / 2
+        sacrum: NDArray[np.float64] = np.mean([self._place("sacrum", side) for side in "lr"], axis=0)
+        across, ahead = asis["r"] - asis["l"], middle - sacrum
+        self.static["pelvis"] = Pose(middle[None], _axes(across, np.cross(across, ahead), self.file, "pelvis"))
+        width, depth = float(np.linalg.norm(across)), float(np.linalg.norm(ahead))
+        if self.measures.inter_asis_m is not None:
+            what = f"distance of the iliac spines {self.measures.inter_asis_m * 1000:.0f} mm as measured, "
+            self._note("pelvis width", f"{what}{width * 1000:.0f} mm between the markers")
+            width = self.measures.inter_asis_m
+        for side in "lr":
+            self.centres[f"hip_{side}"] = self.static["pelvis"].to_laboratory(self._hip(side, width, depth))[0]
+
+    def _hip(self, side: str, width: float, depth: float) -> NDArray[np.float64]:
+        if self.marker_set.joint_centres["hip"][0] == "harrington":
+            return harrington_hip(width, depth, side)
+        legs = self.measures.leg_length_m
+        if set(legs) != {"l", "r"}:
+            raise ChannelError(
+                "the hip joint centre after Davis needs the lengths of both legs",
+                f"{self.file} and the measures have {', '.join(sorted(legs)) or 'none'}",
+                'Give leg_length_m, or take hip = "harrington" in the marker set.',
+            )
+        return DavisHip(width, (legs["l"] + legs["r"]) / 2, legs[side], self._radius()).centre(side)
+
+    def _radius(self) -> float:
+        diameter = self.measures.marker_diameter_m
+        if diameter is None:
+            diameter = USUAL_DIAMETER_M
+            if not any(finding.kind == "marker diameter" for finding in self.findings):
+                what = f"the diameter of the markers is not known; {diameter * 1000:.0f} mm are taken"
+                self._note("marker diameter", what, "joint centres by some mm if they are of another size")
+        return diameter / 2
+
+    def _method(self, joint: str) -> str:
+        methods = self.marker_set.joint_centres[joint]
+        return "midpoint" if "midpoint" in methods and self._has(f"{joint}_medial") else "chord"
+
+    def _centre(self, joint: str, side: str, above: str, wand: str) -> NDArray[np.float64]:
+        """Joint centre by midpoint or chord."""
+        lateral = self._place(f"{joint}_lateral", side)
+        if self._method(joint) == "midpoint":
+            return (lateral + self._place(f"{joint}_medial", side)) / 2
+        distance = self._width(joint, side) / 2 + self._radius()
+        return chord_centre(self.centres[f"{above}_{side}"], self._place(wand, side), lateral, distance)
+
+    def _width(self, joint: str, side: str) -> float:
+        widths = self.measures.knee_width_m if joint == "knee" else self.measures.ankle_width_m
+        if side in widths:
+            return widths[side]
+        if self._has(f"{joint}_medial"):
+            apart = self._place(f"{joint}_lateral", side) - self._place(f"{joint}_medial", side)
+            width = float(np.linalg.norm(apart)) - 2 * self._radius()
+            self._note("width", f"width of {joint}_{side} {width * 1000:.0f} mm from its two markers")
+            return width
+        raise ChannelError(
+            f"a {joint} joint centre by one lateral marker needs the width of the {joint}",
+            f"neither {self.file} nor the measures have it for side {side!r}",
+            f"Give {joint}_width_m, or put on a medial marker in the static trial.",
+        )
+
+    def _knee(self, side: str) -> None:
+        centre = self._centre("knee", side, "hip", "thigh_wand")
+        self.centres[f"knee_{side}"] = centre
+        outward = self._place("knee_lateral", side) - centre
+        hip = self.centres[f"hip_{side}"]
+        axes = _axes(_to_right(outward, side), hip - centre, self.file, f"thigh_{side}", "y")
+        self.static[f"thigh_{side}"] = Pose(hip[None], axes)
+
+    def _ankle(self, side: str) -> None:
+        centre = self._centre("ankle", side, "knee", "shank_wand")
+        self.centres[f"ankle_{side}"] = centre
+        knee = self.centres[f"knee_{side}"]
+        of = self.marker_set.axes["shank"]
+        outward = self._place(f"{of}_lateral", side) - self.centres[f"{of}_{side}"]
+        axes = _axes(_to_right(outward, side), knee - centre, self.file, f"shank_{side}", "y")
+        self.static[f"shank_{side}"] = Pose(knee[None], axes)
+
+    def _foot(self, side: str) -> None:
+        along = self._place("toe", side) - self._place("heel", side)
+        if self.marker_set.axes["foot"] == "flat":
+            along = along - float(along @ self.up) * self.up
+        right: NDArray[np.float64] = np.cross(along, self.up)
+        upward: NDArray[np.float64] = np.cross(right, along)
+        axes = _axes(right, upward, self.file, f"foot_{side}")
+        self.static[f"foot_{side}"] = Pose(self.centres[f"ankle_{side}"][None], axes)
+
+    def _followers(self, segment: str) -> dict[str, NDArray[np.float64]]:
+        """Points that follow a segment, in its frame; those that the static trial lacks are left out and said."""
+        followers, absent = {}, []
+        for point in self.marker_set.followers(segment):
+            place = self.centres[f"{point}{segment[-2:]}"] if point in METHODS else self.places.get(point)
+            if place is None:
+                absent.append(point)
+            else:
+                followers[point] = self.static[segment].to_segment(place[None])[0]
+        if len(followers) < FEWEST_POINTS:
+            raise ChannelError(
+                f"segment {segment} needs {FEWEST_POINTS} points that follow it",
+                f"{self.file} has {', '.join(followers) or 'none'}, and no {', '.join(absent)}",
+                "Put the markers on, or give the marker set of these labels.",
+            )
+        return followers
+
+    def _points(self, segment: str) -> dict[str, NDArray[np.float64]]:
+        part, side = segment.split("_") if "_" in segment else (segment, "")
+        sides = side or "lr"
+        joints = {"pelvis": ("hip",), "thigh": ("hip", "knee"), "shank": ("knee", "ankle"), "foot": ("ankle",)}[part]
+        marks = {
+            "pelvis": ("asis", "sacrum"),
+            "thigh": ("knee_lateral", "knee_medial"),
+            "shank": ("ankle_lateral", "ankle_medial"),
+            "foot": ("heel", "toe"),
+        }[part]
+        places = {f"{joint}_{s}": self.centres[f"{joint}_{s}"] for joint in joints for s in sides}
+        places |= {f"{mark}_{s}": self._place(mark, s) for mark in marks if self._has(mark) for s in sides}
+        return {name: self.static[segment].to_segment(place[None])[0] for name, place in places.items()}
+
+    def _check_sides(self) -> None:
+        """Refuse a pair of landmarks of which the right one stands on the left."""
+        right = self.static["pelvis"].rotation[0, :, 2]
+        for key in ("knee_lateral", "ankle_lateral", "heel", "toe"):
+            names = [" + ".join(self.marker_set.landmark(key, side, self.places)) for side in "lr"]
+            apart = float((self._place(key, "r") - self._place(key, "l")) @ right)
+            if apart < -SIDE_BY_SIDE_M:
+                raise ShapeError(
+                    "in a static trial each right marker is to the right of its left one",
+                    f"in {self.file} {names[1]} is {-apart * 1000:.0f} mm to the left of {names[0]}",
+                    "Exchange the two labels, or record the person with the legs side by side.",
+                )
+
+
+def _to_right(outward: NDArray[np.float64], side: str) -> NDArray[np.float64]:
+    return outward if side == "r" else -outward
+
+
+def _axes(
+    right: NDArray[np.float64], up: NDArray[np.float64], file: str, segment: str, kept: str = "z"
+) -> NDArray[np.float64]:
+    """Rotation (1, 3, 3) with z to the right and y up; one keeps its direction, the other is made square."""
+    forward = np.cross(up, right)
+    size = float(np.linalg.norm(forward))
+    if not size > 1e-3 * float(np.linalg.norm(up) * np.linalg.norm(right)) or not size > 0:
+        raise ShapeError(
+            f"the frame of {segment} needs landmarks that make a plane",
+            f"in {file} they lie on a line",
+            "Check the markers of the static trial.",
+        )
+    x = forward / size
+    if kept == "y":
+        y = up / np.linalg.norm(up)
+        return np.stack([x, y, np.cross(x, y)], axis=1)[None]
+    z = right / np.linalg.norm(right)
+    return np.stack([x, np.cross(z, x), z], axis=1)[None]

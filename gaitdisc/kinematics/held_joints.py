@@ -1,0 +1,236 @@
+"""Segments whose joints are held together: one least squares over all markers of pelvis and legs, frame by frame."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation, Slerp
+
+from gaitdisc.kinematics.pose import SEGMENTS, Pose
+
+ROUNDS = 60
+FARTHEST_M = 0.04  # root mean square over all markers; beyond it another minimum was found
+DAMPING = 1e-9  # m2; keeps what no marker determines where it is
+SETTLED = 1e-9  # rad and m; the step after is smaller by far
+STEADY_M = 0.02  # lever of a turn; where all markers of a segment are off by 2 mm it is off by 6 deg
+LONGEST_STEP_RAD = 0.5
+
+Points = Mapping[str, NDArray[np.float64]]
+Placed = Mapping[str, tuple[NDArray[np.float64], NDArray[np.float64]]]
+Turns = dict[str, NDArray[np.float64]]
+
+
+def held_together(
+    first: Mapping[str, Pose],
+    placed: Placed,
+    points: Mapping[str, Points],
+    plane: NDArray[np.float64] | None = None,
+    steady_m: float = STEADY_M,
+) -> dict[str, Pose]:
+    """Poses with the joint centre of each segment where the segment above has it, nearest to all markers at once.
+
+    Skin moves over bone: a thigh that is laid over its own markers leaves its hip by centimetres, and its angles are
+    wrong by some degrees. Held together at the joints, each segment is steadied by those beside it, and one that has
+    lost markers is carried by them. Joints turn freely about all three axes; in a plane, all turn about its normal, and
+    the pelvis stays beside it.
+
+    Parameters
+    ----------
+    first : mapping of str to Pose
+        Each segment laid over its own markers, where the search begins; where one is unknown, it begins between the
+        frames before and after.
+    placed : mapping of str to (ndarray (marker, 3), ndarray (frame, marker, 3)) [m]
+        Segment -> its markers in its own frame, and in the laboratory; NaN where one is missing.
+    points : mapping of str to mapping of str to ndarray (3,) [m]
+        Segment -> joint centre (`hip_r`, ...) -> place in its frame, for the segments on both sides of the joint.
+    plane : ndarray (frame, 3, 3), optional
+        The walker's forward, up and right, as columns, where only the plane of forward and up is wanted.
+    steady_m : float
+        A segment whose turn has a shorter lever is unknown (`levers_m`) [m].
+
+    Returns
+    -------
+    dict of str to Pose
+        A segment is NaN in frames whose markers do not determine it; all are where no pose is near them.
+
+    References
+    ----------
+    Lu & O'Connor 1999, J Biomech 32:129. Differs from the source: all markers weigh the same.
+    """
+    turns, origin = _beginning(first)
+    if plane is not None:
+        turns = {segment: _upright(turn, plane) for segment, turn in turns.items()}
+    allowed = _allowed(len(origin), plane)
+    moving: NDArray[np.intp] = np.arange(len(origin))
+    for _ in range(ROUNDS):
+        some = {segment: turn[moving] for segment, turn in turns.items()}
+        there = {segment: (body, seen[moving]) for segment, (body, seen) in placed.items()}
+        gradient, normal = _normal_equations(some, _origins(origin[moving], some, points), there)
+        step = _solved(normal, gradient, allowed[moving])
+        origin[moving] += step[:, :3]
+        for segment in SEGMENTS:
+            for above in reversed(_chain(segment)):  # what is nearest turns first, the pelvis last
+                some[segment] = _turn(step[:, _columns(above)]) @ some[segment]
+            turns[segment][moving] = some[segment]
+        moving = moving[np.abs(step).max(axis=1) > SETTLED]
+        if not len(moving):
+            break
+    origins = _origins(origin, turns, points)
+    _, normal = _normal_equations(turns, origins, placed)
+    far = ~(_apart_m(turns, origins, placed) <= FARTHEST_M)
+    for segment, lever in levers_m(normal, allowed).items():
+        unknown = far | ~(lever >= steady_m)
+        origins[segment][unknown], turns[segment][unknown] = np.nan, np.nan
+    return {segment: Pose(origins[segment], turns[segment]) for segment in SEGMENTS}
+
+
+def _chain(segment: str) -> tuple[str, ...]:
+    """A segment and those that carry it, from the pelvis down."""
+    if segment == "pelvis":
+        return ("pelvis",)
+    part, side = segment.split("_")
+    parts = ("thigh", "shank", "foot")
+    return ("pelvis", *(f"{one}_{side}" for one in parts[: parts.index(part) + 1]))
+
+
+def _beginning(first: Mapping[str, Pose]) -> tuple[Turns, NDArray[np.float64]]:
+    """Rotations and the place of the pelvis, where they are unknown between those before and after."""
+    turns: Turns = {}
+    origin = np.empty(0)
+    for segment in SEGMENTS:
+        pose = first[segment]
+        known, frames = np.flatnonzero(pose.known), np.arange(len(pose))
+        if not len(known):
+            turns[segment] = np.tile(np.eye(3), (len(pose), 1, 1))
+        elif len(known) == 1:
+            turns[segment] = np.tile(pose.rotation[known[0]], (len(pose), 1, 1))
+        else:
+            between = Slerp(known, Rotation.from_matrix(pose.rotation[known]))
+            turns[segment] = between(np.clip(frames, known[0], known[-1])).as_matrix()
+        if segment == "pelvis" and len(known):
+            origin = np.stack([np.interp(frames, known, pose.origin[known, axis]) for axis in range(3)], axis=1)
+        elif segment == "pelvis":
+            origin = np.zeros((len(pose), 3))
+    return turns, origin
+
+
+def _origins(origin: NDArray[np.float64], turns: Turns, points: Mapping[str, Points]) -> Turns:
+    """Places of the proximal joints, from the pelvis down."""
+    origins = {"pelvis": np.array(origin)}
+    for segment in SEGMENTS[1:]:
+        above = _chain(segment)[-2]
+        joint = {"thigh": "hip", "shank": "knee", "foot": "ankle"}[segment[:-2]] + segment[-2:]
+        centre = origins[above] + turns[above] @ points[above][joint]
+        origins[segment] = centre - turns[segment] @ points[segment][joint]
+    return origins
+
+
+def _normal_equations(turns: Turns, origins: Turns, placed: Placed) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Right side and matrix of the normal equations of each frame; columns: place of the pelvis, then turns."""
+    frames, width = len(origins["pelvis"]), 3 + 3 * len(SEGMENTS)
+    gradient, normal = np.zeros((frames, width)), np.zeros((frames, width, width))
+    for segment, (body, seen) in placed.items():
+        there = np.asarray(np.isfinite(seen).all(axis=2))
+        places = origins[segment][:, None] + np.einsum("fij,pj->fpi", turns[segment], body)
+        apart = np.where(there[..., None], seen - places, 0.0)
+        columns = np.concatenate([np.arange(3), *(_columns(above) for above in _chain(segment))])
+        slope = np.zeros((frames, len(body), 3, len(columns)))
+        slope[..., :3] = np.eye(3)
+        for place, above in enumerate(_chain(segment)):
+            x, y, z = np.moveaxis(places - origins[above][:, None], 2, 0)
+            first = 3 + 3 * place  # columns of a turn: the axis it is about, crossed with the arm
+            slope[..., 1, first], slope[..., 2, first] = -z, y
+            slope[..., 0, first + 1], slope[..., 2, first + 1] = z, -x
+            slope[..., 0, first + 2], slope[..., 1, first + 2] = -y, x
+        flat = (slope * there[..., None, None]).reshape(frames, -1, len(columns))
+        across = np.swapaxes(flat, 1, 2)
+        gradient[:, columns] += (across @ apart.reshape(frames, -1, 1))[..., 0]
+        normal[:, columns[:, None], columns] += across @ flat
+    return gradient, normal
+
+
+def _columns(segment: str) -> NDArray[np.intp]:
+    """Columns of the turn of a segment's joint."""
+    return np.arange(3) + 3 + 3 * SEGMENTS.index(segment)
+
+
+def _upright(turn: NDArray[np.float64], plane: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The turn about the normal of the plane that is nearest to a turn."""
+    inside = np.swapaxes(plane, 1, 2) @ turn
+    angle = np.arctan2(inside[:, 1, 0] - inside[:, 0, 1], inside[:, 0, 0] + inside[:, 1, 1])
+    return _turn(angle[:, None] * plane[:, :, 2]) @ plane
+
+
+def _allowed(frames: int, plane: NDArray[np.float64] | None) -> NDArray[np.float64]:
+    """Columns of the steps that may be taken, (frame, all, allowed): all, or those in the plane."""
+    width = 3 + 3 * len(SEGMENTS)
+    if plane is None:
+        return np.broadcast_to(np.eye(width), (frames, width, width))
+    columns = np.zeros((frames, width, 2 + len(SEGMENTS)))
+    columns[:, :3, :2] = plane[:, :, :2]
+    for place in range(len(SEGMENTS)):
+        columns[:, 3 + 3 * place : 6 + 3 * place, 2 + place] = plane[:, :, 2]
+    return columns
+
+
+def _apart_m(turns: Turns, origins: Turns, placed: Placed) -> NDArray[np.float64]:
+    """Root mean square distance of all markers from their bodies in each frame."""
+    squares, count = 0.0, 0
+    for segment, (body, seen) in placed.items():
+        places = origins[segment][:, None] + np.einsum("fij,pj->fpi", turns[segment], body)
+        apart = ((seen - places) ** 2).sum(axis=2)
+        squares, count = squares + np.nansum(apart, axis=1), count + np.isfinite(apart).sum(axis=1)
+    return np.sqrt(squares / np.maximum(count, 1))
+
+
+def levers_m(normal: NDArray[np.float64], allowed: NDArray[np.float64]) -> Turns:
+    """How well markers determine each segment: error of a marker over the error of the turn that it makes.
+
+    Parameters
+    ----------
+    normal : ndarray (frame, all, all)
+        Matrix of the normal equations.
+    allowed : ndarray (frame, all, allowed)
+        Steps that may be taken.
+
+    Returns
+    -------
+    dict of str to ndarray (frame,) [m]
+        About the axis for which it is shortest.
+    """
+    some = _among(normal, allowed)
+    spread = allowed @ np.linalg.inv(some + DAMPING * np.eye(some.shape[1])) @ np.swapaxes(allowed, 1, 2)
+    levers = {}
+    for segment in SEGMENTS:
+        of_chain = np.concatenate([_columns(above) for above in _chain(segment)])
+        parts = spread[:, of_chain[:, None], of_chain].reshape(len(spread), -1, 3, len(of_chain) // 3, 3)
+        levers[segment] = 1 / np.sqrt(np.linalg.eigvalsh(parts.sum(axis=(1, 3)))[:, -1])
+    return levers
+
+
+def _among(normal: NDArray[np.float64], allowed: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.swapaxes(allowed, 1, 2) @ normal @ allowed
+
+
+def _solved(
+    normal: NDArray[np.float64], gradient: NDArray[np.float64], allowed: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Gauss-Newton steps, the smallest where markers do not determine all, none turning by more than half a radian."""
+    some = _among(normal, allowed)
+    right = np.swapaxes(allowed, 1, 2) @ gradient[..., None]
+    step = (allowed @ np.linalg.solve(some + DAMPING * np.eye(some.shape[1]), right))[..., 0]
+    longest = np.abs(step[:, 3:]).max(axis=1, initial=0.0)
+    return step * np.minimum(1.0, LONGEST_STEP_RAD / np.maximum(longest, 1e-12))[:, None]
+
+
+def _turn(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Rotations about vectors by their length [rad] (Rodrigues)."""
+    angle = np.linalg.norm(vectors, axis=1)
+    axis = vectors / np.maximum(angle, 1e-300)[:, None]
+    cross = np.zeros((len(vectors), 3, 3))
+    cross[:, 0, 1], cross[:, 0, 2], cross[:, 1, 2] = -axis[:, 2], axis[:, 1], -axis[:, 0]
+    cross -= np.swapaxes(cross, 1, 2)
+    sine, cosine = np.sin(angle)[:, None, None], np.cos(angle)[:, None, None]
+    return np.eye(3) + sine * cross + (1 - cosine) * (cross @ cross)

@@ -1,0 +1,278 @@
+"""Segments, joint centres and joint angles of a trial, from its markers and a static trial."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel
+from gaitdisc.errors import ChannelError
+from gaitdisc.kinematics.calibration import Calibration, calibrated
+from gaitdisc.kinematics.cardan import clinical_angles
+from gaitdisc.kinematics.laboratory import WalkingFrame, check_right_handed, up_axis, walking_frame
+from gaitdisc.kinematics.marker_set import MarkerSet, marker_set, recognised_marker_set
+from gaitdisc.kinematics.markers import marker_labels
+from gaitdisc.kinematics.pose import JOINTS, SEGMENTS, Pose
+from gaitdisc.kinematics.rigid_fit import residual_m
+from gaitdisc.kinematics.segment_poses import PlacedMarkers, carried_joint, free_poses, joined_poses, placed_markers
+from gaitdisc.recording import Finding, Recording
+from gaitdisc.recording.body_measures import BodyMeasures
+
+ANOTHER_SHAPE_M = 0.01  # median; with their own static trials six people have up to 5.5 mm, with others 12.5 or more
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """A trial as segments that move.
+
+    Parameters
+    ----------
+    angles : Recording
+        Joint angles, pelvis and foot progression [deg], pelvis translations [m].
+    poses : mapping of str to Pose
+        Segment (`pelvis`, `thigh_l`, ...) -> origin and axes in the laboratory's frame, frame by frame.
+    joint_centres : mapping of str to ndarray (frame, 3) [m]
+        Joint (`hip_l`, ...) -> place in the laboratory's frame.
+    walking : WalkingFrame
+        Forward, up and right of the walker.
+    residual_m : mapping of str to ndarray (frame,) [m]
+        Segment -> root mean square distance of its markers from where the static trial has them.
+    marker_set : str
+        Name of the set that was used.
+    findings : tuple of Finding
+        What was inferred, bridged or left out.
+    """
+
+    angles: Recording
+    poses: Mapping[str, Pose]
+    joint_centres: Mapping[str, NDArray[np.float64]]
+    walking: WalkingFrame
+    residual_m: Mapping[str, NDArray[np.float64]]
+    marker_set: str
+    findings: tuple[Finding, ...] = ()
+
+
+def joint_angles(
+    markers: Recording,
+    static: Recording | None,
+    marker_set: MarkerSet | str | Path | None = None,
+    measures: BodyMeasures | None = None,
+    forward: Sequence[float] | None = None,
+    joints: str | None = None,
+) -> Recording:
+    """Joint angles of a trial from its markers.
+
+    Parameters
+    ----------
+    markers : Recording
+        Markers of the trial.
+    static : Recording or None
+        Markers of the same person standing, with the same markers; None is refused.
+    marker_set : MarkerSet, str or Path, optional
+        A set, its name, or its file; recognised by the labels where it is not given.
+    measures : BodyMeasures, optional
+        Widths and lengths that the set needs.
+    forward : sequence of 3 floats, optional
+        Direction of walking in the laboratory's axes; found from the pelvis where it is not given.
+    joints : str, optional
+        `free`, `held` or `planar`; as the marker set says where it is not given.
+
+    Returns
+    -------
+    Recording
+        `pelvis_tilt`, `hip_flexion_r`, `knee_angle_r`, ... [deg] with the package's signs, `pelvis_tx`, ... [m].
+
+    Raises
+    ------
+    ChannelError
+        If there is no static trial, a marker or a width is missing, or the labels are of no known set.
+    ShapeError
+        If the frame is mirrored, tilted, or left and right are exchanged.
+
+    Examples
+    --------
+    >>> walk, static = read_trial("walk.c3d"), read_trial("static.c3d")  # doctest: +SKIP
+    >>> angles = joint_angles(walk.stream("markers"), static.stream("markers"))  # doctest: +SKIP
+    """
+    chosen = chosen_marker_set(markers, static, marker_set)
+    chosen = chosen if joints is None else chosen.with_joints(joints)
+    return motion(markers, calibrated(static, chosen, measures), forward).angles
+
+
+def chosen_marker_set(
+    markers: Recording, static: Recording | None, given: MarkerSet | str | Path | None = None
+) -> MarkerSet:
+    """Marker set of a trial: the one given, or the one that the labels are of.
+
+    Parameters
+    ----------
+    markers : Recording
+        Markers of the trial.
+    static : Recording or None
+        Markers of the static trial; None is refused where the set is to be recognised.
+    given : MarkerSet, str or Path, optional
+        A set, its name, or its file.
+
+    Raises
+    ------
+    ChannelError
+        If the labels are of no known set, or there is no static trial.
+    """
+    if isinstance(given, MarkerSet):
+        return given
+    if given is not None:
+        return marker_set(given)
+    if static is None:
+        raise ChannelError(
+            "angles from markers need a static trial of the person",
+            "there is none",
+            "Record one with all markers of the set, the person standing, or name it.",
+        )
+    return recognised_marker_set(marker_labels(static), marker_labels(markers), static.source.file)
+
+
+def motion(markers: Recording, calibration: Calibration, forward: Sequence[float] | None = None) -> Motion:
+    """Segments, joint centres and angles of a trial.
+
+    Parameters
+    ----------
+    markers : Recording
+        Markers of the trial, filtered or not.
+    calibration : Calibration
+        Of the same person with the same markers.
+    forward : sequence of 3 floats, optional
+        Direction of walking in the laboratory's axes; found from the pelvis where it is not given.
+
+    Returns
+    -------
+    Motion
+
+    Raises
+    ------
+    ChannelError
+        If a segment has fewer than three points in this trial.
+    ShapeError
+        If the frame is mirrored or tilted.
+    StrideError
+        If a given direction is none, or the pelvis is never seen whole.
+    """
+    file = markers.source.file or "the trial"
+    placed = placed_markers(markers, calibration)
+    free = free_poses(placed, calibration)
+    up = up_axis(_middle(placed, ("pelvis",)), _middle(placed, ("foot_l", "foot_r")), file)
+    check_right_handed(free["pelvis"].rotation, up, file)
+    facing = free["pelvis"].rotation[:, :, 0]
+    walking = walking_frame(free["pelvis"].origin, facing, up, markers.rate_hz, forward)
+    poses = joined_poses(free, placed, calibration, walking.rotation)
+    residuals = {segment: residual_m(poses[segment], *placed[segment]) for segment in SEGMENTS}
+    bridged = {segment: _bridged(poses[segment], placed[segment][1]) for segment in SEGMENTS}
+    chosen = calibration.marker_set
+    findings = [
+        *calibration.findings,
+        Finding("note", "marker set", file, f"{chosen.name}: {chosen.title}; joints {chosen.joints}", ""),
+        Finding("note", "direction", file, walking.how, ""),
+    ]
+    for segment in SEGMENTS:
+        findings += _gaps(segment, ~poses[segment].known, bridged[segment], markers)
+        findings += _other_shape(segment, residuals[segment], file)
+    angles = _angles(markers, poses, bridged, walking)
+    return Motion(
+        _of_the_plane(angles) if chosen.joints == "planar" else angles,
+        MappingProxyType(poses),
+        MappingProxyType({joint: carried_joint(joint, poses, calibration) for joint in JOINTS}),
+        walking,
+        MappingProxyType(residuals),
+        chosen.name,
+        tuple(findings),
+    )
+
+
+def _middle(placed: PlacedMarkers, segments: Sequence[str]) -> NDArray[np.float64]:
+    """Mean place of those markers of some segments that are seen in a frame (frame, 3) [m]."""
+    places = np.concatenate([placed[segment][1] for segment in segments], axis=1)
+    seen = np.isfinite(places).all(axis=2, keepdims=True)
+    count = seen.sum(axis=1)
+    return np.where(count > 0, np.where(seen, places, 0.0).sum(axis=1) / np.maximum(count, 1), np.nan)
+
+
+def _bridged(pose: Pose, places: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Frames in which a segment is known although a marker of it is missing."""
+    return np.asarray(pose.known & ~np.isfinite(places).all(axis=(1, 2)))
+
+
+def _gaps(segment: str, unknown: NDArray[np.bool_], bridged: NDArray[np.bool_], markers: Recording) -> list[Finding]:
+    file, frames = markers.source.file or "the trial", len(markers.time)
+    findings = []
+    if bridged.any():
+        what = f"{segment}: a marker was missing in {int(bridged.sum())} of {frames} frames; the others carry it"
+        findings.append(Finding("note", "bridged", file, what, "", spans=_spans(bridged, markers.time)))
+    if unknown.any():
+        what = f"{segment} is not known in {int(unknown.sum())} of {frames} frames: too few markers"
+        spoils = "its joints there; fill the gaps, or use more markers"
+        findings.append(Finding("warning", "gap", file, what, spoils, spans=_spans(unknown, markers.time)))
+    return findings
+
+
+def _other_shape(segment: str, residual: NDArray[np.float64], file: str) -> list[Finding]:
+    typical = float(np.nanmedian(residual)) if np.isfinite(residual).any() else 0.0
+    if typical <= ANOTHER_SHAPE_M:
+        return []
+    what = f"the markers of {segment} lie {typical * 1000:.0f} mm from where the static trial has them"
+    spoils = "its angles; is the static trial of this person and session, and no label exchanged?"
+    return [Finding("warning", "another shape", file, what, spoils)]
+
+
+def _spans(marked: NDArray[np.bool_], time: NDArray[np.float64]) -> tuple[tuple[float, float], ...]:
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], marked, [False]]).astype(int)))
+    return tuple((float(time[first]), float(time[last - 1])) for first, last in edges.reshape(-1, 2))
+
+
+def _angles(
+    markers: Recording, poses: Mapping[str, Pose], bridged: Mapping[str, NDArray[np.bool_]], walking: WalkingFrame
+) -> Recording:
+    turns = {segment: pose.rotation for segment, pose in poses.items()}
+    columns: list[tuple[Channel, NDArray[np.float64], NDArray[np.bool_]]] = []
+
+    def add(names: Sequence[str], side: str, values: NDArray[np.float64], doubt: NDArray[np.bool_]) -> None:
+        for name, column in zip(names, values.T, strict=True):
+            full = f"{name}_{side}" if side else name
+            columns.append((Channel(full, "angle", "deg", side), column, doubt))
+
+    pelvis = clinical_angles(walking.rotation, turns["pelvis"])
+    add(("pelvis_tilt", "pelvis_list", "pelvis_rotation"), "", pelvis, bridged["pelvis"])
+    for side in "rl":
+        mirror = np.array([1, 1, 1] if side == "r" else [1, -1, -1])
+        for joint, (names, flexion) in JOINT_CHANNELS.items():
+            above, below = (f"{part}_{side}" if part != "pelvis" else part for part in SEGMENTS_OF[joint])
+            values = clinical_angles(turns[above], turns[below]) * mirror * [flexion, 1, 1]
+            add(names, side, values, bridged[above] | bridged[below])
+        foot = clinical_angles(walking.rotation, turns[f"foot_{side}"])
+        add(("foot_progression_angle",), side, foot[:, 2:] * mirror[2], bridged[f"foot_{side}"])
+    place = np.einsum("fji,fj->fi", walking.rotation, poses["pelvis"].origin)
+    for name, column in zip(("pelvis_tx", "pelvis_ty", "pelvis_tz"), place.T, strict=True):
+        columns.append((Channel(name, "translation", "m"), column, bridged["pelvis"]))
+    return replace(
+        markers,
+        values=np.stack([values for _, values, _ in columns], axis=1),
+        channels=tuple(channel for channel, _, _ in columns),
+        suspect=np.stack([doubt for _, _, doubt in columns], axis=1),
+    )
+
+
+def _of_the_plane(angles: Recording) -> Recording:
+    """Only what a planar body has."""
+    flexions = {f"{names[0]}_{side}" for names, _ in JOINT_CHANNELS.values() for side in "rl"}
+    return angles.selected_by(lambda one: one.name in flexions | {"pelvis_tilt", "pelvis_tx", "pelvis_ty"})
+
+
+SEGMENTS_OF = {"hip": ("pelvis", "thigh"), "knee": ("thigh", "shank"), "ankle": ("shank", "foot")}
+JOINT_CHANNELS = {  # names, and the sign of flexion about the axis to the right
+    "hip": (("hip_flexion", "hip_adduction", "hip_rotation"), 1),
+    "knee": (("knee_angle", "knee_adduction", "knee_rotation"), -1),
+    "ankle": (("ankle_angle", "ankle_inversion", "ankle_rotation"), 1),
+}

@@ -1,0 +1,305 @@
+"""Inertia of the segments of a leg, from a person's mass and sex and the lengths of the segments."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.channel import schema_folder
+from gaitdisc.errors import SchemaError, ShapeError, UnitError
+from gaitdisc.kinematics.pose import Pose
+from gaitdisc.kinetics.newton_euler import RigidBody
+
+TABLES = ("dumas2007", "deleva1996")
+LEG = ("foot", "shank", "thigh")
+LIGHTEST_KG, HEAVIEST_KG = 5.0, 300.0
+# de Leva (1996), Table 4, mean lengths of foot over mean statures of the people measured
+_FOOT_OF_STATURE = {"f": 0.2283 / 1.735, "m": 0.2581 / 1.741}
+_SPREAD_OF_LENGTH = 0.1  # a bone whose length varies by more than a tenth is none
+
+
+@dataclass(frozen=True)
+class Person:
+    """What of a person the inertia of the segments depends on.
+
+    Parameters
+    ----------
+    mass_kg : float or None
+        Body mass; 5 to 300 kg.
+    sex : str
+        `f`, `m`, or empty where it is unknown: then the means of both columns of a table are taken.
+    stature_m : float or None
+        Only for de Leva's foot, which is measured from heel to the tip of the toes.
+
+    Raises
+    ------
+    UnitError
+        If the mass is missing, or can be no person's in kg.
+    SchemaError
+        If the sex is none of the three.
+
+    Examples
+    --------
+    >>> Person(0.7)
+    Traceback (most recent call last):
+    ...
+    gaitdisc.errors.UnitError: moments per kg need a body mass of 5 to 300 kg; the mass given is 0.7 kg. Give it in kg.
+    """
+
+    mass_kg: float | None
+    sex: str = ""
+    stature_m: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check once what everything below divides by."""
+        if self.mass_kg is None or not np.isfinite(self.mass_kg):
+            raise UnitError(
+                "moments and powers per kg need the person's body mass [kg]",
+                "none is given, and the file states none",
+                "Give it in the study's participants, or in PROCESSING:BODYMASS of the C3D file.",
+            )
+        if not LIGHTEST_KG <= self.mass_kg <= HEAVIEST_KG:
+            raise UnitError(
+                f"moments per kg need a body mass of {LIGHTEST_KG:g} to {HEAVIEST_KG:g} kg",
+                f"the mass given is {self.mass_kg:g} kg",
+                "Give it in kg.",
+            )
+        if self.sex not in ("f", "m", ""):
+            raise SchemaError(
+                "tables of segment inertia have a column for women and one for men: sex 'f' or 'm', or '' for the mean",
+                f"the sex given is {self.sex!r}",
+                "Write f, m, or leave it empty.",
+            )
+
+    @property
+    def kg(self) -> float:
+        """Body mass [kg]."""
+        assert self.mass_kg is not None  # checked when made
+        return self.mass_kg
+
+
+@dataclass(frozen=True, eq=False)
+class FootPoints:
+    """Where heel and toes lie in the foot's frame, its origin being the centre of the ankle.
+
+    Parameters
+    ----------
+    heel : ndarray (3,) [m]
+        Back of the heel.
+    toe : ndarray (3,) [m]
+        Over the head of the second metatarsal, or midway between those of the first and the fifth.
+
+    Examples
+    --------
+    >>> FootPoints(np.array([-0.05, -0.06, 0.0]), np.array([0.13, -0.06, 0.0])).toe_length_m
+    0.14317821063276354
+    """
+
+    heel: NDArray[np.float64]
+    toe: NDArray[np.float64]
+
+    @property
+    def toe_length_m(self) -> float:
+        """From the centre of the ankle to the heads of the metatarsals [m], the length of Dumas' foot."""
+        return float(np.linalg.norm(self.toe))
+
+
+@dataclass(frozen=True)
+class TableRow:
+    """One segment of a table, for one sex.
+
+    Parameters
+    ----------
+    mass : float [% of body mass]
+        Of one segment.
+    centre : tuple of float [% of the segment's length]
+        x, y, z of the right side, from the proximal joint's centre (de Leva's foot: from the heel); empty where the
+        table is read for its masses only.
+    gyration : tuple of float [% of the segment's length]
+        xx, yy, zz, xy, xz, yz of the right side; a negative product of inertia has a negative number.
+    count : int
+        How many of it a body has.
+    source : str
+        Paper and table.
+    """
+
+    mass: float
+    centre: tuple[float, ...]
+    gyration: tuple[float, ...]
+    count: int
+    source: str
+
+
+@cache
+def inertia_table(table: str, sex: str) -> Mapping[str, TableRow]:
+    """Segments of a table for one sex, as `data_schema/segment_inertia.csv` has them.
+
+    Parameters
+    ----------
+    table : str
+        `dumas2007` or `deleva1996`.
+    sex : str
+        `f` or `m`.
+
+    Raises
+    ------
+    SchemaError
+        If there is no such table.
+
+    References
+    ----------
+    Dumas, Chèze & Verriest (2007), J. Biomech. 40, 543-553, and its corrigendum, 40, 1651-1652. de Leva (1996),
+    J. Biomech. 29, 1223-1230. Both as other programs print them: docs/kinetics.md says which numbers differ there.
+
+    Examples
+    --------
+    >>> inertia_table("dumas2007", "m")["thigh"].mass
+    12.3
+    """
+    if table not in TABLES:
+        raise SchemaError(
+            f"segment inertia is taken from one of {', '.join(TABLES)}", f"{table!r} was named", "Name one of them."
+        )
+    with (schema_folder() / "segment_inertia.csv").open(newline="", encoding="utf-8") as file:
+        rows = [row for row in csv.DictReader(file) if (row["table"], row["sex"]) == (table, sex)]
+    return {
+        row["segment"]: TableRow(
+            float(row["mass"]),
+            tuple(float(row[key]) for key in ("x", "y", "z") if row[key]),
+            tuple(float(row[key]) for key in ("xx", "yy", "zz", "xy", "xz", "yz") if row[key]),
+            int(row["whole"]),
+            row["source"],
+        )
+        for row in rows
+    }
+
+
+def leg_inertia(
+    person: Person, side: str, lengths_m: Mapping[str, float], foot: FootPoints, table: str = "dumas2007"
+) -> dict[str, RigidBody]:
+    """Inertia of foot, shank and thigh of one side.
+
+    Parameters
+    ----------
+    person : Person
+        Mass, sex, stature.
+    side : str
+        `r` or `l`; the left leg is the right one's mirror image.
+    lengths_m : mapping of str to float
+        `shank` and `thigh`, between joint centres.
+    foot : FootPoints
+        Heel and toes in the foot's frame.
+    table : str
+        `dumas2007` or `deleva1996`.
+
+    Returns
+    -------
+    dict of str to RigidBody
+        `foot`, `shank`, `thigh`.
+
+    Raises
+    ------
+    UnitError
+        If a length is none of a human leg in metres, or de Leva's foot lacks the stature.
+    SchemaError
+        If there is no such table.
+    """
+    lengths = {**lengths_m, "foot": foot.toe_length_m}
+    for segment in LEG:
+        low, high = (0.05, 0.35) if segment == "foot" else (0.1, 0.8)
+        if not low <= lengths[segment] <= high:
+            raise UnitError(
+                f"the {segment} of a person is {low:g} to {high:g} m long",
+                f"{segment}_{side} is {lengths[segment]:.4g} m",
+                "Check the markers' unit and the joint centres.",
+            )
+    sexes = person.sex or "fm"
+    bodies = [
+        {segment: _body(inertia_table(table, sex)[segment], person.kg, lengths[segment], side) for segment in LEG}
+        for sex in sexes
+    ]
+    if table == "deleva1996":
+        for found, sex in zip(bodies, sexes, strict=True):
+            found["foot"] = _foot_from_heel(inertia_table(table, sex)["foot"], person, sex, foot)
+    return {segment: _mean([found[segment] for found in bodies]) for segment in LEG}
+
+
+def segment_lengths(poses: Mapping[str, Pose], side: str) -> dict[str, float]:
+    """Lengths of shank and thigh between the joint centres, the median over the frames [m].
+
+    Parameters
+    ----------
+    poses : mapping of str to Pose
+        With origins in the proximal joint centres: `thigh_r`, `shank_r`, `foot_r`.
+    side : str
+        `r` or `l`.
+
+    Raises
+    ------
+    ShapeError
+        If a segment is missing, no frame has it, or its length changes by more than a tenth.
+    """
+    found = {}
+    for segment, beyond in (("shank", "foot"), ("thigh", "shank")):
+        ends = [poses.get(f"{name}_{side}") for name in (segment, beyond)]
+        if ends[0] is None or ends[1] is None:
+            raise ShapeError(
+                f"the length of {segment}_{side} needs the poses of {segment}_{side} and {beyond}_{side}",
+                f"there are {', '.join(poses) or 'none'}",
+                "Give the markers of the whole leg.",
+            )
+        length = np.linalg.norm(ends[0].origin - ends[1].origin, axis=1)
+        length = length[np.isfinite(length)]
+        if not len(length):
+            raise ShapeError(
+                f"the length of {segment}_{side} needs a frame with both of its joint centres",
+                "no frame has both",
+                "Fill the markers of this leg.",
+            )
+        low, middle, high = np.quantile(length, [0.05, 0.5, 0.95])
+        if high - low > _SPREAD_OF_LENGTH * middle:
+            raise ShapeError(
+                f"{segment}_{side} needs one length between its joint centres",
+                f"it goes from {low:.3f} to {high:.3f} m",
+                "Check the markers of this leg: two may be exchanged.",
+            )
+        found[segment] = float(middle)
+    return found
+
+
+def _body(row: TableRow, mass_kg: float, length_m: float, side: str) -> RigidBody:
+    mirror = np.diag([1.0, 1.0, 1.0 if side == "r" else -1.0])
+    xx, yy, zz, xy, xz, yz = (np.sign(r) * (r / 100 * length_m) ** 2 for r in row.gyration)
+    mass = row.mass / 100 * mass_kg
+    tensor = mass * np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    return RigidBody(mass, mirror @ np.array(row.centre) / 100 * length_m, mirror @ tensor @ mirror)
+
+
+def _foot_from_heel(row: TableRow, person: Person, sex: str, foot: FootPoints) -> RigidBody:
+    """De Leva's foot: along the line from heel to toes, whose tips are known by the stature."""
+    if person.stature_m is None:
+        raise UnitError(
+            "the foot of de Leva (1996) is measured from heel to toe tip, by the person's stature [m]",
+            "no stature is given",
+            "Give it, or take the table dumas2007.",
+        )
+    length = _FOOT_OF_STATURE[sex] * person.stature_m
+    ahead = (foot.toe - foot.heel) / np.linalg.norm(foot.toe - foot.heel)
+    plain = _body(row, person.kg, length, "r")
+    across = np.cross(ahead, [0.0, 1.0, 0.0])
+    across /= np.linalg.norm(across)
+    axes = np.column_stack([ahead, np.cross(across, ahead), across])
+    return RigidBody(plain.mass_kg, foot.heel + axes @ plain.centre, axes @ plain.tensor @ axes.T)
+
+
+def _mean(bodies: list[RigidBody]) -> RigidBody:
+    return RigidBody(
+        float(np.mean([body.mass_kg for body in bodies])),
+        np.mean([body.centre for body in bodies], axis=0),
+        np.mean([body.tensor for body in bodies], axis=0),
+    )

@@ -1,0 +1,127 @@
+"""What the ground gives to each foot at the frames of the markers, and in which frames that is known."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.kinetics.plate_steps import PlateStep
+from gaitdisc.kinetics.platform import Platform
+from gaitdisc.kinetics.wrench import Wrench
+from gaitdisc.recording import Trial
+from gaitdisc.signals.gaps import runs
+
+SWING_AT_MOST_S = 0.7  # between two steps of one foot; a stance between them would not fit
+HOLE_S = 0.06  # between what the file calls foot off and the end of the force
+
+
+@dataclass(frozen=True, eq=False)
+class FootLoad:
+    """Wrench of the ground on one foot.
+
+    Parameters
+    ----------
+    wrench : Wrench
+        At each frame; zero where the foot is in the air.
+    known : ndarray of bool (frame,)
+        False where the foot may be on the ground and no platform says what it carries.
+    """
+
+    wrench: Wrench
+    known: NDArray[np.bool_]
+
+
+def foot_loads(
+    found: Sequence[Platform],
+    steps: Sequence[PlateStep],
+    time: NDArray[np.float64],
+    cutoff_hz: float,
+    airborne: Mapping[str, Sequence[tuple[float, float]]] | None = None,
+) -> dict[str, FootLoad]:
+    """Load of both feet from the clean steps of a trial.
+
+    Known are a foot's clean steps, the swing between two of them, the swings that the file's events mark, and every
+    frame where a platform names its foot.
+
+    Parameters
+    ----------
+    found : sequence of Platform
+        As `platforms` gives them.
+    steps : sequence of PlateStep
+        As `plate_steps` gives them.
+    time : ndarray (frame,) [s]
+        Of the markers.
+    cutoff_hz : float
+        Of the filter of force and moment; infinite for none.
+    airborne : mapping of str to sequence of (float, float), optional
+        Spans in which a foot swings, `swings` for those of the file's events [s].
+
+    Returns
+    -------
+    dict of str to FootLoad
+        `r` and `l`.
+
+    Raises
+    ------
+    SamplingError
+        If the cut-off is not below half the rate of the platforms.
+    """
+    loads = {}
+    for side in "rl":
+        total = Wrench(np.zeros((len(time), 3)), np.zeros((len(time), 3)))
+        for platform in found:
+            spans = [(s.start, s.end) for s in steps if s.clean and (s.platform, s.side) == (platform.name, side)]
+            if spans:
+                total += _at(platform.smoothed(cutoff_hz, spans), platform, time)
+        named = any(platform.side == side for platform in found)
+        spans = [(time[0], time[-1])] if named else list((airborne or {}).get(side, ()))
+        loads[side] = FootLoad(total, _known(steps, side, time, spans))
+    return loads
+
+
+def swings(trial: Trial) -> dict[str, list[tuple[float, float]]]:
+    """Spans from foot off to the next initial contact of the same foot, by the events of the file [s].
+
+    Parameters
+    ----------
+    trial : Trial
+        With events.
+    """
+    found: dict[str, list[tuple[float, float]]] = {"r": [], "l": []}
+    for side, spans in found.items():
+        events = [event for event in trial.events if event.side == side]
+        for one, after in itertools.pairwise(events):
+            if (one.label, after.label) == ("foot off", "initial contact"):
+                spans.append((one.time, after.time))
+    return found
+
+
+def _at(wrench: Wrench, platform: Platform, time: NDArray[np.float64]) -> Wrench:
+    both = np.hstack([wrench.force, wrench.moment])
+    values = np.stack([np.interp(time, platform.time, column, 0.0, 0.0) for column in both.T], axis=1)
+    return Wrench(values[:, :3], values[:, 3:])
+
+
+def _known(
+    steps: Sequence[PlateStep], side: str, time: NDArray[np.float64], known_spans: Sequence[tuple[float, float]]
+) -> NDArray[np.bool_]:
+    own = [step for step in steps if step.side == side and step.clean]
+    spans = [(step.start, step.end) for step in own] + list(known_spans)
+    spans += [
+        (one.end, after.start) for one, after in itertools.pairwise(own) if 0 < after.start - one.end < SWING_AT_MOST_S
+    ]
+    known = np.zeros(len(time), bool)
+    for start, end in spans:
+        known |= (time >= start) & (time <= end)
+    step = float(time[1] - time[0]) if len(time) > 1 else 0.0
+    for start, end in runs(~known):
+        if start > 0 and end < len(time) and (end - start) * step <= HOLE_S:
+            known[start:end] = True
+    for left_out in steps:
+        if not left_out.clean and left_out.side in (side, ""):
+            known &= ~((time >= left_out.start) & (time <= left_out.end))
+    return known

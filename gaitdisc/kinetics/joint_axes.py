@@ -1,0 +1,106 @@
+"""Axes of a joint between two segments, and the parts of a vector along them with the package's signs.
+
+Axes of Grood & Suntay (1983), as the joint angles have them: the first is the nearer segment's z (to the right of the
+person), about which flexion turns; the third is the farther segment's y (along the bone), about which rotation turns;
+the second is at right angles to both, forwards. A part is the projection on an axis, so that the parts of a moment
+times the rates of their angles are the joint's power, as with the generalised forces of OpenSim.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.kinematics.pose import Pose
+
+SEGMENTS_OF = {"hip": ("pelvis", "thigh"), "knee": ("thigh", "shank"), "ankle": ("shank", "foot")}
+
+
+class JointPart(NamedTuple):
+    """One of the three parts of a joint moment.
+
+    Attributes
+    ----------
+    joint : str
+        `hip`, `knee` or `ankle`.
+    angle : str
+        Angle that a positive part drives, without its side: `knee_angle`.
+    axis : int
+        0 nearer segment's z, 1 floating, 2 farther segment's y.
+    right, left : int
+        Sign of the positive angle about the axis, for each leg.
+    """
+
+    joint: str
+    angle: str
+    axis: int
+    right: int
+    left: int
+
+    def sign(self, side: str) -> int:
+        """Sign of the positive angle about the axis.
+
+        Parameters
+        ----------
+        side : str
+            `r` or `l`.
+        """
+        return self.right if side == "r" else self.left
+
+
+PARTS = (
+    JointPart("hip", "hip_flexion", 0, 1, 1),
+    JointPart("hip", "hip_adduction", 1, 1, -1),
+    JointPart("hip", "hip_rotation", 2, 1, -1),
+    JointPart("knee", "knee_angle", 0, -1, -1),
+    JointPart("knee", "knee_adduction", 1, 1, -1),
+    JointPart("knee", "knee_rotation", 2, 1, -1),
+    JointPart("ankle", "ankle_angle", 0, 1, 1),
+    JointPart("ankle", "ankle_inversion", 1, 1, -1),
+    JointPart("ankle", "ankle_rotation", 2, 1, -1),
+)
+
+
+def joint_axes(nearer: Pose, farther: Pose) -> NDArray[np.float64]:
+    """Unit axes of a joint in the laboratory's frame, (frame, axis, 3); NaN where the first and third lie on one line.
+
+    Parameters
+    ----------
+    nearer, farther : Pose
+        The segments on the trunk's side of the joint and beyond it.
+
+    References
+    ----------
+    Grood & Suntay (1983), J. Biomech. Eng. 105, 136-144. Schache & Baker (2007), Gait Posture 25, 440-452, compare
+    the frames in which joint moments are given, and recommend these axes.
+
+    Examples
+    --------
+    >>> straight = Pose(np.zeros((1, 3)), np.eye(3)[None])
+    >>> joint_axes(straight, straight)[0].tolist()
+    [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
+    """
+    flexion, rotation = nearer.rotation[:, :, 2], farther.rotation[:, :, 1]
+    floating = np.cross(rotation, flexion)
+    size = np.linalg.norm(floating, axis=1, keepdims=True)
+    floating = floating / np.where(size > 1e-6, size, np.nan)
+    return np.stack([flexion, floating, rotation], axis=1)
+
+
+def along(vector: NDArray[np.float64], axes: NDArray[np.float64], part: JointPart, side: str) -> NDArray[np.float64]:
+    """Part of a vector towards the positive angle, (frame,).
+
+    Parameters
+    ----------
+    vector : ndarray (frame, 3)
+        In the laboratory's frame, such as a moment [N m].
+    axes : ndarray (frame, axis, 3)
+        From `joint_axes`.
+    part : JointPart
+        Which one.
+    side : str
+        `r` or `l`.
+    """
+    return part.sign(side) * np.einsum("fx,fx->f", vector, axes[:, part.axis])

@@ -1,0 +1,206 @@
+"""Joint moments and powers of a trial: segments in space and forces on the feet in, N m/kg and W/kg out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel
+from gaitdisc.errors import SamplingError, SchemaError, ShapeError
+from gaitdisc.kinematics.pose import Pose
+from gaitdisc.kinetics.body_inertia import LEG, TABLES, FootPoints, Person, leg_inertia, segment_lengths
+from gaitdisc.kinetics.foot_loads import FootLoad
+from gaitdisc.kinetics.joint_axes import PARTS, SEGMENTS_OF, along, joint_axes
+from gaitdisc.kinetics.newton_euler import RigidBody, joint_wrenches
+from gaitdisc.kinetics.plate_steps import FootPath
+from gaitdisc.kinetics.segment_motion import SegmentMotion, segment_motions
+from gaitdisc.kinetics.wrench import LEAST_LOAD_N
+from gaitdisc.recording import Recording
+
+FRAMES = ("joint", "distal")
+_JOINT_OF = {"foot": "ankle", "shank": "knee", "thigh": "hip"}
+_ALONG_BONE = {0: 2, 1: 0, 2: 1}  # the segment's own axis that takes the place of each axis of the joint
+
+
+@dataclass(frozen=True)
+class KineticsSettings:
+    """How moments are computed.
+
+    Parameters
+    ----------
+    marker_cutoff_hz, force_cutoff_hz : float [Hz]
+        Of the zero-lag filters; infinite for none. Unlike cut-offs leave what the forces have and the accelerations
+        have lost as a moment that nobody made after an impact (Kristianslund 2012); alike ones take both away.
+    least_load_n : float [N]
+        Force at which a foot counts as off a platform, and below which there is no centre of pressure.
+    inertia : str
+        Table of segment inertia: `dumas2007` or `deleva1996`.
+    frame : str
+        `joint`: parts along the axes of the joint angles; `distal`: along the axes of the segment beyond the joint, as
+        Plug-in Gait gives them.
+
+    Raises
+    ------
+    SamplingError
+        If a cut-off is not positive.
+    SchemaError
+        If the table or the frame is unknown.
+
+    References
+    ----------
+    Kristianslund, Krosshaug & van den Bogert (2012), J. Biomech. 45, 666-671.
+
+    Examples
+    --------
+    >>> KineticsSettings().force_cutoff_hz
+    20.0
+    """
+
+    marker_cutoff_hz: float = 6.0
+    force_cutoff_hz: float = 20.0
+    least_load_n: float = LEAST_LOAD_N
+    inertia: str = "dumas2007"
+    frame: str = "joint"
+
+    def __post_init__(self) -> None:
+        """Check once."""
+        for name in ("marker_cutoff_hz", "force_cutoff_hz"):
+            if not getattr(self, name) > 0:
+                raise SamplingError(
+                    f"{name} must be positive", f"it is {getattr(self, name):g} Hz", "Give it in Hz, or inf for none."
+                )
+        for name, known in (("inertia", TABLES), ("frame", FRAMES)):
+            if getattr(self, name) not in known:
+                raise SchemaError(
+                    f"{name} is one of {', '.join(known)}", f"{getattr(self, name)!r} was named", "Name one of them."
+                )
+
+
+@dataclass(frozen=True, eq=False)
+class Leg:
+    """One leg in motion with its inertia.
+
+    Parameters
+    ----------
+    side : str
+        `r` or `l`.
+    moving : mapping of str to SegmentMotion
+        `pelvis`, `thigh`, `shank`, `foot`.
+    bodies : mapping of str to RigidBody
+        `thigh`, `shank`, `foot`.
+    """
+
+    side: str
+    moving: Mapping[str, SegmentMotion]
+    bodies: Mapping[str, RigidBody]
+
+
+def legs(
+    poses: Mapping[str, Pose], feet: Mapping[str, FootPath], person: Person, settings: KineticsSettings
+) -> dict[str, Leg]:
+    """Legs of which all segments have a pose, filtered and differentiated.
+
+    Parameters
+    ----------
+    poses : mapping of str to Pose
+        `pelvis`, `thigh_r` and so on; origins in the proximal joint centres.
+    feet : mapping of str to FootPath
+        Heel and toe markers of `r` and `l`, on the frames of the poses.
+    person : Person
+        Mass, sex, stature.
+    settings : KineticsSettings
+        Cut-offs and table.
+
+    Raises
+    ------
+    GaitdiscError
+        If a length is none of a leg, the frames do not fit together, or the recording is too short.
+    """
+    names = {side: {"pelvis": "pelvis", **{one: f"{one}_{side}" for one in LEG}} for side in feet}
+    whole = {side: own for side, own in names.items() if set(own.values()) <= set(poses)}
+    found, moving = {}, {}
+    for side, own in whole.items():
+        path = feet[side]
+        wanted = [name for name in own.values() if name not in moving]  # the pelvis is filtered once
+        moving |= segment_motions(dict(poses), path.time, settings.marker_cutoff_hz, wanted)
+        lengths = segment_lengths(poses, side)
+        bodies = leg_inertia(person, side, lengths, _foot_points(path, poses[f"foot_{side}"]), settings.inertia)
+        found[side] = Leg(side, {short: moving[name] for short, name in own.items()}, bodies)
+    return found
+
+
+def _foot_points(path: FootPath, foot: Pose) -> FootPoints:
+    """Heel and toes in the foot's frame, the median over the frames."""
+    places = [foot.to_segment(part) for part in (path.heel, path.toe)]
+    seen = np.isfinite(places).all(axis=(0, 2))
+    if not seen.any():
+        raise ShapeError(
+            f"the inertia of foot_{path.side} needs a frame with heel, toes and the foot's pose",
+            "no frame has all three",
+            "Fill the markers of this foot, or name others.",
+        )
+    return FootPoints(*(np.median(place[seen], axis=0) for place in places))
+
+
+def joint_moments(
+    found: Mapping[str, Leg],
+    loads: Mapping[str, FootLoad],
+    time: NDArray[np.float64],
+    up: NDArray[np.float64],
+    person: Person,
+    settings: KineticsSettings,
+) -> Recording:
+    """Moments and powers of hip, knee and ankle.
+
+    Moments are internal, of the nearer segment on the farther one, positive towards the positive joint angle: the
+    plantarflexors' moment of push-off is negative. Powers are moment times relative angular velocity, positive when
+    generated. NaN where the load of the foot or a pose is unknown.
+
+    Parameters
+    ----------
+    found : mapping of str to Leg
+        As `legs` gives them.
+    loads : mapping of str to FootLoad
+        As `foot_loads` gives them.
+    time : ndarray (frame,) [s]
+        Of the poses.
+    up : ndarray (3,)
+        Unit vector against gravity.
+    person : Person
+        Whose mass everything is divided by.
+    settings : KineticsSettings
+        The frame of the moments.
+
+    Returns
+    -------
+    Recording
+        `hip_flexion_r_moment` [N m/kg], `hip_power_r` [W/kg] and so on, on the frames of the poses.
+    """
+    columns: list[NDArray[np.float64]] = []
+    channels: list[Channel] = []
+    for side, leg in found.items():
+        chain = [(leg.moving[segment], leg.bodies[segment]) for segment in LEG]
+        carried = dict(zip(LEG, joint_wrenches(chain, loads[side].wrench, up), strict=True))
+        unknown = ~loads[side].known
+        for segment in reversed(LEG):
+            joint = _JOINT_OF[segment]
+            nearer, farther = leg.moving[SEGMENTS_OF[joint][0]], leg.moving[segment]
+            moment = carried[segment].about(farther.pose.origin) / person.kg
+            moment[unknown] = np.nan
+            axes = _axes(nearer.pose, farther.pose, settings.frame)
+            for part in (one for one in PARTS if one.joint == joint):
+                columns.append(along(moment, axes, part, side))
+                channels.append(Channel(f"{part.angle}_{side}_moment", "moment", "N m/kg", side))
+            turning = farther.angular_velocity - nearer.angular_velocity
+            columns.append(np.einsum("fx,fx->f", moment, turning))
+            channels.append(Channel(f"{joint}_power_{side}", "power", "W/kg", side))
+    return Recording(time, np.column_stack(columns) if columns else np.empty((len(time), 0)), tuple(channels))
+
+
+def _axes(nearer: Pose, farther: Pose, frame: str) -> NDArray[np.float64]:
+    if frame == "joint":
+        return joint_axes(nearer, farther)
+    return np.stack([farther.rotation[:, :, _ALONG_BONE[axis]] for axis in range(3)], axis=1)

@@ -1,0 +1,296 @@
+"""Which foot is on which platform, from its markers and the force; steps that cannot be used say why."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.errors import ShapeError
+from gaitdisc.kinetics.platform import Platform
+from gaitdisc.kinetics.wrench import LEAST_LOAD_N
+from gaitdisc.recording import Finding, Recording
+from gaitdisc.recording.arrays import read_only
+from gaitdisc.signals.derivatives import differentiated
+from gaitdisc.signals.direction import marker_position
+from gaitdisc.signals.gaps import runs
+
+BESIDE_FOOT_M = 0.10  # a centre of pressure farther from the line from heel to toes than this is another foot's
+BEYOND_EDGE_M = 0.01  # a marker lies a little beside the sole
+SOLE_AROUND_M = 0.02  # the sole reaches at least this far around its centre of pressure
+STILL_M_PER_S = 0.35  # a part of the foot that bears load hardly moves; one that swings is five times as fast
+STANDS_S = 0.05  # shorter is a foot that passes
+CLEAR_LOAD = 0.2  # of the greatest load: where the centre of pressure is the foot's
+
+
+@dataclass(frozen=True, eq=False)
+class FootPath:
+    """Heel and toes of one foot in the laboratory's frame.
+
+    Parameters
+    ----------
+    side : str
+        `r` or `l`.
+    time : ndarray (frame,) [s]
+        Of the markers.
+    heel, toe : ndarray (frame, 3) [m]
+        Of the markers; NaN where one is missing.
+
+    Raises
+    ------
+    ShapeError
+        If they do not fit together.
+    """
+
+    side: str
+    time: NDArray[np.float64]
+    heel: NDArray[np.float64]
+    toe: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        """Check shapes once."""
+        heel, toe, time = read_only(self.heel), read_only(self.toe), read_only(self.time)
+        if heel.shape != (len(time), 3) or toe.shape != heel.shape:
+            raise ShapeError(
+                "a foot's path needs heel and toe of shape (frame, 3)",
+                f"found {heel.shape} and {toe.shape} with {len(time)} times",
+                "Give the markers of one recording.",
+            )
+        for name, value in (("heel", heel), ("toe", toe), ("time", time)):
+            object.__setattr__(self, name, value)
+
+    def still(self, part: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Frames in which heel or toe hardly moves, (frame,).
+
+        Parameters
+        ----------
+        part : ndarray (frame, 3) [m]
+            `heel` or `toe`.
+        """
+        rate_hz = (len(self.time) - 1) / float(self.time[-1] - self.time[0])
+        with np.errstate(invalid="ignore"):
+            return np.linalg.norm(differentiated(part, rate_hz), axis=1) < STILL_M_PER_S
+
+    def beside(self, points: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.float64]:
+        """How far points lie from the line from heel to toe, seen from above, (frame,) [m].
+
+        Parameters
+        ----------
+        points : ndarray (frame, 3) [m]
+            One for each frame.
+        up : ndarray (3,)
+            Against gravity.
+        """
+        level = np.eye(3) - np.outer(up, up)
+        line, off = (self.toe - self.heel) @ level, (points - self.heel) @ level
+        share = np.einsum("fx,fx->f", line, off) / np.einsum("fx,fx->f", line, line)
+        return np.linalg.norm(off - np.clip(share, 0.0, 1.3)[:, None] * line, axis=1)  # toes reach beyond the marker
+
+
+def foot_paths(markers: Recording, names: Mapping[str, tuple[str, str]]) -> dict[str, FootPath]:
+    """Paths of the feet by their markers.
+
+    Parameters
+    ----------
+    markers : Recording
+        Channels `<marker>.x`, `<marker>.y`, `<marker>.z` [m].
+    names : mapping of str to (str, str)
+        Side (`r`, `l`) to the heel marker and the toe marker.
+
+    Raises
+    ------
+    ChannelError
+        If a marker is not there.
+    """
+    return {
+        side: FootPath(side, markers.time, *(marker_position(markers, name) for name in pair))
+        for side, pair in names.items()
+    }
+
+
+@dataclass(frozen=True)
+class PlateStep:
+    """One loading of a platform.
+
+    Parameters
+    ----------
+    platform : str
+        Name of the platform.
+    side : str
+        `r` or `l`; empty where the foot is unknown.
+    start, end : float [s]
+        Of the loading.
+    reason : str
+        Why it cannot be used; empty where one foot alone stepped on it with all of its sole.
+    whole : bool
+        False where the recording begins or ends in it: its forces are right, and it is no whole stance.
+
+    Examples
+    --------
+    >>> PlateStep("plate_1", "r", 0.4, 1.1).clean
+    True
+    """
+
+    platform: str
+    side: str
+    start: float
+    end: float
+    reason: str = ""
+    whole: bool = True
+
+    @property
+    def clean(self) -> bool:
+        """Whether the force is that of one known foot, with all of its sole."""
+        return not self.reason
+
+    def finding(self, file: str) -> Finding | None:
+        """Why the step is left out, for a person to read; None where it is used.
+
+        Parameters
+        ----------
+        file : str
+            Name of the trial's file.
+        """
+        if self.clean:
+            return None
+        what = f"the step on {self.platform} from {self.start:.2f} to {self.end:.2f} s is left out: {self.reason}"
+        return Finding("note", "plate step", file, what, "joint moments of this step", spans=((self.start, self.end),))
+
+
+def plate_steps(
+    found: Sequence[Platform], feet: Mapping[str, FootPath], least_load_n: float = LEAST_LOAD_N
+) -> list[PlateStep]:
+    """Loadings of all platforms with the foot that made them, in order of time.
+
+    The foot is the one whose line from heel to toes the centre of pressure follows. A step is left out where the
+    centre of pressure follows no foot's line; where the other foot stands on the same platform meanwhile; where the
+    heel or the toes bear load beyond the platform's edge, or the centre of pressure comes within 2 cm of it.
+
+    Parameters
+    ----------
+    found : sequence of Platform
+        As `platforms` gives them.
+    feet : mapping of str to FootPath
+        `r`, `l`; a platform that names its foot is only held against them.
+    least_load_n : float
+        Force at which a loading ends [N].
+    """
+    steps = []
+    for platform in found:
+        for start, end in platform.loadings(least_load_n):
+            span = float(platform.time[start]), float(platform.time[end - 1])
+            cut = bool(start == 0 or end == len(platform.time))
+            find = _named_foot if platform.side else _foot
+            side, reason = find(platform, span, feet, least_load_n)
+            steps.append(PlateStep(platform.name, side, *span, reason, not cut))
+    return sorted(steps, key=lambda step: step.start)
+
+
+def empty_findings(found: Sequence[Platform], file: str, least_load_n: float = LEAST_LOAD_N) -> list[Finding]:
+    """Say which platforms nobody stepped on.
+
+    Parameters
+    ----------
+    found : sequence of Platform
+        As `platforms` gives them.
+    file : str
+        Name of the trial's file.
+    least_load_n : float
+        Force at which a loading ends [N].
+    """
+    return [
+        Finding(
+            "note",
+            "empty plate",
+            file,
+            f"nobody stepped on {platform.name}: it never carries more than {platform.load_n.max():.0f} N",
+            "nothing; no step on it is counted",
+        )
+        for platform in found
+        if not len(platform.loadings(least_load_n))
+    ]
+
+
+def _foot(
+    platform: Platform, span: tuple[float, float], feet: Mapping[str, FootPath], least_load_n: float
+) -> tuple[str, str]:
+    """Side of the foot that loads a platform, and why the step cannot be used."""
+    standing = {side: _stands_s(foot, platform, span) for side, foot in feet.items()}
+    if len(standing) == 2 and min(standing.values()) >= STANDS_S:
+        return "", "both feet stand on it, " + ", ".join(f"{side} for {s:.2f} s" for side, s in standing.items())
+    beside = {side: _distance(platform, span, foot, least_load_n) for side, foot in feet.items()}
+    known = {side: metres for side, metres in beside.items() if np.isfinite(metres)}
+    if not known:
+        return "", "no foot has its markers then"
+    side = min(known, key=lambda key: known[key])
+    if known[side] > BESIDE_FOOT_M:
+        return "", f"the centre of pressure is {100 * known[side]:.0f} cm beside the nearest foot ({side})"
+    return side, _over_edge(feet[side], platform, span) or _near_edge(platform, span, least_load_n)
+
+
+def _named_foot(
+    platform: Platform, span: tuple[float, float], feet: Mapping[str, FootPath], least_load_n: float
+) -> tuple[str, str]:
+    """Side that a platform names, and why that cannot be: another foot, or none, stands where the force is."""
+    beside = {side: _distance(platform, span, foot, least_load_n) for side, foot in feet.items()}
+    own = beside.get(platform.side, np.nan)
+    if not own > BESIDE_FOOT_M:
+        return platform.side, ""
+    nearest = min((side for side in beside if np.isfinite(beside[side])), key=lambda side: beside[side])
+    whose = f"it is named the foot's of side {platform.side}, and its centre of pressure"
+    if nearest != platform.side:
+        return platform.side, f"{whose} follows the other foot ({nearest}), {100 * own:.0f} cm away"
+    return platform.side, f"{whose} is {100 * own:.0f} cm beside it"
+
+
+def _frames(foot: FootPath, span: tuple[float, float]) -> NDArray[np.bool_]:
+    return (foot.time >= span[0]) & (foot.time <= span[1])
+
+
+def _distance(platform: Platform, span: tuple[float, float], foot: FootPath, least_load_n: float) -> float:
+    pressure = platform.pressure_centre(least_load_n)
+    load = np.interp(foot.time, platform.time, platform.load_n)
+    place = np.stack([np.interp(foot.time, platform.time, axis) for axis in pressure.T], axis=1)
+    frames = _frames(foot, span)
+    frames &= load > CLEAR_LOAD * load[frames].max(initial=0.0)
+    metres = foot.beside(place, platform.up)[frames]
+    metres = metres[np.isfinite(metres)]
+    return float(np.median(metres)) if len(metres) else np.nan
+
+
+def _stands_s(foot: FootPath, platform: Platform, span: tuple[float, float]) -> float:
+    """For how long heel or toes of a foot stand on a platform within a span [s]."""
+    if platform.surface is None:
+        return 0.0
+    step = float(foot.time[1] - foot.time[0])
+    longest = 0
+    for part in (foot.heel, foot.toe):
+        stands = _frames(foot, span) & foot.still(part) & (platform.surface.outside(part) < -BEYOND_EDGE_M)
+        longest = max([longest, *(end - start for start, end in runs(stands))])
+    return longest * step
+
+
+def _over_edge(foot: FootPath, platform: Platform, span: tuple[float, float]) -> str:
+    """Say which part of a foot bears load beside the platform, and how far; empty where none does."""
+    if platform.surface is None:
+        return ""
+    for name, part in (("the heel stands", foot.heel), ("the toes stand", foot.toe)):
+        frames = _frames(foot, span) & foot.still(part)
+        outside = platform.surface.outside(part)[frames]
+        outside = outside[np.isfinite(outside)]
+        if len(outside) and np.median(outside) > BEYOND_EDGE_M:
+            return f"{name} {100 * np.median(outside):.0f} cm beyond its edge"
+    return ""
+
+
+def _near_edge(platform: Platform, span: tuple[float, float], least_load_n: float) -> str:
+    """Say how near to the edge the centre of pressure comes where a part of the sole must reach over it."""
+    if platform.surface is None:
+        return ""
+    step = (platform.time >= span[0]) & (platform.time <= span[1])
+    load = platform.load_n[step]
+    pressure = platform.pressure_centre(least_load_n)[step][load > CLEAR_LOAD * load.max()]
+    nearest = -float(np.nanmax(platform.surface.outside(pressure)))
+    return f"its centre of pressure comes within {100 * nearest:.1f} cm of the edge" if nearest < SOLE_AROUND_M else ""

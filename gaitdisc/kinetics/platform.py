@@ -1,0 +1,210 @@
+"""Force platforms of a trial as wrenches in the laboratory's frame: plates, belts, and forces that name their foot."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel
+from gaitdisc.errors import ChannelError, ReadError, UnitError
+from gaitdisc.kinetics.wrench import LEAST_LOAD_N, Wrench
+from gaitdisc.recording import Recording, Surface, Trial
+from gaitdisc.signals.butterworth import lowpassed
+from gaitdisc.signals.contact_force import loaded
+
+AXES = "xyz"
+CLEAR_LOAD_N = 100.0  # what a drifting plate does not show, and a foot does
+_PLATE = re.compile(r"(plate_\d+)_f[xyz]")
+_SIDED = re.compile(r"ground_force_(\w+?)_v[xyz]")
+
+
+@dataclass(frozen=True, eq=False)
+class Platform:
+    """What measures the force of the ground on a foot.
+
+    Parameters
+    ----------
+    name : str
+        First part of its channels' names.
+    time : ndarray (sample,) [s]
+        On the trial's clock.
+    wrench : Wrench
+        Of the ground on the foot.
+    up : ndarray (3,)
+        Unit vector from the ground to the foot, against gravity.
+    point : ndarray (3,) [m]
+        A point of its surface.
+    surface : Surface or None
+        Where it lies; None where only forces and centres of pressure were written.
+    side : str
+        `r` or `l` where the file says whose foot it is, empty otherwise.
+    """
+
+    name: str
+    time: NDArray[np.float64]
+    wrench: Wrench
+    up: NDArray[np.float64]
+    point: NDArray[np.float64]
+    surface: Surface | None = None
+    side: str = ""
+
+    @property
+    def rate_hz(self) -> float:
+        """Samples a second."""
+        return (len(self.time) - 1) / float(self.time[-1] - self.time[0])
+
+    @property
+    def load_n(self) -> NDArray[np.float64]:
+        """Force against gravity, (sample,) [N]."""
+        return self.wrench.force @ self.up
+
+    def pressure_centre(self, least_load_n: float = LEAST_LOAD_N) -> NDArray[np.float64]:
+        """Where the force meets the surface, (sample, 3) [m]; NaN where it presses with less than `least_load_n`.
+
+        Parameters
+        ----------
+        least_load_n : float
+            Least force along the normal [N].
+        """
+        return self.wrench.pressure_centre(self.point, self.up, least_load_n)
+
+    def loadings(self, least_load_n: float = LEAST_LOAD_N) -> NDArray[np.intp]:
+        """First and last sample of each loading, as force contacts are found, (loading, 2).
+
+        Parameters
+        ----------
+        least_load_n : float
+            Force at which a loading ends [N]; it begins 2.5 times as high.
+        """
+        return loaded(self.load_n, self.rate_hz, least_load_n / 0.4)
+
+    def smoothed(self, cutoff_hz: float, spans: Sequence[tuple[float, float]]) -> Wrench:
+        """Wrench within spans without what is faster than the cut-off, zero elsewhere.
+
+        What an empty plate shows is no force on a foot and is taken as zero before the filter. Force and moment about
+        the surface are filtered; the centre of pressure is not, as it is a quotient.
+
+        Parameters
+        ----------
+        cutoff_hz : float
+            Of the zero-lag Butterworth filter; infinite for none.
+        spans : sequence of (float, float) [s]
+            Loadings by the foot that is meant.
+
+        Raises
+        ------
+        SamplingError
+            If the cut-off is not below half the rate, or the recording too short.
+        """
+        on = np.zeros(len(self.time), bool)
+        for start, end in spans:
+            on |= (self.time >= start) & (self.time <= end)
+        values = np.hstack([self.wrench.force, self.wrench.about(self.point)]) * on[:, None]
+        if np.isfinite(cutoff_hz):
+            channels = tuple(Channel(f"wrench_{place}", "signal", "1") for place in range(6))
+            values = lowpassed(Recording(self.time, values, channels), cutoff_hz).values
+        return Wrench.at(self.point, values[:, :3], values[:, 3:])
+
+
+def platforms(trial: Trial) -> list[Platform]:
+    """Force platforms of a trial.
+
+    Plates of a C3D file are `plate_1_fx` to `plate_1_mz`, with their corners in `trial.surfaces`; forces of a `.mot`
+    or `.sto` file are `ground_force_r_vx`, with their point `ground_force_r_px` and moment `ground_torque_r_x`, in
+    OpenSim's frame, y up.
+
+    Parameters
+    ----------
+    trial : Trial
+        With the stream `forces`.
+
+    Raises
+    ------
+    ChannelError
+        If there is no force platform, or one lacks a channel or its corners.
+    ReadError
+        If a force presses at a point that is missing.
+    UnitError
+        If a loaded platform pulls its foot down: the force is that of the foot on the ground.
+
+    Examples
+    --------
+    >>> [platform.name for platform in platforms(read_trial("walk.c3d"))]  # doctest: +SKIP
+    ['plate_1', 'plate_2']
+    """
+    forces = trial.stream("forces")
+    surfaces = {surface.name: surface for surface in trial.surfaces}
+    plates = dict.fromkeys(found[1] for name in forces.names if (found := _PLATE.fullmatch(name)))
+    feet = dict.fromkeys(found[1] for name in forces.names if (found := _SIDED.fullmatch(name)))
+    found = [_plate(forces, name, surfaces) for name in plates] + [_foot_force(forces, name) for name in feet]
+    if not found:
+        raise ChannelError(
+            "joint moments need force and moment of the ground in three directions",
+            f"{forces.source.file or trial.name} has {', '.join(forces.names[:6])}",
+            "Give plates with FORCE_PLATFORM (C3D), or ground_force_r_vx to ground_torque_r_z (.mot).",
+        )
+    for platform in found:
+        _check_sign(platform, forces.source.file or trial.name)
+    return found
+
+
+def _plate(forces: Recording, name: str, surfaces: dict[str, Surface]) -> Platform:
+    if name not in surfaces:
+        raise ChannelError(
+            f"the wrench of {name} needs the corners of its surface",
+            f"{forces.source.file or 'the trial'} has them for {', '.join(surfaces) or 'no plate'}",
+            "Keep the trial's surfaces, or correct FORCE_PLATFORM:CORNERS.",
+        )
+    surface = surfaces[name]
+    force, moment = _three(forces, f"{name}_f{{}}"), _three(forces, f"{name}_m{{}}")
+    vertical = int(np.argmax(np.abs(surface.normal)))
+    # ingest gives the laboratory's vertical as positive upwards
+    up = surface.normal * (np.sign(surface.normal[vertical]))
+    return Platform(name, forces.time, Wrench.at(surface.centre, force, moment), up, surface.centre, surface)
+
+
+def _foot_force(forces: Recording, key: str) -> Platform:
+    force = _three(forces, f"ground_force_{key}_v{{}}")
+    point, moment = _three(forces, f"ground_force_{key}_p{{}}"), _three(forces, f"ground_torque_{key}_{{}}")
+    up = np.array([0.0, 1.0, 0.0])
+    pressed = np.abs(force[:, 1]) > LEAST_LOAD_N
+    lost = pressed & ~np.isfinite(np.hstack([point, moment])).all(axis=1)
+    if lost.any():
+        first, file = int(np.argmax(lost)), forces.source.file or "the trial"
+        raise ReadError(
+            f"ground_force_{key} needs its point and moment wherever it presses",
+            f"{file} has {force[first, 1]:.0f} N at {forces.time[first]:.3f} s without, and {lost.sum()} such samples",
+            "Export the centre of pressure in m, and 0 where the foot is in the air.",
+        )
+    floor = float(np.median(point[pressed, 1])) if pressed.any() else 0.0
+    wrench = Wrench.at(np.nan_to_num(point), force, np.nan_to_num(moment))
+    side = key if key in ("r", "l") else ""
+    return Platform(f"ground_force_{key}", forces.time, wrench, up, np.array([0.0, floor, 0.0]), None, side)
+
+
+def _three(forces: Recording, pattern: str) -> NDArray[np.float64]:
+    names = [pattern.format(axis) for axis in AXES]
+    lacking = [name for name in names if name not in forces.names]
+    if lacking:
+        raise ChannelError(
+            f"a wrench needs {', '.join(names)}",
+            f"{forces.source.file or 'the trial'} lacks {', '.join(lacking)}",
+            "Export force, point and moment of the ground in all three directions, or map them in [channels].",
+        )
+    return np.stack([forces[name] for name in names], axis=1)
+
+
+def _check_sign(platform: Platform, file: str) -> None:
+    """Refuse a platform that pulls: one that carries a foot pushes it up."""
+    load = platform.load_n
+    lowest = int(np.argmin(load))
+    if load.max() < CLEAR_LOAD_N < -load[lowest]:
+        raise UnitError(
+            f"joint moments need the force of the ground on the foot, positive upwards, from {platform.name}",
+            f"{file} has {load[lowest]:.0f} N at {platform.time[lowest]:.3f} s and never more than {load.max():.0f} N",
+            "Its sign is turned: give it as the force of the ground on the foot.",
+        )

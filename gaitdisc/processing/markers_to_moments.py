@@ -1,0 +1,89 @@
+"""From markers and forces of a trial to its joint angles, moments and powers, in the streams that all else reads."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from gaitdisc.errors import GaitdiscError
+from gaitdisc.kinematics.calibration import Calibration
+from gaitdisc.kinematics.motion import Motion, motion
+from gaitdisc.kinetics.body_inertia import Person
+from gaitdisc.kinetics.joint_moments import KineticsSettings
+from gaitdisc.kinetics.plate_steps import FootPath
+from gaitdisc.kinetics.trial_kinetics import trial_kinetics
+from gaitdisc.recording import Finding, Trial
+
+
+def with_angles_and_moments(
+    trial: Trial,
+    calibration: Calibration,
+    person: Person | None,
+    settings: KineticsSettings | None = None,
+    forward: Sequence[float] | None = None,
+) -> Trial:
+    """Trial with joint angles from its markers and, where platforms allow it, moments and powers.
+
+    What a model in the file itself held under these streams gives way. A trial without forces, or without a step of
+    one foot alone on a platform, has angles only and says why in its findings.
+
+    Parameters
+    ----------
+    trial : Trial
+        With markers, and forces for moments.
+    calibration : Calibration
+        Of the person, from the static trial.
+    person : Person or None
+        Mass, sex, stature; None for angles alone.
+    settings : KineticsSettings, optional
+        How moments are computed.
+    forward : sequence of 3 floats, optional
+        Direction of walking in the laboratory's axes; found from the pelvis where it is not given.
+
+    Returns
+    -------
+    Trial
+        Streams `kinematics` [deg, m] and `moments` [N m/kg, W/kg] on the frames of the markers.
+
+    Raises
+    ------
+    GaitdiscError
+        If the markers give no angles.
+    """
+    moved = motion(trial.stream("markers"), calibration, forward)
+    own = [key for key in ("kinematics", "moments") if key in trial.streams]
+    streams = {key: recording for key, recording in trial.streams.items() if key not in own}
+    named = {"subject": trial.subject, "condition": trial.condition}
+    streams["kinematics"] = replace(moved.angles, **named)
+    file = moved.angles.source.file or trial.name
+    findings = [*trial.findings, *moved.findings]
+    if own:
+        what = f"{' and '.join(own)} that the file holds give way to those computed from its markers"
+        findings.append(Finding("note", "own model", file, what, ""))
+    if person is not None and "forces" in trial.streams:
+        try:
+            kinetics = trial_kinetics(trial, moved.poses, foot_paths_of(moved, calibration), person, settings)
+        except GaitdiscError as error:
+            findings.append(Finding("warning", "no moments", file, str(error).rstrip("."), "moments and powers"))
+        else:
+            streams["moments"] = kinetics.moments
+            findings += kinetics.findings
+    return replace(trial, streams=streams, findings=tuple(findings))
+
+
+def foot_paths_of(moved: Motion, calibration: Calibration) -> dict[str, FootPath]:
+    """Paths of heel and toes as the feet's segments carry them, with or without their markers in a frame.
+
+    Parameters
+    ----------
+    moved : Motion
+        Of a trial.
+    calibration : Calibration
+        That says where heel and toes lie in the foot.
+    """
+    found = {}
+    for side in "lr":
+        foot, points = moved.poses[f"foot_{side}"], calibration.points[f"foot_{side}"]
+        places = (foot.to_laboratory(points[f"{part}_{side}"]) for part in ("heel", "toe"))
+        found[side] = FootPath(side, moved.angles.time, *places)
+    return found

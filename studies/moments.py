@@ -1,0 +1,92 @@
+"""Joint moments and powers against Plug-in Gait's own in the same C3D files, and against OpenSim's inverse dynamics.
+
+    python studies/moments.py [DATA] [--picture moments.png] [--quick]
+
+DATA holds gait/young_straight_and_turn, gait/young_static and opensim_gait10dof; by default ../shared/data. Errors are
+rms over a clean step on a plate, median and largest over the steps [N m/kg, W/kg]. `markers`: segments from the markers
+by the package; `bones`: Plug-in Gait's own segments, to test kinetics alone. Two people are kept back.
+"""
+
+from __future__ import annotations
+
+from command_line import QUICK, SHARED, argument, command_line
+
+DATA = argument("data", "folder of the real recordings", SHARED)
+PICTURE = argument("--picture", "file for the curves over each other", type=str)
+GIVEN = command_line(__name__, __doc__, DATA, PICTURE, QUICK)  # before the slow imports
+
+from dataclasses import replace
+from pathlib import Path
+
+from curves_over_each_other import over_each_other
+from gait10dof_segments import against_opensim
+from moments_tables import NAMES, SETS, SETTINGS, Curves, Walk, against_plug_in_gait, balances, filter_effect
+from plug_in_gait_bones import TRUNK, WALKERS, bones, feet, static_file
+
+from gaitdisc.ingest.c3d import C3DReader
+from gaitdisc.ingest.c3d_measures import read_body_measures
+from gaitdisc.kinematics.calibration import calibrated
+from gaitdisc.kinematics.marker_set import marker_set
+from gaitdisc.kinematics.motion import motion
+from gaitdisc.kinetics.body_inertia import Person
+from gaitdisc.kinetics.trial_kinetics import TrialKinetics, trial_kinetics
+from gaitdisc.recording import Trial
+
+SET = marker_set("plug_in_gait")
+
+
+def walks(data: Path, quick: bool = False) -> list[Walk]:
+    """Every clean step of every walk, by the source of the segments and the settings."""
+    found: list[Walk] = []
+    with C3DReader() as reader:
+        for person in WALKERS[:1] if quick else WALKERS:
+            file = static_file(data / "gait", person)
+            static = reader.read(file).stream("markers")
+            measures = read_body_measures(file)
+            sets = {
+                "markers": SET,
+                "markers, Davis's hip": replace(SET, joint_centres={**SET.joint_centres, "hip": ("davis",)}),
+            }
+            bodies = {source: calibrated(static, one, measures) for source, one in sets.items()}
+            for kind in ("straight", "turn"):
+                path = next((data / "gait" / "young_straight_and_turn" / person / kind).glob("*.c3d"))
+                trial, who = reader.read(path), Person(measures.mass_kg, "", measures.height_m)
+                segments = {one: motion(trial.stream("markers"), body).poses for one, body in bodies.items()}
+                for source, poses in {**segments, "bones": bones(trial)}.items():
+                    for name, settings in SETTINGS.items():
+                        made = trial_kinetics(trial, poses, feet(trial), who, settings, TRUNK)
+                        found.append(Walk(person, kind, source, name, made, steps(trial, made)))
+    return found
+
+
+def steps(trial: Trial, made: TrialKinetics) -> list[Curves]:
+    """Ours and the file's curves over each clean step."""
+    theirs, found = trial.stream("moments"), []
+    for step in (one for one in made.steps if one.clean):
+        rows = (made.moments.time >= step.start) & (made.moments.time <= step.end)
+        names = {name: name.format(step.side) for name in NAMES}
+        found.append({name: (made.moments[full][rows], theirs[full][rows]) for name, full in names.items()})
+    return found
+
+
+HEADS = (
+    "segments from|settings|channel|straight: median (largest), steps|straight, kept back|turn, all|turn, kept back",
+    "person|walk|force balance, trunk from its markers",
+    "OpenSim's gait10dof|segments from|rms, right and left [N m]|largest [N m]|rms [N m/kg]",
+)
+
+
+def main() -> None:
+    """Print the tables; draw the curves where a file is named."""
+    found = walks(GIVEN.data, GIVEN.quick)
+    opensim = against_opensim(GIVEN.data / "opensim_gait10dof")
+    for head, rows in zip(HEADS, (against_plug_in_gait(found), balances(found), opensim), strict=True):
+        print(f"| {head.replace('|', ' | ')} |\n|{'---|' * (head.count('|') + 1)}")
+        print("\n".join(f"| {' | '.join(row)} |" for row in rows), end="\n\n")
+    print(filter_effect(found))
+    if GIVEN.picture:
+        over_each_other({w.person: w.steps for w in found if w[1:4] == ("straight", "markers", SETS[0])}, GIVEN.picture)
+
+
+if __name__ == "__main__":
+    main()

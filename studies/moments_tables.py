@@ -1,0 +1,79 @@
+"""Tables of joint moments against those that the files hold, and the effect of the filters."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from gaitdisc.kinetics.joint_moments import KineticsSettings
+from gaitdisc.kinetics.trial_kinetics import TrialKinetics
+
+KEPT_BACK = ("HC033A", "HC036A")  # by whom markers to angles were not written either
+PARTS = ("ankle_angle", "knee_angle", "hip_flexion", "ankle_inversion", "knee_adduction", "hip_adduction")
+PARTS += ("ankle_rotation", "knee_rotation", "hip_rotation")
+NAMES = tuple(f"{part}_{{}}_moment" for part in PARTS) + tuple(
+    f"{joint}_power_{{}}" for joint in ("ankle", "knee", "hip")
+)
+SETTINGS = {"6/20 Hz": KineticsSettings(), "6/6 Hz": KineticsSettings(force_cutoff_hz=6.0)}
+SETTINGS |= {"6/20 Hz, distal frame": KineticsSettings(frame="distal")}
+SETS = tuple(SETTINGS)
+Curves = dict[str, tuple[np.ndarray, np.ndarray]]  # channel -> ours, theirs over one step
+
+
+class Walk(NamedTuple):
+    """One walk, computed in one way."""
+
+    person: str
+    kind: str
+    source: str
+    settings: str
+    made: TrialKinetics
+    steps: list[Curves]
+
+    @property
+    def kept_back(self) -> bool:
+        """Whether the person is one of those that nothing was chosen by."""
+        return self.person in KEPT_BACK
+
+
+def rms(ours: np.ndarray, theirs: np.ndarray) -> float:
+    """Over the frames that both have; the file writes 0 where it has none."""
+    both = np.isfinite(ours) & np.isfinite(theirs) & (theirs != 0)
+    return float(np.sqrt(np.mean((ours - theirs)[both] ** 2))) if both.any() else np.nan
+
+
+def against_plug_in_gait(found: list[Walk]) -> list[tuple[str, ...]]:
+    """Rows of the table: channel by channel, people kept back apart."""
+    rows = []
+    sources = (("markers", SETS[0]), ("markers, Davis's hip", SETS[0]), ("bones", SETS[0]), ("bones", SETS[2]))
+    for source, settings in sources:
+        for name in NAMES:
+            cells = []
+            for kind, only in (("straight", False), ("straight", True), ("turn", False), ("turn", True)):
+                chosen = [w for w in found if w[1:4] == (kind, source, settings) and w.kept_back >= only]
+                errors = [rms(*curves[name]) for walk in chosen for curves in walk.steps]
+                size = f"{np.median(errors):.3f} ({max(errors):.3f}), {len(errors)}" if errors else "-"
+                cells.append(size)
+            rows.append((source, settings, name.replace("_{}", ""), *cells))
+    return rows
+
+
+def balances(found: list[Walk]) -> list[tuple[str, ...]]:
+    """Rows of the table: measured against needed force, each walk."""
+    chosen = [w for w in found if (w.source, w.settings) == ("markers", SETS[0])]
+    return [(w.person, w.kind, w.made.balance.line().removeprefix("force balance ")) for w in chosen]
+
+
+def filter_effect(found: list[Walk]) -> str:
+    """Peak knee extension moment of the first half of stance at 6/20 and at 6/6 Hz, a sentence."""
+    peaks = []
+    for name in SETS[:2]:
+        curves = [c["knee_angle_{}_moment"][0] for w in found if w[2:4] == ("markers", name) for c in w.steps]
+        peaks.append([-np.nanmin(curve[: len(curve) // 2]) for curve in curves])
+    both, apart = np.median(peaks, axis=1), np.subtract(peaks[1], peaks[0])
+    return (
+        f"peak knee extension moment, {len(apart)} steps: median {both[0]:.3f} N m/kg at {SETS[0]}, {both[1]:.3f} at "
+        f"{SETS[1]}; the change of a step has median {np.median(apart):+.3f}, "
+        f"least {apart.min():+.3f}, most {apart.max():+.3f}"
+    )

@@ -1,0 +1,68 @@
+"""`gaitdisc angles`: from two marker files to a file of angles, with everything that was inferred said."""
+
+from __future__ import annotations
+
+import numpy as np
+from manufactured_body import PLUG_IN_GAIT, RAJAGOPAL, Laboratory, known_angles, markers_of, static_of, without
+
+from gaitdisc.commands.exit_codes import REFUSED
+from gaitdisc.ingest.reading import read_trial
+from gaitdisc.recording import Recording
+
+
+def write_trc(markers: Recording, path) -> None:
+    labels = [name[:-2] for name in markers.names if name.endswith(".x")]
+    rows = [
+        "\t".join([str(i + 1), f"{t:.6f}", *(f"{1000 * x:.9f}" for x in row)])
+        for i, (t, row) in enumerate(zip(markers.time, markers.values, strict=True))
+    ]
+    head = [
+        f"PathFileType\t4\t(X/Y/Z)\t{path.name}",
+        "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits",
+        f"100\t100\t{len(rows)}\t{len(labels)}\tmm",
+        "Frame#\tTime\t" + "\t\t\t".join(labels),
+        "\t\t" + "\t".join(f"{axis}{i + 1}" for i in range(len(labels)) for axis in "XYZ"),
+        "",
+    ]
+    path.write_text("\n".join([*head, *rows]) + "\n", encoding="utf-8")
+
+
+def test_angles_of_two_marker_files(tmp_path, called):
+    known = known_angles(150)
+    away = Laboratory(origin=np.array([0.5, 0.1, 0.3]))  # nobody's marker lies in the origin, which would be a gap
+    write_trc(markers_of(known, RAJAGOPAL, away), tmp_path / "walk.trc")
+    write_trc(static_of(RAJAGOPAL, away), tmp_path / "static.trc")
+    done = called("angles", tmp_path / "walk.trc", "--static", tmp_path / "static.trc", "--out", tmp_path / "a.mot",
+                  "--forward", 1, 0, 0)  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert "marker set: rajagopal: " in done.stdout
+    assert "direction: forward as given" in done.stdout
+    assert "26 channels, 150 samples" in done.stdout
+    angles = read_trial(tmp_path / "a.mot").stream("kinematics")
+    for name, values in known.items():
+        np.testing.assert_allclose(angles[name], values, atol=1e-5, err_msg=name)
+
+
+def test_widths_may_be_given(tmp_path, called):
+    known = known_angles(150)
+    away = Laboratory(origin=np.array([0.5, 0.1, 0.3]))
+    write_trc(markers_of(known, PLUG_IN_GAIT, away), tmp_path / "walk.trc")
+    write_trc(static_of(PLUG_IN_GAIT, away), tmp_path / "static.trc")
+    words = ("angles", tmp_path / "walk.trc", "--static", tmp_path / "static.trc", "--out", tmp_path / "a.csv")
+    refused = called(*words)
+    assert refused.returncode == REFUSED
+    assert "needs the width of the knee; neither static.trc nor the measures have it" in refused.stderr
+    done = called(*words, "--widths", 0.1, 0.1, 0.07, 0.07, "--forward", 1, 0, 0)
+    assert done.returncode == 0, done.stderr
+    angles = read_trial(tmp_path / "a.csv").stream("kinematics")
+    np.testing.assert_allclose(angles["knee_angle_r"], known["knee_angle_r"], atol=1e-5)
+
+
+def test_a_walk_without_a_marker_is_refused_in_one_sentence(tmp_path, called):
+    write_trc(markers_of(known_angles(150), RAJAGOPAL), tmp_path / "walk.trc")
+    write_trc(without(static_of(RAJAGOPAL), "LMFC"), tmp_path / "static.trc")
+    done = called("angles", tmp_path / "walk.trc", "--static", tmp_path / "static.trc", "--out", tmp_path / "a.csv",
+                  "--marker-set", "rajagopal")  # fmt: skip
+    assert done.returncode == REFUSED
+    assert "static.trc has no LMFC. Name the marker" in done.stderr
+    assert not (tmp_path / "a.csv").exists()

@@ -1,0 +1,58 @@
+"""`gaitdisc moments`: from a walk and a static trial to a file of moments and powers, with what they rest on."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from gaitdisc.commands.exit_codes import REFUSED
+from gaitdisc.ingest.reading import read_trial
+
+
+@pytest.fixture(scope="module")
+def files(gait_data):
+    person = gait_data / "young_straight_and_turn" / "HC030A" / "straight" / "HC030A05.c3d"
+    return person, gait_data / "young_static" / "HC030A" / "HC030A01.c3d"
+
+
+@pytest.mark.parametrize("ending", ["csv", "mot"])
+def test_moments_of_a_walk(tmp_path, called, files, ending):
+    walk, static = files
+    out = tmp_path / f"moments.{ending}"
+    done = called("moments", walk, "--static", static, "--out", out, "--marker-set", "plug_in_gait")
+    assert done.returncode == 0, done.stderr
+    assert "side r alone on plate_2 from 0.18 to 0.79 s" in done.stdout
+    assert "force balance over " in done.stdout and "24 channels, 197 samples" in done.stdout
+    written = read_trial(out).stream("moments")
+    channel = written.channels[written.index("ankle_angle_r_moment")]
+    assert channel.unit == "N m/kg"
+    assert np.nanmin(written["ankle_angle_r_moment"]) == pytest.approx(-1.19, abs=0.05)
+    assert np.nanmax(written["ankle_power_r"]) == pytest.approx(2.9, abs=0.3)
+
+
+def test_a_mass_in_grams_is_refused_in_one_sentence(tmp_path, called, files):
+    walk, static = files
+    done = called("moments", walk, "--static", static, "--out", tmp_path / "a.csv", "--mass", 45800)
+    assert done.returncode == REFUSED
+    assert "body mass of 5 to 300 kg; the mass given is 45800 kg. Give it in kg." in done.stderr
+    assert not (tmp_path / "a.csv").exists()
+
+
+def test_who_stands_on_one_plate_with_both_feet_has_no_moments(tmp_path, called, files):
+    _, static = files
+    done = called("moments", static, "--static", static, "--out", tmp_path / "a.csv", "--marker-set", "plug_in_gait")
+    assert done.returncode == REFUSED
+    assert "HC030A01.c3d has plate_1 at 0.00 s: both feet stand on it" in done.stderr
+
+
+def test_markers_and_forces_in_two_files_need_the_mass(tmp_path, called, gait_data):
+    walk = gait_data.parent / "opensim_gait10dof" / "ExperimentalData"
+    words = ("moments", walk / "subject01_walk.trc", walk / "subject01_walk_grf.mot", "--static",
+             walk / "subject01_static.trc", "--out", tmp_path / "a.sto", "--marker-set", "gait2354")  # fmt: skip
+    refused = called(*words)
+    assert refused.returncode == REFUSED
+    assert "need the person's body mass [kg]; none is given" in refused.stderr
+    done = called(*words, "--mass", 72.6, "--sex", "m")
+    assert done.returncode == 0, done.stderr
+    written = read_trial(tmp_path / "a.sto").stream("moments")
+    assert np.nanmin(written["ankle_angle_l_moment"]) == pytest.approx(-1.55, abs=0.2)

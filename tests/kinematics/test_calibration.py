@@ -1,0 +1,171 @@
+"""Frames and joint centres of a standing person whose bones are known; statics that cannot be used are refused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from manufactured_body import (
+    ANKLE_WIDTH,
+    DEPTH,
+    GAIT2354,
+    HELEN_HAYES,
+    KNEE_WIDTH,
+    MEASURES,
+    PLUG_IN_GAIT,
+    RADIUS,
+    RAJAGOPAL,
+    SHANK,
+    THIGH,
+    WIDTH,
+    Laboratory,
+    known_angles,
+    markers_of,
+    renamed,
+    static_of,
+    without,
+)
+
+from gaitdisc.errors import ChannelError, SamplingError, ShapeError
+from gaitdisc.kinematics.calibration import calibrated
+from gaitdisc.kinematics.joint_centres import DavisHip, harrington_hip
+from gaitdisc.kinematics.marker_set import MarkerSet, marker_set
+from gaitdisc.recording import Recording
+from gaitdisc.recording.body_measures import BodyMeasures
+
+
+def with_methods(name: str, **methods: str) -> MarkerSet:
+    plain = marker_set(name)
+    centres = {**plain.joint_centres, **{joint: (method,) for joint, method in methods.items()}}
+    return replace(plain, joint_centres=centres)
+
+
+def test_joint_centres_and_landmarks_lie_where_the_bones_have_them():
+    for name, body in (("plug_in_gait", PLUG_IN_GAIT), ("rajagopal", RAJAGOPAL), ("gait2354", GAIT2354)):
+        points = calibrated(static_of(body), marker_set(name), MEASURES).points
+        for side in "lr":
+            np.testing.assert_allclose(points["pelvis"][f"hip_{side}"], harrington_hip(WIDTH, DEPTH, side), atol=1e-9)
+            np.testing.assert_allclose(points[f"thigh_{side}"][f"hip_{side}"], 0, atol=1e-9)
+            np.testing.assert_allclose(points[f"thigh_{side}"][f"knee_{side}"], [0, -THIGH, 0], atol=1e-9)
+            np.testing.assert_allclose(points[f"shank_{side}"][f"ankle_{side}"], [0, -SHANK, 0], atol=1e-9)
+            np.testing.assert_allclose(points[f"foot_{side}"][f"heel_{side}"], [-0.06, -0.04, 0], atol=1e-9)
+
+
+def test_the_measured_distance_of_the_spines_comes_before_that_of_the_markers():
+    measures = BodyMeasures(inter_asis_m=0.22)
+    calibration = calibrated(static_of(RAJAGOPAL), marker_set("rajagopal"), measures)
+    np.testing.assert_allclose(calibration.points["pelvis"]["hip_r"], harrington_hip(0.22, DEPTH, "r"), atol=1e-9)
+    said = [finding.what for finding in calibration.findings if finding.kind == "pelvis width"]
+    assert said == ["distance of the iliac spines 220 mm as measured, 240 mm between the markers"]
+
+
+def test_hips_after_davis_need_leg_lengths():
+    chosen = with_methods("plug_in_gait", hip="davis")
+    with pytest.raises(ChannelError, match=r"lengths of both legs; static\.c3d and the measures have none"):
+        calibrated(static_of(PLUG_IN_GAIT), chosen, MEASURES)
+    legs = BodyMeasures(
+        marker_diameter_m=2 * RADIUS,
+        leg_length_m={"l": 0.80, "r": 0.82},
+        knee_width_m=MEASURES.knee_width_m,
+        ankle_width_m=MEASURES.ankle_width_m,
+    )
+    points = calibrated(static_of(PLUG_IN_GAIT), chosen, legs).points
+    expected = DavisHip(WIDTH, 0.81, 0.82, RADIUS).centre("r")
+    np.testing.assert_allclose(points["pelvis"]["hip_r"], expected, atol=1e-9)
+
+
+def test_medial_markers_make_a_midpoint_and_without_them_the_width_is_needed():
+    chosen = marker_set("helen_hayes")
+    both = calibrated(static_of(HELEN_HAYES), chosen)
+    medial = [f"{side}.{name}.Medial" for side in "LR" for name in ("Knee", "Ankle")]
+    lateral = without(static_of(HELEN_HAYES), *medial)
+    one = calibrated(lateral, chosen, MEASURES)
+    for segment in both.points:
+        for name in set(both.points[segment]) & set(one.points[segment]):
+            np.testing.assert_allclose(one.points[segment][name], both.points[segment][name], atol=1e-9)
+    with pytest.raises(ChannelError, match=r"needs the width of the knee; neither static\.c3d nor .* side 'l'"):
+        calibrated(lateral, chosen)
+
+
+def test_a_width_is_taken_from_both_markers_where_nobody_measured_it():
+    """Plug-in Gait's chord on a person who also wears a medial malleolus marker."""
+    plain = with_methods("helen_hayes", knee="chord", ankle="chord")
+    found = calibrated(static_of(HELEN_HAYES), plain, BodyMeasures(marker_diameter_m=2 * RADIUS))
+    widths = [finding.what for finding in found.findings if finding.kind == "width"]
+    assert f"width of knee_r {KNEE_WIDTH * 1000:.0f} mm from its two markers" in widths
+    assert f"width of ankle_l {ANKLE_WIDTH * 1000:.0f} mm from its two markers" in widths
+    np.testing.assert_allclose(found.points["shank_r"]["ankle_r"], [0, -SHANK, 0], atol=1e-9)
+
+
+def test_a_diameter_that_is_not_known_is_said_once():
+    measures = BodyMeasures(knee_width_m=MEASURES.knee_width_m, ankle_width_m=MEASURES.ankle_width_m)
+    found = calibrated(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), measures)
+    assert [finding.what for finding in found.findings if finding.kind == "marker diameter"] == [
+        "the diameter of the markers is not known; 14 mm are taken"
+    ]
+
+
+def test_the_person_may_stand_still_in_a_part_of_the_trial_only():
+    moving = markers_of(known_angles(100), RAJAGOPAL)
+    still = static_of(RAJAGOPAL)
+    values = np.concatenate([moving.values, still.values, moving.values])
+    static = Recording(np.arange(300) / 100, values, still.channels, source=still.source)
+    points = calibrated(static, marker_set("rajagopal")).points
+    np.testing.assert_allclose(points["thigh_r"]["knee_r"], [0, -THIGH, 0], atol=1e-9)
+
+
+def test_a_marker_with_gaps_and_one_frame_are_enough():
+    static = static_of(RAJAGOPAL)
+    values = np.array(static.values)
+    values[10:, static.index("RCAL.x")] = np.nan
+    expected = calibrated(static, marker_set("rajagopal")).points["foot_r"]["heel_r"]
+    for recording in (static.with_values(values), static.between(0, 0.005)):
+        found = calibrated(recording, marker_set("rajagopal")).points["foot_r"]["heel_r"]
+        np.testing.assert_allclose(found, expected, atol=1e-9)
+
+
+def test_a_marker_missing_in_the_static_trial_is_named():
+    with pytest.raises(ChannelError, match=r"marker set rajagopal; static\.c3d has no RMFC\. Name the marker"):
+        calibrated(without(static_of(RAJAGOPAL), "RMFC"), marker_set("rajagopal"))
+
+
+def test_a_marker_never_seen_in_the_static_trial_is_missing():
+    static = static_of(RAJAGOPAL)
+    values = np.array(static.values)
+    values[:, static.index("RMFC.x")] = np.nan
+    with pytest.raises(ChannelError, match=r"static\.c3d has no RMFC\."):
+        calibrated(static.with_values(values), marker_set("rajagopal"))
+
+
+def test_too_few_markers_to_follow_a_segment_are_refused():
+    static = without(static_of(GAIT2354), "R.Thigh.Front")
+    with pytest.raises(ChannelError, match=r"thigh_r needs 3 points .* has R\.Thigh\.Upper, R\.Thigh\.Rear, and no R"):
+        calibrated(static, marker_set("gait2354"))
+
+
+def test_a_walk_is_no_static_trial():
+    with pytest.raises(SamplingError, match=r"walk\.c3d they move by \d+ mm in the stillest half second"):
+        calibrated(markers_of(known_angles(200), RAJAGOPAL), marker_set("rajagopal"))
+
+
+def test_a_mirrored_static_trial_is_refused():
+    with pytest.raises(ShapeError, match=r"static\.c3d: .* the frame is mirrored, or left and right are exchanged"):
+        calibrated(static_of(RAJAGOPAL, Laboratory(np.diag([-1.0, 1, 1]))), marker_set("rajagopal"))
+
+
+def test_two_exchanged_labels_are_refused():
+    static = renamed(static_of(RAJAGOPAL), {"RCAL": "LCAL", "LCAL": "RCAL"})
+    with pytest.raises(ShapeError, match=r"in static\.c3d RCAL is 173 mm to the left of LCAL\. Exchange the two"):
+        calibrated(static, marker_set("rajagopal"))
+
+
+def test_landmarks_on_a_line_are_refused():
+    static = static_of(RAJAGOPAL)
+    values = np.array(static.values)
+    for axis in "xyz":
+        middle = (static[f"LASI.{axis}"] + static[f"RASI.{axis}"]) / 2
+        for label in ("LPSI", "RPSI"):
+            values[:, static.index(f"{label}.{axis}")] = middle
+    with pytest.raises(ShapeError, match="frame of pelvis needs landmarks that make a plane"):
+        calibrated(static.with_values(values), marker_set("rajagopal"))

@@ -1,0 +1,297 @@
+"""A body that moves by known angles, seen by markers in any laboratory, has these angles; bad input is refused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from manufactured_body import (
+    MEASURES,
+    PLUG_IN_GAIT,
+    RAJAGOPAL,
+    SETS,
+    Laboratory,
+    body_frames,
+    known_angles,
+    markers_of,
+    renamed,
+    static_of,
+    without,
+)
+from scipy.spatial.transform import Rotation
+
+from gaitdisc.errors import ChannelError, ShapeError
+from gaitdisc.ingest.c3d import C3DReader
+from gaitdisc.ingest.c3d_measures import read_body_measures
+from gaitdisc.ingest.reading import read_trial
+from gaitdisc.kinematics.calibration import calibrated
+from gaitdisc.kinematics.marker_set import marker_set
+from gaitdisc.kinematics.motion import chosen_marker_set, joint_angles, motion
+from gaitdisc.recording import Recording
+
+MIRRORED = Laboratory(np.diag([1.0, 1.0, -1.0]))
+
+
+def laboratory(seed: int) -> Laboratory:
+    """Any axis up, any direction of walking, the origin anywhere."""
+    random = np.random.default_rng(seed)
+    level = Rotation.from_euler("y", random.uniform(0, 360), degrees=True).as_matrix()
+    upwards = [np.eye(3), Rotation.from_euler("x", 90, degrees=True).as_matrix(),
+               Rotation.from_euler("z", -90, degrees=True).as_matrix()][seed % 3]  # fmt: skip
+    return Laboratory(upwards @ level, random.normal(size=3))
+
+
+def with_gap(recording: Recording, marker: str, first: int, last: int) -> Recording:
+    values = np.array(recording.values)
+    for axis in "xyz":
+        values[first:last, recording.index(f"{marker}.{axis}")] = np.nan
+    return recording.with_values(values)
+
+
+def check_angles(angles: Recording, known: dict[str, np.ndarray], atol: float = 1e-9) -> None:
+    for name, expected in known.items():
+        np.testing.assert_allclose(angles[name], expected, atol=atol, err_msg=name)
+
+
+@pytest.mark.parametrize("joints", ["free", "held"])
+@pytest.mark.parametrize("name", SETS)
+def test_known_angles_are_recovered_by_every_set(name, joints):
+    known = known_angles(150)
+    markers, static = markers_of(known, SETS[name]), static_of(SETS[name])
+    check_angles(joint_angles(markers, static, replace(marker_set(name), joints=joints), MEASURES, (1, 0, 0)), known)
+
+
+@pytest.mark.parametrize("name", SETS)
+def test_the_set_is_recognised_and_said(name):
+    static = static_of(SETS[name])
+    chosen = chosen_marker_set(static, static)
+    assert chosen.name == name
+    found = motion(static, calibrated(static, chosen, MEASURES))
+    assert found.marker_set == name
+    assert any(finding.kind == "marker set" and finding.what.startswith(name) for finding in found.findings)
+
+
+@settings(deadline=None, max_examples=25)
+@given(st.integers(0, 10_000))
+def test_angles_do_not_depend_on_the_laboratory(seed):
+    """The static trial may stand in another laboratory than the walk."""
+    known = known_angles(150, seed)
+    here, there = laboratory(seed), laboratory(seed + 1)
+    markers = markers_of(known, PLUG_IN_GAIT, here)
+    forward = here.axes @ [1, 0, 0]
+    check_angles(joint_angles(markers, static_of(PLUG_IN_GAIT, there), None, MEASURES, tuple(forward)), known)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_direction_of_walking_is_found(seed):
+    """The pelvis goes straight on, so forward is found exactly, and with it pelvis and foot progression."""
+    known, here = known_angles(200, seed), laboratory(seed)
+    found = joint_angles(markers_of(known, RAJAGOPAL, here), static_of(RAJAGOPAL), None)
+    check_angles(found, known, 1e-6)
+
+
+def test_poses_are_those_of_the_body():
+    known, here = known_angles(60), laboratory(4)
+    found = motion(markers_of(known, RAJAGOPAL, here), calibrated(static_of(RAJAGOPAL), marker_set("rajagopal")))
+    for segment, (origin, rotation) in body_frames(known).items():
+        np.testing.assert_allclose(found.poses[segment].rotation, here.axes @ rotation, atol=1e-9, err_msg=segment)
+        expected = origin @ here.axes.T + here.origin
+        np.testing.assert_allclose(found.poses[segment].origin, expected, atol=1e-9, err_msg=segment)
+    np.testing.assert_allclose(found.joint_centres["knee_l"], found.poses["shank_l"].origin, atol=1e-9)
+    np.testing.assert_allclose(found.joint_centres["ankle_r"], found.poses["foot_r"].origin, atol=1e-9)
+    assert max(residual.max() for residual in found.residual_m.values()) < 1e-9
+
+
+def test_foot_progression_is_the_way_the_toes_point():
+    """Standing with the right foot turned out by 20 deg and the left one turned in by 5."""
+    known = {name: np.zeros(150) for name in known_angles(2)}
+    known["ankle_rotation_r"][:], known["ankle_rotation_l"][:] = -20.0, 5.0
+    angles = joint_angles(markers_of(known, RAJAGOPAL), static_of(RAJAGOPAL), None)
+    np.testing.assert_allclose(angles["foot_progression_angle_r"], -20.0, atol=1e-6)
+    np.testing.assert_allclose(angles["foot_progression_angle_l"], 5.0, atol=1e-6)
+
+
+def test_the_pelvis_is_followed_in_the_walker_s_frame():
+    here = laboratory(1)
+    angles = joint_angles(markers_of(known_angles(150), RAJAGOPAL, here), static_of(RAJAGOPAL), None)
+    np.testing.assert_allclose(np.diff(angles["pelvis_tx"]), 0.013, atol=1e-8)
+    up = here.axes @ [0, 1, 0]
+    np.testing.assert_allclose(angles["pelvis_ty"] * up.sum(), 0.95 * up.sum() + here.origin @ up * up.sum(), atol=1e-8)
+
+
+def test_missing_markers_are_bridged_and_counted():
+    known = known_angles(150)
+    markers = with_gap(markers_of(known, RAJAGOPAL), "RTH2", 20, 50)
+    found = motion(markers, calibrated(static_of(RAJAGOPAL), marker_set("rajagopal")), (1, 0, 0))
+    check_angles(found.angles, known)
+    bridged = next(finding for finding in found.findings if finding.kind == "bridged")
+    assert bridged.what == "thigh_r: a marker was missing in 30 of 150 frames; the others carry it"
+    np.testing.assert_allclose(bridged.spans, [(0.2, 0.49)])
+    assert found.angles.suspect is not None
+    marked = dict(zip(found.angles.names, found.angles.suspect.sum(axis=0), strict=True))
+    assert (marked["hip_flexion_r"], marked["knee_angle_r"], marked["ankle_angle_r"], marked["knee_angle_l"]) == (
+        30, 30, 0, 0)  # fmt: skip
+
+
+def test_joints_carry_a_segment_that_has_lost_its_markers():
+    """A shank whose knee and foot are known turns about no axis freely with one marker left."""
+    known = known_angles(150)
+    markers = markers_of(known, RAJAGOPAL)
+    for label in ("RTB1", "RTB2", "RTB3"):
+        markers = with_gap(markers, label, 60, 70)
+    found = motion(markers, calibrated(static_of(RAJAGOPAL), marker_set("rajagopal")), (1, 0, 0))
+    check_angles(found.angles, known, 1e-6)
+
+
+@pytest.mark.parametrize("lost", ["LASI", "RASI"])
+def test_a_marker_of_three_on_the_pelvis_is_bridged_by_the_legs(lost):
+    """Plug-in Gait has three markers there; where one is missing, both hips carry the other two."""
+    known = known_angles(150)
+    markers = with_gap(markers_of(known, PLUG_IN_GAIT), lost, 20, 50)
+    found = motion(markers, calibrated(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES), (1, 0, 0))
+    check_angles(found.angles, known, 1e-6)
+    assert any(finding.kind == "bridged" and "30 of 150 frames" in finding.what for finding in found.findings)
+    assert found.angles.suspect is not None
+    assert set(found.angles.suspect.sum(axis=0)) == {0, 30}
+
+
+def test_where_too_few_markers_are_left_the_angles_are_missing_and_said():
+    known = known_angles(150)
+    markers = with_gap(markers_of(known, PLUG_IN_GAIT), "RTHI", 20, 50)  # its wand alone shows how a thigh is turned
+    found = motion(markers, calibrated(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES), (1, 0, 0))
+    missing = {name: int(np.isnan(found.angles[name]).sum()) for name in found.angles.names}
+    assert missing["knee_angle_r"] == missing["hip_flexion_r"] == 30
+    assert missing["knee_angle_l"] == missing["pelvis_tilt"] == 0
+    warning = next(finding for finding in found.findings if finding.kind == "gap")
+    assert warning.severity == "warning"
+    assert warning.what.startswith("thigh_r is not known in 30 of 150 frames")
+
+
+def test_a_static_trial_of_another_person_is_said():
+    taller = {segment: {label: 1.2 * place for label, place in part.items()} for segment, part in RAJAGOPAL.items()}
+    found = motion(markers_of(known_angles(60), RAJAGOPAL), calibrated(static_of(taller), marker_set("rajagopal")))
+    said = [finding.what for finding in found.findings if finding.kind == "another shape"]
+    assert said
+    assert "mm from where the static trial has them" in said[0]
+    same = motion(markers_of(known_angles(60), RAJAGOPAL), calibrated(static_of(RAJAGOPAL), marker_set("rajagopal")))
+    assert not [finding for finding in same.findings if finding.kind == "another shape"]
+
+
+def test_no_static_trial_is_refused():
+    markers = markers_of(known_angles(60), RAJAGOPAL)
+    for given_set in (None, "rajagopal"):
+        with pytest.raises(ChannelError, match="need a static trial of the person; there is none"):
+            joint_angles(markers, None, given_set)
+
+
+def test_a_mirrored_trial_is_refused():
+    calibration = calibrated(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES)
+    with pytest.raises(ShapeError, match=r"walk\.c3d: .* the frame is mirrored, or left and right are exchanged"):
+        motion(markers_of(known_angles(60), PLUG_IN_GAIT, MIRRORED), calibration)
+
+
+def test_a_trial_whose_sides_are_exchanged_is_refused():
+    markers = markers_of(known_angles(60), PLUG_IN_GAIT)
+    exchanged = renamed(markers, {label: {"L": "R", "R": "L"}.get(label[0], label[0]) + label[1:]
+                                  for label in {name[:-2] for name in markers.names} - {"SACR"}})  # fmt: skip
+    calibration = calibrated(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES)
+    with pytest.raises(ShapeError, match="left and right are exchanged"):
+        motion(exchanged, calibration)
+
+
+def test_a_marker_that_the_trial_lacks_is_named():
+    markers = without(markers_of(known_angles(60), PLUG_IN_GAIT), "RTHI")
+    calibration = calibrated(static_of(PLUG_IN_GAIT), marker_set("plug_in_gait"), MEASURES)
+    with pytest.raises(ChannelError, match=r"thigh_r needs 3 points .*; walk\.c3d has hip, RKNE, and no RTHI"):
+        motion(markers, calibration)
+
+
+def test_labels_of_no_set_are_refused():
+    markers = renamed(markers_of(known_angles(60), PLUG_IN_GAIT), {"RTHI": "Q1", "LKNE": "Q2"})
+    with pytest.raises(ChannelError, match="the nearest set is plug_in_gait, which lacks LKNE, RTHI"):
+        joint_angles(markers, markers, None, MEASURES)
+
+
+def test_markers_of_another_set_than_the_given_one_are_refused():
+    static = static_of(PLUG_IN_GAIT)
+    with pytest.raises(ChannelError, match=r"landmark of the marker set gait2354; static\.c3d has no L\.ASIS and 1"):
+        joint_angles(static, static, "gait2354", MEASURES)
+
+
+def test_angles_are_no_markers():
+    angles = joint_angles(markers_of(known_angles(60), RAJAGOPAL), static_of(RAJAGOPAL))
+    with pytest.raises(ChannelError, match=r"channels <marker>\.x, \.y, \.z; static\.c3d has pelvis_tilt"):
+        joint_angles(angles, Recording(angles.time, angles.values, angles.channels, source=static_of(RAJAGOPAL).source))
+
+
+@pytest.fixture(scope="module")
+def person(gait_data):
+    with C3DReader() as reader:
+        path = gait_data / "young_static" / "HC030A" / "HC030A01.c3d"
+        static = read_trial(path, reader=reader)
+        walk = read_trial(gait_data / "young_straight_and_turn/HC030A/straight/HC030A05.c3d", reader=reader)
+        return static, walk, read_body_measures(path)
+
+
+def test_a_real_walk_has_the_angles_that_the_laboratory_computed(person):
+    """Plug-in Gait's own angles stand in the file; after the difference of the static trial, sagittal rms <= 2 deg."""
+    static, walk, measures = person
+    calibration = calibrated(static.stream("markers"), marker_set("plug_in_gait"), measures)
+    moving, still = (motion(trial.stream("markers"), calibration).angles for trial in (walk, static))
+    theirs, theirs_still = walk.stream("kinematics"), static.stream("kinematics")
+    for side in "rl":
+        for joint, most in (("hip_flexion", 2), ("knee_angle", 2), ("ankle_angle", 2), ("hip_adduction", 4),
+                            ("knee_adduction", 4), ("hip_rotation", 4), ("knee_rotation", 4)):  # fmt: skip
+            name = f"{joint}_{side}"
+            offset = np.median(still[name] - theirs_still[name])
+            rms = np.sqrt(np.mean((moving[name] - theirs[name] - offset) ** 2))
+            assert rms <= most, f"{name} {rms:.2f} deg"
+
+
+def test_the_pelvis_of_a_real_walk_has_the_signs_of_the_package(person):
+    """Tilt backwards is positive where Plug-in Gait has forwards; list is right side down, its left obliquity."""
+    static, walk, measures = person
+    calibration = calibrated(static.stream("markers"), marker_set("plug_in_gait"), measures)
+    found, theirs = motion(walk.stream("markers"), calibration, (0, 1, 0)).angles, walk.stream("kinematics")
+    for ours, label, sign in (("pelvis_tilt", "RPelvisAngles.x", -1), ("pelvis_list", "LPelvisAngles.y", 1),
+                              ("pelvis_rotation", "RPelvisAngles.z", 1)):  # fmt: skip
+        np.testing.assert_allclose(found[ours], sign * theirs[label], atol=1.0, err_msg=ours)
+
+
+def test_the_feet_of_a_real_walk_have_the_signs_of_the_package(person):
+    static, walk, measures = person
+    calibration = calibrated(static.stream("markers"), marker_set("plug_in_gait"), measures)
+    found, theirs = motion(walk.stream("markers"), calibration, (0, 1, 0)).angles, walk.stream("kinematics")
+    for side in "rl":
+        for ours, label in ((f"foot_progression_angle_{side}", "FootProgressAngles.z"),
+                            (f"ankle_rotation_{side}", "AnkleAngles.z")):  # fmt: skip
+            other = theirs[f"{side.upper()}{label}"]
+            assert np.corrcoef(found[ours], other)[0, 1] > 0.8, ours
+            assert np.sqrt(np.mean((found[ours] - other) ** 2)) < 4.0, ours
+
+
+def test_a_real_static_trial_of_another_person_is_said(person, gait_data):
+    static, walk, measures = person
+    path = gait_data / "young_static" / "HC031A" / "HC031A01.c3d"
+    own = calibrated(static.stream("markers"), marker_set("plug_in_gait"), measures)
+    other = calibrated(read_trial(path).stream("markers"), marker_set("plug_in_gait"), read_body_measures(path))
+    said = [
+        [finding.severity for finding in motion(walk.stream("markers"), calibration).findings
+         if finding.kind == "another shape"] for calibration in (own, other)
+    ]  # fmt: skip
+    assert said[0] == []
+    assert "warning" in said[1]
+
+
+def test_pelvis_list_is_that_of_opensim(gait_data):
+    """The right side down is positive: height of the right spine over the left one against OpenSim's own angle."""
+    folder = gait_data / "opensim_walks" / "mrs_emg_walking"
+    markers, angles = (read_trial(folder / name) for name in ("TRC_gait.trc", "IK_gait.mot"))
+    markers, angles = markers.stream("markers"), angles.stream("kinematics")
+    higher = markers["RASI.y"] - markers["LASI.y"]
+    list_deg = np.interp(markers.time, angles.time, angles["pelvis_list"])
+    walking = (markers.time > 1.06) & (markers.time < 3.23)  # the part of the file that its inverse dynamics covers
+    assert np.corrcoef(higher[walking], list_deg[walking])[0, 1] < -0.9

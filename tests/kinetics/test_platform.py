@@ -1,0 +1,152 @@
+from dataclasses import replace
+
+import ezc3d
+import numpy as np
+import pytest
+
+from gaitdisc.channel import Channel
+from gaitdisc.errors import ChannelError, ReadError, UnitError
+from gaitdisc.ingest.c3d import read_c3d
+from gaitdisc.ingest.reading import read_trial
+from gaitdisc.kinetics.platform import platforms
+from gaitdisc.recording import Recording, Surface, Trial
+
+TIME = np.arange(2000) / 1000
+CORNERS = np.array([[0.0, 0, 0], [0.4, 0, 0], [0.4, 0.6, 0], [0, 0.6, 0]])
+FREE = 3.0
+
+
+def stance(peak=700.0):
+    """Force of one stance from 0.5 to 1.2 s."""
+    return peak * np.clip(np.sin(np.pi * (TIME - 0.5) / 0.7), 0, None) * (TIME > 0.5) * (TIME < 1.2)
+
+
+def plate_trial(load, point=(0.25, 0.4, 0.0), name="plate_1", surfaces=None):
+    force = np.stack([0.1 * load, -0.05 * load, load], 1)
+    moment = np.cross(np.array(point) - CORNERS.mean(0), force) + np.outer(load > 0, [0, 0, FREE])
+    channels = [Channel(f"{name}_f{a}", "vertical_force" if a == "z" else "force", "N") for a in "xyz"]
+    channels += [Channel(f"{name}_m{a}", "moment", "N m") for a in "xyz"]
+    forces = Recording(TIME, np.hstack([force, moment]), tuple(channels))
+    return Trial("walk", {"forces": forces}, surfaces=(Surface(name, CORNERS),) if surfaces is None else surfaces)
+
+
+def test_a_plate_gives_force_point_and_free_moment_in_the_laboratory():
+    (plate,) = platforms(plate_trial(stance()))
+    assert plate.up.tolist() == [0, 0, 1]
+    pressed = plate.load_n > 20
+    assert plate.pressure_centre()[pressed] == pytest.approx(np.tile([0.25, 0.4, 0.0], (pressed.sum(), 1)))
+    assert np.isnan(plate.pressure_centre()[~pressed]).all()
+    free = plate.wrench.free_moment(plate.point, plate.up)
+    assert free[pressed] == pytest.approx(FREE)
+    ((start, end),) = plate.loadings()
+    assert TIME[[start, end]] == pytest.approx([0.5 + 0.7 * np.arcsin(50 / 700) / np.pi, 1.2 - 0.7 * np.arcsin(20 / 700) / np.pi], abs=2e-3)  # fmt: skip  # noqa: E501
+
+
+def test_what_an_empty_plate_shows_is_no_force_on_a_foot():
+    load = stance() + 8.0  # an offset below the limit
+    (plate,) = platforms(plate_trial(load))
+    spans = [(TIME[a], TIME[b - 1]) for a, b in plate.loadings()]
+    raw, smooth = plate.smoothed(np.inf, spans), plate.smoothed(20.0, spans)
+    assert raw.force[TIME < 0.4] == pytest.approx(0)
+    assert raw.force[800] == pytest.approx(plate.wrench.force[800])
+    assert smooth.force[800] == pytest.approx(plate.wrench.force[800], rel=0.01)
+
+
+def test_a_plate_upside_down_in_the_file_is_the_same_plate():
+    trial = plate_trial(stance())
+    flipped = replace(trial, surfaces=(Surface("plate_1", CORNERS[::-1]),))
+    assert platforms(flipped)[0].up.tolist() == [0, 0, 1]
+
+
+def test_turned_sign_is_refused():
+    words = (
+        r"force of the ground on the foot, positive upwards, from plate_1; walk has -700 N at 0\.850 s and never more"
+    )
+    with pytest.raises(UnitError, match=words):
+        platforms(plate_trial(-stance()))
+
+
+def test_forces_without_a_place_are_refused():
+    with pytest.raises(ChannelError, match=r"wrench of plate_1 needs the corners of its surface; .* for no plate"):
+        platforms(plate_trial(stance(), surfaces=()))
+    vertical = Recording(TIME, stance()[:, None], (Channel("ground_force_r_vy", "vertical_force", "N", "r"),))
+    with pytest.raises(ChannelError, match=r"lacks ground_force_r_vx, ground_force_r_vz"):
+        platforms(Trial("walk", {"forces": vertical}))
+    other = Recording(TIME, stance()[:, None], (Channel("load", "force", "N"),))
+    with pytest.raises(ChannelError, match=r"force and moment of the ground in three directions; walk has load"):
+        platforms(Trial("walk", {"forces": other}))
+
+
+def test_a_force_without_its_point_is_refused(gait_data):
+    trial = read_trial(gait_data.parent / "opensim_gait10dof" / "ExperimentalData" / "subject01_walk_grf.mot")
+    forces = trial.stream("forces")
+    values = np.array(forces.values)
+    values[120:130, forces.index("ground_force_l_px")] = np.nan
+    broken = replace(trial, streams={"forces": replace(forces, values=values)})
+    words = r"ground_force_l needs its point .*; .*_grf.mot has \d+ N at 0\.200 s without, and 10 such samples"
+    with pytest.raises(ReadError, match=words):
+        platforms(broken)
+
+
+# Each weighs its person: mass from PROCESSING of the file; young_straight_and_turn and young_static, all of them
+def test_the_ground_bears_the_weight_of_those_who_stand(gait_data):
+    masses = {"HC030A": 45.8, "HC031A": 27.7, "HC033A": 51.5, "HC036A": 33.0}
+    for person, mass in masses.items():
+        found = platforms(read_c3d(gait_data / "young_static" / person / f"{person}01.c3d"))
+        weight = sum(float(np.median(platform.load_n)) for platform in found)
+        assert weight == pytest.approx(mass * 9.81, rel=0.06), person
+
+
+def test_centres_of_pressure_lie_under_the_foot_as_the_file_has_them(gait_data):
+    trial = read_c3d(gait_data / "young_straight_and_turn" / "HC030A" / "straight" / "HC030A05.c3d")
+    forces = trial.stream("forces")
+    for platform in platforms(trial):
+        written = np.stack([forces[f"{platform.name}_p{axis}"] for axis in "xyz"], 1)
+        pressed = platform.load_n > 20
+        assert platform.pressure_centre()[pressed] == pytest.approx(written[pressed], abs=1e-6)
+        assert platform.surface is not None
+        assert np.mean(platform.surface.outside(platform.pressure_centre()[pressed]) < 0) > 0.99
+
+
+@pytest.mark.parametrize("kind", ["type-2a", "type-4a"])
+def test_a_plate_with_a_matrix_weighs_as_one_without(gait_data, kind):
+    trial = read_c3d(gait_data / "c3d_reader_samples" / "c3d_org_other" / f"{kind}.c3d")
+    reference = platforms(read_c3d(gait_data / "c3d_reader_samples" / "c3d_org_other" / "type-2a.c3d"))
+    for platform, other in zip(platforms(trial), reference, strict=True):
+        assert platform.load_n == pytest.approx(other.load_n, abs=2.0)
+        both = (platform.load_n > 150) & (other.load_n > 150)
+        assert platform.pressure_centre()[both] == pytest.approx(other.pressure_centre()[both], abs=2e-3)
+
+
+def test_forces_of_an_opensim_file_name_their_foot(gait_data):
+    walk = gait_data.parent / "opensim_gait10dof" / "ExperimentalData" / "subject01_walk_grf.mot"
+    trial = read_trial(walk)
+    forces = trial.stream("forces")
+    for platform in platforms(trial):
+        assert (platform.side, platform.up.tolist()) == (platform.name[-1], [0, 1, 0])
+        written = np.stack([forces[f"{platform.name}_p{axis}"] for axis in "xyz"], 1)
+        pressed = platform.load_n > 50
+        # the file's moment has parts along the floor: they move the point to where only the free moment is left
+        assert np.median(np.abs(platform.pressure_centre()[pressed] - written[pressed])) < 0.02
+
+
+# ezc3d has a force platform filter of its own; it leaves FORCE_PLATFORM:ZERO alone, so files without a zero range
+@pytest.mark.parametrize(
+    "file",
+    [
+        "young_straight_and_turn/HC030A/straight/HC030A05.c3d",
+        "opensim_walks/c3d_walk_noemg/walking2.c3d",
+        "c3d_reader_samples/gait/PiG_Motion3_FF.c3d",
+    ],
+)
+def test_wrenches_are_those_of_another_program(gait_data, file):
+    theirs = ezc3d.c3d(str(gait_data / file), extract_forceplat_data=True)["data"]["platform"]
+    found = platforms(read_c3d(gait_data / file))
+    assert len(found) == len(theirs)
+    for plate, other in zip(found, theirs, strict=True):
+        loaded = plate.load_n > 100
+        assert plate.wrench.force == pytest.approx(np.asarray(other["force"]).T, abs=1e-3)
+        pressure = np.asarray(other["center_of_pressure"]).T / 1000
+        assert plate.pressure_centre()[loaded] == pytest.approx(pressure[loaded], abs=1e-5)
+        free = np.asarray(other["Tz"]).T[:, 2] / 1000
+        assert plate.wrench.free_moment(plate.point, plate.up)[loaded] == pytest.approx(free[loaded], abs=1e-3)

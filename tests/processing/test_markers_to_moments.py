@@ -1,0 +1,97 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gaitdisc.ingest.c3d import read_c3d
+from gaitdisc.ingest.c3d_measures import read_body_measures
+from gaitdisc.kinematics.calibration import calibrated
+from gaitdisc.kinematics.marker_set import marker_set
+from gaitdisc.kinetics.body_inertia import Person
+from gaitdisc.processing.markers_to_moments import with_angles_and_moments
+
+
+@pytest.fixture(scope="module")
+def young(gait_data):
+    """A straight walk, and what the static trial says of the person."""
+    file = gait_data / "young_static" / "HC030A" / "HC030A01.c3d"
+    body = calibrated(read_c3d(file).stream("markers"), marker_set("plug_in_gait"), read_body_measures(file))
+    return read_c3d(gait_data / "young_straight_and_turn" / "HC030A" / "straight" / "HC030A05.c3d"), body, file
+
+
+def kinds(trial):
+    return [finding.kind for finding in trial.findings]
+
+
+def test_a_walk_gets_angles_moments_and_powers_of_both_legs(young):
+    walk, body, _ = young
+    made = with_angles_and_moments(walk, body, Person(45.8))
+    moments = made.stream("moments")
+    assert len(moments.channels) == 24
+    assert {"hip_flexion_r", "knee_angle_l", "ankle_angle_r", "pelvis_tilt"} <= set(made.stream("kinematics").names)
+    for side in "rl":
+        theirs = walk.stream("moments")[f"ankle_angle_{side}_moment"]
+        both = np.isfinite(moments[f"ankle_angle_{side}_moment"]) & (theirs != 0)
+        apart = (moments[f"ankle_angle_{side}_moment"] - theirs)[both]
+        assert np.sqrt(np.mean(apart**2)) < 0.08
+    assert "own model" in kinds(made) and "force balance" in kinds(made)
+
+
+def test_without_a_person_or_forces_there_are_angles_alone(young):
+    walk, body, _ = young
+    bare = replace(walk, streams={"markers": walk.stream("markers")})
+    for made in (with_angles_and_moments(walk, body, None), with_angles_and_moments(bare, body, Person(45.8))):
+        assert "moments" not in made.streams and "kinematics" in made.streams
+    assert "own model" not in kinds(made)
+
+
+def test_a_trial_without_a_clean_step_says_why_it_has_no_moments(young):
+    _, body, file = young
+    made = with_angles_and_moments(read_c3d(file), body, Person(45.8))
+    [finding] = [one for one in made.findings if one.kind == "no moments"]
+    assert "moments" not in made.streams
+    assert finding.line().startswith(
+        "warning: HC030A01.c3d: no moments: joint moments need a step of one foot alone on a force platform; "
+        "HC030A01.c3d has plate_1 at 0.00 s: both feet stand on it"
+    )
+
+
+def test_a_heel_marker_that_is_missing_for_a_moment_costs_nothing(young):
+    walk, body, _ = young
+    markers = walk.stream("markers")
+    values = np.array(markers.values)
+    values[45:53, [markers.index(f"RHEE.{axis}") for axis in "xyz"]] = np.nan
+    blind = replace(walk, streams={**walk.streams, "markers": replace(markers, values=values)})
+    whole, bridged = (with_angles_and_moments(one, body, Person(45.8)).stream("moments") for one in (walk, blind))
+    step = np.isfinite(whole["knee_angle_r_moment"])
+    assert step[45:53].all()
+    apart = whole["knee_angle_r_moment"][step] - bridged["knee_angle_r_moment"][step]
+    assert np.abs(apart).max() < 0.05
+
+
+def y_up(trial):
+    """Same trial in a laboratory whose y points up: x, y, z become z, x, y."""
+    streams = {}
+    for key in ("markers", "forces"):
+        recording = trial.stream(key)
+        named = {}
+        for channel in recording.channels:
+            other = channel.name[:-1] + {"x": "z", "y": "x", "z": "y"}[channel.name[-1]]
+            named[other] = (replace(channel, name=other), recording[channel.name])
+        columns = [named[name] for name in recording.names]
+        values = np.stack([column for _, column in columns], axis=1)
+        streams[key] = replace(recording, values=values, channels=tuple(channel for channel, _ in columns))
+    surfaces = tuple(replace(one, corners=np.roll(one.corners, -1, axis=1)) for one in trial.surfaces)
+    return replace(trial, streams=streams, surfaces=surfaces)
+
+
+def test_a_laboratory_with_y_up_has_the_same_moments(young):
+    walk, body, file = young
+    still = read_c3d(file)
+    turned = calibrated(y_up(still).stream("markers"), marker_set("plug_in_gait"), read_body_measures(file))
+    here = with_angles_and_moments(walk, body, Person(45.8)).stream("moments")
+    there = with_angles_and_moments(y_up(walk), turned, Person(45.8)).stream("moments")
+    assert there.names == here.names
+    known = np.isfinite(here.values)
+    assert np.array_equal(known, np.isfinite(there.values))
+    assert there.values[known] == pytest.approx(here.values[known], abs=1e-6)
