@@ -40,6 +40,7 @@ LENGTHENED = 3  # times as long, again and again, while a run stays with the dat
 TAME = 0.8
 FOLLOWED = 1.08  # times the noise of the shorter runs before any filter, beyond which a run does not follow the data
 SUBSTEPS = 2
+MOST_SEARCHED = 10_000  # samples, all runs together: what is found on them is fitted to all data
 
 
 @dataclass(frozen=True)
@@ -141,19 +142,20 @@ class Inquiry:
     def as_read(self) -> Judged:
         """Return the simulation as read, fitted to short runs and judged.
 
-        The runs last one period, or less where a small change of the start grows fast (chaos, a fall).
+        The runs last one period, or less where a small change of the start grows fast (chaos, a fall). Of a long record
+        runs spread over all of it are taken.
         """
         periods = self.tame_periods()
-        first = self.shooting(self.segments(self.learned, FIRST_SHARE * periods))
+        first = self.shooting(self.segments(self.learned, FIRST_SHARE * periods).spread(MOST_SEARCHED))
         begun = account_for(first, self.search.base, (), self.guess.starts(first.segments))
         guess = self.guess.with_run(first.segments, begun.fit.states)
-        shooting = self.shooting(self.segments(self.learned, periods))
+        shooting = self.shooting(self.segments(self.learned, periods).spread(MOST_SEARCHED))
         account = account_for(shooting, self.search.base, (), guess.starts(shooting.segments), like=begun)
         return judged(shooting.with_past(account.fit.states), self.search.base, account)
 
     def tame_periods(self) -> float:
         """Return how long a run may be, in periods, before a change of its start has grown by `GROWTH`."""
-        shooting = self.shooting(self.segments(self.learned))
+        shooting = self.shooting(self.segments(self.learned).spread(MOST_SEARCHED))
         states = shooting.segments.of(self.guess.states)
         machine = compile_simulation(self.search.base)
         line = linearise_along(shooting, self.search.base, (), states, machine.defaults)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from gaitdisc.discovery.account import account_for
 from gaitdisc.discovery.first_states import guess_states
 from gaitdisc.discovery.fitted import Fitted, start_basis, without
-from gaitdisc.discovery.inquiry import FEWEST_SAMPLES, SUBSTEPS, Inquiry
+from gaitdisc.discovery.inquiry import FEWEST_SAMPLES, MOST_SEARCHED, SUBSTEPS, Inquiry
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.places import kinematic_rates
 from gaitdisc.discovery.segments import Segments, cut_segments
@@ -157,7 +157,9 @@ class _Bench:
     def fitted(self, measured: Measured) -> tuple[Fitted, Segments]:
         """The fit of the start states, run by run."""
         guess = guess_states(self.simulation, measured, self.rhythm.period, self.rate_of)
-        segments = cut_segments(measured.samples, tuple(range(len(measured.trials))), self.samples)
+        segments = cut_segments(measured.samples, tuple(range(len(measured.trials))), self.samples).spread(
+            MOST_SEARCHED
+        )
         shooting = Shooting(measured, segments, white_noise(self.spread), SUBSTEPS, guess.states)
         return account_for(shooting, self.simulation, (), guess.starts(segments)).fit, segments
 

@@ -89,6 +89,25 @@ class Segments:
         """
         return replace(self, trial=self.trial[some], begin=self.begin[some])
 
+    def spread(self, most: int) -> Segments:
+        """Return every second, third, ... segment of each trial, so that they hold about a number of samples together.
+
+        Parameters
+        ----------
+        most : int
+            Samples, all segments together; each trial keeps its first segment.
+
+        Examples
+        --------
+        >>> cut_segments(np.array([100]), (0,), 20).spread(60).begin.tolist()
+        [0, 40, 80]
+        """
+        apart = -(-len(self) * self.length // most)
+        if apart == 1:
+            return self
+        number = np.arange(len(self)) - np.searchsorted(self.trial, self.trial)
+        return self.among(np.flatnonzero(number % apart == 0))
+
     @property
     def samples(self) -> NDArray[np.intp]:
         """Number, within its trial, of every sample (segment, sample)."""

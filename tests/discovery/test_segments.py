@@ -89,3 +89,12 @@ def test_some_of_the_segments():
     segments = cut_segments(np.array([100, 70]), (0, 1), 18, 10, 3)
     few = segments.among(np.array([1, 5]))
     assert (few.trial.tolist(), few.begin.tolist(), few.every) == ([0, 1], [16, 0], 3)
+
+
+def test_segments_are_thinned_within_each_trial():
+    whole = cut_segments(np.array([400, 100, 400]), (0, 1, 2), 50)
+    fewer = whole.spread(400)
+    assert fewer.trial.tolist() == [0, 0, 0, 1, 2, 2, 2]
+    assert fewer.begin.tolist() == [0, 150, 300, 0, 0, 150, 300]
+    assert whole.spread(900) is whole
+    assert set(whole.spread(1).trial) == {0, 1, 2}

@@ -1,0 +1,31 @@
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+PROJECT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def study():
+    spec = importlib.util.spec_from_file_location("knee_with_memory", PROJECT / "studies" / "knee_with_memory.py")
+    assert spec and spec.loader
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_what_is_hidden_changes_the_leg_s_motion_and_nothing_hides_nothing(study):
+    for kind in study.KINDS:
+        truth, _ = study.hidden(kind, np.random.default_rng(1))
+        plain, _ = study.hidden("nothing", np.random.default_rng(1))
+        one, other = (study.recorded(leg, np.random.default_rng(2), 0.0).observed for leg in (truth, plain))
+        assert (np.abs(one - other).max() < 1e-9) == (kind == "nothing")
+
+
+@pytest.mark.slow
+def test_each_is_named_where_it_is_hidden(study):
+    lines = study.run(1, 0.02)
+    assert len(lines) == len(study.KINDS)
+    assert all("named in 1 of 1" in line for line in lines), lines
