@@ -26,7 +26,8 @@ import numpy as np
 from markers_to_angles import opensim, people
 
 from gaitdisc.kinematics.calibration import Calibration, calibrated
-from gaitdisc.kinematics.marker_set import METHODS, marker_set
+from gaitdisc.kinematics.marker_set import METHODS
+from gaitdisc.kinematics.marker_set_file import marker_set
 from gaitdisc.kinematics.motion import motion
 from gaitdisc.recording import Recording
 

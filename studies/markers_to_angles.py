@@ -26,7 +26,8 @@ from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.c3d_measures import read_body_measures
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.kinematics.calibration import calibrated
-from gaitdisc.kinematics.marker_set import JOINTS, MarkerSet, marker_set
+from gaitdisc.kinematics.marker_set import JOINTS, MarkerSet
+from gaitdisc.kinematics.marker_set_file import marker_set
 from gaitdisc.kinematics.motion import joint_angles, motion
 from gaitdisc.recording import Recording, Trial
 from gaitdisc.recording.body_measures import BodyMeasures

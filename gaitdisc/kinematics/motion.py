@@ -15,7 +15,8 @@ from gaitdisc.errors import ChannelError
 from gaitdisc.kinematics.calibration import Calibration, calibrated
 from gaitdisc.kinematics.cardan import clinical_angles
 from gaitdisc.kinematics.laboratory import WalkingFrame, check_right_handed, up_axis, walking_frame
-from gaitdisc.kinematics.marker_set import MarkerSet, marker_set, recognised_marker_set
+from gaitdisc.kinematics.marker_set import MarkerSet
+from gaitdisc.kinematics.marker_set_file import marker_set, recognised_marker_set
 from gaitdisc.kinematics.markers import marker_labels
 from gaitdisc.kinematics.pose import JOINTS, SEGMENTS, Pose
 from gaitdisc.kinematics.rigid_fit import residual_m

@@ -10,10 +10,9 @@ from manufactured_body import RAJAGOPAL, known_angles, markers_of, static_of
 from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 
-from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.kinematics.calibration import calibrated
-from gaitdisc.kinematics.marker_set import marker_set
+from gaitdisc.kinematics.marker_set_file import marker_set
 from gaitdisc.kinematics.motion import Motion, joint_angles, motion
 from gaitdisc.kinematics.pose import SEGMENTS
 from gaitdisc.recording import Recording
@@ -109,11 +108,6 @@ def test_a_planar_body_agrees_with_opensim_s_planar_model(gait_data):
     for name in ("pelvis_tilt", *(f"{flexion}_{side}" for flexion in FLEXIONS for side in "rl")):
         apart = ours[name] - np.interp(walk.time, theirs.time, theirs[name])
         assert apart.std() <= 3.0, f"{name} {apart.std():.2f} deg"
-
-
-def test_a_word_for_the_joints_that_is_none():
-    with pytest.raises(SchemaError, match="joints = takes free, held, planar; the choice: found 'hold', the nearest"):
-        HELD.with_joints("hold")
 
 
 def test_a_thigh_laid_over_sliding_skin_leaves_its_hip_and_a_held_one_does_not():

@@ -23,12 +23,13 @@ from manufactured_body import (
 )
 from scipy.spatial.transform import Rotation
 
+from gaitdisc.channel import vocabulary
 from gaitdisc.errors import ChannelError, ShapeError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.c3d_measures import read_body_measures
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.kinematics.calibration import calibrated
-from gaitdisc.kinematics.marker_set import marker_set
+from gaitdisc.kinematics.marker_set_file import marker_set
 from gaitdisc.kinematics.motion import chosen_marker_set, joint_angles, motion
 from gaitdisc.recording import Recording
 
@@ -261,6 +262,19 @@ def test_the_pelvis_of_a_real_walk_has_the_signs_of_the_package(person):
         np.testing.assert_allclose(found[ours], sign * theirs[label], atol=1.0, err_msg=ours)
 
 
+def test_a_real_walk_in_another_laboratory_s_frame_has_the_same_angles(person):
+    """y up in place of z, the walkway askew by 37 deg, the origin elsewhere; neither up nor forward is given."""
+    static, walk, measures = person
+    turned = Rotation.from_euler("xy", [-90, 37], degrees=True).as_matrix()
+    markers = walk.stream("markers")
+    places = markers.values.reshape(len(markers.time), -1, 3) @ turned.T + np.array([0.3, -0.2, 1.0])
+    elsewhere = markers.with_values(places.reshape(markers.values.shape))
+    calibration = calibrated(static.stream("markers"), marker_set("plug_in_gait"), measures)
+    here, there = (motion(one, calibration).angles for one in (markers, elsewhere))
+    for name in here.names[:-3]:
+        np.testing.assert_allclose(there[name], here[name], atol=1e-6, err_msg=name)
+
+
 def test_the_feet_of_a_real_walk_have_the_signs_of_the_package(person):
     static, walk, measures = person
     calibration = calibrated(static.stream("markers"), marker_set("plug_in_gait"), measures)
@@ -295,3 +309,4 @@ def test_pelvis_list_is_that_of_opensim(gait_data):
     list_deg = np.interp(markers.time, angles.time, angles["pelvis_list"])
     walking = (markers.time > 1.06) & (markers.time < 3.23)  # the part of the file that its inverse dynamics covers
     assert np.corrcoef(higher[walking], list_deg[walking])[0, 1] < -0.9
+    assert vocabulary().positive["pelvis_list"] == "right side of the pelvis down"
