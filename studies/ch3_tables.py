@@ -2,19 +2,20 @@
 
     python studies/ch3_tables.py TABLE
 
-TABLE is `readme`, `recommended`, `evidence`, or a set of `ch3_seeds.py` with the number that is shown: `lorenz:valid`,
-`lorenz:jump`, `van_der_pol_text:forecast`. Where a number has two starts, `estimated` is a state estimated from the
-noisy measurement; the true state is an oracle.
+TABLE is `readme`, `recommended`, `evidence`, `rankings`, or a set of `ch3_seeds.py` with the number that is shown:
+`lorenz:valid`, `lorenz:jump`, `van_der_pol_text:forecast`. Where a number has two starts, `estimated` is a state
+estimated from the noisy measurement; the true state is an oracle.
 """
 
 from __future__ import annotations
 
+from itertools import combinations
 from pathlib import Path
 
 from command_line import argument, command_line
 
 GIVEN = command_line(
-    __name__, __doc__, argument("table", "readme, recommended, evidence, or SET:NUMBER")
+    __name__, __doc__, argument("table", "readme, recommended, evidence, rankings, or SET:NUMBER")
 )  # before the slow imports
 
 import numpy as np
@@ -25,6 +26,8 @@ from gaitdisc.report.discrepancy_figure import METHOD_WORDS
 from gaitdisc.report.discrepancy_tables import spread_words
 from gaitdisc.report.table import as_markdown, words_table
 from gaitdisc.results.discrepancy_cell import FORECAST, ORACLE, RECONSTRUCTION
+from gaitdisc.statistics.holm_sidak import holm_sidak
+from gaitdisc.statistics.signed_rank import exact_p
 
 CELLS = Path(__file__).with_name("ch3_cells.csv")
 LYAPUNOV_PER_S = 0.906  # of the Lorenz system: Sprott 2003
@@ -36,6 +39,7 @@ NUMBERS = {
     "valid": ("valid_s", LYAPUNOV_PER_S, (FORECAST, ORACLE)),
     "jump": ("to_jump", 1.0, (FORECAST, ORACLE)),
 }
+RANKED = {"van_der_pol_text": "forecast", "van_der_pol_code": "forecast", "lorenz": "valid"}
 RECORDS = (
     *((False, noise, 0.01, 3001) for noise in (0.0, 0.001, 0.01, 0.1)),
     *((False, noise, 0.01, 601) for noise in (0.001, 0.01, 0.1)),
@@ -146,6 +150,35 @@ def evidence_table() -> str:
     return as_markdown(words_table("evidence", "", headings, rows))
 
 
+def rankings(table: pd.DataFrame) -> str:
+    """Methods paired by noise seed, forecast accuracy (on Lorenz valid time): the pairs that differ beyond chance.
+
+    Parameters
+    ----------
+    table : DataFrame
+        From `measured`.
+    """
+    pairs = []
+    for name, number in RANKED.items():
+        column, factor, parts = NUMBERS[number]
+        for part, noise in [(part, noise) for part in parts for noise in (0.001, 0.01, 0.1)]:
+            some = table[(table["set"] == name) & (table["noise"] == noise) & (table["part"] == part)]
+            by_seed = some.pivot_table(index="seed", columns="method", values=column)
+            for one, other in combinations(("sindy", "gp", "nn"), 2):
+                ahead = factor * (by_seed.loc[:, one] - by_seed.loc[:, other]).dropna().to_numpy()
+                what = f"{name}, {noise:.1%} noise, {START_WORDS[part]}: {METHOD_WORDS[one]} against"
+                size = f"{np.median(ahead):+.2g} {'Lyapunov times' if number == 'valid' else 'points'}"
+                pairs.append((exact_p(ahead), f"{what} {METHOD_WORDS[other]} {size} in the median, n = {len(ahead)}"))
+    corrected = holm_sidak([p for p, _ in pairs])
+    sure = [
+        f"{said}, p = {p:.3g} ({p_corrected:.2g} corrected)"
+        for (p, said), p_corrected, differs in zip(pairs, corrected.adjusted, corrected.rejected, strict=True)
+        if differs
+    ]
+    counted = f"{len(pairs)} pairs; beyond chance (signed rank, Holm-Sidak) differ {len(sure)}"
+    return "\n".join(f"- {line}" for line in (counted, *sure))
+
+
 def printed(name: str) -> str:
     """A table by its name.
 
@@ -160,6 +193,8 @@ def printed(name: str) -> str:
         return recommended_table()
     if name == "evidence":
         return evidence_table()
+    if name == "rankings":
+        return rankings(measured())
     return set_table(measured(), *name.split(":"))
 
 
