@@ -29,7 +29,7 @@ def run_study(
     workers: Workers | None = None,
     told: Told = lambda *_: None,
 ) -> ResponseRun:
-    """Process every walk of a study and fit every participant's models.
+    """Process every walk of a study; fit models to two walks of a participant, or pool cycles over many trials.
 
     A participant whose files, settings and package version are those of an earlier run in the same folder is loaded,
     not computed; so a run that was stopped goes on, and loses at most the participant it was at. What was changed since
@@ -67,7 +67,7 @@ def run_study(
         run = ResponseRun(
             public_title(study),
             study.conditions.nominal,
-            study.conditions.device,
+            study.conditions.device or "",
             tuple(walk for unit in units for walk in unit.walks),
             responses,
             tuple(refusal for unit in units for refusal in unit.refusals),
@@ -76,9 +76,19 @@ def run_study(
             quantities,
             compare_participants(responses, quantities, study.models.seed),
             renewed,
+            tuple(pooled for unit in units for pooled in unit.cycles),
+            _unfitted(study, units),
         )
         save_run(run, folder)
     return run
+
+
+def _unfitted(study: Study, units: Sequence[ParticipantUnit]) -> tuple[Refusal, ...]:
+    return tuple(
+        Refusal(person.id, "", unit.unfitted)
+        for person, unit in zip(study.participants, units, strict=True)
+        if unit.unfitted
+    )
 
 
 def _lost(refusal: Refusal) -> ParticipantUnit:
@@ -92,6 +102,6 @@ def _stored_quantities(study: Study, units: Sequence[ParticipantUnit], folder: P
 
 
 def _provenance(study: Study, units: Sequence[ParticipantUnit]) -> Provenance:
-    files = {name: sha for unit in units for walk in unit.walks for name, sha in walk.files.items()}
+    files = {name: sha for unit in units for walk in (*unit.walks, *unit.cycles) for name, sha in walk.files.items()}
     settings = {**public_settings(study), "fits": asdict(response_settings(study))}
     return made_now(settings, study.models.seed, files, SECTION)

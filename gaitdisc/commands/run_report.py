@@ -52,7 +52,7 @@ def report_on(work: Callable[[Told], ResponseRun], study: Study, folder: Path, q
     for quantity in done.quantities:
         for length_s, reason in quantity.left_away.items():
             typer.echo(f"left out: {quantity.participant}, training length {length_s:g} s: {reason}", err=True)
-    end(done.refusals, len(done.responses), page, time.perf_counter() - started)
+    end(done.refusals, len(done.reported), page, time.perf_counter() - started)
 
 
 def say_renewed(renewed: Sequence[str]) -> None:

@@ -121,7 +121,7 @@ def read_planned_trial(
     Returns
     -------
     Trial
-        Named by pseudonym and condition, and a number where there are several.
+        Named by pseudonym, session and condition, and a number where there are several.
 
     Raises
     ------
@@ -135,9 +135,7 @@ def read_planned_trial(
     """
     paths = [study.path_of(file) for file in planned.files]
     trial = read_trial(paths, study.channels, participant.id, planned.condition, planned.crop_s, reader)
-    alike = participant.trials_of(planned.condition)
-    number = f" {alike.index(planned) + 1}" if len(alike) > 1 else ""
-    return replace(trial, name=f"{participant.id} {planned.condition}{number}")
+    return replace(trial, name=participant.trial_name(planned))
 
 
 def _read(path: Path, channels: Mapping[str, str] | None, reader: C3DReader | None) -> Trial:

@@ -11,6 +11,7 @@ from gaitdisc.report.block import save_block
 from gaitdisc.report.comparison_figure import comparison_figures
 from gaitdisc.report.comparison_tables import comparison_sentences, comparison_tables
 from gaitdisc.report.curves_figure import curves_figures
+from gaitdisc.report.cycles_page import cycles_blocks, save_cycle_tables, write_cycles_page
 from gaitdisc.report.figure import LARGEST_INLINE_SVG, Figure, SavedFigure, file_names, save_figures
 from gaitdisc.report.held_out_figure import held_out_figures
 from gaitdisc.report.method import method_sentences
@@ -86,13 +87,15 @@ def write_report(run: ResponseRun, folder: Path) -> Path:
     WriteError
         If a file cannot be written; what stood there before still stands.
     """
+    if run.cycles and not run.walks:
+        return write_cycles_page(run, folder)
     people = list(dict.fromkeys([*(r.participant for r in run.responses), *(w.subject for w in run.walks)]))
     names = file_names(people)
     sections = _sections(run, names, folder)
     overview = save_figures(r2_figures(run) if run.responses else [], folder)
     compared = save_figures(comparison_figures(run), folder)
     pair_tables = comparison_tables(run)
-    blocks = [save_block(block, folder) for block in over_blocks(run)]
+    blocks = [save_block(block, folder) for block in (*over_blocks(run), *cycles_blocks(run))]
     tables = {
         "refusals": refusals_table(run),
         "walks": walks_table(run),
@@ -103,6 +106,8 @@ def write_report(run: ResponseRun, folder: Path) -> Path:
     }
     save_tables((*tables.values(), *pair_tables), folder)
     save_table(run.r2_table(), folder / "tables" / "r2.csv")
+    if run.cycles:
+        save_cycle_tables(run, folder)
     shown = {
         "run": run,
         "study": study_sentences(run),
