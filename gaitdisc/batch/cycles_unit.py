@@ -12,7 +12,7 @@ from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
-from gaitdisc.ingest.trial_sets import trial_sets
+from gaitdisc.ingest.trial_sets import static_trial, trial_sets
 from gaitdisc.processing.pooled import pooled_cycles
 from gaitdisc.recording import Trial
 from gaitdisc.results import PooledCycles
@@ -76,7 +76,9 @@ def cycles_key(study: Study, participant: Participant) -> str:
     """
     parts = [participant.id, participant.group]
     for one in trial_sets(study, participant):
-        parts += [one.session, one.condition, *(unit_key(study, trial) for trial in one.trials)]
+        standing = static_trial(study, participant, one.session)
+        trials = (*one.trials, *((standing,) if standing else ()))
+        parts += [one.session, one.condition, *(unit_key(study, trial) for trial in trials)]
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()
 
 

@@ -40,13 +40,14 @@ def report_on(work: Callable[[Told], ResponseRun], study: Study, folder: Path, q
     """
     from rich.console import Console
 
-    from gaitdisc.report.response_page import write_report
+    from gaitdisc.report import write_report
+    from gaitdisc.report.kept_page import page_of
     from gaitdisc.report.text import r2_text
 
     started = time.perf_counter()
     done = worked(work, [person.id for person in study.participants], quiet)
     say_renewed(done.renewed)
-    page = write_report(done, folder / "report")
+    page = page_of(folder, lambda: write_report(done, folder / "report"))
     if done.responses:
         Console().print(r2_text(done))
     for quantity in done.quantities:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import GaitdiscError, StrideError
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
-from gaitdisc.ingest.trial_sets import TrialSet, trial_sets
+from gaitdisc.ingest.trial_sets import TrialSet, static_trial, trial_sets
 from gaitdisc.processing.contact_choice import EARLY_MS, EARLY_RANGE, SEEN_LATE
 from gaitdisc.processing.cycle_channels import cycle_channels
 from gaitdisc.processing.process import quality_findings
@@ -22,6 +22,7 @@ from gaitdisc.processing.trial_cycles import Places, feet_in, moved_events, with
 from gaitdisc.recording import PERCENT, Cycle, Finding, Recording, Strides, Trial
 from gaitdisc.results import PooledCycles, Refusal
 from gaitdisc.results.pooled_cycles import CYCLE_COLUMNS
+from gaitdisc.signals.marker_distances import person_findings
 from gaitdisc.signals.sides import verify_sides
 from gaitdisc.signals.strides import duration_reasons
 from gaitdisc.signals.walking import LEAST_COVERAGE, verify_walking
@@ -87,10 +88,12 @@ def pooled_cycles(study: Study, participant: Participant, read: Read) -> tuple[P
     sets = trial_sets(study, participant)
     found: list[PooledCycles] = []
     for session in dict.fromkeys(one.session for one in sets):
+        static, unread = _standing(study, participant, session, read)
         seen: dict[str, list[_Seen]] = {}
         lost: dict[str, list[Refusal]] = {}
         for one in (own for own in sets if own.session == session):
             seen[one.condition], lost[one.condition] = _seen_trials(study, participant, one, read)
+            seen[one.condition] = [_with_static(trial, static, unread) for trial in seen[one.condition]]
         offsets = _offsets([trial for trials in seen.values() for trial in trials])
         found += [
             _pooled(study, participant, one, seen[one.condition], lost[one.condition], offsets)
@@ -112,6 +115,31 @@ def _seen_trials(
         except GaitdiscError as error:
             lost.append(Refusal(participant.id, where, str(error)))
     return seen, lost
+
+
+def _standing(study: Study, participant: Participant, session: str, read: Read) -> tuple[Recording | None, str]:
+    """Markers of the static trial, and why there are none."""
+    planned = static_trial(study, participant, session)
+    if planned is None:
+        return None, "there is no static trial"
+    try:
+        trial = read(planned)
+    except GaitdiscError as error:
+        return None, f"the static trial cannot be used: {error}"
+    return trial.streams.get("markers"), "the static trial has no markers"
+
+
+def _with_static(seen: _Seen, static: Recording | None, unread: str) -> _Seen:
+    """Same trial, with what the static trial says of it: that it is another person's, or that there is none."""
+    markers = seen.trial.streams.get("markers")
+    if markers is None:
+        return seen
+    if static is not None:
+        return replace(seen, findings=(*seen.findings, *person_findings(static, markers, seen.trial.name)))
+    severity = "note" if seen.legs is not None else "warning"
+    spoils = "angles from markers" + ("; those of the file are used" if seen.legs is not None else "")
+    said = Finding(severity, "static trial", seen.trial.name, unread, spoils)
+    return replace(seen, findings=(*seen.findings, said))
 
 
 def _seen(study: Study, planned: PlannedTrial, number: int, trial: Trial) -> _Seen:

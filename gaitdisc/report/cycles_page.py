@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from gaitdisc.report.block import Block, save_block
+from gaitdisc.report.block import Block, SavedBlock, save_block
 from gaitdisc.report.cycles_figure import cycles_figures
 from gaitdisc.report.cycles_tables import (
     all_cycles,
@@ -16,14 +16,17 @@ from gaitdisc.report.cycles_tables import (
     overview_table,
     spatiotemporal_table,
 )
-from gaitdisc.report.figure import file_names
+from gaitdisc.report.figure import LARGEST_INLINE_SVG, file_names, save_figures
 from gaitdisc.report.page import write_page
 from gaitdisc.report.provenance_tables import provenance_tables
 from gaitdisc.report.run_tables import findings_table, refusals_table
+from gaitdisc.report.side_by_side import drawn_side_by_side
 from gaitdisc.report.table import save_table, save_tables
 from gaitdisc.report.wording import SIDE_WORDS, counted, listed
 from gaitdisc.results import PooledCycles, ResponseRun
 
+INLINE_BYTES = 4_000_000  # of all figures together, about; beyond it they are shown as pictures
+MOST_HERE = 2  # people whose figures are drawn one after the other
 FEW = 3  # cycles of a foot below which no spread is spoken of
 METHOD = (
     "Contacts: the file's events, else force, else markers (heel farthest in front of the pelvis, each step along its "
@@ -66,7 +69,7 @@ def write_cycles_page(run: ResponseRun, folder: Path) -> Path:
     shown = {
         "run": run,
         "answer": cycles_sentences(run),
-        "blocks": [save_block(block, folder) for block in cycles_blocks(run)],
+        "blocks": saved_cycle_blocks(run, folder),
         "tables": tables,
         "method": METHOD,
     }
@@ -121,30 +124,53 @@ def cycles_sentences(run: ResponseRun) -> list[str]:
     return sentences
 
 
-def cycles_blocks(run: ResponseRun) -> list[Block]:
-    """Part for everybody together, then one for each person.
+def saved_cycle_blocks(run: ResponseRun, folder: Path) -> list[SavedBlock]:
+    """Part of the page for everybody together, then one for each person, with figures and tables written.
 
     Parameters
     ----------
     run : ResponseRun
-        With cycles.
+        With cycles; without any there is no part.
+    folder : Path
+        Folder of the report.
     """
     if not run.cycles:
         return []
     unfitted = tuple(f"No models are fitted to {one.participant}: {one.reason}" for one in run.unfitted)
-    blocks = [Block("cycles", "Cycles", (_windows(run), *unfitted), (), (overview_table(run.cycles),))]
+    first = Block("cycles", "Cycles", (_windows(run), *unfitted), (), (overview_table(run.cycles),))
     people = list(dict.fromkeys(one.subject for one in run.cycles))
     names = file_names(people)
-    for person in people:
-        sets = [one for one in run.cycles if one.subject == person and len(one.kept)]
-        every = [one for one in run.cycles if one.subject == person]
-        left_out = left_out_cycles(every, names[person])
-        places = file_names([one.where for one in sets])
-        figures = [figure for one in sets for figure in cycles_figures(one, f"{names[person]}-{places[one.where]}")]
-        tables = [spatiotemporal_table(sets, names[person])] if sets else []
-        tables += [left_out] if left_out is not None else []
-        blocks.append(Block(f"cycles-{names[person]}", person, (_person(every),), tuple(figures), tuple(tables)))
-    return blocks
+    each = [
+        ([one for one in run.cycles if one.subject == person], names[person], folder, len(run.cycles))
+        for person in people
+    ]
+    return [save_block(first, folder), *drawn_side_by_side(_saved, each, MOST_HERE)]
+
+
+def person_block(sets: Sequence[PooledCycles], name: str) -> Block:
+    """Part of the page for one person: counts, figures of each session and condition, and tables.
+
+    Parameters
+    ----------
+    sets : sequence of PooledCycles
+        Of one person.
+    name : str
+        Person's part of the file names.
+    """
+    kept = [one for one in sets if len(one.kept)]
+    left_out = left_out_cycles(sets, name)
+    places = file_names([one.where for one in kept])
+    figures = [figure for one in kept for figure in cycles_figures(one, f"{name}-{places[one.where]}")]
+    tables = [spatiotemporal_table(kept, name)] if kept else []
+    tables += [left_out] if left_out is not None else []
+    return Block(f"cycles-{name}", sets[0].subject, (_person(sets),), tuple(figures), tuple(tables))
+
+
+def _saved(sets: Sequence[PooledCycles], name: str, folder: Path, count: int) -> SavedBlock:
+    block = person_block(sets, name)
+    save_tables(block.tables, folder)
+    figures = save_figures(block.figures, folder, min(LARGEST_INLINE_SVG, INLINE_BYTES // max(1, count)))
+    return SavedBlock(block.anchor, block.heading, block.sentences, tuple(figures), block.tables)
 
 
 def _windows(run: ResponseRun) -> str:

@@ -201,3 +201,25 @@ def test_moments_are_there_only_where_a_plate_carried_the_foot(turning):
             push = column[own & kinetic]
             assert len(push) == 0 or (np.nanmin(push, axis=1) < -0.8).all()  # plantarflexion, N m/kg
     assert sum(int(one.kept["kinetic"].sum()) for one in turning) >= 20
+
+
+def test_a_static_trial_of_another_person_is_said_and_costs_no_cycle(gait_data):
+    folder = gait_data / "young_straight_and_turn"
+    walk = PlannedTrial(condition="walk", files=(str(folder / "HC030A" / "straight" / "HC030A05.c3d"),))
+    own = PlannedTrial(condition="static", files=(str(gait_data / "young_static" / "HC030A" / "HC030A01.c3d"),))
+    wrong = PlannedTrial(condition="static", files=(str(folder / "HC032A" / "static" / "HC032A01.c3d"),))
+    broken = PlannedTrial(condition="static", files=(str(folder / "manifest.csv"),))
+    said = {}
+    with C3DReader() as reader:
+        for name, static in (("own", own), ("wrong", wrong), ("none", None), ("broken", broken)):
+            study, person = _study((walk, static) if static else (walk,))
+            (found,) = pooled_cycles(
+                study, person, lambda planned, s=study, p=person: read_planned_trial(s, p, planned, reader)
+            )
+            assert found.counted("r") == found.counted("l") == 1 and not found.refusals
+            said[name] = [(f.severity, f.what) for f in found.findings if f.kind == "static trial"]
+    assert said["own"] == []
+    ((severity, what),) = said["wrong"]
+    assert severity == "warning" and "the static trial is of another person, or its markers were moved" in what
+    assert said["none"] == [("note", "there is no static trial")]
+    assert said["broken"][0][1].startswith("the static trial cannot be used: manifest.csv needs a column")

@@ -4,7 +4,7 @@ import pandas as pd
 import pytest
 from made_cycles import made_cycles
 
-from gaitdisc.report.cycles_page import cycles_blocks, cycles_sentences, write_cycles_page
+from gaitdisc.report.cycles_page import cycles_sentences, person_block, saved_cycle_blocks, write_cycles_page
 from gaitdisc.report.response_page import write_report
 from gaitdisc.results import Refusal, ResponseRun
 from gaitdisc.results.provenance import made_now
@@ -40,16 +40,20 @@ def test_the_offset_and_few_cycles_are_said():
     assert cycles_sentences(_run(made_cycles(each=0))) == ["No cycle could be kept: see “Left out”."]
 
 
-def test_why_no_models_are_fitted_is_said():
+def test_why_no_models_are_fitted_is_said(tmp_path):
     why = Refusal("P01", "", "a comparison needs one trial of 'walk' and one of 'exo'; P01 has 2 of 'walk'. Correct.")
-    first = cycles_blocks(_run(made_cycles(), exo="exo", unfitted=(why,)))[0]
+    first = saved_cycle_blocks(_run(made_cycles(), exo="exo", unfitted=(why,)), tmp_path)[0]
     assert any("No models are fitted to P01: a comparison needs one trial" in sentence for sentence in first.sentences)
-    assert "compares no device" in cycles_blocks(_run(made_cycles()))[0].sentences[0]
+    assert "compares no device" in saved_cycle_blocks(_run(made_cycles()), tmp_path)[0].sentences[0]
 
 
 def test_one_part_a_person_with_a_figure_for_each_session_and_condition(tmp_path):
     run = _run(made_cycles(session="before"), made_cycles(session="after"), made_cycles("P02"))
-    blocks = cycles_blocks(run)
+    blocks = saved_cycle_blocks(run, tmp_path)
     assert [block.heading for block in blocks] == ["Cycles", "P01", "P02"]
     assert [figure.name for figure in blocks[1].figures] == ["cycles-P01-before_walk", "cycles-P01-after_walk"]
+    assert person_block(run.cycles[2:], "P02").sentences == (
+        "walk: 4 left and 4 right cycles of 2 trials over ground.",
+    )
+    assert saved_cycle_blocks(_run(), tmp_path) == []
     assert write_cycles_page(run, tmp_path).is_file()
