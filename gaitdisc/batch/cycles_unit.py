@@ -13,7 +13,6 @@ from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import static_trial, trial_sets
-from gaitdisc.processing.pooled import pooled_cycles
 from gaitdisc.recording import Trial
 from gaitdisc.results import PooledCycles
 from gaitdisc.results.cycles_store import cycles_name, load_cycles, save_cycles
@@ -44,6 +43,8 @@ def computed_cycles(study: Study, participant: Participant, folder: Path) -> tup
     stored = _stored(places, key)
     if stored is not None:
         return stored
+    from gaitdisc.processing.pooled import pooled_cycles  # brings scipy.signal, which a second run does not need
+
     words = words_of(study, participant)
     unread: list[ReadError] = []
     with C3DReader() as reader:  # one process for all trials

@@ -8,14 +8,11 @@ from functools import partial
 from pathlib import Path
 
 from gaitdisc.batch.cycles_unit import computed_cycles, cycles_key
-from gaitdisc.batch.processed_walks import walks_and_errors
 from gaitdisc.batch.unit_key import response_key, unit_keys
 from gaitdisc.errors import GaitdiscError, ReadError, SchemaError
 from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.ingest.trial_sets import not_compared, refused_participant
 from gaitdisc.networks.training_settings import TrainingSettings
-from gaitdisc.processing.filter_null import filter_null_of
-from gaitdisc.processing.pooled import pooled_instead
 from gaitdisc.processing.walk import Walk
 from gaitdisc.response.fit_response import ResponseSettings, fit_response
 from gaitdisc.results import ParticipantResponse, PooledCycles, Refusal, WalkSummary
@@ -89,6 +86,8 @@ def computed_unit(study: Study, participant: Participant, folder: Path, progress
         return pooled_unit(study, participant, folder, lacking)
     unit = _compared_unit(study, participant, folder, progress)
     if unit.response is None and any(refusal.condition for refusal in unit.refusals):
+        from gaitdisc.processing.pooled import pooled_instead
+
         pooled = pooled_unit(study, participant, folder, unit.refusals[0].reason)
         if pooled_instead(pooled.cycles):
             return pooled
@@ -120,6 +119,8 @@ def _compared_unit(study: Study, participant: Participant, folder: Path, progres
     stored = _stored(participant, keys, folder)
     if stored is not None:
         return stored
+    from gaitdisc.batch.processed_walks import walks_and_errors  # brings scipy.signal, which a second run does not need
+
     walks, errors = walks_and_errors(study, participant)
     for word, walk in walks.items():
         save_walk(walk.summary(), _walk_folder(folder, participant, word), keys[word])
@@ -157,6 +158,8 @@ def _after_processing(progress: Progress, share: float) -> None:
 def _fitted(
     study: Study, participant: Participant, walks: Mapping[str, Walk], progress: Progress
 ) -> ParticipantResponse:
+    from gaitdisc.processing.filter_null import filter_null_of
+
     nominal, exo = (walks[word] for word in study.conditions.both)
     settings = response_settings(study)
     null = filter_null_of(exo, study.filters)

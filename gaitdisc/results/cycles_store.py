@@ -19,7 +19,7 @@ WORDS = ("reason", "foot_off_by")
 
 
 def save_cycles(pooled: PooledCycles, folder: Path, key: str) -> None:
-    """Save the cycles of one person, session and condition: `cycles.json`, `cycles.csv`, `means.csv`, `arrays.npz`.
+    """Save the cycles of one person, session and condition: `cycles.json`, `cycles.csv`, `arrays.npz`.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def save_cycles(pooled: PooledCycles, folder: Path, key: str) -> None:
             "refusals": [asdict(refusal) for refusal in pooled.refusals],
             "files": dict(pooled.files),
         },
-        {"cycles.csv": pooled.cycles, "means.csv": pooled.mean_curves()},
+        {"cycles.csv": pooled.cycles},
         {"curves": pooled.curves},
     )
 

@@ -9,7 +9,7 @@ A run is a folder::
     tests/                         tests.json  tests.csv  families.csv
     over/                          over.json  lengths.csv  reductions.csv  reduction_tests.csv  ...
     quantities/<person>/           quantity.json  quantity.csv
-    cycles/<person>-<condition>/   cycles.json  cycles.csv  means.csv  arrays.npz
+    cycles/<person>-<condition>/   cycles.json  cycles.csv  arrays.npz
 
 A unit (one walk, one response) is complete when its JSON file stands, because that is written last and holds the hashes
 of the others and its own. A unit of which anything was changed is found by its hashes and computed again.

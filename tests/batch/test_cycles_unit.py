@@ -45,7 +45,7 @@ def test_cycles_are_pooled_kept_and_not_computed_twice(study, tmp_path, monkeypa
     person = study.participants[1]
     (first,) = computed_cycles(study, person, tmp_path)
     assert first.trials == 3 and first.counted("r") >= 6
-    monkeypatch.setattr("gaitdisc.batch.cycles_unit.pooled_cycles", None)  # would fail if it were called
+    monkeypatch.setattr("gaitdisc.processing.pooled.pooled_cycles", None)  # would fail if it were called
     (again,) = computed_cycles(study, person, tmp_path)
     assert again.cycles.equals(first.cycles)
 

@@ -21,7 +21,6 @@ def test_cycles_come_back_as_they_were(tmp_path, fields):
     for name in ("name", "group", "trials", "detectors", "contact_offset_s", "foot_off_offset_s", "offset_steps",
                  "over_ground", "channels", "findings", "refusals", "files"):  # fmt: skip
         assert getattr(loaded, name) == getattr(made, name), name
-    assert (tmp_path / "means.csv").is_file()
 
 
 def test_a_set_without_a_kept_cycle_comes_back_too(tmp_path):
