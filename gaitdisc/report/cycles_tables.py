@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
+from gaitdisc.recording import PERCENT
 from gaitdisc.report.table import Table
 from gaitdisc.report.wording import NONE, SIDE_WORDS, number
 from gaitdisc.results import PooledCycles
@@ -52,6 +53,41 @@ def all_means(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
     tables = [_named(one, one.mean_curves()) for one in cycles if len(one.kept)]
     columns = ["participant", "group", "session", "condition", "channel", "unit", "side", "percent", "n", "mean", "sd"]
     return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=pd.Index(columns))
+
+
+def all_curves(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
+    """Every kept cycle of everybody, one row a cycle, channel and percent; channels without a value are not there.
+
+    Parameters
+    ----------
+    cycles : sequence of PooledCycles
+        Of a run.
+    """
+    columns = [
+        "participant", "group", "session", "condition", "trial", "side", "start_s", "channel", "unit", "percent",
+        "value",
+    ]  # fmt: skip
+    tables = []
+    for one in cycles:
+        curves = one.curves
+        for row, cycle in enumerate(one.kept.itertuples(index=False)):
+            for column, channel in enumerate(one.channels):
+                values = curves[row, :, column]
+                if not np.isfinite(values).any():
+                    continue
+                words = (one.subject, one.group, one.session, one.condition, cycle.trial, cycle.side, cycle.start_s)
+                tables.append(
+                    pd.DataFrame(
+                        {
+                            **dict(zip(columns, words, strict=False)),
+                            "channel": channel.name,
+                            "unit": channel.unit,
+                            "percent": PERCENT,
+                            "value": values,
+                        }
+                    )
+                )
+    return pd.concat(tables, ignore_index=True)[columns] if tables else pd.DataFrame(columns=pd.Index(columns))
 
 
 def all_spatiotemporal(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
