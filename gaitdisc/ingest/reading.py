@@ -200,7 +200,7 @@ def _judged(trial: Trial, begin_s: Mapping[str, float]) -> Trial:
 
 def _unused(channels: Mapping[str, str] | None, streams: Mapping[str, Recording], name: str) -> list[Finding]:
     there = {channel.rpartition(".")[0] or channel for r in streams.values() for channel in r.names}
-    there |= {channel for r in streams.values() for channel in r.names}
+    there |= {channel for r in streams.values() for channel in r.names} | {"time"}
     absent = [label for label, said in (channels or {}).items() if split_unit(said)[0] not in there]
     if not absent:
         return []
