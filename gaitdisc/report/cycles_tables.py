@@ -142,7 +142,7 @@ def overview_table(cycles: Sequence[PooledCycles]) -> Table:
             "offset_steps": one.offset_steps, "over_ground": one.over_ground,
         })  # fmt: skip
     columns = (
-        "participant", "group", "session, condition", "trials", "left kept / left out", "right kept / left out",
+        "participant", "group", "session, condition", "trials", "left: kept / dropped", "right: kept / dropped",
         "on a plate (left, right)", "EMG", "contacts by", "contacts moved",
     )  # fmt: skip
     caption = (

@@ -113,7 +113,7 @@ def verify_walking(
         fails.append(f"a knee moves {found.knee_deg:.0f} deg")
     if fails:
         raise StrideError(
-            f"walking means {fewest} strides or more over {100 * least_coverage:.0f} % of the trial, repeating with a "
+            f"walking means {fewest} {'stride' if fewest == 1 else 'strides'} or more over {100 * least_coverage:.0f} % of the trial, repeating with a "
             f"correlation of {LEAST_REGULARITY:g} or more, knees bending {LEAST_KNEE_DEG:g} deg or more",
             f"{kinematics.source.file or 'the recording'}: {'; '.join(fails)}",
             "Leave calibration and range-of-motion trials out of the study, or cut the trial to its walking part.",

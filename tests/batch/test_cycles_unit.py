@@ -9,7 +9,7 @@ from gaitdisc.batch.cycles_unit import computed_cycles, cycles_key
 from gaitdisc.batch.participant_unit import computed_unit
 from gaitdisc.batch.run_study import run_study
 from gaitdisc.ingest.storage import write_storage
-from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, StrideRules, Study
+from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial, StrideRules, Study
 from gaitdisc.results.run_store import load_run
 
 ANGLES = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", "hip_flexion_l", "knee_angle_l", "ankle_angle_l")
@@ -100,3 +100,18 @@ def test_a_file_that_could_not_be_read_is_tried_again(study, laboratory, tmp_pat
     finally:
         broken.write_text(text)
     assert mended.refusals == () and mended.trials == 4
+
+
+def test_two_short_walks_over_ground_that_no_model_can_use_are_pooled(study, tmp_path):
+    """One trial of each condition, three strides long: the run refused it, and there was nothing else to report."""
+    first, second = study.participants[1].trials[:2]
+    trials = (first, second.model_copy(update={"condition": "exo"}))
+    person = study.participants[1].model_copy(update={"trials": trials})
+    parts = {"conditions": Conditions(nominal="walk", device="exo"), "participants": (person,)}
+    models = Models(angles=ANGLES, outputs=("knee_angle_r",))
+    unit = computed_unit(study.model_copy(update={**parts, "models": models}), person, tmp_path, lambda _: None)
+    assert [one.condition for one in unit.cycles] == ["walk", "exo"] and all(len(one.kept) for one in unit.cycles)
+    assert not unit.refusals and "where 10 are needed" in unit.unfitted
+    treadmill = {**parts, "models": models, "strides": StrideRules(ground="treadmill")}
+    refused = computed_unit(study.model_copy(update=treadmill), person, tmp_path / "other", lambda _: None)
+    assert not refused.cycles and [refusal.condition for refusal in refused.refusals] == ["walk", "exo"]
