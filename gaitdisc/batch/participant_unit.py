@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from gaitdisc.batch.cycles_unit import computed_cycles, cycles_key
 from gaitdisc.batch.unit_key import response_key, unit_keys
@@ -14,10 +15,12 @@ from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.ingest.trial_sets import not_compared, refused_participant
 from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.processing.walk import Walk
-from gaitdisc.response.fit_response import ResponseSettings, fit_response
 from gaitdisc.results import ParticipantResponse, PooledCycles, Refusal, WalkSummary
 from gaitdisc.results.response_store import load_refused, load_response, save_refused, save_response
 from gaitdisc.results.walk_store import load_walk, save_walk, unit_name
+
+if TYPE_CHECKING:
+    from gaitdisc.response.fit_response import ResponseSettings
 
 Progress = Callable[[float], None]
 SHARE_OF_PROCESSING = 0.1
@@ -147,6 +150,8 @@ def response_settings(study: Study) -> ResponseSettings:
     study : Study
         Outputs, held-out part, seed.
     """
+    from gaitdisc.response.fit_response import ResponseSettings
+
     training = TrainingSettings(seed=study.models.seed)
     return ResponseSettings(study.models.outputs, study.held_out.seconds, study.held_out.share or 0.0, training)
 
@@ -159,6 +164,7 @@ def _fitted(
     study: Study, participant: Participant, walks: Mapping[str, Walk], progress: Progress
 ) -> ParticipantResponse:
     from gaitdisc.processing.filter_null import filter_null_of
+    from gaitdisc.response.fit_response import fit_response
 
     nominal, exo = (walks[word] for word in study.conditions.both)
     settings = response_settings(study)
