@@ -9,7 +9,6 @@ from pathlib import Path
 
 from gaitdisc.batch.participant_unit import ParticipantUnit, computed_unit, response_settings
 from gaitdisc.batch.public_words import public_settings, public_title
-from gaitdisc.batch.quantity_unit import stored_quantity
 from gaitdisc.batch.run_lock import run_lock
 from gaitdisc.batch.workers import Told, Workers, computed_units
 from gaitdisc.ingest.study import Study
@@ -117,6 +116,10 @@ def _lost(refusal: Refusal) -> ParticipantUnit:
 
 def _stored_quantities(study: Study, units: Sequence[ParticipantUnit], folder: Path) -> tuple[DataQuantity, ...]:
     whole = [(unit.response.participant, unit.key) for unit in units if unit.response is not None]
+    if not whole:
+        return ()
+    from gaitdisc.batch.quantity_unit import stored_quantity  # brings scipy.signal
+
     found = (stored_quantity(study.participant(name), folder, key) for name, key in whole)
     return tuple(quantity for quantity in found if quantity is not None)
 
