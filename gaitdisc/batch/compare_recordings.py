@@ -12,6 +12,7 @@ from gaitdisc.discovery.compare import CLINICAL, compare_people, compare_walks
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.study import Study
+from gaitdisc.ingest.trial_sets import not_compared, refused_participant
 from gaitdisc.processing.walk_pair import COMPARED, walk_pair
 from gaitdisc.recording import Finding
 from gaitdisc.results import WalkSummary
@@ -104,7 +105,9 @@ def compare_study(
         walks = _walks_of(study, participant)
         if isinstance(walks, str):
             raise SchemaError(
-                f"both walks of {participant} are to be compared", walks, "Mend it, or choose another participant."
+                f"both walks of {participant} are to be compared",
+                walks.rstrip("."),
+                "Mend it, or choose another participant.",
             )
         return _with_settings(compare_walks(walks[0], walks[1], channels, smallest=smallest), settings)
     pairs, left_out = [], []
@@ -121,16 +124,14 @@ def compare_study(
 def _walks_of(study: Study, participant: str) -> tuple[WalkSummary, WalkSummary] | str:
     """Device and nominal walk, or why there are none."""
     person = study.participant(participant)
-    both = (study.conditions.device, study.conditions.nominal)
-    counts = [len(person.trials_of(word)) for word in both]
-    if person.excluded:
-        return f"excluded in the study: {person.excluded}"
-    if counts != [1, 1]:
-        return f"{counts[0]} walks of {both[0]!r} and {counts[1]} of {both[1]!r}, where one of each is needed"
+    nominal, device = study.conditions.both
+    lacking = refused_participant(study, person) or not_compared(study, person)
+    if lacking:
+        return lacking
     walks, refusals = processed_walks(study, person)
     if refusals:
         return "; ".join(f"{refusal.condition}: {refusal.reason}" for refusal in refusals)
-    return walks[both[0]].summary(), walks[both[1]].summary()
+    return walks[device].summary(), walks[nominal].summary()
 
 
 def _names(first: Path, second: Path) -> tuple[str, str]:

@@ -6,18 +6,21 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from gaitdisc.batch.processed_walks import walks_and_errors
+from gaitdisc.batch.cycles_unit import computed_cycles, cycles_key
 from gaitdisc.batch.unit_key import response_key, unit_keys
 from gaitdisc.errors import GaitdiscError, ReadError, SchemaError
 from gaitdisc.ingest.study import Participant, Study
+from gaitdisc.ingest.trial_sets import not_compared, refused_participant
 from gaitdisc.networks.training_settings import TrainingSettings
-from gaitdisc.processing.filter_null import filter_null_of
 from gaitdisc.processing.walk import Walk
-from gaitdisc.response.fit_response import ResponseSettings, fit_response
-from gaitdisc.results import ParticipantResponse, Refusal, WalkSummary
+from gaitdisc.results import ParticipantResponse, PooledCycles, Refusal, WalkSummary
 from gaitdisc.results.response_store import load_refused, load_response, save_refused, save_response
 from gaitdisc.results.walk_store import load_walk, save_walk, unit_name
+
+if TYPE_CHECKING:
+    from gaitdisc.response.fit_response import ResponseSettings
 
 Progress = Callable[[float], None]
 SHARE_OF_PROCESSING = 0.1
@@ -37,12 +40,18 @@ class ParticipantUnit:
         Why, in the words of the error.
     key : str
         What the unit rests on, of `response_key`; empty where nothing was read.
+    cycles : tuple of PooledCycles
+        Where cycles are pooled over trials: each session and condition.
+    unfitted : str
+        Why no models were fitted, where the study compares a device and cycles are pooled instead; or empty.
     """
 
     walks: tuple[WalkSummary, ...] = ()
     response: ParticipantResponse | None = None
     refusals: tuple[Refusal, ...] = ()
     key: str = ""
+    cycles: tuple[PooledCycles, ...] = ()
+    unfitted: str = ""
 
 
 def computed_unit(study: Study, participant: Participant, folder: Path, progress: Progress) -> ParticipantUnit:
@@ -72,13 +81,49 @@ def computed_unit(study: Study, participant: Participant, folder: Path, progress
     WriteError
         If the folder cannot be written.
     """
-    not_complete = _incomplete(study, participant)
-    if not_complete:
-        return ParticipantUnit(refusals=(Refusal(participant.id, "", not_complete),))
+    refused = refused_participant(study, participant)
+    if refused:
+        return ParticipantUnit(refusals=(Refusal(participant.id, "", refused),))
+    lacking = not_compared(study, participant)
+    if lacking:
+        return pooled_unit(study, participant, folder, lacking)
+    unit = _compared_unit(study, participant, folder, progress)
+    if unit.response is None and any(refusal.condition for refusal in unit.refusals):
+        from gaitdisc.processing.pooled import pooled_instead
+
+        pooled = pooled_unit(study, participant, folder, unit.refusals[0].reason)
+        if pooled_instead(pooled.cycles):
+            return pooled
+    return unit
+
+
+def pooled_unit(study: Study, participant: Participant, folder: Path, unfitted: str) -> ParticipantUnit:
+    """Pool the cycles of one participant over trials, or load what an earlier run pooled.
+
+    Parameters
+    ----------
+    study : Study
+        Settings.
+    participant : Participant
+        Who.
+    folder : Path
+        Folder of the run.
+    unfitted : str
+        Why no models are fitted.
+    """
+    cycles = computed_cycles(study, participant, folder)
+    refusals = tuple(refusal for one in cycles for refusal in one.refusals)
+    why = unfitted if study.conditions.device is not None else ""
+    return ParticipantUnit((), None, refusals, cycles_key(study, participant), cycles, why)
+
+
+def _compared_unit(study: Study, participant: Participant, folder: Path, progress: Progress) -> ParticipantUnit:
     keys = unit_keys(study, participant)
     stored = _stored(participant, keys, folder)
     if stored is not None:
         return stored
+    from gaitdisc.batch.processed_walks import walks_and_errors  # brings scipy.signal, which a second run does not need
+
     walks, errors = walks_and_errors(study, participant)
     for word, walk in walks.items():
         save_walk(walk.summary(), _walk_folder(folder, participant, word), keys[word])
@@ -105,23 +150,10 @@ def response_settings(study: Study) -> ResponseSettings:
     study : Study
         Outputs, held-out part, seed.
     """
+    from gaitdisc.response.fit_response import ResponseSettings
+
     training = TrainingSettings(seed=study.models.seed)
     return ResponseSettings(study.models.outputs, study.held_out.seconds, study.held_out.share or 0.0, training)
-
-
-def _incomplete(study: Study, participant: Participant) -> str:
-    """Why a participant cannot be compared; empty where one can."""
-    if participant.excluded:
-        return f"excluded in the study: {participant.excluded}"
-    both = study.conditions.both
-    counts = {word: len(participant.trials_of(word)) for word in both}
-    if set(counts.values()) == {1}:
-        return ""
-    found = ", ".join(f"{count or 'none'} of {word!r}" for word, count in counts.items())
-    others = sum(trial.condition not in both for trial in participant.trials)
-    unused = f"; of other conditions: {others}" if others else ""
-    needed = f"a comparison needs one trial of {both[0]!r} and one of {both[1]!r}"
-    return f"{needed}; {participant.id} has {found}{unused}. Correct the conditions in [[participants.trials]]."
 
 
 def _after_processing(progress: Progress, share: float) -> None:
@@ -131,6 +163,9 @@ def _after_processing(progress: Progress, share: float) -> None:
 def _fitted(
     study: Study, participant: Participant, walks: Mapping[str, Walk], progress: Progress
 ) -> ParticipantResponse:
+    from gaitdisc.processing.filter_null import filter_null_of
+    from gaitdisc.response.fit_response import fit_response
+
     nominal, exo = (walks[word] for word in study.conditions.both)
     settings = response_settings(study)
     null = filter_null_of(exo, study.filters)

@@ -10,6 +10,7 @@ from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
+from gaitdisc.ingest.trial_sets import not_compared
 from gaitdisc.processing.process import processed
 from gaitdisc.processing.walk import Walk
 from gaitdisc.response.samples import gait_samples
@@ -24,8 +25,11 @@ def processed_walks(study: Study, participant: Participant) -> tuple[dict[str, W
     study : Study
         Settings.
     participant : Participant
-        With one trial of each condition.
+        One who lacks a walk of a condition, or has several, is refused.
     """
+    lacking = not_compared(study, participant)
+    if lacking:
+        return {}, (Refusal(participant.id, "", lacking),)
     walks, errors = walks_and_errors(study, participant)
     return walks, tuple(Refusal(participant.id, word, str(error)) for word, error in errors.items())
 

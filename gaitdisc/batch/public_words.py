@@ -181,7 +181,7 @@ def words_of(study: Study, participant: Participant, named: Iterable[str] = ()) 
     named : iterable of str
         Channels that the user named, beside those of the study.
     """
-    said = [study.title, *study.conditions.both, participant.excluded, *named]
+    said = [study.title, *study.sessions, *study.conditions.words, participant.group, participant.excluded, *named]
     said += [each.id for each in study.participants]
     said += [trial.condition for each in study.participants for trial in each.trials]
     said += [*study.models.angles, *study.models.emg, *study.models.outputs]
@@ -252,7 +252,10 @@ def public_title(study: Study) -> str:
     study : Study
         The study.
     """
-    return study.title or f"{study.conditions.nominal} against {study.conditions.device}"
+    conditions = study.conditions
+    if study.title:
+        return study.title
+    return " against ".join(conditions.both) if conditions.device else ", ".join(conditions.words)
 
 
 @cache
@@ -267,18 +270,11 @@ def package_words() -> frozenset[str]:
     return frozenset(word for text in literals for word in _WORD.findall(text))
 
 
-def _trial_name(participant: Participant, planned: PlannedTrial) -> str:
-    """As `gaitdisc.ingest.reading.read_planned_trial` names it."""
-    alike = participant.trials_of(planned.condition)
-    number = f" {alike.index(planned) + 1}" if len(alike) > 1 else ""
-    return f"{participant.id} {planned.condition}{number}"
-
-
 def _files(participant: Participant, planned: PlannedTrial) -> dict[str, str]:
     """What the files of a trial are called; a name without its ending counts where it can be no word of a sentence."""
     called: dict[str, str] = {}
     for number, file in enumerate(planned.files, 1):
-        said, path = f"{_trial_name(participant, planned)}, file {number}", Path(file)
+        said, path = f"{participant.trial_name(planned)}, file {number}", Path(file)
         called |= {path.stem: said} if len(path.stem) > 3 and re.search(r"\d", path.stem) else {}
         called |= {path.name: said}
     return called

@@ -9,18 +9,24 @@ from pathlib import Path
 
 from gaitdisc.batch.participant_unit import ParticipantUnit, computed_unit, response_settings
 from gaitdisc.batch.public_words import public_settings, public_title
-from gaitdisc.batch.quantity_unit import stored_quantity
 from gaitdisc.batch.run_lock import run_lock
 from gaitdisc.batch.workers import Told, Workers, computed_units
 from gaitdisc.ingest.study import Study
-from gaitdisc.response.comparison import compare_models
-from gaitdisc.response.over_participants import compare_participants
-from gaitdisc.results import DataQuantity, Provenance, Refusal, ResponseRun
+from gaitdisc.results import (
+    DataQuantity,
+    OverParticipants,
+    PairTests,
+    ParticipantResponse,
+    Provenance,
+    Refusal,
+    ResponseRun,
+)
 from gaitdisc.results.provenance import made_now
 from gaitdisc.results.run_store import save_run
 from gaitdisc.results.unit_folder import damaged_units
 
 SECTION = "4.2, Eqs. 4.1-4.5"
+POOLED = "none: cycles pooled over trials"
 
 
 def run_study(
@@ -29,7 +35,7 @@ def run_study(
     workers: Workers | None = None,
     told: Told = lambda *_: None,
 ) -> ResponseRun:
-    """Process every walk of a study and fit every participant's models.
+    """Process every walk of a study; fit models to two walks of a participant, or pool cycles over many trials.
 
     A participant whose files, settings and package version are those of an earlier run in the same folder is loaded,
     not computed; so a run that was stopped goes on, and loses at most the participant it was at. What was changed since
@@ -64,21 +70,44 @@ def run_study(
         units = list(computed_units(workers or Workers(), compute, study.participants, told, _lost))
         responses = tuple(unit.response for unit in units if unit.response is not None)
         quantities = _stored_quantities(study, units, folder)
+        tests, over = _compared(study, responses, quantities)
         run = ResponseRun(
             public_title(study),
             study.conditions.nominal,
-            study.conditions.device,
+            study.conditions.device or "",
             tuple(walk for unit in units for walk in unit.walks),
             responses,
             tuple(refusal for unit in units for refusal in unit.refusals),
             _provenance(study, units),
-            compare_models(responses),
+            tests,
             quantities,
-            compare_participants(responses, quantities, study.models.seed),
+            over,
             renewed,
+            tuple(pooled for unit in units for pooled in unit.cycles),
+            _unfitted(study, units),
         )
         save_run(run, folder)
     return run
+
+
+def _compared(
+    study: Study, responses: tuple[ParticipantResponse, ...], quantities: tuple[DataQuantity, ...]
+) -> tuple[PairTests | None, OverParticipants | None]:
+    """What the participants say together of the models; nothing where the study compares no device."""
+    if study.conditions.device is None:
+        return None, None
+    from gaitdisc.response.comparison import compare_models
+    from gaitdisc.response.over_participants import compare_participants
+
+    return compare_models(responses), compare_participants(responses, quantities, study.models.seed)
+
+
+def _unfitted(study: Study, units: Sequence[ParticipantUnit]) -> tuple[Refusal, ...]:
+    return tuple(
+        Refusal(person.id, "", unit.unfitted)
+        for person, unit in zip(study.participants, units, strict=True)
+        if unit.unfitted
+    )
 
 
 def _lost(refusal: Refusal) -> ParticipantUnit:
@@ -87,11 +116,17 @@ def _lost(refusal: Refusal) -> ParticipantUnit:
 
 def _stored_quantities(study: Study, units: Sequence[ParticipantUnit], folder: Path) -> tuple[DataQuantity, ...]:
     whole = [(unit.response.participant, unit.key) for unit in units if unit.response is not None]
+    if not whole:
+        return ()
+    from gaitdisc.batch.quantity_unit import stored_quantity  # brings scipy.signal
+
     found = (stored_quantity(study.participant(name), folder, key) for name, key in whole)
     return tuple(quantity for quantity in found if quantity is not None)
 
 
 def _provenance(study: Study, units: Sequence[ParticipantUnit]) -> Provenance:
-    files = {name: sha for unit in units for walk in unit.walks for name, sha in walk.files.items()}
+    files = {name: sha for unit in units for walk in (*unit.walks, *unit.cycles) for name, sha in walk.files.items()}
+    if study.conditions.device is None:
+        return made_now(public_settings(study), study.models.seed, files, POOLED)
     settings = {**public_settings(study), "fits": asdict(response_settings(study))}
     return made_now(settings, study.models.seed, files, SECTION)

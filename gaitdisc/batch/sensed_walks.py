@@ -15,7 +15,8 @@ from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, GaitdiscError, SamplingError, UnitError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial
-from gaitdisc.ingest.study import UNKNOWN, Models, Participant, Study
+from gaitdisc.ingest.study import Models, Participant, Study
+from gaitdisc.ingest.trial_sets import is_walk
 from gaitdisc.processing.process import processed
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.results import Refusal
@@ -170,7 +171,7 @@ def _trials(
 ) -> list[Trial]:
     found = []
     for planned in person.trials:
-        if planned.condition == UNKNOWN or (condition and planned.condition != condition):
+        if not is_walk(study, planned) or (condition and planned.condition != condition):
             continue
         try:
             own = of_trial(public, person, planned)

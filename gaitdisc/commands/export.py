@@ -1,4 +1,4 @@
-"""`gaitdisc export`: the streams of one walk on one time base; or a saved model as ONNX."""
+"""`gaitdisc export`: streams of one walk on one time base; cycles of a run as tidy tables; a saved model as ONNX."""
 
 from __future__ import annotations
 
@@ -10,10 +10,14 @@ import typer
 
 def export(
     files: Annotated[
-        list[Path], typer.Argument(help="Files of one walk: angles, forces, EMG; or the folder of a model.")
+        list[Path],
+        typer.Argument(help="Files of one walk: angles, forces, EMG; the folder of a run; or the folder of a model."),
     ],
     out: Annotated[
-        Path, typer.Option("--out", help="File to write: .csv, .tsv, .parquet, .mot, .sto; .onnx of a model.")
+        Path,
+        typer.Option(
+            "--out", help="File to write: .csv, .tsv, .parquet, .mot, .sto; .onnx of a model; of a run a folder."
+        ),
     ],
     rate: Annotated[float, typer.Option(min=1.0, help="Samples a second of the result.")] = 100.0,
     stream: Annotated[list[str] | None, typer.Option(help="Only this stream; may be repeated.")] = None,
@@ -21,8 +25,15 @@ def export(
         bool,
         typer.Option("--labels", help="Keep labels that are outside the vocabulary; without it they are numbered."),
     ] = False,
+    parquet: Annotated[bool, typer.Option("--parquet", help="Tables of a run as Parquet in place of CSV.")] = False,
 ) -> None:
-    """Bring EMG, force and kinematics of one walk to one time base, low-passed where they are faster than it."""
+    """Bring EMG, force and kinematics of one walk to one time base, low-passed where they are faster than it.
+
+    Of a run with pooled cycles: cycles, curves, means and spatiotemporal values, each as one tidy table.
+    """
+    if len(files) == 1 and (files[0] / "run.json").is_file():
+        _cycles(files[0], out, parquet)
+        return
     if out.suffix.lower() == ".onnx":
         _model(files, out)
         return
@@ -54,3 +65,33 @@ def _model(folders: list[Path], out: Path) -> None:
     write_onnx(model, out)
     what = model.reconstructor.sensing
     typer.echo(f"{out}: {model.reconstructor.kind}, {', '.join(what.sensors)} to {len(what.states)} states")
+
+
+def _cycles(run_folder: Path, out: Path, parquet: bool) -> None:
+    from gaitdisc.errors import SchemaError
+    from gaitdisc.report.cycles_tables import all_curves, all_cycles, all_means, all_spatiotemporal
+    from gaitdisc.results.run_store import load_run
+    from gaitdisc.spreadsheet import write_csv
+    from gaitdisc.whole_file import whole_file
+
+    run = load_run(run_folder)
+    if not run.cycles:
+        raise SchemaError(
+            "tables of cycles need a run that pooled them",
+            f"{run_folder.name} has walks that models were fitted to",
+            "Its tables are in report/tables.",
+        )
+    tables = {
+        "cycles": all_cycles(run.cycles),
+        "curves": all_curves(run.cycles),
+        "means": all_means(run.cycles),
+        "spatiotemporal": all_spatiotemporal(run.cycles),
+    }
+    for name, table in tables.items():
+        if parquet:
+            with whole_file(out / f"{name}.parquet") as part:
+                table.to_parquet(part, index=False)
+        else:
+            write_csv(table, out / f"{name}.csv")
+    counts = ", ".join(f"{name} {len(table)}" for name, table in tables.items())
+    typer.echo(f"{out}: rows of {counts}")

@@ -38,21 +38,28 @@ def report_on(work: Callable[[Told], ResponseRun], study: Study, folder: Path, q
     typer.Exit
         With the exit code, if some or all participants were refused or the person at the keyboard stopped it.
     """
-    from rich.console import Console
-
-    from gaitdisc.report.response_page import write_report
-    from gaitdisc.report.text import r2_text
+    from gaitdisc.report.kept_page import page_of
 
     started = time.perf_counter()
     done = worked(work, [person.id for person in study.participants], quiet)
     say_renewed(done.renewed)
-    page = write_report(done, folder / "report")
+    page = page_of(folder, lambda: _drawn(done, folder / "report"))
     if done.responses:
+        from rich.console import Console
+
+        from gaitdisc.report.text import r2_text
+
         Console().print(r2_text(done))
     for quantity in done.quantities:
         for length_s, reason in quantity.left_away.items():
             typer.echo(f"left out: {quantity.participant}, training length {length_s:g} s: {reason}", err=True)
-    end(done.refusals, len(done.responses), page, time.perf_counter() - started)
+    end(done.refusals, len(done.reported), page, time.perf_counter() - started)
+
+
+def _drawn(done: ResponseRun, folder: Path) -> Path:
+    from gaitdisc.report.response_page import write_report  # brings matplotlib, which a second run does not need
+
+    return write_report(done, folder)
 
 
 def say_renewed(renewed: Sequence[str]) -> None:

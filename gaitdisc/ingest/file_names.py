@@ -1,4 +1,4 @@
-"""What names of files and folders tell: the condition of a walk, the person, and which files belong to one walk."""
+"""What names of files and folders tell: person, group, session, condition, standing, and which files are one walk."""
 
 from __future__ import annotations
 
@@ -34,11 +34,30 @@ DEVICE_WORDS = (
     "afo",
     "augmented",
 )
+# words of laboratories for ways of walking, the plain ones last: any of the others says more
+WALK_WORDS = (
+    "straight", "turn", "turning", "fast", "slow", "comfortable", "preferred", "selfselected", "barefoot", "shod",
+    "shoes", "insole", "running", "run", "jogging", "stairs", "upstairs", "downstairs", "ramp", "uphill", "downhill",
+    "incline", "decline", "backward", "backwards", "dualtask", "dual", "loaded", "cane", "crutch", "crutches",
+    "overground", "treadmill",
+)  # fmt: skip
+PLAIN = "walking"  # what these say, and nothing else
+PLAIN_WORDS = (PLAIN, "walk", "gait")
+STATIC_WORDS = ("static", "stat", "standing", "stand", "calibration", "calib", "cal", "tpose", "anatomical")
+NO_WALK_WORDS = ("rom", "functional", "star", "mvc", "mvic", "jump", "squat", "sitting", "noise")
+GROUP_WORDS = (
+    "controls", "patients", "healthy", "typical", "td", "cp", "stroke", "parkinson", "amputees", "adults", "children",
+)  # fmt: skip
+SESSION_WORDS = ("pre", "before", "preop", "intake", "post", "after", "postop", "followup", "followup2", "retention")
+_NUMBERED_SESSION = re.compile(r"(visit|session|sess|ses|day|week|month)[-_ ]?(\d{1,3})", re.IGNORECASE)
+_DATE = re.compile(r"(?<!\d)((?:19|20)\d{2})[-_.]?(\d{2})[-_.]?(\d{2})(?!\d)")
 # words that tell what a file of a walk holds, not which walk it is
 _KIND_WORDS = {
     "ik", "id", "grf", "grfs", "emg", "trc", "markers", "marker", "coordinates", "kinematics", "kinetics", "forces",
-    "electromyography", "envelope", "inverse", "dynamics", "results", "mot", "sto", "c3d",
+    "electromyography", "envelope", "inverse", "dynamics", "results", "mot", "sto", "c3d", "experimentaldata",
+    "inversekinematics", "inversedynamics", "analog", "force",
 }  # fmt: skip
+_NEUTRAL_FOLDERS = {"raw", "data", "trials", "recordings"}
 _PERSON = re.compile(r"(?:s|p|sub|subj|subject|participant|pt)[-_]?\d{1,4}", re.IGNORECASE)
 # a short code and a number: anything longer, or without a number, may be a name
 PSEUDONYM = re.compile(r"(?:sub|subj|subject|participant|pt|[a-z]{1,4})?[-_]?\d{1,4}", re.IGNORECASE)
@@ -112,8 +131,24 @@ def walk_key(path: Path) -> str:
     return "_".join(part for part in parts if part.lower() not in _KIND_WORDS)
 
 
+def walk_place(path: Path) -> tuple[str, ...]:
+    """Folders of a file without those that only tell the kind: files of one walk may lie in `IK` and in `GRF`.
+
+    Parameters
+    ----------
+    path : Path
+        Relative to the folder that is searched.
+
+    Examples
+    --------
+    >>> walk_place(Path("P01/IK/walk1.mot")) == walk_place(Path("P01/GRF/walk1.mot")) == ("P01",)
+    True
+    """
+    return tuple(folder for folder in path.parent.parts if folder.lower() not in _KIND_WORDS)
+
+
 def person_word(path: Path) -> str:
-    """Word of a path that tells the person: the first folder, or a part of the name such as `S01`; or empty.
+    """Word of a path that tells the person: the first folder that tells nothing else, or a part such as `S01`.
 
     Parameters
     ----------
@@ -124,8 +159,121 @@ def person_word(path: Path) -> str:
     --------
     >>> person_word(Path("welk002/manual_ik.mot")), person_word(Path("S03_exo.mot")), person_word(Path("exo/walk.mot"))
     ('welk002', 'S03', '')
+    >>> person_word(Path("controls/Anna/pre/Straight/trial01.c3d"))
+    'Anna'
     """
-    for folder in path.parent.parts:
-        if not condition_word(Path(folder, "x"))[1] and folder.lower() not in ("raw", "data", "trials"):
-            return folder
+    own = _own_folders(path)
+    if own:
+        return own[0]
     return next((part for part in re.split(r"[^A-Za-z0-9]+", path.stem) if _PERSON.fullmatch(part)), "")
+
+
+def group_word(path: Path) -> str:
+    """Word of a path that tells a group: a folder such as `controls` above those of persons; or empty.
+
+    Parameters
+    ----------
+    path : Path
+        Relative to the folder that is searched.
+
+    Examples
+    --------
+    >>> group_word(Path("controls/P01/walk.c3d")), group_word(Path("P01/walk.c3d"))
+    ('controls', '')
+    """
+    folders = path.parent.parts if _own_folders(path) else ()
+    return next((folder.lower() for folder in folders[:-1] if folder.lower() in GROUP_WORDS), "")
+
+
+def session_word(path: Path) -> tuple[str, str]:
+    """Word of a path that tells the session, and what it is put in order by; the word of a date is empty.
+
+    Parameters
+    ----------
+    path : Path
+        Relative to the folder that is searched.
+
+    Returns
+    -------
+    word : str
+        Such as `pre` or `visit 2`; empty for a date and where no word tells.
+    order : str
+        Later sessions have a greater one; empty where no word tells.
+
+    Examples
+    --------
+    >>> session_word(Path("P01/post/walk.c3d")), session_word(Path("P01/2024-03-01/walk.c3d"))
+    (('post', 'a04'), ('', 'd20240301'))
+    """
+    for name in (*path.parent.parts, path.stem):
+        date = _DATE.search(name)
+        if date:
+            return "", "d" + "".join(date.groups())
+        for word in (name.lower(), *words_in(name)):
+            if word in SESSION_WORDS:
+                return word, f"a{SESSION_WORDS.index(word):02d}"
+        for part in (name, *re.split(r"[^A-Za-z0-9]+", name)):
+            numbered = _NUMBERED_SESSION.fullmatch(part)
+            if numbered:
+                return f"{numbered[1].lower()} {int(numbered[2])}", f"b{numbered[1].lower()}{int(numbered[2]):03d}"
+    return "", ""
+
+
+def kind_of_trial(path: Path) -> str:
+    """Tell whether names say that somebody stands (`static`) or does something else than walk (`other`); or empty.
+
+    Parameters
+    ----------
+    path : Path
+        Relative to the folder that is searched.
+
+    Examples
+    --------
+    >>> kind_of_trial(Path("P01/Static/a.c3d")), kind_of_trial(Path("P01/hip_ROM1.c3d")), kind_of_trial(Path("a.c3d"))
+    ('static', 'other', '')
+    """
+    words = {word for name in (path.stem, *path.parent.parts) for word in (name.lower(), *words_in(name))}
+    if words & set(STATIC_WORDS):
+        return "static"
+    return "other" if words & set(NO_WALK_WORDS) else ""
+
+
+def walk_word(path: Path) -> str:
+    """Word of a path that tells how somebody walks, where it is no word for with or without a device; or empty.
+
+    Parameters
+    ----------
+    path : Path
+        Relative to the folder that is searched.
+
+    Examples
+    --------
+    >>> walk_word(Path("HC002D/Straight/HC002D06.c3d")), walk_word(Path("P01/walk_fast2.c3d"))
+    ('straight', 'fast')
+    >>> walk_word(Path("P01/Marble floor/01.c3d")), walk_word(Path("P01/walk01.c3d")), walk_word(Path("P01/01.c3d"))
+    ('marble floor', 'walking', '')
+    """
+    names = (path.stem, *reversed(path.parent.parts))
+    words = [word for name in names for word in words_in(name)]
+    own = _own_folders(path)
+    told = [word for word in words if word in WALK_WORDS] or [folder.lower() for folder in own[:0:-1]]
+    return told[0] if told else PLAIN if set(words) & set(PLAIN_WORDS) else ""
+
+
+def _own_folders(path: Path) -> list[str]:
+    """Folders that tell neither group, session, condition nor kind: the first is a person's."""
+    own = []
+    for place, folder in enumerate(path.parent.parts):
+        alone = Path(folder, "x")
+        lower = folder.lower()
+        beneath = place + 1 < len(path.parent.parts)
+        if lower in GROUP_WORDS and beneath and not own:
+            continue
+        if lower in _NEUTRAL_FOLDERS or lower in _KIND_WORDS or kind_of_trial(alone):
+            continue
+        if condition_word(alone)[1] or any(word in (*WALK_WORDS, *PLAIN_WORDS) for word in words_in(folder)):
+            continue
+        undated = _DATE.sub("", folder).strip("-_. ")  # `P01_2024-03-01` and `P01_2024-06-01` are one person
+        if undated and (undated != folder or not session_word(alone)[1]):
+            own.append(undated)
+    return own

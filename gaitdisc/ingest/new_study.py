@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,15 +13,37 @@ import numpy as np
 
 from gaitdisc.channel import vocabulary
 from gaitdisc.errors import GaitdiscError, ReadError
-from gaitdisc.ingest.file_names import PSEUDONYM, condition_word, person_word, walk_key
+from gaitdisc.ingest.file_names import (
+    PLAIN,
+    PSEUDONYM,
+    condition_word,
+    group_word,
+    kind_of_trial,
+    person_word,
+    session_word,
+    walk_key,
+    walk_place,
+    walk_word,
+)
 from gaitdisc.ingest.reading import ENDINGS, read_trial
-from gaitdisc.ingest.study import ANGLES, OUTPUTS, UNKNOWN, Conditions, Models, Participant, PlannedTrial, Study
+from gaitdisc.ingest.study import (
+    ANGLES,
+    OUTPUTS,
+    STATIC,
+    UNKNOWN,
+    Conditions,
+    Models,
+    Participant,
+    PlannedTrial,
+    Study,
+)
 from gaitdisc.recording import Recording, Trial
 
 if TYPE_CHECKING:
     from gaitdisc.ingest.c3d import C3DReader
 
 CONSTANT_DEG = 1e-6  # range below which an angle does not vary
+STILL_M, STILL_DEG = 0.05, 8.0  # who stands sways by some centimetres
 
 
 @dataclass(frozen=True)
@@ -31,26 +54,37 @@ class FoundTrial:
     ----------
     files : tuple of Path
         Relative to the folder that was searched.
-    person : str
-        Word of the path that tells the person, or empty.
+    person, group : str
+        Words of the path that tell the person and a group, or empty.
+    session : str
+        What the session is put in order by, or empty.
     word, which : str
-        Word that tells the condition, and `nominal`, `device` or empty.
+        Word that tells the condition, and `nominal`, `device`, `static`, `other` (no walk) or empty.
     trial : Trial
         As read.
     """
 
     files: tuple[Path, ...]
     person: str
+    group: str
+    session: str
     word: str
     which: str
     trial: Trial
+
+    @property
+    def walked(self) -> bool:
+        """Whether it is taken as a walk."""
+        return self.which not in (STATIC, "other")
 
 
 def found_study(folder: Path | str, home: Path | str | None = None) -> tuple[Study, list[str]]:
     """Draft of a study from a folder of recordings.
 
-    Participants are told by sub-folders or by parts of names such as `S01`, conditions by words such as `natural` and
-    `exo`. The angles are those of section 4.2.2 that every trial has and that vary.
+    Participants are told by sub-folders or by parts of names such as `S01`, sessions by words such as `pre` and `post`
+    or by dates, conditions by words such as `natural` and `exo`, or `straight` and `turn`, or by sub-folders of a
+    person; a static trial by its name, or because nobody moves in it. Files of one stem are one trial. The angles are
+    those of section 4.2.2 that every walk has and that vary.
 
     Parameters
     ----------
@@ -62,7 +96,7 @@ def found_study(folder: Path | str, home: Path | str | None = None) -> tuple[Stu
     Returns
     -------
     study : Study
-        A draft that can be run as it is where both conditions were told.
+        A draft that can be run as it is; trials whose condition no name tells are 'unknown' and not used.
     notes : list of str
         What was guessed, left out or could not be read.
 
@@ -89,12 +123,25 @@ def found_study(folder: Path | str, home: Path | str | None = None) -> tuple[Stu
             f"none there can be read{unread}",
             "Name the folder that holds them.",
         )
-    conditions = _conditions(found, notes)
+    conditions, called = named_conditions(found, notes)
+    sessions = _sessions(found)
     home = Path(home) if home is not None else folder
-    participants = _participants(found, conditions, Path(os.path.relpath(folder.resolve(), home.resolve())), notes)
-    title = f"{conditions.nominal} against {conditions.device}"
-    models = _models(found, notes)
-    study = Study(title=title, conditions=conditions, models=models, participants=participants).placed(home)
+    way = Path(os.path.relpath(folder.resolve(), home.resolve()))
+    people = _people(found, notes)
+    participants = tuple(
+        Participant(
+            id=pseudonym,
+            group=next((t.group for t in found if t.person == person), ""),
+            trials=tuple(_planned(t, called, sessions, way) for t in found if t.person == person),
+        )
+        for person, pseudonym in people.items()
+    )
+    words = tuple(dict.fromkeys(sessions.values()))
+    title = " against ".join(conditions.words) if conditions.device else ", ".join(conditions.words)
+    walks = [trial for trial in found if trial.walked] or found
+    study = Study(
+        title=title, sessions=words, conditions=conditions, models=_models(walks, notes), participants=participants
+    ).placed(home)
     lacking = study.one_condition_only()
     if lacking:
         notes.append(f"one condition only, so not compared: {', '.join(lacking)}")
@@ -113,9 +160,47 @@ def _found_trials(folder: Path, notes: list[str]) -> list[FoundTrial]:
         for group in _walks(files):
             read, trial = _readable(folder, group, reader, notes)
             if trial is not None:
-                word, which = condition_word(group[0])
-                found.append(FoundTrial(tuple(read), person_word(group[0]), word, which, trial))
-    return sorted(found, key=lambda each: ("nominal", "device", "").index(each.which))
+                found.append(_found(tuple(read), trial))
+    standing = [each.files[0].as_posix() for each in found if each.which == STATIC]
+    if standing:
+        notes.append(f"standing, so {STATIC!r}: {', '.join(standing)}")
+    order = ("nominal", "device", "", STATIC, "other")
+    return sorted(found, key=lambda each: order.index(each.which))
+
+
+def _found(files: tuple[Path, ...], trial: Trial) -> FoundTrial:
+    word, which = condition_word(files[0])
+    kind = kind_of_trial(files[0]) or (STATIC if not which and stands(trial) else "")
+    if kind:
+        word, which = kind, kind
+    elif not which:
+        word = walk_word(files[0])
+    return FoundTrial(files, person_word(files[0]), group_word(files[0]), session_word(files[0])[1], word, which, trial)
+
+
+def stands(trial: Trial) -> bool:
+    """Tell whether somebody stands still: half of the markers stay within 5 cm, or without markers hips and knees.
+
+    Parameters
+    ----------
+    trial : Trial
+        As it was read.
+
+    Examples
+    --------
+    >>> stands(Trial("no markers, no angles", {}))
+    False
+    """
+    if "markers" in trial.streams:
+        markers, limit = trial.stream("markers"), STILL_M
+    elif "kinematics" in trial.streams:
+        legs = trial.stream("kinematics").selected_by(lambda c: c.name.startswith(("hip_flexion", "knee_angle")))
+        markers, limit = legs, STILL_DEG
+    else:
+        return False
+    known = [column[np.isfinite(column)] for column in markers.values.T]
+    ranges = [float(np.ptp(column)) for column in known if len(column) and np.any(column)]
+    return bool(ranges) and float(np.median(ranges)) < limit
 
 
 def _readable(
@@ -137,10 +222,10 @@ def _readable(
 
 
 def _walks(files: Sequence[Path]) -> list[list[Path]]:
-    """Files grouped by walk: one folder and one name but for the words that tell the kind; never two of one kind."""
+    """Files grouped by walk: one folder and one name but for the words that tell the kind."""
     groups: dict[tuple[Path, str], list[Path]] = {}
     for file in files:
-        groups.setdefault((file.parent, walk_key(file)), []).append(file)
+        groups.setdefault((Path(*walk_place(file)), walk_key(file)), []).append(file)
     for parent, key in [place for place in groups if place[1] == ""]:
         others = [place for place in groups if place[0] == parent and place[1]]
         if len(others) == 1:  # `coordinates.sto` beside `grf_walk.mot` and `id_walk.sto`
@@ -148,26 +233,75 @@ def _walks(files: Sequence[Path]) -> list[list[Path]]:
     return list(groups.values())
 
 
-def _conditions(found: Sequence[FoundTrial], notes: list[str]) -> Conditions:
-    words = {}
-    for which, usual in (("nominal", "nominal"), ("device", "exo")):
-        there = list(dict.fromkeys(trial.word for trial in found if trial.which == which))
-        words[which] = there[0] if there else usual
+def named_conditions(found: Sequence[FoundTrial], notes: list[str]) -> tuple[Conditions, dict[str, str]]:
+    """Conditions of a draft, and the condition of each word that was found.
+
+    Parameters
+    ----------
+    found : sequence of FoundTrial
+        All.
+    notes : list of str
+        Is added to.
+
+    Examples
+    --------
+    >>> named_conditions(found, [])[0].words  # doctest: +SKIP
+    ('straight', 'turn')
+    """
+    walks = [trial for trial in found if trial.walked]
+    told: dict[str, str] = {}
+    for which in ("nominal", "device"):
+        there = list(dict.fromkeys(trial.word for trial in walks if trial.which == which))
+        told |= {which: there[0]} if there else {}
         if len(there) > 1:
-            notes.append(f"{', '.join(there)} are all taken as {words[which]!r}")
-        elif not there:
-            notes.append(
-                f"no file or folder name shows a trial of condition {usual!r}; write it where it says 'unknown'"
-            )
-    unnamed = [trial.files[0].as_posix() for trial in found if not trial.which]
+            notes.append(f"{', '.join(there)} are all taken as {told[which]!r}")
+    counts = Counter(trial.word for trial in walks if not trial.which and trial.word)
+    others = sorted(counts, key=lambda word: (-counts[word], word))
+    if not told and set(others) <= {PLAIN}:
+        others = [PLAIN]
+        notes.append(f"no file or folder name shows a condition: every walk is taken as {PLAIN!r}")
+    words = list(dict.fromkeys([*told.values(), *others]))
+    device = told.get("device") if len(words) > 1 else None
+    reference = next(word for word in words if word != device)
+    rest = tuple(word for word in words if word not in (reference, device))
+    called = {trial.word: told.get(trial.which, trial.word) for trial in walks}
+    called[""] = PLAIN if others == [PLAIN] else UNKNOWN
+    called |= {STATIC: STATIC, "other": UNKNOWN}
+    unnamed = [trial.files[0].as_posix() for trial in found if called[trial.word] == UNKNOWN]
     if unnamed:
-        notes.append(f"condition unknown, listed but not used: {', '.join(unnamed)}")
-    return Conditions(**words)
+        notes.append(
+            f"condition unknown, listed but not used: {', '.join(unnamed)}. For all of them at once write in "
+            f'[conditions]: unnamed = "{reference}"'
+        )
+    return Conditions(nominal=reference, device=device, others=rest), called
 
 
-def _participants(
-    found: Sequence[FoundTrial], conditions: Conditions, way: Path, notes: list[str]
-) -> tuple[Participant, ...]:
+def _sessions(found: Sequence[FoundTrial]) -> dict[tuple[str, str], str]:
+    """Session of each person and place in order; a date becomes its number, since dates tell who a person is."""
+    words = {trial.session: session_word(trial.files[0])[0] for trial in found if trial.session}
+    if not words:
+        return {}
+    sessions: dict[tuple[str, str], str] = {}
+    for person in {trial.person for trial in found}:
+        own = sorted({trial.session for trial in found if trial.person == person and trial.session})
+        dated = [order for order in own if not words[order]]
+        sessions |= {(person, order): words[order] or f"session {dated.index(order) + 1}" for order in own}
+    order = {word: place for (_, place), word in sessions.items()}
+    return dict(sorted(sessions.items(), key=lambda item: (item[1].startswith("session"), order[item[1]])))
+
+
+def _planned(
+    trial: FoundTrial, called: Mapping[str, str], sessions: Mapping[tuple[str, str], str], way: Path
+) -> PlannedTrial:
+    return PlannedTrial(
+        condition=called[trial.word],
+        session=sessions.get((trial.person, trial.session)),
+        files=tuple((way / file).as_posix() for file in trial.files),
+    )
+
+
+def _people(found: Sequence[FoundTrial], notes: list[str]) -> dict[str, str]:
+    """Word of each person -> pseudonym."""
     people = sorted({trial.person for trial in found})
     taken = {person for person in people if PSEUDONYM.fullmatch(person)}
     free = (f"P{number:02d}" for number in range(1, 1000) if f"P{number:02d}" not in taken)
@@ -180,18 +314,7 @@ def _participants(
         notes.append(f"taken as pseudonyms as they are: {', '.join(kept)}; change any that shows who a person is")
     if "" in ids:
         notes.append(f"files whose path names no person were put under {ids['']}")
-    words = {"nominal": conditions.nominal, "device": conditions.device, "": UNKNOWN}
-    return tuple(
-        Participant(
-            id=ids[person],
-            trials=tuple(
-                PlannedTrial(condition=words[t.which], files=tuple((way / file).as_posix() for file in t.files))
-                for t in found
-                if t.person == person
-            ),
-        )
-        for person in people
-    )
+    return ids
 
 
 def _models(found: Sequence[FoundTrial], notes: list[str]) -> Models:
@@ -208,9 +331,13 @@ def _models(found: Sequence[FoundTrial], notes: list[str]) -> Models:
     absent = [name for name in ANGLES if name not in shared]
     if absent:
         notes.append(f"left out because not every trial has them, varying: {', '.join(absent)}")
+    known = {channel.name for channel in vocabulary().channels}
     more = [name for name in shared if name not in angles]
     if more:
-        notes.append(f"not among the inputs of section 4.2.2, add them to angles if wanted: {', '.join(more)}")
+        named = [name for name in more if name in known]
+        others = f"{len(more) - len(named)} of the files' own" if len(more) > len(named) else ""
+        said = ", ".join(part for part in (*named, others) if part)
+        notes.append(f"not among the inputs of section 4.2.2, add them to angles if wanted: {said}")
     outputs = tuple(name for name in OUTPUTS if name in angles)
     if not angles:
         notes.append("the trials share no joint angle that varies: the draft names the usual ones")

@@ -122,7 +122,7 @@ def read_planned_trial(
     Returns
     -------
     Trial
-        Named by pseudonym and condition, and a number where there are several.
+        Named by pseudonym, session and condition, and a number where there are several.
 
     Raises
     ------
@@ -136,9 +136,7 @@ def read_planned_trial(
     """
     paths = [study.path_of(file) for file in planned.files]
     trial = read_trial(paths, study.channels, participant.id, planned.condition, planned.crop_s, reader)
-    alike = participant.trials_of(planned.condition)
-    number = f" {alike.index(planned) + 1}" if len(alike) > 1 else ""
-    return replace(trial, name=f"{participant.id} {planned.condition}{number}")
+    return replace(trial, name=participant.trial_name(planned))
 
 
 def _read(path: Path, channels: Mapping[str, str] | None, reader: C3DReader | None) -> Trial:
@@ -203,7 +201,7 @@ def _judged(trial: Trial, begin_s: Mapping[str, float]) -> Trial:
 
 def _unused(channels: Mapping[str, str] | None, streams: Mapping[str, Recording], name: str) -> list[Finding]:
     there = {channel.rpartition(".")[0] or channel for r in streams.values() for channel in r.names}
-    there |= {channel for r in streams.values() for channel in r.names}
+    there |= {channel for r in streams.values() for channel in r.names} | {"time"}
     absent = [label for label, said in (channels or {}).items() if split_unit(said)[0] not in there]
     if not absent:
         return []

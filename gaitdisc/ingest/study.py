@@ -1,4 +1,4 @@
-"""The study: who walked, under which two conditions, in which files, and every setting of the analysis."""
+"""The study: who walked, in which sessions, under which conditions, in which files, and every setting."""
 
 from __future__ import annotations
 
@@ -8,9 +8,17 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, model_validator
 
 from gaitdisc.errors import SchemaError
-from gaitdisc.ingest.study_rules import check_channels, check_participants, check_variables, refuse
+from gaitdisc.ingest.study_rules import (
+    check_channels,
+    check_conditions,
+    check_participants,
+    check_sessions,
+    check_variables,
+    refuse,
+)
 
 UNKNOWN = "unknown"  # condition of a trial that is listed but not used
+STATIC = "static"  # condition of a trial in which the person stands
 ANGLES = tuple(
     f"{angle}_{side}"
     for side in "rl"
@@ -29,21 +37,44 @@ class _Part(BaseModel):
 
 
 class Conditions(_Part):
-    """The two conditions, in the laboratory's own words."""
+    """The conditions, in the laboratory's own words."""
 
-    nominal: Word = Field(description="the reference condition, without the device or with it passive")
-    device: Word = Field(description="the condition with the device")
+    nominal: Word = Field(
+        description="the reference condition, without the device or with it passive; or the only condition"
+    )
+    device: Word | None = Field(
+        default=None, description="the condition with the device, where models compare it with the reference"
+    )
+    others: tuple[Word, ...] = Field(default=(), description="further conditions, of which cycles are pooled")
+    unnamed: Word | None = Field(
+        default=None,
+        description="condition of all trials that say 'unknown'; one of the words above. Without it they are not used",
+    )
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """Every condition: the reference, the device where there is one, then the others."""
+        return (self.nominal, *((self.device,) if self.device else ()), *self.others)
 
     @property
     def both(self) -> tuple[str, str]:
-        """Nominal, then device."""
+        """Nominal, then device; a SchemaError where the study has no device."""
+        if self.device is None:
+            raise SchemaError(
+                "a comparison by models needs two conditions, nominal and device, in [conditions]",
+                f"the study has {', '.join(map(repr, self.words))} and no device",
+                "Add device, or look at the pooled cycles of `gaitdisc run`.",
+            )
         return self.nominal, self.device
 
 
 class PlannedTrial(_Part):
     """One walk: the files that hold it, and what the files do not say."""
 
-    condition: Word = Field(description="a word of [conditions], or 'unknown' for a trial that is not used")
+    condition: Word = Field(
+        description="a word of [conditions], 'static' for standing, or 'unknown' for a trial that is not used"
+    )
+    session: Word | None = Field(default=None, description="a word of sessions, never a date")
     files: tuple[FileName, ...] = Field(min_length=1, description="files of this one walk, relative to the study file")
     speed_m_per_s: Positive | None = Field(default=None, description="walking speed of this trial [m/s]")
     crop_s: tuple[float, float] | None = Field(
@@ -64,6 +95,9 @@ class Participant(_Part):
 
     id: Pseudonym = Field(description="pseudonym: letters, digits, _ and -, at most 16")
     excluded: str = Field(default="", description="why this person is left out of the statistics; empty if not")
+    group: Annotated[str, Field(max_length=40)] = Field(
+        default="", description="group of this person, such as control; empty if there are none"
+    )
     trials: tuple[PlannedTrial, ...] = Field(default=(), description="the walks of this person")
 
     def trials_of(self, condition: str) -> tuple[PlannedTrial, ...]:
@@ -75,6 +109,24 @@ class Participant(_Part):
             A word of the study's `[conditions]`.
         """
         return tuple(trial for trial in self.trials if trial.condition == condition)
+
+    def trial_name(self, planned: PlannedTrial) -> str:
+        """Name of one trial: pseudonym, session, condition, and a number where there are several.
+
+        Parameters
+        ----------
+        planned : PlannedTrial
+            One of this person's.
+
+        Examples
+        --------
+        >>> walk, again = (PlannedTrial(condition="barefoot", files=(f"{n}.c3d",)) for n in "ab")
+        >>> Participant(id="P01", trials=(walk, again)).trial_name(again)
+        'P01 barefoot 2'
+        """
+        alike = [trial for trial in self.trials_of(planned.condition) if trial.session == planned.session]
+        number = str(alike.index(planned) + 1) if len(alike) > 1 else ""
+        return " ".join(part for part in (self.id, planned.session or "", planned.condition, number) if part)
 
 
 class Treadmill(_Part):
@@ -107,6 +159,9 @@ class StrideRules(_Part):
     side: Literal["r", "l"] = Field(default="r", description="the foot whose contacts begin the strides")
     min_s: Positive = Field(default=0.4, description="shortest stride [s]")
     max_s: Positive = Field(default=2.5, description="longest stride [s]")
+    ground: Literal["auto", "treadmill", "overground"] = Field(
+        default="auto", description="where people walk: auto goes by the path of the pelvis; treadmill or overground"
+    )
 
     @model_validator(mode="after")
     def _check(self) -> StrideRules:
@@ -156,7 +211,12 @@ class HeldOut(_Part):
 class Quality(_Part):
     """What a trial must have to be used."""
 
-    min_strides: Annotated[int, Field(ge=1)] = Field(default=10, description="fewest whole strides of a trial")
+    min_strides: Annotated[int, Field(ge=1)] = Field(
+        default=10, description="fewest whole strides of a walk on a treadmill, or of one that models are fitted to"
+    )
+    min_cycles: Annotated[int, Field(ge=1)] = Field(
+        default=1, description="fewest cycles over ground, pooled over the trials of a person, session and condition"
+    )
     late_change: Literal["refuse", "report"] = Field(
         default="refuse", description="what to do with a trial whose gait changes late: refuse or report"
     )
@@ -175,6 +235,9 @@ class Study(_Part):
     model_config = ConfigDict(json_schema_extra={"description": "A study file of gaitdisc."})
 
     title: str = Field(default="", description="what the study is called in reports")
+    sessions: tuple[Word, ...] = Field(
+        default=(), description="sessions in the order of their dates, such as before and after; no dates"
+    )
     conditions: Conditions
     treadmill: Treadmill | None = None
     channels: dict[str, str] = Field(
@@ -190,7 +253,9 @@ class Study(_Part):
 
     @model_validator(mode="after")
     def _check(self) -> Study:
-        check_participants(self, UNKNOWN)
+        check_conditions(self.conditions, UNKNOWN)
+        check_sessions(self)
+        check_participants(self, (UNKNOWN, STATIC))
         check_channels(self.channels)
         check_variables(self.models, self.channels)
         return self
@@ -222,6 +287,24 @@ class Study(_Part):
         """
         return self._folder / file
 
+    def with_unnamed(self) -> Study:
+        """Return the same study in which trials of condition 'unknown' have the one that `unnamed` says."""
+        word = self.conditions.unnamed
+        if word is None:
+            return self
+        people = tuple(
+            person.model_copy(
+                update={
+                    "trials": tuple(
+                        trial.model_copy(update={"condition": word}) if trial.condition == UNKNOWN else trial
+                        for trial in person.trials
+                    )
+                }
+            )
+            for person in self.participants
+        )
+        return self.model_copy(update={"participants": people}).placed(self.folder)
+
     def participant(self, subject: str) -> Participant:
         """Return a participant.
 
@@ -242,12 +325,14 @@ class Study(_Part):
         return found
 
     def complete(self) -> tuple[Participant, ...]:
-        """Participants with trials of both conditions who are not excluded."""
+        """Participants who are not excluded, with trials of both conditions where a device is compared."""
         lacking = set(self.one_condition_only())
         return tuple(each for each in self.participants if each.id not in lacking and not each.excluded)
 
     def one_condition_only(self) -> tuple[str, ...]:
-        """Pseudonyms of those who lack a trial of one of the two conditions."""
+        """Pseudonyms of those who lack a trial of one of the two conditions; none where no device is compared."""
+        if self.conditions.device is None:
+            return ()
         both = self.conditions.both
         return tuple(each.id for each in self.participants if not all(each.trials_of(word) for word in both))
 

@@ -18,6 +18,15 @@ from gaitdisc.toml_text import parsed_toml
 from gaitdisc.whole_file import write_whole
 
 LARGEST_STUDY_BYTES = 16 * 2**20  # a hundred thousand trials
+EXAMPLES = {  # of what a study does not have
+    "speed_m_per_s": 1.3,
+    "crop_s": (10.0, 250.0),
+    "seconds": 30.0,
+    "share": 0.125,
+    "device": "exo",
+    "unnamed": "walking",
+    "session": "before",
+}
 
 _TOP = """\
 # A study of gaitdisc. Every setting stands here with its default; paths are relative to this file.
@@ -65,7 +74,7 @@ def load_study(path: Path | str) -> Study:
         ) from error
     try:
         as_json = json.dumps(content, default=str)  # JSON, since strict validation takes its lists for tuples
-        return Study.model_validate_json(as_json).placed(path.parent)
+        return Study.model_validate_json(as_json).placed(path.parent).with_unnamed()
     except ValidationError as error:
         raise schema_error(error, Study, text, raw.name) from error
 
@@ -115,7 +124,7 @@ def study_text(study: Study, folder: Path | None = None) -> str:
     --------
     >>> print(study_text(study))  # doctest: +SKIP
     """
-    parts = [_TOP + _pair(study, "title")]
+    parts = [_TOP + _pair(study, "title") + _pair(study, "sessions")]
     for key in ("conditions", "treadmill", "channels", "filters", "strides", "models", "held_out", "quality"):
         value = getattr(study, key)
         about = (type(value).__doc__ or "").split("\n")[0] if isinstance(value, BaseModel) else ""
@@ -130,7 +139,7 @@ def study_text(study: Study, folder: Path | None = None) -> str:
             parts.append(f"# {about}\n[{key}]\n{pairs}")
     told = False  # each key is explained where it stands first
     for participant in study.participants:
-        text = f"[[participants]]\n{_pairs(participant, ('id', 'excluded'), told)}"
+        text = f"[[participants]]\n{_pairs(participant, ('id', 'group', 'excluded'), told)}"
         for trial in participant.trials:
             files = tuple(_moved(file, study.folder, folder) for file in trial.files)
             moved = trial.model_copy(update={"files": files})
@@ -151,7 +160,7 @@ def _pair(part: BaseModel, name: str) -> str:
     value = getattr(part, name)
     about = type(part).model_fields[name].description
     unused = value is None or (name == "share" and getattr(part, "seconds", None) is not None)
-    example = {"speed_m_per_s": 1.3, "crop_s": (10.0, 250.0), "seconds": 30.0, "share": 0.125}.get(name)
+    example = EXAMPLES.get(name)
     text = f"{name} = {_value(example if unused else value)}"
     if "\n" in text:
         return f"# {about}\n{text}\n"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NoReturn
@@ -14,8 +15,9 @@ from gaitdisc.ingest.columns import split_unit
 from gaitdisc.units import known_units, parsed_unit
 
 if TYPE_CHECKING:
-    from gaitdisc.ingest.study import Models, Study
+    from gaitdisc.ingest.study import Conditions, Models, Study
 
+_DATE = re.compile(r"(?<!\d)(?:\d{1,4}[-_./ ]\d{1,2}[-_./ ]\d{1,4}|\d{6}|\d{8}|(?:19|20)\d{2})(?!\d)")
 MISSPELT = 0.85  # likeness to a known name above which another name is taken for a slip
 
 
@@ -45,35 +47,90 @@ def refuse(place: Sequence[str | int], needed: str, found: str, remedy: str) -> 
     raise PydanticCustomError("gaitdisc", "{needed}; {found}. {remedy}", words)
 
 
-def check_participants(study: Study, unknown: str) -> None:
-    """Refuse conditions that are none of the study's two, and pseudonyms that stand twice.
+def check_conditions(conditions: Conditions, unknown: str) -> None:
+    """Refuse conditions of which two share a word, and a word for unnamed trials that is no condition.
 
     Parameters
     ----------
-    study : Study
-        All of it.
+    conditions : Conditions
+        Of the study.
     unknown : str
         The word for a condition that is not known.
 
     Examples
     --------
-    >>> check_participants(study, "unknown")  # doctest: +SKIP
+    >>> check_conditions(conditions, "unknown")  # doctest: +SKIP
     """
-    words = study.conditions.both
-    if words[0] == words[1] or unknown in words:
-        found = f"found {words[0]!r} and {words[1]!r}"
-        refuse(("conditions",), f"two different words, neither of them {unknown!r}", found, "Name the two conditions.")
+    words = conditions.words
+    if len(set(words)) < len(words) or unknown in words:
+        found = f"found {' and '.join(map(repr, words))}"
+        needed = "two different words" if len(words) == 2 else "different words"
+        name = "Name the two conditions." if len(words) == 2 else "Name each condition once."
+        refuse(("conditions",), f"{needed}, neither of them {unknown!r}", found, name)
+    if conditions.unnamed is not None and conditions.unnamed not in words:
+        found = f"found {conditions.unnamed!r}"
+        refuse(("conditions", "unnamed"), f"one of {', '.join(map(repr, words))}", found, "Write one of them.")
+
+
+def check_sessions(study: Study) -> None:
+    """Refuse sessions that are dates or stand twice, and trials of a session that the study does not list.
+
+    Parameters
+    ----------
+    study : Study
+        All of it.
+
+    Examples
+    --------
+    >>> check_sessions(study)  # doctest: +SKIP
+    """
+    for i, word in enumerate(study.sessions):
+        if _DATE.search(word):
+            remedy = 'Write words in the order of the dates, such as sessions = ["before", "after"].'
+            refuse(
+                ("sessions", i),
+                "a word that is no date, since a date may show who a person is",
+                f"found {word!r}",
+                remedy,
+            )
+        if study.sessions.index(word) != i:
+            refuse(("sessions", i), "each session once", f"{word!r} stands twice", "Take one away.")
+    for i, participant in enumerate(study.participants):
+        for j, trial in enumerate(participant.trials):
+            if trial.session is not None and trial.session not in study.sessions:
+                nearest = nearest_word(trial.session, study.sessions)
+                remedy = f"Did you mean {nearest!r}?" if nearest else f"Add it: sessions = [{trial.session!r}]."
+                listed = ", ".join(map(repr, study.sessions)) or "none"
+                place = ("participants", i, "trials", j, "session")
+                refuse(place, f"a session that the study lists ({listed})", f"found {trial.session!r}", remedy)
+
+
+def check_participants(study: Study, others: Sequence[str]) -> None:
+    """Refuse conditions that are none of the study's, and pseudonyms that stand twice.
+
+    Parameters
+    ----------
+    study : Study
+        All of it.
+    others : sequence of str
+        Words that a trial may have beside the study's conditions: for one that is not known, and for standing.
+
+    Examples
+    --------
+    >>> check_participants(study, ("unknown", "static"))  # doctest: +SKIP
+    """
+    words = study.conditions.words
     ids = Counter(each.id.lower() for each in study.participants)
     for i, participant in enumerate(study.participants):
         if ids[participant.id.lower()] > 1:
             found = f"{participant.id!r} stands {ids[participant.id.lower()]} times"
             refuse(("participants", i, "id"), "a pseudonym for one person only", found, "Put all trials under one.")
         for j, trial in enumerate(participant.trials):
-            if trial.condition not in (*words, unknown):
-                nearest = nearest_word(trial.condition, words)
-                remedy = f"Did you mean {nearest!r}?" if nearest else f"Use one of them, or {unknown!r}."
+            if trial.condition not in (*words, *others):
+                nearest = nearest_word(trial.condition, (*words, *others))
+                remedy = f"Did you mean {nearest!r}?" if nearest else f"Use one of them, or {others[0]!r}."
                 place = ("participants", i, "trials", j, "condition")
-                refuse(place, f"{words[0]!r} or {words[1]!r}", f"found {trial.condition!r}", remedy)
+                refuse(place, " or ".join(map(repr, words)), f"found {trial.condition!r}", remedy)
 
 
 def check_channels(channels: Mapping[str, str]) -> None:

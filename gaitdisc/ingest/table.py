@@ -31,6 +31,7 @@ from gaitdisc.spreadsheet import quoted, unquoted
 from gaitdisc.units import convert
 from gaitdisc.whole_file import write_whole
 
+LEADING = 50  # lines above the header: who, when, which software
 _TIME_UNIT = {"time": "s", "time_s": "s", "time_ms": "ms"}
 
 
@@ -38,8 +39,9 @@ def read_table(path: Path | str, channels: Mapping[str, str] | None = None) -> T
     """Trial of one plain table.
 
     Commas, semicolons or tabs separate; with the latter two a comma may be the decimal sign. Lines at the top that
-    begin with `#` are passed over. Names of the vocabulary have their unit by definition; every other name
-    must state one.
+    begin with `#`, and up to 50 others above the line that names the column of times, are passed over. Names of the
+    vocabulary have their unit by definition; every other name must state one. A column of times of another name is
+    named by the study: `"Frame time" = "time [s]"`.
 
     Parameters
     ----------
@@ -71,9 +73,9 @@ def read_table(path: Path | str, channels: Mapping[str, str] | None = None) -> T
     """
     raw = read_raw(path)
     of_parquet = raw.name.lower().endswith(".parquet")
-    labels, values, digit, lines = _parquet(raw) if of_parquet else _text(raw)
-    at = next(i for i, label in enumerate(labels) if _time_unit(label))
-    unit = _time_unit(labels[at]) or "s"
+    labels, values, digit, lines = _parquet(raw, channels) if of_parquet else _text(raw, channels)
+    at = next(i for i, label in enumerate(labels) if _time_unit(label, channels))
+    unit = _time_unit(labels[at], channels) or "s"
     clock, digit = np.asarray(convert(values[:, at], unit, "s"), float), digit * (1e-3 if unit == "ms" else 1.0)
     time = even_time(clock, digit, raw.name, lines)
     others = [i for i in range(len(labels)) if i != at]
@@ -129,33 +131,43 @@ def write_table(recording: Recording, path: Path | str) -> Path:
     return write_whole(path, text.getvalue())
 
 
-def _time_unit(label: str) -> str | None:
-    name, unit = split_unit(label)
+def _time_unit(label: str, channels: Mapping[str, str] | None = None) -> str | None:
+    plain, unit = split_unit(label)
+    said = mapped_label(label, channels) or mapped_label(plain, channels)
+    name, said_unit = split_unit(said) if said else (plain, None)
+    unit = said_unit or unit
     if name.lower() not in _TIME_UNIT:
         return None
     return _TIME_UNIT[name.lower()] if unit is None else unit if unit in ("s", "ms") else None
 
 
-def _text(raw: RawFile) -> tuple[list[str], NDArray[np.float64], float, NDArray[np.intp] | None]:
+def _text(
+    raw: RawFile, channels: Mapping[str, str] | None
+) -> tuple[list[str], NDArray[np.float64], float, NDArray[np.intp] | None]:
     lines = raw.lines()
     top = next((i for i, line in enumerate(lines) if line.strip() and not line.startswith("#")), None)
     if top is None:
         raise _no_time(raw.name, "it holds comments only")
-    separator, labels = _labels(lines[top], raw.name, top + 1)
+    named = (i for i in range(top, min(len(lines), top + LEADING)) if _header(lines[i], channels))
+    top = next(named, top)
+    separator, labels = _header(lines[top], channels) or (",", [])
+    if not labels:
+        raise _no_time(raw.name, f"line {top + 1} is {lines[top][:60]!r}")
+    _check_labels(labels, f"{raw.name}, line {top + 1}")
     comma = separator != "," and any("," in line for line in lines[top + 1 : top + 50])
     cells = parsed_cells(lines[top + 1 :], labels, top + 2, Form(raw.name, separator, "," if comma else "."))
-    at = next(i for i, label in enumerate(labels) if _time_unit(label))
+    at = next(i for i, label in enumerate(labels) if _time_unit(label, channels))
     digit = printed_digit(lines[number - 1].split(separator)[at] for number in cells.lines.tolist())
     return labels, cells.values, digit, cells.lines
 
 
-def _labels(line: str, file: str, number: int) -> tuple[str, list[str]]:
+def _header(line: str, channels: Mapping[str, str] | None) -> tuple[str, list[str]] | None:
+    """Separator and labels of a line that names a column of times; None of any other."""
     for separator in ",;\t":
-        labels = [unquoted(label.strip()) for label in next(csv.reader([line], delimiter=separator))]
-        if any(map(_time_unit, labels)):
-            _check_labels(labels, f"{file}, line {number}")
+        labels = [unquoted(label.strip()) for label in next(csv.reader([line], delimiter=separator), [])]
+        if any(_time_unit(label, channels) for label in labels):
             return separator, labels
-    raise _no_time(file, f"line {number} is {line[:60]!r}")
+    return None
 
 
 def _check_labels(labels: Sequence[str], where: str) -> None:
@@ -170,11 +182,15 @@ def _check_labels(labels: Sequence[str], where: str) -> None:
 
 def _no_time(file: str, found: str) -> ReadError:
     return ReadError(
-        f"{file} needs a column 'time [s]' (or time, time_s, time [ms])", found, "Name the column of times so."
+        f"{file} needs a column 'time [s]' (or time, time_s, time [ms])",
+        found,
+        'Name the column of times so, or in the study\'s [channels]: "Frame time" = "time [s]".',
     )
 
 
-def _parquet(raw: RawFile) -> tuple[list[str], NDArray[np.float64], float, NDArray[np.intp] | None]:
+def _parquet(
+    raw: RawFile, channels: Mapping[str, str] | None
+) -> tuple[list[str], NDArray[np.float64], float, NDArray[np.intp] | None]:
     import pyarrow as pa
     import pyarrow.parquet as pq
 
@@ -194,7 +210,7 @@ def _parquet(raw: RawFile) -> tuple[list[str], NDArray[np.float64], float, NDArr
         ) from error
     if words is not None:
         raise ReadError(f"{raw.name}: columns need numbers", f"column {words!r} holds others", "Leave that column out.")
-    if not any(map(_time_unit, names)):
+    if not any(_time_unit(name, channels) for name in names):
         raise _no_time(raw.name, f"its columns are {', '.join(names[:6])}")
     _check_labels(names, raw.name)
     values = np.column_stack(arrays)

@@ -13,9 +13,9 @@ from gaitdisc.kinetics.platform import Platform
 from gaitdisc.kinetics.wrench import LEAST_LOAD_N
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.recording.arrays import read_only
+from gaitdisc.recording.runs import runs
 from gaitdisc.signals.derivatives import differentiated
 from gaitdisc.signals.direction import marker_position
-from gaitdisc.signals.gaps import runs
 
 BESIDE_FOOT_M = 0.10  # a centre of pressure farther from the line from heel to toes than this is another foot's
 BEYOND_EDGE_M = 0.01  # a marker lies a little beside the sole

@@ -86,7 +86,7 @@ def chosen_contacts(trial: Trial, detector: str = "auto", direction: str = "") -
     StrideError
         If the detector asked for, or every detector, finds no stride; each one's reason is named.
     """
-    seen, refused = _every_detector(trial, direction)
+    seen, refused = seen_contacts(trial, direction)
     found = {name: contacts for name, contacts in seen.items() if _stride_count(contacts)}
     if detector != "auto":
         if detector not in found:
@@ -104,9 +104,25 @@ def chosen_contacts(trial: Trial, detector: str = "auto", direction: str = "") -
     return ContactChoice(taken, (*findings, *_offset_findings(trial, chosen, reference, offset_s)), offset_s)
 
 
-def _every_detector(
-    trial: Trial, direction: str
+def seen_contacts(
+    trial: Trial, direction: str = ""
 ) -> tuple[dict[str, dict[str, Contacts]], dict[str, GaitdiscError | None]]:
+    """Contacts as each detector places them, and why a detector finds no stride of both feet.
+
+    Parameters
+    ----------
+    trial : Trial
+        With any streams; each detector needs its own.
+    direction : str
+        Direction of walking in the laboratory's axes, `+x` to `-z`; inferred from the markers where it is empty.
+
+    Returns
+    -------
+    seen : dict of str to dict of str to Contacts
+        Detector -> side -> contacts.
+    refused : dict of str to GaitdiscError or None
+        Detector -> its error; None where it sees contacts, but no stride of both feet.
+    """
     attempts: dict[str, Callable[[], dict[str, Contacts]]] = {}
     if "forces" in trial.streams:
         attempts["force"] = partial(_force, trial, direction)
@@ -174,12 +190,12 @@ def _force(trial: Trial, direction: str) -> dict[str, Contacts]:
         return force_contacts(forces)  # refuses, and says what is needed
     markers = trial.stream("markers")
     heels, pelvis = named_markers(markers)
-    return plate_contacts(forces, markers, heels, _direction(markers, heels, pelvis, direction))
+    return plate_contacts(forces, markers, heels, trial_direction(markers, heels, pelvis, direction))
 
 
 def _markers(markers: Recording, direction: str) -> dict[str, Contacts]:
     heels, pelvis = named_markers(markers)
-    return marker_contacts(markers, heels, pelvis, _direction(markers, heels, pelvis, direction))
+    return marker_contacts(markers, heels, pelvis, trial_direction(markers, heels, pelvis, direction))
 
 
 def named_markers(markers: Recording) -> tuple[dict[str, str], list[str]]:
@@ -214,7 +230,20 @@ def named_markers(markers: Recording) -> tuple[dict[str, str], list[str]]:
     return heels, pelvis
 
 
-def _direction(markers: Recording, heels: Mapping[str, str], pelvis: list[str], direction: str) -> Direction:
+def trial_direction(markers: Recording, heels: Mapping[str, str], pelvis: list[str], direction: str = "") -> Direction:
+    """Direction of walking of a trial: the one that is given, else from its markers.
+
+    Parameters
+    ----------
+    markers : Recording
+        Channels `<marker>.x`, `<marker>.y`, `<marker>.z`.
+    heels : mapping of str to str
+        Side to heel marker.
+    pelvis : list of str
+        Pelvis markers.
+    direction : str
+        In the laboratory's axes, `+x` to `-z`; inferred where it is empty.
+    """
     if not direction:
         return walking_direction(markers, heels, pelvis)
     sign = -1.0 if direction[0] == "-" else 1.0

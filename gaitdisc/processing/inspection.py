@@ -9,10 +9,13 @@ from pathlib import Path
 from gaitdisc.errors import GaitdiscError, StrideError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial, read_trial
-from gaitdisc.ingest.study import UNKNOWN, Study
+from gaitdisc.ingest.study import Participant, PlannedTrial, Study
+from gaitdisc.ingest.trial_sets import is_static, is_walk, not_compared, refused_participant, trial_sets
 from gaitdisc.processing.contact_choice import chosen_contacts
+from gaitdisc.processing.pooled import pooled_cycles, pooled_instead
 from gaitdisc.processing.process import processed, quality_findings, stride_findings
 from gaitdisc.recording import Finding, Strides, Trial
+from gaitdisc.results import PooledCycles
 from gaitdisc.signals.contacts import order_findings
 from gaitdisc.signals.strides import cut_strides
 from gaitdisc.signals.walking import verify_walking
@@ -72,7 +75,7 @@ class Inspection:
 
 
 def inspected_study(study: Study) -> Iterator[Inspection]:
-    """Read and process every trial of a study, those of unknown conditions too.
+    """Read and process every trial of a study as `gaitdisc run` would; those of unknown conditions are read too.
 
     Parameters
     ----------
@@ -82,23 +85,103 @@ def inspected_study(study: Study) -> Iterator[Inspection]:
     Yields
     ------
     Inspection
-        One a trial, in the study's order, then one for each participant who lacks a condition.
+        One a trial, in the study's order; then one for each participant, or session and condition, that is refused.
     """
+    refused = []
     with C3DReader() as reader:
         for participant in study.participants:
-            for planned in participant.trials:
-                name = ", ".join(Path(file).name for file in planned.files)
-                try:
-                    trial = read_planned_trial(study, participant, planned, reader)
-                except GaitdiscError as error:
-                    yield Inspection(name, participant.id, planned.condition, refusal=str(error))
-                    continue
-                used = planned.condition != UNKNOWN
-                yield _of_study(trial, study, name) if used else _looked_at(trial, name)
-    both = f"{study.conditions.nominal!r} and {study.conditions.device!r}"
-    for lacking in study.one_condition_only():
-        reason = f"trials of both conditions, {both}, are needed; {lacking} lacks one. Add it, or leave {lacking} out."
-        yield Inspection("", lacking, refusal=reason)
+            reason = refused_participant(study, participant)
+            seen = _unused(study, participant, reader)
+            if not_compared(study, participant) and not reason:
+                seen |= _pooled(study, participant, reader)
+            else:
+                walks = _processed(study, participant, reader)
+                refusals = not reason and any(one.refusal for one in walks.values())
+                seen |= (_pooled(study, participant, reader, instead=True) if refusals else {}) or walks
+            yield from (seen[place] for place in sorted(seen))
+            if reason and not participant.excluded:
+                refused.append(Inspection("", participant.id, refusal=reason))
+    yield from refused
+
+
+def _processed(study: Study, participant: Participant, reader: C3DReader) -> dict[int, Inspection]:
+    """Trials that models are to be fitted to, each alone, by their place in the study."""
+    found = {}
+    for place, planned in enumerate(participant.trials):
+        if not is_walk(study, planned):
+            continue
+        try:
+            trial = read_planned_trial(study, participant, planned, reader)
+            found[place] = _of_study(trial, study, _named(planned))
+        except GaitdiscError as error:
+            found[place] = Inspection(_named(planned), participant.id, planned.condition, refusal=str(error))
+    return found
+
+
+def _pooled(study: Study, participant: Participant, reader: C3DReader, instead: bool = False) -> dict[int, Inspection]:
+    """Trials whose cycles are pooled, by their place in the study, then what is refused as a whole.
+
+    Where they would stand in for a comparison and cannot, none.
+    """
+    streams: dict[str, dict[str, str]] = {}
+
+    def read(planned: PlannedTrial) -> Trial:
+        trial = read_planned_trial(study, participant, planned, reader)
+        streams[trial.name] = _streams(trial)
+        return trial
+
+    sets = trial_sets(study, participant)
+    every = pooled_cycles(study, participant, read)
+    if instead and not pooled_instead(every):
+        return {}
+    places = {id(planned): place for place, planned in enumerate(participant.trials)}
+    found: dict[int, Inspection] = {}
+    for one, pooled in zip(sets, every, strict=True):
+        reasons = {refusal.condition: refusal.reason for refusal in pooled.refusals}
+        for number, planned in enumerate(one.trials, 1):
+            called = participant.trial_name(planned)
+            where = called.removeprefix(participant.id).strip()
+            files = [Path(file).name for file in planned.files]
+            own = [f for f in pooled.findings if f.file in (called, pooled.where) or any(n in f.file for n in files)]
+            found[places[id(planned)]] = Inspection(
+                _named(planned),
+                participant.id,
+                where,
+                streams.get(called, {}),
+                _cycle_counts(pooled, number),
+                _sorted(own),
+                reasons.pop(where, ""),
+            )
+        for reason in reasons.values():
+            found[len(participant.trials) + len(found)] = Inspection("", participant.id, pooled.where, refusal=reason)
+    return found
+
+
+def _cycle_counts(pooled: PooledCycles, number: int) -> dict[str, tuple[int, int]]:
+    rows = pooled.cycles[pooled.cycles["trial"] == number]
+    kept, lost = (rows[rows["kept"] == wanted]["side"].value_counts() for wanted in (True, False))
+    return {side: (int(kept.get(side, 0)), int(lost.get(side, 0))) for side in sorted(set(rows["side"]))}
+
+
+def _unused(study: Study, participant: Participant, reader: C3DReader) -> dict[int, Inspection]:
+    """Trials that are not used as walks, standing or of unknown condition, by their place in the study."""
+    found = {}
+    for place, planned in enumerate(participant.trials):
+        if is_walk(study, planned):
+            continue
+        name = _named(planned)
+        try:
+            trial = read_planned_trial(study, participant, planned, reader)
+        except GaitdiscError as error:
+            found[place] = Inspection(name, participant.id, planned.condition, refusal=str(error))
+            continue
+        standing = Inspection(name, trial.subject, trial.condition, _streams(trial), {}, _sorted(trial.findings))
+        found[place] = standing if is_static(study, planned) else _looked_at(trial, name)
+    return found
+
+
+def _named(planned: PlannedTrial) -> str:
+    return ", ".join(Path(file).name for file in planned.files)
 
 
 def inspected_file(path: Path, reader: C3DReader | None = None) -> Inspection:

@@ -1,5 +1,6 @@
 """The nouns that everything else speaks of: recordings, trials, strides, trajectories, samples, findings."""
 
+from gaitdisc.recording.cycle import Cycle
 from gaitdisc.recording.field import Axis, Field
 from gaitdisc.recording.finding import Finding
 from gaitdisc.recording.recording import Recording, Source
@@ -13,6 +14,7 @@ from gaitdisc.recording.trial import Event, Trial
 __all__ = [
     "PERCENT",
     "Axis",
+    "Cycle",
     "DroppedStride",
     "Event",
     "Field",

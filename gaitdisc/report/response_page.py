@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -11,6 +9,7 @@ from gaitdisc.report.block import save_block
 from gaitdisc.report.comparison_figure import comparison_figures
 from gaitdisc.report.comparison_tables import comparison_sentences, comparison_tables
 from gaitdisc.report.curves_figure import curves_figures
+from gaitdisc.report.cycles_page import save_cycle_tables, saved_cycle_blocks, write_cycles_page
 from gaitdisc.report.figure import LARGEST_INLINE_SVG, Figure, SavedFigure, file_names, save_figures
 from gaitdisc.report.held_out_figure import held_out_figures
 from gaitdisc.report.method import method_sentences
@@ -22,13 +21,13 @@ from gaitdisc.report.r2_tables import not_computed, participants_table, r2_table
 from gaitdisc.report.residual_figure import residual_figures
 from gaitdisc.report.run_tables import dropped_table, findings_table, fits_table, refusals_table, walks_table
 from gaitdisc.report.sentences import participant_sentences, study_sentences
+from gaitdisc.report.side_by_side import drawn_side_by_side
 from gaitdisc.report.strides_figure import strides_figure
 from gaitdisc.report.table import Table, save_table, save_tables
 from gaitdisc.results import ResponseRun
 
 INLINE_BYTES = 4_000_000  # of all figures together, about; beyond it they are shown as pictures
 FIGURES_A_PERSON = 5
-MOST_PROCESSES = 4  # that draw; each holds some 400 MB
 MOST_OPEN = 2  # with more participants than this, the first screen is brief and their sections are folded
 
 
@@ -86,13 +85,15 @@ def write_report(run: ResponseRun, folder: Path) -> Path:
     WriteError
         If a file cannot be written; what stood there before still stands.
     """
+    if run.cycles and not run.walks:
+        return write_cycles_page(run, folder)
     people = list(dict.fromkeys([*(r.participant for r in run.responses), *(w.subject for w in run.walks)]))
     names = file_names(people)
     sections = _sections(run, names, folder)
     overview = save_figures(r2_figures(run) if run.responses else [], folder)
     compared = save_figures(comparison_figures(run), folder)
     pair_tables = comparison_tables(run)
-    blocks = [save_block(block, folder) for block in over_blocks(run)]
+    blocks = [*(save_block(block, folder) for block in over_blocks(run)), *saved_cycle_blocks(run, folder)]
     tables = {
         "refusals": refusals_table(run),
         "walks": walks_table(run),
@@ -103,6 +104,8 @@ def write_report(run: ResponseRun, folder: Path) -> Path:
     }
     save_tables((*tables.values(), *pair_tables), folder)
     save_table(run.r2_table(), folder / "tables" / "r2.csv")
+    if run.cycles:
+        save_cycle_tables(run, folder)
     shown = {
         "run": run,
         "study": study_sentences(run),
@@ -122,18 +125,7 @@ def _sections(run: ResponseRun, names: dict[str, str], folder: Path) -> list[Sec
     """Drawing takes seconds a participant: with more than two of them they are drawn side by side."""
     limit = min(LARGEST_INLINE_SVG, INLINE_BYTES // (FIGURES_A_PERSON * max(1, len(run.responses))))
     alone = [(_of_one(run, person), person, name, folder, limit) for person, name in names.items()]
-    processes = min(os.cpu_count() or 1, MOST_PROCESSES, len(alone))
-    if len(alone) <= MOST_OPEN or processes < 2:
-        return [_section(*each) for each in alone]
-    from joblib import Parallel, delayed
-
-    try:
-        drawn = Parallel(n_jobs=processes, backend="loky", inner_max_num_threads=1)(
-            delayed(_section)(*a) for a in alone
-        )
-    except BrokenProcessPool:  # killed, mostly for its memory: one after the other takes the least
-        return [_section(*each) for each in alone]
-    return [section for section in drawn if section is not None]
+    return drawn_side_by_side(_section, alone, MOST_OPEN)
 
 
 def _of_one(run: ResponseRun, person: str) -> ResponseRun:

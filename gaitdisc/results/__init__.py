@@ -8,8 +8,10 @@ if TYPE_CHECKING:
     from gaitdisc.results.over_participants import OverParticipants
     from gaitdisc.results.pair_test import PairTests
     from gaitdisc.results.participant_response import HeldOut, ParticipantResponse
+    from gaitdisc.results.pooled_cycles import PooledCycles
     from gaitdisc.results.provenance import Provenance
-    from gaitdisc.results.response_run import Refusal, ResponseRun
+    from gaitdisc.results.refusal import Refusal
+    from gaitdisc.results.response_run import ResponseRun
     from gaitdisc.results.walk_summary import WalkSummary
 
 _HOME = {
@@ -18,8 +20,9 @@ _HOME = {
     "OverParticipants": "over_participants",
     "PairTests": "pair_test",
     "ParticipantResponse": "participant_response",
+    "PooledCycles": "pooled_cycles",
     "Provenance": "provenance",
-    "Refusal": "response_run",
+    "Refusal": "refusal",
     "ResponseRun": "response_run",
     "WalkSummary": "walk_summary",
 }
@@ -29,6 +32,7 @@ __all__ = [
     "OverParticipants",
     "PairTests",
     "ParticipantResponse",
+    "PooledCycles",
     "Provenance",
     "Refusal",
     "ResponseRun",

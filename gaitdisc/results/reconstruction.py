@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Finding
 from gaitdisc.results.provenance import Provenance
-from gaitdisc.results.response_run import Refusal
+from gaitdisc.results.refusal import Refusal
 from gaitdisc.results.unit_folder import save_unit
 
 NAME = "reconstruction.json"

@@ -10,27 +10,10 @@ from gaitdisc.results.data_quantity import DataQuantity
 from gaitdisc.results.over_participants import OverParticipants
 from gaitdisc.results.pair_test import PairTests
 from gaitdisc.results.participant_response import ParticipantResponse
+from gaitdisc.results.pooled_cycles import PooledCycles
 from gaitdisc.results.provenance import Provenance
+from gaitdisc.results.refusal import Refusal
 from gaitdisc.results.walk_summary import WalkSummary
-
-
-@dataclass(frozen=True)
-class Refusal:
-    """A participant or a trial that is not in the tables, and why.
-
-    Parameters
-    ----------
-    participant : str
-        Pseudonym.
-    condition : str
-        Condition of the trial, or empty where the participant as a whole is refused.
-    reason : str
-        The error's sentence: needed, found, remedy.
-    """
-
-    participant: str
-    condition: str
-    reason: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +25,7 @@ class ResponseRun:
     title : str
         Title of the study.
     nominal, exo : str
-        The study's words for the two conditions.
+        The study's words for the two conditions; `exo` is empty where no device is compared.
     walks : tuple of WalkSummary
         Every walk that could be processed.
     responses : tuple of ParticipantResponse
@@ -59,6 +42,10 @@ class ResponseRun:
         Training lengths, residuals and baselines compared over participants, and sub-groups; None in older runs.
     renewed : tuple of str
         Files of an earlier run that were found changed or unreadable, and were computed again; said once, not saved.
+    cycles : tuple of PooledCycles
+        Where cycles are pooled over trials: each participant, session and condition.
+    unfitted : tuple of Refusal
+        Participants whose cycles are pooled and to whom no models are fitted, and why, in a study with a device.
     """
 
     title: str
@@ -72,6 +59,14 @@ class ResponseRun:
     quantities: tuple[DataQuantity, ...] = ()
     over: OverParticipants | None = None
     renewed: tuple[str, ...] = ()
+    cycles: tuple[PooledCycles, ...] = ()
+    unfitted: tuple[Refusal, ...] = ()
+
+    @property
+    def reported(self) -> tuple[str, ...]:
+        """Participants of whom something is reported: models, or cycles."""
+        names = [response.participant for response in self.responses]
+        return tuple(dict.fromkeys([*names, *(one.subject for one in self.cycles if len(one.kept))]))
 
     def r2_table(self) -> pd.DataFrame:
         """R2 of every participant, variable, model, kind and walk, one row each."""
@@ -80,11 +75,11 @@ class ResponseRun:
         return pd.concat(tables, ignore_index=True)[columns] if tables else pd.DataFrame(columns=pd.Index(columns))
 
     def findings_table(self) -> pd.DataFrame:
-        """Every finding of every walk, one row each, the severest first."""
+        """Every finding of every walk and of pooled trials, one row each, the severest first."""
         rows = [
             {
                 "participant": walk.subject,
-                "condition": walk.condition,
+                "condition": walk.where if isinstance(walk, PooledCycles) else walk.condition,
                 "severity": finding.severity,
                 "kind": finding.kind,
                 "file": finding.file,
@@ -94,7 +89,8 @@ class ResponseRun:
                 "spans_s": "; ".join(f"{start:.2f}-{end:.2f}" for start, end in finding.spans),
             }
             for walk, finding in sorted(
-                ((walk, finding) for walk in self.walks for finding in walk.findings), key=lambda both: both[1].rank
+                ((walk, finding) for walk in (*self.walks, *self.cycles) for finding in walk.findings),
+                key=lambda both: both[1].rank,
             )
         ]
         columns = ["participant", "condition", "severity", "kind", "file", "channel", "what", "spoils", "spans_s"]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gaitdisc.results.data_quantity import QUANTITY_COLUMNS, DataQuantity
 from gaitdisc.results.on_disk import Arrays
 from gaitdisc.results.participant_response import FIT_COLUMNS, R2_COLUMNS, HeldOut, ParticipantResponse
-from gaitdisc.results.response_run import Refusal
+from gaitdisc.results.refusal import Refusal
 from gaitdisc.results.unit_folder import load_unit, save_unit
 
 

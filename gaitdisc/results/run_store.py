@@ -9,6 +9,7 @@ A run is a folder::
     tests/                         tests.json  tests.csv  families.csv
     over/                          over.json  lengths.csv  reductions.csv  reduction_tests.csv  ...
     quantities/<person>/           quantity.json  quantity.csv
+    cycles/<person>-<condition>/   cycles.json  cycles.csv  arrays.npz
 
 A unit (one walk, one response) is complete when its JSON file stands, because that is written last and holds the hashes
 of the others and its own. A unit of which anything was changed is found by its hashes and computed again.
@@ -20,8 +21,10 @@ from dataclasses import asdict
 from pathlib import Path
 
 from gaitdisc.results.comparison_store import load_over, load_tests, save_over, save_tests
+from gaitdisc.results.cycles_store import cycles_name, load_cycles
 from gaitdisc.results.provenance import Provenance
-from gaitdisc.results.response_run import Refusal, ResponseRun
+from gaitdisc.results.refusal import Refusal
+from gaitdisc.results.response_run import ResponseRun
 from gaitdisc.results.response_store import load_quantity, load_response
 from gaitdisc.results.sealed_json import sealed_text
 from gaitdisc.results.unit_folder import FORMAT, read_json
@@ -50,6 +53,8 @@ def save_run(run: ResponseRun, folder: Path) -> None:
         "tests": run.tests is not None,
         "quantities": [quantity.participant for quantity in run.quantities],
         "over": run.over is not None,
+        "cycles": [cycles_name(one.subject, one.session, one.condition) for one in run.cycles],
+        "unfitted": [asdict(refusal) for refusal in run.unfitted],
     }
     if run.tests is not None:
         save_tests(run.tests, folder / "tests")
@@ -83,4 +88,7 @@ def load_run(folder: Path) -> ResponseRun:
         load_tests(folder / "tests") if data.get("tests") else None,
         tuple(load_quantity(folder / "quantities" / name)[0] for name in data.get("quantities", ())),
         load_over(folder / "over") if data.get("over") else None,
+        (),
+        tuple(load_cycles(folder / "cycles" / name)[0] for name in data.get("cycles", ())),
+        tuple(Refusal(**refusal) for refusal in data.get("unfitted", ())),
     )

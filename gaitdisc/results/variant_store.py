@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from pathlib import Path
 
-from gaitdisc.results.response_run import Refusal
+from gaitdisc.results.refusal import Refusal
 from gaitdisc.results.unit_folder import load_unit, save_unit, with_words
 from gaitdisc.results.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, VariantRun, Variants
 

@@ -9,7 +9,7 @@ import pandas as pd
 
 from gaitdisc.errors import SchemaError
 from gaitdisc.results.pair_test import TEST_COLUMNS
-from gaitdisc.results.response_run import Refusal
+from gaitdisc.results.refusal import Refusal
 
 QUESTIONS = ("modalities", "sensitivity")
 VARIANT_COLUMNS = ("variant", "variable", "model", "kind", "r2", "n")

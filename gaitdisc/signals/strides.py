@@ -57,9 +57,9 @@ def cut_strides(
             "Record longer, or choose another detector in [strides].",
         )
     start, end = contacts.time[:-1], contacts.time[1:]
-    reasons = _duration_reasons(end - start, min_s, max_s)
+    reasons = duration_reasons(end - start, min_s, max_s)
     if recording is not None:
-        for stride, reason in enumerate(_gap_reasons(start, end, recording)):
+        for stride, reason in enumerate(gap_reasons(start, end, recording)):
             reasons[stride] = reasons[stride] or reason
     kept = np.array([not reason for reason in reasons])
     dropped = tuple(DroppedStride(float(start[k]), float(end[k]), reason) for k, reason in enumerate(reasons) if reason)
@@ -72,7 +72,21 @@ def cut_strides(
     return Strides(start[kept], end[kept], contacts.side, contacts.detector, dropped)
 
 
-def _duration_reasons(duration: np.ndarray, min_s: float, max_s: float) -> list[str]:
+def duration_reasons(duration: np.ndarray, min_s: float, max_s: float) -> list[str]:
+    """Why strides of such durations are left out: a sentence for each, empty where it is kept.
+
+    Parameters
+    ----------
+    duration : ndarray (stride,) [s]
+        Of one foot, or of several trials of one person.
+    min_s, max_s : float
+        Limits of a stride's duration [s].
+
+    Examples
+    --------
+    >>> duration_reasons(np.array([1.0, 0.2]), 0.4, 2.5)
+    ['', '0.20 s is shorter than 0.4 s: a contact too many']
+    """
     plausible = (duration >= min_s) & (duration <= max_s)
     median = float(np.median(duration[plausible])) if plausible.any() else float("nan")
     spread = 1.4826 * float(np.median(np.abs(duration[plausible] - median))) if plausible.any() else float("nan")
@@ -94,7 +108,16 @@ def _duration_reasons(duration: np.ndarray, min_s: float, max_s: float) -> list[
     return reasons
 
 
-def _gap_reasons(start: np.ndarray, end: np.ndarray, recording: Recording) -> list[str]:
+def gap_reasons(start: np.ndarray, end: np.ndarray, recording: Recording) -> list[str]:
+    """Why strides are left out for what a recording lacks in them: a sentence for each, empty where it lacks nothing.
+
+    Parameters
+    ----------
+    start, end : ndarray (stride,) [s]
+        Initial contacts.
+    recording : Recording
+        Channels without any value do not count; gaps of up to 0.1 s are bridged.
+    """
     missing = ~np.isfinite(filled(recording).values)
     columns = np.flatnonzero(~missing.all(axis=0))
     step = 1.0 / recording.rate_hz

@@ -112,8 +112,9 @@ def verify_walking(
     if found.knee_deg < LEAST_KNEE_DEG:
         fails.append(f"a knee moves {found.knee_deg:.0f} deg")
     if fails:
+        least = "1 stride" if fewest == 1 else f"{fewest} strides"
         raise StrideError(
-            f"walking means {fewest} strides or more over {100 * least_coverage:.0f} % of the trial, repeating with a "
+            f"walking means {least} or more over {100 * least_coverage:.0f} % of the trial, repeating with a "
             f"correlation of {LEAST_REGULARITY:g} or more, knees bending {LEAST_KNEE_DEG:g} deg or more",
             f"{kinematics.source.file or 'the recording'}: {'; '.join(fails)}",
             "Leave calibration and range-of-motion trials out of the study, or cut the trial to its walking part.",

@@ -30,10 +30,15 @@ def test_one_condition_only_is_refused_by_name(study, tmp_path):
     assert "P01 has 1 of 'nominal', none of 'exo'" in unit.refusals[0].reason
 
 
-def test_two_trials_of_one_condition_are_not_chosen_between(study, tmp_path):
+def test_two_trials_of_one_condition_are_pooled_and_not_chosen_between(study, tmp_path):
     twice, person = alone(study, trials=(*study.participants[0].trials, study.participants[0].trials[0]))
     unit = computed_unit(twice, person, tmp_path, lambda _: None)
-    assert "P01 has 2 of 'nominal', 1 of 'exo'" in unit.refusals[0].reason
+    assert "P01 has 2 of 'nominal', 1 of 'exo'" in unit.unfitted
+    assert unit.response is None and unit.refusals == ()
+    nominal, exo = unit.cycles
+    assert (nominal.trials, exo.trials) == (2, 1)
+    of_trial = nominal.kept[nominal.kept["side"] == "r"]["trial"].value_counts()
+    assert of_trial[1] == of_trial[2] >= 20  # 30 s of strides of 1.1 s, the same file twice
 
 
 def test_an_excluded_person_is_left_out_with_the_reason(study, tmp_path):

@@ -1,12 +1,18 @@
 import numpy as np
+import pandas as pd
 import pytest
 from driven_walker import DrivenWalker
+from made_cycles import made_cycles
 from typer.testing import CliRunner
 
 from gaitdisc.channel import Channel
 from gaitdisc.cli import app
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.recording import Samples
+from gaitdisc.results import ResponseRun
+from gaitdisc.results.cycles_store import save_cycles
+from gaitdisc.results.provenance import made_now
+from gaitdisc.results.run_store import save_run
 from gaitdisc.sensing.model_folder import SensingModel, save_model
 from gaitdisc.sensing.reconstructor import Sensing, fit_reconstructor
 from gaitdisc.sensing.windows import Lags
@@ -37,3 +43,26 @@ def test_a_saved_model_as_onnx(tmp_path):
     assert (tmp_path / "model.onnx").stat().st_size > 200
     two = CliRunner().invoke(app, ["export", "one", "two", "--out", str(tmp_path / "both.onnx")])
     assert "an .onnx file holds one model; 2 are named" in str(two.exception)
+
+
+@pytest.mark.parametrize("ending", ["csv", "parquet"])
+def test_cycles_of_a_run_as_tidy_tables(tmp_path, ending):
+    one = made_cycles(each=3, out=1)
+    save_cycles(one, tmp_path / "run" / "cycles" / "P01-walk", "key")
+    made = made_now({}, 0, {}, "4.2")
+    save_run(ResponseRun("t", "walk", "", (), (), (), made, cycles=(one,)), tmp_path / "run")
+    words = ["export", str(tmp_path / "run"), "--out", str(tmp_path / "out")]
+    done = CliRunner().invoke(app, words + (["--parquet"] if ending == "parquet" else []))
+    assert done.exit_code == 0, done.output
+    read = pd.read_csv if ending == "csv" else pd.read_parquet
+    tables = {name: read(tmp_path / "out" / f"{name}.{ending}") for name in ("cycles", "curves", "means")}
+    assert len(tables["cycles"]) == 8 and tables["cycles"]["kept"].sum() == 6
+    knee = tables["curves"].query("channel == 'knee_angle_r' and side == 'r' and start_s == 2.0")
+    assert knee["value"].to_numpy() == pytest.approx(one.curves[5, :, 1])  # the third cycle of the right foot
+    assert set(tables["means"]["n"]) <= {1, 3}
+
+
+def test_a_run_without_cycles_has_none_to_export(tmp_path):
+    save_run(ResponseRun("t", "walk", "exo", (), (), (), made_now({}, 0, {}, "4.2")), tmp_path)
+    done = CliRunner().invoke(app, ["export", str(tmp_path), "--out", str(tmp_path / "out")])
+    assert "tables of cycles need a run that pooled them" in str(done.exception)

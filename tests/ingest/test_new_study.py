@@ -49,7 +49,8 @@ def test_files_of_one_walk_are_found_together(gait_data):
     assert len(trial.files) == 5
     assert len(study.models.emg) == 24
     assert {"emg_sol_r", "emg_rf_r"} < set(study.models.outputs)
-    assert any("no file or folder name shows" in note for note in notes)
+    assert any("no file or folder name shows a condition: every walk is taken as 'walking'" in note for note in notes)
+    assert study.conditions.words == ("walking",) and trial.condition == "walking"
 
 
 def test_folders_become_people_and_names_pseudonyms(tmp_path):
@@ -105,3 +106,59 @@ def test_folders_without_recordings_are_refused(tmp_path):
     (tmp_path / "a.mot").write_text("x")
     with pytest.raises(ReadError, match=r"none there can be read; left out: a\.mot"):
         found_study(tmp_path)
+
+
+def test_folders_of_a_laboratory_need_no_edit(gait_data, tmp_path):
+    study, notes = found_study(gait_data / "young_straight_and_turn", tmp_path)
+    study = load_study(write_study(study, tmp_path))
+    assert study.conditions.words == ("straight", "turn") and study.conditions.device is None
+    words = [sorted(trial.condition for trial in person.trials) for person in study.participants]
+    both, three = ["straight", "turn"], ["static", "straight", "turn"]
+    assert words == [three, both, both, three, both, both]
+    assert not any("unknown" in note for note in notes)
+    assert max(map(len, notes)) < 500  # labels of the files' own are counted, not listed
+
+
+def test_a_folder_without_any_word_is_one_condition(gait_data, tmp_path):
+    study, notes = found_study(gait_data / "treadmill_walk_ik", tmp_path)
+    assert [trial.condition for trial in study.participants[0].trials] == ["walking"] * 3
+    assert any("every walk is taken as 'walking'" in note for note in notes)
+
+
+def test_sessions_groups_kinds_and_standing_are_found(tmp_path):
+    _walk(tmp_path / "patients" / "S01" / "pre" / "IK" / "barefoot1.mot")
+    muscle = Channel("emg_sol_r", "emg", "1", "r")
+    other = tmp_path / "patients" / "S01" / "pre" / "EMG" / "barefoot1.sto"
+    other.parent.mkdir()
+    write_storage(Recording(TIME, np.sin(6 * TIME)[:, None], (muscle,)), other)
+    _walk(tmp_path / "patients" / "S01" / "post" / "barefoot1.mot")
+    _walk(tmp_path / "controls" / "S02_2024-03-01" / "shod_a.mot")
+    _walk(tmp_path / "controls" / "S02_2024-06-01" / "shod_b.mot")
+    still = Recording(TIME, np.full((300, len(CHANNELS)), 3.0), CHANNELS)
+    write_storage(still, tmp_path / "controls" / "S02_2024-03-01" / "a7.mot")
+    study, notes = found_study(tmp_path)
+    assert [(person.id, person.group) for person in study.participants] == [("S01", "patients"), ("S02", "controls")]
+    assert study.conditions.words == ("barefoot", "shod")
+    assert set(study.sessions) == {"pre", "post", "session 1", "session 2"}
+    assert study.sessions.index("pre") < study.sessions.index("post")
+    first, second = study.participants
+    assert [(t.session, t.condition) for t in first.trials] == [("post", "barefoot"), ("pre", "barefoot")]
+    assert [len(t.files) for t in first.trials] == [1, 2]  # kinematics and EMG of one stem, in two folders
+    assert [(t.session, t.condition) for t in second.trials] == [
+        ("session 1", "shod"), ("session 2", "shod"), ("session 1", "static"),
+    ]  # fmt: skip
+    assert "2024" not in "".join(study.sessions)
+    assert any("standing, so 'static': controls/S02_2024-03-01/a7.mot" in note for note in notes)
+
+
+def test_what_no_name_shows_is_listed_with_the_one_line_for_all(tmp_path):
+    for name in ("fast1", "fast2", "a1", "a2"):
+        _walk(tmp_path / "S01" / f"{name}.mot")
+    study, notes = found_study(tmp_path)
+    assert [trial.condition for trial in study.participants[0].trials].count("unknown") == 2
+    (said,) = [note for note in notes if "condition unknown" in note]
+    assert 'S01/a1.mot, S01/a2.mot. For all of them at once write in [conditions]: unnamed = "fast"' in said
+    path = write_study(study, tmp_path / "study.toml")
+    text = path.read_text().replace('# unnamed = "walking"', 'unnamed = "fast"')
+    path.write_text(text)
+    assert [trial.condition for trial in load_study(path).participants[0].trials] == ["fast"] * 4

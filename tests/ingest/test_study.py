@@ -33,7 +33,29 @@ def test_the_defaults_are_those_of_the_dissertation():
 
 def test_both_conditions_nominal_first():
     assert _study(BOTH).conditions.both == ("natural", "exo")
-    assert set(_study(BOTH).conditions.model_dump()) == {"nominal", "device"}
+    assert _study(BOTH).conditions.words == ("natural", "exo")
+
+
+def test_one_condition_is_a_study_and_has_no_pair_to_compare():
+    alone = Study(conditions=Conditions(nominal="natural"), participants=(ONE,))
+    assert alone.conditions.words == ("natural",) and alone.one_condition_only() == ()
+    with pytest.raises(SchemaError, match=r"needs two conditions, nominal and device.*the study has 'natural' and no"):
+        _ = alone.conditions.both
+
+
+def test_trials_are_named_by_session_condition_and_number():
+    before = [PlannedTrial(condition="natural", session="before", files=(f"{n}.c3d",)) for n in "ab"]
+    after = PlannedTrial(condition="natural", session="after", files=("c.c3d",))
+    person = Participant(id="P01", trials=(*before, after))
+    assert [person.trial_name(t) for t in person.trials] == [
+        "P01 before natural 1", "P01 before natural 2", "P01 after natural",
+    ]  # fmt: skip
+
+
+def test_one_line_names_all_trials_whose_condition_is_unknown():
+    study = Study(conditions=Conditions(nominal="natural", unnamed="natural"), participants=(ONE,)).placed("home")
+    assert [t.condition for t in study.with_unnamed().participants[0].trials] == ["natural", "natural"]
+    assert study.with_unnamed().folder == study.folder
 
 
 def test_the_held_out_part_may_be_given_in_seconds():

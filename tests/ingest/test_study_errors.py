@@ -44,7 +44,7 @@ crop_s = [1.0, 2.0]
         ("[1.0, 2.0]", "[1.0]", r"line 14: .* crop_s needs 2 or more entries; found 1\. Add the other"),
         ("[1.0, 2.0]", "[2.0, 1.0]", r"line 14: .* crop_s needs a start before its end; found \[2\.0, 1\.0\]"),
         ('"natural"\nfiles', '"naturl"\nfiles', r"line 12: .* condition needs 'natural' or 'exo'; found 'naturl'"),
-        ('device = "exo"\n', "", r"line 2: \[conditions\] needs 'device'; it is absent\. Add device \(the cond"),
+        ('nominal = "natural"\n', "", r"line 2: \[conditions\] needs 'nominal'; it is absent\. Add nominal \(the ref"),
         ("[[participants]]", "[participants]", r"must be a TOML file|two pairs of brackets: \[\[participants\]\]"),
         ('"t"', "t", r"must be a TOML file; it says: Invalid value \(at line 1, column 9\)"),
         ('"t"', "3", r"line 1: title must be text; found 3\. Write it in quotes"),

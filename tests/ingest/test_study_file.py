@@ -33,16 +33,22 @@ positive = st.floats(1e-3, 1e4)
 def studies(draw):
     trials = st.builds(
         PlannedTrial,
-        condition=st.sampled_from(["natural", "exo", "unknown"]),
+        condition=st.sampled_from(["natural", "exo", "slow", "static", "unknown"]),
+        session=st.sampled_from([None, "before", "after"]),
         files=st.lists(words, min_size=1, max_size=3).map(tuple),
         speed_m_per_s=st.none() | positive,
         crop_s=st.none() | st.tuples(st.floats(0, 10), st.floats(11, 20)),
     )
     ids = draw(st.lists(st.from_regex(r"[a-z0-9_-]{1,16}", fullmatch=True), min_size=1, max_size=3, unique=True))
-    people = [Participant(id=i, excluded=draw(words), trials=tuple(draw(st.lists(trials, max_size=3)))) for i in ids]
+    group = st.sampled_from(["", "control"])
+    people = [
+        Participant(id=i, group=draw(group), excluded=draw(words), trials=tuple(draw(st.lists(trials, max_size=3))))
+        for i in ids
+    ]
     return Study(
         title=draw(words),
-        conditions=Conditions(nominal="natural", device="exo"),
+        sessions=("before", "after"),
+        conditions=Conditions(nominal="natural", device="exo", others=("slow",)),
         treadmill=draw(
             st.none() | st.builds(Treadmill, speed_m_per_s=positive, direction=st.sampled_from(["+x", "-z"]))
         ),

@@ -6,7 +6,14 @@ import pytest
 from pydantic_core import PydanticCustomError
 
 from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial, Study
-from gaitdisc.ingest.study_rules import check_channels, check_participants, check_variables, refuse
+from gaitdisc.ingest.study_rules import (
+    check_channels,
+    check_conditions,
+    check_participants,
+    check_sessions,
+    check_variables,
+    refuse,
+)
 
 
 def test_a_refusal_carries_its_place_and_three_parts():
@@ -26,8 +33,6 @@ def _participants(words, *people):
 @pytest.mark.parametrize(
     ("words", "people", "message"),
     [
-        (("a", "a"), [("P1", "a")], "two different words.*found 'a' and 'a'"),
-        (("a", "unknown"), [("P1", "a")], "neither of them 'unknown'"),
         (("natural", "exo"), [("P1", "naturl")], r"'natural' or 'exo'; found 'naturl'\. Did you mean 'natural'\?"),
         (("natural", "exo"), [("P1", "zzz")], "Use one of them, or 'unknown'"),
         (("natural", "exo"), [("p1", "exo"), ("P1", "exo")], "'p1' stands 2 times"),
@@ -35,11 +40,52 @@ def _participants(words, *people):
 )
 def test_conditions_and_pseudonyms(words, people, message):
     with pytest.raises(PydanticCustomError, match=message):
-        check_participants(_participants(words, *people), "unknown")
+        check_participants(_participants(words, *people), ("unknown", "static"))
 
 
 def test_unknown_conditions_may_be_listed():
-    check_participants(_participants(("natural", "exo"), ("P1", "unknown"), ("P2", "exo")), "unknown")
+    check_participants(_participants(("natural", "exo"), ("P1", "unknown"), ("P2", "exo")), ("unknown",))
+
+
+@pytest.mark.parametrize(
+    ("conditions", "message"),
+    [
+        ({"nominal": "a", "device": "a"}, "two different words.*found 'a' and 'a'"),
+        ({"nominal": "a", "device": "unknown"}, "neither of them 'unknown'"),
+        ({"nominal": "a", "others": ("b", "b")}, "different words.*found 'a' and 'b' and 'b'"),
+        ({"nominal": "a", "unnamed": "c"}, "one of 'a'; found 'c'"),
+    ],
+)
+def test_words_of_conditions_differ(conditions, message):
+    with pytest.raises(PydanticCustomError, match=message):
+        check_conditions(Conditions(**conditions), "unknown")
+
+
+def _sessions(sessions, of_trial):
+    trial = PlannedTrial(condition="a", session=of_trial, files=("a.c3d",))
+    people = (Participant(id="P1", trials=(trial,)),)
+    return Study.model_construct(sessions=sessions, conditions=Conditions(nominal="a"), participants=people)
+
+
+@pytest.mark.parametrize(
+    ("sessions", "of_trial", "message"),
+    [
+        (("2024-03-01",), None, "no date, since a date may show who a person is; found '2024-03-01'"),
+        (("01.03.24",), None, "no date"),
+        (("20240301",), None, "no date"),
+        (("March 2024",), None, "no date"),
+        (("pre", "pre"), None, "each session once; 'pre' stands twice"),
+        (("before", "after"), "befor", r"\('before', 'after'\); found 'befor'\. Did you mean 'before'\?"),
+        ((), "pre", r"\(none\); found 'pre'\. Add it: sessions = \['pre'\]"),
+    ],
+)
+def test_sessions_are_listed_and_no_dates(sessions, of_trial, message):
+    with pytest.raises(PydanticCustomError, match=message):
+        check_sessions(_sessions(sessions, of_trial))
+
+
+def test_words_and_numbers_of_visits_are_no_dates():
+    check_sessions(_sessions(("pre", "visit 2", "6 months", "session 12"), "visit 2"))
 
 
 @pytest.mark.parametrize(

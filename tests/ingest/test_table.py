@@ -132,3 +132,37 @@ def test_parquet_with_time_as_pandas_index_is_read(tmp_path):
     frame = pd.DataFrame({"knee_angle_r": [1, None, 3]}, index=pd.Index([0.0, 0.5, 1.0], name="time"))
     frame.to_parquet(tmp_path / "a.parquet")
     np.testing.assert_array_equal(read_table(tmp_path / "a.parquet").streams["kinematics"].values[:, 0], [1, np.nan, 3])
+
+
+LEADING = """Subject,S07
+Software,Motion Suite 4.1
+Rate,100
+
+Frame time (s),ankle
+0.00,1.5
+0.01,2.5
+"""
+
+
+def test_leading_lines_are_passed_over_and_the_study_names_the_time(tmp_path):
+    channels = {"Frame time (s)": "time [s]", "ankle": "ankle_angle_r [deg]"}
+    ankle = _read(tmp_path, LEADING, channels).streams["kinematics"]
+    assert ankle["ankle_angle_r"].tolist() == [1.5, 2.5]
+    assert ankle.time == pytest.approx([0.0, 0.01])
+    plain = LEADING.replace("Frame time (s)", "time [s]")
+    assert _read(tmp_path, plain, {"ankle": "ankle_angle_r [deg]"}).streams["kinematics"].rate_hz == pytest.approx(100)
+
+
+def test_a_named_time_in_parquet_and_in_milliseconds(tmp_path):
+    table = pd.DataFrame({"clock": [0.0, 10.0, 20.0], "knee_angle_r": [1.0, 2.0, 3.0]})
+    table.to_parquet(tmp_path / "walk.parquet")
+    knee = read_table(tmp_path / "walk.parquet", {"clock": "time [ms]"}).streams["kinematics"]
+    assert knee.time == pytest.approx([0.0, 0.01, 0.02])
+
+
+def test_a_table_without_a_time_says_how_to_name_it(tmp_path):
+    with pytest.raises(ReadError, match=r"line 1 is 'Subject,S07'.*\"Frame time\" = \"time \[s\]\""):
+        _read(tmp_path, LEADING)
+    far = "\n".join(["Comment,x"] * 60) + "\ntime [s],knee_angle_r\n0.0,1\n0.01,2\n"
+    with pytest.raises(ReadError, match="line 1 is 'Comment,x'"):
+        _read(tmp_path, far)

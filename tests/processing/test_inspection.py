@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from gaitdisc.batch.run_study import run_study
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import load_study, write_study
@@ -43,7 +44,10 @@ def test_a_study_is_looked_at_whole_though_one_file_is_broken(folder):
     write_study(study, folder / "study.toml")
     seen = list(inspected_study(load_study(folder)))
     assert [one.light for one in seen[1:]] == ["red", "amber", seen[3].light, "red"]
-    assert "trials of both conditions, 'a' and 'b', are needed; P02 lacks one" in seen[-1].refusal
+    assert (
+        "a comparison needs one trial of 'a' and one of 'b'; P02 has 1 of 'a', none of 'b'; of other conditions: 1"
+        in seen[-1].refusal
+    )
 
 
 def test_findings_of_one_kind_share_a_line(trial, tmp_path):
@@ -59,3 +63,22 @@ def test_calibration_trials_are_refused_as_walking(gait_data):
     seen = inspected_file(gait_data / "treadmill_walk_ik" / "S01DN603_ik.mot")
     assert seen.light == "red"
     assert "not used as walking" in seen.refusal
+
+
+def test_check_refuses_what_run_refuses_of_several_trials_and_no_more(folder):
+    """Two trials of a condition passed the check and were refused by the run; now both pool their cycles."""
+    twice = tuple(PlannedTrial(condition=word, files=("good.mot",)) for word in ("a", "a", "b"))
+    broken = (PlannedTrial(condition="a", files=("good.mot",)), PlannedTrial(condition="a", files=("empty.mot",)))
+    study = Study(
+        conditions=Conditions(nominal="a", device="b"),
+        participants=(
+            Participant(id="P01", trials=twice),
+            Participant(id="P02", group="control", trials=broken),
+            Participant(id="P03", trials=twice[:1]),
+        ),
+    ).placed(folder)
+    seen = list(inspected_study(study))
+    run = run_study(study, folder / "run")
+    refused = [(one.participant, one.condition) for one in seen if one.refusal]
+    assert refused == [(one.participant, one.condition) for one in run.refusals] == [("P02", "a 2"), ("P03", "")]
+    assert all(one.strides for one in seen if one.participant == "P01")

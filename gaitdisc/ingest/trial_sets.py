@@ -1,0 +1,175 @@
+"""Which trials of a participant are taken together, and who can be compared by models: one rule for check and run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from gaitdisc.ingest.study import STATIC, UNKNOWN, Participant, PlannedTrial, Study
+
+
+@dataclass(frozen=True)
+class TrialSet:
+    """Walks of one participant in one session under one condition, of which cycles are pooled.
+
+    Parameters
+    ----------
+    session, condition : str
+        Words of the study; the session is empty where there are none.
+    trials : tuple of PlannedTrial
+        In the study's order.
+    """
+
+    session: str
+    condition: str
+    trials: tuple[PlannedTrial, ...]
+
+
+def is_static(study: Study, planned: PlannedTrial) -> bool:
+    """Whether a trial is one in which the person stands.
+
+    Parameters
+    ----------
+    study : Study
+        Whose conditions may use that very word for a way of walking.
+    planned : PlannedTrial
+        A trial.
+
+    Examples
+    --------
+    >>> is_static(study, planned)  # doctest: +SKIP
+    False
+    """
+    return planned.condition == STATIC and STATIC not in study.conditions.words
+
+
+def is_walk(study: Study, planned: PlannedTrial) -> bool:
+    """Whether a trial is used as a walk.
+
+    Parameters
+    ----------
+    study : Study
+        With its conditions.
+    planned : PlannedTrial
+        A trial.
+
+    Examples
+    --------
+    >>> is_walk(study, planned)  # doctest: +SKIP
+    True
+    """
+    return planned.condition != UNKNOWN and not is_static(study, planned)
+
+
+def trial_sets(study: Study, participant: Participant) -> tuple[TrialSet, ...]:
+    """Walks of a participant by session and condition, in the study's order of both.
+
+    Parameters
+    ----------
+    study : Study
+        With its sessions and conditions.
+    participant : Participant
+        Whose walks.
+
+    Examples
+    --------
+    >>> [one.condition for one in trial_sets(study, study.participants[0])]  # doctest: +SKIP
+    ['straight', 'turn']
+    """
+    found = []
+    for session in (None, *study.sessions):
+        for word in study.conditions.words:
+            trials = tuple(t for t in participant.trials_of(word) if t.session == session and is_walk(study, t))
+            if trials:
+                found.append(TrialSet(session or "", word, trials))
+    return tuple(found)
+
+
+def static_trial(study: Study, participant: Participant, session: str) -> PlannedTrial | None:
+    """Trial in which a participant stands: of the session, else the only one there is; None without.
+
+    Parameters
+    ----------
+    study : Study
+        With its conditions.
+    participant : Participant
+        Who.
+    session : str
+        Empty where there are no sessions.
+
+    Examples
+    --------
+    >>> static_trial(study, study.participants[0], "")  # doctest: +SKIP
+    """
+    standing = [trial for trial in participant.trials if is_static(study, trial)]
+    own = [trial for trial in standing if (trial.session or "") == session]
+    return own[0] if own else standing[0] if len(standing) == 1 else None
+
+
+def refused_participant(study: Study, participant: Participant) -> str:
+    """Why nothing of a participant is reported; empty where something is.
+
+    Who lacks one of two compared conditions is refused, but for a group, such as controls, that never has it.
+
+    Parameters
+    ----------
+    study : Study
+        With its conditions.
+    participant : Participant
+        Who.
+
+    Examples
+    --------
+    >>> refused_participant(study, study.participants[0])  # doctest: +SKIP
+    ''
+    """
+    if participant.excluded:
+        return f"excluded in the study: {participant.excluded}"
+    if study.conditions.device is not None and not _of_a_group_without_device(study, participant):
+        if participant.id in study.one_condition_only():
+            return _one_walk_each(study, participant)
+    elif not trial_sets(study, participant):
+        words = " or ".join(map(repr, study.conditions.words))
+        found = f"{participant.id} has {len(participant.trials) or 'no'} trials of other conditions"
+        return f"a participant needs a trial of {words}; {found}. Correct the conditions in [[participants.trials]]."
+    return ""
+
+
+def not_compared(study: Study, participant: Participant) -> str:
+    """Why models cannot compare two walks of a participant; empty where they can.
+
+    Parameters
+    ----------
+    study : Study
+        With its conditions.
+    participant : Participant
+        Who.
+
+    Examples
+    --------
+    >>> not_compared(study, study.participants[0])  # doctest: +SKIP
+    ''
+    """
+    if study.conditions.device is None:
+        return "the study compares no device"
+    walks = [trial for trial in participant.trials if is_walk(study, trial)]
+    both = study.conditions.both
+    one_each = all(len(participant.trials_of(word)) == 1 for word in both)
+    if one_each and len({trial.session for trial in walks if trial.condition in both}) == 1:
+        return ""
+    return _one_walk_each(study, participant)
+
+
+def _of_a_group_without_device(study: Study, participant: Participant) -> bool:
+    device = study.conditions.both[1]
+    alike = [person for person in study.participants if person.group and person.group == participant.group]
+    return bool(alike) and not any(person.trials_of(device) for person in alike)
+
+
+def _one_walk_each(study: Study, participant: Participant) -> str:
+    both = study.conditions.both
+    counts = {word: len(participant.trials_of(word)) for word in both}
+    found = ", ".join(f"{count or 'none'} of {word!r}" for word, count in counts.items())
+    others = sum(trial.condition not in both for trial in participant.trials)
+    unused = f"; of other conditions: {others}" if others else ""
+    needed = f"a comparison needs one trial of {both[0]!r} and one of {both[1]!r}"
+    return f"{needed}; {participant.id} has {found}{unused}. Correct the conditions in [[participants.trials]]."

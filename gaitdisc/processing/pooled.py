@@ -1,0 +1,344 @@
+"""Cycles of one participant pooled over trials: read, cut, corrected, judged and counted together."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel, vocabulary
+from gaitdisc.errors import GaitdiscError, StrideError
+from gaitdisc.ingest.study import Participant, PlannedTrial, Study
+from gaitdisc.ingest.trial_sets import TrialSet, static_trial, trial_sets
+from gaitdisc.processing.contact_choice import EARLY_MS, EARLY_RANGE, SEEN_LATE
+from gaitdisc.processing.cycle_channels import cycle_channels
+from gaitdisc.processing.process import quality_findings
+from gaitdisc.processing.step_events import StepEvents, over_ground, step_events
+from gaitdisc.processing.trial_cycles import Places, feet_in, moved_events, with_gaps, with_plates
+from gaitdisc.recording import PERCENT, Cycle, Finding, Recording, Strides, Trial
+from gaitdisc.results import PooledCycles, Refusal
+from gaitdisc.results.pooled_cycles import CYCLE_COLUMNS
+from gaitdisc.signals.marker_distances import person_findings
+from gaitdisc.signals.sides import verify_sides
+from gaitdisc.signals.strides import duration_reasons
+from gaitdisc.signals.walking import LEAST_COVERAGE, verify_walking
+
+Read = Callable[[PlannedTrial], Trial]
+KINETIC = ("moment", "power")  # quantities that need a plate under the foot
+
+
+@dataclass(frozen=True, eq=False)
+class _Seen:
+    """What is kept of a trial once its cycles can be cut."""
+
+    planned: PlannedTrial
+    number: int
+    steps: StepEvents
+    over_ground: bool
+    trial: Trial  # streams that are needed on, without what was digitised fast
+    legs: Recording | None
+    states: tuple[Recording, ...]
+    findings: tuple[Finding, ...]
+    files: dict[str, str]
+
+
+@dataclass(frozen=True, eq=False)
+class _Offsets:
+    """By detector: how much later the ground places each event that both see [s], of all trials of a session."""
+
+    contacts: Mapping[str, NDArray[np.float64]]
+    foot_offs: Mapping[str, NDArray[np.float64]]
+
+    def of_contacts(self, detector: str) -> float | None:
+        return _median(self.contacts.get(detector))
+
+    def of_foot_offs(self, detector: str) -> float | None:
+        return _median(self.foot_offs.get(detector))
+
+
+def _median(times: NDArray[np.float64] | None) -> float | None:
+    return float(np.median(times)) if times is not None and len(times) else None
+
+
+def pooled_cycles(study: Study, participant: Participant, read: Read) -> tuple[PooledCycles, ...]:
+    """Cycles of a participant by session and condition, pooled over trials.
+
+    A trial that cannot be read or used is left out with its reason, the others go on. Where a plate or an event of the
+    file sees a step that markers or angles see too, these are moved by the median difference of all such steps of the
+    participant's session.
+
+    Parameters
+    ----------
+    study : Study
+        Settings.
+    participant : Participant
+        With walks.
+    read : callable
+        Reads a planned trial.
+
+    Returns
+    -------
+    tuple of PooledCycles
+        One for each session and condition; those without a kept cycle say why in `refusals`.
+    """
+    sets = trial_sets(study, participant)
+    found: list[PooledCycles] = []
+    for session in dict.fromkeys(one.session for one in sets):
+        static, unread = _standing(study, participant, session, read)
+        seen: dict[str, list[_Seen]] = {}
+        lost: dict[str, list[Refusal]] = {}
+        for one in (own for own in sets if own.session == session):
+            seen[one.condition], lost[one.condition] = _seen_trials(study, participant, one, read)
+            seen[one.condition] = [_with_static(trial, static, unread) for trial in seen[one.condition]]
+        offsets = _offsets([trial for trials in seen.values() for trial in trials])
+        found += [
+            _pooled(study, participant, one, seen[one.condition], lost[one.condition], offsets)
+            for one in sets
+            if one.session == session
+        ]
+    return tuple(found)
+
+
+def _seen_trials(
+    study: Study, participant: Participant, one: TrialSet, read: Read
+) -> tuple[list[_Seen], list[Refusal]]:
+    seen, lost = [], []
+    for number, planned in enumerate(one.trials, 1):
+        name = participant.trial_name(planned)
+        where = name.removeprefix(participant.id).strip()
+        try:
+            seen.append(_seen(study, planned, number, read(planned)))
+        except GaitdiscError as error:
+            lost.append(Refusal(participant.id, where, str(error)))
+    return seen, lost
+
+
+def _standing(study: Study, participant: Participant, session: str, read: Read) -> tuple[Recording | None, str]:
+    """Markers of the static trial, and why there are none."""
+    planned = static_trial(study, participant, session)
+    if planned is None:
+        return None, "there is no static trial"
+    try:
+        trial = read(planned)
+    except GaitdiscError as error:
+        return None, f"the static trial cannot be used: {error}"
+    return trial.streams.get("markers"), "the static trial has no markers"
+
+
+def _with_static(seen: _Seen, static: Recording | None, unread: str) -> _Seen:
+    """Same trial, with what the static trial says of it: that it is another person's, or that there is none."""
+    markers = seen.trial.streams.get("markers")
+    if markers is None:
+        return seen
+    if static is not None:
+        return replace(seen, findings=(*seen.findings, *person_findings(static, markers, seen.trial.name)))
+    severity = "note" if seen.legs is not None else "warning"
+    spoils = "angles from markers" + ("; those of the file are used" if seen.legs is not None else "")
+    said = Finding(severity, "static trial", seen.trial.name, unread, spoils)
+    return replace(seen, findings=(*seen.findings, said))
+
+
+def _seen(study: Study, planned: PlannedTrial, number: int, trial: Trial) -> _Seen:
+    direction = study.treadmill.direction if study.treadmill else ""
+    steps = step_events(trial, study.strides.detector, direction)
+    outside = study.strides.ground == "overground" or (study.strides.ground == "auto" and over_ground(trial))
+    legs, states, lost = cycle_channels(trial, study.filters)
+    _verify(trial, steps, outside, study)
+    findings = (*trial.findings, *quality_findings(_known(trial)), *lost)
+    slim = replace(trial, streams={key: r for key, r in trial.streams.items() if key in ("markers", "forces")})
+    files = {s.source.file: s.source.sha256 for s in trial.streams.values() if s.source.sha256}
+    return _Seen(planned, number, steps, outside, slim, legs, states, findings, files)
+
+
+def _verify(trial: Trial, steps: StepEvents, outside: bool, study: Study) -> None:
+    """Refuse swapped sides; on a treadmill, and where angles alone tell the steps, what is no walking."""
+    if "kinematics" not in trial.streams:
+        return
+    joints = {f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle") for side in "rl"}
+    legs = trial.stream("kinematics").selected_by(lambda channel: channel.name in joints)
+    for side, times in steps.contacts.items():
+        lengths = np.diff(times)
+        whole = (lengths >= study.strides.min_s) & (lengths <= study.strides.max_s)
+        if not whole.any():
+            continue
+        strides = Strides(times[:-1][whole], times[1:][whole], side, steps.detector)
+        if not outside or steps.detector == "angles":
+            verify_walking(legs, strides, 1, 0.0 if outside else LEAST_COVERAGE)
+        if f"knee_angle_{side}" in legs.names:
+            verify_sides(legs, strides)
+
+
+def _known(trial: Trial) -> Trial:
+    """Channels that are looked at: those of the vocabulary, and markers only where nothing else is there."""
+    words = {channel.name for channel in vocabulary().channels}
+    streams = {}
+    for key, recording in trial.streams.items():
+        if key in ("kinematics", "emg"):
+            names = [name for name in recording.names if name in words]
+            streams |= {key: recording.selected(names)} if names else {}
+        elif key == "forces":
+            streams[key] = recording
+    return replace(trial, streams=streams)
+
+
+def _offsets(seen: Sequence[_Seen]) -> _Offsets:
+    contacts: dict[str, list[NDArray[np.float64]]] = {}
+    offs: dict[str, list[NDArray[np.float64]]] = {}
+    for trial in seen:
+        contacts.setdefault(trial.steps.detector, []).append(trial.steps.later_s("contacts"))
+        offs.setdefault(trial.steps.off_detector, []).append(trial.steps.later_s("foot_offs"))
+    return _Offsets(
+        {name: np.concatenate(parts) for name, parts in contacts.items()},
+        {name: np.concatenate(parts) for name, parts in offs.items()},
+    )
+
+
+def _pooled(
+    study: Study,
+    participant: Participant,
+    one: TrialSet,
+    seen: Sequence[_Seen],
+    lost: Sequence[Refusal],
+    offsets: _Offsets,
+) -> PooledCycles:
+    cut = [_cut(study, trial, offsets) for trial in seen]
+    judged = _judged([cycles for cycles, _ in cut], study)
+    outside = bool(seen) and all(trial.over_ground for trial in seen)
+    too_few = _too_few(study, participant, one, judged, outside)
+    where = " ".join(part for part in (one.session, one.condition) if part)
+    rows = [
+        _row(trial.number, cycle, place, too_few)
+        for trial, cycles, (_, places) in zip(seen, judged, cut, strict=True)
+        for cycle, place in zip(cycles, places, strict=True)
+    ]
+    table = pd.DataFrame(rows, columns=pd.Index(CYCLE_COLUMNS))
+    channels, curves = ((), np.empty((0, len(PERCENT), 0))) if too_few else _curves(seen, judged)
+    late = next((trial.steps.detector for trial in seen if trial.steps.detector in SEEN_LATE), "")
+    off_late = next((trial.steps.off_detector for trial in seen), "")
+    refusals = [*lost, *([Refusal(participant.id, where, too_few)] if too_few and (seen or not lost) else [])]
+    return PooledCycles(
+        participant.id,
+        participant.group,
+        one.session,
+        one.condition,
+        len(seen),
+        dict(sorted(Counter(trial.steps.detector for trial in seen).items())),
+        offsets.of_contacts(late),
+        offsets.of_foot_offs(off_late),
+        len(offsets.contacts.get(late, ())),
+        outside,
+        channels,
+        curves,
+        table,
+        (*(finding for trial in seen for finding in trial.findings), *_offset_findings(where, late, offsets)),
+        tuple(refusals),
+        {file: sha for trial in seen for file, sha in trial.files.items()},
+    )
+
+
+def pooled_instead(found: Sequence[PooledCycles]) -> bool:
+    """Whether pooled cycles stand in for a comparison that was refused: all walks are over ground, and give cycles.
+
+    Parameters
+    ----------
+    found : sequence of PooledCycles
+        Of one participant.
+    """
+    return bool(found) and all(one.over_ground and len(one.kept) for one in found)
+
+
+def _offset_findings(where: str, late: str, offsets: _Offsets) -> list[Finding]:
+    """By how much contacts of markers or angles were moved, or that nothing could show it."""
+    if not late:
+        return []
+    offset_s = offsets.of_contacts(late)
+    if offset_s is None:
+        what = f"contacts by {late}, and no plate saw a step: they lie early by some {EARLY_MS[late]:g} ms in walking "
+        what += f"({EARLY_RANGE[late]} with a plate)"
+        return [Finding("note", "contact offset", where, what, "phase by 3 to 5 % of the cycle, and stance by as much")]
+    steps = len(offsets.contacts[late])
+    way = "later" if offset_s >= 0 else "earlier"
+    seen = "the one step" if steps == 1 else f"the median of {steps} steps"
+    what = f"contacts by {late} moved {1e3 * abs(offset_s):.0f} ms {way}, {seen} that a plate or the file's events saw"
+    return [Finding("note", "contact offset", where, f"{what} too", "")]
+
+
+def _cut(study: Study, seen: _Seen, offsets: _Offsets) -> tuple[list[Cycle], list[Places]]:
+    direction = study.treadmill.direction if study.treadmill else ""
+    belt = study.treadmill.speed_m_per_s if study.treadmill and not seen.over_ground else 0.0
+    belt = seen.planned.speed_m_per_s or belt if not seen.over_ground else 0.0
+    contact_s = offsets.of_contacts(seen.steps.detector) or 0.0
+    off_s = offsets.of_foot_offs(seen.steps.off_detector) or 0.0
+    cycles = with_plates(moved_events(seen.steps, contact_s, off_s), seen.trial)
+    return with_gaps(cycles, seen.legs), feet_in(cycles, seen.trial, direction, belt)
+
+
+def _judged(cycles: Sequence[list[Cycle]], study: Study) -> list[list[Cycle]]:
+    """Cycles with the reason of their duration, which is judged over all trials together."""
+    flat = [cycle for own in cycles for cycle in own]
+    durations = np.array([cycle.duration_s for cycle in flat])
+    reasons = iter(duration_reasons(durations, study.strides.min_s, study.strides.max_s))
+    return [[replace(cycle, reason=next(reasons) or cycle.reason) for cycle in own] for own in cycles]
+
+
+def _too_few(
+    study: Study, participant: Participant, one: TrialSet, cycles: Sequence[list[Cycle]], outside: bool
+) -> str:
+    """Why the cycles that are left do not do; empty where they do."""
+    kept = Counter(cycle.side for own in cycles for cycle in own if not cycle.reason)
+    needed, key = (study.quality.min_cycles, "min_cycles") if outside else (study.quality.min_strides, "min_strides")
+    if max(kept.values(), default=0) >= needed:
+        return ""
+    left_out = [cycle.reason for own in cycles for cycle in own if cycle.reason]
+    first = f"; left out {len(left_out)}, the first: {left_out[0]}" if left_out else ""
+    found = ", ".join(f"{kept[side]} of side {side}" for side in "rl")
+    where = " ".join(part for part in (participant.id, one.session, one.condition) if part)
+    trials = "1 trial" if len(one.trials) == 1 else f"{len(one.trials)} trials"
+    error = StrideError(
+        f"{where} needs {needed} cycles of a foot {'over ground' if outside else 'on a treadmill'}, pooled over trials",
+        f"{trials} of it have {found}{first}",
+        f"Add trials, or lower {key} in [quality].",
+    )
+    return str(error)
+
+
+def _row(number: int, cycle: Cycle, place: Places, too_few: str) -> tuple[object, ...]:
+    stance = cycle.stance_percent
+    single = 100.0 * (cycle.opposite_contact - cycle.opposite_off) / cycle.duration_s
+    return (
+        number, cycle.side, cycle.start, cycle.foot_off, cycle.opposite_off, cycle.opposite_contact, cycle.end,
+        *cycle.contacts_by, cycle.foot_off_by, cycle.kinetic, not (cycle.reason or too_few),
+        cycle.reason or ("too few cycles" if too_few else ""), cycle.duration_s, place.step_s,
+        120.0 / cycle.duration_s, stance, 100.0 - stance, single, cycle.double_support_percent, place.stride_m,
+        place.step_m, place.width_m, place.stride_m / cycle.duration_s,
+    )  # fmt: skip
+
+
+def _curves(seen: Sequence[_Seen], cycles: Sequence[list[Cycle]]) -> tuple[tuple[Channel, ...], NDArray[np.float64]]:
+    """Kept cycles of all trials on 101 points; a channel that a trial lacks is missing in its cycles."""
+    by_name: dict[str, Channel] = {}
+    for trial in seen:
+        for state in trial.states:
+            for channel in state.channels:
+                by_name.setdefault(channel.name, channel)
+    names = list(by_name)
+    parts = []
+    for trial, own in zip(seen, cycles, strict=True):
+        kept = [cycle for cycle in own if not cycle.reason]
+        part = np.full((len(kept), len(PERCENT), len(names)), np.nan)
+        for state in trial.states:
+            same = [c for c in state.channels if c.unit == by_name[c.name].unit]  # the first unit counts
+            columns = [names.index(channel.name) for channel in same]
+            for row, cycle in enumerate(kept):
+                strides = Strides(np.array([cycle.start]), np.array([cycle.end]), cycle.side, trial.steps.detector)
+                values = strides.normalised(state.selected([channel.name for channel in same]))[0]
+                bare = [not cycle.kinetic and channel.quantity in KINETIC for channel in same]
+                values[:, bare] = np.nan
+                part[row][:, columns] = values
+        parts.append(part)
+    whole = np.concatenate(parts) if parts else np.empty((0, len(PERCENT), len(names)))
+    return tuple(by_name.values()), whole

@@ -1,0 +1,268 @@
+"""Contacts and foot offs of one trial: those that the ground or the file saw, and those of markers or angles."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.errors import ChannelError, GaitdiscError, StrideError
+from gaitdisc.processing.contact_choice import (
+    ENOUGH,
+    MOST_OFFSET_S,
+    PREFERRED,
+    SEEN_LATE,
+    named_markers,
+    seen_contacts,
+    trial_direction,
+)
+from gaitdisc.recording import Trial
+from gaitdisc.signals.contacts import Contacts
+from gaitdisc.signals.direction import Direction
+from gaitdisc.signals.foot_off import angle_foot_off, marker_foot_off, stance_windows
+
+TOES = {
+    "r": ("RTOE", "R.Toe", "R.Toe.Tip", "R_Toe", "RMT2", "RMTH2", "RFM2", "RD2M", "RSMH"),
+    "l": ("LTOE", "L.Toe", "L.Toe.Tip", "L_Toe", "LMT2", "LMTH2", "LFM2", "LD2M", "LSMH"),
+}
+GROUND = ("events", "force")  # what saw the ground, the person who marked the file first
+ONE_EVENT_S = MOST_OFFSET_S  # nearer than this two detectors speak of one event of a foot
+USUAL_STRIDE_S = 1.1
+LEAST_PATH_M_PER_S = 0.3  # of the pelvis from end to end
+NO_WALKWAY_S = 10.0  # a walk that lasts longer and does not show its path is one on a treadmill
+Times = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class StepEvents:
+    """What was seen of the steps of one trial, nothing corrected yet.
+
+    Parameters
+    ----------
+    detector : str
+        What sees most strides: `events`, `force`, `markers` or `angles`.
+    off_detector : str
+        `markers` or `angles`, whichever shows foot off; empty where neither does.
+    contacts, foot_offs : mapping of str to ndarray [s]
+        Side -> times, as these detectors place them.
+    ground_contacts, ground_offs : mapping of str to tuple of (float, str)
+        Side -> time and `events` or `force`; no contacts where the detector sees the ground itself.
+    """
+
+    detector: str
+    off_detector: str
+    contacts: Mapping[str, Times]
+    foot_offs: Mapping[str, Times]
+    ground_contacts: Mapping[str, tuple[tuple[float, str], ...]]
+    ground_offs: Mapping[str, tuple[tuple[float, str], ...]]
+
+    def later_s(self, kind: str) -> Times:
+        """How much later the ground places the events that both see [s]; only steps that both see count.
+
+        Parameters
+        ----------
+        kind : str
+            `contacts` or `foot_offs`.
+        """
+        own, ground = self._of(kind)
+        apart = []
+        for side, times in own.items():
+            for at, _ in ground.get(side, ()):
+                nearest = times[np.argmin(np.abs(times - at))] if len(times) else np.inf
+                apart.append(at - nearest)
+        found = np.asarray(apart, float)
+        return found[np.abs(found) <= MOST_OFFSET_S]
+
+    def corrected(self, kind: str, offset_s: float) -> dict[str, tuple[tuple[float, str], ...]]:
+        """Events moved by an offset, each replaced by the ground's own where that saw it.
+
+        Parameters
+        ----------
+        kind : str
+            `contacts` or `foot_offs`.
+        offset_s : float
+            Added to what markers or angles say [s].
+
+        Returns
+        -------
+        dict of str to tuple of (float, str)
+            Side -> time and what placed it, in order of time.
+        """
+        own, ground = self._of(kind)
+        by = self.detector if kind == "contacts" else self.off_detector
+        found = {}
+        for side in sorted(set(own) | set(ground)):
+            seen = list(ground.get(side, ()))
+            moved = own.get(side, np.empty(0)) + offset_s
+            if kind == "contacts":  # one that only the ground saw lies outside of what the markers show, or is false
+                seen = [(at, word) for at, word in seen if _beside(at, moved)]
+            alone = [at for at in moved if all(abs(at - there) > ONE_EVENT_S for there, _ in seen)]
+            found[side] = tuple(sorted([*seen, *((float(at), by) for at in alone)]))
+        return found
+
+    def _of(self, kind: str) -> tuple[Mapping[str, Times], Mapping[str, tuple[tuple[float, str], ...]]]:
+        return (self.contacts, self.ground_contacts) if kind == "contacts" else (self.foot_offs, self.ground_offs)
+
+
+def step_events(trial: Trial, detector: str = "auto", direction: str = "") -> StepEvents:
+    """Contacts and foot offs of a trial of any length; one stride of one foot is enough.
+
+    The file's events go before force before markers before angles, but none that sees fewer than 80 % of the strides
+    that another sees; angles only where nothing else sees a stride. What the ground or the file saw stands beside.
+
+    Parameters
+    ----------
+    trial : Trial
+        With any streams.
+    detector : str
+        `auto`, or the one that shall be taken.
+    direction : str
+        Direction of walking in the laboratory's axes, `+x` to `-z`; inferred where it is empty.
+
+    Raises
+    ------
+    StrideError
+        If nothing sees two contacts of one foot; each detector's reason is named.
+    """
+    seen, refused = seen_contacts(trial, direction)
+    strides = {name: _stride_count(contacts) for name, contacts in seen.items()}
+    chosen = _chosen(strides, detector)
+    if not chosen:
+        raise _nothing_seen(trial, seen, refused, detector)
+    contacts = {side: one.time for side, one in seen[chosen].items()}
+    off_detector, offs = _seen_offs(trial, contacts, direction)
+    ground = {name: seen[name] for name in GROUND if name in seen}
+    ground_offs = {name: {s: one.foot_off for s, one in sides.items()} for name, sides in ground.items()}
+    if "force" in ground_offs and offs:
+        ground_offs["force"] = {s: _borne_out(times, offs.get(s)) for s, times in ground_offs["force"].items()}
+    late = ground if chosen in SEEN_LATE else {}
+    return StepEvents(
+        chosen,
+        off_detector,
+        contacts,
+        offs,
+        _merged({name: {s: one.time for s, one in sides.items()} for name, sides in late.items()}),
+        _merged(ground_offs),
+    )
+
+
+def over_ground(trial: Trial) -> bool:
+    """Whether somebody walks through the laboratory: by the path of the pelvis, else by the length of the trial.
+
+    Parameters
+    ----------
+    trial : Trial
+        With markers, or with `pelvis_tx` and `pelvis_tz`; without either a trial of up to 10 s is one over ground.
+    """
+    markers = trial.streams.get("markers")
+    if markers is not None:
+        try:
+            heels, pelvis = named_markers(markers)
+            return trial_direction(markers, heels, pelvis).headings is not None
+        except (ChannelError, StrideError):
+            pass
+    kinematics = trial.streams.get("kinematics")
+    path = [] if kinematics is None else [n for n in ("pelvis_tx", "pelvis_tz") if n in kinematics.names]
+    if kinematics is not None and path:
+        known = kinematics.selected(path).values
+        known = known[np.isfinite(known).all(axis=1)]
+        away = float(np.linalg.norm(np.ptp(known, axis=0))) if len(known) else 0.0
+        return away / kinematics.duration_s >= LEAST_PATH_M_PER_S
+    longest = max((recording.duration_s for recording in trial.streams.values()), default=0.0)
+    return longest <= NO_WALKWAY_S
+
+
+def trial_markers(trial: Trial, direction: str = "") -> tuple[dict[str, str], list[str], Direction] | None:
+    """Heels, pelvis and direction of walking of a trial; None where its markers do not give them.
+
+    Parameters
+    ----------
+    trial : Trial
+        As it was read.
+    direction : str
+        In the laboratory's axes, `+x` to `-z`; inferred where it is empty.
+    """
+    if "markers" not in trial.streams:
+        return None
+    markers = trial.stream("markers")
+    try:
+        heels, pelvis = named_markers(markers)
+        return heels, pelvis, trial_direction(markers, heels, pelvis, direction)
+    except (ChannelError, StrideError):
+        return None
+
+
+def _chosen(strides: Mapping[str, int], detector: str) -> str:
+    if detector != "auto":
+        return detector if strides.get(detector) else ""
+    order = ("events", *(name for name in PREFERRED if name != "events"))
+    sure = {name: count for name, count in strides.items() if count and name != "angles"}
+    most = max(sure.values(), default=0)
+    enough = [name for name in order if sure.get(name, 0) >= ENOUGH * most and name in sure]
+    return enough[0] if enough else "angles" if strides.get("angles") else ""
+
+
+def _stride_count(contacts: Mapping[str, Contacts]) -> int:
+    return sum(max(0, len(one) - 1) for one in contacts.values())
+
+
+def _beside(at: float, moved: Times) -> bool:
+    """Whether a contact of the ground is one of these, or lies before or after all of them."""
+    if not len(moved):
+        return True
+    return bool(np.abs(moved - at).min() <= ONE_EVENT_S or at < moved[0] or at > moved[-1])
+
+
+def _merged(seen: Mapping[str, Mapping[str, Times]]) -> dict[str, tuple[tuple[float, str], ...]]:
+    found: dict[str, list[tuple[float, str]]] = {}
+    for name in GROUND:
+        for side, times in seen.get(name, {}).items():
+            there = found.setdefault(side, [])
+            there += [(float(at), name) for at in times if all(abs(at - other) > ONE_EVENT_S for other, _ in there)]
+    return {side: tuple(sorted(times)) for side, times in found.items()}
+
+
+def _borne_out(times: Times, own: Times | None) -> Times:
+    """Foot offs of a plate that markers or angles show too: a foot that leaves a plate may still be on the floor."""
+    if own is None or not len(own):
+        return times
+    return times[[bool(np.abs(own - at).min() <= MOST_OFFSET_S) for at in times]] if len(times) else times
+
+
+def _seen_offs(trial: Trial, contacts: Mapping[str, Times], direction: str) -> tuple[str, dict[str, Times]]:
+    """Foot offs of each side that has contacts, from markers or else from the ankle, and which of the two."""
+    lengths = np.concatenate([np.diff(times) for times in contacts.values()])
+    stride_s = float(np.median(lengths)) if len(lengths) else USUAL_STRIDE_S
+    windows = {side: stance_windows(times, stride_s) for side, times in contacts.items()}
+    known = trial_markers(trial, direction)
+    markers = trial.streams.get("markers")
+    there = {name.rsplit(".", 1)[0] for name in markers.names} if markers is not None else set()
+    toes = {side: next((name for name in names if name in there), "") for side, names in TOES.items()}
+    if markers is not None and known is not None and all(toes[side] for side in contacts):
+        _, pelvis, way = known
+        return "markers", {s: marker_foot_off(markers, toes[s], pelvis, way, windows[s]) for s in contacts}
+    kinematics = trial.streams.get("kinematics")
+    if kinematics is None or any(f"ankle_angle_{side}" not in kinematics.names for side in contacts):
+        return "", {}
+    return "angles", {s: angle_foot_off(kinematics, f"ankle_angle_{s}", windows[s]) for s in contacts}
+
+
+def _nothing_seen(
+    trial: Trial,
+    seen: Mapping[str, Mapping[str, Contacts]],
+    refused: Mapping[str, GaitdiscError | None],
+    detector: str,
+) -> StrideError:
+    reasons = []
+    for name in dict.fromkeys([*seen, *refused]):
+        error = refused.get(name)
+        counts = ", ".join(f"{len(one)} of side {side}" for side, one in sorted(seen.get(name, {}).items()))
+        reasons.append(f"{name}: {error.found if error else counts or 'no contact'}")
+    by = "events, force, markers or joint angles" if detector == "auto" else detector
+    return StrideError(
+        f"a cycle needs two initial contacts of one foot, from {by}",
+        f"{trial.name} has {', '.join(trial.streams) or 'no stream'}; {'; '.join(reasons) or 'none of them serves'}",
+        "Add the file that holds forces, markers or angles to the trial, or leave the trial out.",
+    )

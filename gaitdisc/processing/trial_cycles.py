@@ -1,0 +1,204 @@
+"""Cycles of one trial: each with its events, what a plate saw of it, where the feet were, and why it is left out."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.processing.step_events import StepEvents, trial_markers
+from gaitdisc.recording import Cycle, Recording, Trial
+from gaitdisc.recording.cycle import NAN
+from gaitdisc.recording.strides import interpolated
+from gaitdisc.signals.contact_force import RISE_N, loaded
+from gaitdisc.signals.direction import marker_position
+from gaitdisc.signals.strides import gap_reasons
+
+LONGEST_STANCE = 0.8  # of a stride: a plate that is loaded for longer carried two feet
+SHORTEST_STRIDE_M = 0.1  # below it the line of a stride has no direction
+EDGE_S = 0.06  # by which markers and a plate may differ about one event
+Timed = Mapping[str, tuple[tuple[float, str], ...]]
+
+
+@dataclass(frozen=True)
+class Places:
+    """Where the feet were in one cycle.
+
+    Parameters
+    ----------
+    step_s : float
+        From the contact of the other foot to the next of this one [s].
+    stride_m, step_m, width_m : float
+        Length of the stride; of the step, from where the other heel landed inside of the cycle to where this one lands
+        at its end; how far beside the line of the stride the other landed [m]; NaN without markers.
+    """
+
+    step_s: float = NAN
+    stride_m: float = NAN
+    step_m: float = NAN
+    width_m: float = NAN
+
+
+def cut_cycles(contacts: Timed, offs: Timed) -> list[Cycle]:
+    """Cycles from each contact to the next of the same foot, with the events inside.
+
+    Left out is a cycle that has no contact of the other foot inside, or more than one, where the contacts of the other
+    foot were seen before and after.
+
+    Parameters
+    ----------
+    contacts, offs : mapping of str to tuple of (float, str)
+        Side -> time [s] and what placed it.
+
+    Examples
+    --------
+    >>> contacts = {"r": ((0.0, "force"), (1.0, "force")), "l": ((0.5, "force"),)}
+    >>> one = cut_cycles(contacts, {"r": ((0.6, "force"),), "l": ((0.1, "force"),)})[0]
+    >>> one.foot_off, one.opposite_off, one.opposite_contact, one.reason
+    (0.6, 0.1, 0.5, '')
+    """
+    found = []
+    for side, own in sorted(contacts.items()):
+        other = "l" if side == "r" else "r"
+        across = [at for at, _ in contacts.get(other, ())]
+        for (start, by), (end, next_by) in itertools.pairwise(own):
+            length = end - start
+            off, off_by = _first(offs.get(side, ()), start + 0.2 * length, start + 0.95 * length)
+            inside = [at for at in across if start < at < end]
+            landed = inside[0] if len(inside) == 1 else NAN
+            until = landed if inside else start + 0.5 * length
+            left, _ = _first(offs.get(other, ()), start - EDGE_S, until)
+            seen = bool(across) and across[0] < start and across[-1] > end
+            reason = ""
+            if len(inside) > 1 or (seen and not inside):
+                count = f"{len(inside)} contacts" if inside else "no contact"
+                reason = f"{count} of the other foot inside: one was missed or is false"
+            found.append(Cycle(side, start, end, (by, next_by), off, max(left, start), landed, off_by, False, reason))
+    return found
+
+
+def with_plates(cycles: list[Cycle], trial: Trial) -> list[Cycle]:
+    """Same cycles, kinetic where the foot alone loaded one plate, or its own belt, for the whole stance.
+
+    Parameters
+    ----------
+    cycles : list of Cycle
+        Of the trial.
+    trial : Trial
+        With its forces.
+    """
+    if "forces" not in trial.streams:
+        return cycles
+    forces = trial.stream("forces").selected_by(lambda channel: channel.quantity == "vertical_force")
+    belts = {channel.side for channel in forces.channels if channel.side}
+    spans = [span for name in forces.names for span in _loadings(forces, name)] if not belts else []
+    return [replace(one, kinetic=one.side in belts or _alone(one, spans)) for one in cycles]
+
+
+def feet_in(cycles: list[Cycle], trial: Trial, direction: str = "", belt_m_per_s: float = 0.0) -> list[Places]:
+    """Where the feet were in each cycle.
+
+    Parameters
+    ----------
+    cycles : list of Cycle
+        Of the trial.
+    trial : Trial
+        With its markers; without them only the step's time is known.
+    direction : str
+        In the laboratory's axes, `+x` to `-z`; inferred where it is empty.
+    belt_m_per_s : float
+        Speed of a belt, whose length is added to each stride [m/s].
+    """
+    known = trial_markers(trial, direction)
+    if known is None:
+        return [Places(one.end - one.opposite_contact) for one in cycles]
+    heels, _, way = known
+    markers = trial.stream("markers")
+    paths = {side: marker_position(markers, name) for side, name in heels.items()}
+    found = []
+    for one in cycles:
+        other = "l" if one.side == "r" else "r"
+        first, beside, last = (
+            interpolated(markers.time, paths[side], np.array([at]))[0]
+            for side, at in ((one.side, one.start), (other, one.opposite_contact), (one.side, one.end))
+        )
+        stride = _level(last - first, way.up)
+        length = float(np.linalg.norm(stride))
+        over_ground = way.headings is not None and length >= SHORTEST_STRIDE_M
+        forward = stride / length if over_ground else _level(way.forward, way.up)
+        across = np.cross(forward, way.up) * (1.0 if one.side == "r" else -1.0)
+        step_s = one.end - one.opposite_contact
+        found.append(
+            Places(
+                step_s,
+                float(np.dot(stride, forward)) + belt_m_per_s * one.duration_s,
+                float(np.dot(last - beside, forward)) + belt_m_per_s * step_s,
+                float(np.dot(first - beside, across)),
+            )
+        )
+    return found
+
+
+def with_gaps(cycles: list[Cycle], legs: Recording | None) -> list[Cycle]:
+    """Same cycles, left out where an angle of the own leg is missing or the recording does not reach.
+
+    Parameters
+    ----------
+    cycles : list of Cycle
+        Of one trial.
+    legs : Recording, optional
+        Angles, gaps bridged where they may be; None where the trial has none.
+    """
+    if legs is None:
+        return cycles
+    found = []
+    for one in cycles:
+        own = [channel.name for channel in legs.channels if channel.side == one.side]
+        if one.reason or not own:
+            found.append(one)
+            continue
+        (reason,) = gap_reasons(np.array([one.start]), np.array([one.end]), legs.selected(own))
+        found.append(replace(one, reason=reason))
+    return found
+
+
+def moved_events(steps: StepEvents, contact_s: float, off_s: float) -> list[Cycle]:
+    """Cycles of a trial whose events are moved by these offsets, the ground's own left where they are.
+
+    Parameters
+    ----------
+    steps : StepEvents
+        As they were seen.
+    contact_s, off_s : float
+        Added to contacts and to foot offs of markers or angles [s].
+    """
+    return cut_cycles(steps.corrected("contacts", contact_s), steps.corrected("foot_offs", off_s))
+
+
+def _first(times: tuple[tuple[float, str], ...], start: float, end: float) -> tuple[float, str]:
+    return next(((at, by) for at, by in times if start <= at <= end), (NAN, ""))
+
+
+def _level(vector: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.float64]:
+    return vector - np.dot(vector, up) * up
+
+
+def _loadings(forces: Recording, name: str) -> list[tuple[float, float]]:
+    """From when to when a plate is loaded [s]; what the recording cuts is not whole."""
+    force = forces[name]
+    known = force[np.isfinite(force)]
+    upward = -force if len(known) and -known.min() > known.max() else force
+    spans = loaded(upward, forces.rate_hz, RISE_N)
+    return [(float(forces.time[a]), float(forces.time[b - 1])) for a, b in spans if a > 0 and b < len(force)]
+
+
+def _alone(one: Cycle, spans: list[tuple[float, float]]) -> bool:
+    """One plate is loaded from this contact to this foot off, for no longer than a stance, and no other begins then."""
+    if not np.isfinite(one.foot_off):
+        return False
+    own = [span for span in spans if abs(span[0] - one.start) <= EDGE_S and abs(span[1] - one.foot_off) <= EDGE_S]
+    at_once = [span for span in spans if abs(span[0] - one.start) <= EDGE_S]
+    return len(own) == 1 and len(at_once) == 1 and own[0][1] - own[0][0] <= LONGEST_STANCE * one.duration_s

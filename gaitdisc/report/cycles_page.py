@@ -1,0 +1,191 @@
+"""What the page shows of pooled cycles: for everybody together, then person by person."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from gaitdisc.report.block import Block, SavedBlock, save_block
+from gaitdisc.report.cycles_figure import cycles_figures
+from gaitdisc.report.cycles_tables import (
+    all_cycles,
+    all_means,
+    all_spatiotemporal,
+    left_out_cycles,
+    offset_words,
+    overview_table,
+    spatiotemporal_table,
+)
+from gaitdisc.report.figure import LARGEST_INLINE_SVG, file_names, save_figures
+from gaitdisc.report.page import write_page
+from gaitdisc.report.provenance_tables import provenance_tables
+from gaitdisc.report.run_tables import findings_table, refusals_table
+from gaitdisc.report.side_by_side import drawn_side_by_side
+from gaitdisc.report.table import save_table, save_tables
+from gaitdisc.report.wording import SIDE_WORDS, counted, listed
+from gaitdisc.results import PooledCycles, ResponseRun
+
+INLINE_BYTES = 4_000_000  # of all figures together, about; beyond it they are shown as pictures
+MOST_HERE = 2  # people whose figures are drawn one after the other
+FEW = 3  # cycles of a foot below which no spread is spoken of
+METHOD = (
+    "Contacts: the file's events, else force, else markers (heel farthest in front of the pelvis, each step along its "
+    "own direction), else joint angles; none that sees fewer than 80 % of the strides that another sees. Where a plate "
+    "or an event has a step that markers or angles have too, its own time is taken, and all others are moved by the "
+    "median difference of the person's session.",
+    "Foot off: events, else force where markers agree within 0.15 s, else the toe farthest behind the pelvis, else the "
+    "ankle's largest plantarflexion. From angles alone contacts lie some 30 ms early and foot off some 30 ms late, so "
+    "that stance is some 6 % of a stride too long.",
+    "A cycle is left out where it is too short or too long, differs from the person's other cycles by more than 15 % "
+    "and 6 robust standard deviations, has not one contact of the other foot inside, or lacks an angle of its own leg. "
+    "Cycles never cross a trial.",
+    "Moments are shown for cycles of which one plate carried the whole stance, with this foot alone on it.",
+    "Speed and lengths are those of the heels from contact to contact; on a treadmill the belt is added where the "
+    "study has its speed.",
+)
+
+
+def write_cycles_page(run: ResponseRun, folder: Path) -> Path:
+    """Write the report of a run that pooled cycles and fitted no models: `report.html`, `figures/` and `tables/`.
+
+    Parameters
+    ----------
+    run : ResponseRun
+        With cycles.
+    folder : Path
+        Where it goes; made if missing.
+
+    Raises
+    ------
+    WriteError
+        If a file cannot be written.
+    """
+    tables = {
+        "refusals": refusals_table(run),
+        "findings": findings_table(run),
+        **provenance_tables(run.provenance),
+    }
+    save_tables(tables.values(), folder)
+    shown = {
+        "run": run,
+        "answer": cycles_sentences(run),
+        "blocks": saved_cycle_blocks(run, folder),
+        "tables": tables,
+        "method": METHOD,
+    }
+    save_cycle_tables(run, folder)
+    return write_page("cycles", shown, folder)
+
+
+def save_cycle_tables(run: ResponseRun, folder: Path) -> None:
+    """Write all cycles, all mean curves and all spatiotemporal values of a run as three tables.
+
+    Parameters
+    ----------
+    run : ResponseRun
+        With cycles.
+    folder : Path
+        Folder of the report.
+    """
+    save_table(all_cycles(run.cycles), folder / "tables" / "cycles.csv")
+    save_table(all_means(run.cycles), folder / "tables" / "means.csv")
+    save_table(all_spatiotemporal(run.cycles), folder / "tables" / "spatiotemporal.csv")
+
+
+def cycles_sentences(run: ResponseRun) -> list[str]:
+    """Who is reported, with how many cycles; who is not, and what the numbers do not carry.
+
+    Parameters
+    ----------
+    run : ResponseRun
+        With cycles.
+    """
+    kept = [one for one in run.cycles if len(one.kept)]
+    if not kept:
+        return ["No cycle could be kept: see “Left out”."]
+    people = list(dict.fromkeys(one.subject for one in kept))
+    left = sum(one.counted("l") for one in kept)
+    right = sum(one.counted("r") for one in kept)
+    out = sum(len(one.left_out) for one in run.cycles)
+    sentences = [
+        f"{counted(len(people), 'participant')}: {counted(left, 'left cycle')} and {counted(right, 'right cycle')} of "
+        f"{counted(sum(one.trials for one in kept), 'trial')} are kept, {out} left out, each with its reason."
+    ]
+    few = sorted({one.subject for one in kept if min(one.counted("l"), one.counted("r")) < FEW})
+    if few:
+        sentences.append(
+            f"Fewer than {FEW} cycles of a foot in a session and condition: {listed(few)}. Such curves are single "
+            f"steps, and say nothing of how steadily somebody walks."
+        )
+    moved = [one for one in kept if one.contact_offset_s is not None]
+    if moved:
+        said = [f"{one.name} {offset_words(one)}" for one in moved]
+        sentences.append(f"Contacts from markers or angles were moved: {'; '.join(said)}.")
+    return sentences
+
+
+def saved_cycle_blocks(run: ResponseRun, folder: Path) -> list[SavedBlock]:
+    """Part of the page for everybody together, then one for each person, with figures and tables written.
+
+    Parameters
+    ----------
+    run : ResponseRun
+        With cycles; without any there is no part.
+    folder : Path
+        Folder of the report.
+    """
+    if not run.cycles:
+        return []
+    unfitted = tuple(f"No models are fitted to {one.participant}: {one.reason}" for one in run.unfitted)
+    first = Block("cycles", "Cycles", (_windows(run), *unfitted), (), (overview_table(run.cycles),))
+    people = list(dict.fromkeys(one.subject for one in run.cycles))
+    names = file_names(people)
+    each = [
+        ([one for one in run.cycles if one.subject == person], names[person], folder, len(run.cycles))
+        for person in people
+    ]
+    return [save_block(first, folder), *drawn_side_by_side(_saved, each, MOST_HERE)]
+
+
+def person_block(sets: Sequence[PooledCycles], name: str) -> Block:
+    """Part of the page for one person: counts, figures of each session and condition, and tables.
+
+    Parameters
+    ----------
+    sets : sequence of PooledCycles
+        Of one person.
+    name : str
+        Person's part of the file names.
+    """
+    kept = [one for one in sets if len(one.kept)]
+    left_out = left_out_cycles(sets, name)
+    places = file_names([one.where for one in kept])
+    figures = [figure for one in kept for figure in cycles_figures(one, f"{name}-{places[one.where]}")]
+    tables = [spatiotemporal_table(kept, name)] if kept else []
+    tables += [left_out] if left_out is not None else []
+    return Block(f"cycles-{name}", sets[0].subject, (_person(sets),), tuple(figures), tuple(tables))
+
+
+def _saved(sets: Sequence[PooledCycles], name: str, folder: Path, count: int) -> SavedBlock:
+    block = person_block(sets, name)
+    save_tables(block.tables, folder)
+    figures = save_figures(block.figures, folder, min(LARGEST_INLINE_SVG, INLINE_BYTES // max(1, count)))
+    return SavedBlock(block.anchor, block.heading, block.sentences, tuple(figures), block.tables)
+
+
+def _windows(run: ResponseRun) -> str:
+    device = "" if run.exo else " The study compares no device, so no models are fitted."
+    return f"Every cycle lies in one trial; nothing is joined across trials.{device}"
+
+
+def _person(sets: Sequence[PooledCycles]) -> str:
+    parts = []
+    for one in sets:
+        counts = " and ".join(f"{one.counted(side)} {SIDE_WORDS[side]}" for side in ("l", "r"))
+        ground = "over ground" if one.over_ground else "on a treadmill"
+        parts.append(
+            f"{one.where}: {counts} cycles of {counted(one.trials, 'trial')} {ground}"
+            if len(one.kept)
+            else f"{one.where}: no cycle, see “Left out”"
+        )
+    return f"{'; '.join(parts)}."

@@ -1,0 +1,266 @@
+"""Tables of pooled cycles: how many, spatiotemporal values, and those left out with their reasons."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+
+from gaitdisc.recording import PERCENT
+from gaitdisc.report.table import Table
+from gaitdisc.report.wording import NONE, SIDE_WORDS, number
+from gaitdisc.results import PooledCycles
+from gaitdisc.results.pooled_cycles import CYCLE_COLUMNS, SPATIOTEMPORAL
+
+FEET = ("l", "r")
+VALUES = {  # column -> words, unit, digits
+    "speed_m_per_s": ("speed", "m/s", 2),
+    "cadence_per_min": ("cadence", "steps/min", 0),
+    "stride_s": ("stride time", "s", 2),
+    "step_s": ("step time", "s", 2),
+    "stride_m": ("stride length", "m", 2),
+    "step_m": ("step length", "m", 2),
+    "width_m": ("step width", "m", 2),
+    "stance_percent": ("stance", "%", 1),
+    "swing_percent": ("swing", "%", 1),
+    "single_support_percent": ("single support", "%", 1),
+    "double_support_percent": ("double support", "%", 1),
+}
+
+
+def all_cycles(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
+    """Every cycle of everybody, kept or left out, one row each.
+
+    Parameters
+    ----------
+    cycles : sequence of PooledCycles
+        Of a run.
+    """
+    tables = [_named(one, one.cycles) for one in cycles if len(one.cycles)]
+    columns = ["participant", "group", "session", "condition", *CYCLE_COLUMNS]
+    return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=pd.Index(columns))
+
+
+def all_means(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
+    """Mean curves of everybody, one row a channel, side and percent.
+
+    Parameters
+    ----------
+    cycles : sequence of PooledCycles
+        Of a run.
+    """
+    tables = [_named(one, one.mean_curves()) for one in cycles if len(one.kept)]
+    columns = ["participant", "group", "session", "condition", "channel", "unit", "side", "percent", "n", "mean", "sd"]
+    return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=pd.Index(columns))
+
+
+def all_curves(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
+    """Every kept cycle of everybody, one row a cycle, channel and percent; channels without a value are not there.
+
+    Parameters
+    ----------
+    cycles : sequence of PooledCycles
+        Of a run.
+    """
+    columns = [
+        "participant", "group", "session", "condition", "trial", "side", "start_s", "channel", "unit", "percent",
+        "value",
+    ]  # fmt: skip
+    tables = []
+    for one in cycles:
+        curves = one.curves
+        for row, cycle in enumerate(one.kept.itertuples(index=False)):
+            for column, channel in enumerate(one.channels):
+                values = curves[row, :, column]
+                if not np.isfinite(values).any():
+                    continue
+                words = (one.subject, one.group, one.session, one.condition, cycle.trial, cycle.side, cycle.start_s)
+                tables.append(
+                    pd.DataFrame(
+                        {
+                            **dict(zip(columns, words, strict=False)),
+                            "channel": channel.name,
+                            "unit": channel.unit,
+                            "percent": PERCENT,
+                            "value": values,
+                        }
+                    )
+                )
+    return pd.concat(tables, ignore_index=True)[columns] if tables else pd.DataFrame(columns=pd.Index(columns))
+
+
+def all_spatiotemporal(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
+    """Spatiotemporal values of everybody: n, mean and standard deviation over kept cycles, by side.
+
+    Parameters
+    ----------
+    cycles : sequence of PooledCycles
+        Of a run.
+    """
+    rows = []
+    for one in cycles:
+        for side in FEET:
+            own = one.kept[one.kept["side"] == side]
+            for value in SPATIOTEMPORAL:
+                known = own[value].dropna()
+                spread = float(known.std()) if len(known) > 1 else np.nan
+                mean = float(known.mean()) if len(known) else np.nan
+                words = (one.subject, one.group, one.session, one.condition)
+                rows.append((*words, value, side, len(known), mean, spread))
+    columns = ["participant", "group", "session", "condition", "value", "side", "n", "mean", "sd"]
+    return pd.DataFrame(rows, columns=pd.Index(columns))
+
+
+def overview_table(cycles: Sequence[PooledCycles]) -> Table:
+    """Who has how many cycles of which foot, from how many trials, and what placed the contacts.
+
+    Parameters
+    ----------
+    cycles : sequence of PooledCycles
+        Of a run.
+    """
+    rows, records = [], []
+    for one in cycles:
+        kinetic = one.kept[one.kept["kinetic"].astype(bool)]
+        counts = {side: (one.counted(side), int((one.left_out["side"] == side).sum())) for side in FEET}
+        plates = {side: int((kinetic["side"] == side).sum()) for side in FEET}
+        muscles = emg_counts(one)
+        by = ", ".join(f"{name} ({count})" if len(one.detectors) > 1 else name for name, count in one.detectors.items())
+        rows.append((
+            one.subject, one.group or NONE, one.where, str(one.trials),
+            *(f"{counts[side][0]} / {counts[side][1]}" for side in FEET),
+            f"{plates['l']}, {plates['r']}", _emg(muscles), by or NONE, offset_words(one),
+        ))  # fmt: skip
+        records.append({
+            "participant": one.subject, "group": one.group, "session": one.session, "condition": one.condition,
+            "trials": one.trials, **{f"kept_{side}": counts[side][0] for side in FEET},
+            **{f"left_out_{side}": counts[side][1] for side in FEET},
+            **{f"kinetic_{side}": plates[side] for side in FEET},
+            "emg_channels": len(muscles), "emg_cycles": sum(muscles.values()), "detectors": by,
+            "contact_offset_s": one.contact_offset_s, "foot_off_offset_s": one.foot_off_offset_s,
+            "offset_steps": one.offset_steps, "over_ground": one.over_ground,
+        })  # fmt: skip
+    columns = (
+        "participant", "group", "session, condition", "trials", "left: kept / dropped", "right: kept / dropped",
+        "on a plate (left, right)", "EMG", "contacts by", "contacts moved",
+    )  # fmt: skip
+    caption = (
+        f"Cycles pooled over trials, n = {len(cycles)} sessions and conditions. On a plate: cycles whose whole stance "
+        f"one plate carried, with this foot alone on it. EMG: live channels, and cycles of all of them."
+    )
+    return Table("cycle_counts", caption, columns, tuple(rows), pd.DataFrame(records))
+
+
+def emg_counts(one: PooledCycles) -> dict[str, int]:
+    """Kept cycles of its own foot in which each EMG channel is live.
+
+    Parameters
+    ----------
+    one : PooledCycles
+        Of one session and condition.
+    """
+    feet = one.kept["side"].to_numpy()
+    columns = {column: c for column, c in enumerate(one.channels) if c.quantity == "emg"}
+    if not columns:
+        return {}
+    curves = one.curves
+    return {
+        channel.name: int(np.isfinite(curves[feet == channel.side, :, column]).all(axis=1).sum())
+        for column, channel in columns.items()
+    }
+
+
+def offset_words(one: PooledCycles) -> str:
+    """By how much contacts of markers or angles were moved, and on how many steps that rests.
+
+    Parameters
+    ----------
+    one : PooledCycles
+        Of one session and condition.
+    """
+    late = [name for name in one.detectors if name in ("markers", "angles")]
+    if not late:
+        return NONE
+    if one.contact_offset_s is None:
+        return "not moved: no plate saw a step"
+    steps = "1 step" if one.offset_steps == 1 else f"{one.offset_steps} steps"
+    return f"{1e3 * one.contact_offset_s:+.0f} ms ({steps} that a plate or an event has too)"
+
+
+def spatiotemporal_table(sets: Sequence[PooledCycles], name: str) -> Table:
+    """Spatiotemporal values of one person, mean ± standard deviation (n) for each foot, session and condition.
+
+    Parameters
+    ----------
+    sets : sequence of PooledCycles
+        Of one person, those with kept cycles.
+    name : str
+        Person's part of the file name.
+    """
+    numbers = all_spatiotemporal(sets)
+    rows = []
+    for value, (words, unit, digits) in VALUES.items():
+        cells = []
+        for one in sets:
+            for side in FEET:
+                own = numbers[
+                    (numbers["value"] == value) & (numbers["side"] == side)
+                    & (numbers["session"] == one.session) & (numbers["condition"] == one.condition)
+                ].iloc[0]  # fmt: skip
+                cells.append(_cell(float(own["mean"]), float(own["sd"]), int(own["n"]), digits))
+        if set(cells) != {NONE}:
+            rows.append((f"{words} [{unit}]", *cells))
+    columns = ("value", *(f"{SIDE_WORDS[side]}" for _ in sets for side in FEET))
+    groups = (("", 1), *((one.where, 2) for one in sets))
+    caption = f"{sets[0].subject}: spatiotemporal values, mean ± standard deviation (number of cycles)."
+    return Table(f"spatiotemporal-{name}", caption, columns, tuple(rows), numbers, groups)
+
+
+def left_out_cycles(sets: Sequence[PooledCycles], name: str) -> Table | None:
+    """Cycles of one person that are left out, each with its reason; None where there are none.
+
+    Parameters
+    ----------
+    sets : sequence of PooledCycles
+        Of one person.
+    name : str
+        Person's part of the file name.
+    """
+    numbers = all_cycles([one for one in sets if len(one.left_out)])
+    numbers = numbers[~numbers["kept"].astype(bool)].reset_index(drop=True) if len(numbers) else numbers
+    if not len(numbers):
+        return None
+    rows = tuple(
+        (
+            " ".join(part for part in (str(row.session), str(row.condition)) if part),
+            str(row.trial),
+            SIDE_WORDS[str(row.side)],
+            f"{row.start_s:.2f} to {row.end_s:.2f}",
+            str(row.reason),
+        )
+        for row in numbers.itertuples(index=False)
+    )
+    headings = ("session, condition", "trial", "side", "from, to [s]", "why")
+    caption = f"{sets[0].subject}: cycles that are left out, n = {len(rows)}."
+    return Table(f"left_out-{name}", caption, headings, rows, numbers)
+
+
+def _named(one: PooledCycles, table: pd.DataFrame) -> pd.DataFrame:
+    words = {"participant": one.subject, "group": one.group, "session": one.session, "condition": one.condition}
+    named = table.copy()
+    for place, (column, word) in enumerate(words.items()):
+        named.insert(place, column, word)
+    return named
+
+
+def _emg(muscles: dict[str, int]) -> str:
+    live = {name: count for name, count in muscles.items() if count}
+    return f"{len(live)} live, {sum(live.values())} cycles" if live else NONE
+
+
+def _cell(mean: float, spread: float, count: int, digits: int) -> str:
+    if not count:
+        return NONE
+    sd = f" ± {number(spread, digits)}" if np.isfinite(spread) else ""
+    return f"{number(mean, digits)}{sd} ({count})"

@@ -1,0 +1,74 @@
+"""A report that was drawn of the very same run is not drawn again: drawing takes longer than the rest of a run."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+from gaitdisc.errors import SchemaError
+from gaitdisc.results.provenance import code_sha256
+from gaitdisc.results.sealed_json import OWN, file_sha256, read_sealed, sealed_text
+from gaitdisc.whole_file import write_whole
+
+DRAWN = "drawn.json"  # in the folder of the report: what it was drawn of, and hashes of all its files
+
+
+def page_of(run_folder: Path, draw: Callable[[], Path]) -> Path:
+    """Page of a run that is saved: the one that stands there, or one that is drawn now.
+
+    The page stands for as long as the run's files, this package's code and the report's own files are what they were;
+    the time at which a run was looked at again is no part of that.
+
+    Parameters
+    ----------
+    run_folder : Path
+        Folder of the run; the report is in `report/`.
+    draw : callable
+        Writes the report and gives its page.
+
+    Returns
+    -------
+    Path
+        The page.
+
+    Raises
+    ------
+    WriteError
+        If a file cannot be written.
+
+    Examples
+    --------
+    >>> page_of(folder, lambda: write_report(run, folder / "report"))  # doctest: +SKIP
+    """
+    report = run_folder / "report"
+    rests_on = _rests_on(run_folder)
+    try:
+        drawn = read_sealed(report / DRAWN)
+        if drawn["rests_on"] == rests_on and drawn["sha256"] == _hashes(report):
+            return report / drawn["page"]
+    except (SchemaError, OSError, KeyError):
+        pass  # none stands there, or not as it was drawn
+    page = draw()
+    data = {"rests_on": rests_on, "page": page.relative_to(report).as_posix(), "sha256": _hashes(report)}
+    write_whole(report / DRAWN, sealed_text(data))
+    return page
+
+
+def _rests_on(run_folder: Path) -> str:
+    """Hash of all sealed files of a run, each by its own seal; of the run itself without the time of its making."""
+    parts = [code_sha256()]
+    run = json.loads((run_folder / "run.json").read_text(encoding="utf-8"))
+    run.pop(OWN, None)
+    run.get("provenance", {}).pop("created", None)
+    parts.append(json.dumps(run, sort_keys=True))
+    for path in sorted(run_folder.glob("*/**/*.json")):
+        if path.parent.name != "report" and "report" not in path.relative_to(run_folder).parts:
+            parts += [path.relative_to(run_folder).as_posix(), file_sha256(path)]
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+
+
+def _hashes(report: Path) -> dict[str, str]:
+    files = [path for path in sorted(report.rglob("*")) if path.is_file() and path.name != DRAWN]
+    return {path.relative_to(report).as_posix(): file_sha256(path) for path in files}

@@ -1,0 +1,185 @@
+"""What is kept of the cycles of one person, session and condition, pooled over trials."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel
+from gaitdisc.errors import ShapeError
+from gaitdisc.recording import PERCENT, Finding
+from gaitdisc.recording.arrays import read_only
+from gaitdisc.results.on_disk import lies_on_disk, may_lie_on_disk
+from gaitdisc.results.refusal import Refusal
+
+CYCLE_COLUMNS = (
+    "trial",
+    "side",
+    "start_s",
+    "foot_off_s",
+    "opposite_off_s",
+    "opposite_contact_s",
+    "end_s",
+    "start_by",
+    "end_by",
+    "foot_off_by",
+    "kinetic",
+    "kept",
+    "reason",
+    "stride_s",
+    "step_s",
+    "cadence_per_min",
+    "stance_percent",
+    "swing_percent",
+    "single_support_percent",
+    "double_support_percent",
+    "stride_m",
+    "step_m",
+    "width_m",
+    "speed_m_per_s",
+)
+SPATIOTEMPORAL = CYCLE_COLUMNS[CYCLE_COLUMNS.index("stride_s") :]
+
+
+@may_lie_on_disk("curves")
+@dataclass(frozen=True, eq=False)
+class PooledCycles:
+    """Cycles of one person in one session under one condition.
+
+    Parameters
+    ----------
+    subject, group, session, condition : str
+        Pseudonym; words of the study, empty where there are no groups or sessions.
+    trials : int
+        Trials of which a cycle was cut, kept or not.
+    detectors : mapping of str to int
+        What found the contacts -> number of trials.
+    contact_offset_s, foot_off_offset_s : float, optional
+        By how much contacts and foot offs of markers or angles were moved later, the median of the steps that the
+        ground or the file's events saw too [s]; None where nothing was moved.
+    offset_steps : int
+        Contacts that both saw.
+    over_ground : bool
+        Whether the pelvis travels; False on a treadmill.
+    channels : tuple of Channel
+        Channels of `curves`.
+    curves : ndarray (cycle, phase, channel) [channel's unit]
+        Every kept cycle on 101 points, in the order of the kept rows of `cycles`; NaN where a channel has no value, and
+        where moments or powers have no plate under the foot.
+    cycles : DataFrame
+        One row a cycle, kept or left out: `CYCLE_COLUMNS`.
+    findings : tuple of Finding
+        Everything the reader and the quality checks saw.
+    refusals : tuple of Refusal
+        Trials that are left out as a whole, or all of them.
+    files : mapping of str to str
+        File name -> SHA-256.
+
+    Raises
+    ------
+    ShapeError
+        If the curves do not have 101 points, one column a channel, or one row a kept cycle.
+    """
+
+    subject: str
+    group: str
+    session: str
+    condition: str
+    trials: int
+    detectors: Mapping[str, int]
+    contact_offset_s: float | None
+    foot_off_offset_s: float | None
+    offset_steps: int
+    over_ground: bool
+    channels: tuple[Channel, ...]
+    curves: NDArray[np.float64]
+    cycles: pd.DataFrame
+    findings: tuple[Finding, ...]
+    refusals: tuple[Refusal, ...]
+    files: Mapping[str, str]
+
+    def __post_init__(self) -> None:
+        """Check shapes once, before they are saved."""
+        if lies_on_disk(self, "curves"):
+            return
+        wanted = (int(self.cycles["kept"].sum()), len(PERCENT), len(self.channels))
+        if np.shape(self.curves) != wanted:
+            raise ShapeError(
+                f"curves of pooled cycles need the shape {wanted}: cycles kept, points, channels",
+                f"found {np.shape(self.curves)} for {self.name}",
+                "Normalise the kept cycles with Strides.normalised.",
+            )
+        object.__setattr__(self, "curves", read_only(self.curves))
+
+    @property
+    def name(self) -> str:
+        """Person, session and condition."""
+        return " ".join(part for part in (self.subject, self.session, self.condition) if part)
+
+    @property
+    def where(self) -> str:
+        """Session and condition."""
+        return " ".join(part for part in (self.session, self.condition) if part)
+
+    @property
+    def kept(self) -> pd.DataFrame:
+        """Rows of the cycles that are kept, in the order of `curves`."""
+        return self.cycles[self.cycles["kept"].astype(bool)].reset_index(drop=True)
+
+    @property
+    def left_out(self) -> pd.DataFrame:
+        """Rows of the cycles that are left out, each with its reason."""
+        return self.cycles[~self.cycles["kept"].astype(bool)].reset_index(drop=True)
+
+    def counted(self, side: str) -> int:
+        """Number of kept cycles of one foot.
+
+        Parameters
+        ----------
+        side : str
+            `r` or `l`.
+        """
+        return int((self.kept["side"] == side).sum())
+
+    def mean_curves(self) -> pd.DataFrame:
+        """Mean and standard deviation over kept cycles of every channel on 101 points, by the cycles of its own foot.
+
+        Channels without a side come twice, once over the cycles of each foot.
+
+        Returns
+        -------
+        DataFrame
+            channel, unit, side (of the cycles), percent, n (cycles with a value there), mean, sd (NaN for one cycle).
+        """
+        curves, feet = self.curves, self.kept["side"].to_numpy()
+        tables = []
+        for column, channel in enumerate(self.channels):
+            for side in (channel.side,) if channel.side else ("l", "r"):
+                own = curves[feet == side, :, column]
+                present = np.isfinite(own)
+                count = present.sum(axis=0)
+                if not count.any():
+                    continue
+                with np.errstate(invalid="ignore", divide="ignore"):
+                    mean = np.where(present, own, 0.0).sum(axis=0) / count
+                    square = np.where(present, (own - mean) ** 2, 0.0).sum(axis=0)
+                    spread = np.where(count > 1, np.sqrt(square / (count - 1)), np.nan)
+                tables.append(
+                    pd.DataFrame(
+                        {
+                            "channel": channel.name,
+                            "unit": channel.unit,
+                            "side": side,
+                            "percent": PERCENT,
+                            "n": count,
+                            "mean": mean,
+                            "sd": spread,
+                        }
+                    )
+                )
+        columns = ["channel", "unit", "side", "percent", "n", "mean", "sd"]
+        return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=pd.Index(columns))

@@ -1,0 +1,117 @@
+"""Pooled cycles of a participant, kept on disk and taken from there."""
+
+from __future__ import annotations
+
+import pytest
+from driven_walker import DrivenWalker
+
+from gaitdisc.batch.cycles_unit import computed_cycles, cycles_key
+from gaitdisc.batch.participant_unit import computed_unit
+from gaitdisc.batch.run_study import run_study
+from gaitdisc.ingest.storage import write_storage
+from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial, StrideRules, Study
+from gaitdisc.results.run_store import load_run
+
+ANGLES = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", "hip_flexion_l", "knee_angle_l", "ankle_angle_l")
+
+
+@pytest.fixture(scope="module")
+def laboratory(tmp_path_factory):
+    """Two people, three short trials each with a name in the file, and a file that is no recording."""
+    folder = tmp_path_factory.mktemp("laboratory")
+    for number, who in enumerate(("Erika", "Otto"), 1):
+        walk = DrivenWalker(f"P0{number}", seed=number).walked(20.0, "walk")
+        for k in range(3):
+            part = walk.stream("kinematics").selected(ANGLES).between(6.0 * k, 6.0 * k + 5.0)
+            write_storage(part, folder / f"{who}_{k}.mot")
+            write_storage(walk.stream("forces").between(6.0 * k, 6.0 * k + 5.0), folder / f"{who}_{k}_grf.mot")
+    (folder / "Erika_9.mot").write_text("nothing")
+    return folder
+
+
+@pytest.fixture
+def study(laboratory):
+    people = []
+    for number, who in enumerate(("Erika", "Otto"), 1):
+        trials = [PlannedTrial(condition="walk", files=(f"{who}_{k}.mot", f"{who}_{k}_grf.mot")) for k in range(3)]
+        trials += [PlannedTrial(condition="walk", files=("Erika_9.mot",))] if who == "Erika" else []
+        people.append(Participant(id=f"P0{number}", trials=tuple(trials)))
+    return Study(
+        conditions=Conditions(nominal="walk"), strides=StrideRules(ground="overground"), participants=tuple(people)
+    ).placed(laboratory)
+
+
+def test_cycles_are_pooled_kept_and_not_computed_twice(study, tmp_path, monkeypatch):
+    person = study.participants[1]
+    (first,) = computed_cycles(study, person, tmp_path)
+    assert first.trials == 3 and first.counted("r") >= 6
+    monkeypatch.setattr("gaitdisc.processing.pooled.pooled_cycles", None)  # would fail if it were called
+    (again,) = computed_cycles(study, person, tmp_path)
+    assert again.cycles.equals(first.cycles)
+
+
+def test_another_setting_or_file_has_another_key(study):
+    person = study.participants[0]
+    other = study.model_copy(update={"strides": StrideRules(ground="treadmill")})
+    fewer = person.model_copy(update={"trials": person.trials[:2]})
+    keys = {cycles_key(study, person), cycles_key(other, person), cycles_key(study, fewer)}
+    assert len(keys) == 3
+
+
+def test_a_trial_that_fails_costs_nobody_else(study, tmp_path):
+    run = run_study(study, tmp_path)
+    assert run.reported == ("P01", "P02") and run.exo == ""
+    (refusal,) = run.refusals
+    assert (refusal.participant, refusal.condition) == ("P01", "walk 4")
+    assert [one.trials for one in run.cycles] == [3, 3]
+
+
+def test_no_name_of_a_file_reaches_the_run(study, tmp_path):
+    run_study(study, tmp_path)
+    texts = [path.read_text() for path in tmp_path.rglob("*") if path.suffix in (".json", ".csv")]
+    assert len(texts) >= 5 and not any("Erika" in text or "Otto" in text for text in texts)
+
+
+def test_a_run_of_cycles_comes_back(study, tmp_path):
+    run = run_study(study, tmp_path)
+    loaded = load_run(tmp_path)
+    assert [one.name for one in loaded.cycles] == [one.name for one in run.cycles] == ["P01 walk", "P02 walk"]
+    assert loaded.reported == run.reported and loaded.refusals == run.refusals
+
+
+def test_controls_without_the_device_are_pooled_beside_those_who_are_compared(study, tmp_path):
+    control = study.participants[1].model_copy(update={"group": "control"})
+    lonely = study.participants[0]
+    with_device = study.model_copy(
+        update={"conditions": Conditions(nominal="walk", device="exo"), "participants": (control, lonely)}
+    )
+    unit = computed_unit(with_device, control, tmp_path, lambda _: None)
+    assert unit.cycles and not unit.refusals and "P02 has 3 of 'walk', none of 'exo'" in unit.unfitted
+    refused = computed_unit(with_device, lonely, tmp_path, lambda _: None)
+    assert not refused.cycles and "P01 has 4 of 'walk', none of 'exo'" in refused.refusals[0].reason
+
+
+def test_a_file_that_could_not_be_read_is_tried_again(study, laboratory, tmp_path):
+    assert computed_cycles(study, study.participants[0], tmp_path)[0].refusals
+    broken, text = laboratory / "Erika_9.mot", (laboratory / "Erika_9.mot").read_text()
+    broken.write_text((laboratory / "Erika_0.mot").read_text())
+    try:
+        (mended,) = computed_cycles(study, study.participants[0], tmp_path)
+    finally:
+        broken.write_text(text)
+    assert mended.refusals == () and mended.trials == 4
+
+
+def test_two_short_walks_over_ground_that_no_model_can_use_are_pooled(study, tmp_path):
+    """One trial of each condition, three strides long: the run refused it, and there was nothing else to report."""
+    first, second = study.participants[1].trials[:2]
+    trials = (first, second.model_copy(update={"condition": "exo"}))
+    person = study.participants[1].model_copy(update={"trials": trials})
+    parts = {"conditions": Conditions(nominal="walk", device="exo"), "participants": (person,)}
+    models = Models(angles=ANGLES, outputs=("knee_angle_r",))
+    unit = computed_unit(study.model_copy(update={**parts, "models": models}), person, tmp_path, lambda _: None)
+    assert [one.condition for one in unit.cycles] == ["walk", "exo"] and all(len(one.kept) for one in unit.cycles)
+    assert not unit.refusals and "where 10 are needed" in unit.unfitted
+    treadmill = {**parts, "models": models, "strides": StrideRules(ground="treadmill")}
+    refused = computed_unit(study.model_copy(update=treadmill), person, tmp_path / "other", lambda _: None)
+    assert not refused.cycles and [refusal.condition for refusal in refused.refusals] == ["walk", "exo"]

@@ -1,0 +1,225 @@
+"""Cycles pooled over trials: a made walk cut into short trials gives the cycles of the whole, real ones theirs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gaitdisc.errors import ReadError
+from gaitdisc.ingest.c3d import C3DReader
+from gaitdisc.ingest.reading import read_planned_trial
+from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Quality, StrideRules, Study, Treadmill
+from gaitdisc.processing.pooled import pooled_cycles, pooled_instead
+from gaitdisc.recording import Trial
+
+
+def _planned(count, condition="walk", session=None):
+    return tuple(PlannedTrial(condition=condition, session=session, files=(f"{k}.c3d",)) for k in range(count))
+
+
+def _study(trials, **parts):
+    person = Participant(id="P01", group="control", trials=trials)
+    return Study(conditions=Conditions(nominal="walk"), participants=(person,), **parts), person
+
+
+@pytest.fixture(scope="module")
+def pieces():
+    """One walk of 40 s with belts, cut into eight short trials of 3.5 s each."""
+    from driven_walker import DrivenWalker
+
+    trial = DrivenWalker("P01", stride_s=1.1, seed=4).walked(40.0, "walk")
+    cut = []
+    for k in range(8):
+        streams = {key: r.between(4.0 * k, 4.0 * k + 3.5) for key, r in trial.streams.items()}
+        cut.append(replace(trial, name=f"piece {k}", streams=streams))
+    return cut
+
+
+OVERGROUND = {"strides": StrideRules(ground="overground")}
+
+
+def test_cycles_of_short_trials_are_those_of_each_trial_and_none_crosses(pieces):
+    study, person = _study(_planned(8), **OVERGROUND)
+    (found,) = pooled_cycles(study, person, lambda planned: pieces[int(planned.files[0][0])])
+    assert (found.name, found.group, found.trials, found.over_ground) == ("P01 walk", "control", 8, True)
+    assert found.refusals == () and dict(found.detectors) == {"force": 8}
+    for side in "rl":
+        assert 15 <= found.counted(side) <= 8 * 3
+    for number, rows in found.kept.groupby("trial"):
+        piece = pieces[int(number) - 1].stream("kinematics")
+        assert rows["start_s"].min() >= piece.time[0] - 0.01 and rows["end_s"].max() <= piece.time[-1] + 0.01
+    assert found.kept["stride_s"].median() == pytest.approx(1.1, abs=0.03)
+    assert found.kept["kinetic"].all()
+
+
+def test_the_mean_over_trials_is_that_of_the_walker(pieces):
+    study, person = _study(_planned(8), **OVERGROUND)
+    (found,) = pooled_cycles(study, person, lambda planned: pieces[int(planned.files[0][0])])
+    means = found.mean_curves()
+    knee = means[means["channel"] == "knee_angle_r"].set_index("percent")
+    assert set(knee["side"]) == {"r"}  # by the cycles of its own foot alone
+    assert (knee["n"] == found.counted("r")).all()
+    assert 45 < knee["mean"].max() < 65 and 65 < knee["mean"].idxmax() < 80  # bends most in swing
+    assert (knee["sd"] < 6).all() and (knee["sd"] > 0).all()
+
+
+def test_a_trial_that_fails_is_left_out_with_its_reason_and_the_others_go_on(pieces):
+    study, person = _study(_planned(3), **OVERGROUND)
+
+    def read(planned):
+        number = int(planned.files[0][0])
+        if number == 1:
+            raise ReadError("1.c3d is to be read", "it is damaged", "Export it again.")
+        return pieces[number] if number else Trial("empty", {"emg": pieces[0].stream("emg")})
+
+    (found,) = pooled_cycles(study, person, read)
+    assert found.trials == 1 and len(found.kept)
+    assert set(found.kept["trial"]) == {3}
+    assert [refusal.condition for refusal in found.refusals] == ["walk 1", "walk 2"]
+    assert "a cycle needs two initial contacts of one foot" in found.refusals[0].reason
+    assert "it is damaged" in found.refusals[1].reason
+
+
+def test_too_few_cycles_are_refused_by_the_setting_of_the_ground(pieces):
+    trials = _planned(2)
+    for ground, key, needed in (("overground", "min_cycles", 9), ("treadmill", "min_strides", 10)):
+        quality = Quality(min_cycles=9)
+        study, person = _study(trials, strides=StrideRules(ground=ground), quality=quality)
+        (found,) = pooled_cycles(study, person, lambda planned: pieces[int(planned.files[0][0])])
+        assert len(found.kept) == 0 and found.curves.shape[0] == 0
+        (refusal,) = found.refusals
+        assert refusal.reason.startswith(f"P01 walk needs {needed} cycles of a foot") and key in refusal.reason
+        assert set(found.left_out["reason"]) == {"too few cycles"}
+        assert not pooled_instead([found])
+
+
+def test_sessions_are_pooled_apart(pieces):
+    trials = (*_planned(2, session="before"), *_planned(3, session="after"))
+    study, person = _study(trials, sessions=("before", "after"), **OVERGROUND)
+    found = pooled_cycles(study, person, lambda planned: pieces[int(planned.files[0][0])])
+    assert [(one.where, one.trials) for one in found] == [("before walk", 2), ("after walk", 3)]
+    assert pooled_instead(found)
+
+
+def test_a_stride_of_twice_the_others_length_is_left_out_over_all_trials(pieces):
+    """One trial alone cannot show it: it has three strides."""
+    slow = pieces[0]
+    streams = {key: replace(r, time=2.0 * r.time) for key, r in slow.streams.items()}
+    trials = [replace(slow, streams=streams), *pieces[1:4]]
+    study, person = _study(_planned(4), **OVERGROUND)
+    (found,) = pooled_cycles(study, person, lambda planned: trials[int(planned.files[0][0])])
+    slow_rows = found.cycles[found.cycles["trial"] == 1]
+    assert not slow_rows["kept"].any()
+    assert slow_rows["reason"].str.contains("differs from the median stride of 1.1").any()
+
+
+def test_swapped_sides_are_refused(pieces):
+    kinematics = pieces[0].stream("kinematics")
+    swap = {"r": "l", "l": "r"}
+    channels = tuple(
+        replace(c, name=c.name[:-1] + swap[c.side], side=swap[c.side]) if c.side else c for c in kinematics.channels
+    )
+    swapped = replace(pieces[0], streams={**pieces[0].streams, "kinematics": replace(kinematics, channels=channels)})
+    study, person = _study(_planned(1), **OVERGROUND)
+    (found,) = pooled_cycles(study, person, lambda _: swapped)
+    assert "left and right are swapped" in found.refusals[0].reason
+
+
+def test_a_belt_s_speed_gives_lengths(pieces):
+    trials = (PlannedTrial(condition="walk", files=("0.c3d",), speed_m_per_s=1.2),)
+    study, person = _study(
+        trials,
+        strides=StrideRules(ground="treadmill"),
+        quality=Quality(min_strides=1),
+        treadmill=Treadmill(speed_m_per_s=1.0),
+    )
+    (found,) = pooled_cycles(study, person, lambda _: pieces[0])
+    assert found.kept["stride_m"].isna().all()  # no markers, so no lengths
+
+
+@pytest.fixture(scope="module")
+def turning(request):
+    """The six people of the laboratory, each with a straight walk and a turn."""
+    data = request.getfixturevalue("gait_data") / "young_straight_and_turn"
+    people = []
+    for number, folder in enumerate(sorted(path for path in data.iterdir() if path.is_dir()), 1):
+        trials = tuple(
+            PlannedTrial(condition=word, files=(str(file),))
+            for word in ("straight", "turn")
+            for file in sorted((folder / word).glob("*.c3d"))
+        )
+        people.append(Participant(id=f"P{number:02d}", trials=trials))
+    study = Study(conditions=Conditions(nominal="straight", others=("turn",)), participants=tuple(people))
+    with C3DReader() as reader:
+        return [
+            one
+            for person in people
+            for one in pooled_cycles(
+                study, person, lambda planned, person=person: read_planned_trial(study, person, planned, reader)
+            )
+        ]
+
+
+def test_all_twelve_walks_have_a_clean_cycle(turning):
+    assert len(turning) == 12
+    assert all(one.counted("r") >= 1 and one.counted("l") >= 1 for one in turning)
+    assert all(not one.refusals and one.over_ground for one in turning)
+    assert sum(len(one.kept) for one in turning) >= 44
+
+
+def test_the_turn_without_events_is_moved_by_its_one_plate_and_says_so(turning):
+    last = turning[-1]
+    assert (last.name, dict(last.detectors), last.offset_steps) == ("P06 turn", {"markers": 1}, 1)
+    assert 0.04 < last.contact_offset_s < 0.08
+    (said,) = [finding.what for finding in last.findings if finding.kind == "contact offset"]
+    assert said.startswith("contacts by markers moved 60 ms later, the one step that a plate or the file's events saw")
+    assert last.kept[last.kept["side"] == "r"]["start_by"].tolist() == ["force"]
+
+
+def test_spatiotemporal_values_of_young_people_are_those_of_walking(turning):
+    for one in turning:
+        kept = one.kept
+        assert kept["stance_percent"].between(53, 67).all(), one.name
+        assert kept["double_support_percent"].between(8, 32).all(), one.name
+        assert kept["stride_m"].between(0.6, 1.4).all() and kept["speed_m_per_s"].between(0.6, 1.6).all(), one.name
+    straight = [one for one in turning if one.condition == "straight"]
+    for one in straight:
+        left, right = (one.kept[one.kept["side"] == side]["step_m"].mean() for side in "lr")
+        assert left + right == pytest.approx(one.kept["stride_m"].mean(), abs=0.06)  # two steps make a stride
+
+
+def test_moments_are_there_only_where_a_plate_carried_the_foot(turning):
+    for one in turning:
+        names = [channel.name for channel in one.channels]
+        for side in "lr":
+            column = one.curves[:, :, names.index(f"ankle_angle_{side}_moment")]
+            own = (one.kept["side"] == side).to_numpy()
+            kinetic = one.kept["kinetic"].to_numpy()
+            assert np.isnan(column[~kinetic]).all()
+            push = column[own & kinetic]
+            assert len(push) == 0 or (np.nanmin(push, axis=1) < -0.8).all()  # plantarflexion, N m/kg
+    assert sum(int(one.kept["kinetic"].sum()) for one in turning) >= 20
+
+
+def test_a_static_trial_of_another_person_is_said_and_costs_no_cycle(gait_data):
+    folder = gait_data / "young_straight_and_turn"
+    walk = PlannedTrial(condition="walk", files=(str(folder / "HC030A" / "straight" / "HC030A05.c3d"),))
+    own = PlannedTrial(condition="static", files=(str(gait_data / "young_static" / "HC030A" / "HC030A01.c3d"),))
+    wrong = PlannedTrial(condition="static", files=(str(folder / "HC032A" / "static" / "HC032A01.c3d"),))
+    broken = PlannedTrial(condition="static", files=(str(folder / "manifest.csv"),))
+    said = {}
+    with C3DReader() as reader:
+        for name, static in (("own", own), ("wrong", wrong), ("none", None), ("broken", broken)):
+            study, person = _study((walk, static) if static else (walk,))
+            (found,) = pooled_cycles(
+                study, person, lambda planned, s=study, p=person: read_planned_trial(s, p, planned, reader)
+            )
+            assert found.counted("r") == found.counted("l") == 1 and not found.refusals
+            said[name] = [(f.severity, f.what) for f in found.findings if f.kind == "static trial"]
+    assert said["own"] == []
+    ((severity, what),) = said["wrong"]
+    assert severity == "warning" and "the static trial is of another person, or its markers were moved" in what
+    assert said["none"] == [("note", "there is no static trial")]
+    assert said["broken"][0][1].startswith("the static trial cannot be used: manifest.csv needs a column")

@@ -1,0 +1,105 @@
+"""Events of short trials: what sees them, and how far markers are from the files' own."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gaitdisc.errors import StrideError
+from gaitdisc.ingest.c3d import C3DReader
+from gaitdisc.ingest.reading import read_trial
+from gaitdisc.processing.step_events import StepEvents, over_ground, step_events
+from gaitdisc.recording import Trial
+
+NOTHING = {"r": np.empty(0), "l": np.empty(0)}
+
+
+@pytest.fixture(scope="module")
+def walks(gait_data_of_module):
+    files = sorted(gait_data_of_module.glob("young_straight_and_turn/*/[st][tu]r*/*.c3d"))
+    with C3DReader() as reader:
+        return {file.stem: read_trial(file, reader=reader) for file in files}
+
+
+@pytest.fixture(scope="module")
+def gait_data_of_module(request):
+    return request.getfixturevalue("gait_data")
+
+
+def _apart_ms(kind, walks):
+    """Events without the file's own, corrected by the plates, minus the file's own [ms]."""
+    label = {"contacts": "initial contact", "foot_offs": "foot off"}[kind]
+    apart = []
+    for walk in walks.values():
+        steps = step_events(replace(walk, events=()))
+        later = steps.later_s(kind)
+        found = steps.corrected(kind, float(np.median(later)) if len(later) else 0.0)
+        for side, times in found.items():
+            own = np.array([event.time for event in walk.events if (event.label, event.side) == (label, side)])
+            for at, _ in times:
+                if len(own) and np.abs(own - at).min() < 0.2:
+                    apart.append(1e3 * (at - own[np.argmin(np.abs(own - at))]))
+    return np.array(apart)
+
+
+def test_every_walk_of_one_stride_or_more_has_its_events(walks):
+    seen = {name: step_events(walk) for name, walk in walks.items()}
+    assert len(seen) == 12
+    assert {name: steps.detector for name, steps in seen.items() if steps.detector != "events"} == {
+        "HC036A23": "markers"
+    }
+    assert all(max(len(times) for times in steps.contacts.values()) >= 2 for steps in seen.values())
+    assert all(over_ground(walk) for walk in walks.values())
+
+
+def test_contacts_and_foot_offs_lie_near_the_files_own_events(walks):
+    contacts, offs = _apart_ms("contacts", walks), _apart_ms("foot_offs", walks)
+    assert len(contacts) >= 55 and len(offs) >= 60
+    assert abs(np.median(contacts)) <= 20 and np.percentile(np.abs(contacts), 95) <= 50
+    assert abs(np.median(offs)) <= 10 and np.percentile(np.abs(offs), 95) <= 40
+
+
+def test_a_foot_off_of_a_plate_that_the_toe_does_not_bear_out_is_not_taken(walks):
+    """The left foot of this turn steps off the edge of a plate at 2.14 s, a third of its stride, and stands on."""
+    offs = step_events(walks["HC032A18"]).corrected("foot_offs", 0.0)["l"]
+    assert not any(abs(at - 2.138) < 0.05 for at, _ in offs)
+    assert any(abs(at - 2.43) < 0.04 for at, _ in offs)
+
+
+def test_markers_are_moved_and_the_ground_s_own_contact_is_kept():
+    steps = StepEvents(
+        "markers", "", {"r": np.array([1.0, 2.0]), "l": np.array([1.5])}, NOTHING, {"r": ((1.05, "force"),)}, {}
+    )
+    assert steps.later_s("contacts") == pytest.approx([0.05])
+    assert steps.corrected("contacts", 0.05) == {
+        "r": ((1.05, "force"), (pytest.approx(2.05), "markers")),
+        "l": ((pytest.approx(1.55), "markers"),),
+    }
+
+
+def test_a_plate_s_contact_between_two_steps_of_the_markers_is_false():
+    steps = StepEvents("markers", "", {"r": np.array([1.0, 2.0])}, NOTHING, {"r": ((1.5, "force"),)}, {})
+    assert [at for at, _ in steps.corrected("contacts", 0.0)["r"]] == [1.0, 2.0]
+
+
+def test_what_lies_too_far_apart_is_no_bias():
+    steps = StepEvents("markers", "", {"r": np.array([1.0])}, NOTHING, {"r": ((1.3, "force"),)}, {})
+    assert len(steps.later_s("contacts")) == 0
+
+
+def test_angles_alone_serve_and_a_trial_without_anything_says_what_it_has(trial):
+    angles = step_events(Trial("a", {"kinematics": trial.stream("kinematics")}))
+    assert (angles.detector, angles.off_detector) == ("angles", "angles")
+    assert len(angles.contacts["r"]) >= 30
+    with pytest.raises(StrideError, match=r"a cycle needs two initial contacts of one foot, .*; b has emg"):
+        step_events(Trial("b", {"emg": trial.stream("emg")}))
+    with pytest.raises(StrideError, match="from markers"):
+        step_events(trial, "markers")
+
+
+def test_a_long_walk_that_does_not_show_its_path_is_one_on_a_treadmill(trial):
+    assert not over_ground(trial)
+    short = {"kinematics": trial.stream("kinematics").between(0.0, 3.0)}
+    assert over_ground(Trial("short", short))

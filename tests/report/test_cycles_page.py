@@ -1,0 +1,59 @@
+from __future__ import annotations
+
+import pandas as pd
+import pytest
+from made_cycles import made_cycles
+
+from gaitdisc.report.cycles_page import cycles_sentences, person_block, saved_cycle_blocks, write_cycles_page
+from gaitdisc.report.response_page import write_report
+from gaitdisc.results import Refusal, ResponseRun
+from gaitdisc.results.provenance import made_now
+
+pytestmark = pytest.mark.usefixtures("unpainted")
+
+
+def _run(*cycles, exo="", unfitted=()):
+    refusals = tuple(refusal for one in cycles for refusal in one.refusals)
+    return ResponseRun(
+        "walks", "walk", exo, (), (), refusals, made_now({}, 0, {}, "4.2"), cycles=cycles, unfitted=unfitted
+    )
+
+
+def test_a_run_of_cycles_has_its_own_page_and_tidy_tables(tmp_path):
+    run = _run(made_cycles(), made_cycles("P02", condition="turn"))
+    page = write_report(run, tmp_path).read_text()
+    assert "Gait cycles pooled over trials" in page and "Response to a device" not in page
+    assert "2 participants: 8 left cycles and 8 right cycles of 4 trials are kept, 4 left out" in page
+    assert "a cycle needs two contacts; found one. Add trials." in page
+    cycles = pd.read_csv(tmp_path / "tables" / "cycles.csv")
+    assert len(cycles) == 20
+    assert len(pd.read_csv(tmp_path / "tables" / "means.csv")) > 100
+    assert set(pd.read_csv(tmp_path / "tables" / "spatiotemporal.csv")["value"]) >= {"stance_percent", "speed_m_per_s"}
+
+
+def test_the_offset_and_few_cycles_are_said():
+    moved = made_cycles(detectors={"markers": 1}, contact_offset_s=0.06, offset_steps=1, each=2)
+    said = " ".join(cycles_sentences(_run(moved)))
+    assert "Contacts from markers or angles were moved: P01 walk +60 ms (1 step" in said
+    assert "Fewer than 3 cycles of a foot in a session and condition: P01." in said
+    assert "Fewer" not in " ".join(cycles_sentences(_run(made_cycles(each=4))))
+    assert cycles_sentences(_run(made_cycles(each=0))) == ["No cycle could be kept: see “Left out”."]
+
+
+def test_why_no_models_are_fitted_is_said(tmp_path):
+    why = Refusal("P01", "", "a comparison needs one trial of 'walk' and one of 'exo'; P01 has 2 of 'walk'. Correct.")
+    first = saved_cycle_blocks(_run(made_cycles(), exo="exo", unfitted=(why,)), tmp_path)[0]
+    assert any("No models are fitted to P01: a comparison needs one trial" in sentence for sentence in first.sentences)
+    assert "compares no device" in saved_cycle_blocks(_run(made_cycles()), tmp_path)[0].sentences[0]
+
+
+def test_one_part_a_person_with_a_figure_for_each_session_and_condition(tmp_path):
+    run = _run(made_cycles(session="before"), made_cycles(session="after"), made_cycles("P02"))
+    blocks = saved_cycle_blocks(run, tmp_path)
+    assert [block.heading for block in blocks] == ["Cycles", "P01", "P02"]
+    assert [figure.name for figure in blocks[1].figures] == ["cycles-P01-before_walk", "cycles-P01-after_walk"]
+    assert person_block(run.cycles[2:], "P02").sentences == (
+        "walk: 4 left and 4 right cycles of 2 trials over ground.",
+    )
+    assert saved_cycle_blocks(_run(), tmp_path) == []
+    assert write_cycles_page(run, tmp_path).is_file()
