@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from gaitdisc.discovery.answer import answer
+from gaitdisc.discovery.by_share import leaves_noise
 from gaitdisc.discovery.catalogue import Shape
 from gaitdisc.discovery.decision import judge
 from gaitdisc.discovery.held_out import holding_out_others, noted, tells_nothing
 from gaitdisc.discovery.inquiry import begin_inquiry, split_in_time
 from gaitdisc.discovery.odd_trials import agreeing_trials
+from gaitdisc.discovery.trial_apart import without_trial_apart
 from gaitdisc.results.discovery import Discovery
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
@@ -49,6 +51,13 @@ def discover(
     as_read = inquiry.as_read()
     told(f"weighing {len(inquiry.search.candidates)} explanations")
     verdict = judge(inquiry, as_read)
+    if not leaves_noise(inquiry, verdict.account):
+        kept = without_trial_apart(inquiry)
+        if kept is not measured:
+            told("one trial goes with no explanation of the others: it is left out")
+            measured, inquiry = kept, begin_inquiry(simulation, kept, shapes)
+            as_read = inquiry.as_read()
+            verdict = judge(inquiry, as_read)
     unproven = verdict.rivals[:1] if verdict.word == "no_gap" else ()
     if unproven and tells_nothing(inquiry, as_read, *unproven):
         if len(measured.trials) == 1:

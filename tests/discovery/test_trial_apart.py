@@ -1,0 +1,46 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hidden_in_a_mass import Experiment, mass, record, with_load
+
+from gaitdisc.discovery.discover import discover
+from gaitdisc.discovery.inquiry import begin_inquiry
+from gaitdisc.discovery.trial_apart import without_trial_apart
+
+
+def spoiled(measured, how):
+    """The trials with one thing wrong in the second."""
+    seen = measured.observed.copy()
+    one = seen[1, :, 0]
+    if how == "gain":
+        one *= 1.5
+    elif how == "offset":
+        one += 2 * one.std()
+    elif how == "drift":
+        one += np.linspace(0, 3 * one.std(), len(one))
+    elif how == "stands still":
+        one[len(one) // 3 :] = one[len(one) // 3]
+    return replace(measured, observed=seen)
+
+
+@pytest.mark.parametrize("how", ["gain", "offset", "drift", "stands still"])
+def test_a_trial_that_goes_with_no_explanation_of_the_others_is_left_out_and_the_name_is_right(how):
+    measured = spoiled(record(with_load("-14*x**3"), 3, Experiment(seconds=10.0)), how)
+    found, _ = discover(mass(), measured)
+    assert [(one.name, one.place) for one in found.effects] == [("cubic_stiffness", "load")]
+    assert "Trial '2' goes with no explanation of the others" in found.sentence
+    assert "it was left out" in found.sentence
+
+
+@pytest.mark.parametrize("truth", [with_load("-14*x**3"), with_load("-6*exp(-((x - 0.3)/0.2)**2)")])
+def test_trials_that_were_recorded_alike_are_all_kept(truth):
+    measured = record(truth, 3, Experiment(seconds=10.0))
+    assert without_trial_apart(begin_inquiry(mass(), measured)) is measured
+
+
+def test_of_three_trials_none_is_said_to_stand_apart():
+    measured = spoiled(record(with_load("-14*x**3"), 3, Experiment(trials=2, seconds=10.0)), "gain")
+    assert without_trial_apart(begin_inquiry(mass(), measured)) is measured
