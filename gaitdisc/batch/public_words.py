@@ -282,8 +282,9 @@ def _marker_set_words(path: Path) -> set[str]:
     """Labels, landmarks and title of a marker set that comes along, without the people it cites."""
     lines = _TEXT.sub("", path.read_text(encoding="utf-8")).splitlines()
     cited = {word for line in lines if line.startswith("citation") for word in _WORD.findall(line)}
-    said = (one or other for line in lines for one, other in _LITERAL.findall(line))
-    return {word for text in said for word in _WORD.findall(text)} - cited
+    said = {one or other for line in lines for one, other in _LITERAL.findall(line)}
+    both = {text.replace("{S}", side).replace("{s}", side.lower()) for text in said for side in "LR"}
+    return {word for text in both for word in _WORD.findall(text)} - cited
 
 
 def _files(participant: Participant, planned: PlannedTrial) -> dict[str, str]:

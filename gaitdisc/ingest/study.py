@@ -363,7 +363,9 @@ class Study(_Part):
 
     def missing_files(self) -> tuple[str, ...]:
         """Files that the study names and that are not there, as written in it."""
-        named = (file for each in self.participants for trial in each.trials for file in trial.files)
+        named = [file for each in self.participants for trial in each.trials for file in trial.files]
+        if self.kinematics and self.kinematics.marker_set.endswith(".toml"):
+            named.append(self.kinematics.marker_set)
         return tuple(file for file in dict.fromkeys(named) if not self.path_of(file).is_file())
 
     def check_files(self) -> None:

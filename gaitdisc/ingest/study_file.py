@@ -12,7 +12,7 @@ from pydantic import BaseModel, ValidationError
 
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.raw_file import read_raw
-from gaitdisc.ingest.study import Study
+from gaitdisc.ingest.study import Kinematics, Study
 from gaitdisc.ingest.study_errors import schema_error
 from gaitdisc.toml_text import parsed_toml
 from gaitdisc.whole_file import write_whole
@@ -135,6 +135,8 @@ def study_text(study: Study, folder: Path | None = None) -> str:
         "conditions", "treadmill", "channels", "filters", "kinematics", "strides", "models", "held_out", "quality",
     ):  # fmt: skip
         value = getattr(study, key)
+        if isinstance(value, Kinematics) and value.marker_set.endswith(".toml"):
+            value = value.model_copy(update={"marker_set": _moved(value.marker_set, study.folder, folder)})
         about = (type(value).__doc__ or "").split("\n")[0] if isinstance(value, BaseModel) else ""
         if value is None:
             parts.append(UNSET[key])

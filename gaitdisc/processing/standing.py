@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from gaitdisc.errors import GaitdiscError, UnitError
+from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.c3d_measures import read_body_measures
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.kinematics.calibration import Calibration, calibrated
@@ -66,41 +67,52 @@ class Standing:
             return given_up, None
         try:
             calibration = self._calibration(trial.stream("markers"))
-            person, findings = self._person(planned, trial)
-            settings = KineticsSettings(marker_cutoff_hz=self.study.filters.kinematics_hz)
+        except GaitdiscError as error:
+            return self._without_angles(given_up, self.participant.id, error), None
+        person, findings = self._person(planned, trial)
+        settings = KineticsSettings(marker_cutoff_hz=self.study.filters.kinematics_hz)
+        try:
             found = computed_trial(trial, calibration, person, settings)
         except GaitdiscError as error:
-            said = Finding("warning", "no angles", trial.name, str(error).rstrip("."), "angles from markers")
-            return replace(given_up, findings=(*trial.findings, said)), None
+            return self._without_angles(given_up, trial.name, error), None
         made = found.trial.findings[len(trial.findings) :]
-        new = [one for one in (*made, *findings) if one not in self._said]
+        return replace(found.trial, findings=(*trial.findings, *self._new((*made, *findings)))), found.steps
+
+    def _without_angles(self, trial: Trial, whose: str, error: GaitdiscError) -> Trial:
+        said = Finding("warning", "no angles", whose, str(error).rstrip("."), "angles from markers")
+        return replace(trial, findings=(*trial.findings, *self._new((said,))))
+
+    def _new(self, findings: Sequence[Finding]) -> tuple[Finding, ...]:
+        """Those that no earlier trial has said."""
+        new = tuple(one for one in dict.fromkeys(findings) if one not in self._said)
         self._said.update(new)
-        return replace(found.trial, findings=(*trial.findings, *new)), found.steps
+        return new
 
     def _calibration(self, markers: Recording) -> Calibration:
         """Of the person, with the marker set that the study names or the labels are of."""
         wanted = self.study.kinematics
-        given = marker_set_of(self.study)
-        chosen = chosen_marker_set(markers, self.markers, given)
+        chosen = chosen_marker_set(markers, self.markers, marker_set_of(self.study))
         if chosen.name not in self._calibrations:
             kept = chosen.with_joints(wanted.joints) if wanted and wanted.joints else chosen
-            measures = self._measures(self.planned) if self.planned else BodyMeasures()
-            self._calibrations[chosen.name] = calibrated(self.markers, kept, measures)
+            self._calibrations[chosen.name] = calibrated(self.markers, kept, self._measures(self.planned))
         return self._calibrations[chosen.name]
 
     def _person(self, planned: PlannedTrial, trial: Trial) -> tuple[Person | None, tuple[Finding, ...]]:
         """Mass and sex: the study's own, else the static file's, else the walk's; without a mass why not."""
         if "forces" not in trial.streams:
             return None, ()
-        found = self._measures(self.planned) if self.planned else BodyMeasures()
-        mass = self.participant.mass_kg or found.mass_kg or self._measures(planned).mass_kg
         try:
+            found = self._measures(self.planned)
+            mass = self.participant.mass_kg or found.mass_kg or self._measures(planned).mass_kg
             return Person(mass, self.participant.sex, found.height_m), ()
-        except UnitError as error:
+        except GaitdiscError as error:
             what = str(error).rstrip(".")
             return None, (Finding("warning", "no moments", self.participant.id, what, "moments and powers"),)
 
-    def _measures(self, planned: PlannedTrial) -> BodyMeasures:
+    def _measures(self, planned: PlannedTrial | None) -> BodyMeasures:
+        """Mass and lengths in the C3D file of a trial; none where it is of other files."""
+        if planned is None:
+            return BodyMeasures()
         files = [file for file in planned.files if file.lower().endswith(".c3d")]
         return read_body_measures(self.study.path_of(files[0])) if files else BodyMeasures()
 
