@@ -10,6 +10,7 @@ from gaitdisc.batch.public_words import PublicWords, of_trial, words_of
 from gaitdisc.batch.unit_key import unit_key
 from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.ingest.c3d import C3DReader
+from gaitdisc.ingest.file_hash import file_sha256
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import static_trial, trial_sets
@@ -75,7 +76,10 @@ def cycles_key(study: Study, participant: Participant) -> str:
     participant : Participant
         Who.
     """
-    parts = [participant.id, participant.group]
+    parts = [participant.id, participant.group, f"{participant.mass_kg} {participant.sex}"]
+    named = study.kinematics.marker_set if study.kinematics else ""
+    if named.endswith(".toml") and study.path_of(named).is_file():
+        parts.append(file_sha256(study.path_of(named)))
     for one in trial_sets(study, participant):
         standing = static_trial(study, participant, one.session)
         trials = (*one.trials, *((standing,) if standing else ()))

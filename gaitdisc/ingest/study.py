@@ -98,6 +98,12 @@ class Participant(_Part):
     group: Annotated[str, Field(max_length=40)] = Field(
         default="", description="group of this person, such as control; empty if there are none"
     )
+    mass_kg: Annotated[float, Field(ge=5, le=300)] | None = Field(
+        default=None, description="body mass [kg], where the C3D files have none or a wrong one"
+    )
+    sex: Literal["", "f", "m"] = Field(
+        default="", description="f or m, for the inertia of the segments; empty takes the mean of both"
+    )
     trials: tuple[PlannedTrial, ...] = Field(default=(), description="the walks of this person")
 
     def trials_of(self, condition: str) -> tuple[PlannedTrial, ...]:
@@ -148,6 +154,24 @@ class Filters(_Part):
         default=4, description="order of one pass of the Butterworth filters, which run forwards and backwards"
     )
     gap_s: Annotated[float, Field(ge=0)] = Field(default=0.1, description="longest gap that is filled [s]")
+
+
+class Kinematics(_Part):
+    """Where joint angles of pooled cycles come from."""
+
+    angles: Literal["file", "markers"] | None = Field(
+        default=None,
+        description="file: those of the file; markers: computed, those of the file not used. Without it those of the "
+        "file where it has any, else computed where there is a static trial",
+    )
+    marker_set: str = Field(
+        default="",
+        description="plug_in_gait, oxford_foot, helen_hayes, rajagopal, gait2354, or a .toml file relative to the "
+        "study file; empty: recognised by the labels",
+    )
+    joints: Literal["free", "held", "planar"] | None = Field(
+        default=None, description="free, held or planar; as the marker set says where it is not given"
+    )
 
 
 class StrideRules(_Part):
@@ -244,6 +268,7 @@ class Study(_Part):
         default_factory=dict, description='label in a file = "channel name" or "channel name [unit]"'
     )
     filters: Filters = Filters()
+    kinematics: Kinematics | None = None
     strides: StrideRules = StrideRules()
     models: Models = Models()
     held_out: HeldOut = HeldOut()
@@ -338,7 +363,9 @@ class Study(_Part):
 
     def missing_files(self) -> tuple[str, ...]:
         """Files that the study names and that are not there, as written in it."""
-        named = (file for each in self.participants for trial in each.trials for file in trial.files)
+        named = [file for each in self.participants for trial in each.trials for file in trial.files]
+        if self.kinematics and self.kinematics.marker_set.endswith(".toml"):
+            named.append(self.kinematics.marker_set)
         return tuple(file for file in dict.fromkeys(named) if not self.path_of(file).is_file())
 
     def check_files(self) -> None:

@@ -12,7 +12,7 @@ from pydantic import BaseModel, ValidationError
 
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.raw_file import read_raw
-from gaitdisc.ingest.study import Study
+from gaitdisc.ingest.study import Kinematics, Study
 from gaitdisc.ingest.study_errors import schema_error
 from gaitdisc.toml_text import parsed_toml
 from gaitdisc.whole_file import write_whole
@@ -26,6 +26,12 @@ EXAMPLES = {  # of what a study does not have
     "device": "exo",
     "unnamed": "walking",
     "session": "before",
+    "angles": "markers",
+    "joints": "held",
+}
+UNSET = {  # parts that a study may lack
+    "treadmill": "# [treadmill]\n# speed_m_per_s = 1.3  # belt speed [m/s], for strides found from markers\n",
+    "kinematics": '# [kinematics]\n# angles = "markers"  # joint angles from markers, those of the file not used\n',
 }
 
 _TOP = """\
@@ -125,11 +131,15 @@ def study_text(study: Study, folder: Path | None = None) -> str:
     >>> print(study_text(study))  # doctest: +SKIP
     """
     parts = [_TOP + _pair(study, "title") + _pair(study, "sessions")]
-    for key in ("conditions", "treadmill", "channels", "filters", "strides", "models", "held_out", "quality"):
+    for key in (
+        "conditions", "treadmill", "channels", "filters", "kinematics", "strides", "models", "held_out", "quality",
+    ):  # fmt: skip
         value = getattr(study, key)
+        if isinstance(value, Kinematics) and value.marker_set.endswith(".toml"):
+            value = value.model_copy(update={"marker_set": _moved(value.marker_set, study.folder, folder)})
         about = (type(value).__doc__ or "").split("\n")[0] if isinstance(value, BaseModel) else ""
         if value is None:
-            parts.append(f"# [{key}]\n# speed_m_per_s = 1.3  # belt speed [m/s], for strides found from markers\n")
+            parts.append(UNSET[key])
         elif isinstance(value, BaseModel):
             pairs = "".join(_pair(value, name) for name in type(value).model_fields)
             parts.append(f"# {about}\n[{key}]\n{pairs}")
@@ -139,7 +149,8 @@ def study_text(study: Study, folder: Path | None = None) -> str:
             parts.append(f"# {about}\n[{key}]\n{pairs}")
     told = False  # each key is explained where it stands first
     for participant in study.participants:
-        text = f"[[participants]]\n{_pairs(participant, ('id', 'group', 'excluded'), told)}"
+        measured = tuple(name for name in ("mass_kg", "sex") if getattr(participant, name))
+        text = f"[[participants]]\n{_pairs(participant, ('id', 'group', 'excluded', *measured), told)}"
         for trial in participant.trials:
             files = tuple(_moved(file, study.folder, folder) for file in trial.files)
             moved = trial.model_copy(update={"files": files})

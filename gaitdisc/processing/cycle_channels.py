@@ -21,7 +21,7 @@ LEGS = ("hip_", "knee_", "ankle_", "subtalar_")
 
 
 def cycle_channels(
-    trial: Trial, filters: Filters
+    trial: Trial, filters: Filters, smooth_moments: bool = False
 ) -> tuple[Recording | None, tuple[Recording, ...], tuple[Finding, ...]]:
     """Filtered angles, moments, powers, belt forces and EMG envelopes of a trial, those of the vocabulary.
 
@@ -31,6 +31,8 @@ def cycle_channels(
         As it was read.
     filters : Filters
         Of the study.
+    smooth_moments : bool
+        Whether moments and powers were computed of filtered markers and forces, so that they stay as they are.
 
     Returns
     -------
@@ -52,7 +54,8 @@ def cycle_channels(
         if recording is None:
             continue
         try:
-            state = _filtered(key, recording, filters)
+            smooth = smooth_moments and key == "moments"
+            state = recording if smooth else _filtered(key, recording, filters)
         except GaitdiscError as error:
             findings.append(Finding("warning", "left out", trial.name, f"{key}: {error}", f"curves of the {key}"))
             continue

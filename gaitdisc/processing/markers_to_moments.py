@@ -3,16 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.kinematics.calibration import Calibration
 from gaitdisc.kinematics.motion import Motion, motion
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
-from gaitdisc.kinetics.plate_steps import FootPath
+from gaitdisc.kinetics.plate_steps import FootPath, PlateStep
 from gaitdisc.kinetics.trial_kinetics import trial_kinetics
 from gaitdisc.recording import Finding, Trial
+
+
+@dataclass(frozen=True, eq=False)
+class ComputedTrial:
+    """A trial with what was computed from its markers.
+
+    Parameters
+    ----------
+    trial : Trial
+        With angles and, where platforms allow it, moments.
+    steps : tuple of PlateStep, optional
+        On all platforms, clean or not; None where no moments could be computed.
+    """
+
+    trial: Trial
+    steps: tuple[PlateStep, ...] | None
 
 
 def with_angles_and_moments(
@@ -50,13 +68,39 @@ def with_angles_and_moments(
     GaitdiscError
         If the markers give no angles.
     """
+    return computed_trial(trial, calibration, person, settings, forward).trial
+
+
+def computed_trial(
+    trial: Trial,
+    calibration: Calibration,
+    person: Person | None,
+    settings: KineticsSettings | None = None,
+    forward: Sequence[float] | None = None,
+) -> ComputedTrial:
+    """As `with_angles_and_moments`, with the steps on platforms that the moments rest on.
+
+    Parameters
+    ----------
+    trial : Trial
+        With markers, and forces for moments.
+    calibration : Calibration
+        Of the person, from the static trial.
+    person : Person or None
+        Mass, sex, stature; None for angles alone.
+    settings : KineticsSettings, optional
+        How moments are computed.
+    forward : sequence of 3 floats, optional
+        Direction of walking in the laboratory's axes; found from the pelvis where it is not given.
+    """
     moved = motion(trial.stream("markers"), calibration, forward)
     own = [key for key in ("kinematics", "moments") if key in trial.streams]
     streams = {key: recording for key, recording in trial.streams.items() if key not in own}
     named = {"subject": trial.subject, "condition": trial.condition}
     streams["kinematics"] = replace(moved.angles, **named)
     file = moved.angles.source.file or trial.name
-    findings = [*trial.findings, *moved.findings]
+    findings = [*trial.findings, *moved.findings, _residual(moved, file)]
+    steps = None
     if own:
         what = f"{' and '.join(own)} that the file holds give way to those computed from its markers"
         findings.append(Finding("note", "own model", file, what, ""))
@@ -66,9 +110,18 @@ def with_angles_and_moments(
         except GaitdiscError as error:
             findings.append(Finding("warning", "no moments", file, str(error).rstrip("."), "moments and powers"))
         else:
-            streams["moments"] = kinetics.moments
+            streams["moments"], steps = kinetics.moments, kinetics.steps
             findings += kinetics.findings
-    return replace(trial, streams=streams, findings=tuple(findings))
+    return ComputedTrial(replace(trial, streams=streams, findings=tuple(findings)), steps)
+
+
+def _residual(moved: Motion, file: str) -> Finding:
+    """How far markers lie from where the static trial has them, and in which segment farthest."""
+    typical = {name: float(np.nanmedian(r)) for name, r in moved.residual_m.items() if np.isfinite(r).any()}
+    worst = max(typical, key=lambda name: typical[name])
+    what = f"markers lie {1e3 * float(np.median([*typical.values()])):.1f} mm from where the static trial has them, "
+    what += f"the median of {len(typical)} segments; farthest {worst}, {1e3 * typical[worst]:.1f} mm"
+    return Finding("note", "residual", file, what, "")
 
 
 def foot_paths_of(moved: Motion, calibration: Calibration) -> dict[str, FootPath]:

@@ -14,11 +14,20 @@ from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import GaitdiscError, StrideError
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import TrialSet, static_trial, trial_sets
+from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.contact_choice import EARLY_MS, EARLY_RANGE, SEEN_LATE
 from gaitdisc.processing.cycle_channels import cycle_channels
 from gaitdisc.processing.process import quality_findings
+from gaitdisc.processing.standing import Standing
 from gaitdisc.processing.step_events import StepEvents, over_ground, step_events
-from gaitdisc.processing.trial_cycles import Places, feet_in, moved_events, with_gaps, with_plates
+from gaitdisc.processing.trial_cycles import (
+    Places,
+    feet_in,
+    moved_events,
+    with_gaps,
+    with_plate_steps,
+    with_plates,
+)
 from gaitdisc.recording import PERCENT, Cycle, Finding, Recording, Strides, Trial
 from gaitdisc.results import PooledCycles, Refusal
 from gaitdisc.results.pooled_cycles import CYCLE_COLUMNS
@@ -44,6 +53,7 @@ class _Seen:
     states: tuple[Recording, ...]
     findings: tuple[Finding, ...]
     files: dict[str, str]
+    plate_steps: tuple[PlateStep, ...] | None = None  # where moments were computed from markers
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,12 +98,12 @@ def pooled_cycles(study: Study, participant: Participant, read: Read) -> tuple[P
     sets = trial_sets(study, participant)
     found: list[PooledCycles] = []
     for session in dict.fromkeys(one.session for one in sets):
-        static, unread = _standing(study, participant, session, read)
+        standing = _standing(study, participant, session, read)
         seen: dict[str, list[_Seen]] = {}
         lost: dict[str, list[Refusal]] = {}
         for one in (own for own in sets if own.session == session):
-            seen[one.condition], lost[one.condition] = _seen_trials(study, participant, one, read)
-            seen[one.condition] = [_with_static(trial, static, unread) for trial in seen[one.condition]]
+            seen[one.condition], lost[one.condition] = _seen_trials(standing, one, read)
+            seen[one.condition] = [_with_static(trial, standing) for trial in seen[one.condition]]
         offsets = _offsets([trial for trials in seen.values() for trial in trials])
         found += [
             _pooled(study, participant, one, seen[one.condition], lost[one.condition], offsets)
@@ -103,55 +113,56 @@ def pooled_cycles(study: Study, participant: Participant, read: Read) -> tuple[P
     return tuple(found)
 
 
-def _seen_trials(
-    study: Study, participant: Participant, one: TrialSet, read: Read
-) -> tuple[list[_Seen], list[Refusal]]:
+def _seen_trials(standing: Standing, one: TrialSet, read: Read) -> tuple[list[_Seen], list[Refusal]]:
+    participant = standing.participant
     seen, lost = [], []
     for number, planned in enumerate(one.trials, 1):
         name = participant.trial_name(planned)
         where = name.removeprefix(participant.id).strip()
         try:
-            seen.append(_seen(study, planned, number, read(planned)))
+            seen.append(_seen(standing, planned, number, read(planned)))
         except GaitdiscError as error:
             lost.append(Refusal(participant.id, where, str(error)))
     return seen, lost
 
 
-def _standing(study: Study, participant: Participant, session: str, read: Read) -> tuple[Recording | None, str]:
+def _standing(study: Study, participant: Participant, session: str, read: Read) -> Standing:
     """Markers of the static trial, and why there are none."""
     planned = static_trial(study, participant, session)
     if planned is None:
-        return None, "there is no static trial"
+        return Standing(study, participant, None, None, "there is no static trial")
     try:
         trial = read(planned)
     except GaitdiscError as error:
-        return None, f"the static trial cannot be used: {error}"
-    return trial.streams.get("markers"), "the static trial has no markers"
+        return Standing(study, participant, planned, None, f"the static trial cannot be used: {error}")
+    return Standing(study, participant, planned, trial.streams.get("markers"), "the static trial has no markers")
 
 
-def _with_static(seen: _Seen, static: Recording | None, unread: str) -> _Seen:
+def _with_static(seen: _Seen, standing: Standing) -> _Seen:
     """Same trial, with what the static trial says of it: that it is another person's, or that there is none."""
     markers = seen.trial.streams.get("markers")
     if markers is None:
         return seen
-    if static is not None:
-        return replace(seen, findings=(*seen.findings, *person_findings(static, markers, seen.trial.name)))
+    if standing.markers is not None:
+        return replace(seen, findings=(*seen.findings, *person_findings(standing.markers, markers, seen.trial.name)))
     severity = "note" if seen.legs is not None else "warning"
     spoils = "angles from markers" + ("; those of the file are used" if seen.legs is not None else "")
-    said = Finding(severity, "static trial", seen.trial.name, unread, spoils)
+    said = Finding(severity, "static trial", seen.trial.name, standing.unread, spoils)
     return replace(seen, findings=(*seen.findings, said))
 
 
-def _seen(study: Study, planned: PlannedTrial, number: int, trial: Trial) -> _Seen:
+def _seen(standing: Standing, planned: PlannedTrial, number: int, read: Trial) -> _Seen:
+    study = standing.study
+    trial, plate_steps = standing.computed(planned, read)
     direction = study.treadmill.direction if study.treadmill else ""
     steps = step_events(trial, study.strides.detector, direction)
     outside = study.strides.ground == "overground" or (study.strides.ground == "auto" and over_ground(trial))
-    legs, states, lost = cycle_channels(trial, study.filters)
+    legs, states, lost = cycle_channels(trial, study.filters, plate_steps is not None)
     _verify(trial, steps, outside, study)
     findings = (*trial.findings, *quality_findings(_known(trial)), *lost)
     slim = replace(trial, streams={key: r for key, r in trial.streams.items() if key in ("markers", "forces")})
     files = {s.source.file: s.source.sha256 for s in trial.streams.values() if s.source.sha256}
-    return _Seen(planned, number, steps, outside, slim, legs, states, findings, files)
+    return _Seen(planned, number, steps, outside, slim, legs, states, findings, files, plate_steps)
 
 
 def _verify(trial: Trial, steps: StepEvents, outside: bool, study: Study) -> None:
@@ -273,7 +284,9 @@ def _cut(study: Study, seen: _Seen, offsets: _Offsets) -> tuple[list[Cycle], lis
     belt = seen.planned.speed_m_per_s or belt if not seen.over_ground else 0.0
     contact_s = offsets.of_contacts(seen.steps.detector) or 0.0
     off_s = offsets.of_foot_offs(seen.steps.off_detector) or 0.0
-    cycles = with_plates(moved_events(seen.steps, contact_s, off_s), seen.trial)
+    cycles = moved_events(seen.steps, contact_s, off_s)
+    alone = seen.plate_steps
+    cycles = with_plates(cycles, seen.trial) if alone is None else with_plate_steps(cycles, alone)
     return with_gaps(cycles, seen.legs), feet_in(cycles, seen.trial, direction, belt)
 
 

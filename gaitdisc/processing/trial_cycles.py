@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.step_events import StepEvents, trial_markers
 from gaitdisc.recording import Cycle, Recording, Trial
 from gaitdisc.recording.cycle import NAN
@@ -96,6 +97,25 @@ def with_plates(cycles: list[Cycle], trial: Trial) -> list[Cycle]:
     belts = {channel.side for channel in forces.channels if channel.side}
     spans = [span for name in forces.names for span in _loadings(forces, name)] if not belts else []
     return [replace(one, kinetic=one.side in belts or _alone(one, spans)) for one in cycles]
+
+
+def with_plate_steps(cycles: list[Cycle], steps: Sequence[PlateStep]) -> list[Cycle]:
+    """Same cycles, kinetic where a clean step of the foot, whole in the recording, is this cycle's stance.
+
+    Parameters
+    ----------
+    cycles : list of Cycle
+        Of the trial.
+    steps : sequence of PlateStep
+        On the trial's platforms, as moments rest on them.
+    """
+    whole = [step for step in steps if step.clean and step.whole]
+    return [replace(one, kinetic=any(_is_stance(step, one) for step in whole)) for one in cycles]
+
+
+def _is_stance(step: PlateStep, one: Cycle) -> bool:
+    same = abs(step.start - one.start) <= EDGE_S and abs(step.end - one.foot_off) <= EDGE_S
+    return step.side == one.side and same
 
 
 def feet_in(cycles: list[Cycle], trial: Trial, direction: str = "", belt_m_per_s: float = 0.0) -> list[Places]:

@@ -43,6 +43,12 @@ METHOD = (
     "Speed and lengths are those of the heels from contact to contact; on a treadmill the belt is added where the "
     "study has its speed.",
 )
+COMPUTED = (
+    "Joint angles are computed from markers, calibrated by the person's static trial; which marker set, how far the "
+    "markers lie from where the static trial has them, what was bridged and how the forces balance stands under "
+    "“Findings”. Moments and powers of these trials are shown for cycles whose stance is a step of this foot alone, "
+    "seen whole, with centre of pressure, heel and toes on the plate."
+)
 
 
 def write_cycles_page(run: ResponseRun, folder: Path) -> Path:
@@ -71,10 +77,14 @@ def write_cycles_page(run: ResponseRun, folder: Path) -> Path:
         "answer": cycles_sentences(run),
         "blocks": saved_cycle_blocks(run, folder),
         "tables": tables,
-        "method": METHOD,
+        "method": (*METHOD, *([COMPUTED] if _computed(run) else [])),
     }
     save_cycle_tables(run, folder)
     return write_page("cycles", shown, folder)
+
+
+def _computed(run: ResponseRun) -> bool:
+    return any(finding.kind == "residual" for one in run.cycles for finding in one.findings)
 
 
 def save_cycle_tables(run: ResponseRun, folder: Path) -> None:

@@ -9,7 +9,7 @@ from gaitdisc.batch.cycles_unit import computed_cycles, cycles_key
 from gaitdisc.batch.participant_unit import computed_unit
 from gaitdisc.batch.run_study import run_study
 from gaitdisc.ingest.storage import write_storage
-from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial, StrideRules, Study
+from gaitdisc.ingest.study import Conditions, Kinematics, Models, Participant, PlannedTrial, StrideRules, Study
 from gaitdisc.results.run_store import load_run
 
 ANGLES = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", "hip_flexion_l", "knee_angle_l", "ankle_angle_l")
@@ -56,6 +56,16 @@ def test_another_setting_or_file_has_another_key(study):
     fewer = person.model_copy(update={"trials": person.trials[:2]})
     keys = {cycles_key(study, person), cycles_key(other, person), cycles_key(study, fewer)}
     assert len(keys) == 3
+
+
+def test_the_body_s_mass_and_the_bytes_of_a_laboratory_s_marker_set_are_in_the_key(study, tmp_path):
+    person, own = study.participants[0], tmp_path / "ours.toml"
+    named = study.model_copy(update={"kinematics": Kinematics(marker_set=str(own))})
+    keys = {cycles_key(study, person), cycles_key(study, person.model_copy(update={"mass_kg": 60.0}))}
+    for text in ("title = 'a'", "title = 'b'"):
+        own.write_text(text)
+        keys.add(cycles_key(named, person))
+    assert len(keys) == 4
 
 
 def test_a_trial_that_fails_costs_nobody_else(study, tmp_path):

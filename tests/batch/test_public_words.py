@@ -4,6 +4,7 @@ import pytest
 
 from gaitdisc.batch.public_words import PublicWords, package_words, public_settings, public_title, words_of
 from gaitdisc.errors import ReadError
+from gaitdisc.ingest.study import Kinematics
 
 
 def test_a_name_is_hidden_and_a_file_is_called_by_its_participant(study):
@@ -39,3 +40,17 @@ def test_settings_and_title_name_no_file_no_label_and_no_folder(study):
     assert settings["channels"] == {"label 1": "knee_angle_r"}
     assert settings["participants"][0]["trials"][0]["files"] == 1
     assert public_title(labelled.placed(Path("Mustermann"))) == "nominal against exo"
+    assert "kinematics" not in settings and "mass_kg" not in settings["participants"][0]
+
+
+def test_the_file_of_a_marker_set_and_the_mass_of_a_person_stand_in_no_settings(study):
+    person = study.participants[0].model_copy(update={"mass_kg": 61.3, "sex": "f"})
+    own = Kinematics(angles="markers", marker_set="Mustermann.toml")
+    settings = public_settings(study.model_copy(update={"kinematics": own, "participants": (person,)}))
+    assert settings["kinematics"]["marker_set"] == "a file of the laboratory"
+    assert "61.3" not in str(settings) and "Mustermann" not in str(settings)
+
+
+def test_labels_of_the_marker_sets_that_come_along_are_public_and_those_they_cite_are_not():
+    assert {"LASI", "RKNE", "condyles", "helen"} <= package_words()
+    assert not {"Stebbins", "Kadaba", "Delp"} & package_words()

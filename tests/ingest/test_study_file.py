@@ -17,6 +17,7 @@ from gaitdisc.ingest.study import (
     Conditions,
     Filters,
     HeldOut,
+    Kinematics,
     Models,
     Participant,
     PlannedTrial,
@@ -42,7 +43,14 @@ def studies(draw):
     ids = draw(st.lists(st.from_regex(r"[a-z0-9_-]{1,16}", fullmatch=True), min_size=1, max_size=3, unique=True))
     group = st.sampled_from(["", "control"])
     people = [
-        Participant(id=i, group=draw(group), excluded=draw(words), trials=tuple(draw(st.lists(trials, max_size=3))))
+        Participant(
+            id=i,
+            group=draw(group),
+            excluded=draw(words),
+            mass_kg=draw(st.none() | st.floats(5, 300)),
+            sex=draw(st.sampled_from(["", "f", "m"])),
+            trials=tuple(draw(st.lists(trials, max_size=3))),
+        )
         for i in ids
     ]
     return Study(
@@ -54,6 +62,15 @@ def studies(draw):
         ),
         channels=dict(enumerate_labels(draw(st.lists(words, max_size=3, unique=True)))),
         filters=Filters(kinematics_hz=draw(positive), order=draw(st.sampled_from([2, 8]))),
+        kinematics=draw(
+            st.none()
+            | st.builds(
+                Kinematics,
+                angles=st.sampled_from([None, "file", "markers"]),
+                marker_set=st.sampled_from(["", "plug_in_gait"]),
+                joints=st.sampled_from([None, "held"]),
+            )
+        ),
         models=Models(emg=draw(st.sampled_from([(), ("emg_sol_r", "emg_ta_l")]))),
         held_out=draw(st.sampled_from([HeldOut(), HeldOut(seconds=30.0), HeldOut(share=0.2)])),
         participants=tuple(people),
@@ -100,6 +117,16 @@ def test_paths_are_relative_to_the_new_file(tmp_path):
     study = load_study(write_study(_study().placed(tmp_path / "raw"), tmp_path / "a" / "b"))
     assert study.participants[0].trials[0].files == ("../../raw/natural.mot",)
     assert study.path_of(study.participants[0].trials[0].files[0]).resolve() == tmp_path / "raw" / "natural.mot"
+
+
+def test_the_file_of_a_marker_set_is_relative_to_the_new_study_and_must_be_there(tmp_path):
+    (tmp_path / "a").mkdir()
+    study = _study().model_copy(update={"kinematics": Kinematics(marker_set="ours.toml")}).placed(tmp_path)
+    moved = load_study(write_study(study, tmp_path / "a"))
+    assert moved.kinematics == Kinematics(marker_set="../ours.toml")
+    assert "../ours.toml" in moved.missing_files()
+    (tmp_path / "ours.toml").write_text("")
+    assert "../ours.toml" not in moved.missing_files()
 
 
 def test_an_absent_study_is_refused(tmp_path):

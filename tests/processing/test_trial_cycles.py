@@ -6,8 +6,16 @@ import numpy as np
 import pytest
 
 from gaitdisc.channel import Channel
+from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.step_events import StepEvents
-from gaitdisc.processing.trial_cycles import cut_cycles, feet_in, moved_events, with_gaps, with_plates
+from gaitdisc.processing.trial_cycles import (
+    cut_cycles,
+    feet_in,
+    moved_events,
+    with_gaps,
+    with_plate_steps,
+    with_plates,
+)
 from gaitdisc.recording import Recording, Trial
 
 CONTACTS = {"r": ((1.0, "events"), (2.0, "events"), (3.0, "events")), "l": ((1.5, "events"), (2.5, "events"))}
@@ -117,3 +125,19 @@ def test_an_offset_moves_markers_and_not_the_ground():
     (one,) = moved_events(steps, 0.04, -0.01)
     assert (one.start, one.end, one.foot_off) == pytest.approx((1.04, 2.04, 1.59))
     assert one.contacts_by == ("force", "markers") and one.foot_off_by == "markers"
+
+
+@pytest.mark.parametrize(
+    ("step", "kinetic"),
+    [
+        (PlateStep("plate_1", "r", 1.02, 1.57), True),
+        (PlateStep("plate_1", "l", 1.02, 1.57), False),  # the other foot's
+        (PlateStep("plate_1", "r", 1.02, 1.57, reason="two feet"), False),
+        (PlateStep("plate_1", "r", 1.02, 1.57, whole=False), False),
+        (PlateStep("plate_1", "r", 1.08, 1.57), False),  # begins too late to be this contact
+        (PlateStep("plate_1", "r", 1.02, 1.50), False),
+    ],
+)
+def test_a_cycle_whose_stance_is_a_clean_whole_step_is_kinetic(step, kinetic):
+    found = with_plate_steps(cut_cycles(CONTACTS, OFFS), [step])
+    assert [one.kinetic for one in found] == [False, kinetic, False]

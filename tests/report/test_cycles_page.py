@@ -1,9 +1,12 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pandas as pd
 import pytest
 from made_cycles import made_cycles
 
+from gaitdisc.recording import Finding
 from gaitdisc.report.cycles_page import cycles_sentences, person_block, saved_cycle_blocks, write_cycles_page
 from gaitdisc.report.response_page import write_report
 from gaitdisc.results import Refusal, ResponseRun
@@ -29,6 +32,16 @@ def test_a_run_of_cycles_has_its_own_page_and_tidy_tables(tmp_path):
     assert len(cycles) == 20
     assert len(pd.read_csv(tmp_path / "tables" / "means.csv")) > 100
     assert set(pd.read_csv(tmp_path / "tables" / "spatiotemporal.csv")["value"]) >= {"stance_percent", "speed_m_per_s"}
+
+
+def test_a_page_of_computed_angles_says_how_and_others_do_not(tmp_path):
+    plain, computed = made_cycles(), made_cycles("P02")
+    residual = Finding("note", "residual", "P02 walk, file 1", "markers lie 2.0 mm from where the static", "")
+    said = "Joint angles are computed from markers"
+    assert said not in write_report(_run(plain), tmp_path / "a").read_text()
+    computed = replace(computed, findings=(*computed.findings, residual))
+    page = write_report(_run(plain, computed), tmp_path / "b").read_text()
+    assert said in page and "markers lie 2.0 mm" in page
 
 
 def test_the_offset_and_few_cycles_are_said():

@@ -1,0 +1,142 @@
+"""Which trials of a study get angles and moments from their markers, calibrated by the person's static trial."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from gaitdisc.errors import GaitdiscError
+from gaitdisc.ingest.c3d_measures import read_body_measures
+from gaitdisc.ingest.study import Participant, PlannedTrial, Study
+from gaitdisc.kinematics.calibration import Calibration, calibrated
+from gaitdisc.kinematics.motion import chosen_marker_set
+from gaitdisc.kinetics.body_inertia import Person
+from gaitdisc.kinetics.joint_moments import KineticsSettings
+from gaitdisc.kinetics.plate_steps import PlateStep
+from gaitdisc.processing.markers_to_moments import computed_trial
+from gaitdisc.recording import Finding, Recording, Trial
+from gaitdisc.recording.body_measures import BodyMeasures
+
+LEGS = ("hip_flexion", "knee_angle", "ankle_angle")
+MODEL = ("kinematics", "moments")
+
+
+@dataclass(eq=False)
+class Standing:
+    """The static trial of a person's session, and what is computed with it; what all walks share is said once.
+
+    Parameters
+    ----------
+    study : Study
+        With its `[kinematics]`.
+    participant : Participant
+        Who.
+    planned : PlannedTrial, optional
+        The static trial; None without one.
+    markers : Recording, optional
+        Of the static trial.
+    unread : str
+        Why there are no markers.
+    """
+
+    study: Study
+    participant: Participant
+    planned: PlannedTrial | None
+    markers: Recording | None
+    unread: str = ""
+    _calibrations: dict[str, Calibration] = field(default_factory=dict, init=False)
+    _said: set[Finding] = field(default_factory=set, init=False)
+
+    def computed(self, planned: PlannedTrial, trial: Trial) -> tuple[Trial, tuple[PlateStep, ...] | None]:
+        """Trial with the angles that the study asks for, and its steps on plates where moments were computed.
+
+        Parameters
+        ----------
+        planned : PlannedTrial
+            The walk.
+        trial : Trial
+            As it was read.
+        """
+        source = self.study.kinematics.angles if self.study.kinematics else ""
+        if source == "file" or "markers" not in trial.streams or (not source and has_leg_angles(trial)):
+            return trial, None
+        bare = replace(trial, streams={key: value for key, value in trial.streams.items() if key not in MODEL})
+        given_up = bare if source == "markers" else trial
+        if self.markers is None:
+            return given_up, None
+        try:
+            calibration = self._calibration(trial.stream("markers"))
+        except GaitdiscError as error:
+            return self._without_angles(given_up, self.participant.id, error), None
+        person, findings = self._person(planned, trial)
+        settings = KineticsSettings(marker_cutoff_hz=self.study.filters.kinematics_hz)
+        try:
+            found = computed_trial(trial, calibration, person, settings)
+        except GaitdiscError as error:
+            return self._without_angles(given_up, trial.name, error), None
+        made = found.trial.findings[len(trial.findings) :]
+        return replace(found.trial, findings=(*trial.findings, *self._new((*made, *findings)))), found.steps
+
+    def _without_angles(self, trial: Trial, whose: str, error: GaitdiscError) -> Trial:
+        said = Finding("warning", "no angles", whose, str(error).rstrip("."), "angles from markers")
+        return replace(trial, findings=(*trial.findings, *self._new((said,))))
+
+    def _new(self, findings: Sequence[Finding]) -> tuple[Finding, ...]:
+        """Those that no earlier trial has said."""
+        new = tuple(one for one in dict.fromkeys(findings) if one not in self._said)
+        self._said.update(new)
+        return new
+
+    def _calibration(self, markers: Recording) -> Calibration:
+        """Of the person, with the marker set that the study names or the labels are of."""
+        wanted = self.study.kinematics
+        chosen = chosen_marker_set(markers, self.markers, marker_set_of(self.study))
+        if chosen.name not in self._calibrations:
+            kept = chosen.with_joints(wanted.joints) if wanted and wanted.joints else chosen
+            self._calibrations[chosen.name] = calibrated(self.markers, kept, self._measures(self.planned))
+        return self._calibrations[chosen.name]
+
+    def _person(self, planned: PlannedTrial, trial: Trial) -> tuple[Person | None, tuple[Finding, ...]]:
+        """Mass and sex: the study's own, else the static file's, else the walk's; without a mass why not."""
+        if "forces" not in trial.streams:
+            return None, ()
+        try:
+            found = self._measures(self.planned)
+            mass = self.participant.mass_kg or found.mass_kg or self._measures(planned).mass_kg
+            return Person(mass, self.participant.sex, found.height_m), ()
+        except GaitdiscError as error:
+            what = str(error).rstrip(".")
+            return None, (Finding("warning", "no moments", self.participant.id, what, "moments and powers"),)
+
+    def _measures(self, planned: PlannedTrial | None) -> BodyMeasures:
+        """Mass and lengths in the C3D file of a trial; none where it is of other files."""
+        if planned is None:
+            return BodyMeasures()
+        files = [file for file in planned.files if file.lower().endswith(".c3d")]
+        return read_body_measures(self.study.path_of(files[0])) if files else BodyMeasures()
+
+
+def marker_set_of(study: Study) -> str | Path | None:
+    """Name or file of the marker set that a study names, files relative to the study file; None where it names none.
+
+    Parameters
+    ----------
+    study : Study
+        With or without `[kinematics]`.
+    """
+    named = study.kinematics.marker_set if study.kinematics else ""
+    return study.path_of(named) if named.endswith(".toml") else named or None
+
+
+def has_leg_angles(trial: Trial) -> bool:
+    """Whether a trial's files hold a flexion angle of a leg.
+
+    Parameters
+    ----------
+    trial : Trial
+        As it was read.
+    """
+    if "kinematics" not in trial.streams:
+        return False
+    return any(channel.name[:-2] in LEGS for channel in trial.stream("kinematics").channels)

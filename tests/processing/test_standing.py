@@ -1,0 +1,147 @@
+"""Angles and moments from markers inside a study: those that the same steps give by hand, and what is said without."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gaitdisc.ingest.c3d import read_c3d
+from gaitdisc.ingest.c3d_measures import read_body_measures
+from gaitdisc.ingest.study import Conditions, Kinematics, Participant, PlannedTrial, Study
+from gaitdisc.kinematics.calibration import calibrated
+from gaitdisc.kinematics.marker_set_file import marker_set
+from gaitdisc.kinetics.body_inertia import Person
+from gaitdisc.processing.markers_to_moments import with_angles_and_moments
+from gaitdisc.processing.pooled import pooled_cycles
+from gaitdisc.recording import Strides
+from gaitdisc.recording.body_measures import BodyMeasures
+from gaitdisc.signals.butterworth import lowpassed
+
+MARKERS = Kinematics(angles="markers", marker_set="plug_in_gait")
+
+
+@pytest.fixture(scope="module")
+def files(gait_data):
+    walks = gait_data / "young_straight_and_turn" / "HC030A"
+    return {
+        "straight": walks / "straight" / "HC030A05.c3d",
+        "turn": walks / "turn" / "HC030A22.c3d",
+        "static": gait_data / "young_static" / "HC030A" / "HC030A01.c3d",
+    }
+
+
+@pytest.fixture(scope="module")
+def trials(files):
+    return {kind: replace(read_c3d(file), name=f"P01 {kind}") for kind, file in files.items()}
+
+
+def pooled(files, trials, kinematics=None, without=(), **person):
+    """Cycles of the person's straight walk and turn, and all findings."""
+    planned = tuple(PlannedTrial(condition=kind, files=(str(files[kind]),)) for kind in files if kind not in without)
+    participant = Participant(id="P01", trials=planned, **person)
+    conditions = Conditions(nominal="straight", others=("turn",))
+    study = Study(conditions=conditions, participants=(participant,), kinematics=kinematics)
+    found = pooled_cycles(study, participant, lambda one: trials[one.condition])
+    return found, [finding for one in found for finding in one.findings]
+
+
+def bare(trial, *streams):
+    return replace(trial, streams={key: value for key, value in trial.streams.items() if key not in streams})
+
+
+def names(one):
+    return [channel.name for channel in one.channels]
+
+
+@pytest.fixture(scope="module")
+def from_markers(files, trials):
+    return pooled(files, trials, MARKERS)
+
+
+def test_cycles_of_a_study_are_those_of_the_steps_taken_by_hand(files, trials, from_markers):
+    measures = read_body_measures(files["static"])
+    body = calibrated(trials["static"].stream("markers"), marker_set("plug_in_gait"), measures)
+    found, findings = from_markers
+    for one in found:
+        made = with_angles_and_moments(trials[one.condition], body, Person(45.8))
+        angles, moments = lowpassed(made.stream("kinematics"), 6.0, 4, 0.1), made.stream("moments")
+        for row, curves in zip(one.kept.itertuples(), one.curves, strict=True):
+            cycle = Strides(np.array([row.start_s]), np.array([row.end_s]), str(row.side), "events")
+            apart = curves[:, [names(one).index(name) for name in angles.names]] - cycle.normalised(angles)[0]
+            assert np.abs(apart).max() < 1e-6
+            ankle = curves[:, names(one).index(f"ankle_angle_{row.side}_moment")]
+            known = np.isfinite(ankle)
+            assert known.any() == row.kinetic
+            if row.kinetic:
+                theirs = cycle.normalised(moments.selected([f"ankle_angle_{row.side}_moment"]))[0][:, 0]
+                assert ankle[known] == pytest.approx(theirs[known], abs=1e-6)
+                assert -1.6 < ankle[known].min() < -0.9  # plantarflexion at push-off, N m/kg
+    assert [int(one.kept["kinetic"].sum()) for one in found] == [2, 2]
+    said = {finding.kind: finding for finding in findings}
+    assert said["marker set"].what.startswith("plug_in_gait: ")
+    far = re.match(r"markers lie (\S+) mm from where .* segments; farthest \w+, (\S+) mm$", said["residual"].what)
+    assert far and 0 < float(far[1]) <= float(far[2]) < 5.5
+    assert {"force balance", "own model"} <= set(said)
+
+
+def test_a_file_without_a_model_gets_one_and_a_file_with_its_own_keeps_it(files, trials, from_markers):
+    stripped = {kind: bare(trial, "kinematics", "moments") for kind, trial in trials.items()}
+    made, findings = pooled(files, stripped, Kinematics(marker_set="plug_in_gait"))
+    for one, same in zip(made, from_markers[0], strict=True):
+        assert names(one) == names(same) and np.array_equal(one.curves, same.curves, equal_nan=True)
+    assert "own model" not in {finding.kind for finding in findings}
+    own, said = pooled(files, trials)
+    alone, _ = pooled(files, trials, Kinematics(angles="file"), without=("static",))
+    for one, same, other in zip(own, alone, made, strict=True):
+        assert np.array_equal(one.curves, same.curves, equal_nan=True)
+        assert np.nanmax(np.abs(one.curves[0, :, names(one).index("knee_angle_r")]
+                                - other.curves[0, :, names(other).index("knee_angle_r")])) > 0.01  # fmt: skip
+    assert not {"marker set", "residual", "no moments"} & {finding.kind for finding in said}
+    left, _ = pooled(files, stripped, Kinematics(angles="file"))
+    assert not any("knee_angle_r" in names(one) for one in left)
+
+
+def test_a_person_without_a_mass_has_angles_and_one_word_on_it(files, trials, monkeypatch):
+    measures = read_body_measures(files["static"])
+    monkeypatch.setattr(
+        "gaitdisc.processing.standing.read_body_measures", lambda _: BodyMeasures(
+            None, inter_asis_m=measures.inter_asis_m, leg_length_m=measures.leg_length_m,
+            knee_width_m=measures.knee_width_m, ankle_width_m=measures.ankle_width_m,
+        ),
+    )  # fmt: skip
+    found, findings = pooled(files, trials, MARKERS)
+    assert all("knee_angle_r" in names(one) and "knee_angle_r_moment" not in names(one) for one in found)
+    (said,) = [finding for finding in findings if finding.kind == "no moments"]
+    assert said.line() == (
+        "warning: P01: no moments: moments and powers per kg need the person's body mass [kg]; none is given, and the "
+        "file states none. Give it in the study's participants, or in PROCESSING:BODYMASS of the C3D file; spoils "
+        "moments and powers"
+    )
+    weighed, _ = pooled(files, trials, MARKERS, mass_kg=45.8)
+    assert all("knee_angle_r_moment" in names(one) for one in weighed)
+
+
+def renamed(trial):
+    """Same trial with marker labels of no set."""
+    markers = trial.stream("markers")
+    channels = tuple(replace(channel, name=f"Q{channel.name}") for channel in markers.channels)
+    return replace(trial, streams={**trial.streams, "markers": replace(markers, channels=channels)})
+
+
+def test_markers_of_no_known_set_are_said_once_and_cost_no_cycle(files, trials):
+    strange = {kind: renamed(trial) for kind, trial in trials.items()}
+    found, findings = pooled(files, strange, Kinematics(angles="markers"))
+    (said,) = [finding for finding in findings if finding.kind == "no angles"]
+    assert (said.severity, said.file) == ("warning", "P01")
+    assert said.what.startswith("the markers need to be of one of the sets gait2354, helen_hayes, oxford_foot, plug")
+    assert all(len(one.kept) and "knee_angle_r" not in names(one) for one in found)
+
+
+def test_without_a_static_trial_the_file_s_own_angles_are_not_taken_for_those_of_markers(files, trials):
+    found, findings = pooled(files, trials, MARKERS, without=("static",))
+    assert all(len(one.kept) and "knee_angle_r" not in names(one) for one in found)
+    said = {(one.severity, one.what, one.spoils) for one in findings if one.kind == "static trial"}
+    assert said == {("warning", "there is no static trial", "angles from markers")}
