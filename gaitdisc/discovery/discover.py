@@ -53,7 +53,7 @@ def discover(
     verdict = judge(inquiry, as_read)
     if not leaves_noise(inquiry, verdict.account):
         kept = without_trial_apart(inquiry)
-        if kept is not measured:
+        if kept is not inquiry.measured:
             told("one trial goes with no explanation of the others: it is left out")
             measured, inquiry = kept, begin_inquiry(simulation, kept, shapes)
             as_read = inquiry.as_read()
