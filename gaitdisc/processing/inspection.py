@@ -14,6 +14,7 @@ from gaitdisc.ingest.trial_sets import is_static, is_walk, not_compared, refused
 from gaitdisc.processing.contact_choice import chosen_contacts
 from gaitdisc.processing.pooled import pooled_cycles, pooled_instead
 from gaitdisc.processing.process import processed, quality_findings, stride_findings
+from gaitdisc.processing.side_checks import side_findings
 from gaitdisc.recording import Finding, Strides, Trial
 from gaitdisc.results import PooledCycles
 from gaitdisc.signals.contacts import order_findings
@@ -222,6 +223,7 @@ def _looked_at(trial: Trial, name: str) -> Inspection:
         for side, contacts in sorted(choice.contacts.items()):
             strides[side] = cut_strides(contacts)
         findings += order_findings(choice.contacts["r"], choice.contacts["l"], trial.name)
+        findings += side_findings(trial, strides)
         if "kinematics" in trial.streams:
             findings += stride_findings(trial.stream("kinematics"), strides["r"])
             if choice.detector == "angles":
