@@ -79,13 +79,12 @@ def scaled(pattern: str, factor: float) -> Turn:
     return turn
 
 
-def exchanged(*pairs: tuple[str, str]) -> Turn:
-    """Exchange labels by pairs of endings or parts, each both ways."""
+def mirrored(pattern: str) -> Turn:
+    """Exchange r and l where the pattern has them as its group."""
 
     def turn(labels: list[str], rows: Rows) -> None:
-        for one, other in pairs:
-            for i, label in enumerate(labels):
-                labels[i] = label.replace(one, "\0").replace(other, one).replace("\0", other)
+        for i, label in enumerate(labels):
+            labels[i] = re.sub(pattern, lambda found: "l" if found[0] == "r" else "r", label)
 
     return turn
 

@@ -11,7 +11,10 @@ from numpy.typing import NDArray
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.recording.runs import runs
 
-FORCE_N = (5.0, 40.0)  # peak of the vertical force: half to four body weights in N/kg; a child of 5 kg has 50 N and more
+FORCE_N = (
+    5.0,
+    40.0,
+)  # peak of the vertical force: half to four body weights in N/kg; a child of 5 kg has 50 N and more
 MOMENT_NM = (0.4, 6.0)  # peak of hip, knee and ankle in N m/kg; a child of 15 kg has 15 N m and more at push-off
 STANCE_S = (0.15, 3.0)  # a plate is loaded for as long as a step lasts; drift is longer, noise shorter
 SHARE = 0.5  # of the peak: above it while loaded

@@ -14,7 +14,7 @@ from gaitdisc.recording import Finding, Recording, Strides, Trial
 from gaitdisc.signals.emg_order import order_of_muscles
 from gaitdisc.signals.emg_quality import live_channels
 from gaitdisc.signals.envelope import HIGHPASS_HZ, enveloped
-from gaitdisc.signals.side_labels import marker_side_findings, sway_findings
+from gaitdisc.signals.side_labels import load_findings, marker_side_findings, sway_findings
 
 TOES = (("RTOE", "LTOE"), ("RMT5", "LMT5"), ("RMT1", "LMT1"), ("R.Toe.Tip", "L.Toe.Tip"), ("RTOE1", "LTOE1"))
 FEWEST = 2  # steps
@@ -42,6 +42,8 @@ def side_findings(trial: Trial, strides: Mapping[str, Strides]) -> list[Finding]
         findings += _plate_findings(trial) if "forces" in trial.streams else []
     if "kinematics" in trial.streams:
         findings += sway_findings(trial.stream("kinematics"), list(strides.values()))
+    if {"kinematics", "forces"} <= set(trial.streams):
+        findings += load_findings(trial.stream("kinematics"), trial.stream("forces"))
     if "emg" in trial.streams and strides:
         findings += _muscle_findings(trial.stream("emg"), strides)
     return findings
