@@ -15,13 +15,14 @@ Turn = Callable[[list[str], Rows], None]
 
 
 class Case(NamedTuple):
-    """One fault in one walk: its files by the name they get, what is done to the copies, the words that must be said."""
+    """One fault in one walk: its files by the name they get, what is done to the copies, what must be said."""
 
     fault: str
     name: str
     files: Mapping[str, Path]
     plant: Callable[[Path], None]
     words: str
+    crop_s: tuple[float, float] | None = None
 
 
 def in_storage(file: str, turn: Turn, header: tuple[str, str] = ("", "")) -> Callable[[Path], None]:
@@ -82,14 +83,14 @@ def scaled(pattern: str, factor: float) -> Turn:
 def mirrored(pattern: str) -> Turn:
     """Exchange r and l where the pattern has them as its group."""
 
-    def turn(labels: list[str], rows: Rows) -> None:
+    def turn(labels: list[str], _: Rows) -> None:
         for i, label in enumerate(labels):
             labels[i] = re.sub(pattern, lambda found: "l" if found[0] == "r" else "r", label)
 
     return turn
 
 
-def cut_row(labels: list[str], rows: Rows) -> None:
+def cut_row(_: list[str], rows: Rows) -> None:
     """Lose the last sample, as a curve of 100 points does beside one of 101."""
     rows[-1, 0] = np.nan
 

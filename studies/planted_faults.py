@@ -36,8 +36,8 @@ from gaitdisc.processing.inspection import inspected_study
 
 TURNED_BACK = ("knee sign", "per body mass")  # notes that say that the reader set a fault right
 ALARM = re.compile(
-    r"swapped|exchanged|mirrored|looks? like|another person|another shape|states? (degrees|radians)|per kg of body mass,"
-    r" though|of another foot|share one time base|counts|knee sign|follows the other foot|beside the nearest foot"
+    r"swapped|exchanged|mirrored|looks? like|another person|another shape|states? (degrees|radians)|per kg of body "
+    r"mass, though|of another foot|share one time base|counts|knee sign|follows the other foot|beside the nearest foot"
 )
 
 
@@ -79,11 +79,11 @@ def _said(case: Case, planted: bool = True) -> list[str]:
             case.plant(folder)
         walk = [file for file in case.files if not file.startswith("static")]
         static = [file for file in case.files if file.startswith("static")]
-        return _checked(folder, walk, static) + (_moments(folder, walk, static[0]) if static else [])
+        return _checked(case, folder, walk, static) + (_moments(folder, walk, static[0]) if static else [])
 
 
-def _checked(folder: Path, walk: Sequence[str], static: Sequence[str]) -> list[str]:
-    trials = [PlannedTrial(condition="walking", files=tuple(walk))]
+def _checked(case: Case, folder: Path, walk: Sequence[str], static: Sequence[str]) -> list[str]:
+    trials = [PlannedTrial(condition="walking", files=tuple(walk), crop_s=case.crop_s)]
     trials += [PlannedTrial(condition="static", files=(one,)) for one in static]
     study = Study(
         conditions=Conditions(nominal="walking"),

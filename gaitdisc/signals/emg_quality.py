@@ -22,6 +22,7 @@ CLIPPED_SHARE = 1e-3
 USUAL_RANGES_V = (1.25, 2.5, 5.0, 10.0)
 STEPS = 2**15  # either side of zero, of a 16-bit converter
 FEWEST_AT_RAIL = 3
+AT_SKIN_V = 0.02  # EMG before an amplifier is smaller; a converter of this range is one of V stated as mV, or referred
 
 
 @dataclass(frozen=True)
@@ -103,7 +104,7 @@ def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
         `refused` for dead and unplugged channels: leave them out. `warning` for clipped ones.
     """
     limit = amplifier_range(emg, range_v)
-    findings = []
+    findings = _thousandth(limit, emg)
     for column, channel in enumerate(emg.channels):
         x = emg.values[:, column]
         known = x[np.isfinite(x)]
@@ -165,6 +166,19 @@ def burst_ratio(x: NDArray[np.float64], rate_hz: float) -> float:
     return float(np.percentile(trusted, 99) / np.median(trusted)) if len(trusted) else 0.0
 
 
+def _thousandth(limit: AmplifierRange, emg: Recording) -> list[Finding]:
+    """Say that the converter ends at a thousandth of what converters end at: its volts may be stated as mV."""
+    usual = next((volts for volts in USUAL_RANGES_V if abs(1e3 * limit.volts / volts - 1) < 0.01), None)
+    if usual is None or limit.how == "given":
+        return []
+    what = (
+        f"the converter ends at {1e3 * limit.volts:.3g} mV, from {limit.how}, and usual ones at {usual:g} V: this looks "
+        "like V stated as mV, unless the gain of 1000 is taken out"
+    )
+    spoils = "amplitudes beside other recordings, if so; state the unit in [channels]"
+    return [Finding("warning", "unit", emg.source.file, what, spoils, ", ".join(emg.names[:2]))]
+
+
 def live_channels(emg: Recording, range_v: float | None = None) -> tuple[str, ...]:
     """Names of the channels that carry a muscle's signal, in order.
 
@@ -183,7 +197,8 @@ def live_channels(emg: Recording, range_v: float | None = None) -> tuple[str, ..
 def _quantisation_step(x: NDArray[np.float64]) -> float | None:
     """Step between neighbouring values of a channel that uses few of them; None for a filtered one."""
     known = x[np.isfinite(x)]
-    levels = np.unique(np.round(known, 7))
+    finest = 7 if np.abs(known).max(initial=0.0) >= AT_SKIN_V else 10
+    levels = np.unique(np.round(known, finest))
     if len(levels) < 10 or len(levels) > len(known) / 4:
         return None
     steps = np.diff(levels)
