@@ -168,7 +168,7 @@ def _swapped(sided: bool) -> Turn:
     if sided:
         return mirrored(r"(?<=ground_force_)[rl]|(?<=ground_torque_)[rl]")
 
-    def turn(labels, rows):
+    def turn(labels, _):
         for i, label in enumerate(labels):
             if "ground" in label:
                 labels[i] = label[2:] if label.startswith("1_") else f"1_{label}"
@@ -202,7 +202,7 @@ def _angles(gait: Path) -> Iterator[Case]:
 def _part(keep):
     """Labels that are left, the others called after themselves so that two files share none."""
 
-    def turn(labels, rows):
+    def turn(labels, _):
         labels[:] = [label if keep(label) else f"unused {i}" for i, label in enumerate(labels)]
 
     return turn

@@ -172,8 +172,8 @@ def _thousandth(limit: AmplifierRange, emg: Recording) -> list[Finding]:
     if usual is None or limit.how == "given":
         return []
     what = (
-        f"the converter ends at {1e3 * limit.volts:.3g} mV, from {limit.how}, and usual ones at {usual:g} V: this looks "
-        "like V stated as mV, unless the gain of 1000 is taken out"
+        f"the converter ends at {1e3 * limit.volts:.3g} mV, from {limit.how}, and usual ones at {usual:g} V: this "
+        "looks like V stated as mV, unless the gain of 1000 is taken out"
     )
     spoils = "amplitudes beside other recordings, if so; state the unit in [channels]"
     return [Finding("warning", "unit", emg.source.file, what, spoils, ", ".join(emg.names[:2]))]

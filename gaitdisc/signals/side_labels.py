@@ -115,8 +115,8 @@ def sway_findings(kinematics: Recording, strides: Sequence[Strides]) -> list[Fin
         return []
     size = 1e3 * float(np.median(np.concatenate(list(towards.values()))))
     what = (
-        f"left and right are swapped in all angles, or pelvis_tz points to the left: the pelvis is {-size:.0f} mm nearer "
-        "to the foot that swings than to the one that stands (median of the strides)"
+        "left and right are swapped in all angles, or pelvis_tz points to the left: the pelvis is "
+        f"{-size:.0f} mm nearer to the foot that swings than to the one that stands (median of the strides)"
     )
     return [Finding("warning", "sides", kinematics.source.file, what, "every side; correct the labels", "pelvis_tz")]
 
