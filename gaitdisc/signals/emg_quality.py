@@ -22,7 +22,6 @@ CLIPPED_SHARE = 1e-3
 USUAL_RANGES_V = (1.25, 2.5, 5.0, 10.0)
 STEPS = 2**15  # either side of zero, of a 16-bit converter
 FEWEST_AT_RAIL = 3
-AT_SKIN_V = 0.02  # EMG before an amplifier is smaller; a converter of this range is one of V stated as mV, or referred
 
 
 @dataclass(frozen=True)
@@ -197,8 +196,7 @@ def live_channels(emg: Recording, range_v: float | None = None) -> tuple[str, ..
 def _quantisation_step(x: NDArray[np.float64]) -> float | None:
     """Step between neighbouring values of a channel that uses few of them; None for a filtered one."""
     known = x[np.isfinite(x)]
-    finest = 7 if np.abs(known).max(initial=0.0) >= AT_SKIN_V else 10
-    levels = np.unique(np.round(known, finest))
+    levels = np.unique(np.round(known, 7))
     if len(levels) < 10 or len(levels) > len(known) / 4:
         return None
     steps = np.diff(levels)
