@@ -103,7 +103,7 @@ def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
         `refused` for dead and unplugged channels: leave them out. `warning` for clipped ones.
     """
     limit = amplifier_range(emg, range_v)
-    findings = _thousandth(limit, emg)
+    findings = []
     for column, channel in enumerate(emg.channels):
         x = emg.values[:, column]
         known = x[np.isfinite(x)]
@@ -163,19 +163,6 @@ def burst_ratio(x: NDArray[np.float64], rate_hz: float) -> float:
     envelope = lowpassed(fast.with_values(np.abs(fast.values)), ENVELOPE_HZ)
     trusted = envelope.values[~np.asarray(envelope.suspect)]
     return float(np.percentile(trusted, 99) / np.median(trusted)) if len(trusted) else 0.0
-
-
-def _thousandth(limit: AmplifierRange, emg: Recording) -> list[Finding]:
-    """Say that the converter ends at a thousandth of what converters end at: its volts may be stated as mV."""
-    usual = next((volts for volts in USUAL_RANGES_V if abs(1e3 * limit.volts / volts - 1) < 0.01), None)
-    if usual is None or limit.how == "given":
-        return []
-    what = (
-        f"the converter ends at {1e3 * limit.volts:.3g} mV, from {limit.how}, and usual ones at {usual:g} V: this "
-        "looks like V stated as mV, unless the gain of 1000 is taken out"
-    )
-    spoils = "amplitudes beside other recordings, if so; state the unit in [channels]"
-    return [Finding("warning", "unit", emg.source.file, what, spoils, ", ".join(emg.names[:2]))]
 
 
 def live_channels(emg: Recording, range_v: float | None = None) -> tuple[str, ...]:

@@ -96,12 +96,3 @@ def test_real_files_have_exactly_the_live_channels_of_their_manifest(gait_data, 
             assert set(live_channels(real.emg(ezc3d.c3d(str(path))))) == wanted, path.name
             seen += 1
     assert seen >= 14
-
-
-def test_volts_of_an_amplifier_stated_as_millivolts_are_named_by_the_converters_end():
-    noise = np.clip(np.random.default_rng(0).normal(scale=0.5, size=(2000, 1)), -1.25, 1.25)
-    volts = Recording(np.arange(2000) / 1000, noise, (Channel("emg_sol_r", "emg", "V", "r"),))
-    assert not [f for f in emg_findings(volts) if f.kind == "unit"]
-    (finding,) = [f for f in emg_findings(volts.with_values(noise / 1e3)) if f.kind == "unit"]
-    assert finding.what.startswith("the converter ends at 1.25 mV, from the largest value, met ")
-    assert "usual ones at 1.25 V: this looks like V stated as mV" in finding.what
