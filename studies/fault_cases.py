@@ -150,9 +150,7 @@ def _opensim_whole(data: Path) -> Iterator[Case]:
             yield Case("belts swapped", name, files, in_storage("grf.mot", _swapped(rad)), "swapped")
         knees = r"knee_angle_[rl]/value" if rad else KNEES
         words = r"flexion is (negative|positive)"
-        if (
-            name == "gait10dof"
-        ):  # whose knees are negative: turned, they have the package's sign, and one alone is a fault
+        if name != "moco":  # knees are negative: turned, both have the package's sign; one alone is a fault
             knees = "knee_angle_l"
         yield Case("knee's sign", name, files, in_storage(first, scaled(knees, -1.0)), words)
         metres = "TRC" in trc.name

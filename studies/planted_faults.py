@@ -118,15 +118,15 @@ def _printed(folder: Path, walk: Sequence[str], static: str) -> list[str]:
     return text.getvalue().splitlines()
 
 
-def table(found: Sequence[Outcome]) -> list[tuple[str, int, int, int, int]]:
+def table(found: Sequence[Outcome]) -> list[tuple[str | int, ...]]:
     """Fault, cases, found with the right words, with others, not found."""
-    rows = []
+    rows: list[tuple[str | int, ...]] = []
     for fault in dict.fromkeys(one.case.fault for one in found):
         own = [one for one in found if one.case.fault == fault]
         right = sum(one.found for one in own)
         others = sum(not one.found and bool(one.said) for one in own)
         rows.append((fault, len(own), right, others, len(own) - right - others))
-    return [*rows, ("all", *(sum(row[i] for row in rows) for i in range(1, 5)))]
+    return [*rows, ("all", *(sum(int(row[i]) for row in rows) for i in range(1, 5)))]
 
 
 def main() -> None:
