@@ -10,16 +10,17 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import UnitError
+from gaitdisc.ingest.angle_unit import WALKING_RAD
 from gaitdisc.ingest.c3d_labels import LabelMap, told_apart, without_prefix
 from gaitdisc.ingest.c3d_parameters import C3DParameters
 from gaitdisc.ingest.columns import named_channel
+from gaitdisc.ingest.marker_unit import METRES_AT_MOST, MILLIMETRES_AT_LEAST, distance_from_origin, refuse_other_unit
 from gaitdisc.recording import Finding
 from gaitdisc.units import convert, inner_unit, parsed_unit
 
 Streams = dict[str, tuple[NDArray[np.float64], tuple[Channel, ...]]]
 AXES = "xyz"
-_METRES_AT_MOST = 15.0  # no laboratory's markers are farther from its origin, and no body is smaller than 10 cm
-_MILLIMETRES_AT_LEAST = 100.0
+MOVES_RAD = 0.6  # a knee of a walk in radians; one that stands sways by less than as many degrees, or is farther bent
 
 
 @dataclass(frozen=True)
@@ -97,9 +98,7 @@ def length_unit(parameters: C3DParameters, places: NDArray[np.float64], file: st
     UnitError
         If the unit is absent and the numbers do not tell, if it is no length, or if the numbers contradict it.
     """
-    some = places[:: max(len(places) // 1000, 1)]
-    finite = np.abs(some[np.isfinite(some)])
-    far = float(np.quantile(finite, 0.99)) if finite.size else float("nan")
+    far = distance_from_origin(places)
     text = parameters.text("POINT", "UNITS")
     if text:
         unit = parsed_unit(text)
@@ -107,22 +106,17 @@ def length_unit(parameters: C3DParameters, places: NDArray[np.float64], file: st
             raise UnitError(
                 "POINT:UNITS of a C3D file is a length", f"{file} says {text!r}", "Correct the parameter: mm or m."
             )
-        if (unit == "m" and far >= _MILLIMETRES_AT_LEAST) or (unit == "mm" and 0 < far <= _METRES_AT_MOST / 5):
-            raise UnitError(
-                f"markers in {unit} are {'less than 15' if unit == 'm' else 'more than 3'} {unit} from the origin",
-                f"those of {file} are {far:.4g} away, which looks like {'mm' if unit == 'm' else 'm'}",
-                "Correct POINT:UNITS in the file.",
-            )
+        refuse_other_unit(unit, far, file, "POINT:UNITS")
         return unit, []
-    if not finite.size or far == 0:
+    if not far > 0:
         return "m", []
-    if _METRES_AT_MOST < far < _MILLIMETRES_AT_LEAST:
+    if METRES_AT_MOST < far < MILLIMETRES_AT_LEAST:
         raise UnitError(
             "markers need a unit",
             f"{file} states none, and {far:.4g} from the origin can be neither m nor mm",
             "Set POINT:UNITS in the file.",
         )
-    unit = "m" if far <= _METRES_AT_MOST else "mm"
+    unit = "m" if far <= METRES_AT_MOST else "mm"
     what = f"POINT:UNITS is empty; markers lie up to {far:.4g} from the origin, so they are read as {unit}"
     return unit, [Finding("warning", "unit", file, what, "every length if this is wrong; set POINT:UNITS")]
 
@@ -220,17 +214,34 @@ def _model_part(rows, points, names, about) -> tuple[tuple[NDArray[np.float64], 
             name = known.name if known is not None else label
             side = known.side if known is not None else _side(names[point])
             channels.append(Channel(name, quantity, inner, side))
-    findings += _magnitude(values, kind, unit, file)
+    findings += _magnitude(values, channels, kind, unit, file)
     return (values, tuple(channels)), findings
 
 
-def _magnitude(values: NDArray[np.float64], kind: ModelOutput, unit: str, file: str) -> list[Finding]:
+def _magnitude(
+    values: NDArray[np.float64], channels: list[Channel], kind: ModelOutput, unit: str, file: str
+) -> list[Finding]:
     finite = np.abs(values[np.isfinite(values)])
     most = float(finite.max()) if finite.size else 0.0
     if kind.group == "ANGLES" and unit == "deg" and 0 < most < 3.2:
         what = f"no angle is beyond {most:.3g} deg; they look like radians"
         return [Finding("warning", "unit", file, what, "every angle if so; correct POINT:ANGLE_UNITS")]
+    if kind.group == "ANGLES" and unit == "deg":
+        return _legs_in_radians(values, channels, file)
     return []
+
+
+def _legs_in_radians(values: NDArray[np.float64], channels: list[Channel], file: str) -> list[Finding]:
+    """Hips and knees that move as in a walk counted in radians; headings beside them may be counted on over turns."""
+    legs = [i for i, one in enumerate(channels) if re.fullmatch(r"(knee_angle|hip_flexion)_[rl]", one.name)]
+    known = [column[np.isfinite(column)] for column in values.T[legs]]
+    known = [column for column in known if len(column)]
+    most = max((float(np.abs(column).max()) for column in known), default=0.0)
+    reach = max((float(np.ptp(column)) for column in known), default=0.0)
+    if not (MOVES_RAD <= reach <= WALKING_RAD[1] and most <= WALKING_RAD[1]):
+        return []
+    what = f"hips and knees range over {reach:.3g} deg at most and stay within {most:.3g} deg; they look like radians"
+    return [Finding("warning", "unit", file, what, "every angle if so; correct POINT:ANGLE_UNITS")]
 
 
 def _doubled(names: list[str], parameters: C3DParameters, file: str) -> list[Finding]:

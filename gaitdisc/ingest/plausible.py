@@ -140,7 +140,9 @@ def _other_unit(recording: Recording, place: int) -> Finding:
     limits = _limits(channel)
     assert limits is not None  # it was found beyond them
     most = float(np.nanmax(np.abs(recording.values[:, place])))
-    what = f"reaches {most:.6g} {channel.unit}; EMG in {channel.unit} is within {limits.high:g}, so these may be counts"
+    thousandth = channel.unit == "V" and most <= 1e3 * limits.high
+    looks = "it looks like mV, or these may be counts" if thousandth else "these may be counts"
+    what = f"reaches {most:.6g} {channel.unit}; EMG in {channel.unit} is within {limits.high:g}, so {looks}"
     spoils = "its amplitude; state the unit in the file or in [channels]"
     return Finding("warning", "unit", recording.source.file, what, spoils, channel.name)
 

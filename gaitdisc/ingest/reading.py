@@ -13,6 +13,7 @@ from gaitdisc.channel import nearest_word
 from gaitdisc.errors import ChannelError, ReadError, SamplingError
 from gaitdisc.ingest.columns import split_unit
 from gaitdisc.ingest.knee_sign import with_flexion_positive
+from gaitdisc.ingest.per_body_mass import per_kg_findings
 from gaitdisc.ingest.plausible import without_impossible
 from gaitdisc.ingest.storage import read_storage
 from gaitdisc.ingest.table import read_table
@@ -196,7 +197,9 @@ def _judged(trial: Trial, begin_s: Mapping[str, float]) -> Trial:
     """Trial with house signs and without impossible values; only what a crop leaves is judged, all else is not used."""
     streams, turned = with_flexion_positive(trial.streams)
     streams, beyond = without_impossible(streams, begin_s)
-    return replace(trial, streams=streams, findings=(*trial.findings, *turned, *beyond))
+    return replace(
+        trial, streams=streams, findings=(*trial.findings, *turned, *beyond, *per_kg_findings(trial.streams))
+    )
 
 
 def _unused(channels: Mapping[str, str] | None, streams: Mapping[str, Recording], name: str) -> list[Finding]:

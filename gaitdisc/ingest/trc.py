@@ -15,6 +15,7 @@ from gaitdisc.errors import ReadError, SamplingError, UnitError
 from gaitdisc.ingest.cells import Cells, Form, parsed_cells
 from gaitdisc.ingest.clock import even_time, printed_digit
 from gaitdisc.ingest.columns import mapped_label, split_unit
+from gaitdisc.ingest.marker_unit import distance_from_origin, refuse_other_unit
 from gaitdisc.ingest.raw_file import read_raw
 from gaitdisc.ingest.streams import sorted_trial
 from gaitdisc.recording import Finding, Trial
@@ -95,6 +96,8 @@ def read_trc(path: Path | str, channels: Mapping[str, str] | None = None) -> Tri
     digit = printed_digit(lines[number - 1].split("\t")[1] for number in cells.lines.tolist())
     time = even_time(cells.values[:, 1], digit, raw.name, cells.lines)
     _check_rate(header, time, digit, raw.name)
+    seen = np.where(cells.values[:, 2:] == 0, np.nan, cells.values[:, 2:])
+    refuse_other_unit(header.unit, distance_from_origin(seen), raw.name, "Units in line 3")
     positions = np.asarray(convert(cells.values[:, 2:], header.unit, inner_unit(header.unit)), float)
     names, dropped = _marker_names(header.labels, channels)
     if dropped:

@@ -14,6 +14,7 @@ from gaitdisc.ingest.trial_sets import is_static, is_walk, not_compared, refused
 from gaitdisc.processing.contact_choice import chosen_contacts
 from gaitdisc.processing.pooled import pooled_cycles, pooled_instead
 from gaitdisc.processing.process import processed, quality_findings, stride_findings
+from gaitdisc.processing.side_checks import side_findings
 from gaitdisc.recording import Finding, Strides, Trial
 from gaitdisc.results import PooledCycles
 from gaitdisc.signals.contacts import order_findings
@@ -124,10 +125,12 @@ def _pooled(study: Study, participant: Participant, reader: C3DReader, instead: 
     Where they would stand in for a comparison and cannot, none.
     """
     streams: dict[str, dict[str, str]] = {}
+    read_with: dict[str, tuple[Finding, ...]] = {}
 
     def read(planned: PlannedTrial) -> Trial:
         trial = read_planned_trial(study, participant, planned, reader)
         streams[trial.name] = _streams(trial)
+        read_with[trial.name] = (*trial.findings, *side_findings(trial, {}))
         return trial
 
     sets = trial_sets(study, participant)
@@ -143,6 +146,9 @@ def _pooled(study: Study, participant: Participant, reader: C3DReader, instead: 
             where = called.removeprefix(participant.id).strip()
             files = [Path(file).name for file in planned.files]
             own = [f for f in pooled.findings if f.file in (called, pooled.where) or any(n in f.file for n in files)]
+            reason = reasons.pop(where, "")
+            if reason:  # why may be what the reader saw: a unit, a side
+                own += [finding for finding in read_with.get(called, ()) if finding not in own]
             found[places[id(planned)]] = Inspection(
                 _named(planned),
                 participant.id,
@@ -150,7 +156,7 @@ def _pooled(study: Study, participant: Participant, reader: C3DReader, instead: 
                 streams.get(called, {}),
                 _cycle_counts(pooled, number),
                 _sorted(own),
-                reasons.pop(where, ""),
+                reason,
             )
         for reason in reasons.values():
             found[len(participant.trials) + len(found)] = Inspection("", participant.id, pooled.where, refusal=reason)
@@ -222,6 +228,7 @@ def _looked_at(trial: Trial, name: str) -> Inspection:
         for side, contacts in sorted(choice.contacts.items()):
             strides[side] = cut_strides(contacts)
         findings += order_findings(choice.contacts["r"], choice.contacts["l"], trial.name)
+        findings += side_findings(trial, strides)
         if "kinematics" in trial.streams:
             findings += stride_findings(trial.stream("kinematics"), strides["r"])
             if choice.detector == "angles":

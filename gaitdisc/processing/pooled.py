@@ -18,6 +18,7 @@ from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.contact_choice import EARLY_MS, EARLY_RANGE, SEEN_LATE
 from gaitdisc.processing.cycle_channels import cycle_channels
 from gaitdisc.processing.process import quality_findings
+from gaitdisc.processing.side_checks import side_findings
 from gaitdisc.processing.standing import Standing
 from gaitdisc.processing.step_events import StepEvents, over_ground, step_events
 from gaitdisc.processing.trial_cycles import (
@@ -158,26 +159,33 @@ def _seen(standing: Standing, planned: PlannedTrial, number: int, read: Trial) -
     steps = step_events(trial, study.strides.detector, direction)
     outside = study.strides.ground == "overground" or (study.strides.ground == "auto" and over_ground(trial))
     legs, states, lost = cycle_channels(trial, study.filters, plate_steps is not None)
-    _verify(trial, steps, outside, study)
-    findings = (*trial.findings, *quality_findings(_known(trial)), *lost)
+    strides = _strides(steps, study)
+    _verify(trial, strides, outside)
+    findings = (*trial.findings, *quality_findings(_known(trial)), *side_findings(trial, strides), *lost)
     slim = replace(trial, streams={key: r for key, r in trial.streams.items() if key in ("markers", "forces")})
     files = {s.source.file: s.source.sha256 for s in trial.streams.values() if s.source.sha256}
     return _Seen(planned, number, steps, outside, slim, legs, states, findings, files, plate_steps)
 
 
-def _verify(trial: Trial, steps: StepEvents, outside: bool, study: Study) -> None:
+def _strides(steps: StepEvents, study: Study) -> dict[str, Strides]:
+    """Strides of each foot between the contacts as they were seen, without what is too short or too long."""
+    found = {}
+    for side, times in steps.contacts.items():
+        lengths = np.diff(times)
+        whole = (lengths >= study.strides.min_s) & (lengths <= study.strides.max_s)
+        if whole.any():
+            found[side] = Strides(times[:-1][whole], times[1:][whole], side, steps.detector)
+    return found
+
+
+def _verify(trial: Trial, found: Mapping[str, Strides], outside: bool) -> None:
     """Refuse swapped sides; on a treadmill, and where angles alone tell the steps, what is no walking."""
     if "kinematics" not in trial.streams:
         return
     joints = {f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle") for side in "rl"}
     legs = trial.stream("kinematics").selected_by(lambda channel: channel.name in joints)
-    for side, times in steps.contacts.items():
-        lengths = np.diff(times)
-        whole = (lengths >= study.strides.min_s) & (lengths <= study.strides.max_s)
-        if not whole.any():
-            continue
-        strides = Strides(times[:-1][whole], times[1:][whole], side, steps.detector)
-        if not outside or steps.detector == "angles":
+    for side, strides in found.items():
+        if not outside or strides.detector == "angles":
             verify_walking(legs, strides, 1, 0.0 if outside else LEAST_COVERAGE)
         if f"knee_angle_{side}" in legs.names:
             verify_sides(legs, strides)

@@ -11,6 +11,7 @@ from gaitdisc.channel import vocabulary
 from gaitdisc.errors import ChannelError, SamplingError, StrideError
 from gaitdisc.ingest.study import Study
 from gaitdisc.processing.contact_choice import chosen_contacts
+from gaitdisc.processing.side_checks import side_findings
 from gaitdisc.processing.walk import Walk
 from gaitdisc.recording import Finding, Recording, Strides, Trial
 from gaitdisc.recording.strides import interpolated
@@ -79,7 +80,7 @@ def processed(trial: Trial, study: Study) -> Walk:
     verify_sides(_knees_and_hips(trial), strides[side])
     state = _state(trial, raw, study)
     findings += short_run_findings(raw, study.filters.kinematics_hz, study.filters.order, study.filters.gap_s)
-    findings += stride_findings(state, strides[side])
+    findings += stride_findings(state, strides[side]) + side_findings(trial, strides)
     _refuse_late_change(findings, trial, study)
     return Walk(trial, state, strides, trajectory(state, strides[side]), tuple(findings), side)
 

@@ -68,7 +68,7 @@ def test_emg_in_counts_of_a_converter_is_left_and_named():
     kept, (finding,) = without_impossible({"emg": counts})
     np.testing.assert_array_equal(kept["emg"].values, counts.values)
     assert (finding.severity, finding.kind, finding.channel) == ("warning", "unit", "emg_ta_r")
-    assert finding.what == "reaches 2047 V; EMG in V is within 15, so these may be counts"
+    assert finding.what == "reaches 2047 V; EMG in V is within 15, so it looks like mV, or these may be counts"
 
 
 def test_the_table_of_ranges_uses_known_words():

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.batch.run_study import run_study
+from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import load_study, write_study
@@ -82,3 +83,17 @@ def test_check_refuses_what_run_refuses_of_several_trials_and_no_more(folder):
     refused = [(one.participant, one.condition) for one in seen if one.refusal]
     assert refused == [(one.participant, one.condition) for one in run.refusals] == [("P02", "a 2"), ("P03", "")]
     assert all(one.strides for one in seen if one.participant == "P01")
+
+
+def test_a_walk_that_is_refused_keeps_what_its_reader_saw(gait_data, tmp_path):
+    source = gait_data.parent / "opensim_gait10dof" / "ID" / "Results" / "subject01_walk_ID.sto"
+    moments = read_trial(source).stream("moments")
+    write_storage(moments.with_values(moments.values / 72.6), tmp_path / "id.sto")
+    study = Study(
+        conditions=Conditions(nominal="walking"),
+        participants=(Participant(id="P01", trials=(PlannedTrial(condition="walking", files=("id.sto",)),)),),
+    ).placed(tmp_path)
+    (seen,) = inspected_study(study)
+    assert seen.light == "red"
+    (finding,) = [finding for finding in seen.findings if finding.kind == "per body mass"]
+    assert "it looks like N m per kg of body mass" in finding.what

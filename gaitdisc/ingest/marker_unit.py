@@ -1,0 +1,60 @@
+"""Markers in m or mm: what a file states is held against how far markers lie from the origin."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.errors import UnitError
+
+METRES_AT_MOST = 15.0  # no laboratory's markers are farther from its origin, and no body is smaller than 10 cm
+MILLIMETRES_AT_LEAST = 100.0
+
+
+def distance_from_origin(places: NDArray[np.float64]) -> float:
+    """How far markers lie out, as the 99th percentile of their coordinates; NaN without any.
+
+    Parameters
+    ----------
+    places : ndarray (frame, coordinate)
+        In the file's unit, NaN allowed; some thousand frames are looked at.
+
+    Examples
+    --------
+    >>> distance_from_origin(np.array([[1.0, -2.0]]))
+    1.99
+    """
+    some = places[:: max(len(places) // 1000, 1)]
+    finite = np.abs(some[np.isfinite(some)])
+    return float(np.quantile(finite, 0.99)) if finite.size else float("nan")
+
+
+def refuse_other_unit(unit: str, far: float, file: str, where: str) -> None:
+    """Refuse a unit that the distance from the origin contradicts.
+
+    Parameters
+    ----------
+    unit : str
+        As stated: `m`, `cm`, `mm`.
+    far : float
+        As `distance_from_origin` gives it, in that unit.
+    file : str
+        Name of the file.
+    where : str
+        What states the unit, for the message.
+
+    Raises
+    ------
+    UnitError
+        If metres are 100 or more, or millimetres 3 or less.
+
+    Examples
+    --------
+    >>> refuse_other_unit("mm", 1500.0, "walk.trc", "Units in line 3")
+    """
+    if (unit == "m" and far >= MILLIMETRES_AT_LEAST) or (unit == "mm" and 0 < far <= METRES_AT_MOST / 5):
+        raise UnitError(
+            f"markers in {unit} are {'less than 15' if unit == 'm' else 'more than 3'} {unit} from the origin",
+            f"those of {file} are {far:.4g} away, which looks like {'mm' if unit == 'm' else 'm'}",
+            f"Correct {where} of the file.",
+        )
