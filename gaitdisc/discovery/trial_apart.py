@@ -9,11 +9,11 @@ import numpy as np
 from gaitdisc.discovery.gap_share import MODEL_ERROR
 from gaitdisc.discovery.growth import leaves
 from gaitdisc.discovery.inquiry import Inquiry
-from gaitdisc.discovery.odd_trials import FEWEST_OTHERS, KIND
+from gaitdisc.discovery.odd_trials import KIND
 from gaitdisc.recording import Finding
 from gaitdisc.simulation.measured import Measured
 
-MOST_TRIALS = 8  # each is left out once
+FEWEST_TRIALS, MOST_TRIALS = 4, 8  # each is left out once
 APART = 2.0  # times the error must stay whichever other trial is left out
 
 
@@ -35,7 +35,7 @@ def without_trial_apart(inquiry: Inquiry) -> Measured:
     """
     measured = inquiry.measured
     count = len(measured.trials)
-    if not FEWEST_OTHERS < count <= MOST_TRIALS:
+    if not FEWEST_TRIALS <= count <= MOST_TRIALS:
         return measured
     left = np.array([_left_without(inquiry, trial) for trial in range(count)])
     least, *others = np.sort(left)

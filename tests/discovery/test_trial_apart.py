@@ -43,6 +43,6 @@ def test_trials_that_were_recorded_alike_are_all_kept():
     assert without_trial_apart(inquiry) is inquiry.measured
 
 
-def test_of_two_trials_none_is_said_to_stand_apart():
-    inquiry = begin_inquiry(mass(), record(mass(), 3, Experiment(trials=2, seconds=10.0)))
+def test_of_three_trials_none_is_said_to_stand_apart():
+    inquiry = begin_inquiry(mass(), record(mass(), 3, Experiment(trials=3, seconds=10.0)))
     assert without_trial_apart(inquiry) is inquiry.measured
