@@ -22,7 +22,7 @@ from gaitdisc.results import (
     ResponseRun,
 )
 from gaitdisc.results.provenance import made_now
-from gaitdisc.results.run_store import save_run
+from gaitdisc.results.run_store import created_before, save_run
 from gaitdisc.results.unit_folder import damaged_units
 
 SECTION = "4.2, Eqs. 4.1-4.5"
@@ -86,6 +86,7 @@ def run_study(
             tuple(pooled for unit in units for pooled in unit.cycles),
             _unfitted(study, units),
         )
+        run = created_before(run, folder)
         save_run(run, folder)
     return run
 

@@ -17,16 +17,18 @@ of the others and its own. A unit of which anything was changed is found by its 
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
+from typing import Any
 
+from gaitdisc.errors import SchemaError
 from gaitdisc.results.comparison_store import load_over, load_tests, save_over, save_tests
 from gaitdisc.results.cycles_store import cycles_name, load_cycles
 from gaitdisc.results.provenance import Provenance
 from gaitdisc.results.refusal import Refusal
 from gaitdisc.results.response_run import ResponseRun
 from gaitdisc.results.response_store import load_quantity, load_response
-from gaitdisc.results.sealed_json import sealed_text
+from gaitdisc.results.sealed_json import read_sealed, sealed_text
 from gaitdisc.results.unit_folder import FORMAT, read_json
 from gaitdisc.results.walk_store import load_walk, unit_name
 from gaitdisc.whole_file import write_whole
@@ -42,7 +44,29 @@ def save_run(run: ResponseRun, folder: Path) -> None:
     folder : Path
         Folder of the run.
     """
-    data = {
+    if run.tests is not None:
+        save_tests(run.tests, folder / "tests")
+    if run.over is not None:
+        save_over(run.over, folder / "over")
+    write_whole(folder / "run.json", sealed_text(_described(run)))
+
+
+def created_before(run: ResponseRun, folder: Path) -> ResponseRun:
+    """The run with the time of the one saved there, where it repeats that one: nothing was computed anew."""
+    if run.renewed or not (folder / "run.json").is_file():
+        return run
+    try:
+        created = read_sealed(folder / "run.json")["provenance"]["created"]
+    except (SchemaError, KeyError):
+        return run
+    repeated = replace(run, provenance=replace(run.provenance, created=created))
+    saved = (folder / "run.json").read_text(encoding="utf-8")
+    return repeated if sealed_text(_described(repeated)) == saved else run
+
+
+def _described(run: ResponseRun) -> dict[str, Any]:
+    """What run.json says of a run."""
+    return {
         "format": FORMAT,
         "title": run.title,
         "conditions": {"nominal": run.nominal, "exo": run.exo},
@@ -56,11 +80,6 @@ def save_run(run: ResponseRun, folder: Path) -> None:
         "cycles": [cycles_name(one.subject, one.session, one.condition) for one in run.cycles],
         "unfitted": [asdict(refusal) for refusal in run.unfitted],
     }
-    if run.tests is not None:
-        save_tests(run.tests, folder / "tests")
-    if run.over is not None:
-        save_over(run.over, folder / "over")
-    write_whole(folder / "run.json", sealed_text(data))
 
 
 def load_run(folder: Path) -> ResponseRun:

@@ -6,7 +6,7 @@ from resealed import resealed
 
 from gaitdisc.errors import SchemaError
 from gaitdisc.results.response_store import save_response
-from gaitdisc.results.run_store import load_run, save_run
+from gaitdisc.results.run_store import created_before, load_run, save_run
 from gaitdisc.results.walk_store import save_walk, unit_name
 
 
@@ -44,3 +44,18 @@ def test_tests_that_were_changed_by_hand_are_told(saved):
     file.write_text(file.read_text().replace("0.05", "0.99"))
     with pytest.raises(SchemaError, match=r"tests/tests\.csv is changed since it was saved"):
         load_run(saved)
+
+
+def made_at(run, created):
+    return replace(run, provenance=replace(run.provenance, created=created))
+
+
+def test_a_run_that_repeats_the_saved_one_keeps_its_time(run, tmp_path):
+    save_run(made_at(run, "2026-01-01T00:00:00+00:00"), tmp_path)
+    later = made_at(run, "2026-02-02T00:00:00+00:00")
+    assert created_before(later, tmp_path).provenance.created.startswith("2026-01-01")
+    other = replace(later, title="another title")
+    renewed = replace(later, renewed=("walks/P01-exo",))
+    assert created_before(other, tmp_path) == other
+    assert created_before(renewed, tmp_path) == renewed
+    assert created_before(later, tmp_path / "empty") == later
