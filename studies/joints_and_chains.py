@@ -1,0 +1,200 @@
+"""Five systems that `discover` was not built with, with something hidden in them or nothing: is it named.
+
+    python studies/joints_and_chains.py [--seeds N] [--noise SHARE] [--off SHARE] [--lowpass HZ] [--system NAME]
+
+A two-link leg with a stop at its knee, an ankle with an exoskeleton's spring, an elbow with dry friction, a standing
+person with delayed feedback, a chain of four masses with a spring that stiffens; and each of them with nothing hidden.
+Numbers are drawn anew for each seed. As measured records come: white noise, every number of the file off within its
+bounds, the record low-passed (Butterworth of order 2, forwards and back) and the filter not stated. Four trials of 8 s
+at 100 Hz, the last one held out.
+"""
+
+from __future__ import annotations
+
+from command_line import QUICK, argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument("--seeds", "how often each is hidden", 3),
+    argument("--noise", "standard deviation of the noise over that of each channel", 0.02),
+    argument("--off", "standard deviation by which each number of the file is wrong, as a share", 0.05),
+    argument("--lowpass", "cut-off of the record's filter [Hz]; 0 for none", 6.0),
+    argument("--system", "one of them alone", ""),
+    QUICK,
+)  # before the slow imports
+
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import butter, sosfiltfilt
+
+from gaitdisc.discovery.discover import discover
+from gaitdisc.simulation.bundled import bundled
+from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.parts import Term
+from gaitdisc.simulation.running import compile_simulation
+from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.simulation.simulation_file import read_simulation
+
+RATE_HZ, SECONDS, TRIALS = 100.0, 8.0, 4
+SYSTEMS = Path(__file__).parent / "systems"
+WAVES = 5  # sines in what drives a system
+
+
+class Hidden(NamedTuple):
+    """What is missing in a model; `{a}` and `{b}` of its term are drawn between their limits."""
+
+    model: str
+    port: str
+    effect: str
+    term: str
+    a: tuple[float, float]
+    b: tuple[float, float]
+    driven_by: tuple[float, ...]
+    fastest_hz: float
+
+
+KNOWN = {
+    "leg": Hidden(
+        "swing_leg",
+        "knee_moment",
+        "one_sided_spring",
+        "-{a}*max(0, knee - hip - {b})",
+        a=(80.0, 160.0),
+        b=(0.05, 0.2),
+        driven_by=(9.0, 5.0),
+        fastest_hz=2.0,
+    ),
+    "exo ankle": Hidden(
+        "ankle",
+        "ankle_moment",
+        "one_sided_spring",
+        "-{a}*max(0, theta - {b})",
+        a=(20.0, 60.0),
+        b=(0.0, 0.08),
+        driven_by=(6.0, 0.0),
+        fastest_hz=2.0,
+    ),
+    "elbow": Hidden(
+        "elbow",
+        "elbow_moment",
+        "coulomb_friction",
+        "-{a}*tanh(omega/0.02)",
+        a=(0.3, 0.8),
+        b=(0.0, 1.0),
+        driven_by=(3.0,),
+        fastest_hz=2.0,
+    ),
+    "standing": Hidden(
+        "standing",
+        "ankle_moment",
+        "delayed_feedback",
+        "-{a}*delay(lean, {b})",
+        a=(150.0, 300.0),
+        b=(0.1, 0.2),
+        driven_by=(40.0,),
+        fastest_hz=1.0,
+    ),
+    "chain": Hidden(
+        "chain",
+        "force_2",
+        "cubic_stiffness",
+        "-{a}*x2**3",
+        a=(300.0, 700.0),
+        b=(0.0, 1.0),
+        driven_by=(12.0,),
+        fastest_hz=2.0,
+    ),
+}
+
+
+class Record(NamedTuple):
+    """How a record comes: noise and error of the numbers as shares, cut-off [Hz], 0 for none."""
+
+    noise: float
+    off: float
+    lowpass_hz: float
+
+
+def model_of(hidden: Hidden) -> Simulation:
+    """The model as its author believes it."""
+    own = SYSTEMS / f"{hidden.model}.toml"
+    return read_simulation(own) if own.is_file() else bundled(hidden.model)
+
+
+def complete(model: Simulation, hidden: Hidden, rng: np.random.Generator) -> Simulation:
+    """The model with what is hidden in it."""
+    a, b = (f"{rng.uniform(*limits):.4g}" for limits in (hidden.a, hidden.b))
+    return model.with_effect(Term(hidden.port, "port", hidden.effect, hidden.term.format(a=a, b=b)))
+
+
+def put_off(model: Simulation, share: float, rng: np.random.Generator) -> Simulation:
+    """The model with each number a little wrong, and bounds that say so."""
+    if not share:
+        return model
+    wrong = []
+    for one in model.parameters:
+        value = one.value * (1 + share * float(np.clip(rng.standard_normal(), -2, 2)))
+        low, high = sorted((value * (1 - 2.5 * share), value * (1 + 2.5 * share)))
+        wrong.append(replace(one, value=value, low=low, high=high))
+    return replace(model, parameters=tuple(wrong))
+
+
+def recorded(truth: Simulation, hidden: Hidden, record: Record, rng: np.random.Generator) -> Measured:
+    """Trials of the true system, driven by sums of sines, as they come from a laboratory."""
+    t, machine = np.arange(int(SECONDS * RATE_HZ)) / RATE_HZ, compile_simulation(truth)
+    drives = [np.column_stack([_sines(rng, t, size, hidden) for size in hidden.driven_by]) for _ in range(TRIALS)]
+    drive = Drive.of(drives, RATE_HZ)
+    rows = Rows(np.arange(TRIALS), np.zeros(TRIALS, int), np.zeros((TRIALS, len(machine.states))))
+    states, _ = machine.run(drive, rows, len(t) - 1)
+    seen = machine.observe(drive, rows, states)
+    seen = seen + record.noise * seen.std(axis=(0, 1)) * rng.normal(size=seen.shape)
+    if record.lowpass_hz:
+        seen = sosfiltfilt(butter(2, record.lowpass_hz, fs=RATE_HZ, output="sos"), seen, axis=1)
+    return Measured(drive, seen, tuple(str(trial + 1) for trial in range(TRIALS)), tuple(machine.observed))
+
+
+def _sines(rng: np.random.Generator, t: NDArray[np.float64], size: float, hidden: Hidden) -> NDArray[np.float64]:
+    frequencies, phases = rng.uniform(0.2, hidden.fastest_hz, WAVES), rng.uniform(0, 2 * np.pi, WAVES)
+    return (size * rng.uniform(0.3, 1.0, WAVES) * np.sin(2 * np.pi * np.outer(t, frequencies) + phases)).sum(axis=1)
+
+
+def answer(name: str, seed: int, record: Record, nothing: bool) -> tuple[str, float]:
+    """What is named, `nothing` where the model agrees, and the seconds that it took."""
+    hidden, rng = KNOWN[name], np.random.default_rng([seed, list(KNOWN).index(name), nothing])
+    model = model_of(hidden)
+    truth = model if nothing else complete(model, hidden, rng)
+    measured = recorded(truth, hidden, record, rng)
+    started = time.process_time()
+    found, _ = discover(put_off(model, record.off, rng), measured)
+    names = " and ".join(one.name for one in found.effects)
+    return names or found.verdict.replace("no_gap", "nothing"), time.process_time() - started
+
+
+def run(names: list[str], seeds: int, record: Record) -> list[str]:
+    """A line for each system, with what was named instead, and the processor time of an answer."""
+    lines = []
+    for name in names:
+        for nothing, wanted in ((False, KNOWN[name].effect), (True, "nothing")):
+            answers = [answer(name, seed, record, nothing) for seed in range(seeds)]
+            others = [found for found, _ in answers if found != wanted]
+            median = np.median([seconds for _, seconds in answers])
+            said = f"; instead: {', '.join(others)}" if others else ""
+            lines.append(
+                f"{name}, {wanted.replace('_', ' ')}: {seeds - len(others)} of {seeds}, median {median:.0f} s{said}"
+            )
+            print(lines[-1], file=sys.stderr, flush=True)
+    return lines
+
+
+if __name__ == "__main__":
+    record = Record(GIVEN.noise, GIVEN.off, GIVEN.lowpass)
+    names = [GIVEN.system] if GIVEN.system else list(KNOWN)
+    print("\n".join(run(names, 1 if GIVEN.quick else GIVEN.seeds, record)))
