@@ -10,7 +10,7 @@ import gaitdisc
 
 PACKAGE = Path(gaitdisc.__file__).parent
 FLOORS = (
-    ("errors", "units", "channel", "whole_file", "regular_file", "toml_text", "spreadsheet", "compiled"),
+    ("errors", "units", "channel", "whole_file", "regular_file", "toml_text", "spreadsheet", "compiled", "notebook"),
     ("recording", "model"),
     (
         "ingest",
@@ -27,7 +27,7 @@ FLOORS = (
     ("kinetics",),
     ("processing", "discrepancy", "discovery", "sensing", "response"),
     ("batch", "report"),
-    ("commands",),
+    ("library", "commands"),
     ("cli", "__main__"),
 )
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
