@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from gaitdisc.library.clusters import permutation_clusters as permutation_clusters
     from gaitdisc.library.comparing import compare as compare
     from gaitdisc.library.discovering import discover as discover
+    from gaitdisc.library.examples import example_files as example_files
     from gaitdisc.library.examples import example_walks as example_walks
     from gaitdisc.library.functions import simulation_from_function as simulation_from_function
     from gaitdisc.library.joints import angles as angles
@@ -57,6 +58,7 @@ __version__ = "0.1.0"
 _HOME = {
     "read": ("ingest.reading", "read_trial"),
     "check": ("library.checking", "check"),
+    "example_files": ("library.examples", "example_files"),
     "example_walks": ("library.examples", "example_walks"),
     "Trial": ("recording.trial", "Trial"),
     "Event": ("recording.trial", "Event"),
@@ -129,6 +131,7 @@ __all__ = [
     "differentiate",
     "discover",
     "envelope",
+    "example_files",
     "example_walks",
     "fit_response",
     "highpass",

@@ -33,7 +33,7 @@ FLOORS = (
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
 SOLE_HOME = {
     "torch": {"networks"},
-    "matplotlib": {"report"},
+    "matplotlib": {"report", "library"},
     "pingouin": {"statistics"},
     "statsmodels": {"statistics"},
     "ezc3d": {"ingest"},

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+from gaitdisc.batch.demonstration import write_trial
 from gaitdisc.cohort.cohort import the_twelve, walks_of
 from gaitdisc.recording import Trial
 
@@ -27,3 +30,33 @@ def example_walks(duration_s: float = 20.0) -> dict[str, Trial]:
     ['exo', 'nominal']
     """
     return walks_of(the_twelve()[0], duration_s).trials
+
+
+def example_files(folder: Path | str, duration_s: float = 20.0) -> dict[str, tuple[Path, ...]]:
+    """Write the walks of `example_walks` as a laboratory's files, to try reading on.
+
+    Parameters
+    ----------
+    folder : path
+        Where; made if missing.
+    duration_s : float
+        Length of each walk [s].
+
+    Returns
+    -------
+    dict of str to tuple of Path
+        `nominal` and `exo`: joint angles as OpenSim's `.mot`, EMG and forces as `.c3d`.
+
+    Raises
+    ------
+    WriteError
+        If a file cannot be written.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> walk = gd.read(gd.example_files("example")["nominal"])  # doctest: +SKIP
+    """
+    place = Path(folder)
+    walks = example_walks(duration_s)
+    return {word: tuple(place / name for name in write_trial(trial, place, word)) for word, trial in walks.items()}

@@ -136,8 +136,8 @@ class Reconstructor:
         Returns
         -------
         ndarray (time, state)
-            At the time of each last reading, `ahead_s` later where the model forecasts; NaN where the history is not
-            full or a reading is missing.
+            At the times of `x`; a forecast of a time rests on readings that end `ahead_s` before it. NaN where the
+            history is not full or a reading is missing.
 
         Raises
         ------
@@ -159,9 +159,7 @@ class Reconstructor:
         y : array_like (time, state)
             Measured states at the same times.
         """
-        ahead = round(self.ahead_s * self.rate_hz)
         estimated, measured = self.predict(x), _array(y, "states")
-        estimated, measured = estimated[: len(estimated) - ahead], measured[ahead:]
         known = np.isfinite(estimated).all(axis=1) & np.isfinite(measured).all(axis=1)
         return float(np.mean(r2(measured[known], estimated[known])))
 
@@ -229,7 +227,18 @@ class Reconstructor:
 
 
 def load_reconstructor(folder: Path) -> Reconstructor:
-    """Reconstructor of a folder that `Reconstructor.save` or `gaitdisc reconstruct` wrote."""
+    """Load a reconstructor.
+
+    Parameters
+    ----------
+    folder : Path
+        That `Reconstructor.save` or `gaitdisc reconstruct` wrote.
+
+    Raises
+    ------
+    SchemaError
+        If a file is missing, damaged, or of another version.
+    """
     model = load_model(folder)
     what = model.reconstructor.sensing
     lags, rate = what.lags, what.rate_hz

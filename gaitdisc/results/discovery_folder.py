@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 NAME = "discovery.json"
 RUNS = "held_out.csv"
+FORMAT = 1
 
 
 def save_discovery(discovery: Discovery, folder: Path) -> Path:
@@ -54,7 +55,7 @@ def save_discovery(discovery: Discovery, folder: Path) -> Path:
 
     write_csv(pd.DataFrame(discovery.runs.table(discovery.channels)).dropna(), folder / RUNS, "%.8g")
     hashes = {RUNS: file_sha256(folder / RUNS)}
-    return write_whole(folder / NAME, sealed_text({**discovery.to_json(), "sha256": hashes}))
+    return write_whole(folder / NAME, sealed_text({**discovery.to_json(), "format": FORMAT, "sha256": hashes}))
 
 
 def load_discovery(folder: Path) -> Discovery:
@@ -73,6 +74,8 @@ def load_discovery(folder: Path) -> Discovery:
     from gaitdisc.results.unit_folder import stored_finding  # brings jsonschema, which saving does not need
 
     data = read_sealed(folder / NAME)
+    if data.get("format", FORMAT) != FORMAT:  # before there was a number, the form was this one
+        raise damaged(folder / NAME, f"of format {str(data['format'])[:20]}, not {FORMAT}")
     try:
         check_files(folder, data["sha256"])
         table = read_csv(folder / RUNS, ("trial",))

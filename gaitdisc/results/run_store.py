@@ -75,7 +75,15 @@ def save_whole_run(run: ResponseRun, folder: Path) -> None:
 
 
 def created_before(run: ResponseRun, folder: Path) -> ResponseRun:
-    """The run with the time of the one saved there, where it repeats that one: nothing was computed anew."""
+    """The run with the time of the one saved there, where it repeats that one: nothing was computed anew.
+
+    Parameters
+    ----------
+    run : ResponseRun
+        The whole result.
+    folder : Path
+        Folder of the run.
+    """
     if run.renewed or not (folder / "run.json").is_file():
         return run
     try:
