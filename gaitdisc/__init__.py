@@ -1,3 +1,170 @@
-"""Gaitdisc: where a simulation or a model of walking and measured gait disagree, and what the difference is."""
+"""Gaitdisc: where a simulation or a model of walking and measured gait disagree, and what the difference is.
+
+`import gaitdisc as gd` gives the names below; each is loaded when it is first used. What is stable in them is said in
+docs/compatibility.md, and docs/library.md has four short scripts.
+"""
+
+TYPE_CHECKING = False  # typing itself takes longer to load than all else here; type checkers know the name
+if TYPE_CHECKING:
+    from gaitdisc.channel import Channel as Channel
+    from gaitdisc.errors import GaitdiscError as GaitdiscError
+    from gaitdisc.ingest.reading import read_trial as read
+    from gaitdisc.library import plot as plot
+    from gaitdisc.library.checking import check as check
+    from gaitdisc.library.clusters import permutation_clusters as permutation_clusters
+    from gaitdisc.library.comparing import compare as compare
+    from gaitdisc.library.discovering import discover as discover
+    from gaitdisc.library.examples import example_files as example_files
+    from gaitdisc.library.examples import example_walks as example_walks
+    from gaitdisc.library.functions import simulation_from_function as simulation_from_function
+    from gaitdisc.library.joints import angles as angles
+    from gaitdisc.library.joints import moments as moments
+    from gaitdisc.library.loading import load as load
+    from gaitdisc.library.reconstructor import Reconstructor as Reconstructor
+    from gaitdisc.library.response import fit_response as fit_response
+    from gaitdisc.library.simulating import simulate as simulate
+    from gaitdisc.library.steps import contacts as contacts
+    from gaitdisc.library.steps import cycles as cycles
+    from gaitdisc.processing.inspection import Inspection as Inspection
+    from gaitdisc.recording.field import Axis as Axis
+    from gaitdisc.recording.field import Field as Field
+    from gaitdisc.recording.finding import Finding as Finding
+    from gaitdisc.recording.recording import Recording as Recording
+    from gaitdisc.recording.samples import Samples as Samples
+    from gaitdisc.recording.strides import Strides as Strides
+    from gaitdisc.recording.trial import Event as Event
+    from gaitdisc.recording.trial import Trial as Trial
+    from gaitdisc.results.discovery import Discovery as Discovery
+    from gaitdisc.results.mismatch import Mismatch as Mismatch
+    from gaitdisc.results.pooled_cycles import PooledCycles as PooledCycles
+    from gaitdisc.results.reconstruction import Reconstruction as Reconstruction
+    from gaitdisc.results.response_run import ResponseRun as ResponseRun
+    from gaitdisc.signals.butterworth import highpassed as highpass
+    from gaitdisc.signals.butterworth import lowpassed as lowpass
+    from gaitdisc.signals.contacts import Contacts as Contacts
+    from gaitdisc.signals.derivatives import differentiated_recording as differentiate
+    from gaitdisc.signals.envelope import enveloped as envelope
+    from gaitdisc.simulation.bundled import bundled as bundled_simulation
+    from gaitdisc.simulation.simulation import Simulation as Simulation
+    from gaitdisc.simulation.simulation_file import read_simulation as read_simulation
+    from gaitdisc.simulation.writing import write_simulation as write_simulation
+    from gaitdisc.statistics.holm_sidak import holm_sidak as holm_sidak
+    from gaitdisc.statistics.r2 import r2 as r2
+    from gaitdisc.statistics.signed_rank import signed_rank as signed_rank
 
 __version__ = "0.1.0"
+
+# name -> module, and the name there; in the order of the reference
+_HOME = {
+    "read": ("ingest.reading", "read_trial"),
+    "check": ("library.checking", "check"),
+    "example_files": ("library.examples", "example_files"),
+    "example_walks": ("library.examples", "example_walks"),
+    "Trial": ("recording.trial", "Trial"),
+    "Event": ("recording.trial", "Event"),
+    "Recording": ("recording.recording", "Recording"),
+    "Channel": ("channel", "Channel"),
+    "Strides": ("recording.strides", "Strides"),
+    "Samples": ("recording.samples", "Samples"),
+    "Field": ("recording.field", "Field"),
+    "Axis": ("recording.field", "Axis"),
+    "Finding": ("recording.finding", "Finding"),
+    "Inspection": ("processing.inspection", "Inspection"),
+    "GaitdiscError": ("errors", "GaitdiscError"),
+    "lowpass": ("signals.butterworth", "lowpassed"),
+    "highpass": ("signals.butterworth", "highpassed"),
+    "envelope": ("signals.envelope", "enveloped"),
+    "differentiate": ("signals.derivatives", "differentiated_recording"),
+    "contacts": ("library.steps", "contacts"),
+    "Contacts": ("signals.contacts", "Contacts"),
+    "cycles": ("library.steps", "cycles"),
+    "angles": ("library.joints", "angles"),
+    "moments": ("library.joints", "moments"),
+    "compare": ("library.comparing", "compare"),
+    "Mismatch": ("results.mismatch", "Mismatch"),
+    "Simulation": ("simulation.simulation", "Simulation"),
+    "read_simulation": ("simulation.simulation_file", "read_simulation"),
+    "write_simulation": ("simulation.writing", "write_simulation"),
+    "bundled_simulation": ("simulation.bundled", "bundled"),
+    "simulation_from_function": ("library.functions", "simulation_from_function"),
+    "simulate": ("library.simulating", "simulate"),
+    "discover": ("library.discovering", "discover"),
+    "Discovery": ("results.discovery", "Discovery"),
+    "fit_response": ("library.response", "fit_response"),
+    "ResponseRun": ("results.response_run", "ResponseRun"),
+    "PooledCycles": ("results.pooled_cycles", "PooledCycles"),
+    "Reconstructor": ("library.reconstructor", "Reconstructor"),
+    "Reconstruction": ("results.reconstruction", "Reconstruction"),
+    "signed_rank": ("statistics.signed_rank", "signed_rank"),
+    "holm_sidak": ("statistics.holm_sidak", "holm_sidak"),
+    "permutation_clusters": ("library.clusters", "permutation_clusters"),
+    "r2": ("statistics.r2", "r2"),
+    "load": ("library.loading", "load"),
+    "plot": ("library.plot", ""),
+}
+__all__ = [
+    "Axis",
+    "Channel",
+    "Contacts",
+    "Discovery",
+    "Event",
+    "Field",
+    "Finding",
+    "GaitdiscError",
+    "Inspection",
+    "Mismatch",
+    "PooledCycles",
+    "Reconstruction",
+    "Reconstructor",
+    "Recording",
+    "ResponseRun",
+    "Samples",
+    "Simulation",
+    "Strides",
+    "Trial",
+    "angles",
+    "bundled_simulation",
+    "check",
+    "compare",
+    "contacts",
+    "cycles",
+    "differentiate",
+    "discover",
+    "envelope",
+    "example_files",
+    "example_walks",
+    "fit_response",
+    "highpass",
+    "holm_sidak",
+    "load",
+    "lowpass",
+    "moments",
+    "permutation_clusters",
+    "plot",
+    "r2",
+    "read",
+    "read_simulation",
+    "signed_rank",
+    "simulate",
+    "simulation_from_function",
+    "write_simulation",
+]
+
+
+if not TYPE_CHECKING:  # or a type checker takes every misspelt name for one of ours
+
+    def __getattr__(name: str) -> object:
+        """Load a name when it is first used: `import gaitdisc` itself loads nothing."""
+        if name not in _HOME:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        from importlib import import_module
+
+        module, inside = _HOME[name]
+        found = import_module(f"{__name__}.{module}")
+        globals()[name] = getattr(found, inside) if inside else found
+        return globals()[name]
+
+
+def __dir__() -> list[str]:
+    """Names of the library, and the package's own."""
+    return sorted({*globals(), *__all__} - {"TYPE_CHECKING"})

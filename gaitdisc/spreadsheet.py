@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import csv
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -83,17 +84,20 @@ def write_csv(table: pd.DataFrame, path: Path, float_format: str | None = None) 
         safe.to_csv(part, index=False, lineterminator="\n", float_format=float_format, quoting=quoting)
 
 
-def read_csv(path: Path) -> pd.DataFrame:
+def read_csv(path: Path, words: Sequence[str] = ()) -> pd.DataFrame:
     """Read a table that `write_csv` wrote; an empty cell is a missing number.
 
     Parameters
     ----------
     path : Path
         The file.
+    words : sequence of str
+        Columns whose cells are words, also where they look like numbers: a participant called 007.
     """
     import pandas as pd
 
-    table = pd.read_csv(path, engine="python", keep_default_na=False, na_values=[""])
+    kinds = dict.fromkeys(words, str)
+    table = pd.read_csv(path, engine="python", keep_default_na=False, na_values=[""], dtype=kinds)
     for place in range(len(table.columns)):
         if table.dtypes.iloc[place].kind not in _NUMBERS:
             table.isetitem(place, table.iloc[:, place].map(_plain).to_numpy())

@@ -82,6 +82,9 @@ def test_functions_take_at_most_seven_arguments(public):
 def test_the_reference_shows_every_module_and_none_that_is_gone(public):
     page = (PROJECT / "docs" / "reference.md").read_text(encoding="utf-8")
     shown = [line.removeprefix("::: ") for line in page.splitlines() if line.startswith("::: ")]
+    shown = [
+        name for name in shown if name.removeprefix("gaitdisc.") not in gaitdisc.__all__
+    ]  # test_library.py has these
     modules = {thing.__module__ for name, thing in public.items() if not name.startswith("gaitdisc.commands.")}
     assert sorted(modules - set(shown)) == []
     assert [name for name in shown if not (PROJECT / f"{name.replace('.', '/')}.py").is_file()] == []

@@ -10,7 +10,7 @@ import gaitdisc
 
 PACKAGE = Path(gaitdisc.__file__).parent
 FLOORS = (
-    ("errors", "units", "channel", "whole_file", "regular_file", "toml_text", "spreadsheet", "compiled"),
+    ("errors", "units", "channel", "whole_file", "regular_file", "toml_text", "spreadsheet", "compiled", "notebook"),
     ("recording", "model"),
     (
         "ingest",
@@ -27,13 +27,13 @@ FLOORS = (
     ("kinetics",),
     ("processing", "discrepancy", "discovery", "sensing", "response"),
     ("batch", "report"),
-    ("commands",),
+    ("library", "commands"),
     ("cli", "__main__"),
 )
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
 SOLE_HOME = {
     "torch": {"networks"},
-    "matplotlib": {"report"},
+    "matplotlib": {"report", "library"},
     "pingouin": {"statistics"},
     "statsmodels": {"statistics"},
     "ezc3d": {"ingest"},

@@ -58,7 +58,7 @@ def write_demonstration(
         planned = tuple(
             PlannedTrial(
                 condition=word,
-                files=_write_trial(trial, folder, f"raw/{person.name}/{word}"),
+                files=write_trial(trial, folder, f"raw/{person.name}/{word}"),
                 speed_m_per_s=person.speed_m_per_s,
             )
             for word, trial in walks.trials.items()
@@ -77,8 +77,23 @@ def write_demonstration(
     return study
 
 
-def _write_trial(trial: Trial, folder: Path, stem: str) -> tuple[str, ...]:
-    """Angles as OpenSim writes them; EMG and forces as the analog channels of a C3D file."""
+def write_trial(trial: Trial, folder: Path, stem: str) -> tuple[str, ...]:
+    """Write angles as OpenSim does, EMG and forces as the analog channels of a C3D file.
+
+    Parameters
+    ----------
+    trial : Trial
+        Of the cohort.
+    folder : Path
+        Of the study.
+    stem : str
+        Path in it, without ending.
+
+    Returns
+    -------
+    tuple of str
+        Both files, relative to the folder.
+    """
     angles, analog = names = (f"{stem}_ik.mot", f"{stem}.c3d")
     (folder / angles).parent.mkdir(parents=True, exist_ok=True)
     write_storage(trial.stream("kinematics"), folder / angles)

@@ -56,7 +56,7 @@ def discover_files(
     model = read_simulation(simulation)
     data = read_measured(measured, model)
     files = {simulation: "simulation", measured: "measured table"}
-    return _discovered(model, data, catalogue, files, told)
+    return discovered(model, data, catalogue, files, told)
 
 
 def discover_model(
@@ -90,7 +90,7 @@ def discover_model(
     told(f"reading {measured.name}")
     simulation = cast("Simulation", model)  # it goes wherever a `Simulation` goes
     data = read_measured(measured, simulation)
-    found, augmented = _discovered(simulation, data, catalogue, {measured: "measured table"}, told)
+    found, augmented = discovered(simulation, data, catalogue, {measured: "measured table"}, told)
     return found, cast("PythonSimulation", augmented)
 
 
@@ -133,12 +133,34 @@ def discover_study(
     person = read.participant(participant)
     called = words_of(read, person).files
     walks = {read.path_of(file): called[Path(file).name] for trial in person.trials for file in trial.files}
-    return _discovered(model, data, catalogue, walks, told)
+    return discovered(model, data, catalogue, walks, told)
 
 
-def _discovered(
+def discovered(
     model: Simulation, data: Measured, catalogue: Path | None, files: dict[Path, str], told: Callable[[str], None]
 ) -> tuple[Discovery, Simulation]:
+    """Find what a model lacks against measured trials, with what the answer rests on.
+
+    Parameters
+    ----------
+    model : Simulation
+        A `PythonSimulation` goes as well.
+    data : Measured
+        Its trials.
+    catalogue : Path or None
+        Effects of the user's own.
+    files : dict of Path to str
+        Files that were read, and what each is called in the result.
+    told : callable
+        Takes one line about each step.
+
+    Returns
+    -------
+    discovery : Discovery
+        The answer.
+    augmented : Simulation
+        The model with what was found in it.
+    """
     shapes = read_catalogue(catalogue) if catalogue else ()
     data = replace(data, trials=tuple(_trial_name(name, k) for k, name in enumerate(data.trials, 1)))
     refuse_blow_up(model, data)

@@ -11,12 +11,14 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError
+from gaitdisc.notebook import html_of
 from gaitdisc.recording.arrays import read_only
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
+SHOWN = 12  # channels of a notebook's table
 STEP_TOLERANCE = 1e-3  # of the mean step; ingest evens out what a file's printed digits round
 
 
@@ -200,6 +202,25 @@ class Recording:
         """
         marks = self._suspect() if suspect is None else self._suspect() | suspect
         return replace(self, values=values, suspect=marks)
+
+    def __repr__(self) -> str:
+        names = ", ".join(self.names[:4]) + (", ..." if len(self.names) > 4 else "")
+        span = f"{len(self.time)} samples" + (f" at {self.rate_hz:g} Hz" if len(self.time) > 1 else "")
+        return f"Recording({len(self.names)} channels ({names}), {span})"
+
+    def _repr_html_(self) -> str:
+        rows = [("subject, condition", ", ".join(word for word in (self.subject, self.condition) if word))]
+        if len(self.time) > 1:
+            span = f"{self.time[0]:.3f} to {self.time[-1]:.3f} s, {len(self.time)} samples at {self.rate_hz:g} Hz"
+            rows.append(("time", span))
+        rows.append(("file", self.source.file))
+        for column, channel in enumerate(self.channels[:SHOWN]):
+            known = self.values[np.isfinite(self.values[:, column]), column]
+            text = f"{known.min():.4g} to {known.max():.4g}" if len(known) else "no value"
+            rows.append((channel.name, f"{text} [{channel.unit}]"))
+        if len(self.channels) > SHOWN:
+            rows.append((f"and {len(self.channels) - SHOWN} more", ""))
+        return html_of("Recording", [row for row in rows if row[1] or row[0].startswith("and ")])
 
     def to_pandas(self) -> pd.DataFrame:
         """Table with one column a channel, indexed by time [s]."""

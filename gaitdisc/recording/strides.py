@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import ShapeError, StrideError
+from gaitdisc.notebook import html_of
 from gaitdisc.recording.arrays import read_only
 from gaitdisc.recording.recording import Recording
 from gaitdisc.recording.wrapping import in_one_turn, turn_of, unwrapped
@@ -87,6 +88,20 @@ class Strides:
 
     def __len__(self) -> int:
         return len(self.start)
+
+    def __repr__(self) -> str:
+        span = f", {self.start[0]:.2f} to {self.end[-1]:.2f} s" if len(self) else ""
+        return f"Strides({len(self)} of side {self.side!r} by {self.detector}{span}; {len(self.dropped)} dropped)"
+
+    def _repr_html_(self) -> str:
+        rows = [("strides", str(len(self))), ("side", self.side), ("contacts by", self.detector)]
+        if len(self):
+            lasting = (
+                f"{self.duration_s.min():.2f} to {self.duration_s.max():.2f} s, mean {self.duration_s.mean():.2f} s"
+            )
+            rows.append(("duration", lasting))
+        rows += [(f"dropped at {one.start:.2f} s", one.reason) for one in self.dropped[:4]]
+        return html_of("Strides", rows)
 
     @property
     def duration_s(self) -> NDArray[np.float64]:

@@ -88,6 +88,12 @@ class Trial:
             )
         object.__setattr__(self, "streams", MappingProxyType(dict(self.streams)))
 
+    def __repr__(self) -> str:
+        streams = ", ".join(f"{key} {len(one.names)} at {one.rate_hz:g} Hz" for key, one in self.streams.items())
+        return (
+            f"Trial({self.name!r}: {streams or 'no stream'}; {len(self.events)} events, {len(self.findings)} findings)"
+        )
+
     def stream(self, key: str) -> Recording:
         """Return one stream.
 

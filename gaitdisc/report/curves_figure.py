@@ -127,6 +127,28 @@ def sides_together(names: list[str]) -> list[str]:
     return [name for group in (*pairs, *singles) for name in group]
 
 
+def draw_walks(axes: Axes, curves: pd.DataFrame, colour: str) -> None:
+    """Draw mean and spread of both walks of one channel over the stride.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Receives the curves.
+    curves : DataFrame
+        Rows of `curve_numbers` of one channel.
+    colour : str
+        Of the walk with the device.
+    """
+    axes.axhline(0.0, color="#cccccc", linewidth=0.6, zorder=0)
+    for walk, rows in curves.groupby("walk", sort=False):
+        without = walk == "nominal"
+        shade = WITHOUT_DEVICE.colour if without else colour
+        low, high = rows["mean"] - rows["sd"], rows["mean"] + rows["sd"]
+        axes.fill_between(rows["percent"], low, high, color=shade, alpha=0.22, linewidth=0, zorder=1)
+        line = WITHOUT_DEVICE.line if without else "-"
+        axes.plot(rows["percent"], rows["mean"], color=shade, linestyle=line, linewidth=1.2, zorder=2)
+
+
 def _figure(run: ResponseRun, participant: str, numbers: pd.DataFrame, name: str) -> Figure:
     groups = list(numbers.groupby("channel", sort=False))
     columns = min(4, len(groups))
@@ -134,7 +156,7 @@ def _figure(run: ResponseRun, participant: str, numbers: pd.DataFrame, name: str
     cells = [axes for row in grid for axes in row]
     ranges = _ranges(numbers)
     for axes, (channel, curves) in zip(cells, groups, strict=False):
-        _draw(axes, curves, SIDES[side_of(str(channel))].colour)
+        draw_walks(axes, curves, SIDES[side_of(str(channel))].colour)
         axes.set_title(_title(str(channel)), color=SIDES[side_of(str(channel))].colour, fontsize=7.4)
         up = upwards(str(channel))
         unit = unit_text(str(curves["unit"].iloc[0]))
@@ -146,19 +168,8 @@ def _figure(run: ResponseRun, participant: str, numbers: pd.DataFrame, name: str
         axes.set_visible(False)
     for axes in cells[max(0, len(groups) - columns) : len(groups)]:
         axes.set_xlabel("stride [%]", labelpad=1)
-    legend(drawn, _key(run))
+    legend(drawn, walks_key(run))
     return Figure(name, _caption(run, participant, numbers), _alt(run, participant, numbers), numbers, drawn)
-
-
-def _draw(axes: Axes, curves: pd.DataFrame, colour: str) -> None:
-    axes.axhline(0.0, color="#cccccc", linewidth=0.6, zorder=0)
-    for walk, rows in curves.groupby("walk", sort=False):
-        without = walk == "nominal"
-        shade = WITHOUT_DEVICE.colour if without else colour
-        low, high = rows["mean"] - rows["sd"], rows["mean"] + rows["sd"]
-        axes.fill_between(rows["percent"], low, high, color=shade, alpha=0.22, linewidth=0, zorder=1)
-        line = WITHOUT_DEVICE.line if without else "-"
-        axes.plot(rows["percent"], rows["mean"], color=shade, linestyle=line, linewidth=1.2, zorder=2)
 
 
 def _ranges(numbers: pd.DataFrame) -> dict[str, tuple[float, float]]:
@@ -176,7 +187,14 @@ def _title(channel: str) -> str:
     return label(channel).replace("EMG ", "")
 
 
-def _key(run: ResponseRun) -> list[Line2D]:
+def walks_key(run: ResponseRun) -> list[Line2D]:
+    """Handles of the legend of both walks.
+
+    Parameters
+    ----------
+    run : ResponseRun
+        Whose conditions are named.
+    """
     from matplotlib.lines import Line2D
 
     without = {"color": WITHOUT_DEVICE.colour, "linestyle": WITHOUT_DEVICE.line}

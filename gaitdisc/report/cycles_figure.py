@@ -78,16 +78,34 @@ def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name
 
 def _draw(axes: Axes, pooled: PooledCycles, channel: str, side: str, curve: pd.DataFrame) -> None:
     look = SIDES[side]
-    every = _every(pooled, channel, side)
-    axes.axhline(0.0, color="#cccccc", linewidth=0.6, zorder=0)
-    axes.plot(PERCENT, every[:MOST_FAINT].T, color=look.colour, linewidth=0.4, alpha=0.35, zorder=1)
-    if len(every) > 2:
-        low, high = curve["mean"] - curve["sd"], curve["mean"] + curve["sd"]
-        axes.fill_between(curve["percent"], low, high, color=look.colour, alpha=0.18, linewidth=0, zorder=1)
-    axes.plot(curve["percent"], curve["mean"], color=look.colour, linewidth=1.2, zorder=2)
+    draw_cycles(axes, _every(pooled, channel, side), curve["mean"].to_numpy(), curve["sd"].to_numpy(), side)
     off = pooled.kept.loc[pooled.kept["side"] == side, "stance_percent"].mean()
     if np.isfinite(off):
         axes.axvline(float(off), color=look.colour, linewidth=0.7, linestyle=(0, (1.5, 1.5)), zorder=0)
+
+
+def draw_cycles(
+    axes: Axes, every: NDArray[np.float64], mean: NDArray[np.float64], sd: NDArray[np.float64], side: str
+) -> None:
+    """Draw every cycle faint, and their mean; from three cycles on its spread.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Receives the curves.
+    every : ndarray (cycle, phase)
+        On 0 to 100 % in 101 points.
+    mean, sd : ndarray (phase,)
+        Over the cycles.
+    side : str
+        `l`, `r` or empty, which gives the colour.
+    """
+    look = SIDES[side]
+    axes.axhline(0.0, color="#cccccc", linewidth=0.6, zorder=0)
+    axes.plot(PERCENT, every[:MOST_FAINT].T, color=look.colour, linewidth=0.4, alpha=0.35, zorder=1)
+    if len(every) > 2:
+        axes.fill_between(PERCENT, mean - sd, mean + sd, color=look.colour, alpha=0.18, linewidth=0, zorder=1)
+    axes.plot(PERCENT, mean, color=look.colour, linewidth=1.2, zorder=2)
 
 
 def _every(pooled: PooledCycles, channel: str, side: str) -> NDArray[np.float64]:

@@ -35,13 +35,81 @@ def discovery_figures(discovery: Discovery) -> list[Figure]:
     discovery : Discovery
         What was found.
     """
-    table = pd.DataFrame(discovery.runs.table(discovery.channels)).dropna()
-    for channel, unit in zip(discovery.channels, discovery.units, strict=True):
-        table[[f"{channel}_{word}" for word in WORDS]] *= shown_unit(unit)[1]
+    table = shown_runs(discovery)
     figures = [_over_time(discovery, table), _against_state(discovery, table)]
     if "phase" in table:
         figures.insert(1, _over_stride(discovery, table))
     return figures
+
+
+def shown_runs(discovery: Discovery) -> pd.DataFrame:
+    """Held-out runs in the units that are drawn, degrees in place of radians.
+
+    Parameters
+    ----------
+    discovery : Discovery
+        What was found.
+    """
+    table = pd.DataFrame(discovery.runs.table(discovery.channels)).dropna()
+    for channel, unit in zip(discovery.channels, discovery.units, strict=True):
+        table[[f"{channel}_{word}" for word in WORDS]] *= shown_unit(unit)[1]
+    return table
+
+
+def stretch_of(table: pd.DataFrame, channel: str) -> pd.DataFrame:
+    """A typical stretch of the first trial.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Of `shown_runs`.
+    channel : str
+        By whose gap it is chosen.
+    """
+    one = table[table["trial"] == table["trial"].iloc[0]].reset_index(drop=True)
+    gap = (one[f"{channel}_measured"] - one[f"{channel}_simulated"]).to_numpy() ** 2
+    begin, end = typical_stretch(gap, min(SHOWN, len(one)))
+    return one.iloc[begin:end]
+
+
+def draw_runs(axes: Axes, numbers: pd.DataFrame, channel: str) -> None:
+    """Draw one channel over time: measured, simulated as read and with what was found; the gap is shaded.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Receives the curves.
+    numbers : DataFrame
+        Of `stretch_of`.
+    channel : str
+        Its name.
+    """
+    time = numbers["time"].to_numpy()
+    seen, simulated, augmented = (numbers[f"{channel}_{word}"].to_numpy() for word in WORDS)
+    axes.fill_between(time, seen, simulated, color=SHADE, alpha=0.55, linewidth=0, zorder=1)
+    axes.plot(time, seen, color=MEASURED.colour, linewidth=1.3, zorder=2)
+    _models(axes, time, simulated, augmented)
+
+
+def draw_left(axes: Axes, numbers: pd.DataFrame, channel: str, floor: float) -> None:
+    """Draw what is left of one channel over time: measured minus simulated, as read and with what was found.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Receives the curves.
+    numbers : DataFrame
+        Of `stretch_of`.
+    channel : str
+        Its name.
+    floor : float
+        Standard deviation of the sensor's noise [as drawn]; twice it is shaded grey.
+    """
+    time = numbers["time"].to_numpy()
+    seen, simulated, augmented = (numbers[f"{channel}_{word}"].to_numpy() for word in WORDS)
+    axes.axhspan(-2 * floor, 2 * floor, color="#888888", alpha=0.22, linewidth=0)
+    axes.fill_between(time, seen - simulated, 0.0, color=SHADE, alpha=0.55, linewidth=0, zorder=1)
+    _models(axes, time, seen - simulated, seen - augmented)
 
 
 def within_bounds(discovery: Discovery) -> str:
@@ -93,44 +161,51 @@ def binned(along: NDArray[np.float64], values: NDArray[np.float64], edges: NDArr
     return table[table["n"] >= FEWEST].reset_index(drop=True)
 
 
-def _drawn_channels(discovery: Discovery) -> list[tuple[str, str, float]]:
-    """Channels with the largest gap against the noise first: name, unit shown, noise floor in that unit."""
+def ranked_channels(discovery: Discovery) -> list[str]:
+    """Channels, that with the largest gap against its noise first.
+
+    Parameters
+    ----------
+    discovery : Discovery
+        What was found.
+    """
     sizes = discovery.held_out.channels
-    order = sorted(discovery.channels, key=lambda name: -sizes[name][0] / (sizes[name][2] or 1.0))
-    units = dict(zip(discovery.channels, discovery.units, strict=True))
-    return [(name, *_shown(units[name], sizes[name][2])) for name in order[:MOST_CHANNELS]]
+    return sorted(discovery.channels, key=lambda name: -sizes[name][0] / (sizes[name][2] or 1.0))
 
 
-def _shown(unit: str, floor: float) -> tuple[str, float]:
-    text, factor = shown_unit(unit)
-    return text or "1", factor * floor
+def noise_floor(discovery: Discovery, channel: str) -> tuple[str, float]:
+    """Unit in which a channel is drawn, and the standard deviation of its noise in it.
+
+    Parameters
+    ----------
+    discovery : Discovery
+        What was found.
+    channel : str
+        Its name.
+    """
+    text, factor = shown_unit(dict(zip(discovery.channels, discovery.units, strict=True))[channel])
+    return text or "1", factor * discovery.held_out.channels[channel][2]
+
+
+def _drawn_channels(discovery: Discovery) -> list[tuple[str, str, float]]:
+    """Name, unit shown, noise floor in that unit."""
+    return [(name, *noise_floor(discovery, name)) for name in ranked_channels(discovery)[:MOST_CHANNELS]]
 
 
 def _over_time(discovery: Discovery, table: pd.DataFrame) -> Figure:
     channels = _drawn_channels(discovery)
-    first = channels[0][0]
-    trial = table["trial"].iloc[0]
-    one = table[table["trial"] == trial].reset_index(drop=True)
-    gap = (one[f"{first}_measured"] - one[f"{first}_simulated"]).to_numpy() ** 2
-    begin, end = typical_stretch(gap, min(SHOWN, len(one)))
-    numbers = one.iloc[begin:end]
+    trial, numbers = table["trial"].iloc[0], stretch_of(table, channels[0][0])
     drawn, grid = panels(len(channels), 2, 1.75, Room(left=0.6, across=0.62, down=0.52))
     for (left, right), (channel, unit, floor) in zip(grid, channels, strict=True):
-        time = numbers["time"].to_numpy()
-        seen, simulated, augmented = (numbers[f"{channel}_{word}"].to_numpy() for word in WORDS)
-        left.fill_between(time, seen, simulated, color=SHADE, alpha=0.55, linewidth=0, zorder=1)
-        left.plot(time, seen, color=MEASURED.colour, linewidth=1.3, zorder=2)
-        _models(left, time, simulated, augmented)
+        draw_runs(left, numbers, channel)
         left.set_title(channel)
         left.set_ylabel(f"[{unit}]", labelpad=1)
-        right.axhspan(-2 * floor, 2 * floor, color="#888888", alpha=0.22, linewidth=0)
-        right.fill_between(time, seen - simulated, 0.0, color=SHADE, alpha=0.55, linewidth=0, zorder=1)
-        _models(right, time, seen - simulated, seen - augmented)
+        draw_left(right, numbers, channel, floor)
         right.set_title(f"{channel}: what is left")
         right.set_ylabel(f"[{unit}]", labelpad=1)
     for axes in grid[-1]:
         axes.set_xlabel("time [s]", labelpad=1)
-    legend(drawn, _key(measured=True))
+    legend(drawn, discovery_key(measured=True))
     caption = (
         f"Trial {trial}, held out: neither searched nor fitted, only the start of each run was found. Left: measured "
         f"(black), simulated as read{within_bounds(discovery)} (orange, dashed), with what was found (green); "
@@ -171,7 +246,7 @@ def _over_stride(discovery: Discovery, table: pd.DataFrame) -> Figure:
         ]
     for axes in grid[-1]:
         axes.set_xlabel("stride [%]", labelpad=1)
-    legend(drawn, _key(measured=True))
+    legend(drawn, discovery_key(measured=True))
     caption = (
         f"The same over the stride, all {len(table)} held-out samples in {STRIDE_BINS} bins; bands: standard deviation "
         "in a bin. Bar at the foot: where what was found is at least half as strong as at its strongest."
@@ -202,7 +277,7 @@ def _against_state(discovery: Discovery, table: pd.DataFrame) -> Figure:
         axes.set_ylabel(f"[{unit}]", labelpad=1)
         words = ("gap_before", "gap_after")
         kept += [one.assign(channel=channel, unit=unit, what=word) for one, word in zip(gaps, words, strict=True)]
-    legend(drawn, _key(measured=False))
+    legend(drawn, discovery_key(measured=False))
     caption = (
         f"Measured minus simulated against the measured channel, all {len(table)} held-out samples; mean and standard "
         "deviation in a bin. What is left of a complete model has no shape."
@@ -225,7 +300,14 @@ def _mark_stride(axes: Axes, discovery: Discovery) -> None:
             axes.plot(ends, [0.02, 0.02], color="#b06f00", linewidth=2.2, transform=across, solid_capstyle="butt")
 
 
-def _key(measured: bool) -> list[Artist]:
+def discovery_key(measured: bool) -> list[Artist]:
+    """Handles of the legend.
+
+    Parameters
+    ----------
+    measured : bool
+        Whether what was measured is drawn, with the gap shaded.
+    """
     from matplotlib.patches import Patch
 
     looks = {"simulated as read": MODELS["nominal"], "with what was found": MODELS["augmented"]}

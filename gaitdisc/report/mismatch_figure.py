@@ -37,7 +37,7 @@ def mismatch_figures(mismatch: Mismatch) -> list[Figure]:
     """
     parts = sheets(sides_together(list(mismatch.names)), COLUMNS * MOST_ROWS)
     figures = []
-    for kind, draw in (("curves", _draw_curves), ("gap", _draw_gap)):
+    for kind, draw in (("curves", draw_both), ("gap", draw_gap)):
         for number, names in enumerate(parts):
             name = f"mismatch-{kind}-{number + 1}" if len(parts) > 1 else f"mismatch-{kind}"
             figures.append(_figure(mismatch, names, name, kind, draw))
@@ -81,11 +81,24 @@ def _figure(mismatch: Mismatch, names: list[str], name: str, kind: str, draw: Dr
         axes.set_visible(False)
     for axes in cells[max(0, len(names) - columns) : len(names)]:
         axes.set_xlabel("stride [%]", labelpad=1)
-    legend(drawn, _key(mismatch, kind))
+    legend(drawn, mismatch_key(mismatch, kind))
     return Figure(name, _caption(mismatch, kind, len(names)), _alt(mismatch, names), numbers, drawn)
 
 
-def _draw_curves(axes: Axes, curves: pd.DataFrame, regions: list[dict[str, Any]], colour: str) -> None:
+def draw_both(axes: Axes, curves: pd.DataFrame, regions: list[dict[str, Any]], colour: str) -> None:
+    """Draw both walks over the stride, shaded where they differ by more than chance.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Receives the curves.
+    curves : DataFrame
+        Rows of `mismatch_numbers` of one channel.
+    regions : list of dict
+        Of `Mismatch.regions_of`.
+    colour : str
+        Of the first walk, by its side.
+    """
     percent = curves["percent"].to_numpy()
     sd = curves["sd_second"].fillna(0.0)
     look = WITHOUT_DEVICE
@@ -107,7 +120,20 @@ def _draw_curves(axes: Axes, curves: pd.DataFrame, regions: list[dict[str, Any]]
     _bars(axes, regions)
 
 
-def _draw_gap(axes: Axes, curves: pd.DataFrame, regions: list[dict[str, Any]], colour: str) -> None:
+def draw_gap(axes: Axes, curves: pd.DataFrame, regions: list[dict[str, Any]], colour: str) -> None:
+    """Draw the gap over the stride with its band.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Receives the curves.
+    curves : DataFrame
+        Rows of `mismatch_numbers` of one channel.
+    regions : list of dict
+        Of `Mismatch.regions_of`.
+    colour : str
+        Of the first walk, by its side.
+    """
     percent = curves["percent"].to_numpy()
     axes.axhline(0.0, color="#888888", linewidth=0.6, zorder=0)
     axes.fill_between(percent, curves["low"], curves["high"], color=colour, alpha=0.22, linewidth=0, zorder=1)
@@ -139,7 +165,16 @@ def _bars(axes: Axes, regions: list[dict[str, Any]]) -> None:
         )
 
 
-def _key(mismatch: Mismatch, kind: str) -> list[Artist]:
+def mismatch_key(mismatch: Mismatch, kind: str) -> list[Artist]:
+    """Handles of the legend of a kind of figure.
+
+    Parameters
+    ----------
+    mismatch : Mismatch
+        Whose walks are named.
+    kind : str
+        `curves` or `gap`.
+    """
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 

@@ -78,10 +78,26 @@ def r2_numbers(run: ResponseRun) -> pd.DataFrame:
 
 def _figure(run: ResponseRun, numbers: pd.DataFrame, name: str) -> Figure:
     names = list(dict.fromkeys(numbers["variable"]))
-    people = len(run.responses)
     low = _limit(numbers)
     row_in = LABELLED_ROW_IN if numbers["r2"].min() < low else ROW_IN
     drawn, [[axes]] = panels(1, 1, row_in * len(names) + 0.1, Room(left=1.75, right=0.25, top=0.45))
+    draw_r2(axes, numbers)
+    null = _has_null(numbers)
+    legend(drawn, r2_key(len(run.responses), null))
+    return Figure(name, _caption(run, low, null), _alt(run, numbers), numbers, drawn)
+
+
+def draw_r2(axes: Axes, numbers: pd.DataFrame) -> None:
+    """Draw R2 of every variable, a row each.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Receives the rows.
+    numbers : DataFrame
+        Of `r2_numbers`.
+    """
+    names, low = list(dict.fromkeys(numbers["variable"])), _limit(numbers)
     for row, variable in enumerate(names):
         _draw_variable(axes, numbers[numbers["variable"] == variable], row, low)
     axes.set_yticks(range(len(names)), [label(variable) for variable in names])
@@ -92,9 +108,10 @@ def _figure(run: ResponseRun, numbers: pd.DataFrame, name: str) -> Figure:
         axes.axhline(edge, color="#e4e4e4", linewidth=0.6, zorder=0)
     if low < 0:
         axes.axvline(0.0, color="#bbbbbb", linewidth=0.8, zorder=0)
-    null = bool(numbers.loc[numbers["kind"] == "null", "r2"].notna().any())
-    legend(drawn, _key(people, null))
-    return Figure(name, _caption(run, low, null), _alt(run, numbers), numbers, drawn)
+
+
+def _has_null(numbers: pd.DataFrame) -> bool:
+    return bool(numbers.loc[numbers["kind"] == "null", "r2"].notna().any())
 
 
 def _draw_variable(axes: Axes, rows: pd.DataFrame, row: int, low: float) -> None:
@@ -126,7 +143,16 @@ def _below(values: np.ndarray, low: float) -> str:
     return ", ".join(number(value) for value in left)
 
 
-def _key(people: int, null: bool) -> list[Line2D]:
+def r2_key(people: int, null: bool) -> list[Line2D]:
+    """Handles of the legend.
+
+    Parameters
+    ----------
+    people : int
+        Participants drawn.
+    null : bool
+        Whether what noise reaches is drawn.
+    """
     from matplotlib.lines import Line2D
 
     models = [

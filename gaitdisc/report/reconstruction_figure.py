@@ -13,6 +13,7 @@ from gaitdisc.report.wording import counted, label, unit_text
 from gaitdisc.results.reconstruction import Reconstruction
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
 MOST_PANELS = 16
@@ -31,25 +32,50 @@ def reconstruction_figures(done: Reconstruction, participant: str, name: str) ->
     name : str
         Participant's part of the file names.
     """
-    shown = [kind for kind in ("linear", done.recommended, "shred") if kind in done.models]
-    shown = list(dict.fromkeys(shown))
-    curves = done.curves[(done.curves["participant"] == participant) & done.curves["model"].isin(shown)]
+    curves = shown_curves(done, participant)
     return [
         _figure(done, participant, curves[curves["state"].isin([channel.name for channel in part])], f"{name}-{k + 1}")
         for k, part in enumerate(sheets(list(done.states), MOST_PANELS))
     ]
 
 
-def _figure(done: Reconstruction, participant: str, numbers: pd.DataFrame, name: str) -> Figure:
+def shown_curves(done: Reconstruction, participant: str) -> pd.DataFrame:
+    """Curves of one person, of the models that are drawn: linear, the recommended one, SHRED.
+
+    Parameters
+    ----------
+    done : Reconstruction
+        The whole result.
+    participant : str
+        Whose judged windows.
+    """
+    shown = [kind for kind in ("linear", done.recommended, "shred") if kind in done.models]
+    shown = list(dict.fromkeys(shown))
+    return done.curves[(done.curves["participant"] == participant) & done.curves["model"].isin(shown)]
+
+
+def states_key(models: list[str]) -> list[Artist]:
+    """Handles of the legend: what was measured, and the models.
+
+    Parameters
+    ----------
+    models : list of str
+        Names of the models drawn.
+    """
     from matplotlib.patches import Patch
 
+    looks = {model: RECONSTRUCTED[model.removesuffix(", calibrated")] for model in models}
+    return [Patch(color=MEASURED.colour, alpha=0.2, label="measured, mean ± sd"), *lines_of(looks)]
+
+
+def _figure(done: Reconstruction, participant: str, numbers: pd.DataFrame, name: str) -> Figure:
     units = {channel.name: channel.unit for channel in done.states}
     states, models = list(dict.fromkeys(numbers["state"])), list(dict.fromkeys(numbers["model"]))
     columns = min(4, len(states))
     drawn, grid = panels(-(-len(states) // columns), columns, 1.1, Room(left=0.6, across=0.6, down=0.46))
     cells = [axes for row in grid for axes in row]
     for axes, state in zip(cells, states, strict=False):
-        _draw(axes, numbers[numbers["state"] == state])
+        draw_state(axes, numbers[numbers["state"] == state])
         axes.set_title(label(state), fontsize=7.4)
         axes.set_ylabel(f"[{unit_text(units[state])}]", fontsize=6.8, labelpad=1)
         axes.set_xlim(0, 100)
@@ -58,8 +84,7 @@ def _figure(done: Reconstruction, participant: str, numbers: pd.DataFrame, name:
         axes.set_visible(False)
     for axes in cells[max(0, len(states) - columns) : len(states)]:
         axes.set_xlabel("stride [%]", labelpad=1)
-    looks = {model: RECONSTRUCTED[model.removesuffix(", calibrated")] for model in models}
-    legend(drawn, [Patch(color=MEASURED.colour, alpha=0.2, label="measured, mean ± sd"), *lines_of(looks)])
+    legend(drawn, states_key(models))
     strides = int(done.summary.loc[done.summary["participant"] == participant, "strides"].iloc[0])
     caption = (
         f"{participant}: states measured and reconstructed over the stride, test windows alone, n = "
@@ -71,7 +96,16 @@ def _figure(done: Reconstruction, participant: str, numbers: pd.DataFrame, name:
     return Figure(f"reconstruction-{name}", caption, alt, numbers, drawn)
 
 
-def _draw(axes: Axes, numbers: pd.DataFrame) -> None:
+def draw_state(axes: Axes, numbers: pd.DataFrame) -> None:
+    """Draw one state over the stride: measured with its spread, and what each model estimates.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Receives the curves.
+    numbers : DataFrame
+        Rows of `Reconstruction.curves` of one person and state.
+    """
     for number, (model, rows) in enumerate(numbers.groupby("model", sort=False)):
         if number == 0:
             low, high = rows["measured"] - rows["measured_sd"], rows["measured"] + rows["measured_sd"]

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.notebook import html_of
 from gaitdisc.recording import Finding
 from gaitdisc.results.provenance import Provenance
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 VERDICTS = (
     "no_gap",
@@ -265,6 +270,41 @@ class Discovery:
         if self.verdict not in VERDICTS:
             raise ValueError(f"verdict is one of {VERDICTS}, not {self.verdict!r}")
 
+    def to_frame(self) -> pd.DataFrame:
+        """Held-out runs as a table: run, trial, time [s], and each channel measured, simulated and augmented."""
+        import pandas as pd
+
+        return pd.DataFrame(self.runs.table(self.channels))
+
+    def save(self, folder: Path | str) -> Path:
+        """Save to a folder that `gaitdisc.load` reads.
+
+        Parameters
+        ----------
+        folder : path
+            Where; made if missing.
+
+        Returns
+        -------
+        Path
+            The folder.
+        """
+        from gaitdisc.results.discovery_folder import save_discovery
+
+        save_discovery(self, Path(folder))
+        return Path(folder)
+
+    def __repr__(self) -> str:
+        return f"Discovery({self.verdict}: {self.sentence})"
+
+    def _repr_html_(self) -> str:
+        gap = (
+            f"{self.held_out.before:.3g} before, {self.held_out.after:.3g} after, noise {self.held_out.noise_floor:.3g}"
+        )
+        rows = [("verdict", self.verdict.replace("_", " ")), ("held-out gap", gap)]
+        rows += [(f"{one.name} at {one.place}", _amounts(one)) for one in self.effects]
+        return html_of(self.sentence, rows)
+
     def to_json(self) -> dict[str, Any]:
         """Return what `discovery.json` holds."""
         return {
@@ -279,6 +319,13 @@ class Discovery:
             "findings": [asdict(one) for one in self.findings],
             "provenance": asdict(self.provenance) if self.provenance else None,
         }
+
+
+def _amounts(one: FoundEffect) -> str:
+    return "; ".join(
+        f"{name} {each.value:.3g} ({each.low:.3g} to {each.high:.3g}) {each.unit}".strip()
+        for name, each in one.estimates.items()
+    )
 
 
 def _place(one: Whereabouts | FoundEffect) -> dict[str, str]:

@@ -2,15 +2,33 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from gaitdisc.results.discovery import Discovery
-from gaitdisc.results.sealed_json import file_sha256, sealed_text
-from gaitdisc.spreadsheet import write_csv
+import numpy as np
+
+from gaitdisc.results.discovery import (
+    Correction,
+    Discovery,
+    Estimate,
+    FoundEffect,
+    GapSize,
+    Runs,
+    Whereabouts,
+)
+from gaitdisc.results.on_disk import damaged
+from gaitdisc.results.provenance import Provenance
+from gaitdisc.results.sealed_json import check_files, file_sha256, read_sealed, sealed_text
+from gaitdisc.spreadsheet import read_csv, write_csv
 from gaitdisc.whole_file import write_whole
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 NAME = "discovery.json"
 RUNS = "held_out.csv"
+FORMAT = 1
 
 
 def save_discovery(discovery: Discovery, folder: Path) -> Path:
@@ -37,4 +55,128 @@ def save_discovery(discovery: Discovery, folder: Path) -> Path:
 
     write_csv(pd.DataFrame(discovery.runs.table(discovery.channels)).dropna(), folder / RUNS, "%.8g")
     hashes = {RUNS: file_sha256(folder / RUNS)}
-    return write_whole(folder / NAME, sealed_text({**discovery.to_json(), "sha256": hashes}))
+    return write_whole(folder / NAME, sealed_text({**discovery.to_json(), "format": FORMAT, "sha256": hashes}))
+
+
+def load_discovery(folder: Path) -> Discovery:
+    """Load a discovery; the runs have the eight digits of their table, and those samples that were measured.
+
+    Parameters
+    ----------
+    folder : Path
+        That `save_discovery` wrote.
+
+    Raises
+    ------
+    SchemaError
+        If a file is missing, damaged or of another form.
+    """
+    from gaitdisc.results.unit_folder import stored_finding  # brings jsonschema, which saving does not need
+
+    data = read_sealed(folder / NAME)
+    if data.get("format", FORMAT) != FORMAT:  # before there was a number, the form was this one
+        raise damaged(folder / NAME, f"of format {str(data['format'])[:20]}, not {FORMAT}")
+    try:
+        check_files(folder, data["sha256"])
+        table = read_csv(folder / RUNS, ("trial",))
+        channels = tuple(data["channels"])
+        made = data["provenance"]
+        return Discovery(
+            verdict=data["verdict"],
+            sentence=data["sentence"],
+            where=tuple(map(_where, data["where"])),
+            effects=tuple(map(_effect, data["effects"])),
+            rivals=tuple(map(_effect, data["rivals"])),
+            train=_gap(data["gap"]["train"]),
+            held_out=_gap(data["gap"]["held_out"]),
+            channels=channels,
+            units=tuple(data["channels"].values()),
+            runs=_runs(table, channels),
+            findings=tuple(map(stored_finding, data["findings"])),
+            provenance=Provenance(**made) if made else None,
+            corrections=tuple(map(_correction, data["corrections"])),
+        )
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        if hasattr(error, "needed"):  # a refusal of its own
+            raise
+        raise damaged(folder / NAME, f"not of the agreed form ({type(error).__name__}: {error})") from error
+
+
+def _number(value: float | None, absent: float = float("nan")) -> float:
+    return absent if value is None else float(value)
+
+
+def _estimate(row: Mapping[str, Any]) -> Estimate:
+    return Estimate(_number(row["value"]), _number(row["low"]), _number(row["high"]), row["unit"])
+
+
+def _place(row: Mapping[str, Any]) -> tuple[str, str]:
+    """Kind and name of the place, which stand first."""
+    return next(iter(row.items()))
+
+
+def _where(row: Mapping[str, Any]) -> Whereabouts:
+    kind, place = _place(row)
+    phase = tuple(_number(share) for share in row["phase"])
+    return Whereabouts(kind, place, _number(row["share_of_gap"]), phase, row["region"])
+
+
+def _effect(row: Mapping[str, Any]) -> FoundEffect:
+    bounds = tuple(_number(bound, edge) for bound, edge in zip(row.get("bounds", ()), (-np.inf, np.inf), strict=False))
+    kind, place = _place(row)
+    return FoundEffect(
+        kind=kind,
+        place=place,
+        name=row["name"],
+        term=row["term"],
+        estimates={name: _estimate(each) for name, each in row["estimates"].items()},
+        held_out=_number(row["evidence"]["held_out"]),
+        bic=_number(row["evidence"]["bic"]),
+        tied=row.get("tied", False),
+        small=row.get("small", False),
+        bounds=bounds,
+        states=row.get("states", {}),
+    )
+
+
+def _correction(row: Mapping[str, Any]) -> Correction:
+    found = Estimate(_number(row["to"]), _number(row["low"]), _number(row["high"]), row["unit"])
+    return Correction(row["parameter"], _number(row["from"]), found)
+
+
+def _gap(row: Mapping[str, Any]) -> GapSize:
+    channels = {name: _sizes(size) for name, size in row["channels"].items()}
+    return GapSize(*_sizes(row), p=_number(row["p"]), channels=channels, pieces=row["pieces"])
+
+
+def _sizes(row: Mapping[str, Any]) -> tuple[float, float, float]:
+    return _number(row["before"]), _number(row["after"]), _number(row["noise_floor"])
+
+
+def _runs(table: pd.DataFrame, channels: tuple[str, ...]) -> Runs:
+    """Runs of the table side by side; NaN where a shorter one ends."""
+    runs, place = np.unique(table["run"].to_numpy(), return_inverse=True)
+    sample = table.groupby("run").cumcount().to_numpy()
+    samples = int(sample.max()) + 1 if len(table) else 0
+
+    def spread(values: np.ndarray) -> np.ndarray:
+        whole = np.full((len(runs), samples, *values.shape[1:]), np.nan)
+        whole[place, sample] = values
+        return whole
+
+    named = table["trial"].astype(str)
+    trials = named.groupby(table["run"].to_numpy()).first().to_numpy(object)
+    names = tuple(dict.fromkeys(named))
+    measured, simulated, augmented = (
+        spread(table[[f"{channel}_{word}" for channel in channels]].to_numpy(float))
+        for word in ("measured", "simulated", "augmented")
+    )
+    return Runs(
+        np.array([names.index(name) for name in trials], np.intp),
+        spread(table["time"].to_numpy(float)),
+        spread(table["phase"].to_numpy(float)) if "phase" in table else np.empty((0, 0)),
+        measured,
+        simulated,
+        augmented,
+        names,
+    )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -196,6 +197,32 @@ class Mismatch:
                     "Compare the walks again: `gaitdisc compare`.",
                 )
         object.__setattr__(self, "curves", {name: read_only(self.curves[name]) for name in CURVES})
+
+    def to_frame(self) -> pd.DataFrame:
+        """Curves and gap of every channel, one row a channel and percent of the stride."""
+        tables = [self.curve_table(name).assign(channel=name) for name in self.names]
+        return pd.concat(tables, ignore_index=True)
+
+    def save(self, folder: Path | str) -> Path:
+        """Save to a folder that `gaitdisc.load` reads.
+
+        Parameters
+        ----------
+        folder : path
+            Where; made if missing.
+
+        Returns
+        -------
+        Path
+            The folder.
+        """
+        from gaitdisc.results.mismatch_folder import save_mismatch
+
+        save_mismatch(self, Path(folder))
+        return Path(folder)
+
+    def __repr__(self) -> str:
+        return f"Mismatch({self.first} minus {self.second}: {len(self.names)} channels, {len(self.regions)} regions)"
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -144,6 +145,32 @@ class PooledCycles:
             `r` or `l`.
         """
         return int((self.kept["side"] == side).sum())
+
+    def to_frame(self) -> pd.DataFrame:
+        """Every cycle with its times, events and, where it is left out, why; one row each."""
+        return self.cycles
+
+    def save(self, folder: Path | str) -> Path:
+        """Save to a folder that `gaitdisc.load` reads.
+
+        Parameters
+        ----------
+        folder : path
+            Where; made if missing.
+
+        Returns
+        -------
+        Path
+            The folder.
+        """
+        from gaitdisc.results.cycles_store import save_cycles
+
+        save_cycles(self, Path(folder), "saved by itself")
+        return Path(folder)
+
+    def __repr__(self) -> str:
+        kept, cut = len(self.kept), len(self.cycles)
+        return f"PooledCycles({self.subject}, {self.where}: {kept} of {cut} cycles kept, {self.trials} trials)"
 
     def mean_curves(self) -> pd.DataFrame:
         """Mean and standard deviation over kept cycles of every channel on 101 points, by the cycles of its own foot.

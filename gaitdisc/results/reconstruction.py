@@ -11,12 +11,20 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
+from gaitdisc.notebook import html_of
 from gaitdisc.recording import Finding
 from gaitdisc.results.provenance import Provenance
 from gaitdisc.results.refusal import Refusal
-from gaitdisc.results.unit_folder import save_unit
+from gaitdisc.results.unit_folder import load_unit, save_unit, stored_finding
+from gaitdisc.spreadsheet import read_csv
 
 NAME = "reconstruction.json"
+TABLES = {
+    "errors.csv": ("participant", "model", "state", "unit", "rmse"),
+    "summary.csv": ("participant", "model", "strides", "check_loss"),
+    "curves.csv": ("participant", "model", "state", "percent", "measured", "measured_sd"),
+}
+WORDS = ("participant", "model", "state", "unit")
 NEAR = 1.02  # of the least error on the check part: a cheaper model that is within this is recommended instead
 WORTH = 0.1  # of the root mean squared error, which one more sensor must take off
 CALIBRATED = "{}, calibrated"  # name of a model that is corrected for the person who is judged
@@ -95,6 +103,41 @@ class Reconstruction:
         """Mean RMSE, relative L2 and R2 over participants; indexed by state and model."""
         return self.errors.groupby(["state", "model"], sort=False)[["rmse", "relative_l2", "r2"]].mean()
 
+    def to_frame(self) -> pd.DataFrame:
+        """Errors of every participant, model and state."""
+        return self.errors
+
+    def save(self, folder: Path | str) -> Path:
+        """Save to a folder that `gaitdisc.load` reads.
+
+        Parameters
+        ----------
+        folder : path
+            Where; made if missing.
+
+        Returns
+        -------
+        Path
+            The folder.
+        """
+        save_reconstruction(self, Path(folder))
+        return Path(folder)
+
+    def __repr__(self) -> str:
+        return (
+            f"Reconstruction({len(self.states)} states from {len(self.sensors)} sensors, "
+            f"{len(self.participants)} participants, models: {', '.join(self.models)})"
+        )
+
+    def _repr_html_(self) -> str:
+        rows = [
+            ("sensors", ", ".join(channel.name for channel in self.sensors)),
+            ("states", str(len(self.states))),
+            ("participants", ", ".join(self.participants)),
+            ("recommended model", self.recommended),
+        ]
+        return html_of(self.title or "Reconstruction", rows)
+
 
 def mean_over_people(values: NDArray[np.float64]) -> tuple[float, float, float]:
     """Mean, standard deviation, and half of the mean's 95 % interval (Student's t); the latter two from three people.
@@ -167,6 +210,38 @@ def save_reconstruction(done: Reconstruction, folder: Path) -> None:
     if done.search is not None:
         tables["search.csv"] = done.search
     save_unit(folder, NAME, data, tables, {})
+
+
+def load_reconstruction(folder: Path) -> Reconstruction:
+    """Load a reconstruction.
+
+    Parameters
+    ----------
+    folder : Path
+        That `save_reconstruction` wrote.
+
+    Raises
+    ------
+    SchemaError
+        If a file is missing, damaged or of another form.
+    """
+    data, tables, _ = load_unit(folder, NAME, TABLES)
+    tables = {name: read_csv(folder / name, WORDS) for name in tables}
+    return Reconstruction(
+        title=data["title"],
+        sensors=tuple(Channel(**channel) for channel in data["sensors"]),
+        states=tuple(Channel(**channel) for channel in data["states"]),
+        split=data["split"],
+        history=data["history"],
+        models=data["models"],
+        errors=tables["errors.csv"],
+        summary=tables["summary.csv"],
+        curves=tables["curves.csv"],
+        refusals=tuple(Refusal(**refusal) for refusal in data["refusals"]),
+        findings=tuple(map(stored_finding, data["findings"])),
+        provenance=Provenance(**data["provenance"]),
+        search=tables.get("search.csv"),
+    )
 
 
 def _over(rows: pd.DataFrame) -> pd.Series:

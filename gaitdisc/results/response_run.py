@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import pandas as pd
 
+from gaitdisc.notebook import html_of
 from gaitdisc.results.data_quantity import DataQuantity
 from gaitdisc.results.over_participants import OverParticipants
 from gaitdisc.results.pair_test import PairTests
@@ -95,3 +97,38 @@ class ResponseRun:
         ]
         columns = ["participant", "condition", "severity", "kind", "file", "channel", "what", "spoils", "spans_s"]
         return pd.DataFrame(rows, columns=pd.Index(columns))
+
+    def to_frame(self) -> pd.DataFrame:
+        """R2 of every participant, variable, model, kind and walk, one row each."""
+        return self.r2_table()
+
+    def save(self, folder: Path | str) -> Path:
+        """Save to a folder that `gaitdisc.load` reads.
+
+        Parameters
+        ----------
+        folder : path
+            Where; made if missing.
+
+        Returns
+        -------
+        Path
+            The folder.
+        """
+        from gaitdisc.results.run_store import save_whole_run
+
+        save_whole_run(self, Path(folder))
+        return Path(folder)
+
+    def __repr__(self) -> str:
+        counts = f"{len(self.responses)} responses, {len(self.cycles)} sets of cycles, {len(self.refusals)} refusals"
+        return f"ResponseRun({self.title!r}, {counts})"
+
+    def _repr_html_(self) -> str:
+        rows = [("conditions", " and ".join(word for word in (self.nominal, self.exo) if word))]
+        rows += [("participants", ", ".join(self.reported)), ("refusals", str(len(self.refusals)))]
+        table = self.r2_table()
+        table = table[(table["kind"] == "network") & (table["walk"] == "exo")]
+        middle = table.groupby("model", sort=False)["r2"].median()
+        rows += [(f"median R² of {model}", f"{value:.2f}") for model, value in middle.items()]
+        return html_of(self.title or "Response run", rows)

@@ -23,15 +23,17 @@ from typing import Any
 
 from gaitdisc.errors import SchemaError
 from gaitdisc.results.comparison_store import load_over, load_tests, save_over, save_tests
-from gaitdisc.results.cycles_store import cycles_name, load_cycles
+from gaitdisc.results.cycles_store import cycles_name, load_cycles, save_cycles
 from gaitdisc.results.provenance import Provenance
 from gaitdisc.results.refusal import Refusal
 from gaitdisc.results.response_run import ResponseRun
-from gaitdisc.results.response_store import load_quantity, load_response
+from gaitdisc.results.response_store import load_quantity, load_response, save_quantity, save_response
 from gaitdisc.results.sealed_json import read_sealed, sealed_text
 from gaitdisc.results.unit_folder import FORMAT, read_json
-from gaitdisc.results.walk_store import load_walk, unit_name
+from gaitdisc.results.walk_store import load_walk, save_walk, unit_name
 from gaitdisc.whole_file import write_whole
+
+NO_KEY = "saved by itself"  # of no files and settings: what was not computed by a run in this folder
 
 
 def save_run(run: ResponseRun, folder: Path) -> None:
@@ -51,15 +53,42 @@ def save_run(run: ResponseRun, folder: Path) -> None:
     write_whole(folder / "run.json", sealed_text(_described(run)))
 
 
+def save_whole_run(run: ResponseRun, folder: Path) -> None:
+    """Save a run with all its units, as it is in memory; `gaitdisc run` in that folder computes the units anew.
+
+    Parameters
+    ----------
+    run : ResponseRun
+        The whole result.
+    folder : Path
+        Folder of the run.
+    """
+    for walk in run.walks:
+        save_walk(walk, folder / "walks" / unit_name(walk.subject, walk.condition), NO_KEY)
+    for response in run.responses:
+        save_response(response, folder / "responses" / response.participant, NO_KEY)
+    for quantity in run.quantities:
+        save_quantity(quantity, folder / "quantities" / quantity.participant, NO_KEY)
+    for cycles in run.cycles:
+        save_cycles(cycles, folder / "cycles" / cycles_name(cycles.subject, cycles.session, cycles.condition), NO_KEY)
+    save_run(run, folder)
+
+
 def created_before(run: ResponseRun, folder: Path) -> ResponseRun:
     """The run with the time of the one saved there, where it repeats that one: nothing was computed anew.
 
     Parameters
     ----------
     run : ResponseRun
+<<<<<<< HEAD
         Just made.
     folder : Path
         Folder of the run, where an earlier one may be saved.
+=======
+        The whole result.
+    folder : Path
+        Folder of the run.
+>>>>>>> door
     """
     if run.renewed or not (folder / "run.json").is_file():
         return run

@@ -67,7 +67,7 @@ def lowpassed(
     recording : Recording
         Any channels.
     cutoff_hz : float
-        -3 dB frequency of one pass.
+        -3 dB frequency of one pass [Hz].
     order : int
         Order of one pass.
     max_gap_s : float
@@ -86,6 +86,15 @@ def lowpassed(
     References
     ----------
     Ebers (2023), section 4.2.1. Differs: the two passes, the cut-off's meaning and the edges are stated.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> t = np.arange(500) / 100
+    >>> slow, fast = np.sin(2 * np.pi * t), np.sin(2 * np.pi * 30 * t)
+    >>> both = gd.Recording(t, (slow + fast)[:, None], (gd.Channel("knee_angle_r", "angle", "deg", "r"),))
+    >>> bool(np.abs(gd.lowpass(both, cutoff_hz=6.0)["knee_angle_r"] - slow)[100:400].max() < 0.01)
+    True
     """
     return _filtered(recording, cutoff_hz, order, "lowpass", max_gap_s)
 
@@ -100,16 +109,30 @@ def highpassed(
     recording : Recording
         Any channels.
     cutoff_hz : float
-        -3 dB frequency of one pass.
+        -3 dB frequency of one pass [Hz].
     order : int
         Order of one pass.
     max_gap_s : float
         Longest gap that is bridged [s].
 
+    Returns
+    -------
+    Recording
+        Runs too short to filter are NaN.
+
     Raises
     ------
     SamplingError
         If the cut-off is not between 0 and half the rate, or the recording is too short for it.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> t = np.arange(2000) / 1000
+    >>> slow, fast = np.sin(2 * np.pi * t), np.sin(2 * np.pi * 120 * t)
+    >>> both = gd.Recording(t, (slow + fast)[:, None], (gd.Channel("emg_sol_r", "emg", "V", "r"),))
+    >>> bool(np.abs(gd.highpass(both, cutoff_hz=40.0)["emg_sol_r"] - fast)[100:1900].max() < 0.01)
+    True
     """
     return _filtered(recording, cutoff_hz, order, "highpass", max_gap_s)
 

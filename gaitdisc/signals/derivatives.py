@@ -83,6 +83,20 @@ def differentiated_recording(recording: Recording, order: int = 1) -> Recording:
     -------
     Recording
         Same names, unit `deg/s` or `deg/s2`; suspect where one of the five samples is.
+
+    Raises
+    ------
+    SamplingError
+        If the recording is too short, or the order is neither 1 nor 2.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> t = np.arange(500) / 100
+    >>> knee = gd.Recording(t, np.sin(t)[:, None], (gd.Channel("knee_angle_r", "angle", "deg", "r"),))
+    >>> rate = gd.differentiate(knee)
+    >>> rate.channels[0].unit, bool(np.abs(rate["knee_angle_r"] - np.cos(t)).max() < 1e-4)
+    ('deg/s', True)
     """
     channels = tuple(replace(c, unit=rate_unit(c.unit, order)) for c in recording.channels)
     values = differentiated(unwrapped(recording).values, recording.rate_hz, order)

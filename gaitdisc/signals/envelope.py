@@ -22,7 +22,7 @@ def enveloped(
     emg : Recording
         Raw EMG, as digitised, not rectified; EMG channels only [V].
     highpass_hz, lowpass_hz : float
-        -3 dB frequencies of one pass (`gaitdisc.signals.butterworth`).
+        -3 dB frequencies of one pass [Hz] (`gaitdisc.signals.butterworth`).
     order : int
         Order of one pass, of both filters.
 

@@ -54,17 +54,37 @@ def read_measured(path: Path | str, simulation: Simulation) -> Measured:
     ('theta',)
     """
     path = Path(path)
-    table = _table(path)
+    return measured_of_table(_table(path), simulation, path.name)
+
+
+def measured_of_table(table: pd.DataFrame, simulation: Simulation, source: str) -> Measured:
+    """Trials of a table that is already read, as `read_measured` has them.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Columns `trial`, `time` [s], each input and each observed channel [the simulation's units].
+    simulation : Simulation
+        Whose inputs and observations are wanted.
+    source : str
+        What the table is called in findings and refusals.
+
+    Raises
+    ------
+    ReadError, ChannelError, SamplingError, ShapeError
+        As `read_measured`.
+    """
     columns = [str(column).strip() for column in table.columns]
-    table.columns = columns
+    _refuse_doubled(columns, source)
+    table = table.set_axis(columns, axis="columns").reset_index(drop=True)
     inputs = tuple(each.name for each in simulation.inputs)
-    channels = _channels(simulation, columns, path.name)
+    channels = _channels(simulation, columns, source)
     for name in ("time", *inputs):
         if name not in columns:
-            raise _missing(name, columns, path.name)
-    trial = _trials(table, path.name)
-    numbers = {name: _numbers(table, name, trial, path.name) for name in dict.fromkeys(("time", *inputs, *channels))}
-    _refuse_timeless(numbers["time"], trial, path.name)
+            raise _missing(name, columns, source)
+    trial = _trials(table, source)
+    numbers = {name: _numbers(table, name, trial, source) for name in dict.fromkeys(("time", *inputs, *channels))}
+    _refuse_timeless(numbers["time"], trial, source)
     order = list(dict.fromkeys(trial.tolist()))
     parts = []
     for name in order:
@@ -74,7 +94,7 @@ def read_measured(path: Path | str, simulation: Simulation) -> Measured:
             for names in (inputs, channels)
         ]
         parts.append(TrialColumns(str(name), numbers["time"][rows], stacked[0], stacked[1]))
-    return measured_of_trials(parts, inputs, channels, path.name, _left_out(simulation, columns, channels, path.name))
+    return measured_of_trials(parts, inputs, channels, source, _left_out(simulation, columns, channels, source))
 
 
 def measured_of_recordings(recordings: Sequence[Recording], simulation: Simulation) -> Measured:
@@ -272,7 +292,8 @@ def _converted(
     units = {part.name: part.unit for part in (*simulation.states, *simulation.inputs)}
     observed = dict(simulation.observations).get(name, name)
     to = simulation.sensor(name).unit or units.get(name, units.get(observed.strip()))
-    factor = None if to is None else unit_factor(channel.unit, to)
+    unstated = (channel.quantity, channel.unit) == ("signal", "1")  # numbers of which no unit is known
+    factor = None if to is None or unstated else unit_factor(channel.unit, to)
     if factor is None:
         what = f"{channel.unit!r} is not compared with the simulation's {to!r}" if to else f"{channel.unit!r} as it is"
         findings[name] = Finding("note", "unit", file, what, "nothing if both mean the same", name)

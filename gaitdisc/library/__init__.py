@@ -1,0 +1,1 @@
+"""What a script calls, one verb a thing, with plain arguments; `import gaitdisc as gd` gives these names."""

@@ -1,0 +1,90 @@
+"""Where over the stride curves differ, as a table."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike, NDArray
+
+from gaitdisc.errors import ShapeError
+from gaitdisc.statistics.cluster_test import one_sample_test, two_sample_test
+from gaitdisc.statistics.permutation import PermutationPlan
+
+COLUMNS = ("channel", "first_point", "last_point", "sign", "mass", "p")
+
+
+def permutation_clusters(
+    first: ArrayLike | pd.DataFrame,
+    second: ArrayLike | pd.DataFrame,
+    paired: bool = False,
+    channels: Sequence[str] = (),
+    alpha: float = 0.05,
+    permutations: int = 2000,
+    seed: int = 0,
+) -> pd.DataFrame:
+    """Find where two sets of curves differ, all points and channels corrected together.
+
+    Parameters
+    ----------
+    first, second : array_like or DataFrame (unit, phase) or (unit, phase, channel)
+        One row a person, a stride or a block of strides, complete: `strides.normalised(recording)`, or a DataFrame
+        with one column a point of the stride.
+    paired : bool
+        Row k of both belongs to one person; else the sets are independent.
+    channels : sequence of str, optional
+        Names of the channels; numbers where they are not given.
+    alpha : float
+        Chance of a false alarm anywhere.
+    permutations : int
+        At most; all there are where there are fewer.
+    seed : int
+        Of the permutations that are drawn.
+
+    Returns
+    -------
+    DataFrame
+        One row a cluster: channel, first_point and last_point (both inside), sign (1 where the first set lies above),
+        mass, p; empty where nothing differs. `attrs` holds threshold, permutations and exact.
+
+    Raises
+    ------
+    ShapeError
+        If the curves do not fit together or a value is missing.
+    ComparisonError
+        If there are fewer than six units, or too few permutations for this alpha.
+
+    References
+    ----------
+    Nichols and Holmes 2002; Pataky, Vanrenterghem and Robinson 2015.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> curves = np.random.default_rng(0).normal(0.0, 1.0, (20, 101))
+    >>> moved = curves + 3.0 * ((np.arange(101) >= 40) & (np.arange(101) < 60))
+    >>> noise = np.random.default_rng(1).normal(0.0, 0.5, curves.shape)
+    >>> gd.permutation_clusters(moved + noise, curves, paired=True)[["first_point", "last_point"]].values.tolist()
+    [[40, 59]]
+    """
+    one, other = _curves(first), _curves(second)
+    names = tuple(channels) or tuple(range(one.shape[2]))
+    if one.shape[1:] != other.shape[1:] or len(names) != one.shape[2] or (paired and len(one) != len(other)):
+        raise ShapeError(
+            "two sets of curves have the same points and channels" + (", and as many rows in pairs" if paired else ""),
+            f"found {one.shape} and {other.shape}, (unit, phase, channel), with {len(names)} names of channels",
+            "Cut both into strides of 101 points with the same channels.",
+        )
+    plan = PermutationPlan(alpha, permutations, seed)
+    test = one_sample_test(one - other, plan) if paired else two_sample_test(one, other, plan)
+    rows = [(names[each.channel], each.first, each.last, each.sign, each.mass, each.p) for each in test.clusters]
+    table = pd.DataFrame(rows, columns=pd.Index(COLUMNS))
+    table.attrs.update(threshold=test.threshold, permutations=test.permutations, exact=test.exact)
+    return table
+
+
+def _curves(given: Any) -> NDArray[np.float64]:
+    values = np.asarray(given, float)
+    return values[:, :, None] if values.ndim == 2 else values

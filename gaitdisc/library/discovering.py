@@ -1,0 +1,94 @@
+"""What a model lacks against measured data."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gaitdisc.batch.discover_files import discovered
+from gaitdisc.library.models import ModelLike, model_of
+from gaitdisc.recording import Recording
+from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.measured_table import measured_of_recordings, measured_of_table, read_measured
+from gaitdisc.simulation.refusal import SimulationError
+from gaitdisc.simulation.simulation import Simulation
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from gaitdisc.results.discovery import Discovery
+
+
+def discover(
+    model: ModelLike,
+    data: Path | str | pd.DataFrame | Recording | Sequence[Recording],
+    catalogue: Path | str | None = None,
+    progress: Callable[[str], None] | None = None,
+) -> tuple[Discovery, Simulation]:
+    """Find where a model and measured trials disagree, name what is missing with its numbers, and add it.
+
+    A part of the data is held out before anything is fitted: other trials where there are several, else the last part
+    of the one trial. How far the gap closes is reported on these.
+
+    Parameters
+    ----------
+    model : path, Simulation or callable
+        A simulation file, what `read_simulation` gave, or a Python function (`simulation_from_function`).
+    data : path, DataFrame, Recording or sequence of Recording
+        Measured trials: a table (or its CSV or Parquet file) with the columns `time` [s], each input and each observed
+        channel in the model's units, and `trial` where there are several; or one Recording a trial, whose units are
+        converted to the model's.
+    catalogue : path, optional
+        A file of effects of your own, considered beside those that come along.
+    progress : callable, optional
+        Called with one line about each step; `print`, say.
+
+    Returns
+    -------
+    found : Discovery
+        The verdict, a sentence, the effects with their intervals, rivals, and the gap before and after.
+    augmented : Simulation
+        The model with what was found in it; `simulate` runs it.
+
+    Raises
+    ------
+    GaitdiscError
+        If a file cannot be read, a column is missing, trials are too short or uneven, or the model as given leaves all
+        bounds.
+
+    References
+    ----------
+    docs/discover.md: multiple shooting, effects ranked by what they explain on data that were not fitted.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> found, augmented = gd.discover("ankle.toml", "walks.csv")  # doctest: +SKIP
+    >>> print(found.sentence)  # doctest: +SKIP
+    """
+    simulation = model_of(model)
+    measured, files = _measured(data, simulation)
+    if isinstance(model, Path | str):
+        files[Path(model)] = "simulation"
+    chosen = None if catalogue is None else Path(catalogue)
+    return discovered(simulation, measured, chosen, files, progress or (lambda _: None))
+
+
+def _measured(data: object, simulation: Simulation) -> tuple[Measured, dict[Path, str]]:
+    if isinstance(data, Path | str):
+        return read_measured(data, simulation), {Path(data): "measured table"}
+    if isinstance(data, Recording):
+        return measured_of_recordings([data], simulation), {}
+    if isinstance(data, list | tuple) and data and all(isinstance(one, Recording) for one in data):
+        return measured_of_recordings(data, simulation), {}
+    import pandas as pd
+
+    if isinstance(data, pd.DataFrame):
+        table = data.reset_index() if "time" not in data and data.index.name == "time" else data
+        return measured_of_table(table, simulation, "the table"), {}
+    raise SimulationError(
+        "measured data are a table, a file or recordings",
+        f"found {type(data).__name__}",
+        "Give a DataFrame with a column 'time' [s], the path of a CSV or Parquet file, or one Recording a trial.",
+    )

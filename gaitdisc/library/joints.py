@@ -1,0 +1,139 @@
+"""Joint angles and moments from markers and ground forces."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gaitdisc.ingest.c3d_measures import read_body_measures
+from gaitdisc.ingest.reading import read_trial
+from gaitdisc.kinematics.calibration import Calibration, calibrated
+from gaitdisc.kinematics.motion import chosen_marker_set, motion
+from gaitdisc.kinetics.body_inertia import Person
+from gaitdisc.kinetics.joint_moments import KineticsSettings
+from gaitdisc.kinetics.trial_kinetics import trial_kinetics
+from gaitdisc.processing.markers_to_moments import foot_paths_of
+from gaitdisc.recording import Recording, Trial
+from gaitdisc.recording.body_measures import BodyMeasures
+
+if TYPE_CHECKING:
+    from gaitdisc.kinematics.motion import Motion
+
+Walk = Trial | Path | str | Sequence[Path | str]
+
+
+def angles(
+    walk: Walk,
+    static: Trial | Path | str,
+    marker_set: Path | str | None = None,
+    joints: str | None = None,
+    forward: Sequence[float] | None = None,
+) -> Recording:
+    """Joint angles of a walk from its markers.
+
+    Parameters
+    ----------
+    walk : Trial, path or sequence of paths
+        With markers.
+    static : Trial or path
+        The same person standing, with the same markers; widths of joints are read from its C3D file.
+    marker_set : str or path, optional
+        `plug_in_gait`, `oxford_foot`, `helen_hayes`, `rajagopal`, `gait2354`, or a `.toml` file; recognised by the
+        labels where it is not given.
+    joints : str, optional
+        `free`, `held` or `planar`; as the marker set says where it is not given.
+    forward : sequence of 3 floats, optional
+        Direction of walking in the laboratory's axes; found from the pelvis where it is not given.
+
+    Returns
+    -------
+    Recording
+        `pelvis_tilt`, `hip_flexion_r`, `knee_angle_r`, ... [deg], `pelvis_tx`, ... [m], with the package's signs.
+
+    Raises
+    ------
+    ChannelError
+        If a marker or a width is missing, or the labels are of no known set.
+    ShapeError
+        If the laboratory's frame is mirrored or tilted, or left and right are exchanged.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> gd.angles("walk.c3d", "static.c3d")["knee_angle_r"]  # doctest: +SKIP
+    """
+    _, moved, _, _ = _moved(walk, static, marker_set, joints, forward)
+    return moved.angles
+
+
+def moments(
+    walk: Walk,
+    static: Trial | Path | str,
+    mass_kg: float | None = None,
+    sex: str = "",
+    marker_set: Path | str | None = None,
+    force_cutoff_hz: float = 20.0,
+) -> Recording:
+    """Joint moments and powers of a walk from its markers and force platforms, by inverse dynamics.
+
+    Parameters
+    ----------
+    walk : Trial, path or sequence of paths
+        With markers and ground forces.
+    static : Trial or path
+        The same person standing, with the same markers.
+    mass_kg : float, optional
+        Body mass [kg]; as the static C3D file says where it is not given.
+    sex : str
+        `f` or `m`, for the inertia of the segments; the mean of both where it is empty.
+    marker_set : str or path, optional
+        As for `angles`.
+    force_cutoff_hz : float
+        Low-pass of the ground's force [Hz]; 6 filters it as the markers are.
+
+    Returns
+    -------
+    Recording
+        Internal moments [N m/kg] and powers [W/kg]; NaN in frames where the load of the foot is not known.
+
+    Raises
+    ------
+    GaitdiscError
+        If markers, forces or the mass are missing, or no foot stands alone on a platform.
+
+    References
+    ----------
+    Dumas, Cheze and Verriest 2007 (inertia of the segments).
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> gd.moments("walk.c3d", "static.c3d", mass_kg=70.0)["knee_moment_r"]  # doctest: +SKIP
+    """
+    trial, moved, body, measures = _moved(walk, static, marker_set, None, None)
+    person = Person(measures.mass_kg if mass_kg is None else mass_kg, sex, measures.height_m)
+    settings = KineticsSettings(force_cutoff_hz=force_cutoff_hz)
+    return trial_kinetics(trial, moved.poses, foot_paths_of(moved, body), person, settings).moments
+
+
+def _moved(
+    walk: Walk,
+    static: Trial | Path | str,
+    marker_set: Path | str | None,
+    joints: str | None,
+    forward: Sequence[float] | None,
+) -> tuple[Trial, Motion, Calibration, BodyMeasures]:
+    trial = walk if isinstance(walk, Trial) else read_trial(walk)
+    measures = BodyMeasures()
+    if not isinstance(static, Trial):
+        place = Path(static)
+        measures = read_body_measures(place) if place.suffix.lower() == ".c3d" else measures
+        static = read_trial(place)
+    markers, standing = trial.stream("markers"), static.stream("markers")
+    chosen = chosen_marker_set(markers, standing, marker_set)
+    body = calibrated(standing, chosen if joints is None else chosen.with_joints(joints), measures)
+    moved = motion(markers, body, forward)
+    named = replace(moved.angles, subject=trial.subject, condition=trial.condition)
+    return trial, replace(moved, angles=named), body, measures

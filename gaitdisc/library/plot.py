@@ -1,0 +1,339 @@
+"""Pictures of recordings and results: each function takes `ax=None` and returns matplotlib's Axes.
+
+Without `ax` a new figure is made, which a notebook shows; the caller's own style holds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaitdisc.channel import nearest_word, side_of
+from gaitdisc.errors import ChannelError
+from gaitdisc.recording import Recording, Strides
+from gaitdisc.report.own_axes import axes_or_new
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from gaitdisc.results import ResponseRun
+    from gaitdisc.results.discovery import Discovery
+    from gaitdisc.results.mismatch import Mismatch
+    from gaitdisc.results.reconstruction import Reconstruction
+
+STRIDE = "stride [%]"
+
+
+def recording(recording: Recording, channels: Sequence[str] | str | None = None, ax: Axes | None = None) -> Axes:
+    """Draw channels of a recording over time; samples marked as suspect are drawn over in grey.
+
+    Parameters
+    ----------
+    recording : Recording
+        Measured or simulated.
+    channels : str or sequence of str, optional
+        Names; the first four where none is given.
+    ax : matplotlib.axes.Axes, optional
+        To draw in.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ChannelError
+        If there is no channel of a name.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> walk = gd.example_walks(5.0)["nominal"].stream("kinematics")
+    >>> gd.plot.recording(walk, "knee_angle_r").get_xlabel()
+    'time [s]'
+    """
+    from gaitdisc.report.recording_figure import draw_recording
+
+    names = [channels] if isinstance(channels, str) else list(channels or recording.names[:4])
+    axes = axes_or_new(ax)
+    draw_recording(axes, recording, names)
+    return axes
+
+
+def cycles(recording: Recording, strides: Strides, channel: str, ax: Axes | None = None) -> Axes:
+    """Draw every cycle of a channel faint, their mean, and from three cycles on the standard deviation.
+
+    Parameters
+    ----------
+    recording : Recording
+        Filtered, on the clock of the strides.
+    strides : Strides
+        What `gaitdisc.cycles` gave.
+    channel : str
+        Name of the channel.
+    ax : matplotlib.axes.Axes, optional
+        To draw in; several trials may be drawn over each other.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ChannelError
+        If there is no channel of that name.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> walk = gd.example_walks(10.0)["nominal"]
+    >>> gd.plot.cycles(walk.stream("kinematics"), gd.cycles(walk), "knee_angle_r").get_xlim()
+    (0.0, 100.0)
+    """
+    from gaitdisc.report.cycles_figure import draw_cycles
+    from gaitdisc.report.wording import label, unit_text
+
+    one = recording.selected([channel])
+    every = strides.normalised(one)[:, :, 0]
+    every = every[np.isfinite(every).all(axis=1)]
+    axes = axes_or_new(ax)
+    if len(every):
+        sd = every.std(axis=0, ddof=1) if len(every) > 1 else np.zeros(every.shape[1])
+        draw_cycles(axes, every, every.mean(axis=0), sd, side_of(channel))
+    _stride_axis(axes, label(channel), unit_text(one.channels[0].unit))
+    return axes
+
+
+def curves(run: ResponseRun, channel: str, participant: str | None = None, ax: Axes | None = None) -> Axes:
+    """Draw the mean curves of both walks of a participant, with the standard deviation over strides.
+
+    Parameters
+    ----------
+    run : ResponseRun
+        What `fit_response` or `gaitdisc run` gave.
+    channel : str
+        Name of the channel.
+    participant : str, optional
+        Whose walks; the first where none is given.
+    ax : matplotlib.axes.Axes, optional
+        To draw in.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ChannelError
+        If the walks have no channel of that name.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> gd.plot.curves(gd.load("run"), "ankle_angle_r")  # doctest: +SKIP
+    """
+    from gaitdisc.report.curves_figure import curve_numbers, draw_walks, walks_key
+    from gaitdisc.report.palette import SIDES
+    from gaitdisc.report.wording import label, unit_text
+
+    numbers = curve_numbers(run, participant or _first(run.reported))
+    numbers = numbers[numbers["channel"] == _known(channel, numbers["channel"])]
+    axes = axes_or_new(ax)
+    draw_walks(axes, numbers, SIDES[side_of(channel)].colour)
+    axes.legend(handles=[walks_key(run)[0], walks_key(run)[1 if side_of(channel) == "l" else 2]], frameon=False)
+    _stride_axis(axes, label(channel), unit_text(str(numbers["unit"].iloc[0])))
+    return axes
+
+
+def r2(run: ResponseRun, ax: Axes | None = None) -> Axes:
+    """Draw R2 of Nominal, Augmented and Exo on the held-out device walk, a row for each output.
+
+    Parameters
+    ----------
+    run : ResponseRun
+        What `fit_response` or `gaitdisc run` gave.
+    ax : matplotlib.axes.Axes, optional
+        To draw in.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> gd.plot.r2(gd.load("run"))  # doctest: +SKIP
+    """
+    from gaitdisc.report.r2_figure import draw_r2, r2_key, r2_numbers
+
+    numbers, axes = r2_numbers(run), axes_or_new(ax)
+    draw_r2(axes, numbers)
+    axes.set_xlabel("R² on the held-out device walk [1]")
+    null = bool(numbers.loc[numbers["kind"] == "null", "r2"].notna().any())
+    axes.legend(
+        handles=r2_key(len(run.responses), null), frameon=False, loc="lower left", bbox_to_anchor=(0, 1), ncols=3
+    )
+    return axes
+
+
+def discovery(found: Discovery, channel: str | None = None, left: bool = False, ax: Axes | None = None) -> Axes:
+    """Draw held-out runs: measured, simulated as given, and with what was found.
+
+    Parameters
+    ----------
+    found : Discovery
+        What `discover` gave.
+    channel : str, optional
+        Observed channel; the one with the largest gap against its noise where none is given.
+    left : bool
+        Draw what is left, measured minus simulated, with two standard deviations of the noise in grey.
+    ax : matplotlib.axes.Axes, optional
+        To draw in.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ChannelError
+        If no channel of that name was observed.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> gd.plot.discovery(gd.load("found"), left=True)  # doctest: +SKIP
+    """
+    from gaitdisc.report.discovery_figure import (
+        discovery_key,
+        draw_left,
+        draw_runs,
+        noise_floor,
+        ranked_channels,
+        shown_runs,
+        stretch_of,
+    )
+
+    name = _known(channel, found.channels) if channel else ranked_channels(found)[0]
+    unit, floor = noise_floor(found, name)
+    numbers, axes = stretch_of(shown_runs(found), name), axes_or_new(ax)
+    if left:
+        draw_left(axes, numbers, name, floor)
+    else:
+        draw_runs(axes, numbers, name)
+    axes.set_xlabel("time [s]")
+    axes.set_ylabel(f"{name} [{unit}]")
+    axes.set_title(f"{name}: what is left" if left else name)
+    axes.legend(handles=discovery_key(measured=not left), frameon=False)
+    return axes
+
+
+def mismatch(found: Mismatch, channel: str, gap: bool = False, ax: Axes | None = None) -> Axes:
+    """Draw both walks of a comparison over the stride, shaded where they differ by more than chance.
+
+    Parameters
+    ----------
+    found : Mismatch
+        What `compare` gave.
+    channel : str
+        Name of the channel.
+    gap : bool
+        Draw the gap with its band in place of both curves.
+    ax : matplotlib.axes.Axes, optional
+        To draw in.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ChannelError
+        If there is no channel of that name.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> gd.plot.mismatch(gd.load("compare"), "ankle_angle_r", gap=True)  # doctest: +SKIP
+    """
+    from gaitdisc.report.mismatch_figure import draw_both, draw_gap, mismatch_key, mismatch_numbers
+    from gaitdisc.report.palette import SIDES
+    from gaitdisc.report.wording import label, unit_text
+
+    numbers = mismatch_numbers(found, [_known(channel, found.names)])
+    axes, draw = axes_or_new(ax), draw_gap if gap else draw_both
+    draw(axes, numbers, found.regions_of(channel), SIDES[side_of(channel)].colour)
+    key = mismatch_key(found, "gap" if gap else "curves")
+    if not gap:  # one channel has one side
+        own = key[1 if side_of(channel) == "l" else 2]
+        own.set_label(found.first)
+        key = [key[0], own, key[-1]]
+    axes.legend(handles=key, frameon=False)
+    _stride_axis(axes, label(channel), unit_text(str(numbers["unit"].iloc[0])))
+    return axes
+
+
+def reconstruction(done: Reconstruction, state: str, participant: str | None = None, ax: Axes | None = None) -> Axes:
+    """Draw a state over the stride: measured with its spread, and what the models estimate from the sensors.
+
+    Parameters
+    ----------
+    done : Reconstruction
+        What `gaitdisc reconstruct` saved.
+    state : str
+        Name of the channel.
+    participant : str, optional
+        Whose test windows; the first where none is given.
+    ax : matplotlib.axes.Axes, optional
+        To draw in.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ChannelError
+        If there is no state of that name.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> gd.plot.reconstruction(gd.load("reconstruct"), "knee_angle_l")  # doctest: +SKIP
+    """
+    from gaitdisc.report.reconstruction_figure import draw_state, shown_curves, states_key
+    from gaitdisc.report.wording import label, unit_text
+
+    numbers = shown_curves(done, participant or _first(done.participants))
+    numbers = numbers[numbers["state"] == _known(state, [channel.name for channel in done.states])]
+    axes = axes_or_new(ax)
+    draw_state(axes, numbers)
+    axes.legend(handles=states_key(list(dict.fromkeys(numbers["model"]))), frameon=False)
+    unit = next(channel.unit for channel in done.states if channel.name == state)
+    _stride_axis(axes, label(state), unit_text(unit))
+    return axes
+
+
+def _stride_axis(axes: Axes, title: str, unit: str) -> None:
+    axes.set_xlim(0, 100)
+    axes.set_xlabel(STRIDE)
+    axes.set_ylabel(f"[{unit}]")
+    axes.set_title(title)
+
+
+def _known(name: str, among: object) -> str:
+    names = list(dict.fromkeys(str(one) for one in among))  # type: ignore[attr-defined]
+    if name not in names:
+        nearest = nearest_word(name, names)
+        raise ChannelError(
+            f"channel {name!r} is to be drawn",
+            f"the result has {', '.join(names[:8]) or 'none'}" + (f", the nearest is {nearest!r}" if nearest else ""),
+            "Name one of these.",
+        )
+    return name
+
+
+def _first(names: Sequence[str]) -> str:
+    return names[0] if names else ""

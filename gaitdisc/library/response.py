@@ -1,0 +1,119 @@
+"""The response of one person to a device: models of walking without it, and what they miss of walking with it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, replace
+from pathlib import Path
+
+from gaitdisc.batch.participant_unit import response_settings
+from gaitdisc.batch.public_words import public_settings
+from gaitdisc.errors import ChannelError
+from gaitdisc.ingest.reading import read_trial
+from gaitdisc.ingest.study import ANGLES, OUTPUTS, Conditions, HeldOut, Models, Participant, Study
+from gaitdisc.processing.filter_null import filter_null_of
+from gaitdisc.processing.process import processed
+from gaitdisc.recording import Trial
+from gaitdisc.response.fit_response import fit_response as fitted
+from gaitdisc.results import ResponseRun
+from gaitdisc.results.provenance import made_now
+
+WITHOUT, WITH = "nominal", "exo"
+
+
+def fit_response(
+    nominal: Trial | Path | str,
+    exo: Trial | Path | str,
+    outputs: Sequence[str] = OUTPUTS,
+    angles: Sequence[str] | None = None,
+    emg: Sequence[str] = (),
+    held_out_share: float = 0.125,
+    seed: int = 0,
+) -> ResponseRun:
+    """Fit Nominal, Exo, Discrepancy and Augmented models of one person to two walks.
+
+    Both walks are filtered, cut into strides and differentiated; models are fitted to the first part of each and
+    scored on the last, which is held out. Beside each network stand ridge regressions and what filtered noise reaches.
+
+    Parameters
+    ----------
+    nominal, exo : Trial or path
+        The walk without and the walk with the device, with joint angles; a minute or more each.
+    outputs : sequence of str
+        Angles whose second derivative is predicted.
+    angles : sequence of str, optional
+        Angles among the inputs; the package's usual ones that both walks have where it is not given.
+    emg : sequence of str
+        EMG channels among the inputs.
+    held_out_share : float
+        Share of each walk that is held out, its last part.
+    seed : int
+        Of every random act.
+
+    Returns
+    -------
+    ResponseRun
+        Of one participant; `to_frame()` is the table of R2, `gaitdisc.plot.r2` draws it. `gaitdisc run` does the same
+        for all participants of a study.
+
+    Raises
+    ------
+    ChannelError
+        If an angle or a muscle is missing or dead.
+    StrideError
+        If a walk is no walking, its sides are swapped, or its gait changes late.
+    SamplingError
+        If a walk is too short.
+
+    References
+    ----------
+    Ebers 2023, Eqs. 4.1-4.5 and section 4.2.3.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> run = gd.fit_response("nominal.c3d", "exo.c3d", emg=["emg_sol_r"])  # doctest: +SKIP
+    >>> run.to_frame()  # doctest: +SKIP
+    """
+    trials = {
+        word: replace(one if isinstance(one, Trial) else read_trial(one), condition=word)
+        for word, one in ((WITHOUT, nominal), (WITH, exo))
+    }
+    study = _study(trials, tuple(outputs), angles, tuple(emg), (held_out_share, seed))
+    walks = {word: processed(trial, study) for word, trial in trials.items()}
+    settings, null = response_settings(study), filter_null_of(walks[WITH], study.filters)
+    response = fitted(walks[WITHOUT].trajectory, walks[WITH].trajectory, settings, null)
+    person = study.participants[0].id
+    summaries = tuple(replace(walk.summary(), subject=person) for walk in walks.values())
+    files = {name: sha256 for walk in summaries for name, sha256 in walk.files.items()}
+    made = {**public_settings(study), "fits": asdict(settings)}
+    provenance = made_now(made, seed, files, "chapter 4: response to a device")
+    responses = (replace(response, participant=person),)
+    return ResponseRun(f"Response of {person}", WITHOUT, WITH, summaries, responses, (), provenance)
+
+
+def _study(
+    trials: dict[str, Trial],
+    outputs: tuple[str, ...],
+    angles: Sequence[str] | None,
+    emg: tuple[str, ...],
+    fits: tuple[float, int],
+) -> Study:
+    """The settings of these two walks as a study has them."""
+    share, seed = fits
+    both = [set(trial.stream("kinematics").names) for trial in trials.values()]
+    chosen = tuple(angles) if angles is not None else tuple(name for name in ANGLES if name in both[0] & both[1])
+    absent = [name for name in outputs if name not in chosen]
+    if absent:
+        raise ChannelError(
+            "an output is one of the angles that both walks have",
+            f"{absent[0]!r} is not among {', '.join(chosen) or 'them'}",
+            "Leave it out of outputs, or name it in angles.",
+        )
+    subject = trials[WITH].subject or trials[WITHOUT].subject or "P01"
+    return Study(
+        conditions=Conditions(nominal=WITHOUT, device=WITH),
+        models=Models(angles=chosen, emg=emg, outputs=outputs, seed=seed),
+        held_out=HeldOut(share=share),
+        participants=(Participant(id=subject),),
+    )

@@ -1,0 +1,157 @@
+"""Run a simulation over time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gaitdisc.channel import Channel, side_of
+from gaitdisc.errors import ShapeError, UnitError
+from gaitdisc.library.models import ModelLike, model_of
+from gaitdisc.recording import Recording, Source
+from gaitdisc.recording.strides import interpolated
+from gaitdisc.simulation.divergence import refuse_divergence
+from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.simulation.refusal import SimulationError
+from gaitdisc.simulation.running import compile_simulation
+from gaitdisc.simulation.simulation import Simulation
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def simulate(
+    model: ModelLike,
+    time: ArrayLike,
+    inputs: Recording | pd.DataFrame | Mapping[str, ArrayLike] | None = None,
+    start: Mapping[str, float] | Sequence[float] | None = None,
+) -> Recording:
+    """Run a simulation (Runge-Kutta of order 4, ten steps a sample) and observe it.
+
+    Parameters
+    ----------
+    model : path, Simulation or callable
+        A simulation file, what `read_simulation` gave, or a Python function (`simulation_from_function`).
+    time : array_like (time,) [s]
+        Evenly spaced, increasing.
+    inputs : Recording, DataFrame or mapping of str to array_like (time,), optional
+        What drives the simulation, by the input's name [the input's unit]. A Recording is read at `time`, linearly
+        between its samples.
+    start : mapping of str to float, or sequence of float (state,), optional
+        State at the first time [the state's unit]; what is not named starts at the state's own `initial`.
+
+    Returns
+    -------
+    Recording
+        The observed channels; then states that are observed under no name of their own, then the inputs. A channel
+        whose unit the closed list does not have (`gaitdisc.units`) has the unit 1.
+
+    Raises
+    ------
+    SimulationError
+        If an input or a start is missing or unknown, or the simulation leaves all bounds: state, time and parameter
+        are named.
+    SamplingError, ShapeError
+        If time is not even, or an input has not one value a time.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> def falling(height, speed, gravity=9.81):
+    ...     return speed, -gravity
+    >>> ball = gd.simulate(falling, np.linspace(0.0, 1.0, 101), start={"height": 10.0, "speed": 0.0})
+    >>> round(float(ball["height"][-1]), 3)
+    5.095
+    """
+    simulation = model_of(model)
+    time = np.asarray(time, float)
+    base = Recording(time, np.empty((len(time), 0)), ())  # refuses a time that is not even
+    if len(time) < 2:
+        raise ShapeError("a simulation runs over two times or more", f"found {len(time)}", "Give a longer time.")
+    driven = _driven(simulation, time, inputs)
+    machine = compile_simulation(simulation)
+    drive = Drive.of([driven], (len(time) - 1) / float(time[-1] - time[0]), float(time[0]))
+    rows = Rows(np.zeros(1, np.int64), np.zeros(1, np.int64), _start(simulation, start)[None])
+    states, ok = machine.run(drive, rows, len(time) - 1)
+    if not ok.all():
+        refuse_divergence(machine, drive, rows, states, ok)
+    seen = machine.observe(drive, rows, states)[0]
+    columns = dict(zip(machine.observed, seen.T, strict=True))
+    for names, values in ((machine.states, states[0]), (machine.inputs, driven)):
+        columns |= {name: column for name, column in zip(names, values.T, strict=True) if name not in columns}
+    channels = tuple(_channel(name, simulation) for name in columns)
+    return Recording(base.time, np.column_stack([*columns.values()]), channels, source=Source(reader="simulation"))
+
+
+def _driven(simulation: Simulation, time: NDArray[np.float64], inputs: Any) -> NDArray[np.float64]:
+    """Inputs (time, input)."""
+    names = [each.name for each in simulation.inputs]
+    if not names:
+        return np.empty((len(time), 0))
+    given = {} if inputs is None else inputs
+    known = given.names if isinstance(given, Recording) else [str(name) for name in given]
+    columns = []
+    for name in names:
+        if name not in known:
+            raise SimulationError(
+                f"{simulation.title or 'the simulation'!r} is driven by {', '.join(names)}",
+                f"{name!r} is not among the inputs given ({', '.join(known) or 'none'})",
+                f"Give it: inputs={{{name!r}: values}}.",
+            )
+        values = _at(given, time, name) if isinstance(given, Recording) else np.asarray(given[name], float)
+        if values.shape != time.shape:
+            raise ShapeError(
+                f"the input {name!r} has one value a time",
+                f"found {values.shape} at {len(time)} times",
+                "Give both the same length.",
+            )
+        columns.append(values)
+    driven = np.column_stack(columns)
+    bad = np.argwhere(~np.isfinite(driven))
+    if bad.size:
+        row, column = bad[0]
+        raise SimulationError(
+            "an input is known at every time",
+            f"{names[column]!r} is missing at t = {time[row]:.6g} s",
+            "Fill the gap, or simulate a shorter time.",
+        )
+    return driven
+
+
+def _at(recording: Recording, time: NDArray[np.float64], name: str) -> NDArray[np.float64]:
+    return interpolated(recording.time, recording.selected([name]).values, time)[:, 0]
+
+
+def _start(simulation: Simulation, start: Mapping[str, float] | Sequence[float] | None) -> NDArray[np.float64]:
+    names = [state.name for state in simulation.states]
+    if start is not None and not isinstance(start, Mapping):
+        if np.shape(start) != (len(names),):
+            raise ShapeError(
+                f"a start has a number for each state: {', '.join(names)}",
+                f"found {np.shape(start)}",
+                "Give one number a state, or name them: start={'state': value}.",
+            )
+        start = dict(zip(names, start, strict=True))
+    moved = simulation.with_starts(start or {})
+    for state in moved.states:
+        if state.initial is None:
+            raise SimulationError(
+                "a simulation starts somewhere",
+                f"the state {state.name!r} has no initial value",
+                f"Give it: start={{{state.name!r}: value}}.",
+            )
+    return np.array([state.initial for state in moved.states], float)
+
+
+def _channel(name: str, simulation: Simulation) -> Channel:
+    units = {part.name: part.unit for part in (*simulation.states, *simulation.inputs)}
+    observed = dict(simulation.observations).get(name, name)
+    unit = simulation.sensor(name).unit or units.get(name) or units.get(observed.strip(), "1")
+    side = side_of(name)
+    try:
+        return Channel(name, "signal", unit, side)
+    except UnitError:
+        return Channel(name, "signal", "1", side)

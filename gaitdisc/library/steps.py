@@ -1,0 +1,104 @@
+"""Initial contacts and cycles of a trial."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gaitdisc.errors import StrideError
+from gaitdisc.ingest.reading import read_trial
+from gaitdisc.processing.contact_choice import chosen_contacts
+from gaitdisc.recording import Recording, Strides, Trial
+from gaitdisc.signals.strides import cut_strides
+
+if TYPE_CHECKING:
+    from gaitdisc.signals.contacts import Contacts
+
+
+def contacts(trial: Trial | Path | str, detector: str = "auto") -> dict[str, Contacts]:
+    """Initial contacts of both feet.
+
+    `auto` takes ground force before the file's own events before heel markers before joint angles, but none that sees
+    fewer than 80 % of the strides that another sees.
+
+    Parameters
+    ----------
+    trial : Trial or path
+        A walk: what `read` gave, or its file.
+    detector : str
+        `auto`, `force`, `events`, `markers` or `angles`.
+
+    Returns
+    -------
+    dict of str to Contacts
+        By side, `r` and `l`; `time` holds the contacts [s], on the trial's clock.
+
+    Raises
+    ------
+    StrideError
+        If the detector, or every detector, finds no stride; each one's reason is named.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> walk = gd.example_walks(10.0)["nominal"]
+    >>> {side: one.detector for side, one in sorted(gd.contacts(walk).items())}
+    {'l': 'force', 'r': 'force'}
+    """
+    return dict(chosen_contacts(_trial(trial), detector).contacts)
+
+
+def cycles(
+    trial: Trial | Path | str,
+    side: str = "r",
+    detector: str = "auto",
+    recording: Recording | None = None,
+    min_s: float = 0.4,
+    max_s: float = 2.5,
+) -> Strides:
+    """Gait cycles of one foot, from each initial contact to the next.
+
+    Parameters
+    ----------
+    trial : Trial or path
+        A walk: what `read` gave, or its file.
+    side : str
+        The foot whose contacts begin the cycles, `r` or `l`.
+    detector : str
+        `auto`, `force`, `events`, `markers` or `angles`.
+    recording : Recording, optional
+        What will be cut: cycles in which it has a gap that cannot be filled are dropped.
+    min_s, max_s : float
+        Shortest and longest cycle [s].
+
+    Returns
+    -------
+    Strides
+        `normalised(recording)` gives every cycle on 0 to 100 % in 101 points; `dropped` says which cycles are not used
+        and why.
+
+    Raises
+    ------
+    StrideError
+        If no contact of that side is found, or no cycle is left.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> walk = gd.example_walks(10.0)["nominal"]
+    >>> strides = gd.cycles(walk, "r")
+    >>> strides.normalised(walk.stream("kinematics")).shape[1]
+    101
+    """
+    found = contacts(trial, detector)
+    if side not in found:
+        raise StrideError(
+            f"cycles of side {side!r} begin at its initial contacts",
+            f"contacts were found of side {', '.join(sorted(found)) or 'none'}",
+            "Take the other side ('r' or 'l'), or another detector.",
+        )
+    return cut_strides(found[side], recording, min_s, max_s)
+
+
+def _trial(trial: Trial | Path | str) -> Trial:
+    return trial if isinstance(trial, Trial) else read_trial(trial)

@@ -1,0 +1,49 @@
+"""The scripts of docs/library.md, run as they stand, and their pictures: `python studies/library_pictures.py`."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import shutil
+import tempfile
+from pathlib import Path
+
+DOCS = Path(__file__).parents[1] / "docs"
+PICTURES = ("cycles", "discovery", "response", "reconstruction")
+MOST_LINES = 10
+
+
+def scripts(page: Path = DOCS / "library.md") -> dict[str, str]:
+    """Scripts of the page, by the picture that each writes."""
+    blocks = re.findall(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
+    return dict(zip(PICTURES, blocks, strict=True))
+
+
+def run_script(text: str, folder: Path) -> None:
+    """Run a script in a folder, as a newcomer would, without a screen."""
+    import matplotlib as mpl
+    import matplotlib.pyplot as plt
+
+    mpl.use("Agg")
+    plt.close("all")
+    before = Path.cwd()
+    os.chdir(folder)
+    try:
+        exec(compile(text, "docs/library.md", "exec"), {"__name__": "__main__"})
+    finally:
+        os.chdir(before)
+
+
+def main() -> None:
+    """Run every script and keep its picture."""
+    argparse.ArgumentParser(description=__doc__).parse_args()
+    for name, text in scripts().items():
+        with tempfile.TemporaryDirectory() as folder:
+            run_script(text, Path(folder))
+            (DOCS / "pictures").mkdir(exist_ok=True)
+            shutil.copy(Path(folder) / f"{name}.png", DOCS / "pictures" / f"{name}.png")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,79 @@
+"""What a model lacks: the model a file or a function; the data a table, a file or recordings."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import gaitdisc as gd
+from gaitdisc.channel import Channel
+from gaitdisc.errors import ChannelError
+from gaitdisc.library import discovering
+from gaitdisc.simulation.refusal import SimulationError
+
+TIME = np.arange(0.0, 6.0, 0.1)
+
+
+def cooling(temperature, rate=0.5):
+    return -rate * temperature
+
+
+def runs():
+    return [gd.simulate(cooling, TIME, start=[2.0 - k]) for k in range(2)]
+
+
+def table():
+    return pd.concat([run.to_pandas().reset_index().assign(trial=k) for k, run in enumerate(runs())])
+
+
+@pytest.fixture
+def given(monkeypatch):
+    """Instead of the search: what would be searched."""
+    seen = {}
+
+    def instead(model, data, catalogue, files, told):
+        seen.update(
+            model=model, data=data, catalogue=catalogue, files={path.name: word for path, word in files.items()}
+        )
+        told("searching")
+        return None, model
+
+    monkeypatch.setattr(discovering, "discovered", instead)
+    return seen
+
+
+def test_a_table_its_file_and_recordings_are_the_same_trials(given, tmp_path):
+    table().to_csv(tmp_path / "runs.csv", index=False)
+    for data in (table(), table().set_index("time"), tmp_path / "runs.csv", str(tmp_path / "runs.csv"), runs()):
+        gd.discover(cooling, data)
+        np.testing.assert_allclose(given["data"].observed[1, :, 0], np.exp(-0.5 * TIME), atol=1e-6)
+        assert given["data"].observed.shape == (2, 60, 1)
+    assert given["files"] == {}
+    gd.discover(cooling, runs()[0])
+    assert given["data"].observed.shape == (1, 60, 1)
+
+
+def test_files_are_kept_in_what_the_answer_rests_on(given, tmp_path):
+    table().to_csv(tmp_path / "runs.csv", index=False)
+    decay = gd.Simulation("decay", gd.bundled_simulation("lorenz").states[:1], equations={"x": "-0.5*x"})
+    gd.write_simulation(decay, tmp_path / "decay.toml")
+    data = table().rename(columns={"temperature": "x"})
+    said = []
+    gd.discover(tmp_path / "decay.toml", data, progress=said.append)
+    assert given["files"] == {"decay.toml": "simulation"} and said == ["searching"]
+
+
+def test_data_of_no_kind_or_without_a_column_are_refused(given):
+    with pytest.raises(SimulationError, match="a table, a file or recordings; found int"):
+        gd.discover(cooling, 3)  # pyright: ignore[reportArgumentType]
+    with pytest.raises(ChannelError, match="a measured column 'temperature'; the table has time, temprature, trial"):
+        gd.discover(cooling, table().rename(columns={"temperature": "temprature"}))
+
+
+def test_a_signal_without_a_unit_is_taken_as_it_is_and_another_unit_is_converted(given):
+    model = gd.simulation_from_function(cooling, {"temperature": "rad"})
+    plain = gd.Recording(TIME, np.exp(-TIME)[:, None], (Channel("temperature", "signal", "1"),))
+    gd.discover(model, plain)
+    np.testing.assert_allclose(given["data"].observed[0, :, 0], np.exp(-TIME))
+    degrees = gd.Recording(TIME, np.exp(-TIME)[:, None], (Channel("temperature", "angle", "deg"),))
+    gd.discover(model, degrees)
+    np.testing.assert_allclose(given["data"].observed[0, :, 0], np.radians(np.exp(-TIME)))

@@ -1,0 +1,22 @@
+"""A model as a script names it."""
+
+import pytest
+
+from gaitdisc.library.models import model_of
+from gaitdisc.simulation.bundled import bundled
+from gaitdisc.simulation.python_simulation import PythonSimulation
+from gaitdisc.simulation.refusal import SimulationError
+from gaitdisc.simulation.writing import write_simulation
+
+
+def test_a_file_an_object_and_a_function_are_models(tmp_path):
+    pendulum = bundled("pendulum")
+    file = write_simulation(pendulum, tmp_path / "pendulum.toml")
+    assert model_of(file) == model_of(str(file)) == model_of(pendulum) == pendulum
+    model = model_of(lambda x: -x)
+    assert isinstance(model, PythonSimulation) and model_of(model) is model
+
+
+def test_anything_else_is_refused():
+    with pytest.raises(SimulationError, match="a simulation file, a Simulation or a Python function; found int"):
+        model_of(3)  # pyright: ignore[reportArgumentType]

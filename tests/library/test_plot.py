@@ -1,0 +1,66 @@
+"""Pictures on the caller's own axes."""
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from manufactured_discovery import manufactured
+from matplotlib.figure import Figure
+
+import gaitdisc as gd
+from gaitdisc.channel import Channel
+from gaitdisc.errors import ChannelError
+
+mpl.use("Agg")
+
+
+@pytest.fixture
+def ax():
+    return Figure().subplots()
+
+
+def sine():
+    time = np.arange(1000) / 100
+    knee = np.column_stack([30 * np.sin(2 * np.pi * time), np.cos(time)])
+    channels = (Channel("knee_angle_r", "angle", "deg", "r"), Channel("emg_sol_r", "emg", "V", "r"))
+    suspect = np.zeros(knee.shape, bool)
+    suspect[:50] = True
+    return gd.Recording(time, knee, channels, suspect=suspect)
+
+
+def test_a_recording_is_drawn_over_time_with_what_is_suspect(ax):
+    assert gd.plot.recording(sine(), "knee_angle_r", ax=ax) is ax
+    line, doubtful = ax.lines
+    np.testing.assert_array_equal(line.get_ydata(), sine()["knee_angle_r"])
+    assert np.isfinite(doubtful.get_ydata()).sum() == 50
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("time [s]", "[deg]")
+    assert len(gd.plot.recording(sine()).lines) == 4
+
+
+def test_cycles_have_their_mean(ax):
+    starts = np.arange(1.0, 8.0)
+    strides = gd.Strides(starts, starts + 1.0, "r", "force")
+    gd.plot.cycles(sine(), strides, "knee_angle_r", ax)
+    mean = ax.lines[-1].get_ydata()
+    np.testing.assert_allclose(mean, 30 * np.sin(2 * np.pi * np.arange(101) / 100), atol=0.05)
+    assert len(ax.lines) == 1 + 7 + 1 and ax.get_xlim() == (0, 100)
+
+
+def test_a_discovery_is_drawn_in_degrees_with_what_is_left_and_after_loading(tmp_path, ax):
+    found = gd.load(manufactured().save(tmp_path))
+    assert isinstance(found, gd.Discovery)
+    gd.plot.discovery(found, ax=ax)
+    assert ax.get_ylabel() == "theta [deg]"
+    left = gd.plot.discovery(found, "theta", left=True)
+    assert left.get_title() == "theta: what is left" and "simulated" in left.get_legend().get_texts()[0].get_text()
+    with pytest.raises(ChannelError, match="the result has theta, the nearest is 'theta'"):
+        gd.plot.discovery(found, "thta")
+
+
+def test_a_mismatch_and_its_gap_are_drawn():
+    walks = gd.example_walks(12.0)
+    found = gd.compare(walks["exo"], walks["nominal"], ["ankle_angle_r"])
+    both, gap = gd.plot.mismatch(found, "ankle_angle_r"), gd.plot.mismatch(found, "ankle_angle_r", gap=True)
+    np.testing.assert_allclose(gap.lines[1].get_ydata(), found.curves["gap"][:, 0])
+    assert [text.get_text() for text in both.get_legend().get_texts()][1] == found.first
+    with pytest.raises(ChannelError, match="'knee_angle_r' is to be drawn"):
+        gd.plot.mismatch(found, "knee_angle_r")

@@ -1,0 +1,67 @@
+"""States from a few sensors, on arrays."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import gaitdisc as gd
+from gaitdisc.errors import ShapeError, TrainingError
+
+T = np.arange(0.0, 40.0, 0.02)
+X = np.sin(2 * T)[:, None]
+Y = np.column_stack([np.cos(2 * T), np.sin(2 * T + 0.7)])  # two readings of a sine tell its phase, one does not
+
+
+def fitted(kind="delay ridge", **changes):
+    return gd.Reconstructor(kind, rate_hz=50.0, history_s=0.4, **changes).fit(X[:1500], Y[:1500])
+
+
+def test_a_history_reads_the_phase_that_the_present_does_not():
+    assert fitted().score(X[1500:], Y[1500:]) > 0.999
+    assert fitted("linear").score(X[1500:], Y[1500:]) < 0.7
+
+
+def test_what_a_window_does_not_fill_is_missing_and_so_is_what_rests_on_a_gap():
+    broken = X[1500:].copy()
+    broken[100] = np.nan
+    estimated = fitted().predict(broken)
+    assert estimated.shape == Y[1500:].shape
+    assert np.isnan(estimated[:20]).all() and np.isfinite(estimated[20:100]).all() and np.isnan(estimated[100]).all()
+
+
+def test_a_forecast_is_scored_where_it_comes_true():
+    ahead = fitted(ahead_s=0.2)
+    early = X.copy()
+    early[500:510] = np.nan  # what lies within 0.2 s before a state has no say in its forecast
+    np.testing.assert_allclose(ahead.predict(early)[509], Y[509], atol=0.02)
+    np.testing.assert_allclose(ahead.predict(X)[100:], Y[100:], atol=0.02)
+    assert ahead.score(X[1500:], Y[1500:]) > 0.999
+
+
+def test_several_trials_and_tables_go_and_their_columns_name_the_channels():
+    x, y = pd.DataFrame(X, columns=["a"]), pd.DataFrame(Y, columns=["b", "c"])
+    model = gd.Reconstructor(rate_hz=50.0, history_s=0.4).fit([x[:800], x[800:1600]], [y[:800], y[800:1600]])
+    assert [channel.name for channel in model.model.channels] == ["a", "b", "c"]
+    assert model.score(x[1600:], y[1600:]) > 0.999
+
+
+def test_it_is_saved_and_loaded(tmp_path):
+    model = fitted(ahead_s=0.2)
+    again = gd.load(model.save(tmp_path / "model"))
+    assert isinstance(again, gd.Reconstructor) and repr(again) == repr(model)
+    np.testing.assert_array_equal(again.predict(X), model.predict(X))
+    np.testing.assert_array_equal(again.half_widths, model.half_widths)
+    assert (again.history_s, again.spacing_s, again.ahead_s) == (0.4, 0.04, 0.2)
+
+
+def test_what_does_not_fit_is_refused():
+    with pytest.raises(TrainingError, match="fit was not called"):
+        gd.Reconstructor().predict(X)
+    with pytest.raises(ShapeError, match=r"x\[:, None\] for one of them"):
+        gd.Reconstructor().fit(X[:, 0], Y)
+    with pytest.raises(ShapeError, match=r"readings \(2000, 1\) and states \(1999, 2\)"):
+        gd.Reconstructor(rate_hz=50.0).fit(X, Y[1:])
+    with pytest.raises(ShapeError, match="as many trials of states as of readings; found 2 of readings, 1 of states"):
+        gd.Reconstructor(rate_hz=50.0).fit([X, X], [Y])
+    with pytest.raises(ShapeError, match="reads 1 sensors; found 2 columns"):
+        fitted().predict(Y)

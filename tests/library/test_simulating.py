@@ -1,0 +1,74 @@
+"""Running a simulation over time, against closed forms."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import gaitdisc as gd
+from gaitdisc.channel import Channel
+from gaitdisc.errors import SamplingError, ShapeError
+from gaitdisc.simulation.refusal import SimulationError
+
+TIME = np.linspace(1.0, 3.0, 201)
+
+
+def driven(x, u, rate=0.7):
+    return u - rate * x
+
+
+def test_a_decay_follows_the_exponential():
+    run = gd.simulate(lambda x, rate=0.7: -rate * x, TIME, start=[2.0])
+    np.testing.assert_allclose(run["x"], 2.0 * np.exp(-0.7 * (TIME - 1.0)), atol=1e-9)
+    assert (run.rate_hz, run.time[0]) == (100.0, 1.0)
+
+
+def test_inputs_may_be_a_mapping_a_table_or_a_recording():
+    u = np.sin(TIME)
+    given = (
+        {"u": u},
+        pd.DataFrame({"u": u}),
+        gd.Recording(TIME, u[:, None], (Channel("u", "signal", "1"),)),
+    )
+    runs = [gd.simulate(driven, TIME, one, {"x": 0.0}) for one in given]
+    assert runs[0].names == ("x", "u")
+    for run in runs[1:]:
+        np.testing.assert_allclose(run.values, runs[0].values, atol=1e-12)
+    rate = np.gradient(runs[0]["x"], TIME)[1:-1]
+    np.testing.assert_allclose(rate, (u - 0.7 * runs[0]["x"])[1:-1], atol=1e-4)
+
+
+def test_units_are_those_of_the_simulation():
+    pendulum = gd.bundled_simulation("pendulum")
+    run = gd.simulate(pendulum, TIME, start={state.name: 0.1 for state in pendulum.states},
+                      inputs={each.name: np.zeros(len(TIME)) for each in pendulum.inputs})  # fmt: skip
+    assert {channel.unit for channel in run.channels} >= {"rad"}
+    tank = gd.simulation_from_function(lambda level: -level, {"level": "m^3"})
+    assert gd.simulate(tank, TIME, start=[1.0]).channels[0].unit == "1"  # no unit of the closed list
+
+
+@pytest.mark.parametrize(
+    ("keywords", "error", "words"),
+    [
+        ({}, SimulationError, r"'u' is not among the inputs given \(none\)"),
+        ({"inputs": {"u": np.zeros(3)}}, ShapeError, r"'u' has one value a time; found \(3,\) at 201 times"),
+        ({"inputs": {"u": np.full(201, np.nan)}}, SimulationError, "'u' is missing at t = 1 s"),
+        ({"inputs": {"u": np.zeros(201)}}, SimulationError, "the state 'x' has no initial value"),
+        ({"inputs": {"u": np.zeros(201)}, "start": [1.0, 2.0]}, ShapeError, "a number for each state: x"),
+        ({"inputs": {"u": np.zeros(201)}, "start": {"y": 1.0}}, SimulationError, "none called 'y'"),
+    ],
+)
+def test_what_is_missing_is_named(keywords, error, words):
+    with pytest.raises(error, match=words):
+        gd.simulate(driven, TIME, **keywords)
+
+
+def test_time_that_is_uneven_or_one_sample_is_refused():
+    with pytest.raises(SamplingError, match="a constant rate"):
+        gd.simulate(lambda x: -x, [0.0, 0.1, 0.4], start=[1.0])
+    with pytest.raises(ShapeError, match="two times or more"):
+        gd.simulate(lambda x: -x, [0.0], start=[1.0])
+
+
+def test_a_simulation_that_leaves_all_bounds_names_state_and_time():
+    with pytest.raises(SimulationError, match="x"):
+        gd.simulate(lambda x: x**2, np.linspace(0.0, 3.0, 301), start=[1.0])

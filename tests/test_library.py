@@ -1,0 +1,77 @@
+"""The names of `import gaitdisc as gd`: loaded when first used, seen by type checkers, documented with an example."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from numpydoc.docscrape import FunctionDoc
+
+import gaitdisc as gd
+
+SOURCE = Path(gd.__file__)
+MOST_NAMES = 60
+
+
+def test_the_package_loads_nothing_by_itself():
+    code = "import sys; import gaitdisc; print([m for m in ('numpy', 'pandas', 'torch', 'typing') if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-I", "-S", "-c", f"import sys; sys.path[:0] = {sys.path!r}\n{code}"],
+                          capture_output=True, text=True, check=True)  # fmt: skip
+    assert done.stdout.strip() == "[]"
+
+
+def test_every_name_is_there_and_listed_once():
+    assert len(gd.__all__) == len(set(gd.__all__)) <= MOST_NAMES
+    assert {name for name in gd.__all__ if getattr(gd, name) is None} == set()
+    assert set(gd.__all__) <= set(dir(gd))
+
+
+def test_type_checkers_see_the_names_that_are_loaded():
+    seen = {}
+    for node in ast.walk(ast.parse(SOURCE.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("gaitdisc"):
+            seen |= {alias.asname: (node.module, alias.name) for alias in node.names}
+    loaded = {
+        name: (f"gaitdisc.{module}", inside) if inside else (f"gaitdisc.{module.rpartition('.')[0]}", name)
+        for name, (module, inside) in gd._HOME.items()
+    }
+    assert seen == loaded
+    assert sorted(gd.__all__) == sorted(loaded)
+
+
+def test_a_name_that_is_none_of_them_is_refused():
+    with pytest.raises(AttributeError, match="has no attribute 'discovr'"):
+        gd.discovr  # noqa: B018
+
+
+def _functions():
+    public = {name: getattr(gd, name) for name in gd.__all__ if inspect.isfunction(getattr(gd, name))}
+    drawn = {f"plot.{name}": thing for name, thing in vars(gd.plot).items()
+             if inspect.isfunction(thing) and thing.__module__ == gd.plot.__name__ and name[0] != "_"}  # fmt: skip
+    return public | drawn
+
+
+def test_every_function_has_its_parameters_what_it_returns_and_an_example():
+    lacking = []
+    for name, function in _functions().items():
+        doc = FunctionDoc(function)
+        if any(not entry.desc for entry in doc["Parameters"]) or not (doc["Examples"] and inspect.getdoc(function)):
+            lacking.append(name)
+        returned = inspect.signature(function).return_annotation
+        if not doc["Returns"] and returned not in ("None", None) and name not in PLAIN:
+            lacking.append(f"{name}: what it returns")
+    assert lacking == []
+
+
+# what their first line says they return
+PLAIN = ("bundled_simulation",)
+
+
+def test_the_reference_shows_every_name_first():
+    page = (SOURCE.parents[1] / "docs" / "reference.md").read_text(encoding="utf-8")
+    shown = [line.removeprefix("::: gaitdisc.") for line in page.splitlines() if line.startswith("::: gaitdisc.")]
+    assert shown[: len(gd.__all__)] == list(gd._HOME)
