@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from gaitdisc.discovery.inquiry import FEWEST_SAMPLES, begin_inquiry
+from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.simulation.divergence import refuse_divergence
 from gaitdisc.simulation.drive import Rows
 from gaitdisc.simulation.measured import Measured
@@ -29,7 +30,7 @@ def refuse_blow_up(simulation: Simulation, measured: Measured) -> None:
     SimulationError
         With trial, time and state, and the parameter that drives it.
     """
-    inquiry, machine = begin_inquiry(simulation, measured), compile_simulation(simulation)
+    inquiry, machine = begin_inquiry(simulation, without_spikes(measured)), compile_simulation(simulation)
     segments = inquiry.segments((*inquiry.learned, *inquiry.held_out), 0.0)
     rows = Rows(segments.trial, segments.begin, inquiry.guess.starts(segments))
     drive = inquiry.measured.drive

@@ -11,6 +11,7 @@ from gaitdisc.discovery.decision import judge
 from gaitdisc.discovery.held_out import holding_out_others, noted, tells_nothing
 from gaitdisc.discovery.inquiry import begin_inquiry, split_in_time
 from gaitdisc.discovery.odd_trials import agreeing_trials
+from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.discovery.trial_apart import without_trial_apart
 from gaitdisc.results.discovery import Discovery
 from gaitdisc.simulation.measured import Measured
@@ -43,6 +44,7 @@ def discover(
     augmented : Simulation
         The simulation with what was found in it.
     """
+    measured = without_spikes(measured)
     inquiry = begin_inquiry(simulation, measured, shapes)
     agreeing = agreeing_trials(inquiry, measured)
     if agreeing is not measured:

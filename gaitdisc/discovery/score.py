@@ -95,10 +95,40 @@ class Scorer:
             own = without(basis, columns).reshape(-1, columns.shape[2])
             own = np.vstack([own, np.zeros((left.size - len(own), own.shape[1]))])
             own -= known @ (known.T @ own)
-            for score, number in _gains(own, left, some, candidates):
+            for score, number in _gains(own.T @ own, own.T @ left, some, candidates):
                 if number not in best or score.gain > best[number].gain:
                     best[number] = score
         return sorted(best.values(), key=lambda score: -score.gain)
+
+    def left_without_each(self, candidates: tuple[Candidate, ...]) -> NDArray[np.float64]:
+        """Mean square that the best candidate leaves of all other trials, for each trial (trial,), to first order.
+
+        Parameters
+        ----------
+        candidates : tuple of Candidate
+            The explanations.
+        """
+        basis = start_basis(self.fit.slopes[..., : self.fit.starts.shape[1]])
+        left, slopes = self.fit.projected
+        others = _Others(self.shooting.segments.trial)
+        known = others.product(slopes, slopes) + np.diag(self._prior_weights())
+        match = others.product(slopes, left[..., None])[..., 0]
+        gained = np.zeros(others.count)
+        for some, columns in self._columns(candidates):
+            own = without(basis, columns)
+            shared = np.linalg.pinv(known, rcond=1e-12, hermitian=True) @ others.product(slopes, own)
+            normal = others.product(own, own) - np.swapaxes(others.product(slopes, own), 1, 2) @ shared
+            aim = others.product(own, left[..., None])[..., 0] - (match[:, None] @ shared)[:, 0]
+            for number in range(others.count):
+                gains = [one.gain for one, _ in _gains(normal[number], aim[number], some, candidates)]
+                gained[number] = max([gained[number], *gains])
+        square = others.product(left[..., None], left[..., None])[:, 0, 0]
+        return (square - gained) / (others.segments * left.shape[1])
+
+    def _prior_weights(self) -> NDArray[np.float64]:
+        """What the prior adds to the curvature of each constant that is in already (free,)."""
+        prior = self.fit.prior
+        return np.concatenate([np.zeros(len(self.fit.free) - len(prior.names)), 1 / prior.sd**2])
 
     def _explained(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """Basis of the start states, basis of the constants already in (row, constant), what is left (row,).
@@ -226,13 +256,37 @@ class Scorer:
         return (seen - base) / over[:, None, None, None]
 
 
+@dataclass(frozen=True)
+class _Others:
+    """Sums over all segments but those of one trial, for each trial in turn."""
+
+    trial: NDArray[np.intp]
+
+    @property
+    def count(self) -> int:
+        """How many trials there are."""
+        return len(np.unique(self.trial))
+
+    @property
+    def segments(self) -> NDArray[np.intp]:
+        """How many segments the others have (trial,)."""
+        return len(self.trial) - np.unique(self.trial, return_counts=True)[1]
+
+    def product(self, one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Products of columns (segment, number, column), summed (trial, column, column)."""
+        each = np.swapaxes(one, 1, 2) @ other
+        return each.sum(axis=0) - np.stack([each[self.trial == trial].sum(axis=0) for trial in np.unique(self.trial)])
+
+
 def _gains(
-    columns: NDArray[np.float64], left: NDArray[np.float64], some: list[_Cell], candidates: tuple[Candidate, ...]
+    normal: NDArray[np.float64], match: NDArray[np.float64], some: list[_Cell], candidates: tuple[Candidate, ...]
 ) -> Iterator[tuple[Score, int]]:
-    """Yield each cell's score; a cell has as many columns as slots that columns stand for."""
-    normal, match = columns.T @ columns, columns.T @ left
-    size = np.maximum(np.sqrt(np.diag(normal)), 1e-150)
-    normal /= np.outer(size, size)
+    """Yield each cell's score, from the products of the columns with each other and with what is left.
+
+    A cell has as many columns as slots that columns stand for.
+    """
+    size = np.maximum(np.sqrt(np.maximum(np.diag(normal), 0)), 1e-150)
+    normal = normal / np.outer(size, size)
     first = 0
     for cell in some:
         mine = slice(first, first + len(cell.idle))

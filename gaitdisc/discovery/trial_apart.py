@@ -5,23 +5,27 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
+from gaitdisc.discovery.evidence import Judged
 from gaitdisc.discovery.gap_share import MODEL_ERROR
 from gaitdisc.discovery.growth import leaves
 from gaitdisc.discovery.inquiry import Inquiry
 from gaitdisc.discovery.odd_trials import KIND
+from gaitdisc.discovery.score import Scorer
 from gaitdisc.recording import Finding
 from gaitdisc.simulation.measured import Measured
 
-FEWEST_TRIALS, MOST_TRIALS = 4, 8  # each is left out once
+FEWEST_TRIALS, MOST_TRIALS = 4, 8
 APART = 2.0  # times the error must stay whichever other trial is left out
 
 
 def without_trial_apart(inquiry: Inquiry) -> Measured:
     """Return the trials without the one that goes with no explanation of the others, with a finding.
 
-    Each trial is left out in turn and the best single explanation of the others is found. Where these are explained
-    far better without one of the trials than without any other, that trial stands apart.
+    The simulation as read is fitted to all trials. What the best single explanation would leave of all but one of them
+    follows from its slopes, to first order, for each trial in turn: this finds the one to suspect. The others are then
+    searched without it, and for comparison without the next.
 
     Parameters
     ----------
@@ -37,24 +41,43 @@ def without_trial_apart(inquiry: Inquiry) -> Measured:
     count = len(measured.trials)
     if not FEWEST_TRIALS <= count <= MOST_TRIALS:
         return measured
-    left = np.array([_left_without(inquiry, trial) for trial in range(count)])
-    least, *others = np.sort(left)
-    if others[0] < max(APART * least, MODEL_ERROR):
+    spread = np.nanstd(measured.observed, axis=(0, 1))
+    as_read = replace(inquiry, learned=tuple(range(count))).as_read()
+    trial, other = np.argsort(_promised(inquiry, as_read))[:2].tolist()
+    least = _left_without(inquiry, trial, spread)
+    wanted = max(APART * least, MODEL_ERROR)
+    if _as_read_left(as_read, other, spread) < wanted:  # what a search leaves of the same trials is no more
         return measured
-    trial = int(np.argmin(left))
+    next_least = _left_without(inquiry, other, spread)
+    if next_least < wanted:
+        return measured
     what = (
         f"trial {measured.trials[trial]!r} goes with no explanation of the others: without it the best one leaves "
-        f"{least:.2g} standard deviations, without any other trial {others[0]:.2g} or more"
+        f"{least:.2g} standard deviations, without trial {measured.trials[other]!r}, the next best to leave out, "
+        f"{next_least:.2g}"
     )
     source = measured.source or inquiry.search.base.title
     spoils = "this trial, which was left out: look at its gain, its offset and whether a channel stood still"
-    kept = measured.selected([other for other in range(count) if other != trial])
+    kept = measured.selected([one for one in range(count) if one != trial])
     return replace(kept, findings=(*kept.findings, Finding("warning", KIND, source, what, spoils)))
 
 
-def _left_without(inquiry: Inquiry, trial: int) -> float:
+def _promised(inquiry: Inquiry, as_read: Judged) -> NDArray[np.float64]:
+    """Mean square that the best single explanation leaves of all other trials, to first order (trial,)."""
+    search, account = inquiry.search, as_read.account
+    scorer = Scorer(as_read.shooting, account.simulation, account.machine, account.fit, search.places, search.rhythm)
+    return scorer.left_without_each(search.open_beside(account))
+
+
+def _as_read_left(as_read: Judged, trial: int, spread: NDArray[np.float64]) -> float:
+    """Root mean square that the simulation as read leaves of all other trials [standard deviations]."""
+    others = as_read.shooting.segments.trial != trial
+    return float(np.sqrt(np.nanmean((as_read.account.fit.residual[others] / spread) ** 2)))
+
+
+def _left_without(inquiry: Inquiry, trial: int, spread: NDArray[np.float64]) -> float:
     """Root mean square that the best single explanation of all other trials leaves [standard deviations]."""
     others = tuple(other for other in range(len(inquiry.measured.trials)) if other != trial)
     part = replace(inquiry, learned=others)
-    as_read, spread = part.as_read(), np.nanstd(inquiry.measured.observed, axis=(0, 1))
+    as_read = part.as_read()
     return float(np.sqrt(min(leaves(one, spread) for one in (as_read, *part.search.extended(as_read)))))

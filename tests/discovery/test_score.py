@@ -77,3 +77,22 @@ def test_a_sensor_that_lags_already_is_not_delayed_again():
     lagging = mass().with_observation("x", "delay(x, 0.05)")
     inquiry = begin_inquiry(lagging, record(lagging, 5, Experiment(seconds=8.0)))
     assert "sensor_lag@x" not in _scores(inquiry, inquiry.as_read())
+
+
+def test_what_is_left_without_a_trial_is_what_the_others_alone_would_leave(inquiry, as_read):
+    account, candidates = as_read.account, inquiry.search.candidates
+    scorer = Scorer(
+        as_read.shooting, account.simulation, account.machine, account.fit, inquiry.search.places, inquiry.rhythm
+    )
+    left = scorer.left_without_each(candidates)
+    for trial in np.unique(as_read.shooting.segments.trial):
+        some = np.flatnonzero(as_read.shooting.segments.trial != trial)
+        parts = {name: getattr(account.fit, name)[some] for name in ("starts", "states", "residual", "white", "slopes")}
+        others = replace(
+            scorer,
+            shooting=replace(as_read.shooting, segments=as_read.shooting.segments.among(some)),
+            fit=replace(account.fit, **parts),
+        )
+        best = others.scores(candidates)[0].gain
+        expected = (np.square(others.fit.projected[0]).sum() - best) / others.fit.white.size
+        assert left[trial] == pytest.approx(expected, rel=1e-9)

@@ -8,6 +8,7 @@ from hidden_in_a_mass import Experiment, mass, record, with_load
 
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.inquiry import begin_inquiry
+from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.trial_apart import without_trial_apart
 
 
@@ -37,10 +38,14 @@ def test_a_trial_that_goes_with_no_explanation_of_the_others_is_left_out_and_the
     assert "it was left out" in found.sentence
 
 
-def test_trials_that_were_recorded_alike_are_all_kept():
+def test_trials_that_were_recorded_alike_are_all_kept_after_one_search_at_most(monkeypatch):
+    searched = []
+    search = Search.extended
+    monkeypatch.setattr(Search, "extended", lambda *a, **k: searched.append(1) or search(*a, **k))
     bump = with_load("-6*exp(-((x - 0.3)/0.2)**2)")  # of which no single explanation leaves mere noise
     inquiry = begin_inquiry(mass(), record(bump, 3, Experiment(seconds=10.0)))
     assert without_trial_apart(inquiry) is inquiry.measured
+    assert len(searched) <= 1
 
 
 def test_of_three_trials_none_is_said_to_stand_apart():

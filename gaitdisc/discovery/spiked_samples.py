@@ -1,0 +1,158 @@
+"""Spiked samples: one to three of a channel that leap away from their neighbours and back, found without any model.
+
+They are emptied before anything is fitted. A square error would follow them, and a record with one in a hundred speaks
+for whatever moves the simulation towards them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
+
+from gaitdisc.recording import Finding
+from gaitdisc.recording.runs import runs
+from gaitdisc.simulation.measured import Measured
+
+KIND = "spike"
+LONGEST = 3  # samples
+SIGMAS = 8.0  # robust standard deviations of a sample from the middle of its neighbours
+OF_STEPS = 4.0  # times the median step around it: what moves fast has samples on its way
+AROUND = 8  # samples to either side, whose steps these are
+OF_RANGE = 0.05  # of the channel's range in the trial, 1st to 99th percentile
+APART = 0.5  # of the leap, by which the samples before and after may differ: a step does not come back
+MOST = 0.05  # of a channel's samples in a trial, beyond which such leaps are how it moves
+FEWEST = 20  # samples
+SHOULDERED = 0.25  # of the leaps, beyond which they are pulses of the motion: a spike has no samples on its way
+SHOULDER = 10.0  # robust standard deviations by which the sample before or after one turns towards it, and
+OF_LEAP = 0.05  # of the leap
+ENDS = 7  # samples of which a line continues the record
+TOLD = 3  # trials of a channel that the finding names
+MAD_OF_NORMAL = 1.4826
+
+
+def without_spikes(measured: Measured) -> Measured:
+    """Return trials whose spiked samples are empty, with a finding for each channel that had any.
+
+    Of a record that was low-passed after it was spiked none is seen: there a spike is as smooth as the motion.
+
+    Parameters
+    ----------
+    measured : Measured
+        As read.
+    """
+    marks = np.zeros(measured.observed.shape, bool)
+    for trial, samples in enumerate(measured.samples):
+        for channel in range(len(measured.channels)):
+            marks[trial, :samples, channel] = spiked(measured.observed[trial, :samples, channel])
+    if not marks.any():
+        return measured
+    findings = tuple(_finding(measured, marks, channel) for channel in np.flatnonzero(marks.any(axis=(0, 1))).tolist())
+    observed = np.where(marks, np.nan, measured.observed)
+    return replace(measured, observed=observed, findings=(*measured.findings, *findings))
+
+
+def spiked(record: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Mark the samples of a channel that leap away from what lies before and after them, and back.
+
+    Far is eight robust standard deviations of a sample from the middle of its neighbours, four median steps around it,
+    and 5 % of the channel's range; and what lies before and after lies together. An impact turns a position with
+    samples on its way, steps a rate once, and gives a force a pulse with shoulders; none of them is marked.
+
+    Parameters
+    ----------
+    record : ndarray (sample,)
+        One channel of a trial; NaN where a cell is empty.
+
+    References
+    ----------
+    Hampel 1974, J. Am. Stat. Assoc. 69, 383. Differs: the deviation is from the line between the neighbours, and a step
+    or a corner of the motion is told apart by what comes after.
+
+    Examples
+    --------
+    >>> x = np.sin(np.arange(300) / 15)
+    >>> x[[100, 200, 201]] += [3.0, -2.0, -2.5]
+    >>> np.flatnonzero(spiked(x)).tolist()
+    [100, 200, 201]
+    """
+    marks = np.zeros(len(record), bool)
+    known = np.flatnonzero(np.isfinite(record))
+    if len(known) < FEWEST:
+        return marks
+    x = _continued(record[known])
+    at = np.concatenate([known[0] - np.arange(LONGEST, 0, -1), known, known[-1] + 1 + np.arange(LONGEST)])
+    middle = MAD_OF_NORMAL * float(np.median(np.abs(x[1:-1] - (x[:-2] + x[2:]) / 2)))
+    least = max(SIGMAS * middle, OF_RANGE * float(np.subtract(*np.percentile(record[known], [99, 1]))))
+    steps = _steps_around(x)
+    here, shouldered = np.zeros(len(x), bool), []
+    for width in range(1, LONGEST + 1):
+        before, after = x[: -width - 1], x[width + 1 :]
+        shares = np.arange(1, width + 1) / (width + 1)
+        inside = sliding_window_view(x, width)[1 : len(before) + 1]
+        leap = np.abs(inside - (before[:, None] * (1 - shares) + after[:, None] * shares)).min(axis=1)
+        far = leap > np.maximum(least, OF_STEPS * steps[1 : len(before) + 1])
+        back = np.abs(after - before) < APART * leap
+        beside = at[width + 1 :] - at[: -width - 1] <= width + LONGEST
+        for begin in (np.flatnonzero(far & back & beside) + 1).tolist():
+            here[begin : begin + width] = True
+            shouldered.append(_has_shoulder(x, begin, begin + width, max(SHOULDER * middle, OF_LEAP * leap[begin - 1])))
+    if here.sum() <= MOST * len(known) and np.sum(shouldered) <= SHOULDERED * len(shouldered):
+        marks[known] = here[LONGEST:-LONGEST]
+    return marks
+
+
+def _has_shoulder(x: NDArray[np.float64], begin: int, end: int, least: float) -> bool:
+    """Whether the sample before or after a leap is on its way there: the record turns towards the leap by `least`."""
+    up = np.sign(x[begin] - x[begin - 1])
+    turns = [np.diff(x[side], 2) for side in (slice(max(begin - 3, 0), begin), slice(end, end + 3))]
+    return any(bool((up * turn > least).any()) for turn in turns)
+
+
+def _continued(x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A record continued at either end along the median line of its samples there, which no spike of theirs moves."""
+    return np.concatenate([_line(x[:ENDS][::-1])[::-1], x, _line(x[-ENDS:])])
+
+
+def _line(x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The samples after some, on their line of median slope (Theil 1950)."""
+    later, earlier = np.tril_indices(len(x), -1)
+    slope = float(np.median((x[later] - x[earlier]) / (later - earlier)))
+    level = float(np.median(x - slope * np.arange(len(x))))
+    return np.asarray(level + slope * (len(x) + np.arange(LONGEST)), np.float64)
+
+
+def _steps_around(x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Median size of the steps around each sample; spikes are too few there to move it."""
+    padded = np.pad(np.abs(np.diff(x)), (AROUND, AROUND + 1), mode="reflect")
+    return np.median(sliding_window_view(padded, 2 * AROUND + 1), axis=1)[: len(x)]
+
+
+def _finding(measured: Measured, marks: NDArray[np.bool_], channel: int) -> Finding:
+    """Which trials of a channel have spikes, how many, and the first."""
+    said, spans = [], []
+    for trial in np.flatnonzero(marks[:, :, channel].any(axis=1)).tolist():
+        mine, time = marks[trial, :, channel], measured.time(trial)
+        first = int(np.argmax(mine))
+        count = int(mine.sum())
+        value = measured.observed[trial, first, channel]
+        said.append(
+            f"trial {measured.trials[trial]!r}: {count} of {len(time)} samples, the first at {time[first]:.4g} s "
+            f"({value:.4g} between {_beside(measured, marks, trial, channel, first)})"
+        )
+        spans += [(float(time[begin]), float(time[end - 1])) for begin, end in runs(mine)]
+    more = f"; {len(said) - TOLD} more trials alike" if len(said) > TOLD else ""
+    what = "leaps of one to three samples and back: " + "; ".join(said[:TOLD]) + more
+    spoils = "these samples alone, which were left out as empty cells are"
+    name = measured.channels[channel]
+    return Finding("warning", KIND, measured.source, what, spoils, name, tuple(spans) if len(said) == 1 else ())
+
+
+def _beside(measured: Measured, marks: NDArray[np.bool_], trial: int, channel: int, first: int) -> str:
+    """The nearest values before and after a spike that are none."""
+    record = np.where(marks[trial, :, channel], np.nan, measured.observed[trial, :, channel])
+    known = np.flatnonzero(np.isfinite(record))
+    sides = [known[known < first][-1:], known[known > first][:1]]
+    return " and ".join(f"{record[one[0]]:.4g}" for one in sides if one.size)
