@@ -101,6 +101,9 @@ class Participant(_Part):
     mass_kg: Annotated[float, Field(ge=5, le=300)] | None = Field(
         default=None, description="body mass [kg], where the C3D files have none or a wrong one"
     )
+    height_m: Annotated[float, Field(ge=0.4, le=2.5)] | None = Field(
+        default=None, description="stature [m], where the C3D files have none or a wrong one"
+    )
     sex: Literal["", "f", "m"] = Field(
         default="", description="f or m, for the inertia of the segments; empty takes the mean of both"
     )

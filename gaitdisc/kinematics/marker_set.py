@@ -113,10 +113,13 @@ class MarkerSet:
         by_fold: dict[str, str] = {}
         for label in labels:
             by_fold.setdefault(folded_label(label), label)
+        others: dict[str, list[str]] = {}
+        for key, side, alias in self._alias_list():
+            others.setdefault(sided(key, side), []).append(sided(alias, side))
         found = {}
         for name in self.markers():
-            others = (sided(alias, side) for key, side, alias in self._alias_list() if sided(key, side) == name)
-            label = next((by_fold[f] for f in map(folded_label, (name, *others)) if f in by_fold), None)
+            own = (name, *others.get(name, ()))
+            label = next((by_fold[f] for f in map(folded_label, own) if f in by_fold), None)
             if label is not None:
                 found[name] = label
         return found

@@ -104,7 +104,7 @@ class Standing:
         try:
             found = self._measures(self.planned)
             mass = self.participant.mass_kg or found.mass_kg or self._measures(planned).mass_kg
-            return Person(mass, self.participant.sex, found.height_m), ()
+            return Person(mass, self.participant.sex, self.participant.height_m or found.height_m), ()
         except GaitdiscError as error:
             what = str(error).rstrip(".")
             return None, (Finding("warning", "no moments", self.participant.id, what, "moments and powers"),)
