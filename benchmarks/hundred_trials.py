@@ -1,11 +1,12 @@
 """A hundred short trials from file to cycles on one core, and whether memory grows with their number.
 
-    python benchmarks/hundred_trials.py [--trials 25 50 100] [--people 10] [--peer PYTHON]
+    python benchmarks/hundred_trials.py [--trials 25 50 100] [--people 10] [--peer PYTHON] [--no-page]
 
 Trials of 5 s with 40 markers at 100 Hz, two force plates and 16 EMG at 1000 Hz, of a made walker, are written as C3D in
-a temporary folder, with a static trial of each person. `gaitdisc new --from` drafts the study; timed are `gaitdisc
-run` (angles and moments from markers, cycles, tables and page) in a fresh process, for each number of trials, and its
-second run; peak memory is that of the largest process. Once more with all of them those of one person. With --peer, an
+a temporary folder, with a static trial of each person. `gaitdisc new --from` drafts the study. Timed, each in a fresh
+process and for each number of trials: from file to cycles (angles and moments from markers, events, cycles, saved in
+the run's folder), `gaitdisc run` after that, which draws the page, and a second run; peak memory is that of the
+largest process. Once more with all of them those of one person. With --peer, an
 interpreter that has kineticstoolkit (pip install kineticstoolkit, which is not among the package's dependencies), the
 same files are read, filtered and cut into cycles there: no joint angles, moments, checks, pooling, tables or page.
 """
@@ -24,6 +25,7 @@ GIVEN = command_line(
     argument("--trials", "numbers of trials", [25, 50, 100]),
     argument("--people", "who share them", 10),
     argument("--peer", "Python interpreter with kineticstoolkit", ""),
+    argument("--no-page", "draw no page", False),
 )  # before the slow imports
 
 import json
@@ -62,6 +64,13 @@ done = subprocess.run(sys.argv[1:], capture_output=True, text=True)
 wall, used = time.perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
 print(json.dumps([done.returncode, wall, used.ru_utime + used.ru_stime, used.ru_maxrss,
                   (done.stdout + done.stderr)[-2000:]]))
+"""
+CYCLES = """
+import sys
+from pathlib import Path
+from gaitdisc.batch.run_study import run_study
+from gaitdisc.ingest.study_file import load_study
+run_study(load_study(sys.argv[1]), Path(sys.argv[1]) / "run")
 """
 # What kineticstoolkit's own pages do with a trial: read, low-pass, envelope, cycles of a plate and of a heel, 0-100 %.
 PEER = """
@@ -108,13 +117,16 @@ def say(folder: Path, files: list[Path], count: int, people: int) -> None:
     study = str(folder / "study")
     parts = {
         "new": ["-m", "gaitdisc", "new", study, "--from", str(folder / "recordings")],
-        "run": ["-m", "gaitdisc", "run", study, "--quiet"],
+        "cycles": ["-c", CYCLES, study],
+        "page": ["-m", "gaitdisc", "run", study, "--quiet"],
         "again": ["-m", "gaitdisc", "run", study, "--quiet"],
     }
     megabytes = sum(file.stat().st_size for file in files) / 1e6
     print(f"{count} trials of {people} people, {megabytes:.0f} MB")
     for name, words in parts.items():
-        goal = f"; goal {GOAL_S:.0f} s" if name == "run" and count == 100 else ""
+        if GIVEN.no_page and name in ("page", "again"):
+            continue
+        goal = f"; goal {GOAL_S:.0f} s" if name == "cycles" and count == 100 else ""
         print(f"  {name:15} {timed([sys.executable, *words])[0]}{goal}", flush=True)
     kept = sum(
         line.split(",")[column] == "True"

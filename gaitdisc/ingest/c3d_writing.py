@@ -18,6 +18,7 @@ from gaitdisc.recording import Recording, Surface
 from gaitdisc.whole_file import write_whole
 
 FRAME_HZ = 100.0
+WHOLE = ("USED", "TYPE", "ZERO", "CHANNEL")
 MOST_FRAMES = 65_534  # 16 bits; ezc3d reads no more of a file without points, whatever TRIAL:ACTUAL_END_FIELD says
 
 
@@ -96,6 +97,9 @@ def write_c3d(recordings: Sequence[Recording], path: Path | str, surfaces: Seque
     } | _platforms(surfaces, channels)
     for (group, name), value in settings.items():
         file.add_parameter(group, name, value)
+        if name in WHOLE:  # ezc3d makes floats of them, which other programs refuse
+            kept = file["parameters"][group][name]
+            kept["type"], kept["value"] = ezc3d.ezc3d.INT, np.asarray(kept["value"]).astype(int)
     file["data"]["points"] = _points(markers, frames) if markers is not None else np.empty((4, 0, frames))
     file["data"]["analogs"] = np.ascontiguousarray(values.T)[None]
     with tempfile.TemporaryDirectory() as folder:
@@ -154,6 +158,7 @@ def _platforms(surfaces: Sequence[Surface], channels: Sequence[Channel]) -> dict
     return {
         (group, "USED"): [count],
         (group, "TYPE"): [2] * count,
+        (group, "ZERO"): [0, 0],
         (group, "CHANNEL"): columns,
         (group, "CORNERS"): np.array([surface.corners for surface in surfaces]).T,
         (group, "ORIGIN"): np.zeros((3, count)),

@@ -76,6 +76,11 @@ class PlannedTrial(_Part):
     )
     session: Word | None = Field(default=None, description="a word of sessions, never a date")
     files: tuple[FileName, ...] = Field(min_length=1, description="files of this one walk, relative to the study file")
+    part: Annotated[str, Field(max_length=40)] = Field(
+        default="",
+        description="which trial of a .mat or .npz file that holds several: its number, or what * stands for in "
+        "[channels]",
+    )
     speed_m_per_s: Positive | None = Field(default=None, description="walking speed of this trial [m/s]")
     crop_s: tuple[float, float] | None = Field(
         default=None, description="start and end of the part to use, file's clock [s]"
@@ -268,7 +273,9 @@ class Study(_Part):
     conditions: Conditions
     treadmill: Treadmill | None = None
     channels: dict[str, str] = Field(
-        default_factory=dict, description='label in a file = "channel name" or "channel name [unit]"'
+        default_factory=dict,
+        description='label in a file = "channel name" or "channel name [unit]"; variable of a .mat or .npz file = '
+        '"channel name [unit] @ 100 Hz"',
     )
     filters: Filters = Filters()
     kinematics: Kinematics | None = None

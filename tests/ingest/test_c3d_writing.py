@@ -1,3 +1,4 @@
+import ezc3d
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -106,6 +107,8 @@ def test_markers_and_plates_are_read_back(reader, tmp_path):
         np.testing.assert_allclose(trial.stream("forces")[name], forces[name], rtol=1e-5, atol=1e-3)
     centre = np.column_stack([trial.stream("forces")[f"plate_1_p{axis}"] for axis in "xyz"])
     np.testing.assert_allclose(centre - surfaces[0].corners.mean(axis=0), point, atol=1e-5)
+    seen = ezc3d.c3d(str(path), extract_forceplat_data=True)["data"]["platform"]  # as another program reads it
+    np.testing.assert_allclose(np.abs(seen[1]["force"].T), np.abs(0.5 * force), rtol=1e-5)
     assert [surface.name for surface in trial.surfaces] == ["plate_1", "plate_2"]
     assert trial.findings == () and trial.stream("emg").names == ("emg_sol_r", "emg_ta_r")
     alone = reader.read(write_c3d([markers], tmp_path / "alone.c3d"))
