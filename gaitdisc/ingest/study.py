@@ -177,6 +177,9 @@ class Kinematics(_Part):
         description="plug_in_gait, oxford_foot, helen_hayes, rajagopal, gait2354, or a .toml file relative to the "
         "study file; empty: recognised by the labels",
     )
+    hip: Literal["davis", "harrington"] | None = Field(
+        default=None, description="hip joint centre: davis or harrington; as the marker set says where it is not given"
+    )
     joints: Literal["free", "held", "planar"] | None = Field(
         default=None, description="free, held or planar; as the marker set says where it is not given"
     )

@@ -28,6 +28,8 @@ EXAMPLES = {  # of what a study does not have
     "session": "before",
     "angles": "markers",
     "joints": "held",
+    "hip": "harrington",
+    "part": "3",
 }
 UNSET = {  # parts that a study may lack
     "treadmill": "# [treadmill]\n# speed_m_per_s = 1.3  # belt speed [m/s], for strides found from markers\n",

@@ -94,6 +94,7 @@ class Standing:
         chosen = chosen_marker_set(markers, self.markers, marker_set_of(self.study))
         if chosen.name not in self._calibrations:
             kept = chosen.with_joints(wanted.joints) if wanted and wanted.joints else chosen
+            kept = kept.with_hip(wanted.hip) if wanted and wanted.hip else kept
             self._calibrations[chosen.name] = calibrated(self.markers, kept, self._measures(self.planned))
         return self._calibrations[chosen.name]
 
