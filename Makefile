@@ -43,6 +43,7 @@ bench: $(VENV)/.dev
 	$(BIN)/python benchmarks/read_c3d.py
 	$(BIN)/python benchmarks/derivatives.py
 	$(BIN)/python benchmarks/study.py
+	$(BIN)/python benchmarks/hundred_trials.py
 	$(BIN)/python benchmarks/train_networks.py
 
 $(VENV)/.torch:

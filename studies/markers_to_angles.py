@@ -17,7 +17,7 @@ DATA = argument("data", "folder of the real recordings", SHARED)
 OUT = argument("--out", "folder of the pictures; none are drawn without it")
 GIVEN = command_line(__name__, __doc__, DATA, OUT, QUICK)  # before the slow imports
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -88,9 +88,9 @@ def theirs(trial: Trial, ours: str) -> np.ndarray:
 
 
 def named_set(name: str) -> MarkerSet:
-    """A set that comes along; `plug_in_gait, davis` has Plug-in Gait's own hips in place of Harrington's."""
-    plain = marker_set(name.split(",", maxsplit=1)[0])
-    return replace(plain, joint_centres={**plain.joint_centres, "hip": ("davis",)}) if "davis" in name else plain
+    """A set that comes along; `plug_in_gait, harrington` has Harrington's hips in place of Plug-in Gait's own."""
+    plain, _, hip = name.partition(", ")
+    return marker_set(plain).with_hip(hip) if hip else marker_set(plain)
 
 
 def curves(person: Person, chosen: str, kind: str) -> dict[str, tuple[np.ndarray, np.ndarray]]:
@@ -198,7 +198,7 @@ def panel(axes, pair: tuple[np.ndarray, np.ndarray], label: str) -> None:
 def main() -> None:
     """Print the tables, draw the pictures."""
     several = people(GIVEN.data, WRITTEN_WITH[:1] if GIVEN.quick else (*WRITTEN_WITH, *HELD_BACK))
-    for chosen in ("plug_in_gait", "plug_in_gait, davis", "oxford_foot"):
+    for chosen in ("plug_in_gait", "plug_in_gait, harrington", "oxford_foot", "oxford_foot, harrington"):
         print(f"\n{chosen}: rms difference to Plug-in Gait, median (largest) [deg]\n")
         print("| angle | goal | straight, 4 people | 2 held back | all 6 | turn, 4 people | 2 held back | all 6 |")
         print("|---|---|---|---|---|---|---|---|")

@@ -15,7 +15,6 @@ DATA = argument("data", "folder of the real recordings", SHARED)
 PICTURE = argument("--picture", "file for the curves over each other", type=str)
 GIVEN = command_line(__name__, __doc__, DATA, PICTURE, QUICK)  # before the slow imports
 
-from dataclasses import replace
 from pathlib import Path
 
 from curves_over_each_other import over_each_other
@@ -43,10 +42,7 @@ def walks(data: Path, quick: bool = False) -> list[Walk]:
             file = static_file(data / "gait", person)
             static = reader.read(file).stream("markers")
             measures = read_body_measures(file)
-            sets = {
-                "markers": SET,
-                "markers, Davis's hip": replace(SET, joint_centres={**SET.joint_centres, "hip": ("davis",)}),
-            }
+            sets = {"markers": SET, "markers, Harrington's hip": SET.with_hip("harrington")}
             bodies = {source: calibrated(static, one, measures) for source, one in sets.items()}
             for kind in ("straight", "turn"):
                 path = next((data / "gait" / "young_straight_and_turn" / person / kind).glob("*.c3d"))

@@ -46,7 +46,7 @@ def rms(ours: np.ndarray, theirs: np.ndarray) -> float:
 def against_plug_in_gait(found: list[Walk]) -> list[tuple[str, ...]]:
     """Rows of the table: channel by channel, people kept back apart."""
     rows = []
-    sources = (("markers", SETS[0]), ("markers, Davis's hip", SETS[0]), ("bones", SETS[0]), ("bones", SETS[2]))
+    sources = (("markers", SETS[0]), ("markers, Harrington's hip", SETS[0]), ("bones", SETS[0]), ("bones", SETS[2]))
     for source, settings in sources:
         for name in NAMES:
             cells = []

@@ -6,6 +6,11 @@ import os
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+
+# An example may take as long as it does: no test rests on how busy this machine is.
+settings.register_profile("no clock", deadline=None)
+settings.load_profile("no clock")
 
 PROJECT = Path(__file__).parents[1]
 

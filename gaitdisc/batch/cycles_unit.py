@@ -76,7 +76,7 @@ def cycles_key(study: Study, participant: Participant) -> str:
     participant : Participant
         Who.
     """
-    parts = [participant.id, participant.group, f"{participant.mass_kg} {participant.sex}"]
+    parts = [participant.id, participant.group, f"{participant.mass_kg} {participant.height_m} {participant.sex}"]
     named = study.kinematics.marker_set if study.kinematics else ""
     if named.endswith(".toml") and study.path_of(named).is_file():
         parts.append(file_sha256(study.path_of(named)))

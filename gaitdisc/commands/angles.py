@@ -35,7 +35,8 @@ def angles(
     from gaitdisc.kinematics.motion import chosen_marker_set, motion
     from gaitdisc.recording.body_measures import BodyMeasures
 
-    markers, standing = (read_trial(file).stream("markers") for file in (trial, static))
+    walk, stood = (read_trial(file) for file in (trial, static))
+    markers, standing = walk.stream("markers"), stood.stream("markers")
     measures = read_body_measures(static) if static.suffix.lower() == ".c3d" else BodyMeasures()
     if widths is not None:
         knees, ankles = (dict(zip("lr", pair, strict=True)) for pair in (widths[:2], widths[2:]))
@@ -45,6 +46,6 @@ def angles(
     found = motion(markers, calibrated(standing, chosen, measures), forward)
     write = write_storage if out.suffix.lower() in (".mot", ".sto") else write_table
     write(found.angles, out)
-    for finding in found.findings:
+    for finding in dict.fromkeys((*stood.findings, *walk.findings, *found.findings)):
         typer.echo(finding.line())
     typer.echo(f"{out}: {len(found.angles.names)} channels, {len(found.angles.time)} samples")

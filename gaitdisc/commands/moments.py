@@ -34,17 +34,19 @@ def moments(
     from gaitdisc.processing.markers_to_moments import foot_paths_of
     from gaitdisc.recording.body_measures import BodyMeasures
 
-    walk, standing = read_trial(trial), read_trial(static).stream("markers")
+    walk, stood = read_trial(trial), read_trial(static)
+    standing = stood.stream("markers")
     measures = read_body_measures(static) if static.suffix.lower() == ".c3d" else BodyMeasures()
     person = Person(measures.mass_kg if mass is None else mass, sex, measures.height_m)
     markers = walk.stream("markers")
-    body = calibrated(standing, chosen_marker_set(markers, standing, marker_set or None), measures)
+    chosen = chosen_marker_set(markers, standing, marker_set or None)
+    body = calibrated(standing, chosen, measures)
     moved = motion(markers, body)
     settings = KineticsSettings(force_cutoff_hz=force_hz)
     found = trial_kinetics(walk, moved.poses, foot_paths_of(moved, body), person, settings)
     write = write_storage if out.suffix.lower() in (".mot", ".sto") else write_table
     write(found.moments, out)
-    for finding in (*moved.findings, *found.findings):
+    for finding in dict.fromkeys((*stood.findings, *walk.findings, *moved.findings, *found.findings)):
         typer.echo(finding.line())
     for step in (one for one in found.steps if one.clean):
         typer.echo(f"side {step.side} alone on {step.platform} from {step.start:.2f} to {step.end:.2f} s")

@@ -1,36 +1,47 @@
-"""A C3D file of analog channels: EMG and forces as a motion capture system exports them, angles apart."""
+"""A C3D file of markers, force plates, EMG and other analog channels, as a motion capture system exports them."""
 
 from __future__ import annotations
 
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from gaitdisc.errors import SamplingError
+from gaitdisc.channel import Channel
+from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.ingest.columns import check_written_names
-from gaitdisc.recording import Recording
+from gaitdisc.ingest.force_plate import ForcePlate
+from gaitdisc.recording import Recording, Surface
 from gaitdisc.whole_file import write_whole
 
 FRAME_HZ = 100.0
+WHOLE = ("USED", "TYPE", "ZERO", "CHANNEL")
 MOST_FRAMES = 65_534  # 16 bits; ezc3d reads no more of a file without points, whatever TRIAL:ACTUAL_END_FIELD says
 
 
-def write_c3d(recordings: Sequence[Recording], path: Path | str) -> Path:
-    """Write recordings of one clock as the analog channels of a C3D file, whole or not at all.
+def write_c3d(recordings: Sequence[Recording], path: Path | str, surfaces: Sequence[Surface] = ()) -> Path:
+    """Write recordings of one clock to a C3D file, whole or not at all.
 
-    The file has frames at 100 Hz without points, a whole number of analog samples in each, and 32-bit floats. Time
-    begins at 0 in it. A muscle's name tells the reader that a channel is EMG; that another is a ground force the
-    study's `[channels]` must say (`"ground_force_r_vy" = "ground_force_r_vy [N]"`), as for any treadmill that is no
-    force plate.
+    Markers become points; all else becomes analog channels. Without markers the file has frames at 100 Hz without
+    points. Every frame has a whole number of analog samples, all numbers are 32-bit floats, and time begins at 0. A
+    muscle's name tells the reader that a channel is EMG. Forces become a force plate where their surface is given;
+    that another channel is a ground force the study's `[channels]` must say (`"ground_force_r_vy" =
+    "ground_force_r_vy [N]"`), as for any treadmill that is no force plate.
 
     Parameters
     ----------
     recordings : sequence of Recording
-        With the same time base, of a multiple of 100 Hz; samples of a last frame that is not whole are left away.
+        One of markers, or none; the others with one time base, of a multiple of the markers' rate or of 100 Hz.
+        Samples of a last frame that is not whole are left away.
     path : Path or str
         `.c3d` file to write.
+    surfaces : sequence of Surface
+        Force plates, of type 2: `<name>_fx`, `_fy`, `_fz` [N] and `_mx`, `_my`, `_mz` [N m] among the channels are the
+        force on the foot and its moment about the centre of the surface, in the laboratory's axes. They are read back
+        as `plate_1_fx` and on, in the order of the surfaces.
 
     Returns
     -------
@@ -40,48 +51,56 @@ def write_c3d(recordings: Sequence[Recording], path: Path | str) -> Path:
     Raises
     ------
     SamplingError
-        If the recordings differ in time base, do not begin at 0 s, or their rate is no multiple of 100 Hz, or they last
-        more than 655 s.
+        If the recordings differ in time base, do not begin at 0 s, or the analog rate is no multiple of the frames',
+        or they last more frames than the format counts.
     ChannelError
-        If a name holds a tab, a line break or a blank at its ends.
+        If a name holds a tab, a line break or a blank at its ends, or a channel of a plate is not there.
     WriteError
         If the file cannot be written.
 
     References
     ----------
-    The C3D file format, c3d.org: ANALOG:LABELS, ANALOG:UNITS, ANALOG:RATE.
+    The C3D file format, c3d.org: POINT, ANALOG, FORCE_PLATFORM of type 2.
 
     Examples
     --------
-    >>> write_c3d([emg, forces], "walk.c3d")  # doctest: +SKIP
+    >>> write_c3d([markers, emg, forces], "walk.c3d", trial.surfaces)  # doctest: +SKIP
     PosixPath('walk.c3d')
     """
     import ezc3d
 
     path = Path(path)
-    samples = _samples_per_frame(recordings, path.name)
-    channels = [channel for recording in recordings for channel in recording.channels]
-    check_written_names([channel.name for channel in channels], path.name)
-    values = np.hstack([recording.values for recording in recordings])
-    values = values[: len(values) - len(values) % samples]
+    markers, analog = _apart(recordings, surfaces, path.name)
+    frame_hz = markers.rate_hz if markers is not None else FRAME_HZ
+    samples = _samples_per_frame(analog, frame_hz, path.name) if analog else 1
+    channels = [channel for recording in analog for channel in recording.channels]
+    check_written_names([channel.name for recording in recordings for channel in recording.channels], path.name)
+    values = np.hstack([recording.values for recording in analog]) if analog else np.empty((MOST_FRAMES + 1, 0))
     frames = len(values) // samples
+    frames = min(frames, len(markers.time)) if markers is not None else frames
+    values = _along_plates(values[: frames * samples], surfaces, channels)
     if frames > MOST_FRAMES:
         raise SamplingError(
-            f"a C3D file of {FRAME_HZ:g} frames a second holds {MOST_FRAMES / FRAME_HZ:g} s at most",
-            f"{path.name} would last {frames / FRAME_HZ:g} s",
+            f"a C3D file of {frame_hz:g} frames a second holds {MOST_FRAMES / frame_hz:g} s at most",
+            f"{path.name} would last {frames / frame_hz:g} s",
             "Write a shorter part, or a table.",
         )
     file = ezc3d.c3d()
+    labels = list(dict.fromkeys(name.rpartition(".")[0] for name in markers.names)) if markers is not None else []
     settings = {
-        ("POINT", "RATE"): [FRAME_HZ],
+        ("POINT", "RATE"): [frame_hz],
         ("POINT", "UNITS"): ["m"],
-        ("ANALOG", "RATE"): [FRAME_HZ * samples],
+        ("POINT", "LABELS"): labels,
+        ("ANALOG", "RATE"): [frame_hz * samples * bool(analog)],
         ("ANALOG", "LABELS"): [channel.name for channel in channels],
         ("ANALOG", "UNITS"): [channel.unit for channel in channels],
-    }
+    } | _platforms(surfaces, channels)
     for (group, name), value in settings.items():
         file.add_parameter(group, name, value)
-    file["data"]["points"] = np.empty((4, 0, frames))
+        if name in WHOLE:  # ezc3d makes floats of them, which other programs refuse
+            kept = file["parameters"][group][name]
+            kept["type"], kept["value"] = ezc3d.ezc3d.INT, np.asarray(kept["value"]).astype(int)
+    file["data"]["points"] = _points(markers, frames) if markers is not None else np.empty((4, 0, frames))
     file["data"]["analogs"] = np.ascontiguousarray(values.T)[None]
     with tempfile.TemporaryDirectory() as folder:
         written = Path(folder) / "whole.c3d"
@@ -89,16 +108,80 @@ def write_c3d(recordings: Sequence[Recording], path: Path | str) -> Path:
         return write_whole(path, written.read_bytes())
 
 
-def _samples_per_frame(recordings: Sequence[Recording], file: str) -> int:
-    needed = f"the analog channels of {file} need one time base, from 0 s on, of a multiple of {FRAME_HZ:g} Hz"
+def _apart(
+    recordings: Sequence[Recording], surfaces: Sequence[Surface], file: str
+) -> tuple[Recording | None, list[Recording]]:
+    """Markers, and the analog recordings without the centres of pressure, which follow from force and moment."""
+    markers = [one for one in recordings if all(channel.quantity == "marker" for channel in one.channels)]
+    if len(markers) > 1 or any(abs(one.time[0]) > 1e-9 for one in markers):
+        found = f"{len(markers)} recordings, the first from {markers[0].time[0]:g} s on"
+        raise SamplingError(f"markers of {file} need one recording, from 0 s on", found, "Join or shift them first.")
+    names = {channel.name for recording in recordings for channel in recording.channels}
+    absent = [name for surface in surfaces for name in _plate_channels(surface) if name not in names]
+    if absent:
+        found = f"{absent[0]!r} is not there"
+        raise ChannelError(f"a plate of {file} needs its force and moment", found, "Add it, or leave the plate out.")
+    pressure = {f"{surface.name}_p{axis}" for surface in surfaces for axis in "xyz"}
+    others = [one for one in recordings if one not in markers]
+    return markers[0] if markers else None, [
+        one.selected([name for name in one.names if name not in pressure]) for one in others
+    ]
+
+
+def _plate_channels(surface: Surface) -> list[str]:
+    return [f"{surface.name}_{kind}{axis}" for kind in "fm" for axis in "xyz"]
+
+
+def _plate_columns(surfaces: Sequence[Surface], channels: Sequence[Channel]) -> list[list[int]]:
+    place = {channel.name: number for number, channel in enumerate(channels)}
+    return [[place[name] for name in _plate_channels(surface)] for surface in surfaces]
+
+
+def _along_plates(
+    values: NDArray[np.float64], surfaces: Sequence[Surface], channels: Sequence[Channel]
+) -> NDArray[np.float64]:
+    """Same samples, forces and moments of the plates along the plates' own axes."""
+    turned = values.copy()
+    for surface, columns in zip(surfaces, _plate_columns(surfaces, channels), strict=True):
+        axes = ForcePlate(1, 2, (), surface.corners, np.zeros(3), np.empty((0, 0))).axes
+        for three in (columns[:3], columns[3:]):
+            turned[:, three] = values[:, three] @ axes
+    return turned
+
+
+def _platforms(surfaces: Sequence[Surface], channels: Sequence[Channel]) -> dict[tuple[str, str], Any]:
+    """Parameters of the plates; sensors at the surface."""
+    if not surfaces:
+        return {}
+    group, count = "FORCE_PLATFORM", len(surfaces)
+    columns = 1.0 + np.array(_plate_columns(surfaces, channels)).T
+    return {
+        (group, "USED"): [count],
+        (group, "TYPE"): [2] * count,
+        (group, "ZERO"): [0, 0],
+        (group, "CHANNEL"): columns,
+        (group, "CORNERS"): np.array([surface.corners for surface in surfaces]).T,
+        (group, "ORIGIN"): np.zeros((3, count)),
+    }
+
+
+def _points(markers: Recording, frames: int) -> NDArray[np.float64]:
+    """Markers as ezc3d takes them, (4, marker, frame) [m]; one that lacks a coordinate is written as not seen."""
+    values = markers.values[:frames].reshape(frames, -1, 3).copy()
+    values[np.isnan(values).any(axis=2)] = np.nan
+    return np.concatenate([values.transpose(2, 1, 0), np.ones((1, values.shape[1], frames))])
+
+
+def _samples_per_frame(recordings: Sequence[Recording], frame_hz: float, file: str) -> int:
+    needed = f"the analog channels of {file} need one time base, from 0 s on, of a multiple of {frame_hz:g} Hz"
     first = recordings[0]
     for other in recordings[1:]:
         if not np.array_equal(other.time, first.time):
             found = f"{first.names[0]} has {len(first.time)} samples at {first.rate_hz:g} Hz, {other.names[0]} has "
             found += f"{len(other.time)} at {other.rate_hz:g} Hz"
             raise SamplingError(needed, found, "Bring them to one time base first.")
-    samples = round(first.rate_hz / FRAME_HZ)
-    if samples < 1 or abs(samples * FRAME_HZ - first.rate_hz) > 1e-6 * first.rate_hz or abs(first.time[0]) > 1e-9:
+    samples = round(first.rate_hz / frame_hz)
+    if samples < 1 or abs(samples * frame_hz - first.rate_hz) > 1e-6 * first.rate_hz or abs(first.time[0]) > 1e-9:
         found = f"{first.names[0]} begins at {first.time[0]:g} s and has {first.rate_hz:g} Hz"
         raise SamplingError(needed, found, "Resample it, or write a table.")
     return samples

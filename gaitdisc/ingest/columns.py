@@ -25,6 +25,7 @@ _UNITS_OF = {
     "power": ("W", "W/kg", "1"),
     "emg": ("V", "1", "%"),
 }
+_CLOCK = " @ "
 
 
 @dataclass(frozen=True)
@@ -67,7 +68,7 @@ class Column:
 
 
 def split_unit(text: str) -> tuple[str, str | None]:
-    """Name and unit of `name [unit]`; the unit is None where none is stated.
+    """Name and unit of `name [unit]`, or of `name [unit] @ clock`; the unit is None where none is stated.
 
     Parameters
     ----------
@@ -79,8 +80,25 @@ def split_unit(text: str) -> tuple[str, str | None]:
     >>> split_unit("emg_sol_r [mV]"), split_unit("knee_angle_r")
     (('emg_sol_r', 'mV'), ('knee_angle_r', None))
     """
-    found = re.fullmatch(r"\s*(.*?)\s*\[([^\[\]]*)\]\s*", text, re.DOTALL)
-    return (found[1], found[2].strip()) if found else (text.strip(), None)
+    bare = text.partition(_CLOCK)[0]
+    found = re.fullmatch(r"\s*(.*?)\s*\[([^\[\]]*)\]\s*", bare, re.DOTALL)
+    return (found[1], found[2].strip()) if found else (bare.strip(), None)
+
+
+def said_clock(said: str) -> str:
+    """What follows `@` in a value of the study's `[channels]`: a rate, or a variable of times; empty without one.
+
+    Parameters
+    ----------
+    said : str
+        `name [unit] @ clock`.
+
+    Examples
+    --------
+    >>> said_clock("knee_angle_r [deg] @ 100 Hz"), said_clock("knee_angle_r [deg]")
+    ('100 Hz', '')
+    """
+    return said.partition(_CLOCK)[2].strip()
 
 
 def mapped_label(label: str, channels: Mapping[str, str] | None) -> str | None:
@@ -210,6 +228,45 @@ def column_in_unit(label: str, channel: Channel, unit_text: str, file: str) -> C
         )
     quantity = "angle" if channel.quantity == "signal" and inner == "deg" and not rate else channel.quantity
     return Column(label, replace(channel, unit=inner + rate, quantity=quantity), unit + rate)
+
+
+def column_of(label: str, file: str, channels: Mapping[str, str] | None) -> Column:
+    """Column of a label, by the study's own map or the vocabulary.
+
+    Parameters
+    ----------
+    label : str
+        As written in the file.
+    file : str
+        Name of the file, for messages.
+    channels : mapping of str to str, optional
+        The study's `[channels]`.
+
+    Raises
+    ------
+    UnitError
+        If nothing states a unit, or the one that is stated does not fit.
+
+    Examples
+    --------
+    >>> column_of("knee_angle_r", "walk.csv", None).unit
+    'deg'
+    """
+    plain, unit = split_unit(label)
+    said = mapped_label(label, channels) or mapped_label(plain, channels)
+    alias = None if said else vocabulary().named(plain)
+    name, said_unit = split_unit(said) if said else (plain, None)
+    channel, unit = named_channel(name), said_unit or unit
+    own = any(name == known.name for known in vocabulary().channels)
+    if unit is None and not own:
+        seems = f"; it seems to be {alias.name}" if alias else ""
+        raise UnitError(
+            f"{file}: column {label!r} needs a unit",
+            f"neither its header nor the study states one{seems}",
+            f'Write \'{plain} [unit]\' in the header, or "{plain}" = "{alias.name if alias else "name"} [unit]" '
+            "in the study's [channels].",
+        )
+    return column_in_unit(label, alias or channel, unit or channel.unit, file)
 
 
 def _a(quantity: str) -> str:

@@ -25,6 +25,7 @@ from gaitdisc.ingest.file_names import (
     walk_place,
     walk_word,
 )
+from gaitdisc.ingest.people_table import Measured, is_people_table, measured_people, person_key, said_of
 from gaitdisc.ingest.reading import ENDINGS, read_trial
 from gaitdisc.ingest.study import (
     ANGLES,
@@ -60,8 +61,8 @@ class FoundTrial:
         What the session is put in order by, or empty.
     word, which : str
         Word that tells the condition, and `nominal`, `device`, `static`, `other` (no walk) or empty.
-    trial : Trial
-        As read.
+    angles, varying, emg : tuple of str, optional
+        Joint angles, those of them that vary, and EMG channels; None where the files hold no such stream.
     """
 
     files: tuple[Path, ...]
@@ -70,7 +71,9 @@ class FoundTrial:
     session: str
     word: str
     which: str
-    trial: Trial
+    angles: tuple[str, ...] | None
+    varying: tuple[str, ...] | None
+    emg: tuple[str, ...] | None
 
     @property
     def walked(self) -> bool:
@@ -115,7 +118,10 @@ def found_study(folder: Path | str, home: Path | str | None = None) -> tuple[Stu
             f"a folder of recordings is needed, {folder.name} is none", "it is absent or a file", "Name it."
         )
     notes: list[str] = []
-    found = _found_trials(folder, notes)
+    files = _recording_files(folder)
+    tables = [path for path in files if is_people_table(path)]
+    measured = measured_people(folder, tables, notes)
+    found = _found_trials(folder, [path for path in files if path not in tables], notes)
     if not found:
         unread = f"; {notes[0]}" if notes else ""
         raise ReadError(
@@ -128,10 +134,14 @@ def found_study(folder: Path | str, home: Path | str | None = None) -> tuple[Stu
     home = Path(home) if home is not None else folder
     way = Path(os.path.relpath(folder.resolve(), home.resolve()))
     people = _people(found, notes)
+    bodies = _bodies(people, measured, tables, notes)
     participants = tuple(
         Participant(
             id=pseudonym,
             group=next((t.group for t in found if t.person == person), ""),
+            mass_kg=bodies[person].mass_kg,
+            height_m=bodies[person].height_m,
+            sex=bodies[person].sex,
             trials=tuple(_planned(t, called, sessions, way) for t in found if t.person == person),
         )
         for person, pseudonym in people.items()
@@ -148,13 +158,31 @@ def found_study(folder: Path | str, home: Path | str | None = None) -> tuple[Stu
     return study, notes
 
 
-def _found_trials(folder: Path, notes: list[str]) -> list[FoundTrial]:
-    from gaitdisc.ingest.c3d import C3DReader
-
+def _recording_files(folder: Path) -> list[Path]:
     inside = (path.relative_to(folder) for path in folder.rglob("*") if path.is_file())
-    files = sorted(
+    return sorted(
         path for path in inside if path.suffix.lower() in ENDINGS and not any(p.startswith(".") for p in path.parts)
     )
+
+
+def _bodies(
+    people: Mapping[str, str], measured: Mapping[str, Measured], tables: Sequence[Path], notes: list[str]
+) -> dict[str, Measured]:
+    """Mass, sex and stature of each person's word, and what no table has or has too many of."""
+    found = {person: measured.get(person_key(person), Measured()) for person in people}
+    absent = [people[person] for person in people if measured and person_key(person) not in measured]
+    if absent:
+        notes.append(f"not in {', '.join(table.as_posix() for table in tables)}: {', '.join(absent)}")
+    said = said_of(found, tables)
+    if said:
+        notes.append(said)
+    return found
+
+
+def _found_trials(folder: Path, files: Sequence[Path], notes: list[str]) -> list[FoundTrial]:
+    """Every walk, read one after the other; what a draft needs of it is kept, its samples are not."""
+    from gaitdisc.ingest.c3d import C3DReader
+
     found = []
     with C3DReader() as reader:
         for group in _walks(files):
@@ -175,7 +203,18 @@ def _found(files: tuple[Path, ...], trial: Trial) -> FoundTrial:
         word, which = kind, kind
     elif not which:
         word = walk_word(files[0])
-    return FoundTrial(files, person_word(files[0]), group_word(files[0]), session_word(files[0])[1], word, which, trial)
+    kinematics, emg = trial.streams.get("kinematics"), trial.streams.get("emg")
+    return FoundTrial(
+        files,
+        person_word(files[0]),
+        group_word(files[0]),
+        session_word(files[0])[1],
+        word,
+        which,
+        tuple(_angle_names(kinematics)) if kinematics else None,
+        tuple(_varying_angles(kinematics)) if kinematics else None,
+        emg.names if emg else None,
+    )
 
 
 def stands(trial: Trial) -> bool:
@@ -198,9 +237,12 @@ def stands(trial: Trial) -> bool:
         markers, limit = legs, STILL_DEG
     else:
         return False
-    known = [column[np.isfinite(column)] for column in markers.values.T]
-    ranges = [float(np.ptp(column)) for column in known if len(column) and np.any(column)]
-    return bool(ranges) and float(np.median(ranges)) < limit
+    seen = np.isfinite(markers.values).any(axis=0) & np.any(np.nan_to_num(markers.values), axis=0)
+    ranges: dict[str, float] = {}
+    for name, column in zip(np.array(markers.names)[seen], markers.values.T[seen], strict=True):
+        whole = name.rpartition(".")[0] or name  # a marker moves as far as along the axis on which it moves farthest
+        ranges[whole] = max(ranges.get(whole, 0.0), float(np.nanmax(column) - np.nanmin(column)))
+    return bool(ranges) and float(np.median([*ranges.values()])) < limit
 
 
 def _readable(
@@ -318,13 +360,13 @@ def _people(found: Sequence[FoundTrial], notes: list[str]) -> dict[str, str]:
 
 
 def _models(found: Sequence[FoundTrial], notes: list[str]) -> Models:
-    kinematics = [trial.trial.streams["kinematics"] for trial in found if "kinematics" in trial.trial.streams]
-    if not kinematics:
-        notes.append("no file holds joint angles: the draft names the usual ones; compute inverse kinematics first")
+    varying = [trial.varying for trial in found if trial.varying is not None]
+    if not varying:
+        notes.append("no file holds joint angles: the draft names the usual ones; those of markers are computed")
         return Models()
-    varying = [_varying_angles(recording) for recording in kinematics]
+    first = next(trial.angles for trial in found if trial.angles is not None)
     shared = [name for name in varying[0] if all(name in names for names in varying)]
-    constant = sorted(set(_angle_names(kinematics[0])) - set(varying[0]))
+    constant = sorted(set(first) - set(varying[0]))
     if constant:
         notes.append(f"left out because they are constant or copies: {', '.join(constant)}")
     angles = tuple(name for name in ANGLES if name in shared) or tuple(shared)
@@ -363,13 +405,13 @@ def _varying_angles(recording: Recording) -> list[str]:
 
 
 def _shared_emg(found: Sequence[FoundTrial], notes: list[str]) -> tuple[str, ...]:
-    streams = [trial.trial.streams["emg"] for trial in found if "emg" in trial.trial.streams]
+    streams = [trial.emg for trial in found if trial.emg is not None]
     if not streams:
         return ()
     if len(streams) < len(found):
         notes.append(f"EMG in {len(streams)} of {len(found)} trials only, so it is not among the inputs")
         return ()
     known = {channel.name for channel in vocabulary().channels}
-    shared = tuple(n for n in streams[0].names if all(n in other.names for other in streams) and n in known)
+    shared = tuple(n for n in streams[0] if all(n in other for other in streams) and n in known)
     notes.append(f"EMG among the inputs: {', '.join(shared) or 'none by a known name; map the labels in [channels]'}")
     return shared

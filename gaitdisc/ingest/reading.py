@@ -11,6 +11,8 @@ import numpy as np
 
 from gaitdisc.channel import nearest_word
 from gaitdisc.errors import ChannelError, ReadError, SamplingError
+from gaitdisc.ingest.array_trial import ENDINGS as ARRAYS
+from gaitdisc.ingest.array_trial import read_arrays
 from gaitdisc.ingest.columns import split_unit
 from gaitdisc.ingest.knee_sign import with_flexion_positive
 from gaitdisc.ingest.per_body_mass import per_kg_findings
@@ -32,7 +34,7 @@ READERS = {
     ".tsv": read_table,
     ".parquet": read_table,
 }
-ENDINGS = (".c3d", *READERS)
+ENDINGS = (".c3d", *READERS, *ARRAYS)
 
 
 def read_trial(
@@ -42,6 +44,7 @@ def read_trial(
     condition: str = "",
     crop_s: tuple[float, float] | None = None,
     reader: C3DReader | None = None,
+    part: str = "",
 ) -> Trial:
     """Trial of one walk, from one file or from several that were recorded at once.
 
@@ -57,6 +60,8 @@ def read_trial(
         Start and end of the part to keep, on the files' clock [s].
     reader : C3DReader, optional
         A running reader process to use again; without it one is started for each C3D file.
+    part : str
+        Which trial of a `.mat` or `.npz` file that holds several, as `read_arrays` takes it.
 
     Returns
     -------
@@ -82,11 +87,11 @@ def read_trial(
     files = [paths] if isinstance(paths, str | Path) else list(paths)
     if not files:
         raise ReadError("a trial needs a file", "none is named", "Name its files in the study.")
-    parts = [_read(Path(file), channels, reader) for file in files]
+    parts = [_read(Path(file), channels, reader, part) for file in files]
     streams: dict[str, Recording] = {}
-    findings = [finding for part in parts for finding in part.findings]
-    for part in parts:
-        for key, recording in part.streams.items():
+    findings = [finding for one in parts for finding in one.findings]
+    for one in parts:
+        for key, recording in one.streams.items():
             if key not in streams:
                 streams[key] = recording
             elif key == "signals" and not _one_base(streams[key], recording):
@@ -95,10 +100,10 @@ def read_trial(
             else:
                 streams[key] = _joined(streams[key], recording, key)
     named = {key: replace(r, subject=subject, condition=condition) for key, r in streams.items()}
-    events = tuple(sorted((event for part in parts for event in part.events), key=lambda event: event.time))
+    events = tuple(sorted((event for one in parts for event in one.events), key=lambda event: event.time))
     if not any(Path(file).suffix.lower() == ".c3d" for file in files):  # that reader tells unused labels itself
         findings += _unused(channels, named, parts[0].name)
-    surfaces = tuple(surface for part in parts for surface in part.surfaces)
+    surfaces = tuple(surface for one in parts for surface in one.surfaces)
     trial = Trial(parts[0].name, named, events, tuple(findings), subject, condition, surfaces)
     begin_s = {key: float(recording.time[0]) for key, recording in trial.streams.items() if len(recording.time)}
     return _judged(trial if crop_s is None else _cropped(trial, *crop_s), begin_s)
@@ -136,12 +141,14 @@ def read_planned_trial(
     'P01 natural'
     """
     paths = [study.path_of(file) for file in planned.files]
-    trial = read_trial(paths, study.channels, participant.id, planned.condition, planned.crop_s, reader)
+    trial = read_trial(paths, study.channels, participant.id, planned.condition, planned.crop_s, reader, planned.part)
     return replace(trial, name=participant.trial_name(planned))
 
 
-def _read(path: Path, channels: Mapping[str, str] | None, reader: C3DReader | None) -> Trial:
+def _read(path: Path, channels: Mapping[str, str] | None, reader: C3DReader | None, part: str) -> Trial:
     ending = path.suffix.lower()
+    if ending in ARRAYS:
+        return read_arrays(path, channels, part)
     if ending == ".c3d":
         from gaitdisc.ingest.c3d import read_c3d
 

@@ -76,6 +76,11 @@ class PlannedTrial(_Part):
     )
     session: Word | None = Field(default=None, description="a word of sessions, never a date")
     files: tuple[FileName, ...] = Field(min_length=1, description="files of this one walk, relative to the study file")
+    part: Annotated[str, Field(max_length=40)] = Field(
+        default="",
+        description="which trial of a .mat or .npz file that holds several: its number, or what * stands for in "
+        "[channels]",
+    )
     speed_m_per_s: Positive | None = Field(default=None, description="walking speed of this trial [m/s]")
     crop_s: tuple[float, float] | None = Field(
         default=None, description="start and end of the part to use, file's clock [s]"
@@ -100,6 +105,9 @@ class Participant(_Part):
     )
     mass_kg: Annotated[float, Field(ge=5, le=300)] | None = Field(
         default=None, description="body mass [kg], where the C3D files have none or a wrong one"
+    )
+    height_m: Annotated[float, Field(ge=0.4, le=2.5)] | None = Field(
+        default=None, description="stature [m], where the C3D files have none or a wrong one"
     )
     sex: Literal["", "f", "m"] = Field(
         default="", description="f or m, for the inertia of the segments; empty takes the mean of both"
@@ -168,6 +176,9 @@ class Kinematics(_Part):
         default="",
         description="plug_in_gait, oxford_foot, helen_hayes, rajagopal, gait2354, or a .toml file relative to the "
         "study file; empty: recognised by the labels",
+    )
+    hip: Literal["davis", "harrington"] | None = Field(
+        default=None, description="hip joint centre: davis or harrington; as the marker set says where it is not given"
     )
     joints: Literal["free", "held", "planar"] | None = Field(
         default=None, description="free, held or planar; as the marker set says where it is not given"
@@ -265,7 +276,9 @@ class Study(_Part):
     conditions: Conditions
     treadmill: Treadmill | None = None
     channels: dict[str, str] = Field(
-        default_factory=dict, description='label in a file = "channel name" or "channel name [unit]"'
+        default_factory=dict,
+        description='label in a file = "channel name" or "channel name [unit]"; variable of a .mat or .npz file = '
+        '"channel name [unit] @ 100 Hz"',
     )
     filters: Filters = Filters()
     kinematics: Kinematics | None = None

@@ -28,6 +28,8 @@ EXAMPLES = {  # of what a study does not have
     "session": "before",
     "angles": "markers",
     "joints": "held",
+    "hip": "harrington",
+    "part": "3",
 }
 UNSET = {  # parts that a study may lack
     "treadmill": "# [treadmill]\n# speed_m_per_s = 1.3  # belt speed [m/s], for strides found from markers\n",
@@ -149,7 +151,7 @@ def study_text(study: Study, folder: Path | None = None) -> str:
             parts.append(f"# {about}\n[{key}]\n{pairs}")
     told = False  # each key is explained where it stands first
     for participant in study.participants:
-        measured = tuple(name for name in ("mass_kg", "sex") if getattr(participant, name))
+        measured = tuple(name for name in ("mass_kg", "height_m", "sex") if getattr(participant, name))
         text = f"[[participants]]\n{_pairs(participant, ('id', 'group', 'excluded', *measured), told)}"
         for trial in participant.trials:
             files = tuple(_moved(file, study.folder, folder) for file in trial.files)

@@ -5,30 +5,29 @@ from __future__ import annotations
 import csv
 import io
 import math
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.channel import vocabulary
-from gaitdisc.errors import ReadError, UnitError
+from gaitdisc.errors import ReadError
 from gaitdisc.ingest.angle_unit import judged_unit
 from gaitdisc.ingest.cells import Form, parsed_cells
 from gaitdisc.ingest.clock import even_time, printed_digit
 from gaitdisc.ingest.columns import (
     Column,
     check_written_names,
-    column_in_unit,
+    column_of,
     mapped_label,
-    named_channel,
     split_unit,
 )
 from gaitdisc.ingest.raw_file import RawFile, read_raw
 from gaitdisc.ingest.streams import sorted_trial
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.spreadsheet import quoted, unquoted
-from gaitdisc.units import convert
+from gaitdisc.units import convert, parsed_unit
 from gaitdisc.whole_file import write_whole
 
 LEADING = 50  # lines above the header: who, when, which software
@@ -41,7 +40,7 @@ def read_table(path: Path | str, channels: Mapping[str, str] | None = None) -> T
     Commas, semicolons or tabs separate; with the latter two a comma may be the decimal sign. Lines at the top that
     begin with `#`, and up to 50 others above the line that names the column of times, are passed over. Names of the
     vocabulary have their unit by definition; every other name must state one. A column of times of another name is
-    named by the study: `"Frame time" = "time [s]"`.
+    named by the study: `"Frame time" = "time [s]"`. A line of units below the header counts as part of it.
 
     Parameters
     ----------
@@ -79,8 +78,8 @@ def read_table(path: Path | str, channels: Mapping[str, str] | None = None) -> T
     clock, digit = np.asarray(convert(values[:, at], unit, "s"), float), digit * (1e-3 if unit == "ms" else 1.0)
     time = even_time(clock, digit, raw.name, lines)
     others = [i for i in range(len(labels)) if i != at]
-    columns = [_column(labels[i], raw.name, channels) for i in others]
-    findings = _check_angles(columns, time, values[:, others], raw.name)
+    columns = [column_of(labels[i], raw.name, channels) for i in others]
+    findings = checked_angles(columns, time, values[:, others], raw.name)
     inside = np.column_stack([column.converted(values[:, i]) for i, column in zip(others, columns, strict=True)])
     reader = "parquet" if of_parquet else "csv"
     return sorted_trial(raw.source(reader), time, inside, [column.channel for column in columns], findings)
@@ -154,6 +153,8 @@ def _text(
     if not labels:
         raise _no_time(raw.name, f"line {top + 1} is {lines[top][:60]!r}")
     _check_labels(labels, f"{raw.name}, line {top + 1}")
+    units = _units_below(lines[top + 1 : top + 2], labels, separator)
+    labels, top = (units, top + 1) if units else (labels, top)
     comma = separator != "," and any("," in line for line in lines[top + 1 : top + 50])
     cells = parsed_cells(lines[top + 1 :], labels, top + 2, Form(raw.name, separator, "," if comma else "."))
     at = next(i for i, label in enumerate(labels) if _time_unit(label, channels))
@@ -168,6 +169,21 @@ def _header(line: str, channels: Mapping[str, str] | None) -> tuple[str, list[st
         if any(_time_unit(label, channels) for label in labels):
             return separator, labels
     return None
+
+
+def _units_below(below: Sequence[str], labels: Sequence[str], separator: str) -> list[str]:
+    """Labels with the units of a line below them, where that line holds units and blanks alone; else nothing."""
+    cells = [cell.strip().strip("()[]") for line in below for cell in next(csv.reader([line], delimiter=separator), [])]
+    if len(cells) != len(labels) or not any(cells) or any(cell and _known_unit(cell) is None for cell in cells):
+        return []
+    return [
+        f"{label} [{cell}]" if cell and split_unit(label)[1] is None else label
+        for label, cell in zip(labels, cells, strict=True)
+    ]
+
+
+def _known_unit(cell: str) -> str | None:
+    return "ms" if cell == "ms" else parsed_unit(re.sub(r"/s2?$", "", cell)) if not cell[0].isdigit() else None
 
 
 def _check_labels(labels: Sequence[str], where: str) -> None:
@@ -222,27 +238,22 @@ def _parquet(
     return names, values, 0.0, None
 
 
-def _column(label: str, file: str, channels: Mapping[str, str] | None) -> Column:
-    plain, unit = split_unit(label)
-    said = mapped_label(label, channels) or mapped_label(plain, channels)
-    alias = None if said else vocabulary().named(plain)
-    name, said_unit = split_unit(said) if said else (plain, None)
-    channel, unit = named_channel(name), said_unit or unit
-    own = any(name == known.name for known in vocabulary().channels)
-    if unit is None and not own:
-        seems = f"; it seems to be {alias.name}" if alias else ""
-        raise UnitError(
-            f"{file}: column {label!r} needs a unit",
-            f"neither its header nor the study states one{seems}",
-            f'Write \'{plain} [unit]\' in the header, or "{plain}" = "{alias.name if alias else "name"} [unit]" '
-            "in the study's [channels].",
-        )
-    return column_in_unit(label, alias or channel, unit or channel.unit, file)
-
-
-def _check_angles(
+def checked_angles(
     columns: Sequence[Column], time: NDArray[np.float64], values: NDArray[np.float64], file: str
 ) -> list[Finding]:
+    """Whether the numbers of angles contradict their unit; a UnitError where they do.
+
+    Parameters
+    ----------
+    columns : sequence of Column
+        All of a file.
+    time : ndarray (time,) [s]
+        Of the samples.
+    values : ndarray (time, column)
+        In the file's units.
+    file : str
+        Name of the file.
+    """
     findings = []
     for unit in ("deg", "rad"):
         which = [i for i, c in enumerate(columns) if c.channel.quantity == "angle" and c.unit == unit]

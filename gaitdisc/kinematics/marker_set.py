@@ -49,7 +49,7 @@ class MarkerSet:
     landmarks : mapping of str to str
         Landmark -> markers: `A + B` is the midpoint, `A | B` is A or, where that is absent, B.
     joint_centres : mapping of str to tuple of str
-        `hip`, `knee`, `ankle` -> methods, the first that the static trial has markers for is taken.
+        `hip`, `knee`, `ankle` -> methods, the first that there are markers and measures for is taken.
     axes : mapping of str to str
         `shank`: whose medial-lateral axis it takes; `foot`: `flat` on the floor, or `as placed` from heel to toe.
     joints : str
@@ -95,6 +95,25 @@ class MarkerSet:
             raise SchemaError(f"joints are {', '.join(JOINTS)}", found, "Correct the word.")
         return replace(self, joints=joints)
 
+    def with_hip(self, method: str) -> MarkerSet:
+        """Return the same set with another hip joint centre.
+
+        Parameters
+        ----------
+        method : str
+            `harrington` or `davis`.
+
+        Raises
+        ------
+        SchemaError
+            If it is none of these words.
+        """
+        if method not in METHODS["hip"]:
+            near = nearest_word(method, METHODS["hip"])
+            found = f"found {method!r}" + (f", the nearest is {near!r}" if near else "")
+            raise SchemaError(f"hip joint centres are {', '.join(METHODS['hip'])}", found, "Correct the word.")
+        return replace(self, joint_centres={**self.joint_centres, "hip": (method,)})
+
     def names(self, labels: Iterable[str]) -> dict[str, str]:
         """Names in this set of the labels of a recording: set's name -> label.
 
@@ -113,10 +132,13 @@ class MarkerSet:
         by_fold: dict[str, str] = {}
         for label in labels:
             by_fold.setdefault(folded_label(label), label)
+        others: dict[str, list[str]] = {}
+        for key, side, alias in self._alias_list():
+            others.setdefault(sided(key, side), []).append(sided(alias, side))
         found = {}
         for name in self.markers():
-            others = (sided(alias, side) for key, side, alias in self._alias_list() if sided(key, side) == name)
-            label = next((by_fold[f] for f in map(folded_label, (name, *others)) if f in by_fold), None)
+            own = (name, *others.get(name, ()))
+            label = next((by_fold[f] for f in map(folded_label, own) if f in by_fold), None)
             if label is not None:
                 found[name] = label
         return found

@@ -18,13 +18,18 @@ from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.contact_choice import EARLY_MS, EARLY_RANGE, SEEN_LATE
 from gaitdisc.processing.cycle_channels import cycle_channels
 from gaitdisc.processing.process import quality_findings
+from gaitdisc.processing.shelf import Shelf, ShelvedRecordings, shelf
 from gaitdisc.processing.side_checks import side_findings
 from gaitdisc.processing.standing import Standing
 from gaitdisc.processing.step_events import StepEvents, over_ground, step_events
 from gaitdisc.processing.trial_cycles import (
+    HeelPaths,
     Places,
+    PlateLoadings,
     feet_in,
+    heel_paths,
     moved_events,
+    plate_loadings,
     with_gaps,
     with_plate_steps,
     with_plates,
@@ -49,9 +54,11 @@ class _Seen:
     number: int
     steps: StepEvents
     over_ground: bool
-    trial: Trial  # streams that are needed on, without what was digitised fast
+    name: str
+    plates: PlateLoadings
+    feet: HeelPaths | None
     legs: Recording | None
-    states: tuple[Recording, ...]
+    states: ShelvedRecordings
     findings: tuple[Finding, ...]
     files: dict[str, str]
     plate_steps: tuple[PlateStep, ...] | None = None  # where moments were computed from markers
@@ -102,26 +109,26 @@ def pooled_cycles(study: Study, participant: Participant, read: Read) -> tuple[P
         standing = _standing(study, participant, session, read)
         seen: dict[str, list[_Seen]] = {}
         lost: dict[str, list[Refusal]] = {}
-        for one in (own for own in sets if own.session == session):
-            seen[one.condition], lost[one.condition] = _seen_trials(standing, one, read)
-            seen[one.condition] = [_with_static(trial, standing) for trial in seen[one.condition]]
-        offsets = _offsets([trial for trials in seen.values() for trial in trials])
-        found += [
-            _pooled(study, participant, one, seen[one.condition], lost[one.condition], offsets)
-            for one in sets
-            if one.session == session
-        ]
+        with shelf() as shelved:
+            for one in (own for own in sets if own.session == session):
+                seen[one.condition], lost[one.condition] = _seen_trials(standing, one, read, shelved)
+            offsets = _offsets([trial for trials in seen.values() for trial in trials])
+            found += [
+                _pooled(study, participant, one, seen[one.condition], lost[one.condition], offsets)
+                for one in sets
+                if one.session == session
+            ]
     return tuple(found)
 
 
-def _seen_trials(standing: Standing, one: TrialSet, read: Read) -> tuple[list[_Seen], list[Refusal]]:
+def _seen_trials(standing: Standing, one: TrialSet, read: Read, shelved: Shelf) -> tuple[list[_Seen], list[Refusal]]:
     participant = standing.participant
     seen, lost = [], []
     for number, planned in enumerate(one.trials, 1):
         name = participant.trial_name(planned)
         where = name.removeprefix(participant.id).strip()
         try:
-            seen.append(_seen(standing, planned, number, read(planned)))
+            seen.append(_seen(standing, planned, number, read(planned), shelved))
         except GaitdiscError as error:
             lost.append(Refusal(participant.id, where, str(error)))
     return seen, lost
@@ -139,20 +146,20 @@ def _standing(study: Study, participant: Participant, session: str, read: Read) 
     return Standing(study, participant, planned, trial.streams.get("markers"), "the static trial has no markers")
 
 
-def _with_static(seen: _Seen, standing: Standing) -> _Seen:
-    """Same trial, with what the static trial says of it: that it is another person's, or that there is none."""
-    markers = seen.trial.streams.get("markers")
+def _static_findings(standing: Standing, trial: Trial, with_legs: bool) -> tuple[Finding, ...]:
+    """What the static trial says of a walk: that it is another person's, or that there is none."""
+    markers = trial.streams.get("markers")
     if markers is None:
-        return seen
+        return ()
     if standing.markers is not None:
-        return replace(seen, findings=(*seen.findings, *person_findings(standing.markers, markers, seen.trial.name)))
-    severity = "note" if seen.legs is not None else "warning"
-    spoils = "angles from markers" + ("; those of the file are used" if seen.legs is not None else "")
-    said = Finding(severity, "static trial", seen.trial.name, standing.unread, spoils)
-    return replace(seen, findings=(*seen.findings, said))
+        return tuple(person_findings(standing.markers, markers, trial.name))
+    severity = "note" if with_legs else "warning"
+    spoils = "angles from markers" + ("; those of the file are used" if with_legs else "")
+    return (Finding(severity, "static trial", trial.name, standing.unread, spoils),)
 
 
-def _seen(standing: Standing, planned: PlannedTrial, number: int, read: Trial) -> _Seen:
+def _seen(standing: Standing, planned: PlannedTrial, number: int, read: Trial, shelved: Shelf) -> _Seen:
+    """What a trial shows; its samples are not kept but for those that cycles are cut of, and these on disk."""
     study = standing.study
     trial, plate_steps = standing.computed(planned, read)
     direction = study.treadmill.direction if study.treadmill else ""
@@ -162,9 +169,11 @@ def _seen(standing: Standing, planned: PlannedTrial, number: int, read: Trial) -
     strides = _strides(steps, study)
     _verify(trial, strides, outside)
     findings = (*trial.findings, *quality_findings(_known(trial)), *side_findings(trial, strides), *lost)
-    slim = replace(trial, streams={key: r for key, r in trial.streams.items() if key in ("markers", "forces")})
+    findings += _static_findings(standing, trial, legs is not None)
     files = {s.source.file: s.source.sha256 for s in trial.streams.values() if s.source.sha256}
-    return _Seen(planned, number, steps, outside, slim, legs, states, findings, files, plate_steps)
+    plates, feet = plate_loadings(trial), heel_paths(trial, direction)
+    kept = shelved.put(states)
+    return _Seen(planned, number, steps, outside, trial.name, plates, feet, legs, kept, findings, files, plate_steps)
 
 
 def _strides(steps: StepEvents, study: Study) -> dict[str, Strides]:
@@ -287,15 +296,14 @@ def _offset_findings(where: str, late: str, offsets: _Offsets) -> list[Finding]:
 
 
 def _cut(study: Study, seen: _Seen, offsets: _Offsets) -> tuple[list[Cycle], list[Places]]:
-    direction = study.treadmill.direction if study.treadmill else ""
     belt = study.treadmill.speed_m_per_s if study.treadmill and not seen.over_ground else 0.0
     belt = seen.planned.speed_m_per_s or belt if not seen.over_ground else 0.0
     contact_s = offsets.of_contacts(seen.steps.detector) or 0.0
     off_s = offsets.of_foot_offs(seen.steps.off_detector) or 0.0
     cycles = moved_events(seen.steps, contact_s, off_s)
     alone = seen.plate_steps
-    cycles = with_plates(cycles, seen.trial) if alone is None else with_plate_steps(cycles, alone)
-    return with_gaps(cycles, seen.legs), feet_in(cycles, seen.trial, direction, belt)
+    cycles = with_plates(cycles, seen.plates) if alone is None else with_plate_steps(cycles, alone)
+    return with_gaps(cycles, seen.legs), feet_in(cycles, seen.feet, belt)
 
 
 def _judged(cycles: Sequence[list[Cycle]], study: Study) -> list[list[Cycle]]:
@@ -343,23 +351,22 @@ def _curves(seen: Sequence[_Seen], cycles: Sequence[list[Cycle]]) -> tuple[tuple
     """Kept cycles of all trials on 101 points; a channel that a trial lacks is missing in its cycles."""
     by_name: dict[str, Channel] = {}
     for trial in seen:
-        for state in trial.states:
-            for channel in state.channels:
-                by_name.setdefault(channel.name, channel)
+        for channel in trial.states.channels:
+            by_name.setdefault(channel.name, channel)
     names = list(by_name)
-    parts = []
-    for trial, own in zip(seen, cycles, strict=True):
-        kept = [cycle for cycle in own if not cycle.reason]
-        part = np.full((len(kept), len(PERCENT), len(names)), np.nan)
-        for state in trial.states:
+    kept = [[cycle for cycle in own if not cycle.reason] for own in cycles]
+    whole = np.full((sum(map(len, kept)), len(PERCENT), len(names)), np.nan)
+    row = 0
+    for trial, own in zip(seen, kept, strict=True):
+        for state in trial.states.recordings():
             same = [c for c in state.channels if c.unit == by_name[c.name].unit]  # the first unit counts
             columns = [names.index(channel.name) for channel in same]
-            for row, cycle in enumerate(kept):
+            chosen = state.selected([channel.name for channel in same])
+            for place, cycle in enumerate(own, row):
                 strides = Strides(np.array([cycle.start]), np.array([cycle.end]), cycle.side, trial.steps.detector)
-                values = strides.normalised(state.selected([channel.name for channel in same]))[0]
+                values = strides.normalised(chosen)[0]
                 bare = [not cycle.kinetic and channel.quantity in KINETIC for channel in same]
                 values[:, bare] = np.nan
-                part[row][:, columns] = values
-        parts.append(part)
-    whole = np.concatenate(parts) if parts else np.empty((0, len(PERCENT), len(names)))
+                whole[place][:, columns] = values
+        row += len(own)
     return tuple(by_name.values()), whole

@@ -94,6 +94,7 @@ class Standing:
         chosen = chosen_marker_set(markers, self.markers, marker_set_of(self.study))
         if chosen.name not in self._calibrations:
             kept = chosen.with_joints(wanted.joints) if wanted and wanted.joints else chosen
+            kept = kept.with_hip(wanted.hip) if wanted and wanted.hip else kept
             self._calibrations[chosen.name] = calibrated(self.markers, kept, self._measures(self.planned))
         return self._calibrations[chosen.name]
 
@@ -104,7 +105,7 @@ class Standing:
         try:
             found = self._measures(self.planned)
             mass = self.participant.mass_kg or found.mass_kg or self._measures(planned).mass_kg
-            return Person(mass, self.participant.sex, found.height_m), ()
+            return Person(mass, self.participant.sex, self.participant.height_m or found.height_m), ()
         except GaitdiscError as error:
             what = str(error).rstrip(".")
             return None, (Finding("warning", "no moments", self.participant.id, what, "moments and powers"),)

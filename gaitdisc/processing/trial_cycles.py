@@ -15,7 +15,7 @@ from gaitdisc.recording import Cycle, Recording, Trial
 from gaitdisc.recording.cycle import NAN
 from gaitdisc.recording.strides import interpolated
 from gaitdisc.signals.contact_force import RISE_N, loaded
-from gaitdisc.signals.direction import marker_position
+from gaitdisc.signals.direction import Direction, marker_position
 from gaitdisc.signals.strides import gap_reasons
 
 LONGEST_STANCE = 0.8  # of a stride: a plate that is loaded for longer carried two feet
@@ -81,22 +81,51 @@ def cut_cycles(contacts: Timed, offs: Timed) -> list[Cycle]:
     return found
 
 
-def with_plates(cycles: list[Cycle], trial: Trial) -> list[Cycle]:
+@dataclass(frozen=True)
+class PlateLoadings:
+    """When the plates of a trial were loaded.
+
+    Parameters
+    ----------
+    belts : frozenset of str
+        Sides that have a force of their own, as on a split belt.
+    spans : tuple of (float, float)
+        From when to when a plate was loaded, whole in the recording [s]; empty where there are belts.
+    """
+
+    belts: frozenset[str] = frozenset()
+    spans: tuple[tuple[float, float], ...] = ()
+
+
+def plate_loadings(trial: Trial, rise_n: float = RISE_N) -> PlateLoadings:
+    """When the plates of a trial were loaded.
+
+    Parameters
+    ----------
+    trial : Trial
+        With or without forces.
+    rise_n : float
+        Force above which a foot is on the ground [N].
+    """
+    if "forces" not in trial.streams:
+        return PlateLoadings()
+    forces = trial.stream("forces").selected_by(lambda channel: channel.quantity == "vertical_force")
+    belts = frozenset(channel.side for channel in forces.channels if channel.side)
+    spans = () if belts else tuple(span for name in forces.names for span in _loadings(forces, name, rise_n))
+    return PlateLoadings(belts, spans)
+
+
+def with_plates(cycles: list[Cycle], plates: PlateLoadings) -> list[Cycle]:
     """Same cycles, kinetic where the foot alone loaded one plate, or its own belt, for the whole stance.
 
     Parameters
     ----------
     cycles : list of Cycle
         Of the trial.
-    trial : Trial
-        With its forces.
+    plates : PlateLoadings
+        Of the trial.
     """
-    if "forces" not in trial.streams:
-        return cycles
-    forces = trial.stream("forces").selected_by(lambda channel: channel.quantity == "vertical_force")
-    belts = {channel.side for channel in forces.channels if channel.side}
-    spans = [span for name in forces.names for span in _loadings(forces, name)] if not belts else []
-    return [replace(one, kinetic=one.side in belts or _alone(one, spans)) for one in cycles]
+    return [replace(one, kinetic=one.side in plates.belts or _alone(one, plates.spans)) for one in cycles]
 
 
 def with_plate_steps(cycles: list[Cycle], steps: Sequence[PlateStep]) -> list[Cycle]:
@@ -118,31 +147,63 @@ def _is_stance(step: PlateStep, one: Cycle) -> bool:
     return step.side == one.side and same
 
 
-def feet_in(cycles: list[Cycle], trial: Trial, direction: str = "", belt_m_per_s: float = 0.0) -> list[Places]:
+@dataclass(frozen=True, eq=False)
+class HeelPaths:
+    """Where the heels of a trial were, and which way the person walked.
+
+    Parameters
+    ----------
+    time : ndarray (frame,) [s]
+        Of the markers.
+    heels : mapping of str to ndarray (frame, 3) [m]
+        By side.
+    way : Direction
+        Of walking.
+    """
+
+    time: NDArray[np.float64]
+    heels: Mapping[str, NDArray[np.float64]]
+    way: Direction
+
+
+def heel_paths(trial: Trial, direction: str = "") -> HeelPaths | None:
+    """Paths of the heels of a trial; None where its markers do not show them.
+
+    Parameters
+    ----------
+    trial : Trial
+        With or without markers.
+    direction : str
+        In the laboratory's axes, `+x` to `-z`; inferred where it is empty.
+    """
+    known = trial_markers(trial, direction)
+    if known is None:
+        return None
+    heels, _, way = known
+    markers = trial.stream("markers")
+    return HeelPaths(markers.time, {side: marker_position(markers, name) for side, name in heels.items()}, way)
+
+
+def feet_in(cycles: list[Cycle], feet: HeelPaths | None, belt_m_per_s: float = 0.0) -> list[Places]:
     """Where the feet were in each cycle.
 
     Parameters
     ----------
     cycles : list of Cycle
         Of the trial.
-    trial : Trial
-        With its markers; without them only the step's time is known.
-    direction : str
-        In the laboratory's axes, `+x` to `-z`; inferred where it is empty.
+    feet : HeelPaths, optional
+        Of the trial; without them only the step's time is known.
     belt_m_per_s : float
         Speed of a belt, whose length is added to each stride [m/s].
     """
-    known = trial_markers(trial, direction)
-    if known is None:
+    if feet is None:
         return [Places(one.end - one.opposite_contact) for one in cycles]
-    heels, _, way = known
-    markers = trial.stream("markers")
-    paths = {side: marker_position(markers, name) for side, name in heels.items()}
+    paths, way = feet.heels, feet.way
     found = []
     for one in cycles:
         other = "l" if one.side == "r" else "r"
         first, beside, last = (
-            interpolated(markers.time, paths[side], np.array([at]))[0]
+            interpolated(feet.time, paths[side], np.array([at]))[0]
             for side, at in ((one.side, one.start), (other, one.opposite_contact), (one.side, one.end))
         )
         stride = _level(last - first, way.up)
@@ -206,16 +267,16 @@ def _level(vector: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.f
     return vector - np.dot(vector, up) * up
 
 
-def _loadings(forces: Recording, name: str) -> list[tuple[float, float]]:
+def _loadings(forces: Recording, name: str, rise_n: float) -> list[tuple[float, float]]:
     """From when to when a plate is loaded [s]; what the recording cuts is not whole."""
     force = forces[name]
     known = force[np.isfinite(force)]
     upward = -force if len(known) and -known.min() > known.max() else force
-    spans = loaded(upward, forces.rate_hz, RISE_N)
+    spans = loaded(upward, forces.rate_hz, rise_n)
     return [(float(forces.time[a]), float(forces.time[b - 1])) for a, b in spans if a > 0 and b < len(force)]
 
 
-def _alone(one: Cycle, spans: list[tuple[float, float]]) -> bool:
+def _alone(one: Cycle, spans: Sequence[tuple[float, float]]) -> bool:
     """One plate is loaded from this contact to this foot off, for no longer than a stance, and no other begins then."""
     if not np.isfinite(one.foot_off):
         return False

@@ -221,21 +221,29 @@ def _filtered(recording: Recording, cutoff_hz: float, order: int, kind: str, max
     edge = math.ceil(EDGE_PERIODS / cutoff_hz * rate)
     values = np.full(recording.values.shape, np.nan)
     marks = np.array(bridged.suspect)
-    for column in range(len(recording.channels)):
-        x = bridged.values[:, column]
-        for start, end in runs(np.isfinite(x)):
-            if end - start < need:
-                continue
-            values[start:end, column] = _both_ways(sections, x[start:end], need - 1)
-            marks[start : start + edge, column] = True
-            marks[max(start, end - edge) : end, column] = True
+    for (start, end), columns in _shared_runs(np.isfinite(bridged.values)).items():
+        if end - start < need:
+            continue
+        values[start:end, columns] = _both_ways(sections, bridged.values[start:end, columns], need - 1)
+        marks[start : start + edge, columns] = True
+        marks[max(start, end - edge) : end, columns] = True
     smooth = recording.with_values(values, marks)
     return wrapped(smooth, recording) if kind == "lowpass" else smooth
 
 
+def _shared_runs(known: NDArray[np.bool_]) -> dict[tuple[int, int], list[int]]:
+    """Runs of known samples, each with its columns: what begins and ends together is filtered in one call."""
+    found: dict[tuple[int, int], list[int]] = {}
+    for column in range(known.shape[1]):
+        for start, end in runs(known[:, column]):
+            found.setdefault((int(start), int(end)), []).append(column)
+    return found
+
+
 def _both_ways(sections: NDArray[np.float64], x: NDArray[np.float64], padding: int) -> NDArray[np.float64]:
     offset = x[0]  # keeps a constant channel constant to the last digit
-    return sosfiltfilt(sections, x - offset, padtype="odd", padlen=padding) + offset * float(_gain_at_zero(sections))
+    both = sosfiltfilt(sections, x - offset, axis=0, padtype="odd", padlen=padding)
+    return both + offset * float(_gain_at_zero(sections))
 
 
 def _gain_at_zero(sections: NDArray[np.float64]) -> int:

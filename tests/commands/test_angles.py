@@ -66,3 +66,12 @@ def test_a_walk_without_a_marker_is_refused_in_one_sentence(tmp_path, called):
     assert done.returncode == REFUSED
     assert "static.trc has no LMFC. Name the marker" in done.stderr
     assert not (tmp_path / "a.csv").exists()
+
+
+def test_what_the_reader_found_is_said(tmp_path, called, gait_data):
+    walk = gait_data / "young_straight_and_turn" / "HC030A" / "straight" / "HC030A05.c3d"
+    static = gait_data / "young_static" / "HC030A" / "HC030A01.c3d"
+    done = called("angles", walk, "--static", static, "--out", tmp_path / "a.mot")
+    assert done.returncode == 0, done.stderr
+    of_reader = [finding.line() for finding in (*read_trial(static).findings, *read_trial(walk).findings)]
+    assert of_reader and set(of_reader) < set(done.stdout.splitlines())

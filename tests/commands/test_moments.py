@@ -23,6 +23,8 @@ def test_moments_of_a_walk(tmp_path, called, files, ending):
     assert done.returncode == 0, done.stderr
     assert "side r alone on plate_2 from 0.18 to 0.79 s" in done.stdout
     assert "force balance over " in done.stdout and "24 channels, 197 samples" in done.stdout
+    assert "give the force of the foot on the ground; turned around" in done.stdout  # what the reader found
+    assert len(set(done.stdout.splitlines())) == len(done.stdout.splitlines())
     written = read_trial(out).stream("moments")
     channel = written.channels[written.index("ankle_angle_r_moment")]
     assert channel.unit == "N m/kg"

@@ -1,3 +1,4 @@
+import ezc3d
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -6,7 +7,7 @@ from hypothesis import strategies as st
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.ingest.c3d_writing import write_c3d
-from gaitdisc.recording import Recording
+from gaitdisc.recording import Recording, Surface
 
 EMG = (Channel("emg_sol_r", "emg", "V", "r"), Channel("emg_ta_r", "emg", "V", "r"))
 FORCE = (Channel("ground_force_r_vy", "vertical_force", "N", "r"),)
@@ -72,3 +73,51 @@ def test_a_clock_that_the_format_cannot_hold_is_refused(tmp_path, rate_hz, start
 def test_a_name_that_no_file_can_hold_is_refused(tmp_path):
     with pytest.raises(ChannelError):
         write_c3d([recording((Channel("emg\t1", "emg", "V"),), np.ones((100, 1)))], tmp_path / "walk.c3d")
+
+
+def test_markers_and_plates_are_read_back(reader, tmp_path):
+    rng = np.random.default_rng(3)
+    markers = Recording(
+        np.arange(50) / 100.0,
+        np.where(rng.random((50, 6)) < 0.02, np.nan, rng.normal(1, 0.3, (50, 6))),
+        tuple(Channel(f"{name}.{axis}", "marker", "m") for name in ("RHEE", "LHEE") for axis in "xyz"),
+    )
+    gaps = np.isnan(markers.values.reshape(50, 2, 3)).any(axis=2)  # a point is seen or it is not
+    turn = np.array([[0.0, 0.6], [0.0, 0.0], [0.4, 0.0], [0.4, 0.6]])  # the plate's own x is the laboratory's -y
+    surfaces = [Surface(f"plate_{n}", np.column_stack([turn[:, 0], turn[:, 1] + n, np.zeros(4)])) for n in (1, 2)]
+    force = np.tile([20.0, -30.0, 700.0], (500, 1)) + rng.normal(0, 5, (500, 3))
+    point = np.column_stack([rng.uniform(-0.15, 0.15, (500, 2)), np.zeros(500)])
+    wrench = np.hstack([force, np.cross(point, force) + np.array([0, 0, 4.0])])
+    columns = tuple(
+        Channel(f"plate_{n}_{kind}{axis}", *("vertical_force" if kind + axis == "fz" else quantity, unit))
+        for n in (1, 2)
+        for kind, quantity, unit in (("f", "force", "N"), ("m", "moment", "N m"))
+        for axis in "xyz"
+    )
+    forces = recording(columns, np.hstack([wrench, 0.5 * wrench]))
+    path = write_c3d([markers, forces, recording(EMG, np.ones((500, 2)))], tmp_path / "walk.c3d", surfaces)
+    trial = reader.read(path)
+    found = trial.stream("markers")
+    assert found.names == markers.names
+    np.testing.assert_array_equal(np.isnan(found.values.reshape(50, 2, 3)).all(axis=2), gaps)
+    np.testing.assert_allclose(
+        found.values.reshape(50, 2, 3)[~gaps], markers.values.reshape(50, 2, 3)[~gaps], rtol=1e-6
+    )
+    for name in forces.names:
+        np.testing.assert_allclose(trial.stream("forces")[name], forces[name], rtol=1e-5, atol=1e-3)
+    centre = np.column_stack([trial.stream("forces")[f"plate_1_p{axis}"] for axis in "xyz"])
+    np.testing.assert_allclose(centre - surfaces[0].corners.mean(axis=0), point, atol=1e-5)
+    seen = ezc3d.c3d(str(path), extract_forceplat_data=True)["data"]["platform"]  # as another program reads it
+    np.testing.assert_allclose(np.abs(seen[1]["force"].T), np.abs(0.5 * force), rtol=1e-5)
+    assert [surface.name for surface in trial.surfaces] == ["plate_1", "plate_2"]
+    assert trial.findings == () and trial.stream("emg").names == ("emg_sol_r", "emg_ta_r")
+    alone = reader.read(write_c3d([markers], tmp_path / "alone.c3d"))
+    np.testing.assert_array_equal(alone.stream("markers").values, found.values)
+    again = write_c3d([trial.stream("markers"), trial.stream("forces")], tmp_path / "again.c3d", trial.surfaces)
+    np.testing.assert_allclose(reader.read(again).stream("forces").values, trial.stream("forces").values, atol=1e-3)
+
+
+def test_a_plate_without_a_channel_is_refused(tmp_path):
+    plate = Surface("plate_1", np.array([[0.0, 0, 0], [0.4, 0, 0], [0.4, 0.6, 0], [0, 0.6, 0]]))
+    with pytest.raises(ChannelError, match=r"a plate of walk.c3d needs its force and moment; 'plate_1_fx' is not"):
+        write_c3d([recording(EMG, np.ones((100, 2)))], tmp_path / "walk.c3d", [plate])

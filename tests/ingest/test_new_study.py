@@ -7,12 +7,12 @@ import pytest
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest.new_study import found_study
+from gaitdisc.ingest.new_study import _found_trials, _recording_files, found_study, stands
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import ANGLES
 from gaitdisc.ingest.study_file import load_study, write_study
-from gaitdisc.recording import Recording
+from gaitdisc.recording import Recording, Trial
 
 TIME = np.arange(300) / 100
 CHANNELS = tuple(c for c in vocabulary().channels if c.name in (*ANGLES, "mtp_angle_r", "lumbar_bending"))
@@ -162,3 +162,41 @@ def test_what_no_name_shows_is_listed_with_the_one_line_for_all(tmp_path):
     text = path.read_text().replace('# unnamed = "walking"', 'unnamed = "fast"')
     path.write_text(text)
     assert [trial.condition for trial in load_study(path).participants[0].trials] == ["fast"] * 4
+
+
+def test_mass_sex_and_stature_come_from_a_table_beside_the_folders(tmp_path):
+    for person in ("sub-01", "sub-02", "sub-03"):
+        _walk(tmp_path / "raw" / person / "walk.mot")
+    table = "participant_id\tsex\tweight\theight\nsub-01\tF\t61.3\t172\nsub-02\tM\tn/a\t181\n"
+    (tmp_path / "raw" / "participants.tsv").write_text(table)
+    study, notes = found_study(tmp_path / "raw", tmp_path / "study")
+    study = load_study(write_study(study, tmp_path / "study.toml"))
+    found = {one.id: (one.mass_kg, one.height_m, one.sex) for one in study.participants}
+    assert found == {"sub-01": (61.3, 1.72, "f"), "sub-02": (None, 1.81, "m"), "sub-03": (None, None, "")}
+    text = "\n".join(notes)
+    assert "body mass 1 of 3, sex 2 of 3, stature 2 of 3 people from participants.tsv" in text
+    assert "not in participants.tsv: sub-03" in text
+    assert "left out: participants" not in text
+
+
+def test_the_mass_of_a_real_manifest(gait_data, tmp_path):
+    study, _ = found_study(gait_data / "young_straight_and_turn", tmp_path)
+    assert [round(one.mass_kg or 0, 1) for one in study.participants[:2]] == [32.1, 45.8]
+    assert all(one.mass_kg for one in study.participants)
+
+
+def test_who_walks_straight_along_an_axis_does_not_stand():
+    """Two of three coordinates of each marker then stay within 5 cm."""
+    time = np.arange(300) / 100
+    names = [f"M{n}.{axis}" for n in range(6) for axis in "xyz"]
+    step = np.column_stack([1.2 * time, 0.02 * np.sin(6 * time), 0.9 + 0.02 * np.sin(12 * time)])
+    channels = tuple(Channel(name, "marker", "m") for name in names)
+    assert not stands(Trial("walk", {"markers": Recording(time, np.tile(step, 6), channels)}))
+    assert stands(Trial("static", {"markers": Recording(time, np.tile(step * [0, 1, 1], 6), channels)}))
+
+
+def test_a_draft_keeps_no_samples(tmp_path):
+    _walk(tmp_path / "S1_exo.mot", emg=True)
+    _walk(tmp_path / "S1_noexo.mot", emg=True)
+    (one, _) = _found_trials(tmp_path, _recording_files(tmp_path), [])
+    assert not [value for value in vars(one).values() if isinstance(value, Trial | Recording)]

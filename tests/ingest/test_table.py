@@ -166,3 +166,15 @@ def test_a_table_without_a_time_says_how_to_name_it(tmp_path):
     far = "\n".join(["Comment,x"] * 60) + "\ntime [s],knee_angle_r\n0.0,1\n0.01,2\n"
     with pytest.raises(ReadError, match="line 1 is 'Comment,x'"):
         _read(tmp_path, far)
+
+
+def test_a_line_of_units_below_the_header(tmp_path):
+    path = tmp_path / "walk.csv"
+    path.write_text("Nexus\nTrial 3\nTime,RKnee,emg_sol_r,Foot\nms,rad,mV,\n0,0.5,1,2\n10,0.25,2,3\n")
+    trial = read_table(path, {"RKnee": "knee_angle_r", "Foot": "foot [V]"})
+    np.testing.assert_allclose(trial.stream("kinematics")["knee_angle_r"], np.rad2deg([0.5, 0.25]))
+    np.testing.assert_allclose(trial.stream("emg")["emg_sol_r"], [1e-3, 2e-3])
+    assert trial.stream("signals").names == ("foot",) and trial.stream("signals").rate_hz == 100.0
+    path.write_text("time,knee_angle_r\ns,left\n0,1\n0.01,2\n")
+    with pytest.raises(ReadError, match=r"a number is needed in line 2"):
+        read_table(path)

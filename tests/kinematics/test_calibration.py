@@ -27,7 +27,7 @@ from manufactured_body import (
     without,
 )
 
-from gaitdisc.errors import ChannelError, SamplingError, ShapeError
+from gaitdisc.errors import ChannelError, SamplingError, SchemaError, ShapeError
 from gaitdisc.kinematics.calibration import calibrated
 from gaitdisc.kinematics.joint_centres import DavisHip, harrington_hip
 from gaitdisc.kinematics.marker_set import MarkerSet
@@ -74,6 +74,26 @@ def test_hips_after_davis_need_leg_lengths():
     points = calibrated(static_of(PLUG_IN_GAIT), chosen, legs).points
     expected = DavisHip(WIDTH, 0.81, 0.82, RADIUS).centre("r")
     np.testing.assert_allclose(points["pelvis"]["hip_r"], expected, atol=1e-9)
+
+
+def test_plug_in_gait_takes_its_own_hips_where_leg_lengths_are_known():
+    legs = replace(MEASURES, leg_length_m={"l": 0.80, "r": 0.82})
+    static, chosen = static_of(PLUG_IN_GAIT), marker_set("plug_in_gait")
+    davis = calibrated(static, chosen, legs)
+    expected = DavisHip(WIDTH, 0.81, 0.82, RADIUS).centre("r")
+    np.testing.assert_allclose(davis.points["pelvis"]["hip_r"], expected, atol=1e-9)
+    assert not [finding for finding in davis.findings if finding.kind == "hip"]
+    without_legs = calibrated(static, chosen, MEASURES)
+    place = harrington_hip(WIDTH, DEPTH, "r")
+    np.testing.assert_allclose(without_legs.points["pelvis"]["hip_r"], place, atol=1e-9)
+    said = [finding.what for finding in without_legs.findings if finding.kind == "hip"]
+    assert said == ["hips after Harrington, not Davis: static.c3d and the measures have no lengths of both legs"]
+    other = calibrated(static, chosen.with_hip("harrington"), legs)
+    np.testing.assert_allclose(other.points["pelvis"]["hip_r"], place, atol=1e-9)
+    with pytest.raises(
+        SchemaError, match=r"hip joint centres are harrington, davis; found 'davies', the nearest is 'd"
+    ):
+        chosen.with_hip("davies")
 
 
 def test_medial_markers_make_a_midpoint_and_without_them_the_width_is_needed():

@@ -11,7 +11,9 @@ from gaitdisc.processing.step_events import StepEvents
 from gaitdisc.processing.trial_cycles import (
     cut_cycles,
     feet_in,
+    heel_paths,
     moved_events,
+    plate_loadings,
     with_gaps,
     with_plate_steps,
     with_plates,
@@ -64,7 +66,7 @@ def _plates(*spans):
     ],
 )
 def test_a_kinetic_cycle_has_one_foot_on_one_plate_for_the_whole_stance(spans, kinetic):
-    right = [one for one in with_plates(cut_cycles(CONTACTS, OFFS), _plates(*spans)) if one.side == "r"]
+    right = [one for one in with_plates(cut_cycles(CONTACTS, OFFS), plate_loadings(_plates(*spans))) if one.side == "r"]
     assert [one.kinetic for one in right] == kinetic
 
 
@@ -72,7 +74,7 @@ def test_each_foot_s_own_belt_is_kinetic_throughout():
     time = np.arange(400) / 100
     belts = tuple(Channel(f"ground_force_{side}_vy", "vertical_force", "N", side) for side in "rl")
     trial = Trial("belts", {"forces": Recording(time, np.ones((400, 2)), belts)})
-    assert all(one.kinetic for one in with_plates(cut_cycles(CONTACTS, OFFS), trial))
+    assert all(one.kinetic for one in with_plates(cut_cycles(CONTACTS, OFFS), plate_loadings(trial)))
 
 
 def _feet(speed, turned=False):
@@ -95,7 +97,7 @@ def _feet(speed, turned=False):
 @pytest.mark.parametrize("turned", [False, True])
 def test_lengths_are_those_that_the_heels_walked(turned):
     contacts = {"r": ((1.0, "events"), (2.0, "events"), (3.0, "events")), "l": ((1.5, "events"), (2.5, "events"))}
-    places = feet_in(cut_cycles(contacts, OFFS), _feet(1.3, turned))
+    places = feet_in(cut_cycles(contacts, OFFS), heel_paths(_feet(1.3, turned)))
     for place in places:
         assert place.stride_m == pytest.approx(1.3, abs=0.01)
         assert place.step_m == pytest.approx(0.65, abs=0.01)
@@ -104,7 +106,7 @@ def test_lengths_are_those_that_the_heels_walked(turned):
 
 
 def test_without_markers_only_the_step_s_time_is_known():
-    place = feet_in(cut_cycles(CONTACTS, OFFS), Trial("none", {}))[0]
+    place = feet_in(cut_cycles(CONTACTS, OFFS), heel_paths(Trial("none", {})))[0]
     assert place.step_s == 0.5 and np.isnan(place.stride_m)
 
 

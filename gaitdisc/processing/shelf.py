@@ -1,0 +1,92 @@
+"""Recordings that wait on disk until all trials of a session have been seen: memory does not grow with their number."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from gaitdisc.channel import Channel
+from gaitdisc.recording import Recording
+
+
+@dataclass(frozen=True, eq=False)
+class ShelvedRecordings:
+    """Recordings of a trial, on disk or, where that has no room, in memory.
+
+    Parameters
+    ----------
+    kept : tuple of Recording
+        With their samples, or with one sample each where these are on disk.
+    files : tuple of Path
+        Where the samples lie; empty where they are in memory.
+    """
+
+    kept: tuple[Recording, ...]
+    files: tuple[Path, ...] = ()
+
+    @property
+    def channels(self) -> tuple[Channel, ...]:
+        """Channels of all of them."""
+        return tuple(channel for recording in self.kept for channel in recording.channels)
+
+    def recordings(self) -> Iterator[Recording]:
+        """Return the recordings with their samples, one after the other."""
+        if not self.files:
+            yield from self.kept
+            return
+        for recording, file in zip(self.kept, self.files, strict=True):
+            with np.load(file, allow_pickle=False) as held:
+                yield replace(recording, **{name: held[name] for name in ("time", "values", "suspect")})
+
+
+@dataclass(frozen=True)
+class Shelf:
+    """A folder for samples that are needed later.
+
+    Parameters
+    ----------
+    folder : Path
+        Of its own.
+    """
+
+    folder: Path
+
+    def put(self, recordings: Sequence[Recording]) -> ShelvedRecordings:
+        """Put recordings away.
+
+        Parameters
+        ----------
+        recordings : sequence of Recording
+            Of one trial.
+        """
+        files = []
+        first = len([*self.folder.iterdir()])
+        try:
+            for number, one in enumerate(recordings, first):
+                file = self.folder / f"{number}.npz"
+                np.savez(file, time=one.time, values=one.values, suspect=np.asarray(one.suspect))
+                files.append(file)
+        except OSError:  # no room on disk
+            return ShelvedRecordings(tuple(recordings))
+        return ShelvedRecordings(tuple(_emptied(one) for one in recordings), tuple(files))
+
+
+@contextmanager
+def shelf() -> Iterator[Shelf]:
+    """Shelf that is cleared at the end.
+
+    Yields
+    ------
+    Shelf
+    """
+    with tempfile.TemporaryDirectory(prefix="gaitdisc_", ignore_cleanup_errors=True) as folder:
+        yield Shelf(Path(folder))
+
+
+def _emptied(one: Recording) -> Recording:
+    return replace(one, time=one.time[:1].copy(), values=one.values[:1].copy(), suspect=np.array(one.suspect)[:1])

@@ -1,0 +1,169 @@
+"""Variables of .mat and .npz files: paths through structs and cells, and files that are damaged or hostile."""
+
+from __future__ import annotations
+
+import io
+import pickle
+import zipfile
+
+import h5py
+import numpy as np
+import pytest
+from scipy.io import savemat
+
+from gaitdisc.errors import ReadError
+from gaitdisc.ingest.array_file import open_arrays
+
+KNEE = np.arange(12.0).reshape(4, 3)
+STEPS = {"name": "walk", "knee": KNEE, "trial": np.array([{"grf": 10 * KNEE}, {"grf": 20 * KNEE}], dtype=object)}
+
+
+def _cells(*arrays):
+    held = np.empty((1, len(arrays)), dtype=object)
+    held[0] = arrays
+    return held
+
+
+@pytest.fixture(scope="module")
+def mat5(tmp_path_factory):
+    path = tmp_path_factory.mktemp("mat") / "walk.mat"
+    structs = np.zeros((1, 2), dtype=[("grf", object)])
+    structs[0, 0]["grf"], structs[0, 1]["grf"] = 10 * KNEE, 20 * KNEE
+    data = {"knee": KNEE, "trial": structs, "name": "walk"}
+    savemat(path, {"data": data, "RKNEE": _cells(KNEE, 2 * KNEE), "wrong": KNEE * 1j, "lost": np.array([1.0, np.inf])})
+    return path
+
+
+@pytest.fixture(scope="module")
+def mat73(tmp_path_factory):
+    """As MATLAB lays it out: arrays transposed, cells and fields of struct arrays as references, a block in front."""
+    path = tmp_path_factory.mktemp("mat") / "walk73.mat"
+    with h5py.File(path, "w", userblock_size=512) as file:
+
+        def put(place, name, values):
+            held = place.create_dataset(name, data=np.asarray(values).T)
+            held.attrs["MATLAB_class"] = np.bytes_("double")
+            return held.ref
+
+        def refer(place, name, refs, kind):
+            held = place.create_dataset(name, data=np.array(refs, dtype=h5py.ref_dtype).reshape(-1, 1))
+            if kind:
+                held.attrs["MATLAB_class"] = np.bytes_(kind)
+
+        hidden = file.create_group("#refs#")
+        refer(file, "RKNEE", [put(hidden, "a", KNEE), put(hidden, "b", 2 * KNEE)], "cell")
+        data = file.create_group("data")
+        put(data, "knee", KNEE)
+        name = data.create_dataset("name", data=np.array([[119], [97]], np.uint16))
+        name.attrs["MATLAB_class"] = np.bytes_("char")
+        trial = data.create_group("trial")
+        refer(trial, "grf", [put(hidden, "c", 10 * KNEE), put(hidden, "d", 20 * KNEE)], "")
+        file.create_dataset("wrong", data=np.zeros(3, dtype=[("real", "f8"), ("imag", "f8")]))
+        put(file, "lost", np.array([[1.0, np.inf]]))
+    with path.open("r+b") as file:
+        file.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64")
+    return path
+
+
+@pytest.fixture(params=["mat5", "mat73"])
+def mat(request):
+    return request.getfixturevalue(request.param)
+
+
+@pytest.mark.parametrize(
+    ("path", "part", "expected"),
+    [
+        ("data.knee", "", KNEE),
+        ("data.knee(:,2)", "", KNEE[:, 1]),
+        ("data.knee(3,:)", "", KNEE[2]),
+        ("RKNEE{2}", "", 2 * KNEE),
+        ("RKNEE(:,1)", "2", 2 * KNEE[:, 0]),
+        ("data.trial(2).grf", "", 20 * KNEE),
+        ("data.trial.grf(:,3)", "1", 10 * KNEE[:, 2]),
+        ("data.*", "knee", KNEE),
+    ],
+)
+def test_paths_of_both_versions(mat, path, part, expected):
+    np.testing.assert_array_equal(open_arrays(mat).numbers(path, part), expected)
+
+
+@pytest.mark.parametrize(
+    ("path", "said"),
+    [
+        ("dato.knee", r"a variable of numbers is needed at 'dato.knee'; it has .*, the nearest is 'data'"),
+        ("data.knees", r"the struct has .*knee.*. Correct the path"),
+        ("RKNEE", r"it holds 2 elements. Write part = \"1\" to \"2\""),
+        ("RKNEE{3}", r"it has 2 elements and no element 3. They count from 1"),
+        ("data", r"it is a struct of "),
+        ("data.name", r"it is text"),
+        ("data.knee(:,4)", r"it is 4 x 3. Columns count from 1"),
+        ("data.knee(2,2)", r"it is 4 x 3. Columns count from 1"),
+        ("data.knee.x", r"'x' follows an array of 4 x 3, which is no struct"),
+        ("data..knee", r"'..knee' is no path"),
+        ("wrong", r"it is complex numbers, which no recording has"),
+        ("lost", r"1 numbers in it are infinite"),
+    ],
+)
+def test_what_is_not_there_is_said_in_one_sentence(mat, path, said):
+    with pytest.raises(ReadError, match=said):
+        open_arrays(mat).numbers(path)
+
+
+def test_npz_by_names_with_dots(tmp_path):
+    path = tmp_path / "a.npz"
+    np.savez(path, **{"S1.knee": KNEE, "S1": KNEE[0]})
+    file = open_arrays(path)
+    np.testing.assert_array_equal(file.numbers("S1.knee(:,1)"), KNEE[:, 0])
+    np.testing.assert_array_equal(file.numbers("S1"), KNEE[0])
+
+
+class _Bomb:
+    def __reduce__(self):
+        return (open, ("/tmp/gaitdisc_was_here", "w"))
+
+
+def test_objects_are_never_unpickled(tmp_path, monkeypatch):
+    path = tmp_path / "a.npz"
+    np.savez(path, knee=np.array([_Bomb()], dtype=object))
+    called = []
+    monkeypatch.setattr(pickle, "load", lambda *_, **__: called.append(1))
+    with pytest.raises(
+        ReadError, match=r"'knee' is to be an array of numbers; it holds Python objects, which are never"
+    ):
+        open_arrays(path).numbers("knee")
+    bare = tmp_path / "b.npz"
+    with zipfile.ZipFile(bare, "w") as packed:
+        packed.writestr("knee.npy", pickle.dumps(_Bomb()))
+    with pytest.raises(ReadError, match=r"b.npz is to be read as an .npz file; it cannot be"):
+        open_arrays(bare).numbers("knee")
+    assert not called
+
+
+def test_every_cut_of_a_file_is_refused_or_read(mat, tmp_path):
+    whole = mat.read_bytes()
+    _cut_and_read(tmp_path / mat.name, whole, "data.knee", KNEE)
+
+
+def test_every_cut_of_an_npz_is_refused(tmp_path):
+    held = io.BytesIO()
+    np.savez(held, knee=KNEE)
+    _cut_and_read(tmp_path / "a.npz", held.getvalue(), "knee", KNEE)
+
+
+def _cut_and_read(path, whole, name, expected):
+    refused = 0
+    for end in np.linspace(1, len(whole) - 1, 12).astype(int):
+        path.write_bytes(whole[:end])
+        try:
+            np.testing.assert_array_equal(open_arrays(path).numbers(name), expected)
+        except ReadError as error:
+            refused += 1
+            assert path.name in str(error) and "Traceback" not in str(error)
+    assert refused >= 6
+
+
+@pytest.mark.parametrize("name", ["a.mat", "a.npz"])
+def test_what_is_no_such_file(tmp_path, name):
+    (tmp_path / name).write_bytes(b"time,knee\n0,1\n" * 40)
+    with pytest.raises(ReadError, match=rf"{name} is to be read as an? \.\w+ file; it cannot be"):
+        open_arrays(tmp_path / name)

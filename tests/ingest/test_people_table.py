@@ -1,0 +1,66 @@
+"""Mass, sex and stature from the table of people beside the recordings."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from gaitdisc.ingest.people_table import Measured, measured_people
+
+
+def _read(tmp_path, text, name="participants.tsv"):
+    (tmp_path / name).write_text(text, encoding="utf-8")
+    notes: list[str] = []
+    return measured_people(tmp_path, [Path(name)], notes), notes
+
+
+def test_a_table_as_bids_has_it(tmp_path):
+    found, notes = _read(
+        tmp_path, "participant_id\tage\tsex\tweight\theight\nsub-01\t24\tF\t61.3\t172\nsub-02\t30\tn/a\tn/a\t1.81\n"
+    )
+    assert found == {"01": Measured(61.3, 1.72, "f"), "02": Measured(None, 1.81, "")}
+    assert notes == []
+
+
+@pytest.mark.parametrize(
+    ("label", "text", "height_m"),
+    [
+        ("height [cm]", "172", 1.72),
+        ("Stature (mm)", "1720", 1.72),
+        ("height_m", "1.72", 1.72),
+        ("height", "1720", 1.72),
+    ],
+)
+def test_stature_in_the_unit_of_its_label(tmp_path, label, text, height_m):
+    found, _ = _read(tmp_path, f"id;{label};Body mass (kg)\nS01;{text};58,5\n")
+    assert found == {"s01": Measured(58.5, height_m)}
+
+
+def test_what_can_be_no_persons_is_named_with_its_line(tmp_path):
+    found, notes = _read(tmp_path, "subject,mass_kg,height_cm,sex\nS1,700,1.7,x\nS2,sixty,,f\n", "manifest.csv")
+    assert found == {"s1": Measured(), "s2": Measured(sex="f")}
+    assert notes == [
+        "manifest.csv, line 2: a body mass of 700 is none of 5 to 300 kg; not used",
+        "manifest.csv, line 2: a stature of 1.7 cm is none of 0.4 to 2.5 m; not used",
+        "manifest.csv, line 2: sex 'x' is neither f nor m; the mean of both is taken",
+        "manifest.csv, line 3: body mass 'sixty' is no number; not used",
+    ]
+
+
+def test_a_person_of_several_rows(tmp_path):
+    """Of a session each: what agrees is taken."""
+    found, notes = _read(tmp_path, "id,mass_kg,sex\nS1,40,f\nS1,44,f\n")
+    assert found == {"s1": Measured(None, None, "f")}
+    assert notes == ["participants.tsv: mass_kg of 's1' differs between rows (40.0, 44.0); not used"]
+
+
+def test_a_mass_in_pounds_is_not_taken_for_kg(tmp_path):
+    found, notes = _read(tmp_path, "id,weight (lb)\nS1,140\n")
+    assert found == {} and "its columns are id, weight (lb)" in notes[0]
+
+
+def test_a_table_of_nobody(tmp_path):
+    assert _read(tmp_path, "a,b\n1,2\n")[0] == {}
+    found, notes = _read(tmp_path, "\n")
+    assert found == {} and "left out: participants.tsv: participants.tsv is to be read; it is empty" in notes[-1]
