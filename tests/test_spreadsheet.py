@@ -80,3 +80,9 @@ def test_a_recording_with_such_a_channel_is_read_again_as_it_was(tmp_path, name)
     again = read_table(tmp_path / "walk.csv").streams["signals"]
     assert again.names == (name,)
     np.testing.assert_array_equal(again.values, recording.values)
+
+
+def test_words_that_look_like_numbers_stay_words(tmp_path):
+    write_csv(pd.DataFrame({"who": ["007", "8"], "n": [1, 2]}), tmp_path / "a.csv")
+    table = read_csv(tmp_path / "a.csv", ("who",))
+    assert (table["who"].tolist(), table["n"].tolist()) == (["007", "8"], [1, 2])

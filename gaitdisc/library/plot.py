@@ -89,8 +89,8 @@ def cycles(recording: Recording, strides: Strides, channel: str, ax: Axes | None
     --------
     >>> import gaitdisc as gd
     >>> walk = gd.example_walks(10.0)["nominal"]
-    >>> gd.plot.cycles(walk.stream("kinematics"), gd.cycles(walk), "knee_angle_r").get_xlim()
-    (0.0, 100.0)
+    >>> gd.plot.cycles(walk.stream("kinematics"), gd.cycles(walk), "knee_angle_r").get_xlabel()
+    'stride [%]'
     """
     from gaitdisc.report.cycles_figure import draw_cycles
     from gaitdisc.report.wording import label, unit_text

@@ -2,6 +2,7 @@
 
 import matplotlib as mpl
 import numpy as np
+import pandas as pd
 import pytest
 from manufactured_discovery import manufactured
 from matplotlib.figure import Figure
@@ -9,6 +10,7 @@ from matplotlib.figure import Figure
 import gaitdisc as gd
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError
+from gaitdisc.results import Provenance
 
 mpl.use("Agg")
 
@@ -64,3 +66,17 @@ def test_a_mismatch_and_its_gap_are_drawn():
     assert [text.get_text() for text in both.get_legend().get_texts()][1] == found.first
     with pytest.raises(ChannelError, match="'knee_angle_r' is to be drawn"):
         gd.plot.mismatch(found, "knee_angle_r")
+
+
+def test_reconstructed_states_are_drawn(ax):
+    percent = np.arange(101.0)
+    sine = np.sin(2 * np.pi * percent / 100)
+    curves = pd.DataFrame({"participant": "P01", "model": "linear", "state": "knee_angle_r", "percent": percent,
+                           "measured": sine, "measured_sd": 0.1, "reconstructed": 0.9 * sine})  # fmt: skip
+    summary = pd.DataFrame({"participant": ["P01"], "model": ["linear"], "strides": [9], "check_loss": [0.1]})
+    knee, hip = (Channel(f"{name}_r", "angle", "deg", "r") for name in ("knee_angle", "hip_flexion"))
+    made = Provenance({}, 0, {}, {}, "", "2026-01-01T00:00:00+00:00")
+    done = gd.Reconstruction("", (hip,), (knee,), "", "", {"linear": ""}, curves, summary, curves, (), (), made)
+    gd.plot.reconstruction(done, "knee_angle_r", ax=ax)
+    np.testing.assert_allclose(ax.lines[0].get_ydata(), 0.9 * sine)
+    assert ax.get_ylabel() == "[deg]"

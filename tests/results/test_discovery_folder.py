@@ -1,11 +1,14 @@
 import json
+from dataclasses import replace
 
+import numpy as np
 import pandas as pd
 import pytest
 from manufactured_discovery import manufactured
 
 from gaitdisc.errors import WriteError
-from gaitdisc.results.discovery_folder import save_discovery
+from gaitdisc.results.discovery import Correction, Estimate, FoundEffect
+from gaitdisc.results.discovery_folder import load_discovery, save_discovery
 from gaitdisc.results.sealed_json import check_files, read_sealed
 
 
@@ -14,6 +17,7 @@ def test_json_and_runs_are_written_whole(tmp_path):
     path = save_discovery(discovery, tmp_path / "found")
     held = read_sealed(path)
     check_files(path.parent, held.pop("sha256"))
+    assert held.pop("format") == 1
     assert held == json.loads(json.dumps(discovery.to_json()))
     runs = pd.read_csv(path.parent / "held_out.csv")
     assert len(runs) == 800
@@ -29,3 +33,31 @@ def test_a_folder_that_cannot_be_made_is_told(tmp_path):
     (tmp_path / "found").write_text("a file")
     with pytest.raises(WriteError, match=r"held_out.csv is to be written whole"):
         save_discovery(manufactured(), tmp_path / "found")
+
+
+def test_every_part_of_a_discovery_comes_back(tmp_path):
+    inf = float("inf")
+    wrong = FoundEffect("parameter", "mass", "changed", "", {"mass": Estimate(2.0, 1.9, 2.1, "kg")}, 0.4, 9.0,
+                        bounds=(-inf, 3.0), states={"z": "-z"})  # fmt: skip
+    moved = (Correction("mass", 1.5, Estimate(2.0, 1.9, 2.1, "kg")),)
+    discovery = manufactured(effects=(wrong,), corrections=moved)
+    save_discovery(discovery, tmp_path)
+    again = load_discovery(tmp_path)
+    assert (again.effects, again.corrections) == (discovery.effects, discovery.corrections)
+    assert (again.held_out, again.channels, again.units) == (discovery.held_out, discovery.channels, discovery.units)
+    assert again.provenance == discovery.provenance
+    runs = again.runs
+    np.testing.assert_allclose(runs.measured, discovery.runs.measured, rtol=1e-7)
+    assert [runs.names[trial] for trial in runs.trial] == ["d", "d"]
+
+
+def test_runs_of_unequal_length_and_trials_called_like_numbers_come_back(tmp_path):
+    whole = manufactured()
+    seen = whole.runs.measured.copy()
+    seen[1, 250:] = np.nan
+    runs = replace(whole.runs, trial=np.array([0, 1]), measured=seen, names=("007", "7"), phase=np.empty((0, 0)))
+    save_discovery(manufactured(runs=runs), tmp_path)
+    again = load_discovery(tmp_path).runs
+    assert again.names == ("007", "7") and again.phase.size == 0
+    assert np.isfinite(again.measured[:, :, 0]).sum(axis=1).tolist() == [400, 250]
+    np.testing.assert_allclose(again.augmented[0], whole.runs.augmented[0], rtol=1e-7)

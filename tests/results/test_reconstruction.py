@@ -6,11 +6,13 @@ import pandas as pd
 import pytest
 
 from gaitdisc.channel import Channel
+from gaitdisc.errors import SchemaError
 from gaitdisc.results import Provenance
 from gaitdisc.results.reconstruction import (
     MEASURES,
     Reconstruction,
     enough_sensors,
+    load_reconstruction,
     mean_over_people,
     save_reconstruction,
 )
@@ -98,3 +100,26 @@ def test_two_people_have_a_mean_and_no_interval():
     assert mean == 2.0
     assert np.isnan([sd, half]).all()
     assert mean_over_people(np.array([1.0, 2.0, 3.0]))[2] == pytest.approx(4.302653 / np.sqrt(3))
+
+
+def test_it_comes_back_with_names_that_look_like_numbers(done, tmp_path):
+    named = replace(
+        done,
+        summary=done.summary.assign(participant=done.summary["participant"].str.replace("P01", "007")),
+        curves=done.errors.assign(percent=0.0, measured=1.0, measured_sd=0.1, unit="1"),
+    )
+    named.save(tmp_path)
+    again = load_reconstruction(tmp_path)
+    assert again.participants == named.participants == ("007", "P02", "P03")
+    for table in ("errors", "summary", "curves"):
+        pd.testing.assert_frame_equal(getattr(again, table), getattr(named, table))
+    assert (again.sensors, again.models, again.recommended) == (done.sensors, done.models, "fourier ridge")
+    assert again.to_frame() is again.errors
+    assert "from 1 sensors" in repr(again) and "<th>recommended model</th>" in again._repr_html_()
+
+
+def test_a_table_that_was_changed_is_refused(done, tmp_path):
+    replace(done, curves=done.errors.assign(percent=0.0, measured=1.0, measured_sd=0.1)).save(tmp_path)
+    (tmp_path / "errors.csv").write_text((tmp_path / "errors.csv").read_text().replace("2.0", "1.0"))
+    with pytest.raises(SchemaError, match=r"errors.csv.*changed since it was saved"):
+        load_reconstruction(tmp_path)

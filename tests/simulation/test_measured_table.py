@@ -13,7 +13,7 @@ from gaitdisc.errors import ChannelError, GaitdiscError, ReadError, UnitError
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.recording import Recording, Source
 from gaitdisc.simulation.drive import Rows
-from gaitdisc.simulation.measured_table import measured_of_recordings, read_measured
+from gaitdisc.simulation.measured_table import measured_of_recordings, measured_of_table, read_measured
 from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import simulation_of
@@ -206,3 +206,15 @@ def test_recordings_are_converted_to_the_unit_of_the_observation(ankle):
     told = ankle.with_observation("theta", "57.2958*theta").observing(["theta"]).with_sensor(Sensor("theta", "deg"))
     observed = measured_of_recordings([_recording("rad"), _recording("deg")], told).observed
     np.testing.assert_allclose(observed[0], observed[1] / (math.pi / 180), atol=1e-9)
+
+
+def test_a_table_in_memory_is_read_as_its_file_and_left_as_it_is(ankle, tmp_path):
+    table = _table().rename(columns={"theta": " theta "}).iloc[::-1].iloc[::-1]
+    table.to_csv(tmp_path / "walk.csv", index=False)
+    before = table.copy()
+    of_file, of_table = read_measured(tmp_path / "walk.csv", ankle), measured_of_table(table, ankle, "the table")
+    np.testing.assert_allclose(of_table.observed, of_file.observed, rtol=1e-12)
+    assert of_table.source == "the table" and of_table.trials == of_file.trials
+    pd.testing.assert_frame_equal(table, before)
+    with pytest.raises(ChannelError, match="the table has 'tau' twice"):
+        measured_of_table(pd.concat([table, table[["tau"]]], axis="columns"), ankle, "the table")
