@@ -25,6 +25,7 @@ from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.simulation import Simulation
 
 HALF = 0.5
+DIGITS = 3  # of the numbers in an expression that a person reads; those of the file are exact
 
 
 def answer(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> tuple[Discovery, Simulation]:
@@ -107,7 +108,12 @@ def effects_of(inquiry: Inquiry, verdict: Verdict, closed: float, gained: float)
             FoundEffect("state", name, "wrong_initial_condition", "", {"initial": start})
             for name, start in verdict.starts.items()
         )
-    return tuple(found_effects(inquiry, verdict.account, closed, gained))
+    found = found_effects(inquiry, verdict.account, closed, gained)
+    if verdict.read:
+        (part,) = verdict.account.account.parts
+        expression = part.candidate.term({slot: f"{value:.{DIGITS}g}" for slot, value in part.values.items()})
+        found = [replace(found[0], reads_as=expression, reads_as_effect=verdict.reads_as)]
+    return tuple(found)
 
 
 def push_of(inquiry: Inquiry, shaking: Shaken) -> Estimate:

@@ -48,7 +48,8 @@ def judge(inquiry: Inquiry, as_read: Judged) -> Verdict:
     plain = None if exact else plainest(inquiry, scale, named)
     if plain:
         return plain
-    shape = fitted_shape(as_read, inquiry.search) if len(named.account.parts) > 1 or named.noise.remembers else None
+    wanted = len(named.account.parts) > 1 or named.noise.remembers
+    shape = fitted_shape(as_read, inquiry.search, scale) if wanted else None
     remembered = weighed_with_memory(inquiry, as_read, named, shape, rivals) if named.noise.remembers else None
     if remembered and not (remembered.word == "process_noise" and scale.agrees(as_read.account.fit)):
         return remembered

@@ -11,6 +11,7 @@ from gaitdisc.discovery.decision import judge
 from gaitdisc.discovery.held_out import holding_out_others, noted, tells_nothing
 from gaitdisc.discovery.inquiry import begin_inquiry, split_in_time
 from gaitdisc.discovery.odd_trials import agreeing_trials
+from gaitdisc.discovery.reading import read_instead, read_shape
 from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.discovery.trial_apart import without_trial_apart
 from gaitdisc.results.discovery import Discovery
@@ -69,5 +70,6 @@ def discover(
         told("what is held out never goes where it would act: other data are held out")
         inquiry, as_read = noted(inquiry, other), other.as_read()
         verdict = judge(inquiry, as_read)
+    verdict = read_instead(inquiry, as_read, read_shape(inquiry, as_read, verdict))
     told("showing it on what was held out")
     return answer(inquiry, as_read, verdict)

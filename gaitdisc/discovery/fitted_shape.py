@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.account import Account, Part, account_for
+from gaitdisc.discovery.account import Account, Part
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.evidence import Judged, compared
+from gaitdisc.discovery.evidence import Judged, judged
+from gaitdisc.discovery.gap_share import REMEMBERED, GapScale, Weighed, weighed
+from gaitdisc.discovery.nameless import MEANS, NAME
 from gaitdisc.discovery.places import Place
-from gaitdisc.discovery.search import TURNS, Search
+from gaitdisc.discovery.score import Scorer
+from gaitdisc.discovery.search import Search
 from gaitdisc.simulation.evaluating import Points, evaluate_many
 
 BUMPS = 5
@@ -23,11 +28,15 @@ SHARPNESS = 1.2  # of a bump's width against the distance to the next
 SHARE_OF_SPEED = 0.2  # at which friction that depends on place has risen
 _RISE = re.compile(r"\*tanh\((.+)/(\S+)\)")
 _ONE_BUMP = re.compile(r"exp\(-\(\(\((\w+|\(.*?\)) - (\S+?)\)/(\S+?)\)\*\*2\)\)(.*)")
+FITTED = 8  # shapes, of those that promise most
+EACH_NUMBER = 0.004  # of the gap
 SIGNIFICANT = 3.0  # standard errors that a bump must have to stay
 
 
 def shapes_at(place: Place, judged_now: Judged, search: Search) -> list[Candidate]:
     """Return the shapes that could be fitted at a place: over one state, over two (bumps, and powers), over the stride.
+
+    At a place between bodies the states may be differences of two, and another body's.
 
     Parameters
     ----------
@@ -38,9 +47,20 @@ def shapes_at(place: Place, judged_now: Judged, search: Search) -> list[Candidat
     search : Search
         What is searched.
     """
-    x, v = place.motions[0]
+    shapes = [one for motion in place.motions for one in _shapes_over(place, motion, judged_now, search)]
+    if any(one.name == "phase" for one in search.base.inputs):
+        centres = (np.arange(STRIDE_BUMPS) + 0.5) / STRIDE_BUMPS
+        sharp = (STRIDE_BUMPS / (SHARPNESS * 2 * np.pi)) ** 2 * 2
+        pieces = [f"exp({sharp:.4g}*(cos(6.283185307179586*(phase - {c:.4g})) - 1))" for c in centres]
+        shapes.append(_unnamed(place, pieces, place.motions[0][0]))
+    return shapes
+
+
+def _shapes_over(place: Place, motion: tuple[str, str], now: Judged, search: Search) -> list[Candidate]:
+    """Shapes over a position and its rate; where it has none, over it and another state."""
+    x, v = motion
     axes = [x, v] if v else [x, *place.others[:1]]
-    ranges = {axis: _visited(axis, judged_now, search) for axis in axes}
+    ranges = {axis: _visited(axis, now, search) for axis in axes}
     shapes = [_bumps(ranges, dict.fromkeys([one], FLAT_BUMPS)) for one in axes]
     if v:
         speed = max(abs(one) for one in ranges[v])
@@ -52,27 +72,19 @@ def shapes_at(place: Place, judged_now: Judged, search: Search) -> list[Candidat
         ]
     if len(axes) > 1:
         shapes += [_bumps(ranges, dict.fromkeys(axes, BUMPS)), _powers(ranges)]
-    if any(one.name == "phase" for one in search.base.inputs):
-        centres = (np.arange(STRIDE_BUMPS) + 0.5) / STRIDE_BUMPS
-        sharp = (STRIDE_BUMPS / (SHARPNESS * 2 * np.pi)) ** 2 * 2
-        shapes.append([f"exp({sharp:.4g}*(cos(6.283185307179586*(phase - {c:.4g})) - 1))" for c in centres])
-    return [
-        Candidate(
-            "missing_physics",
-            place.kind,
-            place.name,
-            "unnamed",
-            tuple(pieces),
-            None,
-            x,
-            "an effect that has no name here",
-        )
-        for pieces in shapes
-    ]
+    return [_unnamed(place, pieces, x) for pieces in shapes]
 
 
-def fitted_shape(now: Judged, search: Search) -> Judged | None:
-    """Fit a shape at every place and return the best account of one, without the bumps that carry nothing.
+def _unnamed(place: Place, pieces: list[str], role: str) -> Candidate:
+    return Candidate("missing_physics", place.kind, place.name, NAME, tuple(pieces), None, role, MEANS)
+
+
+def fitted_shape(now: Judged, search: Search, scale: GapScale) -> Judged | None:
+    """Fit a shape at every place and return the one that closes most of the gap on runs left out of the fit.
+
+    The slopes of the simulation as read say which shapes promise most; these are fitted, and the best ones thinned out
+    and tried as one bump. Each number costs a little of the gap. What is left remembers itself as long as a shape is
+    wrong: under noise that does so too, the wrong one would be the likelier.
 
     Parameters
     ----------
@@ -80,53 +92,70 @@ def fitted_shape(now: Judged, search: Search) -> Judged | None:
         The simulation as read, without any explanation.
     search : Search
         What is searched.
+    scale : GapScale
+        What the gap is measured against.
 
     Returns
     -------
     Judged or None
-        None where no shape can be fitted.
+        Under the noise that it leaves; None where no shape can be fitted.
     """
-    tried = []
-    for place in search.places:
-        for shape in shapes_at(place, now, search):
-            part = Part(shape, dict.fromkeys(shape.slots, 0.0))
-            account = account_for(now.shooting, search.base, (part,), now.account.fit.starts, TURNS, like=now.account)
-            if np.isfinite(account.fit.misfit):
-                tried.append(account)
-    best = sorted(tried, key=lambda one: one.criterion)[:2]
-    kept = [_thinned(now, search, one) for one in best]
-    kept += [local for one in kept for local in _local(now, search, one)]
-    weighed = [Judged(one, now.shooting) for one in kept if np.isfinite(one.fit.misfit)]
-    return min(compared(weighed, search.base), key=lambda one: one.evidence) if weighed else None
+    plain = weighed(scale, now.shooting, search.base, (), now.account)
+    if not np.isfinite(plain.gap):
+        return None
+    tried = [_weighed(scale, search, plain, part) for part in _promising(now, search, plain)]
+    best = _cheapest(tried, plain)[:2]
+    tried = best + [
+        _weighed(scale, search, plain, part) for one in best for part in (*_thinned(one.account), *_local(one.account))
+    ]
+    kept = _cheapest([one for one in tried if search.sensible(one.account)], plain)
+    return judged(now.shooting, search.base, kept[0].account) if kept else None
 
 
-def _thinned(now: Judged, search: Search, account: Account) -> Account:
-    """Leave out the bumps whose factor is lost in its error, and fit again."""
+def cost_of(one: Weighed, plain: Weighed) -> float:
+    """Return what an account leaves of the gap on runs left out of the fit, and a little for each of its numbers.
+
+    Parameters
+    ----------
+    one, plain : Weighed
+        With a shape or its reading, and the simulation as read.
+    """
+    return one.gap / plain.gap + EACH_NUMBER * one.account.size if plain.gap > 0 else np.inf
+
+
+def _cheapest(tried: list[Weighed], plain: Weighed) -> list[Weighed]:
+    return sorted((one for one in tried if np.isfinite(one.gap)), key=lambda one: cost_of(one, plain))
+
+
+def _weighed(scale: GapScale, search: Search, plain: Weighed, part: Part) -> Weighed:
+    return weighed(scale, plain.shooting, search.base, (part,), plain.account)
+
+
+def _promising(now: Judged, search: Search, plain: Weighed) -> list[Part]:
+    """Shapes that promise most, to first order, with the factors that they promise it with."""
+    account = plain.account
+    scorer = Scorer(plain.shooting, account.simulation, account.machine, account.fit, search.places, search.rhythm)
+    shapes = tuple(shape for place in search.places for shape in shapes_at(place, now, search))
+    price = float(np.log(plain.shooting.known.sum() / REMEMBERED))
+    scores = sorted(scorer.scores(shapes), key=lambda one: price * len(one.candidate.slots) - one.gain)
+    return [Part(one.candidate, one.values) for one in scores[:FITTED]]
+
+
+def _thinned(account: Account) -> Iterator[Part]:
+    """Yield the shape without the bumps whose factor is lost in its error."""
     (part,) = account.parts
     error = np.sqrt(np.diag(account.fit.covariance))[: account.size]
     value = np.array([part.values[slot] for slot in part.candidate.slots])
     keep = np.abs(value) > SIGNIFICANT * error
-    if keep.all() or not keep.any():
-        return account
-    pieces = tuple(piece for piece, stays in zip(part.candidate.pieces, keep, strict=True) if stays)
-    fewer = Candidate(
-        "missing_physics",
-        part.candidate.kind,
-        part.candidate.place,
-        "unnamed",
-        pieces,
-        None,
-        part.candidate.role,
-        part.candidate.means,
-    )
-    values = dict(zip(fewer.slots, value[keep].tolist(), strict=True))
-    return account_for(now.shooting, search.base, (Part(fewer, values),), account.fit.starts, TURNS, like=account)
+    if not keep.all() and keep.any():
+        pieces = tuple(piece for piece, stays in zip(part.candidate.pieces, keep, strict=True) if stays)
+        fewer = replace(part.candidate, pieces=pieces)
+        yield Part(fewer, dict(zip(fewer.slots, value[keep].tolist(), strict=True)))
 
 
-def _local(now: Judged, search: Search, account: Account) -> list[Account]:
-    """Fit one bump whose place and width are free, from each of the two strongest of a shape over one state."""
+def _local(account: Account) -> Iterator[Part]:
+    """Yield one bump whose place and width are free, from each of the two strongest of a shape over one state."""
     (part,) = account.parts
-    found = []
     strongest = sorted(part.candidate.pieces, key=lambda piece: -abs(part.values[_slot_of(part, piece)]))[:2]
     for piece in strongest:
         bump = _ONE_BUMP.fullmatch(piece)
@@ -139,23 +168,9 @@ def _local(now: Judged, search: Search, account: Account) -> list[Account]:
         if rise:
             rest, begin["s"] = f"*tanh({rise[1]}/_s)", float(rise[2]) / 2
             constants["s"] = "half widths of x"
-        shape = f"exp(-((({name} - _c)/_w)**2)){rest}"
-        local = Candidate(
-            "missing_physics",
-            part.candidate.kind,
-            part.candidate.place,
-            "unnamed",
-            (shape,),
-            constants,
-            part.candidate.role,
-            part.candidate.means,
+        yield Part(
+            replace(part.candidate, pieces=(f"exp(-((({name} - _c)/_w)**2)){rest}",), constants=constants), begin
         )
-        one = account_for(
-            now.shooting, search.base, (Part(local, begin),), now.account.fit.starts, 2 * TURNS, like=now.account
-        )
-        if search.sensible(one):
-            found.append(one)
-    return found
 
 
 def _slot_of(part: Part, piece: str) -> str:

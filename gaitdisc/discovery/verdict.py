@@ -31,6 +31,10 @@ class Verdict:
         Held-out runs that bear the account out; where nothing is named, those that do not bear the first rival out.
     small : tuple of Part
         Explanations that close too little of the gap to be named.
+    read : bool
+        Of a shape without a name: whether it was read as an expression of few pieces, which stands in its place.
+    reads_as : str
+        The catalogue's effect that this expression is; empty where it is none.
     """
 
     word: str
@@ -40,3 +44,5 @@ class Verdict:
     starts: dict[str, Estimate] = field(default_factory=dict)
     proof: Proof | None = None
     small: tuple[Part, ...] = ()
+    read: bool = False
+    reads_as: str = ""

@@ -166,10 +166,15 @@ def _nameless(effect: FoundEffect, base: Simulation, where: tuple[Whereabouts, .
     over = f", a function of {' and '.join(seen)}," if seen else ""
     stride = _stride(effect, where)
     acts = f" ({stride})" if stride else ""
-    return (
-        f"Something is missing {at_place(effect.kind, effect.place)} that no effect of the catalogue explains{acts}; "
-        f"a fitted shape{over} stands in for it"
-    )
+    missing = f"Something is missing {at_place(effect.kind, effect.place)} that no effect of the catalogue explains"
+    if effect.reads_as_effect:
+        return (
+            f"Something is missing {at_place(effect.kind, effect.place)}{acts}; a shape was fitted, and it reads as "
+            f"{effect.reads_as}, {spoken(effect.reads_as_effect)} of the catalogue"
+        )
+    if effect.reads_as:
+        return f"{missing}{acts}; a fitted shape{over} reads as {effect.reads_as}"
+    return f"{missing}{acts}; a fitted shape{over} stands in for it"
 
 
 def _tied(discovery: Discovery) -> str:

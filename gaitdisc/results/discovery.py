@@ -76,6 +76,10 @@ class FoundEffect:
         Of a wrong parameter: the file's `low` and `high`, infinite where it has but one; empty where it has neither.
     states : mapping of str to str
         States that the effect brings along, and the time derivative of each.
+    reads_as : str
+        Of a term without a name that was read as an expression of few pieces: this expression, in a few digits.
+    reads_as_effect : str
+        The catalogue's effect that this expression is; empty where it is none.
     """
 
     kind: str
@@ -89,6 +93,8 @@ class FoundEffect:
     small: bool = False
     bounds: tuple[float, ...] = ()
     states: Mapping[str, str] = field(default_factory=dict)
+    reads_as: str = ""
+    reads_as_effect: str = ""
 
 
 @dataclass(frozen=True)
@@ -345,6 +351,8 @@ def _effect(one: FoundEffect) -> dict[str, Any]:
     evidence = {"held_out": _number(one.held_out), "bic": _number(one.bic)}
     some: dict[str, Any] = {"bounds": [_number(bound) for bound in one.bounds]} if one.bounds else {}
     some |= {"states": dict(one.states)} if one.states else {}
+    if one.reads_as:
+        some["reads_as"] = {"expression": one.reads_as, "effect": one.reads_as_effect or None}
     return _place(one) | {"name": one.name, "term": one.term, "estimates": estimates, "evidence": evidence} | some
 
 

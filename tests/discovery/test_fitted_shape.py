@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import MASS, Experiment, mass, record, with_load
 
+from gaitdisc.discovery.by_share import scale_of
 from gaitdisc.discovery.fitted_shape import FLAT_BUMPS, fitted_shape, shapes_at
 from gaitdisc.discovery.inquiry import begin_inquiry
 from gaitdisc.simulation.expression import parsed
@@ -52,7 +53,7 @@ def test_where_there_is_a_stride_a_shape_may_be_locked_to_it():
 
 def test_a_fitted_shape_closes_a_gap_that_has_no_name(bumpy):
     inquiry, now = bumpy
-    shape = fitted_shape(now, inquiry.search)
+    shape = fitted_shape(now, inquiry.search, scale_of(inquiry))
     assert shape is not None
     (part,) = shape.account.parts
     assert (part.candidate.name, part.candidate.place) == ("unnamed", "load")

@@ -131,6 +131,18 @@ def test_a_shape_without_a_name_says_over_which_states():
     assert "a fitted shape, a function of x and v, stands in for it." in told
 
 
+def test_a_shape_that_was_read_says_what_it_reads_as_and_never_that_this_is_its_name():
+    shape = FoundEffect("port", "load", "unnamed", "-8.0725*(x**2*v)", {}, reads_as="-8.07*(x**2*v)")
+    told = sentence(mass(), (), verdict="unnamed", effects=(shape,), where=())
+    assert (
+        "that no effect of the catalogue explains; a fitted shape, a function of x and v, reads as -8.07*(x**2*v)."
+        in told
+    )
+    known = replace(shape, reads_as="-14*(x**3)", reads_as_effect="cubic_stiffness")
+    told = sentence(mass(), (), verdict="unnamed", effects=(known,), where=())
+    assert "at the load port; a shape was fitted, and it reads as -14*(x**3), cubic stiffness of the catalogue." in told
+
+
 def test_a_tie_is_told_with_what_would_tell_them_apart():
     told = sentence(rivals=(replace(CUBIC, tied=True),))
     assert (

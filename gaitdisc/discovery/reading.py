@@ -1,0 +1,287 @@
+"""A learned shape, read: an expression of few pieces of the catalogue and their products that does what the shape does.
+
+The shape's values along the runs, which are where the data were, are regressed on every piece and every product of a
+piece over the position with one over its rate: the best one, two and three of them (best-subset selection). The few
+that come nearest are fitted inside the integrator, and the one that the data speak for most is the reading, if it
+closes about as much of the held-out gap as the shape.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.discovery.account import Part
+from gaitdisc.discovery.by_share import scale_of
+from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.catalogue import Shape, known_shapes
+from gaitdisc.discovery.decision import borne_out
+from gaitdisc.discovery.evidence import Judged, judged
+from gaitdisc.discovery.fitted_shape import cost_of, fitted_shape
+from gaitdisc.discovery.gap_share import weighed
+from gaitdisc.discovery.grids import cells
+from gaitdisc.discovery.inquiry import Inquiry
+from gaitdisc.discovery.nameless import NAME
+from gaitdisc.discovery.search import Search
+from gaitdisc.discovery.verdict import Verdict
+from gaitdisc.simulation.evaluating import Points, evaluate_many
+
+BUMP = Shape("bump", ("exp(-((x - c)/w)**2)",), {"c": "quantiles of x", "w": "half widths of x"})
+MOST_SAMPLES = 3000  # of the curve
+PAIRS_BEYOND = 40  # pairs, to which a third piece is sought
+TRIED = (4, 4, 2)  # readings of one, two and three pieces that are fitted
+ALIKE = 0.98  # correlation of two pieces, beyond which they are one
+FEWEST_NUMBERS = 3  # of several names at one place, for a reading to be sought that has fewer
+AS_MUCH = 0.95  # of what the shape closes of the held-out squared error, which its reading must close
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A piece that a reading may be made of, at one point of its constants' grid.
+
+    Parameters
+    ----------
+    text : str
+        Over the simulation's names, its constants as words that begin with `_`.
+    kinds : dict of str to str
+        Constant -> kind of its grid.
+    values : dict of str to float
+        Constant -> number.
+    """
+
+    text: str
+    kinds: dict[str, str]
+    values: dict[str, float]
+
+    @property
+    def at(self) -> str:
+        """The piece with its numbers written in."""
+        return Shape("", (self.text,)).written({f"_{slot}": f"{value:.9g}" for slot, value in self.values.items()})[0]
+
+
+def read_shape(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> Verdict:
+    """Return a verdict on a learned shape with its reading in its place; as it was where there is none.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        What is asked.
+    as_read : Judged
+        The simulation as read.
+    verdict : Verdict
+        What the search came to.
+
+    References
+    ----------
+    Brunton, Proctor and Kutz 2016, PNAS 113, 3932 (a library of pieces, few of which act); Miller 2002, Subset
+    Selection in Regression (all pairs are tried here, in place of thresholds); Rackauckas et al. 2020, arXiv 2001.04385
+    (a learned term of an equation, read by regression).
+    """
+    shape = verdict.account
+    if verdict.word != NAME or len(shape.account.parts) != 1 or not verdict.proof:
+        return verdict
+    search, scale = inquiry.search, scale_of(inquiry)
+    plain = weighed(scale, shape.shooting, search.base, (), as_read.under(shape, search.base).account)
+    if not np.isfinite(plain.gap):
+        return verdict
+    readings = [
+        weighed(scale, shape.shooting, search.base, (part,), plain.account) for part in _readings(search, shape)
+    ]
+    readings = [one for one in readings if search.sensible(one.account)]
+    for one in sorted(readings, key=lambda one: cost_of(one, plain)):
+        found = judged(shape.shooting, search.base, one.account)
+        proof = borne_out(inquiry, as_read, found)
+        if proof.bears_out and proof.closed >= AS_MUCH * verdict.proof.closed:
+            reads_as = effect_of(search, one.account.parts[0].candidate)
+            return replace(verdict, account=found, proof=proof, read=True, reads_as=reads_as)
+    return verdict
+
+
+def read_instead(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> Verdict:
+    """Return a verdict on several names at one place, or on a shape that reads as less than they are and errs less.
+
+    Pieces of the catalogue laid beside each other imitate any curve.
+
+    Parameters
+    ----------
+    inquiry : Inquiry
+        What is asked.
+    as_read : Judged
+        The simulation as read.
+    verdict : Verdict
+        What the search came to.
+    """
+    named = verdict.account
+    places = [part.candidate.place for part in named.account.parts if part.candidate.verdict == "missing_physics"]
+    if named.account.size < FEWEST_NUMBERS or len(set(places)) == len(places):
+        return verdict
+    shape = fitted_shape(as_read, inquiry.search, scale_of(inquiry))
+    if shape is None:
+        return verdict
+    proof = borne_out(inquiry, as_read, shape)
+    instead = read_shape(inquiry, as_read, Verdict(NAME, shape, (named, *verdict.rivals), proof=proof))
+    less = instead.read and instead.account.account.size < named.account.size
+    return instead if less and borne_out(inquiry, named, instead.account, as_read).bears_out else verdict
+
+
+def effect_of(search: Search, candidate: Candidate) -> str:
+    """Return the name of the catalogue's effect that a reading is, or nothing.
+
+    Parameters
+    ----------
+    search : Search
+        With the catalogue at every place.
+    candidate : Candidate
+        A reading.
+    """
+    alike = (one for one in search.candidates if (one.kind, one.place) == (candidate.kind, candidate.place))
+    return next((one.name for one in alike if one.pieces == candidate.pieces), "")
+
+
+def _readings(search: Search, shape: Judged) -> Iterator[Part]:
+    """Yield what a shape may read as, with numbers to begin from; itself, where it has few pieces."""
+    (part,) = shape.account.parts
+    if len(part.candidate.pieces) <= len(TRIED):
+        yield part
+    place = next(one for one in search.places if (one.kind, one.name) == (part.candidate.kind, part.candidate.place))
+    motion = next((one for one in place.motions if one[0] == part.candidate.role), None)
+    if motion:
+        for pieces, factors in _Curve(search, shape, motion).subsets():
+            reading = _candidate(part.candidate, pieces)
+            begin = dict(zip(reading.slots, [*factors, *_constants(pieces)[1].values()], strict=True))
+            yield Part(reading, begin)
+
+
+def _candidate(shape: Candidate, pieces: tuple[Piece, ...]) -> Candidate:
+    """The explanation that a few pieces are, in the place of a shape."""
+    kinds, _, texts = _constants(pieces)
+    return replace(shape, pieces=texts, constants=kinds)
+
+
+def _constants(pieces: tuple[Piece, ...]) -> tuple[dict[str, str], dict[str, float], tuple[str, ...]]:
+    """Grids and numbers of the constants of several pieces, each under a name of its own, and the pieces with these."""
+    kinds: dict[str, str] = {}
+    values: dict[str, float] = {}
+    texts = []
+    for number, piece in enumerate(pieces):
+        own = {slot: f"{slot}_{number + 1}" if number else slot for slot in piece.kinds}
+        kinds |= {own[slot]: kind for slot, kind in piece.kinds.items()}
+        values |= {own[slot]: value for slot, value in piece.values.items()}
+        texts.append(Shape("", (piece.text,)).written({f"_{slot}": f"_{name}" for slot, name in own.items()})[0])
+    return kinds, values, tuple(texts)
+
+
+def _factor(piece: str) -> str:
+    """A piece as it stands in a product."""
+    return f"({piece})" if " - max(" in piece else piece
+
+
+def _marked(shape: Shape) -> dict[str, str]:
+    return {slot: f"_{slot}" for slot in shape.constants}
+
+
+@dataclass(frozen=True)
+class _Curve:
+    """A shape's values along its runs, and what could make them up."""
+
+    search: Search
+    shape: Judged
+    motion: tuple[str, str]
+
+    def subsets(self) -> Iterator[tuple[tuple[Piece, ...], list[float]]]:
+        """Yield the best one, two and three pieces, no structure twice, with their factors."""
+        pieces, columns, curve = self._regression
+        size = np.linalg.norm(columns, axis=0)
+        unit = columns / size
+        gram, match = unit.T @ unit, unit.T @ curve
+        singles = [(i,) for i in np.argsort(-(match**2)).tolist()]
+        pairs = _best_pairs(gram, match)
+        triples = _best_triples(gram, match, pairs[:PAIRS_BEYOND])
+        for ranked, most in zip((singles, pairs, triples), TRIED, strict=True):
+            seen: set[tuple[str, ...]] = set()
+            for some in ranked:
+                structure = tuple(sorted(pieces[i].text for i in some))
+                if structure in seen:
+                    continue
+                seen.add(structure)
+                which = list(some)
+                factors = np.linalg.lstsq(gram[np.ix_(which, which)], match[which], rcond=1e-10)[0] / size[which]
+                yield tuple(pieces[i] for i in some), factors.tolist()
+                if len(seen) == most:
+                    break
+
+    @cached_property
+    def _regression(self) -> tuple[list[Piece], NDArray[np.float64], NDArray[np.float64]]:
+        """Pieces that vary along the runs, their values (sample, piece), and the curve's (sample,)."""
+        points = self._points
+        along = evaluate_many(self.search.base, [self.motion[0]], points)[0]
+        pieces = list(self._pieces(along))
+        (part,) = self.shape.account.parts
+        values = evaluate_many(self.search.base, [part.term, *(one.at for one in pieces)], points).T
+        size = np.linalg.norm(values, axis=0)
+        good = np.flatnonzero(np.isfinite(size[1:]) & (size[1:] > 0))
+        return [pieces[i] for i in good], values[:, 1 + good], values[:, 0]
+
+    @property
+    def _points(self) -> Points:
+        """Samples of the runs, spread over all of them."""
+        shooting, known = self.shape.shooting, len(self.search.base.states)
+        segments, drive = shooting.segments, shooting.measured.drive
+        states = self.shape.account.fit.states[..., :known].reshape(-1, known)
+        time = (drive.time0[segments.trial][:, None] + segments.samples / drive.rate).ravel()
+        some = slice(None, None, max(len(states) // MOST_SAMPLES, 1))
+        inputs = segments.of(drive.inputs).reshape(len(states), -1)
+        return Points(time[some], states[some], inputs[some])
+
+    def _pieces(self, along: NDArray[np.float64]) -> Iterator[Piece]:
+        """Pieces over the position, over its rate, over both, and products of one and the other."""
+        rate = self.motion[1]
+        angle = any(one.motions[0] == self.motion and one.angle for one in self.search.places)
+        known = [
+            one for one in known_shapes() if len(one.pieces) == 1 and not one.states and "delay" not in one.pieces[0]
+        ]
+        known = [one for one in known if angle or one.needs != "angle"]
+        still = [one for one in (*known, BUMP) if one.roles == ("x",)]
+        moving = [one for one in known if one.roles == ("v",)] if rate else []
+        load = Shape("constant_load", ("1",))
+        both = [one for one in known if set(one.roles) == {"x", "v"}] if rate else []
+        for shape in (load, *still, *moving, *both):
+            yield from self._at(shape, along)
+        for one in still:
+            for other in moving:
+                product = Shape("", (f"{_factor(one.pieces[0])}*{_factor(other.pieces[0])}",), one.constants)
+                yield from self._at(product, along)
+
+    def _at(self, shape: Shape, along: NDArray[np.float64]) -> Iterator[Piece]:
+        (text,) = shape.written({"x": self.motion[0], "v": self.motion[1]} | _marked(shape))
+        for values in cells(dict(shape.constants), along, self.search.rhythm):
+            yield Piece(text, dict(shape.constants), values)
+
+
+def _best_pairs(gram: NDArray[np.float64], match: NDArray[np.float64]) -> list[tuple[int, int]]:
+    """Pairs of unit columns, what they explain together the most first."""
+    apart = np.where(np.abs(gram) < ALIKE, 1 - gram**2, np.inf)
+    explained = (match[:, None] ** 2 + match**2 - 2 * gram * np.outer(match, match)) / apart
+    first, second = np.triu_indices(len(match), 1)
+    order = np.argsort(-explained[first, second])
+    return list(zip(first[order].tolist(), second[order].tolist(), strict=True))
+
+
+def _best_triples(
+    gram: NDArray[np.float64], match: NDArray[np.float64], pairs: list[tuple[int, int]]
+) -> list[tuple[int, int, int]]:
+    """Pairs with a third column beside them, what they explain together the most first."""
+    found = []
+    for pair in pairs:
+        two = list(pair)
+        inverse = np.linalg.inv(gram[np.ix_(two, two)])
+        left = match - gram[:, two] @ (inverse @ match[two])
+        size = 1 - np.einsum("ij,jk,ik->i", gram[:, two], inverse, gram[:, two])
+        gained = np.where(size > 1 - ALIKE**2, left**2 / np.maximum(size, 1e-12), 0.0)
+        third = int(np.argmax(gained))
+        found.append((float(match[two] @ inverse @ match[two] + gained[third]), (*pair, third)))
+    return [some for _, some in sorted(found, reverse=True)]

@@ -1,0 +1,78 @@
+from __future__ import annotations
+
+import re
+
+import pytest
+from hidden_in_a_mass import Experiment, mass, record, with_load
+
+from gaitdisc.discovery.by_share import scale_of
+from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.decision import borne_out
+from gaitdisc.discovery.discover import discover
+from gaitdisc.discovery.fitted_shape import fitted_shape
+from gaitdisc.discovery.inquiry import begin_inquiry
+from gaitdisc.discovery.reading import effect_of, read_instead, read_shape
+from gaitdisc.discovery.verdict import Verdict
+
+
+def asked(term):
+    inquiry = begin_inquiry(mass(), record(with_load(term), 3, Experiment(seconds=8.0)))
+    return inquiry, inquiry.as_read()
+
+
+@pytest.fixture(scope="module")
+def damped():
+    """A damping that grows with the square of the displacement, which no effect of the catalogue is, and its shape."""
+    inquiry, as_read = asked("-8*x**2*v")
+    shape = fitted_shape(as_read, inquiry.search, scale_of(inquiry))
+    return inquiry, as_read, Verdict("unnamed", shape, (), proof=borne_out(inquiry, as_read, shape))
+
+
+def test_a_shape_is_read_as_the_product_that_was_hidden(damped):
+    verdict = read_shape(*damped)
+    (part,) = verdict.account.account.parts
+    assert verdict.read and verdict.reads_as == ""
+    assert part.candidate.pieces == ("x**2*v",)
+    assert part.values["factor"] == pytest.approx(-8, rel=0.03)
+    assert verdict.proof.closed >= 0.95 * damped[2].proof.closed
+
+
+def test_a_reading_that_is_an_effect_of_the_catalogue_is_said_to_be_one(damped):
+    search = damped[0].search
+    like = Candidate("missing_physics", "port", "load", "unnamed", ("x**3",), {}, "x", "")
+    assert effect_of(search, like) == "cubic_stiffness"
+    bump = Candidate("missing_physics", "port", "load", "unnamed", ("exp(-((x - _c)/_w)**2)",), {}, "x", "")
+    assert effect_of(search, bump) == ""
+
+
+def test_what_is_no_learned_shape_is_not_read(damped):
+    inquiry, as_read, verdict = damped
+    nothing = Verdict("no_gap", as_read, ())
+    assert read_shape(inquiry, as_read, nothing) is nothing
+    unproven = Verdict("unnamed", verdict.account, ())
+    assert read_shape(inquiry, as_read, unproven) is unproven
+
+
+def test_names_stay_where_no_reading_has_fewer_numbers(damped):
+    inquiry, as_read, verdict = damped
+    one = Verdict("missing_physics", verdict.account, ())
+    assert read_instead(inquiry, as_read, one) is one
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("term", "reading"),
+    [
+        ("-8*x**2*v", r"-8\.\d+\*\(x\*\*2\*v\)"),
+        ("-6*exp(-((x - 0.3)/0.2)**2)", r"-6\.\d+\*\(exp\(-\(\((x|\(x\)) - 0\.30?\d*\)/0\.(2|19\d)\d*\)\*\*2\)\)"),
+    ],
+)
+def test_pieces_of_the_catalogue_that_imitate_a_curve_do_not_stand_in_its_place(term, reading):
+    found, augmented = discover(mass(), record(with_load(term), 3, Experiment(seconds=10.0)))
+    assert found.verdict == "unnamed"
+    (effect,) = found.effects
+    assert re.fullmatch(reading, effect.reads_as)
+    assert found.held_out.after < 1.2 * found.held_out.noise_floor
+    assert found.to_json()["effects"][0]["reads_as"] == {"expression": effect.reads_as, "effect": None}
+    assert f"reads as {effect.reads_as}" in found.sentence
+    assert [one.name for one in augmented.effects] == ["unnamed"]
