@@ -105,7 +105,7 @@ def chosen_contacts(trial: Trial, detector: str = "auto", direction: str = "") -
 
 
 def seen_contacts(
-    trial: Trial, direction: str = ""
+    trial: Trial, direction: str = "", body_weight_n: float | None = None
 ) -> tuple[dict[str, dict[str, Contacts]], dict[str, GaitdiscError | None]]:
     """Contacts as each detector places them, and why a detector finds no stride of both feet.
 
@@ -115,6 +115,8 @@ def seen_contacts(
         With any streams; each detector needs its own.
     direction : str
         Direction of walking in the laboratory's axes, `+x` to `-z`; inferred from the markers where it is empty.
+    body_weight_n : float, optional
+        Mass x 9.81, by which a plate counts as loaded.
 
     Returns
     -------
@@ -125,7 +127,7 @@ def seen_contacts(
     """
     attempts: dict[str, Callable[[], dict[str, Contacts]]] = {}
     if "forces" in trial.streams:
-        attempts["force"] = partial(_force, trial, direction)
+        attempts["force"] = partial(_force, trial, direction, body_weight_n)
     if any(event.label == "initial contact" for event in trial.events):
         attempts["events"] = partial(event_contacts, trial)
     if "markers" in trial.streams:
@@ -182,15 +184,15 @@ def _offset_findings(trial: Trial, chosen: str, reference: str, offset_s: float 
     return [Finding("note", "contact offset", trial.name, what, "")]
 
 
-def _force(trial: Trial, direction: str) -> dict[str, Contacts]:
+def _force(trial: Trial, direction: str, body_weight_n: float | None) -> dict[str, Contacts]:
     forces = trial.stream("forces")
     if any(c.quantity == "vertical_force" and c.side for c in forces.channels):
-        return force_contacts(forces)
+        return force_contacts(forces, None, body_weight_n)
     if "markers" not in trial.streams:
         return force_contacts(forces)  # refuses, and says what is needed
     markers = trial.stream("markers")
     heels, pelvis = named_markers(markers)
-    return plate_contacts(forces, markers, heels, trial_direction(markers, heels, pelvis, direction))
+    return plate_contacts(forces, markers, heels, trial_direction(markers, heels, pelvis, direction), body_weight_n)
 
 
 def _markers(markers: Recording, direction: str) -> dict[str, Contacts]:

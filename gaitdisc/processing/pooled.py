@@ -37,6 +37,7 @@ from gaitdisc.processing.trial_cycles import (
 from gaitdisc.recording import PERCENT, Cycle, Finding, Recording, Strides, Trial
 from gaitdisc.results import PooledCycles, Refusal
 from gaitdisc.results.pooled_cycles import CYCLE_COLUMNS
+from gaitdisc.signals.contact_force import rise_of
 from gaitdisc.signals.marker_distances import person_findings
 from gaitdisc.signals.sides import verify_sides
 from gaitdisc.signals.strides import duration_reasons
@@ -163,7 +164,8 @@ def _seen(standing: Standing, planned: PlannedTrial, number: int, read: Trial, s
     study = standing.study
     trial, plate_steps = standing.computed(planned, read)
     direction = study.treadmill.direction if study.treadmill else ""
-    steps = step_events(trial, study.strides.detector, direction)
+    weight_n = standing.body_weight_n(planned)
+    steps = step_events(trial, study.strides.detector, direction, weight_n)
     outside = study.strides.ground == "overground" or (study.strides.ground == "auto" and over_ground(trial))
     legs, states, lost = cycle_channels(trial, study.filters, plate_steps is not None)
     strides = _strides(steps, study)
@@ -171,7 +173,7 @@ def _seen(standing: Standing, planned: PlannedTrial, number: int, read: Trial, s
     findings = (*trial.findings, *quality_findings(_known(trial)), *side_findings(trial, strides), *lost)
     findings += _static_findings(standing, trial, legs is not None)
     files = {s.source.file: s.source.sha256 for s in trial.streams.values() if s.source.sha256}
-    plates, feet = plate_loadings(trial), heel_paths(trial, direction)
+    plates, feet = plate_loadings(trial, rise_of(weight_n)), heel_paths(trial, direction)
     kept = shelved.put(states)
     return _Seen(planned, number, steps, outside, trial.name, plates, feet, legs, kept, findings, files, plate_steps)
 

@@ -13,6 +13,7 @@ from gaitdisc.kinematics.calibration import Calibration, calibrated
 from gaitdisc.kinematics.motion import chosen_marker_set
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
+from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.markers_to_moments import computed_trial
 from gaitdisc.recording import Finding, Recording, Trial
@@ -77,6 +78,20 @@ class Standing:
             return self._without_angles(given_up, trial.name, error), None
         made = found.trial.findings[len(trial.findings) :]
         return replace(found.trial, findings=(*trial.findings, *self._new((*made, *findings)))), found.steps
+
+    def body_weight_n(self, planned: PlannedTrial) -> float | None:
+        """Weight of the person [N]: by the study, else the static file, else the walk's; None where none states one.
+
+        Parameters
+        ----------
+        planned : PlannedTrial
+            The walk.
+        """
+        try:
+            mass = self.participant.mass_kg or self._measures(self.planned).mass_kg or self._measures(planned).mass_kg
+        except GaitdiscError:
+            return None
+        return mass * GRAVITY if mass else None
 
     def _without_angles(self, trial: Trial, whose: str, error: GaitdiscError) -> Trial:
         said = Finding("warning", "no angles", whose, str(error).rstrip("."), "angles from markers")

