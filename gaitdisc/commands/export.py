@@ -26,13 +26,14 @@ def export(
         typer.Option("--labels", help="Keep labels that are outside the vocabulary; without it they are numbered."),
     ] = False,
     parquet: Annotated[bool, typer.Option("--parquet", help="Tables of a run as Parquet in place of CSV.")] = False,
+    mot: Annotated[bool, typer.Option("--mot", help="Of a run also the mean cycle of each foot, as .mot.")] = False,
 ) -> None:
     """Bring EMG, force and kinematics of one walk to one time base, low-passed where they are faster than it.
 
     Of a run with pooled cycles: cycles, curves, means and spatiotemporal values, each as one tidy table.
     """
     if len(files) == 1 and (files[0] / "run.json").is_file():
-        _cycles(files[0], out, parquet)
+        _cycles(files[0], out, parquet, mot)
         return
     if out.suffix.lower() == ".onnx":
         _model(files, out)
@@ -67,9 +68,10 @@ def _model(folders: list[Path], out: Path) -> None:
     typer.echo(f"{out}: {model.reconstructor.kind}, {', '.join(what.sensors)} to {len(what.states)} states")
 
 
-def _cycles(run_folder: Path, out: Path, parquet: bool) -> None:
+def _cycles(run_folder: Path, out: Path, parquet: bool, mot: bool) -> None:
     from gaitdisc.errors import SchemaError
-    from gaitdisc.report.cycles_tables import all_curves, all_cycles, all_means, all_spatiotemporal
+    from gaitdisc.ingest.storage import write_storage
+    from gaitdisc.report.cycles_tables import all_curves, all_cycles, all_means, all_spatiotemporal, mean_recordings
     from gaitdisc.results.run_store import load_run
     from gaitdisc.spreadsheet import write_csv
     from gaitdisc.whole_file import whole_file
@@ -93,5 +95,8 @@ def _cycles(run_folder: Path, out: Path, parquet: bool) -> None:
                 table.to_parquet(part, index=False)
         else:
             write_csv(table, out / f"{name}.csv")
+    for name, recording in mean_recordings(run.cycles).items() if mot else ():
+        write_storage(recording, out / f"{name}.mot")
+        typer.echo(f"{out / name}.mot: {len(recording.names)} channels")
     counts = ", ".join(f"{name} {len(table)}" for name, table in tables.items())
     typer.echo(f"{out}: rows of {counts}")

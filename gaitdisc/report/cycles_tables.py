@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from gaitdisc.recording import PERCENT
+from gaitdisc.recording import PERCENT, Recording
 from gaitdisc.report.table import Table
 from gaitdisc.report.wording import NONE, SIDE_WORDS, number
 from gaitdisc.results import PooledCycles
@@ -53,6 +53,38 @@ def all_means(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
     tables = [_named(one, one.mean_curves()) for one in cycles if len(one.kept)]
     columns = ["participant", "group", "session", "condition", "channel", "unit", "side", "percent", "n", "mean", "sd"]
     return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=pd.Index(columns))
+
+
+def mean_recordings(cycles: Sequence[PooledCycles]) -> dict[str, Recording]:
+    """Mean cycle of each foot of everybody as a recording, by participant, session, condition and side.
+
+    Percent of the cycle becomes time, 0 to the mean duration of the cycles; a channel without a side is that over the
+    cycles of the foot; one that is not known over the whole cycle is left out.
+
+    Parameters
+    ----------
+    cycles : sequence of PooledCycles
+        Of a run.
+    """
+    found = {}
+    for one in cycles:
+        means = one.mean_curves()
+        known = {channel.name: channel for channel in one.channels}
+        for side in sorted(set(means["side"])):
+            own = means[means["side"] == side].pivot_table("mean", "percent", "channel")
+            own = own[[name for name in known if name in own and bool(np.isfinite(own[name]).all())]]
+            duration_s = float(one.kept.loc[one.kept["side"] == side, "stride_s"].mean())
+            if own.empty or not len(own.columns):
+                continue
+            words = (one.subject, one.session, one.condition, side)
+            found["_".join(word.replace(" ", "-") for word in words if word)] = Recording(
+                own.index.to_numpy(float) / 100.0 * duration_s,
+                own.to_numpy(float),
+                tuple(known[str(name)] for name in own.columns),
+                one.subject,
+                one.condition,
+            )
+    return found
 
 
 def all_curves(cycles: Sequence[PooledCycles]) -> pd.DataFrame:

@@ -7,10 +7,11 @@ from typer.testing import CliRunner
 
 from gaitdisc.channel import Channel
 from gaitdisc.cli import app
+from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.recording import Samples
 from gaitdisc.results import ResponseRun
-from gaitdisc.results.cycles_store import save_cycles
+from gaitdisc.results.cycles_store import cycles_name, save_cycles
 from gaitdisc.results.provenance import made_now
 from gaitdisc.results.run_store import save_run
 from gaitdisc.sensing.model_folder import SensingModel, save_model
@@ -60,6 +61,23 @@ def test_cycles_of_a_run_as_tidy_tables(tmp_path, ending):
     knee = tables["curves"].query("channel == 'knee_angle_r' and side == 'r' and start_s == 2.0")
     assert knee["value"].to_numpy() == pytest.approx(one.curves[5, :, 1])  # the third cycle of the right foot
     assert set(tables["means"]["n"]) <= {1, 3}
+
+
+def test_mean_cycles_of_a_run_as_mot_and_back(tmp_path):
+    one = made_cycles(each=3, out=1, session="visit 1")
+    save_cycles(one, tmp_path / "run" / "cycles" / cycles_name("P01", "visit 1", "walk"), "key")
+    save_run(ResponseRun("t", "walk", "", (), (), (), made_now({}, 0, {}, "4.2"), cycles=(one,)), tmp_path / "run")
+    done = CliRunner().invoke(app, ["export", str(tmp_path / "run"), "--out", str(tmp_path / "out"), "--mot"])
+    assert done.exit_code == 0, done.output
+    means = one.mean_curves()
+    for side in "lr":
+        trial = read_trial(tmp_path / "out" / f"P01_visit-1_walk_{side}.mot")
+        angles = trial.stream("kinematics")
+        assert len(angles.time) == 101 and angles.time[-1] == pytest.approx(1.0)  # all cycles last a second
+        for name in (f"knee_angle_{side}", "pelvis_tilt"):
+            mean = means[(means["channel"] == name) & (means["side"] == side)]["mean"]
+            assert angles[name] == pytest.approx(mean.to_numpy())
+        assert not [name for name in angles.names if name.endswith("_l" if side == "r" else "_r")]
 
 
 def test_a_run_without_cycles_has_none_to_export(tmp_path):
