@@ -14,14 +14,14 @@ from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.direction import Direction, marker_position
 
 RISE_N = 50.0
-RISE_OF_BODY_WEIGHT = 0.05
+RISE_OF_BODY_WEIGHT = 0.1  # of whoever weighs less than 51 kg
 LEAST_RISE_N = 20.0  # a plate's own noise and drift stay below it
-REST_OF_RISE = 0.4  # 20 N of 50 N
+REST_N = 20.0  # below which a foot that was on the ground has left it
 SHORTEST_S = 0.1  # neither stance nor swing is shorter; what is, is chatter
 
 
 def rise_of(body_weight_n: float | None) -> float:
-    """Force above which a foot is on the ground [N]: 5 % of body weight, from 20 to 50 N; 50 N where it is unknown.
+    """Force above which a foot is on the ground [N]: 50 N, or a tenth of a light body's weight, at least 20 N.
 
     Parameters
     ----------
@@ -30,8 +30,8 @@ def rise_of(body_weight_n: float | None) -> float:
 
     Examples
     --------
-    >>> rise_of(None), rise_of(64 * 9.81), rise_of(15 * 9.81), rise_of(120 * 9.81)
-    (50.0, 31.392000000000003, 20.0, 50.0)
+    >>> rise_of(None), rise_of(64 * 9.81), round(rise_of(30 * 9.81), 2), rise_of(15 * 9.81)
+    (50.0, 50.0, 29.43, 20.0)
     """
     if body_weight_n is None:
         return RISE_N
@@ -41,7 +41,7 @@ def rise_of(body_weight_n: float | None) -> float:
 def loaded(force_n: NDArray[np.float64], rate_hz: float, rise_n: float = RISE_N) -> NDArray[np.intp]:
     """First and last sample of each loading of a plate or belt.
 
-    A loading begins above `rise_n` and ends below 0.4 `rise_n`. What is loaded for less than 0.1 s is chatter and
+    A loading begins above `rise_n` and ends below 20 N. What is loaded for less than 0.1 s is chatter and
     counts as unloaded; what is then unloaded for less than 0.1 s counts as loaded.
 
     Parameters
@@ -56,7 +56,7 @@ def loaded(force_n: NDArray[np.float64], rate_hz: float, rise_n: float = RISE_N)
     Returns
     -------
     ndarray (loading, 2) [sample]
-        First sample above `rise_n`, and the one after the last above 0.4 `rise_n`.
+        First sample above `rise_n`, and the one after the last above 20 N.
 
     Examples
     --------
@@ -64,7 +64,7 @@ def loaded(force_n: NDArray[np.float64], rate_hz: float, rise_n: float = RISE_N)
     >>> loaded(f, 100.0).tolist()
     [[32, 92]]
     """
-    on, high = force_n > REST_OF_RISE * rise_n, force_n > rise_n
+    on, high = force_n > min(REST_N, rise_n), force_n > rise_n
     spans = [(start + int(np.argmax(high[start:end])), end) for start, end in runs(on) if high[start:end].any()]
     shortest = SHORTEST_S * rate_hz
     last = len(force_n)
@@ -83,7 +83,7 @@ def force_contacts(
 ) -> dict[str, Contacts]:
     """Contacts of both feet from one vertical force a foot: a split belt, or force assigned to a foot.
 
-    Contact is where the force rises above 5 % of body weight (see `rise_of`; 50 N where it is unknown), to a fraction
+    Contact is where the force rises above 50 N, or less under a light body (`rise_of`), to a fraction
     of a sample, after the foot has been off (`loaded`). A loading that the recording begins with gives no contact.
 
     Parameters

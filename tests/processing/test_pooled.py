@@ -194,7 +194,7 @@ def test_the_turn_without_events_is_moved_by_its_one_plate_and_says_so(turning):
     assert (last.name, dict(last.detectors), last.offset_steps) == ("P06 turn", {"markers": 1}, 1)
     assert 0.04 < last.contact_offset_s < 0.08
     (said,) = [finding.what for finding in last.findings if finding.kind == "contact offset"]
-    assert said.startswith("contacts by markers moved 58 ms later, the one step that a plate or the file's events saw")
+    assert said.startswith("contacts by markers moved 59 ms later, the one step that a plate or the file's events saw")
     assert last.kept[last.kept["side"] == "r"]["start_by"].tolist() == ["force"]
 
 
