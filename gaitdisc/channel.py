@@ -102,12 +102,8 @@ class Vocabulary:
 
     Parameters
     ----------
-    channels : tuple of Channel
-        Known channels, in the file's order.
     positive : dict of str to str
         Channel name -> what a positive value means.
-    aliases : dict of str to str
-        Folded label -> channel name.
     """
 
     channels: tuple[Channel, ...]
@@ -136,13 +132,6 @@ class Vocabulary:
     def nearest(self, label: str, among: Iterable[str] | None = None) -> str | None:
         """Known name most like a label, or None where none is near.
 
-        Parameters
-        ----------
-        label : str
-            A name that was not found.
-        among : iterable of str, optional
-            Names to choose from; the whole vocabulary by default.
-
         Examples
         --------
         >>> vocabulary().nearest("ankle_ange_r")
@@ -153,13 +142,6 @@ class Vocabulary:
 
 def nearest_word(word: str, among: Iterable[str]) -> str | None:
     """Word of a list most like another, or None where none is near.
-
-    Parameters
-    ----------
-    word : str
-        What was written.
-    among : iterable of str
-        What could have been meant.
 
     Examples
     --------
@@ -173,11 +155,6 @@ def nearest_word(word: str, among: Iterable[str]) -> str | None:
 
 def folded_label(label: str) -> str:
     """Fold a label to lower case without blanks and punctuation.
-
-    Parameters
-    ----------
-    label : str
-        As written in a file.
 
     Examples
     --------
@@ -211,11 +188,6 @@ def path_label(label: str) -> str:
 def side_of(name: str) -> str:
     """Side that a name tells: `r`, `l` or empty.
 
-    Parameters
-    ----------
-    name : str
-        Name of a channel.
-
     Examples
     --------
     >>> side_of("emg_sol_l"), side_of("hip_flexion_r_moment"), side_of("lumbar_bending")
@@ -234,11 +206,6 @@ def schema_folder() -> Path:
 @cache
 def vocabulary() -> Vocabulary:
     """Vocabulary of `data_schema/channels.csv`.
-
-    Raises
-    ------
-    ChannelError
-        If two channels of the file claim the same alias.
 
     Examples
     --------

@@ -39,12 +39,6 @@ def compiled(function: Callable[..., Any] | None = None, **options: Any) -> Any:
     ----------
     function : callable, optional
         What to compile; without it, a decorator is given back.
-    **options : any
-        Of `numba.njit`.
-
-    Returns
-    -------
-    callable
 
     Examples
     --------

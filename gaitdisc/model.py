@@ -36,15 +36,8 @@ class Augmented:
 
     Parameters
     ----------
-    known : Model
-        The Nominal model, or a simulation.
     missing : Model
         The Discrepancy model; same inputs and outputs.
-
-    Raises
-    ------
-    ShapeError
-        If the two differ in inputs or outputs.
 
     Examples
     --------
@@ -83,11 +76,5 @@ class Augmented:
 
 
 def augment(known: Model, missing: Model) -> Augmented:
-    """Add what a model misses to it.
-
-    Parameters
-    ----------
-    known, missing : Model
-        Same inputs and outputs.
-    """
+    """Add what a model misses to it."""
     return Augmented(known, missing)

@@ -9,13 +9,6 @@ from html import escape
 def html_of(title: str, rows: Iterable[tuple[str, str]]) -> str:
     """HTML of a title and a few rows of two cells; every text is escaped.
 
-    Parameters
-    ----------
-    title : str
-        One line.
-    rows : iterable of (str, str)
-        What, and how much.
-
     Examples
     --------
     >>> html_of("<walk>", [("rate", "100 Hz")])

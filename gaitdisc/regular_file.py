@@ -22,24 +22,10 @@ _KINDS = (
 def check_regular(path: Path, largest_bytes: int = LARGEST_BYTES) -> int:
     """Size of a file that may be opened: a regular one, or a link to one, that is not too large.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    largest_bytes : int
-        What is read at most.
-
     Returns
     -------
     int
         Length of the file [bytes].
-
-    Raises
-    ------
-    ReadError
-        If it is a folder, a pipe, a socket or a device, or too large.
-    OSError
-        If there is no such file, or the system does not let it be seen.
 
     Examples
     --------

@@ -28,11 +28,6 @@ _OTHER_SEPARATORS = re.compile(r"[;\t\r]")  # of cells in another language, of r
 def quoted(text: str) -> str:
     """Text of a cell or heading, with an apostrophe in front where a spreadsheet would take it for a formula.
 
-    Parameters
-    ----------
-    text : str
-        Any; a number is given back as it is.
-
     Examples
     --------
     >>> quoted("=1+1"), quoted("knee_angle_r"), quoted("-0.5"), quoted("-x")
@@ -43,11 +38,6 @@ def quoted(text: str) -> str:
 
 def unquoted(text: str) -> str:
     """Text as it was before `quoted`.
-
-    Parameters
-    ----------
-    text : str
-        Of a cell or heading.
 
     Examples
     --------
@@ -64,15 +54,8 @@ def write_csv(table: pd.DataFrame, path: Path, float_format: str | None = None) 
     ----------
     table : DataFrame
         Its index is not written.
-    path : Path
-        File to write.
     float_format : str, optional
         Of every number; by default as many digits as it takes to read the same number again.
-
-    Raises
-    ------
-    WriteError
-        If the file cannot be written.
     """
     safe = table.rename(columns=lambda name: quoted(str(name)))
     for place in range(len(table.columns)):
@@ -89,8 +72,6 @@ def read_csv(path: Path, words: Sequence[str] = ()) -> pd.DataFrame:
 
     Parameters
     ----------
-    path : Path
-        The file.
     words : sequence of str
         Columns whose cells are words, also where they look like numbers: a participant called 007.
     """

@@ -14,16 +14,6 @@ _NO_KEYS = re.compile(r"\d\.\d|#.*|\"[^\"\n]*\"|'[^'\n]*'")
 def parsed_toml(text: str) -> dict[str, Any]:
     r"""Table of a TOML text.
 
-    Parameters
-    ----------
-    text : str
-        The file.
-
-    Raises
-    ------
-    tomllib.TOMLDecodeError
-        If it is no TOML, or tables, lists or a dotted key are nested more than 40 deep.
-
     Examples
     --------
     >>> parsed_toml("[filters]\norder = 4")

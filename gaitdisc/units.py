@@ -87,11 +87,6 @@ def known_units() -> tuple[str, ...]:
 def parsed_unit(text: str) -> str | None:
     """Unit that a text means, or None where it means none of the closed list.
 
-    Parameters
-    ----------
-    text : str
-        As written in a file: `mm`, `Nmm`, `Degrees`.
-
     Examples
     --------
     >>> parsed_unit("Nmm"), parsed_unit("mV"), parsed_unit("furlong")
@@ -106,16 +101,6 @@ def parsed_unit(text: str) -> str | None:
 
 def inner_unit(unit: str) -> str:
     """Unit that the package uses for what is measured in `unit`.
-
-    Parameters
-    ----------
-    unit : str
-        One of `known_units()`.
-
-    Raises
-    ------
-    UnitError
-        If the unit is not in the closed list.
 
     Examples
     --------
@@ -132,17 +117,10 @@ def convert(values: NDArray[np.floating], unit: str, to: str) -> NDArray[np.floa
     ----------
     values : ndarray, any shape [unit]
         Numbers to convert.
-    unit, to : str
-        Units of the same dimension.
 
     Returns
     -------
     ndarray, same shape [to]
-
-    Raises
-    ------
-    UnitError
-        If a unit is unknown or the two measure different things.
 
     Examples
     --------
@@ -164,13 +142,6 @@ def convert(values: NDArray[np.floating], unit: str, to: str) -> NDArray[np.floa
 
 def rate_unit(unit: str, order: int = 1) -> str:
     """Unit of a time derivative.
-
-    Parameters
-    ----------
-    unit : str
-        Unit of the quantity.
-    order : int
-        How many times it is differentiated.
 
     Examples
     --------

@@ -17,20 +17,10 @@ PART = ".part-"  # files begin with it until they are whole
 def whole_file(path: Path) -> Iterator[Path]:
     """Path to write to; it takes the place of `path` when the block ends well, and vanishes when it does not.
 
-    Parameters
-    ----------
-    path : Path
-        Where the file shall stand. Missing folders are made.
-
     Yields
     ------
     Path
         A file of the same ending in the same folder.
-
-    Raises
-    ------
-    WriteError
-        If the disk is full or the folder cannot be written; an older file at `path` is left as it was.
 
     Examples
     --------
@@ -65,20 +55,8 @@ def write_whole(path: Path | str, content: bytes | str) -> Path:
 
     Parameters
     ----------
-    path : Path or str
-        File to write.
     content : bytes or str
         Everything that the file shall hold; text is written as UTF-8.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    WriteError
-        As `whole_file`.
 
     Examples
     --------

@@ -30,14 +30,8 @@ def ablate_study(
 
     Parameters
     ----------
-    study : Study
-        Who, which files, which settings.
-    folder : Path
-        Folder of the run.
     lengths_s : sequence of float
         Lengths of the training part [s]; its whole length is always added.
-    part : str
-        `first` or `last` seconds of the training part.
     workers : Workers, optional
         Where participants are computed; in this process, one after the other, by default.
     told : callable
@@ -47,13 +41,6 @@ def ablate_study(
     -------
     ResponseRun
         With `quantities`; whoever had to be refused is in `refusals`.
-
-    Raises
-    ------
-    WriteError
-        If another run works in the folder, or it cannot be written.
-    ClusterError
-        If the cluster cannot be reached.
     """
     workers = workers or Workers()
     run = run_study(study, folder, workers)

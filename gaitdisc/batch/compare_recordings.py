@@ -32,27 +32,8 @@ def compare_files(
 
     Parameters
     ----------
-    first : Path
-        A simulated walk, or one condition.
-    second : Path
-        The measured walk, or the other condition.
-    channels : tuple of str
-        Only these; by default all that both have.
     cutoff_hz : float
         -3 dB frequency of one pass of the low-pass of angles and moments.
-    detector : str
-        What finds initial contact in both.
-    smallest : Smallest
-        Difference that is named at least.
-
-    Returns
-    -------
-    Mismatch
-
-    Raises
-    ------
-    GaitdiscError
-        If a file cannot be read, is no walking, or the two have nothing in common.
     """
     names = _names(first, second)
     public = PublicWords(frozenset(channels), dict(zip((first.name, second.name), names, strict=True)))
@@ -83,22 +64,11 @@ def compare_study(
     ----------
     study : Study
         With both conditions; its filters and its detector are used.
-    participant : str
-        Pseudonym; all participants, paired, where it is empty.
-    channels : tuple of str
-        Only these; by default the study's angles and EMG.
-    smallest : Smallest
-        Difference that is named at least.
 
     Returns
     -------
     Mismatch
         Device minus nominal. Participants who lack a walk, or of whom one was refused, are named in the findings.
-
-    Raises
-    ------
-    GaitdiscError
-        If the participant's walks are refused, or too few participants are left.
     """
     settings = public_settings(study, {"filters", "strides", "conditions"})
     if participant:

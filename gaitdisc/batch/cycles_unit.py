@@ -20,22 +20,7 @@ from gaitdisc.results.cycles_store import cycles_name, load_cycles, save_cycles
 
 
 def computed_cycles(study: Study, participant: Participant, folder: Path) -> tuple[PooledCycles, ...]:
-    """Pooled cycles of a participant, computed, or loaded where an earlier run had the same files and settings.
-
-    Parameters
-    ----------
-    study : Study
-        Settings.
-    participant : Participant
-        Who.
-    folder : Path
-        Folder of the run.
-
-    Raises
-    ------
-    WriteError
-        If the folder cannot be written.
-    """
+    """Pooled cycles of a participant, computed, or loaded where an earlier run had the same files and settings."""
     key = cycles_key(study, participant)
     places = [
         folder / "cycles" / cycles_name(participant.id, one.session, one.condition)
@@ -67,15 +52,7 @@ def computed_cycles(study: Study, participant: Participant, folder: Path) -> tup
 
 
 def cycles_key(study: Study, participant: Participant) -> str:
-    """Hash of all that decides a participant's pooled cycles: files, settings, and the package's own code.
-
-    Parameters
-    ----------
-    study : Study
-        Settings.
-    participant : Participant
-        Who.
-    """
+    """Hash of all that decides a participant's pooled cycles: files, settings, and the package's own code."""
     parts = [participant.id, participant.group, f"{participant.mass_kg} {participant.height_m} {participant.sex}"]
     named = study.kinematics.marker_set if study.kinematics else ""
     if named.endswith(".toml") and study.path_of(named).is_file():

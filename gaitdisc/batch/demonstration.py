@@ -31,14 +31,8 @@ def write_demonstration(
 
     Parameters
     ----------
-    folder : Path
-        Where the study shall lie.
     duration_s : float
         Length of each walk [s]; the dissertation's is 240.
-    people : int
-        The first so many of the twelve.
-    hidden : str
-        What differs between the conditions: a word of `gaitdisc.cohort.cohort.HIDDEN`.
     told : callable
         Called with a pseudonym and 1.0 when that person has walked.
 
@@ -46,11 +40,6 @@ def write_demonstration(
     -------
     Study
         As written; it passes through the same reading as a laboratory's.
-
-    Raises
-    ------
-    SchemaError
-        If `hidden` is no such word.
     """
     participants = []
     for person in the_twelve()[:people]:
@@ -78,22 +67,7 @@ def write_demonstration(
 
 
 def write_trial(trial: Trial, folder: Path, stem: str) -> tuple[str, ...]:
-    """Write angles as OpenSim does, EMG and forces as the analog channels of a C3D file.
-
-    Parameters
-    ----------
-    trial : Trial
-        Of the cohort.
-    folder : Path
-        Of the study.
-    stem : str
-        Path in it, without ending.
-
-    Returns
-    -------
-    tuple of str
-        Both files, relative to the folder.
-    """
+    """Write angles as OpenSim does, EMG and forces as the analog channels of a C3D file."""
     angles, analog = names = (f"{stem}_ik.mot", f"{stem}.c3d")
     (folder / angles).parent.mkdir(parents=True, exist_ok=True)
     write_storage(trial.stream("kinematics"), folder / angles)

@@ -20,20 +20,7 @@ from gaitdisc.simulation.simulation import Simulation
 
 
 def discover_answer(hidden: HiddenEffect, record: Record) -> Naming:
-    """Ask `gaitdisc discover` what the known model lacks.
-
-    Parameters
-    ----------
-    hidden : HiddenEffect
-        What is looked for.
-    record : Record
-        Of its system; the training part is shown.
-
-    Raises
-    ------
-    ShapeError
-        If what is known is no simulation file.
-    """
+    """Ask `gaitdisc discover` what the known model lacks."""
     begun, made, system = clock.process_time(), record.conditions, record.system
     if not isinstance(system.known, KnownRates):
         raise ShapeError(
@@ -53,15 +40,7 @@ def discover_answer(hidden: HiddenEffect, record: Record) -> Naming:
 
 
 def judged(hidden: HiddenEffect, found: Discovery) -> tuple[str, float]:
-    """Answer of a discovery in the words of `Naming`, and its number over the true one.
-
-    Parameters
-    ----------
-    hidden : HiddenEffect
-        What is looked for.
-    found : Discovery
-        The answer.
-    """
+    """Answer of a discovery in the words of `Naming`, and its number over the true one."""
     named: dict[tuple[str, ...], FoundEffect] = {(one.place, one.name): one for one in found.effects}
     if not named:
         return "nothing", float("nan")
@@ -76,15 +55,7 @@ def judged(hidden: HiddenEffect, found: Discovery) -> tuple[str, float]:
 
 
 def forecast_accuracy(record: Record, augmented: Simulation) -> float:
-    """How much less error the forecast of an augmented simulation has, median of channels [%].
-
-    Parameters
-    ----------
-    record : Record
-        Whose forecast is made.
-    augmented : Simulation
-        What `discover` gave back.
-    """
+    """How much less error the forecast of an augmented simulation has, median of channels [%]."""
     system, start, truth = record.system, record.start(forecast=True), record.target(forecast=True)
     known, states = (
         rates.run(start[None], record.conditions.dt_s, len(truth) - 1)[0]

@@ -27,31 +27,7 @@ from gaitdisc.simulation.writing import simulation_text
 def discover_files(
     simulation: Path, measured: Path, catalogue: Path | None = None, told: Callable[[str], None] = lambda _: None
 ) -> tuple[Discovery, Simulation]:
-    """Find what a simulation file lacks against a table of measured trials.
-
-    Parameters
-    ----------
-    simulation : Path
-        Simulation file.
-    measured : Path
-        CSV or Parquet.
-    catalogue : Path, optional
-        Effects of the user's own.
-    told : callable
-        Takes one line about each step.
-
-    Returns
-    -------
-    discovery : Discovery
-        The answer, with what it rests on.
-    augmented : Simulation
-        The simulation with what was found in it.
-
-    Raises
-    ------
-    GaitdiscError
-        If a file cannot be read or does not fit the others, or the simulation as given leaves all bounds.
-    """
+    """Find what a simulation file lacks against a table of measured trials."""
     told(f"reading {simulation.name} and {measured.name}")
     model = read_simulation(simulation)
     data = read_measured(measured, model)
@@ -62,31 +38,7 @@ def discover_files(
 def discover_model(
     model: PythonSimulation, measured: Path, catalogue: Path | None = None, told: Callable[[str], None] = lambda _: None
 ) -> tuple[Discovery, PythonSimulation]:
-    """Find what a simulation that is a Python object lacks against a table of measured trials.
-
-    Parameters
-    ----------
-    model : PythonSimulation
-        Made by `python_simulation`.
-    measured : Path
-        CSV or Parquet.
-    catalogue : Path, optional
-        Effects of the user's own.
-    told : callable
-        Takes one line about each step.
-
-    Returns
-    -------
-    discovery : Discovery
-        The answer, with what it rests on.
-    augmented : PythonSimulation
-        The model with what was found in it.
-
-    Raises
-    ------
-    GaitdiscError
-        As `discover_files`; also if the function does not give a derivative for each row and state.
-    """
+    """Find what a simulation that is a Python object lacks against a table of measured trials."""
     told(f"reading {measured.name}")
     simulation = cast("Simulation", model)  # it goes wherever a `Simulation` goes
     data = read_measured(measured, simulation)
@@ -99,28 +51,10 @@ def discover_study(
 ) -> tuple[Discovery, Simulation]:
     """Find what a participant's Nominal model lacks on the device walk.
 
-    Parameters
-    ----------
-    study : Path
-        Study folder.
-    participant : str
-        Pseudonym.
-    catalogue : Path, optional
-        Effects of the user's own.
-    told : callable
-        Takes one line about each step.
-
     Returns
     -------
-    discovery : Discovery
-        The answer, with what it rests on.
     augmented : Simulation
         The Nominal model with what was found in it.
-
-    Raises
-    ------
-    GaitdiscError
-        If the study cannot be read, or a walk of the participant is missing or refused.
     """
     # imported here: a simulation file needs no filters and no pandas
     from gaitdisc.batch.nominal_model import nominal_inquiry
@@ -143,23 +77,8 @@ def discovered(
 
     Parameters
     ----------
-    model : Simulation
-        A `PythonSimulation` goes as well.
-    data : Measured
-        Its trials.
-    catalogue : Path or None
-        Effects of the user's own.
     files : dict of Path to str
         Files that were read, and what each is called in the result.
-    told : callable
-        Takes one line about each step.
-
-    Returns
-    -------
-    discovery : Discovery
-        The answer.
-    augmented : Simulation
-        The model with what was found in it.
     """
     shapes = read_catalogue(catalogue) if catalogue else ()
     data = replace(data, trials=tuple(_trial_name(name, k) for k, name in enumerate(data.trials, 1)))

@@ -33,26 +33,13 @@ def nominal_inquiry(
     ----------
     study : Study
         With both walks; its filters and its detector are used.
-    participant : str
-        Pseudonym.
     joint : str
         Angle, without its side; the side is that of the study's strides.
-    strides : int
-        In each trial of the inquiry.
 
     Returns
     -------
     simulation : Simulation
         States theta [rad] and omega [rad/s], input phase, port `acceleration` [rad/s^2].
-    measured : Measured
-        Of the device walk.
-
-    Raises
-    ------
-    SchemaError
-        If a walk is missing or refused.
-    StrideError
-        If there are too few strides in a row.
     """
     walks, refusals = processed_walks(study, study.participant(participant))
     if refusals:
@@ -67,15 +54,7 @@ def nominal_inquiry(
 
 
 def nominal_model(walk: Walk, name: str) -> Simulation:
-    """Joint acceleration of a walk, linear in angle and rate and periodic in percent stride.
-
-    Parameters
-    ----------
-    walk : Walk
-        The Nominal one.
-    name : str
-        Of the joint angle.
-    """
+    """Joint acceleration of a walk, linear in angle and rate and periodic in percent stride."""
     angle, rate, speedup, phase = _motion(walk, name)
     known = np.isfinite(np.column_stack([angle, rate, speedup, phase])).all(axis=1)
     turn = 2 * np.pi * np.outer(phase[known], np.arange(1, HARMONICS + 1))
@@ -98,22 +77,7 @@ def nominal_model(walk: Walk, name: str) -> Simulation:
 
 
 def stride_trials(walk: Walk, name: str, strides: int = STRIDES) -> Measured:
-    """Cut a walk into trials of so many strides in a row.
-
-    Parameters
-    ----------
-    walk : Walk
-        Any.
-    name : str
-        Of the joint angle.
-    strides : int
-        In each trial.
-
-    Raises
-    ------
-    StrideError
-        If there are too few strides in a row.
-    """
+    """Cut a walk into trials of so many strides in a row."""
     angle, _, _, phase = _motion(walk, name)
     time = np.asarray(walk.state.time)
     own = walk.strides[walk.side]

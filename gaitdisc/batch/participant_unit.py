@@ -32,8 +32,6 @@ class ParticipantUnit:
 
     Parameters
     ----------
-    walks : tuple of WalkSummary
-        Walks that could be processed.
     response : ParticipantResponse, optional
         None where a walk or the fit was refused.
     refusals : tuple of Refusal
@@ -60,26 +58,10 @@ def computed_unit(study: Study, participant: Participant, folder: Path, progress
     What is given back was loaded from the folder in either case, so that arrays stay there until they are looked at,
     and a run that went on has the numbers of one that was never stopped, to the last bit.
 
-    Parameters
-    ----------
-    study : Study
-        Settings.
-    participant : Participant
-        Who.
-    folder : Path
-        Folder of the run.
-    progress : callable
-        Called with the fraction done.
-
     Returns
     -------
     ParticipantUnit
         A refusal is part of the result; it stops this participant and nobody else.
-
-    Raises
-    ------
-    WriteError
-        If the folder cannot be written.
     """
     refused = refused_participant(study, participant)
     if refused:
@@ -98,19 +80,7 @@ def computed_unit(study: Study, participant: Participant, folder: Path, progress
 
 
 def pooled_unit(study: Study, participant: Participant, folder: Path, unfitted: str) -> ParticipantUnit:
-    """Pool the cycles of one participant over trials, or load what an earlier run pooled.
-
-    Parameters
-    ----------
-    study : Study
-        Settings.
-    participant : Participant
-        Who.
-    folder : Path
-        Folder of the run.
-    unfitted : str
-        Why no models are fitted.
-    """
+    """Pool the cycles of one participant over trials, or load what an earlier run pooled."""
     cycles = computed_cycles(study, participant, folder)
     refusals = tuple(refusal for one in cycles for refusal in one.refusals)
     why = unfitted if study.conditions.device is not None else ""
@@ -143,13 +113,7 @@ def _compared_unit(study: Study, participant: Participant, folder: Path, progres
 
 
 def response_settings(study: Study) -> ResponseSettings:
-    """Settings of the fits that a study asks for; what it does not say is the package's default.
-
-    Parameters
-    ----------
-    study : Study
-        Outputs, held-out part, seed.
-    """
+    """Settings of the fits that a study asks for; what it does not say is the package's default."""
     from gaitdisc.response.fit_response import ResponseSettings
 
     training = TrainingSettings(seed=study.models.seed)

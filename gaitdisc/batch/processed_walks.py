@@ -22,8 +22,6 @@ def processed_walks(study: Study, participant: Participant) -> tuple[dict[str, W
 
     Parameters
     ----------
-    study : Study
-        Settings.
     participant : Participant
         One who lacks a walk of a condition, or has several, is refused.
     """
@@ -35,15 +33,7 @@ def processed_walks(study: Study, participant: Participant) -> tuple[dict[str, W
 
 
 def walks_and_errors(study: Study, participant: Participant) -> tuple[dict[str, Walk], dict[str, GaitdiscError]]:
-    """Both walks of a complete participant, by condition, and the error of one that could not be, in public words.
-
-    Parameters
-    ----------
-    study : Study
-        Settings.
-    participant : Participant
-        With one trial of each condition.
-    """
+    """Both walks of a complete participant, by condition, and the error of one that could not be, in public words."""
     walks, errors = {}, {}
     words = words_of(study, participant)
     with C3DReader() as reader:  # starts its process at the first C3D file, one for both walks

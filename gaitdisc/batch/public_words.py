@@ -40,8 +40,6 @@ class PublicWords:
 
     Parameters
     ----------
-    words : frozenset of str
-        Beside those of the package.
     files : mapping of str to str
         Name of a file -> what it is called.
     """
@@ -51,11 +49,6 @@ class PublicWords:
 
     def said(self, text: str) -> str:
         """Sentence without a word of the recordings.
-
-        Parameters
-        ----------
-        text : str
-            Of an error or a finding.
 
         Examples
         --------
@@ -68,13 +61,7 @@ class PublicWords:
         return f"{said} {WHERE}" if HIDDEN in said and HIDDEN not in text else said
 
     def finding(self, finding: Finding) -> Finding:
-        """Finding without a word of the recordings.
-
-        Parameters
-        ----------
-        finding : Finding
-            Of a reader or a check.
-        """
+        """Finding without a word of the recordings."""
         return replace(
             finding,
             file=self._called(self.files.get(finding.file, finding.file)),
@@ -84,52 +71,26 @@ class PublicWords:
         )
 
     def error(self, error: GaitdiscError) -> GaitdiscError:
-        """Error of the same kind without a word of the recordings.
-
-        Parameters
-        ----------
-        error : GaitdiscError
-            Any.
-        """
+        """Error of the same kind without a word of the recordings."""
         parts = [self._called(part) for part in (error.needed, error.found, error.remedy)]
         if any(HIDDEN in part for part in parts):
             parts[2] = f"{parts[2]} {WHERE}"
         return type(error)(*parts)
 
     def trial(self, trial: Trial) -> Trial:
-        """Trial whose files are called by what they may be called, and whose findings hold public words.
-
-        Parameters
-        ----------
-        trial : Trial
-            As it was read; its channels keep their names.
-        """
+        """Trial whose files are called by what they may be called, and whose findings hold public words."""
         streams = {key: self._recording(recording) for key, recording in trial.streams.items()}
         return replace(trial, streams=streams, findings=tuple(map(self.finding, trial.findings)))
 
     def of(self, work: Callable[[], Result]) -> Result:
-        """Result of some work, whose error is said in public words.
-
-        Parameters
-        ----------
-        work : callable
-            Reads or processes recordings.
-        """
+        """Result of some work, whose error is said in public words."""
         try:
             return work()
         except GaitdiscError as error:
             raise self.error(error) from error
 
     def known_channels(self, trial: Trial, streams: Iterable[str]) -> Trial:
-        """Trial without the channels whose labels are no public words, and a finding that says how many there are.
-
-        Parameters
-        ----------
-        trial : Trial
-            As it was read.
-        streams : iterable of str
-            Which of its streams.
-        """
+        """Trial without the channels whose labels are no public words, and a finding that says how many there are."""
         kept, left_out = dict(trial.streams), 0
         for key in set(streams) & set(kept):
             names = [name for name in kept[key].names if self._called(name) == name]
@@ -174,10 +135,6 @@ def words_of(study: Study, participant: Participant, named: Iterable[str] = ()) 
 
     Parameters
     ----------
-    study : Study
-        Whose title, conditions, pseudonyms and channel names are public.
-    participant : Participant
-        Whose files get other names.
     named : iterable of str
         Channels that the user named, beside those of the study.
     """
@@ -192,17 +149,7 @@ def words_of(study: Study, participant: Participant, named: Iterable[str] = ()) 
 
 
 def of_trial(words: PublicWords, participant: Participant, planned: PlannedTrial) -> PublicWords:
-    """Public words of one trial: its own files go before others of the same name in another folder.
-
-    Parameters
-    ----------
-    words : PublicWords
-        Of the participant.
-    participant : Participant
-        Whose trial.
-    planned : PlannedTrial
-        The trial.
-    """
+    """Public words of one trial: its own files go before others of the same name in another folder."""
     return replace(words, files={**words.files, **_files(participant, planned)})
 
 
@@ -226,15 +173,7 @@ def with_public_labels(recording: Recording) -> tuple[Recording, int]:
 
 
 def public_settings(study: Study, include: set[str] | None = None) -> dict[str, Any]:
-    """Settings of a study as they may be written: files are counted, labels of the recordings numbered.
-
-    Parameters
-    ----------
-    study : Study
-        The study.
-    include : set of str, optional
-        Parts of it; all of them by default.
-    """
+    """Settings of a study as they may be written: files are counted, labels of the recordings numbered."""
     settings = study.model_dump(mode="json", include=include)
     if settings.get("kinematics", "") is None:
         del settings["kinematics"]
@@ -251,13 +190,7 @@ def public_settings(study: Study, include: set[str] | None = None) -> dict[str, 
 
 
 def public_title(study: Study) -> str:
-    """Title of a study's pages; without one its conditions, never the name of its folder.
-
-    Parameters
-    ----------
-    study : Study
-        The study.
-    """
+    """Title of a study's pages; without one its conditions, never the name of its folder."""
     conditions = study.conditions
     if study.title:
         return study.title

@@ -27,23 +27,8 @@ def computed_quantity(
 
     Parameters
     ----------
-    study : Study
-        Settings.
-    participant : Participant
-        Who; complete in the study.
-    folder : Path
-        Folder of the run.
     lengths_s : sequence of float
         Lengths of the training part [s].
-    part : str
-        `first` or `last`.
-    progress : callable
-        Called with the fraction done.
-
-    Returns
-    -------
-    DataQuantity or Refusal
-        A refusal stops this participant and nobody else.
     """
     key = response_key(unit_keys(study, participant))
     stored = stored_quantity(participant, folder, key)
@@ -63,17 +48,7 @@ def computed_quantity(
 
 
 def stored_quantity(participant: Participant, folder: Path, key: str) -> DataQuantity | None:
-    """Load what an earlier `ablate` computed from the same files and settings, if it is there and whole.
-
-    Parameters
-    ----------
-    participant : Participant
-        Who.
-    folder : Path
-        Folder of the run.
-    key : str
-        What it must rest on, of `response_key`.
-    """
+    """Load what an earlier `ablate` computed from the same files and settings, if it is there and whole."""
     try:
         quantity, stored_key = load_quantity(_folder(folder, participant))
     except SchemaError:

@@ -26,8 +26,6 @@ class ToldRecording:
     ----------
     states : Recording
         What the model tells, from the first full window on.
-    path : Path
-        Where it was written.
     rmse : dict of str to float
         Of every state that the recording has itself [its unit]; empty where it has sensors alone.
     coverage : dict of str to float
@@ -64,12 +62,6 @@ def reconstruct_recording(
 
     Parameters
     ----------
-    file : Path
-        Kinematics that hold at least the sensors.
-    model : Path
-        Folder of a model that `gaitdisc reconstruct` saved.
-    out : Path
-        File to write.
     cutoff_hz : float
         -3 dB frequency of one pass of the low-pass; the model's own recordings had the study's.
     calibration : Path, optional
@@ -77,15 +69,6 @@ def reconstruct_recording(
         for the person by them. Its intervals stay as they are, and are too wide then.
     missing : str
         What stands for a reading that is missing: a word of `gaitdisc.sensing.missing.WAYS`.
-
-    Returns
-    -------
-    ToldRecording
-
-    Raises
-    ------
-    GaitdiscError
-        If a file cannot be read, a sensor is missing, or rate or units are others than the model's.
     """
     saved, kinematics = load_model(model), read_trial(file).stream("kinematics")
     if calibration is not None:

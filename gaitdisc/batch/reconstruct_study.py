@@ -41,16 +41,12 @@ class ReconstructionSettings:
         A word of `gaitdisc.sensing.splits.RULES` or of `ACROSS`.
     history_s, spacing_s : float
         Reach of a window, and time from one reading to the next [s].
-    kinds : tuple of str
-        Words of `gaitdisc.sensing.reconstructor.KINDS` or `ON_REQUEST`.
     condition : str
         Walks of this condition alone, of both where it is empty; with the split `condition`, those that are judged.
     targets : str
         What is told: `states`, or a word of `gaitdisc.batch.target_walks.TARGETS`.
     ahead_s : float
         How far ahead of the last reading the states are told [s]; 0 tells the present.
-    seed : int
-        Of every random act.
     device : str
         That networks are fitted on: `cpu`, `cuda`, or `auto`, the GPU where there is one.
     """
@@ -71,13 +67,7 @@ class ReconstructionSettings:
         return "" if self.split == CONDITION else self.condition
 
     def lags(self, rate_hz: float) -> Lags:
-        """Return the windows for a rate.
-
-        Parameters
-        ----------
-        rate_hz : float
-            Samples a second.
-        """
+        """Return the windows for a rate."""
         count, spacing = round(self.history_s / self.spacing_s), round(self.spacing_s * rate_hz)
         return Lags(max(1, count), max(1, spacing), round(self.ahead_s * rate_hz))
 
@@ -88,31 +78,7 @@ def reconstruct_study(
     settings: ReconstructionSettings | None = None,
     told: Callable[[str, float], None] = lambda *_: None,
 ) -> tuple[Reconstruction, list[PersonReconstruction]]:
-    """Fit and judge every kind of model for every participant.
-
-    Parameters
-    ----------
-    study : Study
-        Who walked, in which files.
-    sensors : sequence of str
-        Channels that are read.
-    settings : ReconstructionSettings, optional
-        The defaults without.
-    told : callable
-        Called with a pseudonym and the fraction done.
-
-    Returns
-    -------
-    Reconstruction, list of PersonReconstruction
-        What a report needs; and the fitted models.
-
-    Raises
-    ------
-    GaitdiscError
-        If no participant can be reconstructed.
-    TrainingError
-        If networks are to be fitted on a GPU and there is none.
-    """
+    """Fit and judge every kind of model for every participant."""
     settings = settings or ReconstructionSettings()
     settings = replace(settings, device=fitting_device(settings.kinds, settings.device))
     walks = sensed_walks(study, sensors, settings.condition_read, settings.targets)
@@ -142,24 +108,7 @@ def reconstruct_study(
 def parts_of(
     walks: SensedWalks, windows: dict[str, list[Samples]], person: str, settings: ReconstructionSettings
 ) -> Parts:
-    """Windows to fit, to choose by and to judge on, for one person.
-
-    Parameters
-    ----------
-    walks : SensedWalks
-        Of all people.
-    windows : dict of str to list of Samples
-        Of each walk of each person.
-    person : str
-        On whom models are judged.
-    settings : ReconstructionSettings
-        With the split.
-
-    Raises
-    ------
-    SchemaError
-        If a split across conditions lacks a condition, or the person the walks for it.
-    """
+    """Windows to fit, to choose by and to judge on, for one person."""
     reach_s = settings.lags(walks.rate_hz).reach / walks.rate_hz
     if settings.split == SUBJECT:
         return split_by_subject(list(windows.values()), list(windows).index(person))

@@ -22,16 +22,6 @@ def run_lock(folder: Path) -> Iterator[None]:
     another afterwards, as in a container that is started again, does no harm. Between machines that share a disk such
     locks are not to be relied on: a lock file of another machine is believed. POSIX only: Windows has no such lock.
 
-    Parameters
-    ----------
-    folder : Path
-        Folder of the run; made where it is missing.
-
-    Raises
-    ------
-    WriteError
-        If another living process works in the folder, the folder cannot be written, or the system is Windows.
-
     Examples
     --------
     >>> import tempfile

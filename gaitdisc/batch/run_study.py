@@ -43,10 +43,6 @@ def run_study(
 
     Parameters
     ----------
-    study : Study
-        Who, which files, which settings.
-    folder : Path
-        Folder of the run; made where it is missing.
     workers : Workers, optional
         Where participants are computed; in this process, one after the other, by default.
     told : callable
@@ -56,13 +52,6 @@ def run_study(
     -------
     ResponseRun
         Also saved in the folder; refusals are part of it.
-
-    Raises
-    ------
-    WriteError
-        If another run works in the folder, or it cannot be written.
-    ClusterError
-        If the cluster cannot be reached.
     """
     with run_lock(folder):
         renewed = damaged_units(folder)

@@ -16,26 +16,10 @@ from gaitdisc.sensing.windows import windows_of
 def search_study(study: Study, most: int, settings: ReconstructionSettings | None = None) -> pd.DataFrame:
     """Find the best sets of sensors among the states of a study, for all participants together.
 
-    Parameters
-    ----------
-    study : Study
-        Who walked, in which files.
-    most : int
-        Sensors of the largest set.
-    settings : ReconstructionSettings, optional
-        Split, history and condition; the defaults without.
-
     Returns
     -------
     DataFrame
         As of `gaitdisc.sensing.sensor_search.search_sensors`.
-
-    Raises
-    ------
-    SchemaError
-        If something else is to be told than the present states.
-    GaitdiscError
-        If no walk can be processed, or none can be parted.
     """
     settings = settings or ReconstructionSettings()
     if settings.targets != STATES or settings.ahead_s:

@@ -43,8 +43,6 @@ class SensedWalk:
 
     Parameters
     ----------
-    recording : Recording
-        Sensors and states.
     phi : ndarray (time,) [% stride]
         Of the study's side.
     """
@@ -63,8 +61,6 @@ class SensedWalks:
         Pseudonym -> walks; those without any are not among them.
     channels : tuple of Channel
         Of every recording, in order: the states, then sensors that are none.
-    refusals : tuple of Refusal
-        Walks that are left out.
     findings : tuple of Finding
         States that are left out, and what was seen in the recordings.
     files : dict of str to str
@@ -83,13 +79,7 @@ class SensedWalks:
         return next(iter(self.people.values()))[0].recording.rate_hz
 
     def named(self, names: Sequence[str]) -> tuple[Channel, ...]:
-        """Return channels by their names, in the order asked for.
-
-        Parameters
-        ----------
-        names : sequence of str
-            Of channels that every recording has.
-        """
+        """Return channels by their names, in the order asked for."""
         by_name = {channel.name: channel for channel in self.channels}
         return tuple(by_name[name] for name in names)
 
@@ -101,29 +91,10 @@ def sensed_walks(
 
     Parameters
     ----------
-    study : Study
-        Filters, detector and files.
     sensors : sequence of str
         Channels of the kinematics that are read; they may be others than the 18 states.
     condition : str
         A word of the study's conditions; both where it is empty.
-    targets : str
-        What is told: `states`, or a word of `gaitdisc.batch.target_walks.TARGETS`.
-
-    Returns
-    -------
-    SensedWalks
-
-    Raises
-    ------
-    SchemaError
-        If there is no such word.
-    ChannelError
-        If no walk has the sensors, or nothing but sensors moves.
-    SamplingError
-        If walks differ in rate.
-    UnitError
-        If a channel has one unit in one walk and another in another.
     """
     refuse_unknown_targets(targets)
     walks: dict[str, list[SensedWalk]] = {}

@@ -41,30 +41,11 @@ def target_walk(
     ----------
     trial : Trial
         With kinematics or markers, and the stream of the targets.
-    study : Study
-        Filters and detector.
-    sensors : sequence of str
-        Channels of the kinematics, or of the markers.
-    targets : str
-        A word of `TARGETS`.
 
     Returns
     -------
-    recording : Recording
-        Sensors, then targets.
     strides : Strides
         Of the study's side, or of the one whose contacts are found.
-    findings : list of Finding
-        What is left out, and why.
-
-    Raises
-    ------
-    SchemaError
-        If there is no such word.
-    ChannelError
-        If the trial lacks a sensor, or has no target that is alive.
-    SamplingError
-        If sensors and targets have no time in common.
     """
     refuse_unknown_targets(targets)
     filters = study.filters
@@ -94,18 +75,7 @@ def target_walk(
 
 
 def refuse_unknown_targets(targets: str) -> None:
-    """Refuse what can not be told.
-
-    Parameters
-    ----------
-    targets : str
-        To look up in `TARGETS`, or `states`.
-
-    Raises
-    ------
-    SchemaError
-        If it is not there.
-    """
+    """Refuse what can not be told."""
     if targets not in (STATES, *TARGETS):
         known = ", ".join((STATES, *TARGETS))
         raise SchemaError("a reconstruction has one kind of quantity", f"{targets!r} is none", f"Use: {known}.")

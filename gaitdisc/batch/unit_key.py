@@ -12,39 +12,17 @@ from gaitdisc.results.provenance import code_sha256
 
 
 def unit_keys(study: Study, participant: Participant) -> dict[str, str]:
-    """Key of each of the two walks of a complete participant, by condition.
-
-    Parameters
-    ----------
-    study : Study
-        Settings.
-    participant : Participant
-        With one trial of each condition.
-    """
+    """Key of each of the two walks of a complete participant, by condition."""
     return {word: unit_key(study, participant.trials_of(word)[0]) for word in study.conditions.both}
 
 
 def response_key(keys: Mapping[str, str]) -> str:
-    """Key of what is fitted to both walks.
-
-    Parameters
-    ----------
-    keys : mapping of str to str
-        From `unit_keys`.
-    """
+    """Key of what is fitted to both walks."""
     return hashlib.sha256("".join(keys.values()).encode()).hexdigest()
 
 
 def unit_key(study: Study, trial: PlannedTrial) -> str:
-    """Hash of all that decides a walk's numbers: bytes of its files, settings, and the package's own code.
-
-    Parameters
-    ----------
-    study : Study
-        Settings.
-    trial : PlannedTrial
-        Files and crop.
-    """
+    """Hash of all that decides a walk's numbers: bytes of its files, settings, and the package's own code."""
     settings = study.model_dump(mode="json", exclude={"participants", "title"})
     parts = [code_sha256(), json.dumps(settings, sort_keys=True), trial.model_dump_json(exclude={"files"})]
     for file in trial.files:

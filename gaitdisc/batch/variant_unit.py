@@ -34,26 +34,7 @@ Progress = Callable[[float], None]
 def computed_variants(
     study: Study, participant: Participant, folder: Path, question: str, progress: Progress
 ) -> Variants | Refusal:
-    """Compute one participant's variants, or load what was computed from the same files and settings.
-
-    Parameters
-    ----------
-    study : Study
-        Settings.
-    participant : Participant
-        Who; complete in the study.
-    folder : Path
-        Folder of the run.
-    question : str
-        `modalities` or `sensitivity`.
-    progress : callable
-        Called with the fraction done.
-
-    Returns
-    -------
-    Variants or Refusal
-        A refusal stops this participant and nobody else.
-    """
+    """Compute one participant's variants, or load what was computed from the same files and settings."""
     place = folder / question / "people" / participant.id
     key = _key(study, participant, question)
     try:

@@ -30,8 +30,6 @@ def vary_study(
 
     Parameters
     ----------
-    study : Study
-        Who, which files, which settings.
     folder : Path
         Folder of the run; what is computed here goes into a folder of the question's name in it.
     question : str
@@ -45,15 +43,6 @@ def vary_study(
     -------
     VariantRun
         Also saved in the folder of the question; whoever had to be refused is in `refusals`.
-
-    Raises
-    ------
-    SchemaError
-        If the question is none.
-    WriteError
-        If another run works in the folder, or it cannot be written.
-    ClusterError
-        If the cluster cannot be reached.
     """
     if question not in QUESTIONS:
         raise SchemaError(f"a question is one of: {', '.join(QUESTIONS)}", f"found {question!r}", "Use one of these.")

@@ -52,15 +52,6 @@ def computed_in_processes(
 
     A process that is killed, or that runs out of memory, is replaced, and its person is tried once more.
 
-    Parameters
-    ----------
-    jobs : int
-        Processes.
-    compute : callable
-        Takes a person; can be sent to another process.
-    people : sequence
-        Who.
-
     Yields
     ------
     (person, unit)

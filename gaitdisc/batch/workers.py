@@ -59,26 +59,13 @@ def computed_units(
 
     Parameters
     ----------
-    workers : Workers
-        Where.
     compute : callable
         Takes `participant` and `progress`, which is called with the fraction done; can be sent to another process.
-    people : sequence of Participant
-        Who.
     told : callable
         Called with a participant's pseudonym and the fraction done; progress within a participant is told only where
         everything is done in this process.
     lost : callable
         Makes the unit of a participant whose process was killed each time; takes the refusal.
-
-    Yields
-    ------
-    unit
-
-    Raises
-    ------
-    ClusterError
-        As `computed_side_by_side`.
     """
     if workers.here:
         for person in people:
@@ -105,24 +92,10 @@ def computed_side_by_side(
 
     A worker that dies is replaced by another: its person is computed again.
 
-    Parameters
-    ----------
-    workers : Workers
-        Where.
-    compute : callable
-        Takes a person; can be sent to another process.
-    people : sequence
-        Who.
-
     Yields
     ------
     (person, unit)
         `Lost` in the place of a unit whose process on this machine was killed each time.
-
-    Raises
-    ------
-    ClusterError
-        If there is no scheduler at the address, or the extra `cluster` is not installed.
     """
     if not workers.cluster:
         yield from computed_in_processes(workers.jobs, compute, people)

@@ -26,8 +26,6 @@ class Leg(NamedTuple):
 
     Attributes
     ----------
-    thigh_m, shank_m : float
-        Lengths L1, L2.
     s1, s2 : float
         First moments S1, S2 [kg m].
     foot_kg, foot_forward_m, foot_down_m : float
@@ -56,17 +54,6 @@ class Leg(NamedTuple):
 
 def leg_of(height_m: float, mass_kg: float, added_foot_kg: float = 0.0) -> Leg:
     """Leg of a person who wears the device.
-
-    Parameters
-    ----------
-    height_m, mass_kg : float
-        Of the person without the device.
-    added_foot_kg : float
-        A mass on the foot beyond the device's.
-
-    Returns
-    -------
-    Leg
 
     References
     ----------
@@ -155,8 +142,6 @@ def ankle_place(leg: Leg, psi: NDArray[np.float64]) -> NDArray[np.float64]:
 
     Parameters
     ----------
-    leg : Leg
-        Lengths.
     psi : ndarray (time, 3) [rad]
         Thigh, shank and foot.
 
@@ -177,8 +162,6 @@ def joint_moments(
 
     Parameters
     ----------
-    leg : Leg
-        Masses and lengths.
     psi : ndarray (phase, 3) [rad]
         One whole cycle, evenly spaced, without its end.
     hip : ndarray (phase, 2) [m/s2]
@@ -213,10 +196,6 @@ def cycle_rate(cycle: NDArray[np.float64], step: float, order: int = 1) -> NDArr
     ----------
     cycle : ndarray (phase, ...)
         One whole cycle, evenly spaced, without its end.
-    step : float
-        Between two samples.
-    order : int
-        1 for the rate, 2 for the acceleration.
 
     Examples
     --------

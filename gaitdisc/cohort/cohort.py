@@ -26,10 +26,6 @@ class Walks:
 
     Parameters
     ----------
-    person : Person
-        Who walked.
-    trials : dict of str to Trial
-        `nominal` and `exo`, as measured.
     truth : dict
         What is true of both, for tests alone: plain numbers and lists, to be written as JSON.
     """
@@ -46,10 +42,6 @@ def the_twelve(calibration: bool = False) -> tuple[Person, ...]:
     ----------
     calibration : bool
         The other twelve, on whom the constants of the model were set; they are never reported.
-
-    Returns
-    -------
-    tuple of Person
 
     Examples
     --------
@@ -68,23 +60,12 @@ def walks_of(person: Person, duration_s: float = WALK_S, hidden: str = "spring")
 
     Parameters
     ----------
-    person : Person
-        Of the cohort.
     duration_s : float
         Length of each walk [s]; a late change of gait keeps its share of it.
     hidden : str
         What differs between the conditions: `spring`, with adaptation (the dissertation's); `weak plantarflexor`
         (soleus and gastrocnemius give 75 % of their moment), `late EMG` (40 ms), `foot mass` (0.8 kg on each foot),
         `scaled moment` (the spring's moment is 0.6 of what 5 N m/deg would give), `none`.
-
-    Returns
-    -------
-    Walks
-
-    Raises
-    ------
-    SchemaError
-        If the effect is none of `HIDDEN`.
     """
     from gaitdisc.cohort.measurement import measured
     from gaitdisc.cohort.walk import walked
@@ -125,8 +106,6 @@ def walked_cohort(duration_s: float = WALK_S, hidden: str = "spring") -> Iterato
     ----------
     duration_s : float
         Length of each walk [s].
-    hidden : str
-        As in `walks_of`.
     """
     for person in the_twelve():
         yield walks_of(person, duration_s, hidden)

@@ -53,8 +53,6 @@ class Columns(NamedTuple):
         Adduction and rotation: angle, rate and second rate by phase, in turn [rad].
     gmed, hip, sway : int
         Habitual activation of gluteus medius [1], acceleration of the hip [m/s2], its speed forwards [m/s].
-    width : int
-        Columns in all.
     """
 
     psi: int = 0
@@ -83,8 +81,6 @@ def learnt_table(person: Person, side: int, drifted: float = 0.0) -> NDArray[np.
     ----------
     person : Person
         With the spring that the commands are adapted to, if any.
-    side : int
-        0 right, 1 left.
     drifted : float
         How far the habit has wandered along `drift_deg` [1].
 
@@ -124,10 +120,6 @@ def engaged_moment(spring: Spring, person: Person, psi: NDArray[np.float64]) -> 
 
     Parameters
     ----------
-    spring : Spring
-        Of the device.
-    person : Person
-        Whose fit says where it engages.
     psi : ndarray (phase, 3) [rad]
         Thigh, shank, foot.
     """

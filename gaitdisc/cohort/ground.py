@@ -92,8 +92,6 @@ def pressure_centre(phase: NDArray[np.float64], sole_m: float) -> NDArray[np.flo
     ----------
     phase : ndarray (phase,) [share of a stride]
         0 at contact; in swing the value is held on the way back and means nothing.
-    sole_m : float
-        Length of the foot.
     """
     from scipy.interpolate import PchipInterpolator
 

@@ -89,10 +89,6 @@ def habitual(name: str, speed: float) -> Curve:
     speed : float
         Walking speed over the square root of gravity times leg length [1]; held within 0.35 and 0.60.
 
-    Returns
-    -------
-    Curve
-
     Examples
     --------
     >>> knee = habitual("knee_angle", 0.429)
@@ -110,8 +106,6 @@ def activity(muscle: str, phase: NDArray[np.float64], speed: float) -> NDArray[n
 
     Parameters
     ----------
-    muscle : str
-        `emg_sol`, `emg_rf`, ...
     phase : ndarray (phase,) [share of a stride]
         0 at contact.
     speed : float

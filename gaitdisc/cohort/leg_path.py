@@ -27,8 +27,6 @@ def staged(person: Person, phase: NDArray[np.float64]) -> NDArray[np.float64]:
 
     Parameters
     ----------
-    person : Person
-        Whose share of stance counts.
     phase : ndarray, any shape [share of a stride]
         0 at contact.
 
@@ -48,10 +46,6 @@ def habit_angles(person: Person, side: int, phase: NDArray[np.float64], drifted:
 
     Parameters
     ----------
-    person : Person
-        Style, and what was learnt on a spring.
-    side : int
-        0 right, 1 left.
     phase : ndarray (phase,) [share of a stride]
         0 at contact; the curves follow the person's own stance (`staged`).
     drifted : float
@@ -99,8 +93,6 @@ def hip_motion(person: Person, phase: NDArray[np.float64]) -> NDArray[np.float64
 
     Parameters
     ----------
-    person : Person
-        Speed, stride time, size.
     phase : ndarray (phase,) [share of a stride]
         One whole cycle from the contact of the hip's own foot.
 
@@ -127,10 +119,6 @@ def belt_held(person: Person, leg: Leg, psi: NDArray[np.float64], hip_rate: NDAr
 
     Parameters
     ----------
-    person : Person
-        Speed and stride time.
-    leg : Leg
-        Lengths.
     psi : ndarray (phase, 3) [rad]
         One whole cycle.
     hip_rate : ndarray (phase, 2) [m/s]
@@ -177,8 +165,6 @@ def contact_path(leg: Leg, psi: NDArray[np.float64], pressure: NDArray[np.float6
 
     Parameters
     ----------
-    leg : Leg
-        Lengths.
     psi : ndarray (phase, 3) [rad]
         One whole cycle.
     pressure : ndarray (phase,) [m]
@@ -198,8 +184,6 @@ def pressed_point(leg: Leg, foot: NDArray[np.float64], pressure: NDArray[np.floa
 
     Parameters
     ----------
-    leg : Leg
-        Height of the ankle.
     foot : ndarray (phase,) [rad]
         Absolute angle of the foot.
     pressure : ndarray (phase,) [m]

@@ -27,12 +27,6 @@ def measured(walk: TrueWalk, name: str, condition: str, emg_late_s: float = 0.0)
 
     Parameters
     ----------
-    walk : TrueWalk
-        What happened.
-    name : str
-        Of the trial.
-    condition : str
-        What the study calls the condition.
     emg_late_s : float
         Delay of the EMG against the rest, a fault that is hidden on request [s].
 

@@ -57,8 +57,6 @@ class Loop(NamedTuple):
         Relative, fast and slow [1].
     pace_noise : ndarray (2,)
         Relative, fast and slow [1].
-    whole_kg : float
-        Body and device.
     pelvis : ndarray (4,)
         Support of the pelvis: stiffness and damping fore-aft, then vertical [N/m, N s/m].
     """
@@ -90,8 +88,6 @@ class Worn(NamedTuple):
         Dorsiflexion at which it engages [rad].
     speed : float
         Of the belt [m/s].
-    stride_s : float
-        Habitual stride time.
     """
 
     stiffness: float

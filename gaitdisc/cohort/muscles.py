@@ -59,11 +59,6 @@ class Strength(NamedTuple):
 def strength_of(mass_kg: float) -> Strength:
     """Muscles of a person.
 
-    Parameters
-    ----------
-    mass_kg : float
-        Body mass.
-
     Examples
     --------
     >>> strength_of(70.0).reach.shape

@@ -64,16 +64,8 @@ class Person:
 
     Parameters
     ----------
-    name, sex : str
-        Pseudonym; `f` or `m`.
-    age_years, height_m, mass_kg, speed_m_per_s, stride_s : float
-        Anthropometry, self-selected speed, mean stride time.
     engaged_deg : float
         Dorsiflexion at which the device's spring engages [deg].
-    style : Style
-        Habit.
-    adaptation : Adaptation
-        To the device.
     drift_deg : ndarray (side, joint, harmonic, 2) [deg]
         Habit towards which the person wanders slowly, and back.
     unrest : float
@@ -115,13 +107,7 @@ class Person:
     foot_kg: float = 0.0
 
     def adapted_to(self, spring: Spring) -> Person:
-        """Return the same person after practice with a spring.
-
-        Parameters
-        ----------
-        spring : Spring
-            Of the device.
-        """
+        """Return the same person after practice with a spring."""
         return replace(self, learnt=spring)
 
     def unadapted(self) -> Person:
@@ -150,19 +136,6 @@ def drawn(name: str, seed: int, sex: str) -> Person:
 
     Sizes follow the dissertation's twelve adults (1.69 +- 0.10 m, 66.5 +- 11.7 kg, 1.36 +- 0.11 m/s); cadence follows
     speed and leg length with the dimensionless cadence of Schwartz et al. (2008), as the square root of speed.
-
-    Parameters
-    ----------
-    name : str
-        Pseudonym.
-    seed : int
-        Everything about the person rests on it.
-    sex : str
-        `f` or `m`.
-
-    Returns
-    -------
-    Person
 
     Examples
     --------

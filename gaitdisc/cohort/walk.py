@@ -35,12 +35,6 @@ class TrueWalk:
 
     Parameters
     ----------
-    person : Person
-        Who walked.
-    device : Spring
-        What was worn.
-    seed : int
-        Of everything that varied.
     quick_s, slow_s : ndarray (time,) [s]
         Clocks at 1000 and 100 Hz.
     phase : ndarray (quick,) [strides]
@@ -83,13 +77,7 @@ class TrueWalk:
     acceleration: NDArray[np.float64] = field(repr=False)
 
     def contacts(self, side: int = 0) -> NDArray[np.float64]:
-        """Times at which a foot meets the belt, from the phase itself [s].
-
-        Parameters
-        ----------
-        side : int
-            0 right, 1 left.
-        """
+        """Times at which a foot meets the belt, from the phase itself [s]."""
         own = self.phase + 0.5 * side
         return np.interp(np.arange(np.ceil(own[0]), np.floor(own[-1]) + 1), own, self.quick_s)
 
@@ -100,8 +88,6 @@ class TrueWalk:
         ----------
         values : ndarray (slow or quick, ...)
             A field of this walk.
-        side : int
-            0 right, 1 left: whose contact is 0 %.
         """
         return self.strides(values, side).mean(axis=0)
 
@@ -112,8 +98,6 @@ class TrueWalk:
         ----------
         values : ndarray (slow or quick, ...)
             A field of this walk.
-        side : int
-            0 right, 1 left: whose contact is 0 %.
 
         Returns
         -------
@@ -133,23 +117,12 @@ def walked(person: Person, device: Spring | None, duration_s: float, seed: int) 
 
     Parameters
     ----------
-    person : Person
-        As adapted as they are (`Person.adapted_to`).
     device : Spring or None
         None, or stiffness 0, is the device without its spring; both give the same walk to the last bit.
     duration_s : float
         Length of the recording, after `WARM_UP_S` that are not kept [s].
     seed : int
         Of the variability; the same seed gives the same walk.
-
-    Returns
-    -------
-    TrueWalk
-
-    Raises
-    ------
-    StrideError
-        If the person falls, which none of those drawn was seen to do.
 
     Examples
     --------

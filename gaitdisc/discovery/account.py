@@ -22,15 +22,7 @@ Explanations = frozenset[Identity]
 
 @dataclass(frozen=True)
 class Part:
-    """One explanation with its numbers.
-
-    Parameters
-    ----------
-    candidate : Candidate
-        The explanation.
-    values : dict of str to float
-        Slot -> number.
-    """
+    """One explanation with its numbers."""
 
     candidate: Candidate
     values: dict[str, float]
@@ -54,12 +46,8 @@ class Account:
     ----------
     simulation : Simulation
         With the explanations, their numbers as parameters.
-    machine : Compiled
-        The same, ready to run.
     parts : tuple of Part
         The explanations, with the numbers that were found.
-    fit : Fitted
-        The fit.
     """
 
     simulation: Simulation
@@ -94,15 +82,7 @@ class Account:
 
 
 def with_parts(base: Simulation, parts: tuple[Part, ...]) -> tuple[Simulation, tuple[dict[str, str], ...]]:
-    """Return a simulation with explanations in it, their numbers as parameters, and for each its slots' parameters.
-
-    Parameters
-    ----------
-    base : Simulation
-        As read.
-    parts : tuple of Part
-        The explanations.
-    """
+    """Return a simulation with explanations in it, their numbers as parameters, and for each its slots' parameters."""
     simulation, names = base, []
     for number, part in enumerate(parts):
         simulation, slots = part.candidate.in_fit(simulation, _tag(number), part.values)
@@ -130,16 +110,8 @@ def account_for(
 
     Parameters
     ----------
-    shooting : Shooting
-        The segments.
-    base : Simulation
-        As read.
-    parts : tuple of Part
-        The explanations, with numbers to begin from.
     starts : ndarray (segment, state)
         Start states to begin from.
-    turns : int
-        Most steps of the fit.
     enough : float
         A step that takes less off the misfit is the last.
     like : Account, optional

@@ -30,10 +30,6 @@ def common_shift(first: NDArray[np.float64], second: NDArray[np.float64]) -> Ali
     first, second : ndarray (phase, channel) [each channel's unit]
         Mean curves over one stride on 101 points.
 
-    Returns
-    -------
-    Alignment
-
     Examples
     --------
     >>> percent = np.arange(101.0)

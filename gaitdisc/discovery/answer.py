@@ -31,19 +31,8 @@ DIGITS = 3  # of the numbers in an expression that a person reads; those of the 
 def answer(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> tuple[Discovery, Simulation]:
     """Write down what an inquiry came to.
 
-    Parameters
-    ----------
-    inquiry : Inquiry
-        What was asked.
-    as_read : Judged
-        The simulation as read.
-    verdict : Verdict
-        What the search came to.
-
     Returns
     -------
-    discovery : Discovery
-        The answer.
     augmented : Simulation
         The simulation with what was found, its numbers written in.
     """
@@ -76,30 +65,12 @@ def answer(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> tuple[Discove
 
 
 def left_out(findings: tuple[Finding, ...]) -> list[str]:
-    """Say which trials were left out, and why.
-
-    Parameters
-    ----------
-    findings : tuple of Finding
-        About the measured data.
-    """
+    """Say which trials were left out, and why."""
     return [f"{one.what[0].upper()}{one.what[1:]}; it was left out." for one in findings if one.kind == ODD_TRIAL]
 
 
 def effects_of(inquiry: Inquiry, verdict: Verdict, closed: float, gained: float) -> tuple[FoundEffect, ...]:
-    """List what was found: a random push, wrong starts, or the explanations that were let in.
-
-    Parameters
-    ----------
-    inquiry : Inquiry
-        What was asked.
-    verdict : Verdict
-        What the search came to.
-    closed : float
-        Share of the held-out gap that is closed.
-    gained : float
-        Fall of the criterion from the simulation as read.
-    """
+    """List what was found: a random push, wrong starts, or the explanations that were let in."""
     if verdict.shaking:
         place, push = verdict.shaking.place, push_of(inquiry, verdict.shaking)
         return (FoundEffect(place.kind, place.name, "process_noise", "", {"strength": push}),)
@@ -117,48 +88,20 @@ def effects_of(inquiry: Inquiry, verdict: Verdict, closed: float, gained: float)
 
 
 def push_of(inquiry: Inquiry, shaking: Shaken) -> Estimate:
-    """Return the standard deviation of a random push, in the unit of its place.
-
-    Parameters
-    ----------
-    inquiry : Inquiry
-        What was asked.
-    shaking : Shaken
-        The push.
-    """
+    """Return the standard deviation of a random push, in the unit of its place."""
     unit = places_unit(inquiry.search.base, shaking.place.kind, shaking.place.name)
     return Estimate(shaking.strength, np.nan, np.nan, unit)
 
 
 def augmented_of(base: Simulation, parts: tuple[Part, ...]) -> Simulation:
-    """Return a simulation with explanations in it, their numbers written in.
-
-    Parameters
-    ----------
-    base : Simulation
-        As read.
-    parts : tuple of Part
-        The explanations.
-    """
+    """Return a simulation with explanations in it, their numbers written in."""
     for part in parts:
         base = part.candidate.written(base, part.written)
     return base
 
 
 def found_effects(inquiry: Inquiry, now: Judged, closed: float, gained: float) -> list[FoundEffect]:
-    """List the explanations with their numbers and intervals.
-
-    Parameters
-    ----------
-    inquiry : Inquiry
-        What was asked.
-    now : Judged
-        The account.
-    closed : float
-        Share of the held-out gap that is closed.
-    gained : float
-        Fall of the criterion.
-    """
+    """List the explanations with their numbers and intervals."""
     found = []
     for number, part in enumerate(now.account.parts):
         candidate = part.candidate
@@ -179,15 +122,7 @@ def found_effects(inquiry: Inquiry, now: Judged, closed: float, gained: float) -
 
 
 def told_rivals(inquiry: Inquiry, rivals: tuple[Rival, ...]) -> tuple[FoundEffect, ...]:
-    """List what else was weighed, with its numbers.
-
-    Parameters
-    ----------
-    inquiry : Inquiry
-        What was asked.
-    rivals : tuple of Rival
-        Best first.
-    """
+    """List what else was weighed, with its numbers."""
     listed = []
     for rival in rivals:
         candidate, account = rival.part.candidate, rival.account.account
@@ -207,13 +142,7 @@ def told_rivals(inquiry: Inquiry, rivals: tuple[Rival, ...]) -> tuple[FoundEffec
 
 
 def small_ones(parts: tuple[Part, ...]) -> tuple[FoundEffect, ...]:
-    """List explanations that close too little of the gap to be named.
-
-    Parameters
-    ----------
-    parts : tuple of Part
-        With their numbers.
-    """
+    """List explanations that close too little of the gap to be named."""
     return tuple(
         FoundEffect(part.candidate.kind, part.candidate.place, part.candidate.name, part.term, small=True)
         for part in parts
@@ -225,10 +154,6 @@ def whereabouts(inquiry: Inquiry, verdict: Verdict, train: GapSize) -> tuple[Whe
 
     Parameters
     ----------
-    inquiry : Inquiry
-        What was asked.
-    verdict : Verdict
-        What the search came to.
     train : GapSize
         The gap before and after on the trials that were learned from.
     """
@@ -251,17 +176,7 @@ def whereabouts(inquiry: Inquiry, verdict: Verdict, train: GapSize) -> tuple[Whe
 
 
 def phase_of(inquiry: Inquiry, now: Judged, part: Part) -> tuple[float, ...]:
-    """Return the part of the stride in which an effect is at least half as strong as at its strongest.
-
-    Parameters
-    ----------
-    inquiry : Inquiry
-        What was asked.
-    now : Judged
-        The account.
-    part : Part
-        One of its explanations.
-    """
+    """Return the part of the stride in which an effect is at least half as strong as at its strongest."""
     names = [one.name for one in inquiry.search.base.inputs]
     if "phase" not in names or part.candidate.verdict != "missing_physics":
         return ()
@@ -281,13 +196,7 @@ def phase_of(inquiry: Inquiry, now: Judged, part: Part) -> tuple[float, ...]:
 
 
 def region_of(part: Part) -> str:
-    """Say in which states an effect acts.
-
-    Parameters
-    ----------
-    part : Part
-        An explanation.
-    """
+    """Say in which states an effect acts."""
     candidate = part.candidate
     if candidate.name == "one_sided_spring":
         side = ">" if "- _x0" in candidate.pieces[0] else "<"
@@ -298,12 +207,6 @@ def region_of(part: Part) -> str:
 
 
 def units_of(inquiry: Inquiry) -> tuple[str, ...]:
-    """Return the units of the observed channels.
-
-    Parameters
-    ----------
-    inquiry : Inquiry
-        What was asked.
-    """
+    """Return the units of the observed channels."""
     base = inquiry.search.base
     return tuple(unit_of_channel(base, name) for name, _ in base.observations)

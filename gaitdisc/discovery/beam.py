@@ -34,10 +34,6 @@ class Beam:
 
     Parameters
     ----------
-    search : Search
-        The explanations that are open.
-    scale : GapScale
-        What the gap is measured against.
     as_read : Weighed
         The simulation as read, on these runs.
     known : dict of frozenset to Weighed
@@ -50,13 +46,7 @@ class Beam:
     known: dict[Explanations, Weighed] = field(default_factory=dict)
 
     def cost(self, now: Weighed) -> float:
-        """Return what is left of the gap plus the price of what closes the rest, in shares of the gap as read.
-
-        Parameters
-        ----------
-        now : Weighed
-            Any set.
-        """
+        """Return what is left of the gap plus the price of what closes the rest, in shares of the gap as read."""
         return now.gap / self.as_read.gap + now.account.price
 
     @property
@@ -65,13 +55,7 @@ class Beam:
         return min(self.known.values(), key=self.cost)
 
     def grown(self, begin: Weighed) -> Weighed:
-        """Return the best set that is found from one by letting explanations in and exchanging them.
-
-        Parameters
-        ----------
-        begin : Weighed
-            On the same runs as the simulation as read.
-        """
+        """Return the best set that is found from one by letting explanations in and exchanging them."""
         self.known.setdefault(self.as_read.account.explanations, self.as_read)
         self.known[begin.account.explanations] = begin
         most = min(MOST, max(1, len(begin.errors) // 3))
@@ -133,15 +117,7 @@ class Beam:
         return self.known[wanted]
 
     def without(self, now: Weighed, gone: Identity) -> Weighed:
-        """Fit a set less one of its explanations.
-
-        Parameters
-        ----------
-        now : Weighed
-            The set.
-        gone : tuple
-            Which explanation goes.
-        """
+        """Fit a set less one of its explanations."""
         wanted = now.account.explanations - {gone}
         if wanted not in self.known:
             parts = tuple(part for part in now.account.parts if part.candidate.identity != gone)
@@ -158,13 +134,7 @@ class Beam:
                 self._with(fewer, score)
 
     def material(self, now: Weighed) -> tuple[Weighed, list[Part]]:
-        """Return a set less what closes too little of the gap, or not beyond chance; and what went, the last first.
-
-        Parameters
-        ----------
-        now : Weighed
-            The set.
-        """
+        """Return a set less what closes too little of the gap, or not beyond chance; and what went, the last first."""
         small: list[Part] = []
         while now.account.explanations:
             losses = []
@@ -181,13 +151,7 @@ class Beam:
         return now, small
 
     def plainest(self, now: Weighed) -> Weighed:
-        """Return the cheapest set that closes nearly as much and that left-out pieces do not distinguish from a set.
-
-        Parameters
-        ----------
-        now : Weighed
-            The set.
-        """
+        """Return the cheapest set that closes nearly as much and that left-out pieces do not distinguish from a set."""
         closed = self.as_read.gap - now.gap
         equal = [
             one
@@ -204,8 +168,6 @@ class Beam:
 
         Parameters
         ----------
-        now : Weighed
-            The set.
         within : float
             How much more, in shares of the gap as read.
         """
@@ -218,13 +180,7 @@ class Beam:
 
 
 def errs_more(one: Weighed, other: Weighed) -> float:
-    """Chance of so much greater left-out errors of one set if it were no worse than another (Wilcoxon, one-sided).
-
-    Parameters
-    ----------
-    one, other : Weighed
-        On the same pieces.
-    """
+    """Chance of so much greater left-out errors of one set if it were no worse than another (Wilcoxon, one-sided)."""
     if not np.isfinite(one.errors).all() or len(one.errors) != len(other.errors):
         return 0.0
     return signed_rank_p(speaking(np.sqrt(one.errors) - np.sqrt(other.errors)))

@@ -16,20 +16,7 @@ MOST_LOST = 0.2  # of the shortest runs; a few may begin at a bad guess of what 
 
 
 def refuse_blow_up(simulation: Simulation, measured: Measured) -> None:
-    """Refuse a simulation that does not stay finite over runs of a few samples that begin at the data.
-
-    Parameters
-    ----------
-    simulation : Simulation
-        As read.
-    measured : Measured
-        Its trials.
-
-    Raises
-    ------
-    SimulationError
-        With trial, time and state, and the parameter that drives it.
-    """
+    """Refuse a simulation that does not stay finite over runs of a few samples that begin at the data."""
     inquiry, machine = begin_inquiry(simulation, without_spikes(measured)), compile_simulation(simulation)
     segments = inquiry.segments((*inquiry.learned, *inquiry.held_out), 0.0)
     rows = Rows(segments.trial, segments.begin, inquiry.guess.starts(segments))

@@ -28,8 +28,6 @@ class PairedTest:
     ----------
     p : float
         Chance of so clear a fall if each piece could as well rise; NaN where a run failed.
-    pieces : int
-        How many pieces were compared.
     fall : float
         Of the summed squared error over that of the noise; negative where it rises.
     """
@@ -55,8 +53,6 @@ def paired_test(
         Measured minus each model [the channel's unit]; NaN where nothing was measured.
     floor : ndarray (channel,)
         Standard deviation of the noise [the channel's unit].
-    period : int
-        Samples of the motion's main period.
 
     References
     ----------

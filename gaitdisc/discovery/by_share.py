@@ -38,8 +38,6 @@ class Outcome:
         open (Bonferroni), for the same runs chose among these.
     small : tuple of Part
         Explanations that close too little to be named, or not beyond chance.
-    near : tuple of Judged
-        Other sets that cost hardly more.
     """
 
     as_read: Judged
@@ -51,13 +49,7 @@ class Outcome:
 
 
 def scale_of(inquiry: Inquiry) -> GapScale:
-    """Return what gaps are measured against.
-
-    Parameters
-    ----------
-    inquiry : Inquiry
-        The trials.
-    """
+    """Return what gaps are measured against."""
     observed = inquiry.measured.observed
     spread = np.nanstd(observed, axis=(0, 1))
     known = inquiry.sensor_noise
@@ -70,13 +62,6 @@ def leaves_noise(inquiry: Inquiry, now: Judged) -> bool:
 
     Where this is not known (a filtered record whose file does not say it), whether it remembers no more than the
     filter.
-
-    Parameters
-    ----------
-    inquiry : Inquiry
-        The trials.
-    now : Judged
-        Fitted.
     """
     known = np.isfinite(inquiry.sensor_noise)
     if not known.all():
@@ -92,10 +77,6 @@ def closing_most(inquiry: Inquiry, scale: GapScale, also: tuple[tuple[Part, ...]
 
     Parameters
     ----------
-    inquiry : Inquiry
-        The trials.
-    scale : GapScale
-        What the gap is measured against.
     also : tuple of tuple of Part
         Sets that another search found, weighed beside those that are found here.
     """
@@ -128,15 +109,6 @@ def whole_runs_err_less(inquiry: Inquiry, scale: GapScale, as_read: Weighed, now
     """Whether held-out trials, run as a whole from the best start, err less with a set than without.
 
     A delay of what was measured observes the state and closes any gap of a short run.
-
-    Parameters
-    ----------
-    inquiry : Inquiry
-        The trials.
-    scale : GapScale
-        With the spread of the channels.
-    as_read, now : Weighed
-        The simulation as read and with the set.
     """
     whole = inquiry.learned_runs(inquiry.longest).segments
     like = Judged(now.account, replace(now.shooting, segments=whole))

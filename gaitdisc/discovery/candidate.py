@@ -42,12 +42,8 @@ class Candidate:
 
     Parameters
     ----------
-    verdict : str
-        `missing_physics`, `wrong_parameter`, `input_error` or `sensor_error`.
     kind : str
         What `place` is: `port`, `equation`, `parameter`, `input`, `observation`.
-    place : str
-        Its name.
     name : str
         Name of the effect, of discovery.md's tables.
     pieces : tuple of str
@@ -56,8 +52,6 @@ class Candidate:
         For a missing term, its constants and the grid on which each is searched.
     role : str
         For a missing term, what stands for x in it (for the grids).
-    means : str
-        One clause for a reader.
     value : float
         For a wrong parameter, the number in the file.
     names : mapping of str to str
@@ -116,8 +110,6 @@ class Candidate:
 
         Parameters
         ----------
-        simulation : Simulation
-            Without it.
         numbers : mapping of str to str
             For each slot, a number or the name of a parameter, as text.
         """
@@ -145,13 +137,7 @@ class Candidate:
         return self.name in ("input_delay", "input_lag", "sensor_lag")
 
     def beyond_bounds(self, value: float) -> float:
-        """Return how far a number lies outside its bounds; negative inside, infinite where it has none.
-
-        Parameters
-        ----------
-        value : float
-            [the parameter's unit].
-        """
+        """Return how far a number lies outside its bounds; negative inside, infinite where it has none."""
         if not self.bounds:
             return math.inf
         low, high = self.bounds
@@ -196,24 +182,7 @@ class Candidate:
     def in_fit(
         self, simulation: Simulation, tag: str, values: Mapping[str, float]
     ) -> tuple[Simulation, dict[str, str]]:
-        """Return the simulation with this explanation in it and its numbers free.
-
-        Parameters
-        ----------
-        simulation : Simulation
-            Without it.
-        tag : str
-            Begins the names of the parameters that are added.
-        values : mapping of str to float
-            Where each slot begins.
-
-        Returns
-        -------
-        simulation : Simulation
-            With it.
-        names : dict of str to str
-            Slot -> parameter.
-        """
+        """Return the simulation with this explanation in it and its numbers free."""
         names = self.named(tag)
         if self.verdict == "wrong_parameter":
             return simulation, names
@@ -244,17 +213,7 @@ def _late(simulation: Simulation, seen: str, seconds: str) -> str:
 def candidates_of(
     simulation: Simulation, places: tuple[Place, ...], shapes: tuple[Shape, ...]
 ) -> tuple[Candidate, ...]:
-    """List everything that could explain a gap, missing physics beside wrong numbers, inputs and sensors.
-
-    Parameters
-    ----------
-    simulation : Simulation
-        As read.
-    places : tuple of Place
-        Where a term may enter.
-    shapes : tuple of Shape
-        The catalogue.
-    """
+    """List everything that could explain a gap, missing physics beside wrong numbers, inputs and sensors."""
     used = "\n".join(text for _, text in (*simulation.definitions, *simulation.equations))
     found = [
         Candidate(
@@ -319,13 +278,6 @@ def _lagged(simulation: Simulation, name: str) -> Candidate:
 def free_name(name: str, taken: Collection[str]) -> str:
     """Return a name, with a number behind it where it is taken.
 
-    Parameters
-    ----------
-    name : str
-        As wanted.
-    taken : collection of str
-        Names that are in use.
-
     Examples
     --------
     >>> free_name("hysteresis_knee", ["hysteresis_knee"])
@@ -336,13 +288,7 @@ def free_name(name: str, taken: Collection[str]) -> str:
 
 
 def bounds_of(parameter: Parameter) -> tuple[float, ...]:
-    """Return a parameter's `low` and `high`, or nothing where it has not both.
-
-    Parameters
-    ----------
-    parameter : Parameter
-        Of the file.
-    """
+    """Return a parameter's `low` and `high`, or nothing where it has not both."""
     low, high = parameter.low, parameter.high
     return (low, high) if low is not None and high is not None and low < high else ()
 

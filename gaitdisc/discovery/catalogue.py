@@ -93,8 +93,6 @@ def with_names(expression: str, names: Mapping[str, str]) -> str:
 
     Parameters
     ----------
-    expression : str
-        Of a shape.
     names : mapping of str to str
         A name, a number or an expression for each; what is not mentioned stays.
 
@@ -131,18 +129,6 @@ def read_catalogue(path: Path | str) -> tuple[Shape, ...]:
     ----------
     path : Path or str
         A TOML file with one `[[shape]]` for each effect.
-
-    Returns
-    -------
-    tuple of Shape
-        The user's shapes alone, in the file's order.
-
-    Raises
-    ------
-    ReadError
-        If it is no regular file, or too large.
-    SchemaError
-        If the file is not TOML or an entry does not have the form.
 
     Examples
     --------

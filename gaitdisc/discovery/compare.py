@@ -80,14 +80,8 @@ def compare_walks(
 
     Parameters
     ----------
-    first : WalkSummary
-        A simulation, or a condition.
     second : WalkSummary
         What was measured, or the other condition; its strides give the spread.
-    wanted : sequence of str, optional
-        Only these channels; by default all that both have.
-    plan : PermutationPlan
-        Level, number of permutations, seed.
     smallest : Smallest
         Difference that is named at least; 2 deg, 0.1 N m/kg, 5 % of body weight or of the channel's range by default.
 
@@ -95,13 +89,6 @@ def compare_walks(
     -------
     Mismatch
         Its p speaks of these two recordings; that other people, or another day, would give the same it cannot say.
-
-    Raises
-    ------
-    ChannelError
-        If they have no channel in common.
-    ComparisonError
-        If there are too few strides for any test.
     """
     common = common_curves((first, second), wanted)
     means = [curves.mean(axis=0) for curves in common.curves]
@@ -129,8 +116,6 @@ def compare_people(
         Both walks of each person, in the same order of conditions; first minus second.
     wanted : sequence of str, optional
         Only these channels; by default all that every walk has.
-    plan : PermutationPlan
-        Level, number of permutations, seed.
     smallest : Smallest
         Difference that is named at least, as in `compare_walks`; the shift in common is that of the mean curves.
 
@@ -138,13 +123,6 @@ def compare_people(
     -------
     Mismatch
         Its standard deviations are those from stride to stride, root mean square over people.
-
-    Raises
-    ------
-    ChannelError
-        If the walks have no channel in common.
-    ComparisonError
-        If there are fewer than six people.
     """
     if len(pairs) < FEWEST_IN_ONE:
         raise ComparisonError(

@@ -29,8 +29,6 @@ class CommonCurves:
         In the order of the first walk.
     curves : tuple of ndarray (stride, phase, channel) [each channel's unit]
         One a walk.
-    findings : tuple of Finding
-        What was left out, and why.
     """
 
     channels: tuple[Channel, ...]
@@ -44,22 +42,6 @@ def common_curves(walks: Sequence[WalkSummary], wanted: Sequence[str] = ()) -> C
     Left out, each with a finding: channels that a walk lacks or gives in another unit, that do not move in any walk,
     that repeat another channel, of which half of the strides or more have gaps, or that the quality checks found
     frozen, clipped or dead (unless they are asked for). The foot with fewer strides tells how many are used of both.
-
-    Parameters
-    ----------
-    walks : sequence of WalkSummary
-        Two or more.
-    wanted : sequence of str, optional
-        Only these channels; by default all.
-
-    Returns
-    -------
-    CommonCurves
-
-    Raises
-    ------
-    ChannelError
-        If they have no channel in common, or one that is wanted is not among those they have.
     """
     findings: list[Finding] = []
     shared = _shared(walks, wanted, findings)

@@ -32,15 +32,7 @@ WORTH = 0.05  # of what was named, which a shape without a name must explain bey
 
 
 def judge(inquiry: Inquiry, as_read: Judged) -> Verdict:
-    """Search, and decide which of the contract's verdicts the data support.
-
-    Parameters
-    ----------
-    inquiry : Inquiry
-        What is asked.
-    as_read : Judged
-        The simulation as read.
-    """
+    """Search, and decide which of the contract's verdicts the data support."""
     scale = scale_of(inquiry)
     as_read, named, rivals = searched(inquiry, as_read, scale)
     named = lasting(inquiry, as_read, named)
@@ -74,15 +66,7 @@ def judge(inquiry: Inquiry, as_read: Judged) -> Verdict:
 
 
 def strongest(search: Search, named: Judged) -> Judged:
-    """Return what was named with as many explanations as are named at most, those left out that are missed least.
-
-    Parameters
-    ----------
-    search : Search
-        What is searched.
-    named : Judged
-        The simulation with what was found.
-    """
+    """Return what was named with as many explanations as are named at most, those left out that are missed least."""
     while len(named.account.parts) > MOST_NAMES:
         fewer = [search.without(named, number) for number in range(len(named.account.parts))]
         named = min(fewer, key=lambda one: one.evidence)
@@ -90,15 +74,7 @@ def strongest(search: Search, named: Judged) -> Judged:
 
 
 def needed(inquiry: Inquiry, as_read: Judged, now: Judged) -> Judged:
-    """Return what was named without the explanations that the held-out data do not bear out beside the others.
-
-    Parameters
-    ----------
-    inquiry : Inquiry
-        What is asked.
-    as_read, now : Judged
-        The simulation as read and with what was named.
-    """
+    """Return what was named without the explanations that the held-out data do not bear out beside the others."""
     while len(now.account.parts) > 1:
         fewer = [inquiry.search.without(now, number) for number in range(len(now.account.parts))]
         tests = [borne_out(inquiry, one, now, as_read).test for one in fewer]
@@ -114,10 +90,6 @@ def plainest(inquiry: Inquiry, scale: GapScale, named: Judged) -> Verdict | None
 
     Parameters
     ----------
-    inquiry : Inquiry
-        What is asked.
-    scale : GapScale
-        What gaps are measured against.
     named : Judged
         The simulation with what the search let in, which leaves more than noise.
     """
@@ -140,15 +112,6 @@ def plainest(inquiry: Inquiry, scale: GapScale, named: Judged) -> Verdict | None
 
 def searched(inquiry: Inquiry, as_read: Judged, scale: GapScale) -> tuple[Judged, Judged, list[Judged]]:
     """Search on short runs, and on longer ones where these show nothing and the system is not chaotic.
-
-    Parameters
-    ----------
-    inquiry : Inquiry
-        What is asked.
-    as_read : Judged
-        The simulation as read, on short runs.
-    scale : GapScale
-        With the sensors' noise.
 
     Returns
     -------
@@ -174,8 +137,6 @@ def lasting(inquiry: Inquiry, as_read: Judged, named: Judged) -> Judged:
 
     Parameters
     ----------
-    inquiry : Inquiry
-        What is asked.
     as_read, named : Judged
         The simulation as read and with what the search let in, on the same runs.
     """
@@ -196,14 +157,8 @@ def weighed_with_memory(
 
     Parameters
     ----------
-    inquiry : Inquiry
-        What is asked.
     as_read, named : Judged
         The simulation as read and with what the search let in.
-    shape : Judged or None
-        With a fitted shape.
-    rivals : list of Judged
-        What else stood for the first place.
     """
     plain, *found = compared([as_read, named, *([shape] if shape else [])], inquiry.search.base)
     shaking = random_push(inquiry, as_read)
@@ -221,8 +176,6 @@ def says_more(inquiry: Inquiry, shape: Judged, named: Judged) -> bool:
 
     Parameters
     ----------
-    inquiry : Inquiry
-        What is asked.
     shape, named : Judged
         The simulation with a fitted shape, and with what the search let in.
     """
@@ -233,19 +186,8 @@ def says_more(inquiry: Inquiry, shape: Judged, named: Judged) -> bool:
 def decided(inquiry: Inquiry, named: Judged, rivals: list[Judged]) -> tuple[Judged, list[Judged]]:
     """Return what was named, fitted to long runs; where a rival comes near, the one that long runs prefer.
 
-    Parameters
-    ----------
-    inquiry : Inquiry
-        What is asked.
-    named : Judged
-        What the search let in.
-    rivals : list of Judged
-        What else stood for the first place.
-
     Returns
     -------
-    now : Judged
-        On long runs.
     rivals : list of Judged
         All that stood for the first place, best first.
     """
@@ -262,15 +204,7 @@ def decided(inquiry: Inquiry, named: Judged, rivals: list[Judged]) -> tuple[Judg
 
 
 def random_push(inquiry: Inquiry, as_read: Judged) -> Shaken | None:
-    """Return the random push that explains the gap better than noise of the sensors, if there is one.
-
-    Parameters
-    ----------
-    inquiry : Inquiry
-        What is asked.
-    as_read : Judged
-        The simulation as read.
-    """
+    """Return the random push that explains the gap better than noise of the sensors, if there is one."""
     best = shaken(as_read.shooting, as_read.account, inquiry.search.places)[0]
     return best if best.rival - best.evidence > PUSHED * best.numbers + MARGIN else None
 
@@ -280,8 +214,6 @@ def explains(inquiry: Inquiry, as_read: Judged, now: Judged, shaking: Shaken | N
 
     Parameters
     ----------
-    inquiry : Inquiry
-        What is asked.
     as_read, now : Judged
         The simulation as read and with what was found, under one noise.
     shaking : Shaken or None
@@ -303,10 +235,6 @@ def borne_out(inquiry: Inquiry, before: Judged, now: Judged, as_read: Judged | N
 
     Parameters
     ----------
-    inquiry : Inquiry
-        What is asked.
-    before, now : Judged
-        Without and with what is to be borne out.
     as_read : Judged, optional
         The simulation as read, on the runs that the search began with; `before` where absent.
     """

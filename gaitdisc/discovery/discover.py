@@ -25,26 +25,7 @@ def discover(
     shapes: tuple[Shape, ...] = (),
     told: Callable[[str], None] = lambda _: None,
 ) -> tuple[Discovery, Simulation]:
-    """Find where a simulation and measured trials disagree, name what is missing, add it, show the gap shrink.
-
-    Parameters
-    ----------
-    simulation : Simulation
-        As read.
-    measured : Measured
-        Its trials; a quarter is held out.
-    shapes : tuple of Shape
-        Effects of the user's own, beside the catalogue.
-    told : callable
-        Takes one line about each step.
-
-    Returns
-    -------
-    discovery : Discovery
-        The answer.
-    augmented : Simulation
-        The simulation with what was found in it.
-    """
+    """Find where a simulation and measured trials disagree, name what is missing, add it, show the gap shrink."""
     measured = without_spikes(measured)
     inquiry = begin_inquiry(simulation, measured, shapes)
     agreeing = agreeing_trials(inquiry, measured)

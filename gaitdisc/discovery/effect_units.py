@@ -19,13 +19,6 @@ _WORD = re.compile(r"(.*?)\^?(-?\d+)?")
 def places_unit(simulation: Simulation, kind: str, place: str) -> str:
     """Return the unit of what is added at a port, or to the derivative of a state.
 
-    Parameters
-    ----------
-    simulation : Simulation
-        As read.
-    kind, place : str
-        `port` or `equation`, and its name.
-
     Examples
     --------
     >>> from gaitdisc.simulation.bundled import bundled
@@ -40,11 +33,6 @@ def places_unit(simulation: Simulation, kind: str, place: str) -> str:
 def divided(unit: str, by: str) -> str:
     """Return one unit over another.
 
-    Parameters
-    ----------
-    unit, by : str
-        Products of units with powers.
-
     Examples
     --------
     >>> divided("N m", "rad/s"), divided("1", "s"), divided("N", "N")
@@ -58,8 +46,6 @@ def unit_of(expression: str, units: Mapping[str, str]) -> str:
 
     Parameters
     ----------
-    expression : str
-        In names that have units.
     units : mapping of str to str
         Unit by name; a name that is not there is a pure number.
 
@@ -74,13 +60,6 @@ def unit_of(expression: str, units: Mapping[str, str]) -> str:
 def unit_of_state(simulation: Simulation, rate: str) -> str:
     """Return the unit of a state whose time derivative is an expression.
 
-    Parameters
-    ----------
-    simulation : Simulation
-        Whose names it is written in.
-    rate : str
-        The time derivative.
-
     Examples
     --------
     >>> from gaitdisc.simulation.bundled import bundled
@@ -93,13 +72,6 @@ def unit_of_state(simulation: Simulation, rate: str) -> str:
 
 def channel_unit(expression: str, units: Mapping[str, str]) -> str:
     """Return the unit of an observed channel; of one in other units than its states', `1` where it is not known.
-
-    Parameters
-    ----------
-    expression : str
-        Of the observation.
-    units : mapping of str to str
-        Unit by name.
 
     Examples
     --------
@@ -117,13 +89,6 @@ def channel_unit(expression: str, units: Mapping[str, str]) -> str:
 
 def unit_of_channel(simulation: Simulation, channel: str) -> str:
     """Return the unit of an observed channel: the file's, or what follows from its expression.
-
-    Parameters
-    ----------
-    simulation : Simulation
-        As read.
-    channel : str
-        Name of the observation.
 
     Examples
     --------

@@ -25,15 +25,6 @@ _WAVE = re.compile(r"(sin|cos)\((.*)\)")
 def estimates_of(account: Account, number: int, base: Simulation) -> dict[str, Estimate]:
     """Return the numbers of one explanation.
 
-    Parameters
-    ----------
-    account : Account
-        Fitted.
-    number : int
-        Which of its explanations.
-    base : Simulation
-        As read; gives the units.
-
     Returns
     -------
     dict of str to Estimate
@@ -50,12 +41,8 @@ def named_estimates(part: Part, covariance: NDArray[np.float64], base: Simulatio
 
     Parameters
     ----------
-    part : Part
-        The explanation.
     covariance : ndarray (slot, slot)
         Of its numbers, in the order of its slots; NaN where it is not known.
-    base : Simulation
-        As read.
     """
     candidate, slots = part.candidate, part.candidate.slots
     units, names = slot_units(candidate, base), NAMES | dict(candidate.names or {})
@@ -80,15 +67,7 @@ def named_estimates(part: Part, covariance: NDArray[np.float64], base: Simulatio
 
 
 def slot_units(candidate: Candidate, base: Simulation) -> dict[str, str]:
-    """Return the unit of each number of an explanation.
-
-    Parameters
-    ----------
-    candidate : Candidate
-        The explanation.
-    base : Simulation
-        As read.
-    """
+    """Return the unit of each number of an explanation."""
     own = {part.name: part.unit for part in (*base.states, *base.inputs, *base.parameters)} | {"t": "s"}
     if candidate.verdict == "missing_physics":
         place = places_unit(base, candidate.kind, candidate.place)

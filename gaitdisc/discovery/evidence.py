@@ -21,10 +21,6 @@ class Judged:
 
     Parameters
     ----------
-    account : Account
-        Fitted under that noise.
-    shooting : Shooting
-        The segments, with that noise.
     gained : float
         Fall of the evidence against the same without its last explanation, under one noise.
     """
@@ -57,15 +53,7 @@ class Judged:
         return tuple(part.candidate.verdict for part in self.account.parts)
 
     def under(self, other: Judged, base: Simulation) -> Judged:
-        """Return the account fitted again under another's noise, so that the two can be compared.
-
-        Parameters
-        ----------
-        other : Judged
-            Whose noise.
-        base : Simulation
-            As read.
-        """
+        """Return the account fitted again under another's noise, so that the two can be compared."""
         if other.shooting is self.shooting:
             return self
         account = account_for(
@@ -75,19 +63,7 @@ class Judged:
 
 
 def judged(shooting: Shooting, base: Simulation, account: Account, rounds: int = 2) -> Judged:
-    """Learn an account's own noise, and its own past for what comes late, and fit it again under them.
-
-    Parameters
-    ----------
-    shooting : Shooting
-        The segments, under any noise.
-    base : Simulation
-        As read.
-    account : Account
-        Fitted under that noise.
-    rounds : int
-        How often noise and fit take turns.
-    """
+    """Learn an account's own noise, and its own past for what comes late, and fit it again under them."""
     least = INTEGRATED * np.nanstd(shooting.measured.observed, axis=(0, 1))
     for _ in range(rounds):
         used = account.fit.starts.shape[1] / account.fit.residual.shape[2]
@@ -104,13 +80,6 @@ def compared(accounts: list[Judged], base: Simulation) -> list[Judged]:
     ----------
     accounts : list of Judged
         Of the same segments; those under the noise of the first stay as they are.
-    base : Simulation
-        As read.
-
-    Returns
-    -------
-    list of Judged
-        In the same order.
     """
     accounts = [one.under(accounts[0], base) for one in accounts]
     for _ in range(len(accounts)):

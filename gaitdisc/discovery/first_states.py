@@ -32,13 +32,7 @@ class StateGuess:
     states: NDArray[np.float64]
 
     def starts(self, segments: Segments) -> NDArray[np.float64]:
-        """Return the guess at each segment's first sample (segment, state).
-
-        Parameters
-        ----------
-        segments : Segments
-            The runs.
-        """
+        """Return the guess at each segment's first sample (segment, state)."""
         return self.states[segments.trial, segments.begin].copy()
 
     def with_run(self, segments: Segments, states: NDArray[np.float64]) -> StateGuess:
@@ -46,8 +40,6 @@ class StateGuess:
 
         Parameters
         ----------
-        segments : Segments
-            The runs.
         states : ndarray (segment, sample, state)
             Their states; those that effects bring along, after the others, are left out.
         """
@@ -61,12 +53,8 @@ def guess_states(simulation: Simulation, measured: Measured, period: float, rate
     ----------
     simulation : Simulation
         Names, and observations: any expressions of states, inputs and time.
-    measured : Measured
-        Its trials; channels in the order of the observations.
     period : float
         The motion's main period [s].
-    rate_of : dict of str to str
-        Position-like state -> its rate.
 
     Returns
     -------

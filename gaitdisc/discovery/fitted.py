@@ -16,8 +16,6 @@ class Fitted:
 
     Parameters
     ----------
-    free : tuple of str
-        The constants that were fitted.
     values : ndarray (parameter,)
         Every parameter of the simulation, fitted or not, in its unit.
     starts : ndarray (segment, state)
@@ -63,8 +61,6 @@ class Fitted:
         ----------
         better : ndarray of bool (segment,)
             Which.
-        other : Fitted
-            Of the same segments and constants.
         """
         if better.all():
             return other

@@ -37,15 +37,6 @@ def shapes_at(place: Place, judged_now: Judged, search: Search) -> list[Candidat
     """Return the shapes that could be fitted at a place: over one state, over two (bumps, and powers), over the stride.
 
     At a place between bodies the states may be differences of two, and another body's.
-
-    Parameters
-    ----------
-    place : Place
-        Where it enters.
-    judged_now : Judged
-        An account, whose run says which states are visited.
-    search : Search
-        What is searched.
     """
     shapes = [one for motion in place.motions for one in _shapes_over(place, motion, judged_now, search)]
     if any(one.name == "phase" for one in search.base.inputs):
@@ -85,15 +76,6 @@ def fitted_shape(now: Judged, search: Search, scale: GapScale) -> Judged | None:
     The slopes of the simulation as read say which shapes promise most; these are fitted, and the best ones thinned out
     and tried as one bump. Each number costs a little of the gap. What is left remembers itself as long as a shape is
     wrong: under noise that does so too, the wrong one would be the likelier.
-
-    Parameters
-    ----------
-    now : Judged
-        The simulation as read, without any explanation.
-    search : Search
-        What is searched.
-    scale : GapScale
-        What the gap is measured against.
 
     Returns
     -------

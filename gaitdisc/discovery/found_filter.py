@@ -35,19 +35,11 @@ def record_filter_of(
 
     Parameters
     ----------
-    simulation : Simulation
-        As read, with the measured observations.
-    measured : Measured
-        Its trials.
     period : float
         The motion's main period [s].
-    guess : StateGuess
-        States, roughly.
 
     Returns
     -------
-    record_filter : RecordFilter
-        Of each channel.
     findings : tuple of Finding
         About filters that the file does not tell of.
     """

@@ -57,53 +57,23 @@ class GapScale:
         return float(np.mean((np.maximum(self.noise, MODEL_ERROR * self.spread) / self.size) ** 2))
 
     def mean_square(self, fit: Fitted) -> float:
-        """Mean square of a residual, in squares of `size`.
-
-        Parameters
-        ----------
-        fit : Fitted
-            Any.
-        """
+        """Mean square of a residual, in squares of `size`."""
         return float(np.nanmean((fit.residual / self.size) ** 2))
 
     def relative(self, fit: Fitted) -> float:
-        """Root mean square of a residual over the spread of its channel.
-
-        Parameters
-        ----------
-        fit : Fitted
-            Any.
-        """
+        """Root mean square of a residual over the spread of its channel."""
         return float(np.sqrt(np.nanmean((fit.residual / self.spread) ** 2)))
 
     def agrees(self, fit: Fitted) -> bool:
-        """Whether a residual is no more than noise and a hundredth of the measurement's spread explain.
-
-        Parameters
-        ----------
-        fit : Fitted
-            Any.
-        """
+        """Whether a residual is no more than noise and a hundredth of the measurement's spread explain."""
         return self.mean_square(fit) < AGREES**2 * self.least
 
     def gap_above(self, mean_square: float) -> float:
-        """Return the root of a mean square above what the sensors' noise leaves.
-
-        Parameters
-        ----------
-        mean_square : float
-            In squares of `size`.
-        """
+        """Return the root of a mean square above what the sensors' noise leaves."""
         return float(np.sqrt(max(mean_square - self.floor, 0.0)))
 
     def error_of(self, fit: Fitted) -> Noise:
-        """Return white noise as large as a residual that remembers itself weighs against a prior.
-
-        Parameters
-        ----------
-        fit : Fitted
-            Of which it is the residual.
-        """
+        """Return white noise as large as a residual that remembers itself weighs against a prior."""
         return white_noise(self.size * np.sqrt(REMEMBERED * max(self.mean_square(fit), 1e-12)))
 
 
@@ -113,10 +83,6 @@ class Weighed:
 
     Parameters
     ----------
-    account : Account
-        Fitted under white noise.
-    shooting : Shooting
-        Its segments, with that noise.
     errors : ndarray (piece,)
         Mean squares left out of the fit, in squares of the scale's size.
     gap : float
@@ -139,14 +105,6 @@ def weighed(scale: GapScale, shooting: Shooting, base: Simulation, parts: tuple[
 
     Parameters
     ----------
-    scale : GapScale
-        What the gap is measured against.
-    shooting : Shooting
-        The segments; their noise is not used.
-    base : Simulation
-        As read.
-    parts : tuple of Part
-        The explanations, with numbers to begin from.
     like : Account
         Of the same segments: where start states and numbers with bounds begin.
     """

@@ -88,8 +88,6 @@ def grid(kind: str, along: NDArray[np.float64], rhythm: Rhythm) -> NDArray[np.fl
         As in the catalogue: `quantiles of x`, `half widths of x`, `delays`, `frequencies`, `phases`, `phase widths`.
     along : ndarray (sample,)
         x along the run.
-    rhythm : Rhythm
-        The record's times.
     """
     if kind == "quantiles of x":
         return np.quantile(along, QUANTILES)
@@ -109,8 +107,6 @@ def delays(rhythm: Rhythm, either_way: bool = False) -> NDArray[np.float64]:
 
     Parameters
     ----------
-    rhythm : Rhythm
-        The record's times.
     either_way : bool
         Whether a signal may as well come early: one that was recorded late.
 
@@ -130,12 +126,8 @@ def cells(constants: dict[str, str], along: NDArray[np.float64], rhythm: Rhythm)
 
     Parameters
     ----------
-    constants : dict of str to str
-        Constant -> kind of grid.
     along : ndarray (sample,)
         x along the run.
-    rhythm : Rhythm
-        The record's times.
     """
     axes = [grid(kind, along, rhythm) for kind in constants.values()]
     return [dict(zip(constants, (float(one) for one in cell), strict=True)) for cell in product(*axes)]

@@ -25,20 +25,12 @@ def grown(
 
     Parameters
     ----------
-    search : Search
-        What is searched.
-    now : Judged
-        What to begin with.
-    most : int
-        Most explanations.
     noise : ndarray (channel,), optional
         Standard deviation of the sensors' noise: two explanations that leave far more of an error are not refined, for
         no set of names is exact then.
 
     Returns
     -------
-    now : Judged
-        With what was let in.
     rivals : list of Judged
         What else stood for the first place, best first.
     """
@@ -75,8 +67,6 @@ def leaves(now: Judged, noise: NDArray[np.float64]) -> float:
 
     Parameters
     ----------
-    now : Judged
-        Fitted.
     noise : ndarray (channel,)
         Its standard deviation [the channel's unit].
     """
@@ -90,12 +80,6 @@ def beside_others(search: Search, pair: Judged, firsts: list[Judged], explored: 
 
     Parameters
     ----------
-    search : Search
-        What is searched.
-    pair : Judged
-        The best alone, and what stands best beside it.
-    firsts : list of Judged
-        What else stood for the first place, best first.
     explored : set of Explanations
         Beside which another was sought; those of this search are added.
     """
@@ -117,10 +101,6 @@ def settled(search: Search, now: Judged, worth: float, explored: set[Explanation
 
     Parameters
     ----------
-    search : Search
-        What is searched.
-    now : Judged
-        With two explanations or more.
     worth : float
         By which the evidence must get worse for one to stay.
     explored : set of Explanations
@@ -139,10 +119,6 @@ def exchanged(search: Search, now: Judged, explored: set[Explanations]) -> Judge
 
     Parameters
     ----------
-    search : Search
-        What is searched.
-    now : Judged
-        With two explanations or more.
     explored : set of Explanations
         Beside which another was sought; those of this search are added.
     """
@@ -165,10 +141,6 @@ def pruned(search: Search, now: Judged, worth: float) -> Judged:
 
     Parameters
     ----------
-    search : Search
-        What is searched.
-    now : Judged
-        With two explanations or more.
     worth : float
         By which the evidence must get worse for one to stay.
     """

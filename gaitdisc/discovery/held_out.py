@@ -28,10 +28,6 @@ class Trial:
 
     Parameters
     ----------
-    segments : Segments
-        The runs.
-    fit : Fitted
-        Of the start states alone.
     measured : ndarray (run, sample, channel)
         The measurement.
     """
@@ -47,19 +43,7 @@ class Trial:
 
 
 def runs_of(inquiry: Inquiry, now: Judged, trials: tuple[int, ...], like: Judged) -> Trial:
-    """Run an account over trials, finding nothing but the start states.
-
-    Parameters
-    ----------
-    inquiry : Inquiry
-        The trials.
-    now : Judged
-        The account.
-    trials : tuple of int
-        Which.
-    like : Judged
-        Whose noise and whose length of runs are used.
-    """
+    """Run an account over trials, finding nothing but the start states."""
     periods = like.shooting.segments.span / inquiry.rhythm.samples
     *shorter, whole = _lengths(periods)
     guess = inquiry.guess
@@ -80,8 +64,6 @@ def tells_nothing(inquiry: Inquiry, as_read: Judged, now: Judged) -> bool:
 
     Parameters
     ----------
-    inquiry : Inquiry
-        The trials.
     as_read, now : Judged
         The simulation as read and with what trials that were learned from speak for.
     """
@@ -95,8 +77,6 @@ def holding_out_others(inquiry: Inquiry, as_read: Judged, now: Judged) -> Inquir
 
     Parameters
     ----------
-    inquiry : Inquiry
-        The trials, two or more of them learned from.
     as_read, now : Judged
         The simulation as read and with what trials that were learned from speak for.
     """
@@ -106,13 +86,7 @@ def holding_out_others(inquiry: Inquiry, as_read: Judged, now: Judged) -> Inquir
 
 
 def noted(before: Inquiry, now: Inquiry) -> Inquiry:
-    """Return an inquiry with a finding that says what is held out in place of what.
-
-    Parameters
-    ----------
-    before, now : Inquiry
-        With the first data held out, and with others.
-    """
+    """Return an inquiry with a finding that says what is held out in place of what."""
     blind, instead = (", ".join(one.measured.trials[trial] for trial in one.held_out) for one in (before, now))
     what = f"with and without what was found, trial {blind} runs alike; trial {instead} is held out in its place"
     finding = Finding("note", "held out", now.measured.source, what, "nothing; the last data were to be held out")
@@ -160,8 +134,6 @@ class Proof:
     ----------
     before, after : Trial
         The same runs without and with what is to be borne out.
-    test : PairedTest
-        Of their squared errors.
     """
 
     before: Trial
@@ -183,33 +155,13 @@ class Proof:
 
 
 def proof_of(inquiry: Inquiry, before: Judged, now: Judged, like: Judged) -> Proof:
-    """Run two accounts over the held-out trials and compare their squared errors piece by piece.
-
-    Parameters
-    ----------
-    inquiry : Inquiry
-        The trials.
-    before, now : Judged
-        Without and with what is to be borne out.
-    like : Judged
-        Whose noise and whose length of runs are used.
-    """
+    """Run two accounts over the held-out trials and compare their squared errors piece by piece."""
     first, second = (runs_of(inquiry, one, inquiry.held_out, like) for one in (before, now))
     return Proof(first, second, tested(inquiry, first, second, like))
 
 
 def tested(inquiry: Inquiry, before: Trial, after: Trial, like: Judged) -> PairedTest:
-    """Compare the squared errors of the same runs of two models.
-
-    Parameters
-    ----------
-    inquiry : Inquiry
-        Gives the period.
-    before, after : Trial
-        Without and with what was found.
-    like : Judged
-        Whose noise is used.
-    """
+    """Compare the squared errors of the same runs of two models."""
     period = int(inquiry.rhythm.samples / like.shooting.segments.every) + 1
     return paired_test(before.fit.residual, after.fit.residual, like.noise.size, period)
 
@@ -225,8 +177,6 @@ def gap_size(
         The same runs of the simulation as read and with what was found.
     floor : ndarray (channel,)
         Standard deviation of the noise [the channel's unit].
-    channels : tuple of str
-        Names of the channels.
     test : PairedTest
         Of the squared errors, or of those of what the data did not bear out.
     """
@@ -242,8 +192,6 @@ def drawn_runs(inquiry: Inquiry, before: Trial, after: Trial) -> Runs:
 
     Parameters
     ----------
-    inquiry : Inquiry
-        The trials.
     before, after : Trial
         The same runs of the simulation as read and with what was found.
     """

@@ -24,8 +24,6 @@ class Idle:
 
     Parameters
     ----------
-    places, parameters, states : tuple of str
-        Names.
     constant : tuple of str
         Measured channels that no state, place, parameter or input changes.
     """
@@ -36,15 +34,7 @@ class Idle:
     constant: tuple[str, ...] = ()
 
     def findings(self, source: str, kind: str) -> tuple[Finding, ...]:
-        """One for each kind.
-
-        Parameters
-        ----------
-        source : str
-            Name of the measured data.
-        kind : str
-            Of the places: `port` or `equation`.
-        """
+        """One for each kind."""
         return tuple(
             Finding(severity, "no influence", source, f"{said} no effect on what is measured", spoils)
             for severity, said, spoils in (
@@ -68,12 +58,6 @@ def idle_parts(
 
     Parameters
     ----------
-    shooting : Shooting
-        The runs.
-    simulation : Simulation
-        As read.
-    places : tuple of Place
-        Where an effect may enter.
     starts : ndarray (segment, state)
         Where each run begins.
     """
@@ -106,22 +90,7 @@ def idle_parts(
 
 
 def refuse_idle(idle: Idle, simulation: Simulation, places: tuple[Place, ...]) -> None:
-    """Refuse a simulation of which a measured channel never changes, or in which nothing could be missing that shows.
-
-    Parameters
-    ----------
-    idle : Idle
-        What changes nothing.
-    simulation : Simulation
-        As read.
-    places : tuple of Place
-        Where an effect may enter.
-
-    Raises
-    ------
-    SimulationError
-        With the channel, or the places.
-    """
+    """Refuse a simulation of which a measured channel never changes, or in which nothing missing would show."""
     for name in idle.constant:
         raise SimulationError(
             "a measured channel depends on a state or an input",

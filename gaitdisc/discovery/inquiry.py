@@ -51,14 +51,8 @@ class Inquiry:
     ----------
     search : Search
         The simulation, and everything that could explain a gap.
-    measured : Measured
-        All trials.
     learned, held_out : tuple of int
         Trials that are searched and fitted, and trials that are only judged on.
-    guess : StateGuess
-        States, roughly.
-    record_filter : RecordFilter
-        What the measured channels went through.
     """
 
     search: Search
@@ -97,15 +91,7 @@ class Inquiry:
         return np.where(np.isnan(self.sensor_noise), noise, self.sensor_noise)
 
     def segments(self, trials: tuple[int, ...], periods: float = 1.0) -> Segments:
-        """Cut trials into runs.
-
-        Parameters
-        ----------
-        trials : tuple of int
-            Which.
-        periods : float
-            Length of a run, in main periods.
-        """
+        """Cut trials into runs."""
         samples = int(round(periods * self.rhythm.samples, 6))  # 88 / period / rate * ... may be 87.99
         passed, lengths = self.record_filter, self.measured.drive.samples
         wanted = max(samples, FEWEST_SAMPLES, FEWEST_COMPARED * passed.every)
@@ -113,13 +99,7 @@ class Inquiry:
         return cut_segments(lengths, trials, wanted, margin, passed.every)
 
     def shooting(self, segments: Segments) -> Shooting:
-        """Return the segments, ready to be fitted, under noise of unit size.
-
-        Parameters
-        ----------
-        segments : Segments
-            The runs.
-        """
+        """Return the segments, ready to be fitted, under noise of unit size."""
         channels = self.measured.observed.shape[2]
         noise = white_noise(np.ones(channels))
         return Shooting(self.measured, segments, noise, SUBSTEPS, self.guess.states, record_filter=self.record_filter)
@@ -130,13 +110,7 @@ class Inquiry:
         return int(min(self.measured.drive.samples[trial] for trial in self.learned))
 
     def learned_runs(self, samples: int) -> Shooting:
-        """Return the learned trials cut into runs, ready to be fitted.
-
-        Parameters
-        ----------
-        samples : int
-            Length wanted.
-        """
+        """Return the learned trials cut into runs, ready to be fitted."""
         return self.shooting(self.segments(self.learned, samples / self.rhythm.samples))
 
     def as_read(self) -> Judged:
@@ -163,13 +137,7 @@ class Inquiry:
         return 1.0 if step is None else step / self.rhythm.samples
 
     def is_tame(self, now: Judged) -> bool:
-        """Whether runs were cut at a whole period, and not earlier for fear of chaos.
-
-        Parameters
-        ----------
-        now : Judged
-            Fitted to such runs.
-        """
+        """Whether runs were cut at a whole period, and not earlier for fear of chaos."""
         return now.shooting.segments.span >= TAME * self.rhythm.samples
 
     def lengthened(self, now: Judged, most: int = 10**9) -> Judged:
@@ -177,8 +145,6 @@ class Inquiry:
 
         Parameters
         ----------
-        now : Judged
-            Fitted to shorter runs.
         most : int
             Longest run wanted [samples].
         """
@@ -212,17 +178,8 @@ def begin_inquiry(simulation: Simulation, measured: Measured, shapes: tuple[Shap
 
     Parameters
     ----------
-    simulation : Simulation
-        As read.
     measured : Measured
         Its trials; of four, one is held out, of one, the last quarter of its time.
-    shapes : tuple of Shape
-        Effects of the user's own, beside the catalogue.
-
-    Raises
-    ------
-    GaitdiscError
-        If the trials are not of the simulation.
     """
     simulation = matched(simulation, measured, shapes)
     if len(measured.trials) == 1:
@@ -267,8 +224,6 @@ def split_in_time(measured: Measured, last: bool = True) -> Measured:
 
     Parameters
     ----------
-    measured : Measured
-        With one trial.
     last : bool
         Whether the last quarter is held out, or the first.
     """

@@ -22,11 +22,6 @@ def left_out_errors(fit: Fitted) -> NDArray[np.float64]:
 
     The fit is linear in its constants and start states around where it ended. Where whole runs are left out, their own
     start states are found, nothing else.
-
-    Parameters
-    ----------
-    fit : Fitted
-        Converged; numbers with bounds keep their prior.
     """
     if len(fit.starts) >= FEWEST_RUNS:
         return _without_runs(fit)

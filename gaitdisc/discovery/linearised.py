@@ -47,8 +47,6 @@ class Linearised:
 
         Parameters
         ----------
-        factor : float
-            Growth, in units of each state's spread.
         states : ndarray (segment, sample, state)
             The run, for that spread.
         """
@@ -78,8 +76,6 @@ class Linearised:
 
         Parameters
         ----------
-        place : int
-            Number of the place.
         push : ndarray (segment, sample, candidate)
             The push at each sample [the place's unit].
         """
@@ -102,19 +98,7 @@ class Linearised:
 
 
 def linearise(shooting: Shooting, simulation: Simulation, places: tuple[Place, ...], fit: Fitted) -> Linearised:
-    """Linearise every step of a fitted run.
-
-    Parameters
-    ----------
-    shooting : Shooting
-        The segments.
-    simulation : Simulation
-        What was fitted.
-    places : tuple of Place
-        Where pushes may come.
-    fit : Fitted
-        The run.
-    """
+    """Linearise every step of a fitted run."""
     return linearise_along(shooting, simulation, places, fit.states, fit.values)
 
 
@@ -129,12 +113,6 @@ def linearise_along(
 
     Parameters
     ----------
-    shooting : Shooting
-        The segments.
-    simulation : Simulation
-        What runs there.
-    places : tuple of Place
-        Where pushes may come.
     run : ndarray (segment, sample, state)
         The states.
     values : ndarray (parameter,)
@@ -158,15 +136,7 @@ def linearise_along(
 
 
 def pushable(simulation: Simulation, places: tuple[Place, ...]) -> Compiled:
-    """Compile a simulation with a push, zero at first, at every place.
-
-    Parameters
-    ----------
-    simulation : Simulation
-        Without the pushes.
-    places : tuple of Place
-        Where they come; their parameters follow the simulation's own.
-    """
+    """Compile a simulation with a push, zero at first, at every place."""
     for number, place in enumerate(places):
         simulation = simulation.with_parameter(Parameter(f"push_{number}", 0.0))
         simulation = simulation.with_effect(Term(place.name, place.kind, "push", f"push_{number}"))
@@ -178,12 +148,6 @@ def seen_change(shooting: Shooting, machine: Compiled, fit: Fitted, change: NDAr
 
     Parameters
     ----------
-    shooting : Shooting
-        The segments.
-    machine : Compiled
-        The simulation that was fitted.
-    fit : Fitted
-        The run.
     change : ndarray (segment, sample, state, candidate)
         To first order.
     """

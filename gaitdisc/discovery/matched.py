@@ -18,28 +18,7 @@ FEWEST = 16  # samples of a trial
 
 
 def matched(simulation: Simulation, measured: Measured, shapes: tuple[Shape, ...] = ()) -> Simulation:
-    """Return the simulation with the observations that were measured, in their order.
-
-    Parameters
-    ----------
-    simulation : Simulation
-        As read.
-    measured : Measured
-        Its trials.
-    shapes : tuple of Shape
-        Effects of the user's own.
-
-    Raises
-    ------
-    ChannelError
-        If a measured channel is no observation, or one stands twice.
-    ShapeError
-        If the inputs are not the simulation's, one has no value, or a channel has none in a trial or never varies.
-    SamplingError
-        If a trial is too short, or a filter is beyond half the rate.
-    SimulationError
-        If a delay reaches into the future of a state, or further than the shortest trial.
-    """
+    """Return the simulation with the observations that were measured, in their order."""
     where = measured.source or "the measured trials"
     observations = tuple(name for name, _ in simulation.observations)
     for name in measured.channels:

@@ -12,15 +12,7 @@ from gaitdisc.simulation.simulation import Simulation
 
 
 def corrections_of(account: Account, base: Simulation) -> tuple[Correction, ...]:
-    """List the numbers that were fitted within their bounds and moved, each with its 95 % interval inside these.
-
-    Parameters
-    ----------
-    account : Account
-        Fitted.
-    base : Simulation
-        As read.
-    """
+    """List the numbers that were fitted within their bounds and moved, each with its 95 % interval inside these."""
     prior, free = account.fit.prior, account.fit.free
     error = np.sqrt(np.diag(account.fit.covariance))
     units, found = {one.name: one.unit for one in base.parameters}, []
@@ -35,15 +27,7 @@ def corrections_of(account: Account, base: Simulation) -> tuple[Correction, ...]
 
 
 def file_bounds(base: Simulation, candidate: Candidate) -> tuple[float, ...]:
-    """Return the bounds that the file gives a wrong parameter, infinite where it has but one.
-
-    Parameters
-    ----------
-    base : Simulation
-        As read.
-    candidate : Candidate
-        An explanation; any but a wrong parameter has none.
-    """
+    """Return the bounds that the file gives a wrong parameter, infinite where it has but one."""
     for one in base.parameters if candidate.verdict == "wrong_parameter" else ():
         if one.name == candidate.place and (one.low is not None or one.high is not None):
             return (-np.inf if one.low is None else one.low, np.inf if one.high is None else one.high)
@@ -51,13 +35,5 @@ def file_bounds(base: Simulation, candidate: Candidate) -> tuple[float, ...]:
 
 
 def corrected(base: Simulation, corrections: tuple[Correction, ...]) -> Simulation:
-    """Return a simulation with corrected numbers.
-
-    Parameters
-    ----------
-    base : Simulation
-        As read.
-    corrections : tuple of Correction
-        What moved.
-    """
+    """Return a simulation with corrected numbers."""
     return base.with_values({one.parameter: one.found.value for one in corrections})

@@ -16,15 +16,7 @@ MEANS = "an effect that has no name here"
 
 
 def nameless_terms(simulation: Simulation, places: tuple[Place, ...]) -> tuple[Candidate, ...]:
-    """List them at every place.
-
-    Parameters
-    ----------
-    simulation : Simulation
-        As read.
-    places : tuple of Place
-        Where a term may enter.
-    """
+    """List them at every place."""
     rate_of = kinematic_rates(simulation, compile_simulation(simulation))
     inputs = [one.name for one in simulation.inputs if one.name != "phase"]
     return tuple(

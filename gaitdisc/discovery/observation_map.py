@@ -25,8 +25,6 @@ class ObservationMap:
 
     Parameters
     ----------
-    machine : Compiled
-        The simulation.
     t : ndarray (sample,)
         Time [s].
     u : ndarray (sample, input)

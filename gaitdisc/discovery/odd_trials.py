@@ -44,8 +44,6 @@ class Odd:
 
     Parameters
     ----------
-    trial : int
-        Its number.
     change : str
         What is to be done to it, in words: `the sign of x is turned`.
     channel : str
@@ -63,15 +61,7 @@ class Odd:
 
 @dataclass(frozen=True)
 class Change:
-    """What may have happened to a trial, undone in every trial.
-
-    Parameters
-    ----------
-    words, channel : str
-        As for `Odd`.
-    measured : Measured
-        All trials, changed.
-    """
+    """What may have happened to a trial, undone in every trial."""
 
     words: str
     channel: str
@@ -83,8 +73,6 @@ def agreeing_trials(inquiry: Inquiry, measured: Measured) -> Measured:
 
     Parameters
     ----------
-    inquiry : Inquiry
-        Begun with all trials.
     measured : Measured
         These, as they were given; of fewer than three, none can be said to be the odd one.
     """
@@ -110,13 +98,7 @@ def agreeing_trials(inquiry: Inquiry, measured: Measured) -> Measured:
 
 
 def odd_trials(inquiry: Inquiry) -> tuple[Odd, ...]:
-    """Find the trials that are turned in sign or shifted in time.
-
-    Parameters
-    ----------
-    inquiry : Inquiry
-        The simulation as read and all trials.
-    """
+    """Find the trials that are turned in sign or shifted in time."""
     count = len(inquiry.measured.trials)
     bench = _Bench(inquiry)
     fit, segments = bench.fitted(inquiry.measured)
@@ -208,15 +190,7 @@ def _shifted(bench: _Bench, fit: Fitted, segments: Segments) -> Iterator[Change]
 
 
 def shifted(measured: Measured, shift: int) -> Measured:
-    """Return trials whose channels come a number of samples earlier against their inputs; each loses as many.
-
-    Parameters
-    ----------
-    measured : Measured
-        All trials.
-    shift : int
-        Samples; negative where the channels come later.
-    """
+    """Return trials whose channels come a number of samples earlier against their inputs; each loses as many."""
     inputs, seen = max(-shift, 0), max(shift, 0)
     trials = [(each, int(samples) - abs(shift)) for each, samples in enumerate(measured.samples)]
     drive = Drive.of(

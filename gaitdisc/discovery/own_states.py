@@ -26,10 +26,6 @@ def with_own_states(
 
     Parameters
     ----------
-    shooting : Shooting
-        The segments, and the states of the record.
-    machine : Compiled
-        The simulation with its effects.
     values : ndarray (parameter,)
         Its parameters.
     starts : ndarray (segment, state)
@@ -47,10 +43,6 @@ def followed(shooting: Shooting, simulation: Simulation, values: NDArray[np.floa
 
     Parameters
     ----------
-    shooting : Shooting
-        With the states of the record.
-    simulation : Simulation
-        With its effects.
     values : ndarray (version, parameter)
         Its parameters, several versions of them.
     """

@@ -22,10 +22,6 @@ class Place:
 
     Parameters
     ----------
-    kind : str
-        `port` or `equation`.
-    name : str
-        Its name in the simulation file.
     motions : tuple of (str, str)
         Position-like state and its rate, the place's own first, then its differences with others, then (at a port) the
         others; the rate is empty for a state that has none (first-order systems).
@@ -48,13 +44,6 @@ class Place:
 def kinematic_rates(simulation: Simulation, machine: Compiled) -> dict[str, str]:
     """Find the states whose equation only says that their derivative is another state.
 
-    Parameters
-    ----------
-    simulation : Simulation
-        As read.
-    machine : Compiled
-        The same, compiled.
-
     Returns
     -------
     dict of str to str
@@ -73,15 +62,7 @@ def kinematic_rates(simulation: Simulation, machine: Compiled) -> dict[str, str]
 
 
 def places_of(simulation: Simulation, machine: Compiled) -> tuple[Place, ...]:
-    """List where a missing effect may enter: the ports, or else every equation that is not mere kinematics.
-
-    Parameters
-    ----------
-    simulation : Simulation
-        As read.
-    machine : Compiled
-        The same, compiled.
-    """
+    """List where a missing effect may enter: the ports, or else every equation that is not mere kinematics."""
     rate_of = kinematic_rates(simulation, machine)
     if not simulation.ports:
         named = [state.name for state in simulation.states if state.name not in rate_of]
@@ -96,15 +77,6 @@ def driven_state(simulation: Simulation, machine: Compiled, port: str) -> str:
     """Name the state that a port drives: the one it is named after, or else the one whose derivative it moves most.
 
     In a chain of bodies a moment at one joint may move another joint's angle more than its own.
-
-    Parameters
-    ----------
-    simulation : Simulation
-        As read.
-    machine : Compiled
-        The same, compiled.
-    port : str
-        Name of the port.
     """
     words = set(port.split("_"))
     namesakes = [state.name for state in simulation.states if state.name in words]

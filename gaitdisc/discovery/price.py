@@ -47,8 +47,6 @@ def price_of(candidate: Candidate, values: Mapping[str, float]) -> float:
 
     Parameters
     ----------
-    candidate : Candidate
-        The explanation.
     values : mapping of str to float
         Its numbers: a friction that drives costs more than one that resists.
     """

@@ -18,8 +18,6 @@ class Prior:
 
     Parameters
     ----------
-    names : tuple of str
-        Parameters with two bounds.
     places : ndarray of int (number,)
         Where they stand among the parameters.
     value, low, high : ndarray (number,)
@@ -48,13 +46,7 @@ class Prior:
         return (self.value - values[self.places]) / self.sd
 
     def among(self, free: tuple[str, ...]) -> Prior:
-        """Return the prior of those of its parameters that are fitted.
-
-        Parameters
-        ----------
-        free : tuple of str
-            The parameters that are fitted.
-        """
+        """Return the prior of those of its parameters that are fitted."""
         kept = np.array([name in free for name in self.names], bool)
         names = tuple(name for name in self.names if name in free)
         return Prior(names, self.places[kept], self.value[kept], self.low[kept], self.high[kept])
@@ -79,8 +71,6 @@ def prior_of(simulation: Simulation, exact: frozenset[str] = frozenset()) -> Pri
     ----------
     simulation : Simulation
         A parameter with `low` and `high` has a prior; one with a single bound or none is exact.
-    exact : frozenset of str
-        Parameters that are left out.
 
     Examples
     --------

@@ -26,13 +26,6 @@ def ranked(accounts: list[Judged], candidates: tuple[Candidate, ...]) -> list[Ju
     A kind of explanation with many members (a missing term: any shape at any place) is more likely to have one that
     fits by chance than a kind with few (a wrong parameter): each kind pays for the number of its members. A simpler
     statement stands before one that is hardly better.
-
-    Parameters
-    ----------
-    accounts : list of Judged
-        Of equal segments, under one noise.
-    candidates : tuple of Candidate
-        All explanations that were open.
     """
     accounts = [one for one in accounts if np.isfinite(one.evidence)]
     if not accounts:

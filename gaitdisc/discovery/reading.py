@@ -47,10 +47,6 @@ class Piece:
     ----------
     text : str
         Over the simulation's names, its constants as words that begin with `_`.
-    kinds : dict of str to str
-        Constant -> kind of its grid.
-    values : dict of str to float
-        Constant -> number.
     """
 
     text: str
@@ -65,15 +61,6 @@ class Piece:
 
 def read_shape(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> Verdict:
     """Return a verdict on a learned shape with its reading in its place; as it was where there is none.
-
-    Parameters
-    ----------
-    inquiry : Inquiry
-        What is asked.
-    as_read : Judged
-        The simulation as read.
-    verdict : Verdict
-        What the search came to.
 
     References
     ----------
@@ -105,15 +92,6 @@ def read_instead(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> Verdict
     """Return a verdict on several names at one place, or on a shape that reads as less than they are and errs less.
 
     Pieces of the catalogue laid beside each other imitate any curve.
-
-    Parameters
-    ----------
-    inquiry : Inquiry
-        What is asked.
-    as_read : Judged
-        The simulation as read.
-    verdict : Verdict
-        What the search came to.
     """
     named = verdict.account
     places = [part.candidate.place for part in named.account.parts if part.candidate.verdict == "missing_physics"]
@@ -129,15 +107,7 @@ def read_instead(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> Verdict
 
 
 def effect_of(search: Search, candidate: Candidate) -> str:
-    """Return the name of the catalogue's effect that a reading is, or nothing.
-
-    Parameters
-    ----------
-    search : Search
-        With the catalogue at every place.
-    candidate : Candidate
-        A reading.
-    """
+    """Return the name of the catalogue's effect that a reading is, or nothing."""
     alike = (one for one in search.candidates if (one.kind, one.place) == (candidate.kind, candidate.place))
     return next((one.name for one in alike if one.pieces == candidate.pieces), "")
 

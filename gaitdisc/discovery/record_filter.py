@@ -27,8 +27,6 @@ class RecordFilter:
     ----------
     cutoffs_hz : tuple of float or None
         -3 dB frequency of one pass, channel by channel; None where a channel was not filtered.
-    rate_hz : float
-        Samples a second.
 
     Examples
     --------
@@ -56,13 +54,7 @@ class RecordFilter:
         return np.sqrt((self._response**2).sum(axis=0))
 
     def memory(self, lags: int) -> NDArray[np.float64]:
-        """Autocorrelation of what the filter leaves of white noise (lag, channel), between the samples compared.
-
-        Parameters
-        ----------
-        lags : int
-            How many, besides lag 0.
-        """
+        """Autocorrelation of what the filter leaves of white noise (lag, channel), between the samples compared."""
         response = self._response
         late = [np.roll(response, lag * self.every, axis=0) for lag in range(lags + 1)]
         for lag, one in enumerate(late):
@@ -83,8 +75,6 @@ class RecordFilter:
         ----------
         observed : ndarray (..., sample, channel, ...)
             Runs; the channels follow the samples.
-        axis : int
-            Of the samples.
         """
         if not self.margin:
             return observed
@@ -114,12 +104,8 @@ def run_both_ways(values: NDArray[np.float64], channel: int, coefficients: NDArr
     ----------
     values : ndarray (run, sample, channel, column)
         Runs.
-    channel : int
-        Which channel.
     coefficients : ndarray (3,)
         b0, a1, a2.
-    padding : int
-        Samples by which a run is continued.
     """
     b, a1, a2 = coefficients[0], coefficients[1], coefficients[2]
     runs, samples, _, columns = values.shape
@@ -145,13 +131,5 @@ def run_both_ways(values: NDArray[np.float64], channel: int, coefficients: NDArr
 
 
 def no_filter(channels: int, rate_hz: float) -> RecordFilter:
-    """Channels that went through no filter.
-
-    Parameters
-    ----------
-    channels : int
-        How many.
-    rate_hz : float
-        Samples a second.
-    """
+    """Channels that went through no filter."""
     return RecordFilter((None,) * channels, rate_hz)

@@ -18,8 +18,6 @@ class Rival:
 
     Parameters
     ----------
-    account : Judged
-        Fitted, the rival's explanation last.
     gained : float
         Fall of the Bayesian criterion from the simulation as read.
     tied : bool
@@ -37,15 +35,7 @@ class Rival:
 
 
 def evidence_of(search: Search, now: Judged) -> float:
-    """Return by how much the Bayesian criterion falls from the simulation as read to an answer, on the answer's runs.
-
-    Parameters
-    ----------
-    search : Search
-        What was searched.
-    now : Judged
-        The simulation with what was found.
-    """
+    """By how much the Bayesian criterion falls from the simulation as read to an answer, on the answer's runs."""
     return _weighed(search, now, ()).evidence - now.evidence if now.account.parts else 0.0
 
 
@@ -54,14 +44,8 @@ def rivals_of(search: Search, now: Judged, found: tuple[Judged, ...], gained: fl
 
     Parameters
     ----------
-    search : Search
-        What was searched.
     now : Judged
         The simulation with what was found; without any explanation, rivals keep the evidence that they were found with.
-    found : tuple of Judged
-        What else stood for the first place, best first.
-    gained : float
-        The answer's own evidence.
 
     Returns
     -------

@@ -31,10 +31,6 @@ class Score:
 
     Parameters
     ----------
-    candidate : Candidate
-        The explanation.
-    values : dict of str to float
-        Its numbers, to first order.
     gain : float
         Fall of the misfit (twice the log likelihood) that they promise.
     """
@@ -56,23 +52,7 @@ class _Cell:
 
 @dataclass(frozen=True)
 class Scorer:
-    """A fitted simulation, linearised, against which candidates are scored.
-
-    Parameters
-    ----------
-    shooting : Shooting
-        The segments.
-    simulation : Simulation
-        What was fitted.
-    machine : Compiled
-        The same, compiled.
-    fit : Fitted
-        Its fit.
-    places : tuple of Place
-        Where terms may enter.
-    rhythm : Rhythm
-        The record's times.
-    """
+    """A fitted simulation, linearised, against which candidates are scored."""
 
     shooting: Shooting
     simulation: Simulation
@@ -82,13 +62,7 @@ class Scorer:
     rhythm: Rhythm
 
     def scores(self, candidates: tuple[Candidate, ...]) -> list[Score]:
-        """Return the best score of each candidate, the greatest gain first.
-
-        Parameters
-        ----------
-        candidates : tuple of Candidate
-            The explanations.
-        """
+        """Return the best score of each candidate, the greatest gain first."""
         basis, known, left = self._explained()
         best: dict[int, Score] = {}
         for some, columns in self._columns(candidates):
@@ -101,13 +75,7 @@ class Scorer:
         return sorted(best.values(), key=lambda score: -score.gain)
 
     def left_without_each(self, candidates: tuple[Candidate, ...]) -> NDArray[np.float64]:
-        """Mean square that the best candidate leaves of all other trials, for each trial (trial,), to first order.
-
-        Parameters
-        ----------
-        candidates : tuple of Candidate
-            The explanations.
-        """
+        """Mean square that the best candidate leaves of all other trials, for each trial (trial,), to first order."""
         basis = start_basis(self.fit.slopes[..., : self.fit.starts.shape[1]])
         left, slopes = self.fit.projected
         others = _Others(self.shooting.segments.trial)

@@ -32,19 +32,7 @@ CERTAIN = 2.5  # standard errors
 
 @dataclass(frozen=True)
 class Search:
-    """What is searched, and in what.
-
-    Parameters
-    ----------
-    base : Simulation
-        As read.
-    places : tuple of Place
-        Where terms may enter.
-    candidates : tuple of Candidate
-        The explanations.
-    rhythm : Rhythm
-        The record's times.
-    """
+    """What is searched, and in what."""
 
     base: Simulation
     places: tuple[Place, ...]
@@ -56,8 +44,6 @@ class Search:
 
         Parameters
         ----------
-        now : Judged
-            What is in already.
         judge : int
             How many of the most promising, once refitted, are put under that noise.
 
@@ -93,24 +79,12 @@ class Search:
         return [before, *(replace(one, gained=before.evidence - one.evidence) for one in more)]
 
     def open_beside(self, account: Account) -> tuple[Candidate, ...]:
-        """Return the explanations that are not in an account.
-
-        Parameters
-        ----------
-        account : Account
-            Any.
-        """
+        """Return the explanations that are not in an account."""
         present = account.explanations
         return tuple(one for one in self.candidates if one.identity not in present)
 
     def sensible(self, account: Account) -> bool:
-        """Whether every number of an account lies where it means what its name says.
-
-        Parameters
-        ----------
-        account : Account
-            A fitted one.
-        """
+        """Whether every number of an account lies where it means what its name says."""
         return bool(np.isfinite(account.fit.misfit)) and all(
             low < value < high for value, (low, high) in self._limits(account)
         )
@@ -148,30 +122,14 @@ class Search:
         return np.inf if driven else WIDEST * max(map(abs, self._visited(account, role)))
 
     def without(self, now: Judged, number: int) -> Judged:
-        """Return the account less one explanation.
-
-        Parameters
-        ----------
-        now : Judged
-            A fitted account.
-        number : int
-            Which explanation goes.
-        """
+        """Return the account less one explanation."""
         parts = now.account.parts[:number] + now.account.parts[number + 1 :]
         fewer = account_for(now.shooting, self.base, parts, now.account.fit.starts, TURNS, like=now.account)
         return Judged(fewer, now.shooting)
 
 
 def is_certain(account: Account, first: int = 0) -> bool:
-    """Whether no explanation from `first` on could as well be idle, its number lost in its error.
-
-    Parameters
-    ----------
-    account : Account
-        Fitted.
-    first : int
-        Explanations before this one are not looked at.
-    """
+    """Whether no explanation from `first` on could as well be idle, its number lost in its error."""
     variance = np.diag(account.fit.covariance)
     error = np.sqrt(np.where(variance >= 0, variance, np.inf))  # rounding makes that of what is not determined negative
     errors = dict(zip(account.fit.free, error, strict=True))

@@ -25,8 +25,6 @@ class Segments:
         The trial that each lies in.
     begin : ndarray of int (segment,)
         Its first sample.
-    length : int
-        Samples of each, margins included.
     margin : int
         Samples at either end that are run and not compared.
     every : int
@@ -147,20 +145,11 @@ def cut_segments(
     ----------
     samples : ndarray of int (trial,)
         Samples of every trial.
-    trials : tuple of int
-        The trials to cut.
     length : int
         Samples wanted without the margins; the shortest of the trials decides what divides it evenly. A length that
         came of a cut comes of it again.
     margin : int
         Samples that are run before and after these; as many at either end of a trial are not compared.
-    every : int
-        Which samples are compared.
-
-    Raises
-    ------
-    SamplingError
-        If a trial has fewer than four samples.
 
     Examples
     --------

@@ -26,8 +26,6 @@ class Shaken:
 
     Parameters
     ----------
-    place : Place
-        Where the pushes come.
     evidence : float
         Minus twice the restricted log likelihood plus the price of its numbers, over the segments looked at.
     rival : float
@@ -47,15 +45,6 @@ class Shaken:
 
 def shaken(shooting: Shooting, account: Account, places: tuple[Place, ...]) -> list[Shaken]:
     """Weigh random pushes at every place against noise of the sensors; the best place first.
-
-    Parameters
-    ----------
-    shooting : Shooting
-        Short segments, with the noise that the account leaves.
-    account : Account
-        Fitted to them.
-    places : tuple of Place
-        Where pushes may come.
 
     Returns
     -------

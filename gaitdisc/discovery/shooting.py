@@ -33,18 +33,10 @@ class Shooting:
     ----------
     measured : Measured
         Trials, with the inputs that drive the simulation.
-    segments : Segments
-        The runs.
-    noise : Noise
-        What the residual is divided by.
-    substeps : int
-        Runge-Kutta steps a sample.
     past : ndarray (trial, sample, state) or None
         States before a segment begins, for what comes late.
     prior : Prior
         Of the parameters that have bounds and are fitted.
-    record_filter : RecordFilter or None
-        What the measured channels went through.
     """
 
     measured: Measured
@@ -77,8 +69,6 @@ class Shooting:
 
         Parameters
         ----------
-        machine : Compiled
-            The simulation.
         starts : ndarray (version, segment, state)
             Start states.
         values : ndarray (version, parameter)
@@ -103,8 +93,6 @@ class Shooting:
 
         Parameters
         ----------
-        machine : Compiled
-            The simulation.
         states : ndarray (version, segment, step, state)
             Where each step starts.
         values : ndarray (version, parameter)
@@ -121,8 +109,6 @@ class Shooting:
 
         Parameters
         ----------
-        machine : Compiled
-            The simulation.
         states : ndarray (version, segment, sample, state)
             Its states.
         values : ndarray (version, parameter)
@@ -137,8 +123,6 @@ class Shooting:
         ----------
         observed : ndarray (..., sample, channel, ...)
             Channels of whole segments.
-        axis : int
-            Of the samples.
         """
         recorded = self.record_filter.filtered(observed, axis) if self.record_filter else observed
         return recorded[(slice(None),) * axis + (self.segments.compared,)]
@@ -150,8 +134,6 @@ class Shooting:
 
         Parameters
         ----------
-        machine : Compiled
-            The simulation.
         states : ndarray (version, segment, sample, state)
             Its states.
         values : ndarray (version, parameter)
@@ -183,10 +165,6 @@ class Shooting:
 
         Parameters
         ----------
-        machine : Compiled
-            The simulation.
-        free : tuple of str
-            Constants whose slopes are wanted.
         values : ndarray (parameter,)
             All parameters.
         starts : ndarray (segment, state)
@@ -223,16 +201,10 @@ class Shooting:
 
         Parameters
         ----------
-        machine : Compiled
-            The simulation.
-        free : tuple of str
-            Constants to fit.
         values : ndarray (parameter,)
             Where all parameters begin.
         starts : ndarray (segment, state)
             Where the start states begin.
-        turns : int
-            Most steps.
         enough : float
             A step that takes less off the misfit is the last.
         """
@@ -292,13 +264,7 @@ class Shooting:
         return replace(self, past=self.segments.put(self.past, states[..., : self.past.shape[2]]))
 
     def with_noise(self, noise: Noise) -> Shooting:
-        """Return the same segments, divided by other noise.
-
-        Parameters
-        ----------
-        noise : Noise
-            Of every channel.
-        """
+        """Return the same segments, divided by other noise."""
         return replace(self, noise=noise)
 
 

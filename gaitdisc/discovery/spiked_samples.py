@@ -37,11 +37,6 @@ def without_spikes(measured: Measured) -> Measured:
     """Return trials whose spiked samples are empty, with a finding for each channel that had any.
 
     Of a record that was low-passed after it was spiked none is seen: there a spike is as smooth as the motion.
-
-    Parameters
-    ----------
-    measured : Measured
-        As read.
     """
     marks = np.zeros(measured.observed.shape, bool)
     for trial, samples in enumerate(measured.samples):

@@ -17,12 +17,8 @@ class Verdict:
 
     Parameters
     ----------
-    word : str
-        One of the contract's verdicts.
     account : Judged
         The simulation with what was found in it.
-    rivals : tuple of Judged
-        What else was weighed, best first.
     shaking : Shaken or None
         For process noise: where, and how strong.
     starts : dict of str to Estimate

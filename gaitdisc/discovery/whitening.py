@@ -23,8 +23,6 @@ def whiten(
     ----------
     residual : ndarray (segment, sample, channel, column)
         What is left; each segment begins afresh, and so does what follows a gap.
-    channel : int
-        Which channel.
     known : ndarray of bool (segment, sample, channel)
         Where there is a residual; nothing is left elsewhere.
     predictors : ndarray (order + 1, order)

@@ -23,13 +23,6 @@ def near_runs(inquiry: Inquiry, scale: GapScale) -> Weighed:
     """Fit the simulation as read to runs that are halved until it stays near the data.
 
     Of runs on which it never does, the longest are taken that halving makes hardly better.
-
-    Parameters
-    ----------
-    inquiry : Inquiry
-        The trials.
-    scale : GapScale
-        What the gap is measured against.
     """
     period = min(inquiry.rhythm.period, inquiry.rhythm.duration / 2) * inquiry.rhythm.rate
     samples, tried = inquiry.longest, []
@@ -52,17 +45,7 @@ def _as_read(inquiry: Inquiry, scale: GapScale, shooting: Shooting) -> Account:
 
 
 def on_longer_runs(inquiry: Inquiry, scale: GapScale, now: Weighed) -> Weighed | None:
-    """Fit what was found to runs twice as long, again and again, while it stays near the data; None if none is longer.
-
-    Parameters
-    ----------
-    inquiry : Inquiry
-        The trials.
-    scale : GapScale
-        What the gap is measured against.
-    now : Weighed
-        On shorter runs.
-    """
+    """Fit what was found to runs ever twice as long, while it stays near the data; None if none is longer."""
     longest, guess, found = inquiry.longest, inquiry.guess, None
     samples = now.shooting.segments.span
     while samples < longest:
@@ -84,10 +67,6 @@ def as_read_on(inquiry: Inquiry, scale: GapScale, as_read: Weighed, longer: Weig
 
     Parameters
     ----------
-    inquiry : Inquiry
-        The trials.
-    scale : GapScale
-        What the gap is measured against.
     as_read, longer : Weighed
         The simulation as read on shorter runs, and what was found on longer ones.
     """

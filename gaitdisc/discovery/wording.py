@@ -29,10 +29,6 @@ def sentence_of(discovery: Discovery, base: Simulation, parts: tuple[Part, ...])
 
     Parameters
     ----------
-    discovery : Discovery
-        Without one.
-    base : Simulation
-        As read.
     parts : tuple of Part
         The explanations behind the effects, in their order; none for verdicts without a term, number or signal.
     """

@@ -15,13 +15,6 @@ WRONG = 5.0  # standard errors from the file's number
 def wrong_starts(simulation: Simulation, as_read: Judged) -> dict[str, Estimate]:
     """Find the states that begin elsewhere than the file says.
 
-    Parameters
-    ----------
-    simulation : Simulation
-        As read; states without `initial` are not looked at.
-    as_read : Judged
-        The same, fitted with start states of its own.
-
     Returns
     -------
     dict of str to Estimate
@@ -42,13 +35,5 @@ def wrong_starts(simulation: Simulation, as_read: Judged) -> dict[str, Estimate]
 
 
 def begun_at(simulation: Simulation, starts: dict[str, Estimate]) -> Simulation:
-    """Return the simulation with other starts.
-
-    Parameters
-    ----------
-    simulation : Simulation
-        As read.
-    starts : dict of str to Estimate
-        By state.
-    """
+    """Return the simulation with other starts."""
     return simulation.with_starts({name: float(f"{start.value:.6g}") for name, start in starts.items()})

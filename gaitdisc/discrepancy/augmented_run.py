@@ -46,10 +46,6 @@ def with_learned_rates(
 
     Parameters
     ----------
-    known : Rates
-        f.
-    learned : Model
-        delta_f, of the states or of time.
     start : ndarray (state,)
         First state.
     time : ndarray (sample,) [s]
@@ -92,10 +88,6 @@ def on_states(
 
     Parameters
     ----------
-    system : System
-        What is known.
-    learned : Model
-        delta, of the known model's states or of time.
     start : ndarray (state,)
         First state of the known model.
     time : ndarray (sample,) [s]

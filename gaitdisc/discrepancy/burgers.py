@@ -17,15 +17,7 @@ HIGH_WAVES, ABOVE, MARGIN = 0.75, 5.0, 1.5  # as `smoothing`, over space: share 
 
 @dataclass(frozen=True)
 class BurgersRates:
-    """Du/dt = -u du/dx + viscosity d2u/dx2 - cubic u^3, periodic, by Fourier derivatives; a `system.Rates`.
-
-    Parameters
-    ----------
-    viscosity : float
-        nu.
-    cubic : float
-        eps of the hidden term.
-    """
+    """Du/dt = -u du/dx + viscosity d2u/dx2 - cubic u^3, periodic, by Fourier derivatives; a `system.Rates`."""
 
     viscosity: float = 0.1
     cubic: float = 0.0
@@ -44,8 +36,6 @@ class BurgersRates:
             First fields.
         dt_s : float
             Between samples [s].
-        steps : int
-            Samples to go.
         """
         found = np.full((len(starts), steps + 1, POINTS), np.nan)
         substeps = max(1, int(np.ceil(dt_s / LONGEST_STEP_S)))

@@ -48,14 +48,6 @@ class ByOutput:
 
 
 def fitted_by_output(samples: Samples, fit: Callable[[Samples], Model]) -> ByOutput:
-    """Fit a model to each output by itself, so that one that is noise decides nothing about another.
-
-    Parameters
-    ----------
-    samples : Samples
-        Of one or more outputs.
-    fit : callable
-        Takes samples of one output and gives a model.
-    """
+    """Fit a model to each output by itself, so that one that is noise decides nothing about another."""
     alone = [replace(samples, y=samples.y[:, [k]], outputs=(name,)) for k, name in enumerate(samples.outputs)]
     return ByOutput(tuple(fit(each) for each in alone))

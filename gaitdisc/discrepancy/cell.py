@@ -29,14 +29,6 @@ def cell(
 
     Parameters
     ----------
-    system : System
-        What is known, what is true, what is measured.
-    method : str
-        `sindy`, `dmd`, `bopdmd`, `gp` or `nn`.
-    approach : str
-        `dynamics` (Eq. 3.4) or `state` (Eq. 3.5).
-    conditions : Conditions
-        Noise, sampling, seed, variant.
     settings : MethodSettings, optional
         Of the methods; SINDy's threshold is the published one in the published variant.
 
@@ -61,15 +53,7 @@ def cell(
 def cell_of(
     record: Record, method: Method, approach: Approach, settings: MethodSettings | None = None
 ) -> DiscrepancyCell:
-    """Learn one error signal of a record that is there already.
-
-    Parameters
-    ----------
-    record : Record
-        Of a system.
-    method, approach, settings : as for `cell`
-        What is learned, and how.
-    """
+    """Learn one error signal of a record that is there already."""
     made, settings = record.conditions, settings or MethodSettings()
     if made.published and settings.threshold is None:
         settings = replace(settings, threshold=PUBLISHED_THRESHOLDS[approach])
@@ -92,13 +76,7 @@ def cell_of(
 
 
 def learned_model(record: Record, method: Method, approach: Approach, settings: MethodSettings) -> Model:
-    """Fit a method to an error signal; the dynamical error is measured a second time with what was learned first.
-
-    Parameters
-    ----------
-    record, method, approach, settings : as for `cell_of`
-        What is learned, and how.
-    """
+    """Fit a method to an error signal; the dynamical error is measured a second time with what was learned first."""
     samples = error_samples(record, approach, method in OF_TIME)
     learned = fitted(samples, method, settings, record.conditions.seed)
     if approach == "state" or method in OF_TIME or record.conditions.published:
@@ -115,17 +93,6 @@ def part(record: Record, learned: Model, approach: Approach, name: str) -> PartA
 
     In the forecast as a user has it the known and the augmented model each begin where they fit the end of the noisy
     training part best; in the oracle forecast both begin at the noise-free true state.
-
-    Parameters
-    ----------
-    record : Record
-        Of a system.
-    learned : Model
-        delta_f or delta.
-    approach : str
-        Which of both it is.
-    name : str
-        One of `PARTS`.
     """
     system, made, forecast = record.system, record.conditions, name != RECONSTRUCTION
     time = record.time[record.split - 1 :] if forecast else record.time[: record.split]
@@ -157,13 +124,7 @@ def _bounded(run: AugmentedRun, time: np.ndarray) -> AugmentedRun:
 
 
 def terms_of(learned: Model) -> str:
-    """Terms of a learned model with their coefficients, by output; empty for a method without terms.
-
-    Parameters
-    ----------
-    learned : Model
-        Of any method.
-    """
+    """Terms of a learned model with their coefficients, by output; empty for a method without terms."""
     if not isinstance(learned, Sindy):
         return ""
     said = []

@@ -25,19 +25,10 @@ def error_samples(record: Record, approach: Approach, of_time: bool = False) -> 
 
     Parameters
     ----------
-    record : Record
-        Its training part.
     approach : str
         `dynamics`: the deterministic dynamical error at the measured states (Eqs. 3.4, 3.6); `state`: the systematic
         state-space residual at the known model's states (Eq. 3.5), of the measurement as it is: low-passed, its noise
         would be taken for signal (only the published variant is).
-    of_time : bool
-        The input is time instead, for dynamic mode decomposition.
-
-    Raises
-    ------
-    ShapeError
-        If the dynamical error is asked for and not every state is measured.
 
     Examples
     --------
@@ -78,15 +69,6 @@ def refined_samples(record: Record, samples: Samples, learned: Model) -> Samples
     """Samples of the dynamical error, measured again from the model that was augmented once.
 
     What the flow misses is then small, and so is the error of order dt^2 that stood in the first samples.
-
-    Parameters
-    ----------
-    record : Record
-        With all states measured.
-    samples : Samples
-        From `error_samples`.
-    learned : Model
-        Fitted to them, of the states.
     """
     first = round((samples.time[0] - record.time[0]) / record.conditions.dt_s)
     y = np.asarray(record.filtered)[first - 1 : first + len(samples) + 1]
@@ -104,8 +86,6 @@ def flow_error(known: Callable, y: NDArray[np.float64], dt_s: float) -> NDArray[
 
     Parameters
     ----------
-    known : callable
-        Rates (point, state) at states (point, state).
     y : ndarray (sample, state)
         States.
     dt_s : float

@@ -63,10 +63,6 @@ def estimated_start(
     guess : ndarray (sample, state)
         Smoothed states, where each fit begins; their distance from `measured` in the channels is the noise.
 
-    Returns
-    -------
-    EstimatedStart
-
     References
     ----------
     Goldenshluger and Nemirovski 1997, Math. Methods Stat. 6:135 (windows whose intervals intersect).

@@ -17,15 +17,6 @@ MOST_STATES = 12  # of a fit by differences; a field begins at its last smoothed
 def forecast_start(record: Record, learned: Model | None, approach: Approach) -> NDArray[np.float64]:
     """State at the end of the training part, estimated from the measurement under the model that forecasts, (state,).
 
-    Parameters
-    ----------
-    record : Record
-        Its training part.
-    learned : Model or None
-        delta_f or delta; None for the known model alone.
-    approach : str
-        Which of both it is.
-
     Examples
     --------
     >>> from gaitdisc.discrepancy.record import Conditions, recorded

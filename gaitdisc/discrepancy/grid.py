@@ -30,23 +30,6 @@ def grid(
 
     Before the first, each method is fitted to a short record, so that no cell's seconds hold importing and compiling.
 
-    Parameters
-    ----------
-    system : System
-        What is known, true, measured.
-    conditions : Conditions
-        Sampling and variant; its noise and seed are replaced.
-    noises : sequence of float
-        As `Conditions.noise`.
-    seeds : sequence of int
-        Of noise and fits.
-    chosen : pair of sequences of str
-        Methods and approaches.
-    settings : MethodSettings, optional
-        Of the methods.
-    computed : callable
-        Takes each cell when it is done.
-
     Examples
     --------
     >>> from gaitdisc.discrepancy.system import system_of

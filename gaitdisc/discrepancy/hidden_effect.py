@@ -29,20 +29,14 @@ class HiddenEffect:
 
     Parameters
     ----------
-    case : str
-        What is recorded, in words.
     words : str
         What is hidden, in words; empty for nothing.
-    system : System
-        Known and true.
     effect : tuple of str
         Place and name by which `gaitdisc discover` would name it; empty for nothing.
     amount : float
         Its number, in the convention of `gaitdisc discover`.
     terms : mapping of str to mapping of str to float
         Output to terms with their coefficients, by which SINDy would name it; empty where it has no such name.
-    approach : str
-        Error signal that the methods learn.
     duration_s : float
         Of the record [s].
     """
@@ -63,17 +57,6 @@ def method_answer(
     """Ask one method what the known model lacks.
 
     SINDy answers with terms, the others with a curve: of time (DMD) or of the states (Gaussian process, network).
-
-    Parameters
-    ----------
-    hidden : HiddenEffect
-        What is looked for.
-    record : Record
-        Of its system.
-    method : str
-        One of chapter 3.
-    settings : MethodSettings, optional
-        Of the methods.
 
     Examples
     --------
@@ -102,17 +85,7 @@ def method_answer(
 
 
 def curve_words(hidden: HiddenEffect, record: Record, learned: Model) -> str:
-    """Say how far a learned curve is off what it stands for, along the record without its noise.
-
-    Parameters
-    ----------
-    hidden : HiddenEffect
-        What is looked for.
-    record : Record
-        That was learned from.
-    learned : Model
-        Of states, or of time.
-    """
+    """Say how far a learned curve is off what it stands for, along the record without its noise."""
     clean = recorded(record.system, replace(record.conditions, noise=0.0))
     signal = error_samples(clean, hidden.approach, learned.inputs == ("t",))
     own = record.system.known(clean.truth) if hidden.approach == "dynamics" else clean.truth

@@ -45,8 +45,6 @@ class Uncertainty:
         Standard deviation of the first state.
     step : ndarray (state,)
         That each step adds.
-    measured : float
-        Of a measurement.
     """
 
     first: NDArray[np.float64]
@@ -70,8 +68,6 @@ def linear_kalman(
         Measured.
     start : ndarray (state,)
         First state.
-    noise : Uncertainty
-        Noise.
 
     References
     ----------
@@ -102,16 +98,10 @@ def unscented_kalman(
 
     Parameters
     ----------
-    turn : callable
-        States (point, state) one sample on.
-    seen : callable
-        Measured channel (point,) of states (point, state).
     y : ndarray (sample,)
         Measured.
     start : ndarray (state,)
         First state.
-    noise : Uncertainty
-        Noise.
 
     References
     ----------

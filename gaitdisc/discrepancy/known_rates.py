@@ -18,18 +18,7 @@ STEP_S = 5e-4  # of Runge-Kutta order 4: the Lorenz system loses 1e-12 a second 
 
 @dataclass(frozen=True)
 class KnownRates:
-    """Rates of a simulation without inputs; `gaitdisc.discrepancy.system.Rates`.
-
-    Parameters
-    ----------
-    simulation : Simulation
-        Without inputs and delays.
-
-    Raises
-    ------
-    SimulationError
-        If it has inputs or delays.
-    """
+    """Rates of a simulation without inputs; `gaitdisc.discrepancy.system.Rates`."""
 
     simulation: Simulation
 
@@ -60,8 +49,6 @@ class KnownRates:
             First states.
         dt_s : float
             Between samples [s].
-        steps : int
-            Samples to go.
         """
         drive = Drive.of([np.empty((steps + 1, 0))], 1.0 / dt_s)
         none = np.zeros(len(starts), int)

@@ -23,8 +23,6 @@ def learned_rate(kind, tables, place, x, out):
         Of what `tables` holds: products of powers, Gaussian kernels, layers of a network, or values in time.
     tables : tuple of ndarray
         Six matrices, as `learned_term` lays them out.
-    place : int
-        Row of a table in time.
     x : ndarray (state,)
         State.
     out : ndarray (state,)
@@ -104,8 +102,6 @@ def integrate_augmented(program, learned, start, plan, found):
     ----------
     program : tuple
         Code that each stage runs, registers with parameters and constants in their places.
-    learned : tuple
-        Kind and tables.
     start : ndarray (state,)
         First state.
     plan : tuple

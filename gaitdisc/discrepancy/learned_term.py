@@ -25,8 +25,6 @@ class LearnedTerm:
 
     Parameters
     ----------
-    kind : int
-        `PRODUCTS`, `KERNELS`, `LAYERS` or `TIMES`.
     tables : tuple of ndarray
         Six matrices.
     """
@@ -44,11 +42,6 @@ def learned_term(model: Model, times: NDArray[np.float64]) -> LearnedTerm:
         `Sindy`, `Dmd`, `GaussianProcess`, or the dissertation's network as the trainer gives it, one or by output.
     times : ndarray (stage,) [s]
         Of the integrator's half steps, for a model of time.
-
-    Raises
-    ------
-    TrainingError
-        If the model is of another kind.
 
     Examples
     --------

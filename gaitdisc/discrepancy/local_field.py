@@ -33,8 +33,6 @@ class LocalField:
     ----------
     inputs, outputs : tuple of str
         Values of the field; what is learned of each.
-    term : LearnedTerm
-        Of `LOCAL`.
     said : str
         Terms of the learned function, where the method says any.
     """
@@ -61,17 +59,6 @@ def fit_local_field(samples: Samples, method: Method, settings: MethodSettings, 
     ----------
     samples : Samples
         Fields on a ring of even points, and the error signal at each.
-    method : str
-        `sindy`, `gp` or `nn`.
-    settings : MethodSettings
-        Of all methods.
-    seed : int
-        Of the draw, and of what a method draws.
-
-    Raises
-    ------
-    TrainingError
-        If the samples cannot be fitted.
     """
     points, error = _points(samples.x), samples.y.reshape(-1, 1)
     some = np.sort(np.random.default_rng(seed).choice(len(points), min(MOST_SAMPLES, len(points)), replace=False))
@@ -82,30 +69,13 @@ def fit_local_field(samples: Samples, method: Method, settings: MethodSettings, 
 
 
 def recorded_field(system: System, conditions: Conditions) -> Record:
-    """Record of a field on a ring, its noise taken out over time and over space.
-
-    Parameters
-    ----------
-    system : System
-        Of `burgers`.
-    conditions : Conditions
-        Of the record.
-    """
+    """Record of a field on a ring, its noise taken out over time and over space."""
     record = recorded(system, conditions)
     return replace(record, filtered=smoothed_in_space(record.filtered)) if conditions.noise else record
 
 
 def local_cell(record: Record, method: Method, settings: MethodSettings | None = None) -> DiscrepancyCell:
     """Learn the missing rate of a field as a function of the field at a point, and judge the augmented model.
-
-    Parameters
-    ----------
-    record : Record
-        Of a field on a ring.
-    method : str
-        `sindy`, `gp` or `nn`.
-    settings : MethodSettings, optional
-        Of the methods.
 
     Returns
     -------

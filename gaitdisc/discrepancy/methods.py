@@ -24,14 +24,10 @@ class MethodSettings:
 
     Parameters
     ----------
-    degree : int
-        Of SINDy's library.
     threshold : float, optional
         Of SINDy; chosen on an inner block where absent.
     bags : int
         Of SINDy's ensemble and of BOP-DMD; 0 for plain SINDy, and for ten bags of BOP-DMD.
-    delays, rank : int
-        Of dynamic mode decomposition.
     most_exact : int
         Samples up to which the Gaussian process is exact.
     nodes : int
@@ -59,19 +55,6 @@ def fitted(samples: Samples, method: Method, settings: MethodSettings, seed: int
     ----------
     samples : Samples
         Of states, or of time for the methods of `OF_TIME`.
-    method : str
-        `sindy`, `dmd`, `bopdmd`, `gp` or `nn`.
-    settings : MethodSettings
-        Of all methods.
-    seed : int
-        Of what a method draws.
-
-    Raises
-    ------
-    TrainingError
-        If the samples cannot be fitted.
-    SamplingError
-        If the record is too short for the delays.
     """
     fits: dict[str, Callable[[], Model]] = {
         "sindy": lambda: fit_sindy(samples, settings.degree, settings.threshold, settings.bags, seed),

@@ -68,10 +68,6 @@ def recommend(
 
     Parameters
     ----------
-    noise : float
-        Share of each channel's standard deviation.
-    samples : int
-        Of the training part.
     want : str
         `interpretability`: terms or frequencies that a person can read; `speed`: the fastest within 5 points of the
         best; `forecast`: the best forecast.
@@ -83,11 +79,6 @@ def recommend(
         where absent, the step at which most was measured.
     evidence : DataFrame, optional
         As `measured_cells` makes it; what the studies of chapter 3 measured where absent.
-
-    Raises
-    ------
-    SchemaError
-        If `want` is another word, or the evidence lacks columns.
 
     Examples
     --------
@@ -165,13 +156,7 @@ def _allowed(rows: pd.DataFrame, want: Want, samples: int) -> pd.DataFrame:
 
 
 def measured_cells(cells: Sequence[DiscrepancyCell]) -> pd.DataFrame:
-    """Evidence of a study: forecasts with learned rates, medians over channels, then over seeds with their range.
-
-    Parameters
-    ----------
-    cells : sequence of DiscrepancyCell
-        Of the variant done right.
-    """
+    """Evidence of a study: forecasts with learned rates, medians over channels, then over seeds with their range."""
     kept = [cell for cell in cells if cell.approach == "dynamics" and cell.variant == "right" and cell.parts]
     table = cells_table(kept)
     table["seconds"] = table["fit_s"] + table["run_s"]

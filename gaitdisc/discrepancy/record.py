@@ -23,8 +23,6 @@ class Conditions:
     ----------
     noise : float
         Standard deviation of the noise, as a share of each channel's own, or in its unit.
-    seed : int
-        Of the noise.
     absolute : bool
         The noise is in each channel's unit, as in the published code.
     dt_s, duration_s : float
@@ -52,10 +50,6 @@ class Record:
 
     Parameters
     ----------
-    system : System
-        What ran.
-    conditions : Conditions
-        How it was recorded.
     time : ndarray (sample,) [s]
         Even.
     truth : ndarray (sample, state)
@@ -64,8 +58,6 @@ class Record:
         y of Eqs. 3.3 and 3.15.
     filtered : ndarray (training sample, channel)
         Measured in the training part, smoothed.
-    split : int
-        First sample of the forecast.
     """
 
     system: System
@@ -96,13 +88,7 @@ class Record:
         return self.filtered[sample] if self.conditions.published and complete else self.truth[sample]
 
     def target(self, forecast: bool) -> NDArray[np.float64]:
-        """Noise-free channels that a part is judged by, (sample, channel).
-
-        Parameters
-        ----------
-        forecast : bool
-            The forecast instead of the training part.
-        """
+        """Noise-free channels that a part is judged by, (sample, channel)."""
         part = slice(self.split - 1, None) if forecast else slice(0, self.split)
         states = self.truth[part]
         if self.conditions.published:
@@ -112,22 +98,6 @@ class Record:
 
 def recorded(system: System, conditions: Conditions) -> Record:
     """Run the true system and measure it.
-
-    Parameters
-    ----------
-    system : System
-        What runs.
-    conditions : Conditions
-        How.
-
-    Returns
-    -------
-    Record
-
-    Raises
-    ------
-    SamplingError
-        If the training part is too short, or the true system leaves every bound.
 
     Examples
     --------

@@ -16,12 +16,8 @@ class ShakenRates:
 
     Parameters
     ----------
-    rates : Rates
-        Without the pushes.
     strength : tuple of float
         Of each state: standard deviation of the pushes of a second [unit of the state/sqrt(s)].
-    seed : int
-        Of the pushes.
     """
 
     rates: Rates
@@ -41,8 +37,6 @@ class ShakenRates:
             First states.
         dt_s : float
             Between samples [s]; a push stands at the end of each.
-        steps : int
-            Samples to go.
 
         Examples
         --------

@@ -19,8 +19,6 @@ def smoothed(values: NDArray[np.float64], rate_hz: float, cutoff_hz: float | Non
     ----------
     values : ndarray (sample, channel)
         Without gaps.
-    rate_hz : float
-        Samples a second.
     cutoff_hz : float, optional
         -3 dB frequency of one of the two passes; where absent, `noise_cutoff_hz` of each channel.
 
@@ -48,8 +46,6 @@ def noise_cutoff_hz(values: NDArray[np.float64], rate_hz: float) -> float:
     ----------
     values : ndarray (sample,)
         Without gaps.
-    rate_hz : float
-        Samples a second.
 
     References
     ----------
@@ -75,11 +71,6 @@ def noise_cutoff_hz(values: NDArray[np.float64], rate_hz: float) -> float:
 
 def edge_samples(rate_hz: float, cutoff_hz: float = 4.0) -> int:
     """Samples at each end that the filter's start and end still shape.
-
-    Parameters
-    ----------
-    rate_hz, cutoff_hz : float
-        Of the record and of the filter.
 
     Examples
     --------

@@ -30,8 +30,6 @@ class Rates(Protocol):
             First states.
         dt_s : float
             Between samples [s].
-        steps : int
-            Samples to go.
         """
         ...
 
@@ -42,12 +40,6 @@ class System:
 
     Parameters
     ----------
-    name : str
-        For tables.
-    states : tuple of str
-        Names, in order.
-    known, true : Rates
-        f and F.
     start : ndarray (state,)
         Where both begin.
     observation : ndarray (channel, state)
@@ -85,12 +77,6 @@ def system_of(
 
     Parameters
     ----------
-    known : Simulation
-        Without inputs.
-    hidden : Term, optional
-        What the true system has beyond it.
-    start : tuple of float
-        First state; that of the file where empty.
     gain : tuple of float
         Of the measured channels, which are the first states; every state and 1 where empty.
 

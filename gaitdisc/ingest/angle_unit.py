@@ -29,24 +29,11 @@ def judged_unit(
         Times of the samples.
     values : ndarray (time, angle) [deg or rad]
         Angles as read.
-    names : sequence of str
-        Their names.
-    stated : str or None
-        `deg`, `rad`, or None where the file is silent.
-    file : str
-        Name of the file, for messages.
 
     Returns
     -------
-    unit : str
-        `deg` or `rad`.
     finding : Finding or None
         Said where the unit was judged by magnitude, or where it is in doubt.
-
-    Raises
-    ------
-    UnitError
-        If the numbers contradict what is stated, or nothing is stated and the numbers do not tell.
 
     Examples
     --------
@@ -98,8 +85,6 @@ def copied_coordinate_unit(
 
     Parameters
     ----------
-    name : str
-        Name of the coordinate.
     values : ndarray (time,) [deg or rad]
         As read.
     angles : dict of str to ndarray (time,) [deg]

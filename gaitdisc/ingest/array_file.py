@@ -45,10 +45,6 @@ class ArrayFile:
 
     Parameters
     ----------
-    raw : RawFile
-        The file.
-    names : tuple of str
-        Variables at its top.
     opened : callable
         Gives the node of one of them.
     """
@@ -72,11 +68,6 @@ class ArrayFile:
         -------
         ndarray
             As stored, or one column.
-
-        Raises
-        ------
-        ReadError
-            If there is no such variable, it holds no numbers, complex or infinite ones, or several elements.
         """
         whole = path.replace("*", part) if part else path
         columns = _COLUMN.search(whole)
@@ -156,18 +147,7 @@ class ArrayFile:
 
 
 def open_arrays(path: Path | str) -> ArrayFile:
-    """File of variables, opened; nothing in it is ever unpickled.
-
-    Parameters
-    ----------
-    path : Path or str
-        `.mat` or `.npz`.
-
-    Raises
-    ------
-    ReadError
-        If it is damaged, or none of these.
-    """
+    """File of variables, opened; nothing in it is ever unpickled."""
     path = Path(path)
     raw = read_raw(path, LARGEST_BYTES)
     if path.suffix.lower() == ".npz":

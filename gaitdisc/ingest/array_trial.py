@@ -24,8 +24,6 @@ def read_arrays(path: Path | str, channels: Mapping[str, str] | None = None, par
 
     Parameters
     ----------
-    path : Path or str
-        The file.
     channels : mapping of str to str, optional
         The study's `[channels]`: path of a variable -> `name [unit] @ 100 Hz`, or `name [unit] @ variable` of a rate
         [Hz] or of times [s]. A marker's three columns are one entry. Entries without a rate are of other files.
@@ -36,17 +34,6 @@ def read_arrays(path: Path | str, channels: Mapping[str, str] | None = None, par
     -------
     Trial
         Streams as far as the study names their channels, each on its own clock.
-
-    Raises
-    ------
-    ReadError
-        If the file is damaged, lacks a variable, or a variable has another shape.
-    UnitError
-        If a channel has no unit, an unknown one, or one that its numbers contradict.
-    SamplingError
-        If a rate or times do not fit the variable, or one stream stands on two clocks.
-    ChannelError
-        If two variables mean one channel.
 
     Examples
     --------

@@ -69,8 +69,6 @@ class C3DReader:
 
         Parameters
         ----------
-        path : str or Path
-            File to read.
         channels : mapping of str to str, optional
             The study's own names, see `LabelMap`: label, description, `#<n>` for the n-th analog channel or
             `<label>.x` -> name, or `name [unit]`.
@@ -79,17 +77,6 @@ class C3DReader:
         -------
         Trial
             With findings for everything that had to be judged.
-
-        Raises
-        ------
-        ReadError
-            If the file is missing, no C3D file, truncated, or if no reader can read all of what its header promises.
-        UnitError
-            If lengths have no unit and the numbers do not tell it, or if the numbers contradict it.
-        SamplingError
-            If the file states no rate.
-        ChannelError
-            If a key of `channels` means several channels.
         """
         path = Path(path)
         try:
@@ -152,18 +139,6 @@ class C3DReader:
 
 def read_c3d(path: str | Path, channels: Mapping[str, str] | None = None) -> Trial:
     """Trial of one C3D file; `C3DReader` is faster for many.
-
-    Parameters
-    ----------
-    path : str or Path
-        File to read.
-    channels : mapping of str to str, optional
-        The study's own names, as `C3DReader.read` takes them.
-
-    Raises
-    ------
-    ReadError, UnitError, SamplingError, ChannelError
-        As `C3DReader.read`.
 
     Examples
     --------

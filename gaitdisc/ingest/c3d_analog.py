@@ -30,10 +30,6 @@ class AnalogLabel:
     ----------
     number : int
         Place among the analog channels, from 1.
-    label, description : str
-        Without the names of people.
-    unit : str
-        As written.
 
     Examples
     --------
@@ -74,8 +70,6 @@ def analog_labels(parameters: C3DParameters, count: int) -> list[AnalogLabel]:
 
     Parameters
     ----------
-    parameters : C3DParameters
-        Parameter section.
     count : int
         Analog channels; a file may list more labels or fewer.
     """
@@ -93,11 +87,6 @@ def emg_names(channels: list[AnalogLabel]) -> list[str]:
     A muscle of the vocabulary gives its name. Otherwise the label does if no other channel has it; labels that are
     alike or cut give way to the numbers in the description (`Voltage [5,1]`: `emg_5_1`), and those to the place among
     the analog channels.
-
-    Parameters
-    ----------
-    channels : list of AnalogLabel
-        The EMG channels only.
 
     Examples
     --------
@@ -129,26 +118,8 @@ def analog_streams(
     ----------
     rows : ndarray (sample, channel)
         In the file's units.
-    parameters : C3DParameters
-        Parameter section.
     plate_channels : set of int
         Columns that belong to force plates and are read there.
-    labels : LabelMap
-        The study's own names.
-    file : str
-        Name of the file.
-
-    Returns
-    -------
-    streams : dict of str to (values, channels)
-    findings : list of Finding
-
-    Raises
-    ------
-    UnitError
-        If a channel that the study maps has no unit, or one that measures something else.
-    ChannelError
-        If a key of the study's map means several channels.
     """
     analog = analog_labels(parameters, rows.shape[1])
     mapped = {one.number: labels.name(f"#{one.number}", one.label, one.plain, one.description) for one in analog}

@@ -23,15 +23,6 @@ def event_kind(label: str, context: str) -> tuple[str, str]:
     ----------
     label : str
         `Foot Strike`, `Right Foot Off`, or the short dialect of Qualisys: `LHS`, `RTO`.
-    context : str
-        `Left`, `Right`, `General` or empty.
-
-    Returns
-    -------
-    label : str
-        `initial contact`, `foot off`, or the file's own.
-    side : str
-        `r`, `l` or empty.
 
     Examples
     --------
@@ -59,24 +50,10 @@ def file_events(
     the first frame kept is TRIAL:ACTUAL_START_FIELD. Some software writes them on the clock of the cropped file
     instead: where all events lie outside of the file on the first clock and inside on the second, that one is taken.
 
-    Parameters
-    ----------
-    parameters : C3DParameters
-        Parameter section.
-    frames : int
-        Frames in the file.
-    rate_hz : float
-        Frames a second.
-    first_frame : int
-        Number of the first frame, counted from 1.
-    file : str
-        Name of the file.
-
     Returns
     -------
     events : tuple of Event
         In order of time; those outside of the file are left out and told.
-    findings : list of Finding
     """
     times = parameters.numbers("EVENT", "TIMES")
     labels = parameters.texts("EVENT", "LABELS")

@@ -36,18 +36,12 @@ class C3DHeader:
         `Intel`, `DEC` or `MIPS`: the order of bytes and the kind of float.
     parameter_block, data_block : int
         Where the parameter section and the data begin [blocks of 512 bytes, from 1].
-    points : int
-        Points in a frame.
     analog_values : int
         Analog values in a frame: channels times samples a frame.
     samples_per_frame : int
         Analog samples of one channel in a frame.
-    first_frame, last_frame : int
-        As written, at most 65535.
     scale : float
         Factor of integer points; negative where points are stored as floats.
-    rate_hz : float
-        Frames a second.
 
     Examples
     --------
@@ -76,16 +70,6 @@ class C3DHeader:
 
 def read_c3d_header(path: str | Path) -> C3DHeader:
     """Header of a C3D file, or a refusal that says what the file is instead.
-
-    Parameters
-    ----------
-    path : str or Path
-        File to look at.
-
-    Raises
-    ------
-    ReadError
-        If the file is missing, empty, a folder, or no C3D file.
 
     References
     ----------
@@ -135,12 +119,8 @@ def decoded(raw: bytes, width: int, processor: str) -> NDArray[np.generic]:
 
     Parameters
     ----------
-    raw : bytes
-        A multiple of `width` bytes.
     width : int
         1 for bytes, 2 for 16-bit integers, 4 for floats.
-    processor : str
-        `Intel`, `DEC` or `MIPS`.
 
     Examples
     --------

@@ -36,10 +36,6 @@ class Evidence:
 
     Parameters
     ----------
-    per_kg : bool or None
-        None where nothing shows it.
-    words : str
-        What was seen.
     certain : bool
         Whether plates and reaction forces were compared.
     mass_kg : float or None
@@ -53,13 +49,7 @@ class Evidence:
 
 
 def body_mass(parameters: C3DParameters) -> float | None:
-    """Body mass that the file states [kg], or None.
-
-    Parameters
-    ----------
-    parameters : C3DParameters
-        Parameter section.
-    """
+    """Body mass that the file states [kg], or None."""
     for group, name in (("PROCESSING", "BODYMASS"), ("SUBJECTS", "BODYMASS"), ("SUBJECT", "WEIGHT")):
         mass = parameters.number(group, name)
         if mass is not None and LIGHTEST_KG <= mass <= HEAVIEST_KG:
@@ -85,15 +75,6 @@ def house_kinetics(
         Stream `moments`, (frame, channel) [N, N m, W as the file states].
     plates_n : ndarray (frame, plate) [N]
         Size of the force of each plate; no column where there is none.
-    mass_kg : float or None
-        Body mass that the file states.
-    file : str
-        Name of the file.
-
-    Returns
-    -------
-    kinetics : (values, channels)
-    findings : list of Finding
 
     References
     ----------

@@ -15,13 +15,6 @@ from gaitdisc.recording import Finding
 def without_people(label: str, people: Iterable[str]) -> str:
     """Label without the names of people, as the prefix `Name:` or as a word in it.
 
-    Parameters
-    ----------
-    label : str
-        As written in the file.
-    people : iterable of str
-        Names that the file gives its subjects.
-
     Examples
     --------
     >>> without_people("Ann:LASI", ["Ann"]), without_people("EMG Ann soleus", ["Ann"])
@@ -36,11 +29,6 @@ def without_people(label: str, people: Iterable[str]) -> str:
 def without_prefix(label: str) -> str:
     """Label of a point without the prefix that tells whose it is.
 
-    Parameters
-    ----------
-    label : str
-        As written in the file.
-
     Examples
     --------
     >>> without_prefix("Ann:LASI")
@@ -50,13 +38,7 @@ def without_prefix(label: str) -> str:
 
 
 def named_people(parameters: C3DParameters) -> tuple[str, ...]:
-    """Names that the file gives its subjects, so that they can be removed wherever they stand.
-
-    Parameters
-    ----------
-    parameters : C3DParameters
-        Parameter section.
-    """
+    """Names that the file gives its subjects, so that they can be removed wherever they stand."""
     found: dict[str, None] = {}
     for group, name in (
         ("SUBJECTS", "NAMES"),
@@ -71,13 +53,6 @@ def named_people(parameters: C3DParameters) -> tuple[str, ...]:
 
 def told_apart(labels: Sequence[str], word: str) -> list[str]:
     """Labels of which no two are equal: those that are get their number, those that are empty a word and theirs.
-
-    Parameters
-    ----------
-    labels : sequence of str
-        In the file's order.
-    word : str
-        What a nameless one is called.
 
     Examples
     --------
@@ -104,11 +79,6 @@ class LabelMap:
     fifth analog channel, `RKneeAngles.x` for one component of a model output, `LCAL` for a marker. A value is the name
     of a channel, or `name [unit]` where the file does not tell the unit.
 
-    Parameters
-    ----------
-    channels : mapping of str to str, optional
-        Label -> name.
-
     Examples
     --------
     >>> LabelMap({"#5": "emg_sol_r", "Sensor 1": "emg_ta_r"}).name("#1", "sensor 1")
@@ -126,11 +96,6 @@ class LabelMap:
         ----------
         *labels : str
             All that the channel goes by, the most particular first.
-
-        Raises
-        ------
-        ChannelError
-            If a key has been used for another channel before.
         """
         for label in labels:
             for key, name in self._names.items():
@@ -145,15 +110,7 @@ class LabelMap:
         return None
 
     def unused(self, labels: Iterable[str], file: str) -> list[Finding]:
-        """Findings for the keys that no channel of the file goes by.
-
-        Parameters
-        ----------
-        labels : iterable of str
-            Labels of the file, to name the nearest.
-        file : str
-            Name of the file.
-        """
+        """Findings for the keys that no channel of the file goes by."""
         labels = tuple(labels)
         found = []
         for key in self._names:

@@ -75,24 +75,6 @@ def expected_layout(header: C3DHeader, parameters: C3DParameters) -> tuple[C3DLa
 
     Header and parameters usually say the same; a file that is shorter than that is truncated. Where they contradict
     each other, the counts that fill the file to its last block are believed, and the contradiction is a finding.
-
-    Parameters
-    ----------
-    header : C3DHeader
-        Header block.
-    parameters : C3DParameters
-        Parameter section.
-
-    Returns
-    -------
-    layout : C3DLayout
-    findings : list of Finding
-
-    Raises
-    ------
-    ReadError
-        If the file is truncated, says nothing of frames, points and analog channels, or has more than 65535 frames
-        and does not say how many.
     """
     word_bytes = _word_bytes(header, parameters)
     frames = _frames(header, parameters)

@@ -27,20 +27,10 @@ FACTORS = (1e-3, 1.0, 1e-2)  # mm, as Nexus writes; m; cm: the first that makes 
 def read_body_measures(path: Path | str) -> BodyMeasures:
     """Measures of the person that a C3D file holds in PROCESSING, SUBJECTS or SUBJECT.
 
-    Parameters
-    ----------
-    path : Path or str
-        `.c3d` file.
-
     Returns
     -------
     BodyMeasures
         None or absent where the file has nothing, zero, or a number that is none in mm, m or cm.
-
-    Raises
-    ------
-    ReadError
-        If the file is missing, or no C3D file.
 
     Examples
     --------
@@ -53,13 +43,6 @@ def read_body_measures(path: Path | str) -> BodyMeasures:
 
 def body_measures_of(parameters: C3DParameters, file: str) -> BodyMeasures:
     """Measures of the person that stand in parameters.
-
-    Parameters
-    ----------
-    parameters : C3DParameters
-        Parameter section.
-    file : str
-        Name of the file.
 
     Examples
     --------

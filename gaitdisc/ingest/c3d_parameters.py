@@ -38,13 +38,7 @@ class C3DParameters:
     values: Mapping[tuple[str, str], Value]
 
     def texts(self, group: str, name: str) -> tuple[str, ...]:
-        """Texts of a parameter, with those of `NAME2`, `NAME3`, ... that carry on where 255 are not enough.
-
-        Parameters
-        ----------
-        group, name : str
-            `POINT`, `LABELS`.
-        """
+        """Texts of a parameter, with those of `NAME2`, `NAME3`, ... that carry on where 255 are not enough."""
         found: list[str] = []
         for part in (name, *(f"{name}{number}" for number in range(2, 100))):
             value = self.values.get((group, part))
@@ -54,24 +48,12 @@ class C3DParameters:
         return tuple(found)
 
     def text(self, group: str, name: str) -> str:
-        """First text of a parameter, empty where there is none.
-
-        Parameters
-        ----------
-        group, name : str
-            `POINT`, `UNITS`.
-        """
+        """First text of a parameter, empty where there is none."""
         texts = self.texts(group, name)
         return texts[0].strip() if texts else ""
 
     def numbers(self, group: str, name: str) -> NDArray[np.float64]:
-        """Numbers of a parameter in the file's dimensions, empty where there is none.
-
-        Parameters
-        ----------
-        group, name : str
-            `FORCE_PLATFORM`, `CORNERS`.
-        """
+        """Numbers of a parameter in the file's dimensions, empty where there is none."""
         value = self.values.get((group, name))
         if value is None or isinstance(value, tuple):
             return np.empty(0)
@@ -79,37 +61,19 @@ class C3DParameters:
             return np.asarray(value, float)
 
     def number(self, group: str, name: str) -> float | None:
-        """First number of a parameter, None where there is none that is finite.
-
-        Parameters
-        ----------
-        group, name : str
-            `POINT`, `RATE`.
-        """
+        """First number of a parameter, None where there is none that is finite."""
         numbers = self.numbers(group, name).ravel()
         return float(numbers[0]) if numbers.size and np.isfinite(numbers[0]) else None
 
     def count(self, group: str, name: str) -> int | None:
-        """First number read as a count: a negative 16-bit integer is one above 32767.
-
-        Parameters
-        ----------
-        group, name : str
-            `POINT`, `FRAMES`.
-        """
+        """First number read as a count: a negative 16-bit integer is one above 32767."""
         number = self.number(group, name)
         if number is None or abs(number) > 2**31:
             return None
         return round(number) + (2**16 if number < 0 else 0)
 
     def field(self, name: str) -> int | None:
-        """Frame number of `TRIAL:ACTUAL_START_FIELD` or `ACTUAL_END_FIELD`, low and high word together.
-
-        Parameters
-        ----------
-        name : str
-            `ACTUAL_START_FIELD` or `ACTUAL_END_FIELD`.
-        """
+        """Frame number of `TRIAL:ACTUAL_START_FIELD` or `ACTUAL_END_FIELD`, low and high word together."""
         words = self.numbers("TRIAL", name).ravel()
         if not words.size or not np.all(np.isfinite(words[:2])) or np.any(np.abs(words[:2]) > 2**31):
             return None
@@ -118,18 +82,6 @@ class C3DParameters:
 
 def read_c3d_parameters(path: str | Path, header: C3DHeader) -> C3DParameters:
     """Every parameter of a C3D file.
-
-    Parameters
-    ----------
-    path : str or Path
-        The file that the header was read from.
-    header : C3DHeader
-        Its header.
-
-    Raises
-    ------
-    ReadError
-        If the section is broken, or lacks the group POINT and the group ANALOG.
 
     References
     ----------

@@ -66,8 +66,6 @@ def point_names(parameters: C3DParameters, count: int) -> list[str]:
 
     Parameters
     ----------
-    parameters : C3DParameters
-        Parameter section.
     count : int
         Points a frame; a file may list more labels or fewer.
     """
@@ -80,23 +78,8 @@ def length_unit(parameters: C3DParameters, places: NDArray[np.float64], file: st
 
     Parameters
     ----------
-    parameters : C3DParameters
-        Parameter section.
     places : ndarray (frame, coordinate)
         Of markers, in the file's unit, NaN allowed; some thousand frames are looked at.
-    file : str
-        Name of the file.
-
-    Returns
-    -------
-    unit : str
-        `m`, `cm` or `mm`.
-    findings : list of Finding
-
-    Raises
-    ------
-    UnitError
-        If the unit is absent and the numbers do not tell, if it is no length, or if the numbers contradict it.
     """
     far = distance_from_origin(places)
     text = parameters.text("POINT", "UNITS")
@@ -130,25 +113,11 @@ def point_streams(
     ----------
     rows : ndarray (frame, 3 * point)
         In the file's units, NaN where a point was not seen.
-    parameters : C3DParameters
-        Parameter section.
-    labels : LabelMap
-        The study's own names.
-    file : str
-        Name of the file.
 
     Returns
     -------
     streams : dict of str to (values, channels)
         In m, deg, N, N m and W; only those that the file has.
-    unit : str
-        Unit of the file's lengths.
-    findings : list of Finding
-
-    Raises
-    ------
-    UnitError
-        If the unit of the markers is unknown or contradicted by their magnitude.
     """
     names = point_names(parameters, rows.shape[1] // 3)
     kinds = _kinds(names, parameters)

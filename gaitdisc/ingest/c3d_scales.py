@@ -13,20 +13,7 @@ _REMEDY = "Export the trial again, or set it in the software that wrote it; numb
 
 
 def check_common_scales(header: C3DHeader, parameters: C3DParameters) -> None:
-    """Refuse a file whose scale of all points or of all analog channels cannot be used.
-
-    Parameters
-    ----------
-    header : C3DHeader
-        Header block.
-    parameters : C3DParameters
-        Parameter section.
-
-    Raises
-    ------
-    ReadError
-        If the header's scale, POINT:SCALE or ANALOG:GEN_SCALE is 0, infinite or no number.
-    """
+    """Refuse a file whose scale of all points or of all analog channels cannot be used."""
     stated = [("the header's scale of points", float(header.scale))] if header.points else []
     for group, name, used in (("POINT", "SCALE", header.points), ("ANALOG", "GEN_SCALE", header.analog_values)):
         numbers = parameters.numbers(group, name).ravel()
@@ -39,23 +26,7 @@ def check_common_scales(header: C3DHeader, parameters: C3DParameters) -> None:
 
 
 def unscaled_channels(parameters: C3DParameters, channels: int, file: str) -> tuple[frozenset[int], list[Finding]]:
-    """Analog channels whose own scale or offset cannot be used: their numbers are missing, the others stand.
-
-    Parameters
-    ----------
-    parameters : C3DParameters
-        Parameter section.
-    channels : int
-        Analog channels of the file.
-    file : str
-        Name of the file.
-
-    Returns
-    -------
-    columns : frozenset of int
-        From 0.
-    findings : list of Finding
-    """
+    """Analog channels whose own scale or offset cannot be used: their numbers are missing, the others stand."""
     labels = [*parameters.texts("ANALOG", "LABELS"), *[""] * channels]
     bad: dict[int, str] = {}
     for name in ("SCALE", "OFFSET"):

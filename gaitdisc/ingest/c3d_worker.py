@@ -58,11 +58,6 @@ def read_with_ezc3d(path: str) -> tuple[NDArray[np.float64], NDArray[np.float64]
 
     The file itself comes with them: to take its frames apart takes ezc3d a tenth of the time of reading, which can
     wait until the answer is on its way.
-
-    Parameters
-    ----------
-    path : str
-        A C3D file.
     """
     from ezc3d import ezc3d
 
@@ -72,13 +67,7 @@ def read_with_ezc3d(path: str) -> tuple[NDArray[np.float64], NDArray[np.float64]
 
 
 def read_with_c3d(path: str) -> tuple[NDArray[np.float64], NDArray[np.float64], object]:
-    """Points (frame, 3 * point) and analog values (channel, sample) as the pure-Python reader c3d sees them.
-
-    Parameters
-    ----------
-    path : str
-        A C3D file.
-    """
+    """Points (frame, 3 * point) and analog values (channel, sample) as the pure-Python reader c3d sees them."""
     import c3d
 
     with Path(path).open("rb") as handle:

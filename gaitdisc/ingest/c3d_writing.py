@@ -36,27 +36,10 @@ def write_c3d(recordings: Sequence[Recording], path: Path | str, surfaces: Seque
     recordings : sequence of Recording
         One of markers, or none; the others with one time base, of a multiple of the markers' rate or of 100 Hz.
         Samples of a last frame that is not whole are left away.
-    path : Path or str
-        `.c3d` file to write.
     surfaces : sequence of Surface
         Force plates, of type 2: `<name>_fx`, `_fy`, `_fz` [N] and `_mx`, `_my`, `_mz` [N m] among the channels are the
         force on the foot and its moment about the centre of the surface, in the laboratory's axes. They are read back
         as `plate_1_fx` and on, in the order of the surfaces.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    SamplingError
-        If the recordings differ in time base, do not begin at 0 s, or the analog rate is no multiple of the frames',
-        or they last more frames than the format counts.
-    ChannelError
-        If a name holds a tab, a line break or a blank at its ends, or a channel of a plate is not there.
-    WriteError
-        If the file cannot be written.
 
     References
     ----------

@@ -39,12 +39,8 @@ class Form:
 
     Parameters
     ----------
-    file : str
-        Name of the file, for messages.
     separator : str
         What stands between cells; a blank means any run of blanks and tabs.
-    decimal : str
-        Decimal sign.
     """
 
     file: str
@@ -52,13 +48,7 @@ class Form:
     decimal: str = "."
 
     def split(self, line: str) -> list[str]:
-        """Split a line into cells.
-
-        Parameters
-        ----------
-        line : str
-            One line without its end.
-        """
+        """Split a line into cells."""
         return line.split() if self.separator == " " else line.split(self.separator)
 
 
@@ -67,20 +57,8 @@ def parsed_cells(lines: Sequence[str], labels: Sequence[str], first_line: int, f
 
     Parameters
     ----------
-    lines : sequence of str
-        Lines of the body; blank ones are skipped.
-    labels : sequence of str
-        Names of the columns.
     first_line : int
         Line of the file in which the body starts, counted from 1.
-    form : Form
-        How the cells are written.
-
-    Raises
-    ------
-    ReadError
-        If a row has fewer cells than there are columns, or more that are not blank; if a cell is no number, or
-        infinite; if there is no row at all.
 
     Examples
     --------

@@ -18,11 +18,6 @@ ALREADY_EVEN = 1e-6  # of a step
 def printed_digit(texts: Iterable[str]) -> float:
     """Size of the last digit in use, the finest of a column; zeros that only fill up a number are none.
 
-    Parameters
-    ----------
-    texts : iterable of str
-        The numbers as they stand in the file.
-
     Examples
     --------
     >>> printed_digit(["0", "0.017", "0.033"]), printed_digit(["0.000000", "0.017000"]), printed_digit(["5.25e-04"])
@@ -51,8 +46,6 @@ def even_time(
         As read.
     digit_s : float
         Size of the last printed digit [s]; 0 for binary files.
-    file : str
-        Name of the file, for the message.
     lines : ndarray of int (time,), optional
         Line of each sample in the file, for the message; the row counted from 1 without it.
 
@@ -60,11 +53,6 @@ def even_time(
     -------
     ndarray (time,) [s]
         The same array where it is even already.
-
-    Raises
-    ------
-    SamplingError
-        If there are fewer than two samples, a time is missing, time stands still or runs back, or a step is wrong.
 
     Examples
     --------

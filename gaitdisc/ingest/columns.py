@@ -34,8 +34,6 @@ class Column:
 
     Parameters
     ----------
-    label : str
-        As written in the file.
     channel : Channel
         What it is inside; its unit is the one used inside.
     unit : str
@@ -106,8 +104,6 @@ def mapped_label(label: str, channels: Mapping[str, str] | None) -> str | None:
 
     Parameters
     ----------
-    label : str
-        As written in the file.
     channels : mapping of str to str, optional
         Label -> `name` or `name [unit]`. Case, blanks and punctuation of labels count only where they must.
 
@@ -126,11 +122,6 @@ def mapped_label(label: str, channels: Mapping[str, str] | None) -> str | None:
 
 def named_channel(name: str) -> Channel:
     """Channel of a name: that of the vocabulary, or one whose quantity the name tells.
-
-    Parameters
-    ----------
-    name : str
-        Name inside the package.
 
     Examples
     --------
@@ -154,18 +145,6 @@ def named_channel(name: str) -> Channel:
 def check_written_names(names: Sequence[str], file: str) -> None:
     """Refuse names that a text table cannot hold.
 
-    Parameters
-    ----------
-    names : sequence of str
-        Names of the channels.
-    file : str
-        File to write, for the message.
-
-    Raises
-    ------
-    ChannelError
-        If a name holds a tab, a line break or a blank at its ends.
-
     Examples
     --------
     >>> check_written_names(["knee_angle_r"], "walk.csv")
@@ -181,22 +160,6 @@ def check_written_names(names: Sequence[str], file: str) -> None:
 
 def column_in_unit(label: str, channel: Channel, unit_text: str, file: str) -> Column:
     """Column whose unit the file or the study states.
-
-    Parameters
-    ----------
-    label : str
-        As written in the file.
-    channel : Channel
-        What the column measures, in its usual unit.
-    unit_text : str
-        Unit as written.
-    file : str
-        Name of the file, for messages.
-
-    Raises
-    ------
-    UnitError
-        If the unit is unknown, or measures something else than the channel.
 
     Examples
     --------
@@ -235,17 +198,8 @@ def column_of(label: str, file: str, channels: Mapping[str, str] | None) -> Colu
 
     Parameters
     ----------
-    label : str
-        As written in the file.
-    file : str
-        Name of the file, for messages.
     channels : mapping of str to str, optional
         The study's `[channels]`.
-
-    Raises
-    ------
-    UnitError
-        If nothing states a unit, or the one that is stated does not fit.
 
     Examples
     --------

@@ -18,23 +18,6 @@ def file_sha256(path: Path) -> str:
 
     Unchanged means: same file number, size, and times of writing and of change, to the nanosecond.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    str
-        64 hexadecimal digits.
-
-    Raises
-    ------
-    ReadError
-        If it is a folder, a pipe or a device, or too large.
-    OSError
-        If the file cannot be read.
-
     Examples
     --------
     >>> import tempfile
@@ -56,13 +39,7 @@ def file_sha256(path: Path) -> str:
 
 
 def known_sha256(path: Path) -> str:
-    """Hash of a file if it was computed and the file is as it was; empty otherwise.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    """
+    """Hash of a file if it was computed and the file is as it was; empty otherwise."""
     try:
         return _known.get(_state(path.stat()), "")
     except OSError:

@@ -67,11 +67,6 @@ _STARTS = ("noexo", "withoutexo", "nonexo", "nodevice")
 def words_in(name: str) -> list[str]:
     """Words of a name in lower case, numbers at their ends taken off.
 
-    Parameters
-    ----------
-    name : str
-        Name of a file or folder without its ending.
-
     Examples
     --------
     >>> words_in("c3d_Trimmed_running_exotendon3")
@@ -88,13 +83,6 @@ def condition_word(path: Path) -> tuple[str, str]:
     ----------
     path : Path
         Relative to the folder that is searched; the file's own name counts before its folders.
-
-    Returns
-    -------
-    word : str
-        Empty where no word tells.
-    which : str
-        `nominal`, `device` or empty.
 
     Examples
     --------
@@ -117,11 +105,6 @@ def condition_word(path: Path) -> tuple[str, str]:
 def walk_key(path: Path) -> str:
     """What is left of a file's name when the words for its kind are taken away: files of one walk share it.
 
-    Parameters
-    ----------
-    path : Path
-        File.
-
     Examples
     --------
     >>> walk_key(Path("IK_gait.mot")), walk_key(Path("gait_emg.sto")), walk_key(Path("coordinates.sto"))
@@ -134,11 +117,6 @@ def walk_key(path: Path) -> str:
 def walk_place(path: Path) -> tuple[str, ...]:
     """Folders of a file without those that only tell the kind: files of one walk may lie in `IK` and in `GRF`.
 
-    Parameters
-    ----------
-    path : Path
-        Relative to the folder that is searched.
-
     Examples
     --------
     >>> walk_place(Path("P01/IK/walk1.mot")) == walk_place(Path("P01/GRF/walk1.mot")) == ("P01",)
@@ -149,11 +127,6 @@ def walk_place(path: Path) -> tuple[str, ...]:
 
 def person_word(path: Path) -> str:
     """Word of a path that tells the person: the first folder that tells nothing else, or a part such as `S01`.
-
-    Parameters
-    ----------
-    path : Path
-        Relative to the folder that is searched.
 
     Examples
     --------
@@ -171,11 +144,6 @@ def person_word(path: Path) -> str:
 def group_word(path: Path) -> str:
     """Word of a path that tells a group: a folder such as `controls` above those of persons; or empty.
 
-    Parameters
-    ----------
-    path : Path
-        Relative to the folder that is searched.
-
     Examples
     --------
     >>> group_word(Path("controls/P01/walk.c3d")), group_word(Path("P01/walk.c3d"))
@@ -187,11 +155,6 @@ def group_word(path: Path) -> str:
 
 def session_word(path: Path) -> tuple[str, str]:
     """Word of a path that tells the session, and what it is put in order by; the word of a date is empty.
-
-    Parameters
-    ----------
-    path : Path
-        Relative to the folder that is searched.
 
     Returns
     -------
@@ -222,11 +185,6 @@ def session_word(path: Path) -> tuple[str, str]:
 def kind_of_trial(path: Path) -> str:
     """Tell whether names say that somebody stands (`static`) or does something else than walk (`other`); or empty.
 
-    Parameters
-    ----------
-    path : Path
-        Relative to the folder that is searched.
-
     Examples
     --------
     >>> kind_of_trial(Path("P01/Static/a.c3d")), kind_of_trial(Path("P01/hip_ROM1.c3d")), kind_of_trial(Path("a.c3d"))
@@ -240,11 +198,6 @@ def kind_of_trial(path: Path) -> str:
 
 def walk_word(path: Path) -> str:
     """Word of a path that tells how somebody walks, where it is no word for with or without a device; or empty.
-
-    Parameters
-    ----------
-    path : Path
-        Relative to the folder that is searched.
 
     Examples
     --------

@@ -19,13 +19,9 @@ class ForcePlate:
 
     Parameters
     ----------
-    number : int
-        From 1, in the file's order.
     kind : int
         1: force, centre of pressure and free moment; 2: force and moment; 3: eight forces of four pillars; 4: as 2,
         through a calibration matrix.
-    columns : tuple of int
-        Its analog channels.
     corners : ndarray (4, 3) [m]
         In the laboratory's axes; the first lies towards the plate's +x and +y, the second towards -x and +y.
     origin : ndarray (3,) [m]

@@ -26,14 +26,6 @@ def force_plates(
 
     Parameters
     ----------
-    parameters : C3DParameters
-        Parameter section.
-    channels : int
-        Analog channels of the file.
-    length_unit : str
-        Unit of CORNERS and ORIGIN, that of the points.
-    file : str
-        Name of the file.
     unscaled : frozenset of int
         Columns of analog channels without a scale that can be used.
 
@@ -104,21 +96,6 @@ def plate_streams(
     ----------
     rows : ndarray (sample, channel)
         Analog channels in the file's units.
-    plates : list of ForcePlate
-        Plates of the file.
-    parameters : C3DParameters
-        Parameter section.
-    length_unit : str
-        Unit of the file's lengths.
-    file : str
-        Name of the file.
-
-    Returns
-    -------
-    streams : dict of str to (values, channels)
-    columns : set of int
-        Analog channels that the plates used.
-    findings : list of Finding
     """
     findings: list[Finding] = []
     wrenches = []
@@ -153,15 +130,7 @@ def plate_streams(
 
 
 def plate_loads(streams: Streams, samples_per_frame: int) -> NDArray[np.float64]:
-    """Size of each plate's force at the frames of the points, (frame, plate) [N].
-
-    Parameters
-    ----------
-    streams : dict of str to (values, channels)
-        As `plate_streams` gives them.
-    samples_per_frame : int
-        Analog samples in a frame.
-    """
+    """Size of each plate's force at the frames of the points, (frame, plate) [N]."""
     if "forces" not in streams:
         return np.empty((0, 0))
     values, channels = streams["forces"]

@@ -36,18 +36,7 @@ SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
 def is_hdf5(path: Path) -> bool:
-    """Tell whether a file begins as HDF5 does.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Raises
-    ------
-    ReadError
-        If it cannot be opened, is no regular file, or too large.
-    """
+    """Tell whether a file begins as HDF5 does."""
     try:
         check_regular(path)
         with path.open("rb") as file:
@@ -58,22 +47,7 @@ def is_hdf5(path: Path) -> bool:
 
 @contextmanager
 def hdf5_file(path: Path) -> Iterator[Any]:
-    """Open an HDF5 file for reading.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Yields
-    ------
-    h5py.File
-
-    Raises
-    ------
-    ReadError
-        If h5py is not installed, or the file is damaged.
-    """
+    """Open an HDF5 file for reading."""
     try:
         import h5py
     except ImportError as error:
@@ -93,41 +67,13 @@ def hdf5_file(path: Path) -> Iterator[Any]:
 
 
 def member_names(file: Any, path: Path) -> tuple[str, ...]:
-    """Names at the top of an HDF5 file.
-
-    Parameters
-    ----------
-    file : h5py.File
-        The open file.
-    path : Path
-        What it was opened from.
-
-    Raises
-    ------
-    ReadError
-        If the file is damaged.
-    """
+    """Names at the top of an HDF5 file."""
     with _in_words(path):
         return tuple(map(str, file))
 
 
 def data_set(file: Any, name: str, path: Path) -> NDArray[Any]:
-    """Numbers of one data set.
-
-    Parameters
-    ----------
-    file : h5py.File
-        The open file.
-    name : str
-        Name of the data set.
-    path : Path
-        What the file was opened from.
-
-    Raises
-    ------
-    ReadError
-        If it is no data set of numbers, too large for the file it stands in, or cannot be decoded.
-    """
+    """Numbers of one data set."""
     with _in_words(path):
         held = file[name]
         kind = getattr(getattr(held, "dtype", None), "kind", "")
@@ -151,22 +97,6 @@ def attributes(file: Any, name: str, path: Path, wanted: Collection[str]) -> dic
 
     A text of variable length is read by another process under a time limit: where its heap is damaged the library
     runs in a circle, and nothing can stop it from within.
-
-    Parameters
-    ----------
-    file : h5py.File
-        The open file.
-    name : str
-        Name of the data set.
-    path : Path
-        What the file was opened from.
-    wanted : collection of str
-        Names of the attributes.
-
-    Raises
-    ------
-    ReadError
-        If the file is damaged.
     """
     with _in_words(path):
         held = file[name].attrs

@@ -27,16 +27,6 @@ def with_flexion_positive(streams: Mapping[str, Recording]) -> tuple[dict[str, R
     channel is turned, and with it its speed, its acceleration and OpenSim's generalised moment of that coordinate. A
     knee that hardly bends follows the other knee of the trial. One that goes beyond both is left and named.
 
-    Parameters
-    ----------
-    streams : mapping of str to Recording
-        Streams of one trial; angles in deg.
-
-    Returns
-    -------
-    streams : dict of str to Recording
-    findings : list of Finding
-
     Examples
     --------
     >>> from gaitdisc.channel import vocabulary

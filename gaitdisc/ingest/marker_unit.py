@@ -32,22 +32,6 @@ def distance_from_origin(places: NDArray[np.float64]) -> float:
 def refuse_other_unit(unit: str, far: float, file: str, where: str) -> None:
     """Refuse a unit that the distance from the origin contradicts.
 
-    Parameters
-    ----------
-    unit : str
-        As stated: `m`, `cm`, `mm`.
-    far : float
-        As `distance_from_origin` gives it, in that unit.
-    file : str
-        Name of the file.
-    where : str
-        What states the unit, for the message.
-
-    Raises
-    ------
-    UnitError
-        If metres are 100 or more, or millimetres 3 or less.
-
     Examples
     --------
     >>> refuse_other_unit("mm", 1500.0, "walk.trc", "Units in line 3")

@@ -27,11 +27,6 @@ def read_sst_pacific(path: Path) -> Field:
     -------
     Field
         `sst` [degC], an anomaly; land is left out; time in months since January 1970.
-
-    Raises
-    ------
-    ReadError
-        If the file is damaged, or its cells are not the whole grid.
     """
     held = _arrays(path, ("sst", "landmask", "lon", "lat"))
     lat, lon = np.unique(held["lat"]), np.unique(held["lon"])
@@ -61,11 +56,6 @@ def read_navy_winds(path: Path) -> Field:
     -------
     Field
         `u` and `v` [m/s]; time in months since January 1982.
-
-    Raises
-    ------
-    ReadError
-        If the file is damaged, or its arrays do not fit together.
     """
     held = _arrays(path, ("u", "v", "lon", "lat"))
     lat, lon = (np.asarray(held[name], float) for name in ("lat", "lon"))

@@ -24,8 +24,6 @@ class Variable:
     ----------
     stored : ndarray, any shape
         Packed numbers.
-    attributes : mapping
-        `units`, `scale_factor`, `add_offset`, `missing_value`, ...
     """
 
     stored: NDArray[Any]
@@ -49,24 +47,7 @@ class Variable:
 
 
 def read_variables(path: Path, names: tuple[str, ...]) -> dict[str, Variable]:
-    """Read variables of a netCDF file.
-
-    Parameters
-    ----------
-    path : Path
-        Classic (netCDF-3) or netCDF-4.
-    names : tuple of str
-        What is needed.
-
-    Returns
-    -------
-    dict of str to Variable
-
-    Raises
-    ------
-    ReadError
-        If the file is no netCDF, is damaged, or lacks a variable.
-    """
+    """Read variables of a netCDF file."""
     if is_hdf5(path):
         with hdf5_file(path) as file:
             _refuse_absent(path, names, member_names(file, path))

@@ -91,8 +91,6 @@ def found_study(folder: Path | str, home: Path | str | None = None) -> tuple[Stu
 
     Parameters
     ----------
-    folder : Path or str
-        Where the recordings lie; sub-folders are searched.
     home : Path or str, optional
         Folder in which the study file will lie; its paths are relative to it. The same folder by default.
 
@@ -102,11 +100,6 @@ def found_study(folder: Path | str, home: Path | str | None = None) -> tuple[Stu
         A draft that can be run as it is; trials whose condition no name tells are 'unknown' and not used.
     notes : list of str
         What was guessed, left out or could not be read.
-
-    Raises
-    ------
-    ReadError
-        If there is no such folder, or no file in it that can be read.
 
     Examples
     --------
@@ -220,11 +213,6 @@ def _found(files: tuple[Path, ...], trial: Trial) -> FoundTrial:
 def stands(trial: Trial) -> bool:
     """Tell whether somebody stands still: half of the markers stay within 5 cm, or without markers hips and knees.
 
-    Parameters
-    ----------
-    trial : Trial
-        As it was read.
-
     Examples
     --------
     >>> stands(Trial("no markers, no angles", {}))
@@ -277,13 +265,6 @@ def _walks(files: Sequence[Path]) -> list[list[Path]]:
 
 def named_conditions(found: Sequence[FoundTrial], notes: list[str]) -> tuple[Conditions, dict[str, str]]:
     """Conditions of a draft, and the condition of each word that was found.
-
-    Parameters
-    ----------
-    found : sequence of FoundTrial
-        All.
-    notes : list of str
-        Is added to.
 
     Examples
     --------

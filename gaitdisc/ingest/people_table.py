@@ -47,8 +47,6 @@ class Measured:
     ----------
     mass_kg, height_m : float, optional
         Body mass [kg] and stature [m].
-    sex : str
-        `f`, `m` or empty.
     """
 
     mass_kg: float | None = None
@@ -58,11 +56,6 @@ class Measured:
 
 def is_people_table(path: Path) -> bool:
     """Whether a file's name is that of a table of people: `participants.tsv`, `manifest.csv` and the like.
-
-    Parameters
-    ----------
-    path : Path
-        Any.
 
     Examples
     --------
@@ -77,10 +70,6 @@ def measured_people(folder: Path, files: Iterable[Path], notes: list[str]) -> di
 
     Parameters
     ----------
-    folder : Path
-        Folder that was searched.
-    files : iterable of Path
-        Tables of people, relative to it.
     notes : list of str
         Is added to: what was taken, and what could not be.
     """
@@ -207,15 +196,7 @@ def _sex(text: str, where: str, notes: list[str]) -> Sex:
 
 
 def said_of(people: Mapping[str, Measured], files: Iterable[Path]) -> str:
-    """One note that says how many people got their mass, sex and stature from which tables.
-
-    Parameters
-    ----------
-    people : mapping of str to Measured
-        Those of the study.
-    files : iterable of Path
-        Tables.
-    """
+    """One note that says how many people got their mass, sex and stature from which tables."""
     counts = [
         f"{what} {sum(bool(getattr(one, name)) for one in people.values())} of {len(people)}"
         for name, what in (("mass_kg", "body mass"), ("sex", "sex"), ("height_m", "stature"))

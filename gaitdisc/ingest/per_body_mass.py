@@ -25,16 +25,6 @@ _LEG = re.compile(r"(ankle_angle|knee_angle|hip_flexion)_[rl]_moment")
 def per_kg_findings(streams: Mapping[str, Recording]) -> list[Finding]:
     """Say that ground forces or joint moments stated in N or N m are per kg of body mass.
 
-    Parameters
-    ----------
-    streams : mapping of str to Recording
-        Streams of one trial.
-
-    Returns
-    -------
-    list of Finding
-        A warning each for forces and moments.
-
     Examples
     --------
     >>> from gaitdisc.channel import vocabulary

@@ -25,12 +25,8 @@ class PlausibleRange:
 
     Parameters
     ----------
-    quantity, unit : str
-        Of the channels that are meant.
     channels : str
         Pattern of their names; empty for all.
-    low, high : float
-        In that unit.
 
     Examples
     --------
@@ -45,13 +41,7 @@ class PlausibleRange:
     high: float
 
     def covers(self, channel: Channel) -> bool:
-        """Tell whether a channel is meant.
-
-        Parameters
-        ----------
-        channel : Channel
-            Any channel.
-        """
+        """Tell whether a channel is meant."""
         meant = (channel.quantity, channel.unit) == (self.quantity, self.unit)
         return meant and (not self.channels or re.fullmatch(self.channels, channel.name) is not None)
 
@@ -83,22 +73,13 @@ def without_impossible(
 
     Parameters
     ----------
-    streams : mapping of str to Recording
-        Streams of one trial, in the units used inside.
     begin_s : mapping of str to float, optional
         Time of the file's first frame of each stream, where the streams are a part of the file [s].
 
     Returns
     -------
-    streams : dict of str to Recording
-        NaN where a value was taken out.
     findings : list of Finding
         One for each channel, with the first such frame, its number and its unit.
-
-    Raises
-    ------
-    ReadError
-        If it is a ground force: as for one that is missing, contacts would be wrong without a word.
 
     Examples
     --------

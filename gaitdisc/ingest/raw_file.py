@@ -21,8 +21,6 @@ class RawFile:
     ----------
     name : str
         Name without the folder; the folder may tell who the person is and goes no further.
-    content : bytes
-        The whole file.
     sha256 : str
         Of these bytes, where it is known; otherwise it is computed when it is asked for.
 
@@ -42,23 +40,11 @@ class RawFile:
         return Path(self.name).stem
 
     def source(self, reader: str) -> Source:
-        """Return where a recording comes from.
-
-        Parameters
-        ----------
-        reader : str
-            What reads the file.
-        """
+        """Return where a recording comes from."""
         return Source(self.name, self.sha256 or hashlib.sha256(self.content).hexdigest(), reader)
 
     def lines(self) -> list[str]:
-        """Return the lines of a text file, without their ends.
-
-        Raises
-        ------
-        ReadError
-            If the bytes are not text.
-        """
+        """Return the lines of a text file, without their ends."""
         if b"\0" in self.content:
             raise ReadError(
                 f"{self.name} should be a plain text file",
@@ -74,18 +60,6 @@ class RawFile:
 
 def read_raw(path: Path | str, largest_bytes: int = LARGEST_TEXT_BYTES) -> RawFile:
     """Read a file's bytes.
-
-    Parameters
-    ----------
-    path : Path or str
-        File to read.
-    largest_bytes : int
-        What is read at most.
-
-    Raises
-    ------
-    ReadError
-        If there is no such file, it is a folder, a pipe or a device, empty, too large, or must not be read.
 
     Examples
     --------

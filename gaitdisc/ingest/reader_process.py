@@ -29,10 +29,6 @@ class ReadRequest:
 
     Parameters
     ----------
-    path : str
-        The file.
-    reader : str
-        `ezc3d` or `c3d`.
     frames, points, channels, samples : int
         Counts that the file's header promises; `samples` are those of one analog channel.
     limit_s : float
@@ -66,10 +62,6 @@ class ReadRequest:
 
         Parameters
         ----------
-        path, reader : str
-            As above.
-        counts : tuple of int
-            Frames, points, channels, samples.
         size : int
             Length of the file [bytes].
         """
@@ -110,13 +102,7 @@ class ReaderProcess:
         self._files = 0
 
     def ask(self, request: ReadRequest) -> RawTrial:
-        """Numbers of one file, or why the reader could not give them; it never raises for what the file is.
-
-        Parameters
-        ----------
-        request : ReadRequest
-            File, reader, counts and limits.
-        """
+        """Numbers of one file, or why the reader could not give them; it never raises for what the file is."""
         process = self._running()
         self._files += 1
         answers: list[RawTrial] = []

@@ -114,26 +114,10 @@ def read_planned_trial(
 ) -> Trial:
     """Trial as a study plans it: its files, channel map, crop, pseudonym and condition.
 
-    Parameters
-    ----------
-    study : Study
-        The study.
-    participant : Participant
-        Whose trial.
-    planned : PlannedTrial
-        One of the participant's.
-    reader : C3DReader, optional
-        A running reader process to use again.
-
     Returns
     -------
     Trial
         Named by pseudonym, session and condition, and a number where there are several.
-
-    Raises
-    ------
-    GaitdiscError
-        As `read_trial`.
 
     Examples
     --------

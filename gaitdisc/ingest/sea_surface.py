@@ -26,8 +26,6 @@ def read_oisst(path: Path, mask: Path | None = None) -> Field:
 
     Parameters
     ----------
-    path : Path
-        netCDF with `sst` (time, lat, lon), `lat`, `lon`, `time`.
     mask : Path, optional
         netCDF with `mask` (lat, lon), 1 at sea: `lsmask.nc`. Without it every cell counts as sea.
 
@@ -35,15 +33,6 @@ def read_oisst(path: Path, mask: Path | None = None) -> Field:
     -------
     Field
         `sst` [degC]; time in weeks since the first.
-
-    Raises
-    ------
-    ReadError
-        If a file is damaged or lacks a variable.
-    UnitError
-        If the temperature is not in degrees Celsius, or time not in days or hours.
-    ShapeError
-        If mask and temperature have different grids.
 
     References
     ----------
@@ -74,20 +63,10 @@ def read_sst_mat(path: Path) -> Field:
     The file has no coordinates and no time. They are taken as in NOAA's weekly files, from which it was made: rows
     from 89.5 degrees north to 89.5 south, columns from 0.5 to 359.5 degrees east. Land is 0 in every week.
 
-    Parameters
-    ----------
-    path : Path
-        MATLAB file with `Z` (cell, week), 64,800 cells.
-
     Returns
     -------
     Field
         `sst` [degC]; time in weeks.
-
-    Raises
-    ------
-    ReadError
-        If the file is no MATLAB file of version 7 or earlier, or holds no such `Z`.
 
     References
     ----------

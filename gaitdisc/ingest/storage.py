@@ -32,8 +32,6 @@ def read_storage(path: Path | str, channels: Mapping[str, str] | None = None) ->
 
     Parameters
     ----------
-    path : Path or str
-        `.mot` or `.sto` file.
     channels : mapping of str to str, optional
         The study's `[channels]`: label -> `name` or `name [unit]`.
 
@@ -41,17 +39,6 @@ def read_storage(path: Path | str, channels: Mapping[str, str] | None = None) ->
     -------
     Trial
         Streams `kinematics`, `emg`, `forces`, `moments`, `signals`, as far as the file has them.
-
-    Raises
-    ------
-    ReadError
-        If the file is absent, no storage file, cut, or holds a cell that is no number, or a force that is missing.
-    UnitError
-        If degrees and radians are not stated, or the numbers contradict what is stated.
-    SamplingError
-        If time does not advance evenly beyond what its printed digits round.
-    ChannelError
-        If two columns mean one channel.
 
     References
     ----------
@@ -83,25 +70,6 @@ def write_storage(recording: Recording, path: Path | str) -> Path:
     `inDegrees` is always stated. Channels that their names alone do not tell are described by lines such as
     `column 3=emg [V] r` in the header, which OpenSim passes over. Marks of suspect samples, subject and
     condition are not written.
-
-    Parameters
-    ----------
-    recording : Recording
-        Angles in deg; any channels.
-    path : Path or str
-        `.mot` or `.sto` file to write.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    ChannelError
-        If a name holds a tab, a line break or a blank at its ends.
-    WriteError
-        If the file cannot be written.
 
     Examples
     --------

@@ -32,19 +32,8 @@ def storage_columns(header: StorageHeader, file: str, channels: Mapping[str, str
 
     Parameters
     ----------
-    header : StorageHeader
-        Header of the file.
-    file : str
-        Name of the file.
     channels : mapping of str to str, optional
         The study's `[channels]`.
-
-    Raises
-    ------
-    UnitError
-        If a stated unit is unknown or measures something else.
-    ChannelError
-        If the file states a quantity that is none.
 
     Examples
     --------
@@ -60,13 +49,6 @@ def storage_columns(header: StorageHeader, file: str, channels: Mapping[str, str
 
 def naming_findings(columns: Sequence[Column], file: str) -> list[Finding]:
     """Say what was guessed about the columns of a file.
-
-    Parameters
-    ----------
-    columns : sequence of Column
-        Columns of the file.
-    file : str
-        Name of the file.
 
     Examples
     --------

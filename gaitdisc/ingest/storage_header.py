@@ -23,8 +23,6 @@ class StorageHeader:
     ----------
     title : str
         First line: `Coordinates`, `Inverse Dynamics Generalized Forces`, or any name.
-    labels : tuple of str
-        Labels of the columns, time first.
     body_line : int
         Line in which the numbers start, counted from 1.
     degrees : bool or None
@@ -49,18 +47,6 @@ class StorageHeader:
 
 def parsed_header(lines: Sequence[str], file: str) -> StorageHeader:
     r"""Header of a storage file.
-
-    Parameters
-    ----------
-    lines : sequence of str
-        Lines of the whole file.
-    file : str
-        Its name, for messages.
-
-    Raises
-    ------
-    ReadError
-        If there is no `endheader`, no line of labels that starts with time, or a key with a value that is none of its.
 
     Examples
     --------

@@ -59,23 +59,10 @@ def sorted_trial(
 
     Parameters
     ----------
-    source : Source
-        The file.
     time : ndarray (time,) [s]
         Even.
     values : ndarray (time, channel) [each channel's unit]
         Converted already.
-    channels : sequence of Channel
-        One a column.
-    findings : sequence of Finding
-        What was seen while reading.
-
-    Raises
-    ------
-    ReadError
-        If a ground force is missing somewhere: contacts and joint moments would be wrong without a word.
-    ChannelError
-        If two columns mean one channel.
 
     Examples
     --------

@@ -127,11 +127,6 @@ class Participant(_Part):
     def trial_name(self, planned: PlannedTrial) -> str:
         """Name of one trial: pseudonym, session, condition, and a number where there are several.
 
-        Parameters
-        ----------
-        planned : PlannedTrial
-            One of this person's.
-
         Examples
         --------
         >>> walk, again = (PlannedTrial(condition="barefoot", files=(f"{n}.c3d",)) for n in "ab")
@@ -304,25 +299,13 @@ class Study(_Part):
         return self._folder
 
     def placed(self, folder: Path | str) -> Study:
-        """Return the same study with its file in another folder; its paths are taken from there.
-
-        Parameters
-        ----------
-        folder : Path or str
-            Folder of the study file.
-        """
+        """Return the same study with its file in another folder; its paths are taken from there."""
         study = self.model_copy()
         study._folder = Path(folder)
         return study
 
     def path_of(self, file: str) -> Path:
-        """Return where a file of the study lies.
-
-        Parameters
-        ----------
-        file : str
-            As written in the study.
-        """
+        """Return where a file of the study lies."""
         return self._folder / file
 
     def with_unnamed(self) -> Study:
@@ -344,18 +327,7 @@ class Study(_Part):
         return self.model_copy(update={"participants": people}).placed(self.folder)
 
     def participant(self, subject: str) -> Participant:
-        """Return a participant.
-
-        Parameters
-        ----------
-        subject : str
-            Pseudonym.
-
-        Raises
-        ------
-        SchemaError
-            If the study has none of that pseudonym.
-        """
+        """Return a participant."""
         found = next((each for each in self.participants if each.id == subject), None)
         if found is None:
             ids = ", ".join(each.id for each in self.participants)
@@ -382,13 +354,7 @@ class Study(_Part):
         return tuple(file for file in dict.fromkeys(named) if not self.path_of(file).is_file())
 
     def check_files(self) -> None:
-        """Refuse a study whose files are not all there.
-
-        Raises
-        ------
-        SchemaError
-            If files are missing; all of them are named.
-        """
+        """Refuse a study whose files are not all there."""
         missing = self.missing_files()
         if missing:
             raise SchemaError(

@@ -38,17 +38,6 @@ _LIMITS = {
 def schema_error(error: ValidationError, model: type[BaseModel], text: str, file: str) -> SchemaError:
     """Sentence for the first of pydantic's findings, with the count of the others.
 
-    Parameters
-    ----------
-    error : ValidationError
-        From the validation of the study.
-    model : type
-        `Study`; its parts tell the keys that are known.
-    text : str
-        The study file.
-    file : str
-        Its name.
-
     Examples
     --------
     >>> raise schema_error(error, Study, text, "study.toml")  # doctest: +SKIP

@@ -45,23 +45,6 @@ _TOP = """\
 def load_study(path: Path | str) -> Study:
     """Study of a file, or of the `study.toml` in a folder.
 
-    Parameters
-    ----------
-    path : Path or str
-        The study file, or its folder.
-
-    Returns
-    -------
-    Study
-        Frozen; the files it names are not opened.
-
-    Raises
-    ------
-    ReadError
-        If there is no such file.
-    SchemaError
-        If the file is no TOML, or a key, a word, a number or a name in it is wrong.
-
     Examples
     --------
     >>> load_study("study.toml").conditions.device  # doctest: +SKIP
@@ -94,18 +77,6 @@ def write_study(study: Study, path: Path | str) -> Path:
     ----------
     study : Study
         What to write; its paths are made relative to the new file where they were relative to another one.
-    path : Path or str
-        The study file, or its folder.
-
-    Returns
-    -------
-    Path
-        The study file.
-
-    Raises
-    ------
-    WriteError
-        If the file cannot be written.
 
     Examples
     --------
@@ -123,8 +94,6 @@ def study_text(study: Study, folder: Path | None = None) -> str:
 
     Parameters
     ----------
-    study : Study
-        What to write.
     folder : Path, optional
         Folder of the new file; that of the study by default.
 

@@ -28,13 +28,6 @@ def refuse(place: Sequence[str | int], needed: str, found: str, remedy: str) -> 
     ----------
     place : sequence of str or int
         Keys and places in lists that lead to what is wrong, from the part that is being checked.
-    needed, found, remedy : str
-        The three parts of the sentence.
-
-    Raises
-    ------
-    PydanticCustomError
-        Always; `load_study` makes a SchemaError of it.
 
     Examples
     --------
@@ -49,13 +42,6 @@ def refuse(place: Sequence[str | int], needed: str, found: str, remedy: str) -> 
 
 def check_conditions(conditions: Conditions, unknown: str) -> None:
     """Refuse conditions of which two share a word, and a word for unnamed trials that is no condition.
-
-    Parameters
-    ----------
-    conditions : Conditions
-        Of the study.
-    unknown : str
-        The word for a condition that is not known.
 
     Examples
     --------
@@ -74,11 +60,6 @@ def check_conditions(conditions: Conditions, unknown: str) -> None:
 
 def check_sessions(study: Study) -> None:
     """Refuse sessions that are dates or stand twice, and trials of a session that the study does not list.
-
-    Parameters
-    ----------
-    study : Study
-        All of it.
 
     Examples
     --------
@@ -110,8 +91,6 @@ def check_participants(study: Study, others: Sequence[str]) -> None:
 
     Parameters
     ----------
-    study : Study
-        All of it.
     others : sequence of str
         Words that a trial may have beside the study's conditions: for one that is not known, and for standing.
 
@@ -168,8 +147,6 @@ def check_variables(models: Models, channels: Mapping[str, str]) -> None:
 
     Parameters
     ----------
-    models : Models
-        Inputs and outputs.
     channels : mapping of str to str
         The study's channel map; its names are known as well.
 

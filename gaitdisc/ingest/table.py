@@ -44,26 +44,8 @@ def read_table(path: Path | str, channels: Mapping[str, str] | None = None) -> T
 
     Parameters
     ----------
-    path : Path or str
-        `.csv`, `.tsv` or `.parquet` file.
     channels : mapping of str to str, optional
         The study's `[channels]`: label -> `name` or `name [unit]`.
-
-    Returns
-    -------
-    Trial
-        Streams as far as the file has them.
-
-    Raises
-    ------
-    ReadError
-        If the file is absent, damaged, has no time, or holds a cell that is no number, or a force that is missing.
-    UnitError
-        If a column has no unit, an unknown one, or one that its numbers contradict.
-    SamplingError
-        If time does not advance evenly.
-    ChannelError
-        If two columns mean one channel.
 
     Examples
     --------
@@ -92,20 +74,6 @@ def write_table(recording: Recording, path: Path | str) -> Path:
     ----------
     recording : Recording
         Any channels; marks of suspect samples, subject and condition are not written.
-    path : Path or str
-        `.csv` or `.parquet` file to write.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    ChannelError
-        If a name holds a tab, a line break or a blank at its ends.
-    WriteError
-        If the file cannot be written.
 
     Examples
     --------
@@ -245,14 +213,10 @@ def checked_angles(
 
     Parameters
     ----------
-    columns : sequence of Column
-        All of a file.
     time : ndarray (time,) [s]
         Of the samples.
     values : ndarray (time, column)
         In the file's units.
-    file : str
-        Name of the file.
     """
     findings = []
     for unit in ("deg", "rad"):

@@ -15,13 +15,6 @@ _PAIR = re.compile(rf"\s*({_DOTTED})\s*=")
 def line_of(text: str, place: Place) -> int | None:
     r"""Line of a key, or of the table it belongs to where the key itself is absent.
 
-    Parameters
-    ----------
-    text : str
-        The TOML file.
-    place : tuple of str and int
-        Keys and places in arrays, from the top.
-
     Returns
     -------
     int or None

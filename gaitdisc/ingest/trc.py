@@ -31,14 +31,6 @@ class TrcHeader:
 
     Parameters
     ----------
-    rate_hz : float
-        Frames a second.
-    frames, markers : int
-        Counts that the header claims.
-    unit : str
-        Unit of the positions.
-    labels : tuple of str
-        Names of the markers as written.
     body_line : int
         Line in which the frames start, counted from 1.
     """
@@ -59,8 +51,6 @@ def read_trc(path: Path | str, channels: Mapping[str, str] | None = None) -> Tri
 
     Parameters
     ----------
-    path : Path or str
-        `.trc` file.
     channels : mapping of str to str, optional
         The study's `[channels]`: label -> name of the marker.
 
@@ -68,17 +58,6 @@ def read_trc(path: Path | str, channels: Mapping[str, str] | None = None) -> Tri
     -------
     Trial
         One stream, `markers`: `<marker>.x`, `.y`, `.z` [m], NaN in gaps.
-
-    Raises
-    ------
-    ReadError
-        If the file is absent, no marker file, cut, or holds a cell that is no number.
-    UnitError
-        If the unit of the header is no length.
-    SamplingError
-        If time does not advance evenly, or not at the rate of the header.
-    ChannelError
-        If two markers have one name.
 
     Examples
     --------
@@ -108,20 +87,6 @@ def read_trc(path: Path | str, channels: Mapping[str, str] | None = None) -> Tri
 
 def parsed_trc_header(lines: Sequence[str], file: str) -> TrcHeader:
     r"""Header of a marker file.
-
-    Parameters
-    ----------
-    lines : sequence of str
-        Lines of the whole file.
-    file : str
-        Its name, for messages.
-
-    Raises
-    ------
-    ReadError
-        If it is no header of a marker file, or a count or rate in it is no number.
-    UnitError
-        If the unit is no length.
 
     Examples
     --------

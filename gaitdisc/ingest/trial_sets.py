@@ -15,8 +15,6 @@ class TrialSet:
     ----------
     session, condition : str
         Words of the study; the session is empty where there are none.
-    trials : tuple of PlannedTrial
-        In the study's order.
     """
 
     session: str
@@ -31,8 +29,6 @@ def is_static(study: Study, planned: PlannedTrial) -> bool:
     ----------
     study : Study
         Whose conditions may use that very word for a way of walking.
-    planned : PlannedTrial
-        A trial.
 
     Examples
     --------
@@ -45,13 +41,6 @@ def is_static(study: Study, planned: PlannedTrial) -> bool:
 def is_walk(study: Study, planned: PlannedTrial) -> bool:
     """Whether a trial is used as a walk.
 
-    Parameters
-    ----------
-    study : Study
-        With its conditions.
-    planned : PlannedTrial
-        A trial.
-
     Examples
     --------
     >>> is_walk(study, planned)  # doctest: +SKIP
@@ -62,13 +51,6 @@ def is_walk(study: Study, planned: PlannedTrial) -> bool:
 
 def trial_sets(study: Study, participant: Participant) -> tuple[TrialSet, ...]:
     """Walks of a participant by session and condition, in the study's order of both.
-
-    Parameters
-    ----------
-    study : Study
-        With its sessions and conditions.
-    participant : Participant
-        Whose walks.
 
     Examples
     --------
@@ -87,15 +69,6 @@ def trial_sets(study: Study, participant: Participant) -> tuple[TrialSet, ...]:
 def static_trial(study: Study, participant: Participant, session: str) -> PlannedTrial | None:
     """Trial in which a participant stands: of the session, else the only one there is; None without.
 
-    Parameters
-    ----------
-    study : Study
-        With its conditions.
-    participant : Participant
-        Who.
-    session : str
-        Empty where there are no sessions.
-
     Examples
     --------
     >>> static_trial(study, study.participants[0], "")  # doctest: +SKIP
@@ -109,13 +82,6 @@ def refused_participant(study: Study, participant: Participant) -> str:
     """Why nothing of a participant is reported; empty where something is.
 
     Who lacks one of two compared conditions is refused, but for a group, such as controls, that never has it.
-
-    Parameters
-    ----------
-    study : Study
-        With its conditions.
-    participant : Participant
-        Who.
 
     Examples
     --------
@@ -136,13 +102,6 @@ def refused_participant(study: Study, participant: Participant) -> str:
 
 def not_compared(study: Study, participant: Participant) -> str:
     """Why models cannot compare two walks of a participant; empty where they can.
-
-    Parameters
-    ----------
-    study : Study
-        With its conditions.
-    participant : Participant
-        Who.
 
     Examples
     --------

@@ -28,22 +28,11 @@ def read_cutout(paths: Sequence[Path], step_s: float, quantity: str = "velocity"
         Files with `Velocity_0001`, ... of shape (z, y, x, component) and `zcoor`, `ycoor`, `xcoor`; of one volume.
     step_s : float
         From one number of a snapshot to the next [s]: 0.002 for isotropic1024coarse. The file does not tell it.
-    quantity : str
-        `velocity` or `pressure`.
 
     Returns
     -------
     Field
         `u`, `v`, `w`, or `p`; without unit, as the database has them; axes z, y, x.
-
-    Raises
-    ------
-    ReadError
-        If a file is damaged, holds no snapshot, or one stands twice; if h5py is not installed.
-    ShapeError
-        If the files are of different volumes.
-    SamplingError
-        If the numbers of the snapshots are not evenly spaced.
 
     References
     ----------

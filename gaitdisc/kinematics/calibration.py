@@ -32,8 +32,6 @@ class Calibration:
 
     Parameters
     ----------
-    marker_set : MarkerSet
-        The set that was used.
     body : mapping of str to mapping of str to ndarray (3,) [m]
         Segment -> point that follows it (marker, by the name of the set, or `hip`, `knee`, `ankle`) -> place in the
         segment's frame.
@@ -41,8 +39,6 @@ class Calibration:
         Segment -> joint centre or landmark (`hip_r`, `knee_r`, `heel_r`, `asis_l`, ...) -> place in its frame.
     static : mapping of str to Pose
         Segment -> its one frame in the static trial.
-    findings : tuple of Finding
-        What was inferred or left out.
     """
 
     marker_set: MarkerSet
@@ -57,26 +53,9 @@ def calibrated(static: Recording | None, marker_set: MarkerSet, measures: BodyMe
 
     Parameters
     ----------
-    static : Recording or None
-        Markers of the person standing; None is refused.
-    marker_set : MarkerSet
-        Which marker lies where.
     measures : BodyMeasures, optional
         Widths of knee and ankle, distance of the iliac spines, leg lengths, diameter of the markers. What the static
         trial shows itself (both condyles, both malleoli) needs none.
-
-    Returns
-    -------
-    Calibration
-
-    Raises
-    ------
-    ChannelError
-        If there is no static trial, a marker is missing in it, or a width that the set needs is not known.
-    ShapeError
-        If the frame is mirrored, left and right are exchanged, or markers that should make a plane lie on a line.
-    SamplingError
-        If the person does not stand in it.
     """
     if static is None:
         raise ChannelError(

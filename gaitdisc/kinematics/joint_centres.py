@@ -22,8 +22,6 @@ def harrington_hip(width_m: float, depth_m: float, side: str) -> NDArray[np.floa
         Distance between the anterior superior iliac spines [m].
     depth_m : float
         Distance from the middle of the anterior to the middle of the posterior spines [m].
-    side : str
-        `l` or `r`.
 
     References
     ----------
@@ -64,13 +62,7 @@ class DavisHip:
     marker_radius_m: float
 
     def centre(self, side: str) -> NDArray[np.float64]:
-        """Hip joint centre in the frame of the pelvis, from mid-ASIS [m].
-
-        Parameters
-        ----------
-        side : str
-            `l` or `r`.
-        """
+        """Hip joint centre in the frame of the pelvis, from mid-ASIS [m]."""
         c = 0.115 * self.mean_leg_m - 15.3 * _MM
         to_trochanter = 0.1288 * self.leg_m - 48.56 * _MM
         theta, beta = 0.5, 0.314
@@ -99,11 +91,6 @@ def chord_centre(
         Marker over the lateral condyle or malleolus.
     distance_m : float
         Half the width of the joint and the radius of the marker [m].
-
-    Raises
-    ------
-    ShapeError
-        If the lateral marker is nearer to the proximal joint than that, or the three points lie on one line.
 
     References
     ----------

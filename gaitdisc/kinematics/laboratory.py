@@ -39,19 +39,11 @@ def up_axis(pelvis: NDArray[np.float64], feet: NDArray[np.float64], file: str = 
     ----------
     pelvis, feet : ndarray (frame, 3) [m]
         Middle of the pelvis and of both feet; NaN allowed.
-    file : str
-        Name of the file, for messages.
 
     Returns
     -------
     ndarray (3,)
         Unit vector along an axis.
-
-    Raises
-    ------
-    ShapeError
-        If no axis is within 32 deg of the line from feet to pelvis (the person lies, or the frame is tilted), or
-        pelvis and feet are never seen together.
 
     Examples
     --------
@@ -89,13 +81,6 @@ def check_right_handed(pelvis: NDArray[np.float64], up: NDArray[np.float64], fil
         Axes of the pelvis: z from the left to the right spine, x from the sacrum forward, y at right angles to both.
     up : ndarray (3,)
         Up in the laboratory.
-    file : str
-        Name of the file, for messages.
-
-    Raises
-    ------
-    ShapeError
-        If y points down, as it does where front and back or left and right are exchanged.
 
     Examples
     --------
@@ -135,15 +120,6 @@ def walking_frame(
         Axis of the pelvis that points forward.
     up : ndarray (3,)
         Up in the laboratory.
-    rate_hz : float
-        Frames a second.
-    given : sequence of 3 floats, optional
-        Forward in the laboratory's axes.
-
-    Raises
-    ------
-    StrideError
-        If the given direction is zero or points up, or no frame has the pelvis.
     """
     if given is not None:
         return WalkingFrame(_frames(np.tile(_level_given(given, up), (len(origin), 1)), up), "forward as given")

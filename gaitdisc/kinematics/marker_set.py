@@ -77,18 +77,7 @@ class MarkerSet:
     tracked: Mapping[str, tuple[str, ...]]
 
     def with_joints(self, joints: str) -> MarkerSet:
-        """Return the same set with its joints free, held, or moving in a plane.
-
-        Parameters
-        ----------
-        joints : str
-            `free`, `held` or `planar`.
-
-        Raises
-        ------
-        SchemaError
-            If it is none of these words.
-        """
+        """Return the same set with its joints free, held, or moving in a plane."""
         if joints not in JOINTS:
             near = nearest_word(joints, JOINTS)
             found = f"found {joints!r}" + (f", the nearest is {near!r}" if near else "")
@@ -96,18 +85,7 @@ class MarkerSet:
         return replace(self, joints=joints)
 
     def with_hip(self, method: str) -> MarkerSet:
-        """Return the same set with another hip joint centre.
-
-        Parameters
-        ----------
-        method : str
-            `harrington` or `davis`.
-
-        Raises
-        ------
-        SchemaError
-            If it is none of these words.
-        """
+        """Return the same set with another hip joint centre."""
         if method not in METHODS["hip"]:
             near = nearest_word(method, METHODS["hip"])
             found = f"found {method!r}" + (f", the nearest is {near!r}" if near else "")
@@ -155,11 +133,6 @@ class MarkerSet:
     def followers(self, segment: str) -> tuple[str, ...]:
         """Points that follow a segment: markers by the names of this set, `hip`, `knee`, `ankle` for a joint centre.
 
-        Parameters
-        ----------
-        segment : str
-            `pelvis`, `thigh_l`, ...
-
         Examples
         --------
         >>> from gaitdisc.kinematics.marker_set_file import marker_set
@@ -174,10 +147,6 @@ class MarkerSet:
 
         Parameters
         ----------
-        key : str
-            One of `LANDMARKS`.
-        side : str
-            `l` or `r`.
         names : iterable of str
             Markers that are there, in the names of this set.
 
@@ -236,8 +205,6 @@ def sided(name: str, side: str) -> str:
     ----------
     name : str
         With `{S}` (R, L), `{s}` (r, l) or `{side}` (right, left), or without.
-    side : str
-        `l` or `r`.
 
     Examples
     --------
@@ -251,13 +218,6 @@ def sided(name: str, side: str) -> str:
 def on_sides(points: Iterable[str], sides: str) -> tuple[str, ...]:
     """Names of points on one side or on both, each once.
 
-    Parameters
-    ----------
-    points : iterable of str
-        With or without a side.
-    sides : str
-        `l`, `r` or `lr`.
-
     Examples
     --------
     >>> on_sides(["{S}ASI", "SACR"], "lr")
@@ -268,11 +228,6 @@ def on_sides(points: Iterable[str], sides: str) -> tuple[str, ...]:
 
 def choices(text: str) -> list[tuple[str, ...]]:
     """Markers of each choice of a landmark.
-
-    Parameters
-    ----------
-    text : str
-        `A + B | C`.
 
     Examples
     --------

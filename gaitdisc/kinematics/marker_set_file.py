@@ -32,20 +32,7 @@ LARGEST_BYTES = 2**20
 
 
 def marker_set(name: str | Path) -> MarkerSet:
-    """Marker set that comes along, by its name, or a laboratory's own, by the path of its file.
-
-    Parameters
-    ----------
-    name : str or Path
-        `plug_in_gait`, `oxford_foot`, `helen_hayes`, `rajagopal`, `gait2354`, or a `.toml` file.
-
-    Raises
-    ------
-    SchemaError
-        If there is none of that name, or the file has not the form of a marker set.
-    ReadError
-        If the file cannot be read.
-    """
+    """Marker set that comes along, by its name, or a laboratory's own, by the path of its file."""
     shipped = shipped_marker_sets()
     if isinstance(name, str) and name in shipped:
         return shipped[name]
@@ -74,13 +61,6 @@ def read_marker_set(path: Path) -> MarkerSet:
     path : Path
         File with the tables `[landmarks]`, `[joint_centres]`, `[tracked]`; `[aliases]`, `[axes]` and `joints` may be
         left out.
-
-    Raises
-    ------
-    ReadError
-        If the file is not there or is no text.
-    SchemaError
-        If a word is unknown, a landmark that every set needs is absent, or a segment has fewer than three points.
     """
     try:
         check_regular(path, LARGEST_BYTES)
@@ -207,23 +187,11 @@ def _check_tracked(tracked: Mapping[str, tuple[str, ...]], file: str) -> None:
 def recognised_marker_set(static: Iterable[str], trial: Iterable[str], file: str = "") -> MarkerSet:
     """Marker set that comes along and that the labels are of.
 
-    Parameters
-    ----------
-    static, trial : iterable of str
-        Markers of the static trial and of the trial.
-    file : str
-        Name of the static file, for the message.
-
     Returns
     -------
     MarkerSet
         Of those for which the static trial has all landmarks and the trial three points a segment: the one of which
         most markers are there.
-
-    Raises
-    ------
-    ChannelError
-        If the labels are of none; the nearest set and what it lacks are named.
 
     Examples
     --------

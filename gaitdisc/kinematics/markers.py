@@ -15,18 +15,7 @@ STEP_S = 0.1
 
 
 def marker_labels(markers: Recording) -> list[str]:
-    """Names of the markers of a recording, in order.
-
-    Parameters
-    ----------
-    markers : Recording
-        Channels `<marker>.x`, `<marker>.y`, `<marker>.z`.
-
-    Raises
-    ------
-    ChannelError
-        If it has no marker.
-    """
+    """Names of the markers of a recording, in order."""
     there = set(markers.names)
     labels = [
         name[:-2] for name in markers.names if name.endswith(".x") and {f"{name[:-2]}.y", f"{name[:-2]}.z"} <= there
@@ -42,13 +31,6 @@ def marker_labels(markers: Recording) -> list[str]:
 
 def marker_places(markers: Recording, labels: Sequence[str]) -> NDArray[np.float64]:
     """Positions of markers.
-
-    Parameters
-    ----------
-    markers : Recording
-        Channels `<marker>.x`, `<marker>.y`, `<marker>.z`.
-    labels : sequence of str
-        Markers as the recording names them.
 
     Returns
     -------
@@ -66,8 +48,6 @@ def still_places(markers: Recording, names: Mapping[str, str], needed: Sequence[
 
     Parameters
     ----------
-    markers : Recording
-        The static trial.
     names : mapping of str to str
         Name in the marker set -> label in the recording.
     needed : sequence of str

@@ -70,14 +70,10 @@ def joint_angles(
 
     Parameters
     ----------
-    markers : Recording
-        Markers of the trial.
     static : Recording or None
         Markers of the same person standing, with the same markers; None is refused.
     marker_set : MarkerSet, str or Path, optional
         A set, its name, or its file; recognised by the labels where it is not given.
-    measures : BodyMeasures, optional
-        Widths and lengths that the set needs.
     forward : sequence of 3 floats, optional
         Direction of walking in the laboratory's axes; found from the pelvis where it is not given.
     joints : str, optional
@@ -87,13 +83,6 @@ def joint_angles(
     -------
     Recording
         `pelvis_tilt`, `hip_flexion_r`, `knee_angle_r`, ... [deg] with the package's signs, `pelvis_tx`, ... [m].
-
-    Raises
-    ------
-    ChannelError
-        If there is no static trial, a marker or a width is missing, or the labels are of no known set.
-    ShapeError
-        If the frame is mirrored, tilted, or left and right are exchanged.
 
     Examples
     --------
@@ -112,17 +101,8 @@ def chosen_marker_set(
 
     Parameters
     ----------
-    markers : Recording
-        Markers of the trial.
     static : Recording or None
         Markers of the static trial; None is refused where the set is to be recognised.
-    given : MarkerSet, str or Path, optional
-        A set, its name, or its file.
-
-    Raises
-    ------
-    ChannelError
-        If the labels are of no known set, or there is no static trial.
     """
     if isinstance(given, MarkerSet):
         return given
@@ -142,25 +122,8 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
 
     Parameters
     ----------
-    markers : Recording
-        Markers of the trial, filtered or not.
-    calibration : Calibration
-        Of the same person with the same markers.
     forward : sequence of 3 floats, optional
         Direction of walking in the laboratory's axes; found from the pelvis where it is not given.
-
-    Returns
-    -------
-    Motion
-
-    Raises
-    ------
-    ChannelError
-        If a segment has fewer than three points in this trial.
-    ShapeError
-        If the frame is mirrored or tilted.
-    StrideError
-        If a given direction is none, or the pelvis is never seen whole.
     """
     file = markers.source.file or "the trial"
     placed = placed_markers(markers, calibration)

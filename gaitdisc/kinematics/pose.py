@@ -27,11 +27,6 @@ class Pose:
         Columns are the segment's axes in the laboratory's frame: x forward, y up, z to the right of the
         person; NaN where unknown. `rotation @ v` turns a vector of the segment into the laboratory's frame.
 
-    Raises
-    ------
-    ShapeError
-        If the shapes do not fit together, or a matrix that is known is no rotation (mirrored, stretched).
-
     Examples
     --------
     >>> Pose(np.zeros((2, 3)), np.tile(np.eye(3), (2, 1, 1))).known

@@ -42,10 +42,6 @@ def fitted_pose(body: NDArray[np.float64], observed: NDArray[np.float64]) -> Rig
     observed : ndarray (frame, point, 3) [m]
         The same points in the laboratory; NaN where they are not seen.
 
-    Returns
-    -------
-    RigidFit
-
     References
     ----------
     Söderkvist & Wedin 1993, J Biomech 26:1473 (singular values; a mirrored solution is never taken).
@@ -80,8 +76,6 @@ def residual_m(pose: Pose, body: NDArray[np.float64], observed: NDArray[np.float
 
     Parameters
     ----------
-    pose : Pose
-        Of the body.
     body : ndarray (point, 3) [m]
         Points in the frame of the segment.
     observed : ndarray (frame, point, 3) [m]

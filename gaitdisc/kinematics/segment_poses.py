@@ -23,22 +23,10 @@ PlacedMarkers = dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]
 def placed_markers(markers: Recording, calibration: Calibration) -> PlacedMarkers:
     """Markers of each segment, in its frame and in the laboratory.
 
-    Parameters
-    ----------
-    markers : Recording
-        Markers of the trial.
-    calibration : Calibration
-        Of the same person with the same markers.
-
     Returns
     -------
     dict of str to (ndarray (marker, 3), ndarray (frame, marker, 3)) [m]
         Those that both trials have; NaN where one is not seen.
-
-    Raises
-    ------
-    ChannelError
-        If a segment has fewer than three points in this trial, the joint centre above it counted where the set has it.
     """
     names = calibration.marker_set.names(marker_labels(markers))
     placed = {}
@@ -65,8 +53,6 @@ def free_poses(
     ----------
     placed : dict of str to (ndarray (marker, 3), ndarray (frame, marker, 3)) [m]
         As `placed_markers` returns them.
-    calibration : Calibration
-        Of the same person.
     held : mapping of str to Pose, optional
         Carries a segment through frames in which its own points are too few.
     """
@@ -91,8 +77,6 @@ def joined_poses(
 
     Parameters
     ----------
-    free : mapping of str to Pose
-        Each segment over its own points.
     placed : dict of str to (ndarray (marker, 3), ndarray (frame, marker, 3)) [m]
         As `placed_markers` returns them.
     calibration : Calibration
@@ -115,15 +99,6 @@ def joined_poses(
 
 def carried_joint(joint: str, poses: Mapping[str, Pose], calibration: Calibration) -> NDArray[np.float64]:
     """A joint centre as the segment above carries it.
-
-    Parameters
-    ----------
-    joint : str
-        `hip_l`, `knee_r`, ...
-    poses : mapping of str to Pose
-        Of the segments above it.
-    calibration : Calibration
-        Of the same person.
 
     Returns
     -------

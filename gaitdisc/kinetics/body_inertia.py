@@ -29,19 +29,10 @@ class Person:
 
     Parameters
     ----------
-    mass_kg : float or None
-        Body mass; 5 to 300 kg.
     sex : str
         `f`, `m`, or empty where it is unknown: then the means of both columns of a table are taken.
     stature_m : float or None
         Only for de Leva's foot, which is measured from heel to the tip of the toes.
-
-    Raises
-    ------
-    UnitError
-        If the mass is missing, or can be no person's in kg.
-    SchemaError
-        If the sex is none of the three.
 
     Examples
     --------
@@ -124,8 +115,6 @@ class TableRow:
         xx, yy, zz, xy, xz, yz of the right side; a negative product of inertia has a negative number.
     count : int
         How many of it a body has.
-    source : str
-        Paper and table.
     """
 
     mass: float
@@ -138,18 +127,6 @@ class TableRow:
 @cache
 def inertia_table(table: str, sex: str) -> Mapping[str, TableRow]:
     """Segments of a table for one sex, as `data_schema/segment_inertia.csv` has them.
-
-    Parameters
-    ----------
-    table : str
-        `dumas2007` or `deleva1996`.
-    sex : str
-        `f` or `m`.
-
-    Raises
-    ------
-    SchemaError
-        If there is no such table.
 
     References
     ----------
@@ -186,28 +163,8 @@ def leg_inertia(
 
     Parameters
     ----------
-    person : Person
-        Mass, sex, stature.
     side : str
         `r` or `l`; the left leg is the right one's mirror image.
-    lengths_m : mapping of str to float
-        `shank` and `thigh`, between joint centres.
-    foot : FootPoints
-        Heel and toes in the foot's frame.
-    table : str
-        `dumas2007` or `deleva1996`.
-
-    Returns
-    -------
-    dict of str to RigidBody
-        `foot`, `shank`, `thigh`.
-
-    Raises
-    ------
-    UnitError
-        If a length is none of a human leg in metres, or de Leva's foot lacks the stature.
-    SchemaError
-        If there is no such table.
     """
     lengths = {**lengths_m, "foot": foot.toe_length_m}
     for segment in LEG:
@@ -236,13 +193,6 @@ def segment_lengths(poses: Mapping[str, Pose], side: str) -> dict[str, float]:
     ----------
     poses : mapping of str to Pose
         With origins in the proximal joint centres: `thigh_r`, `shank_r`, `foot_r`.
-    side : str
-        `r` or `l`.
-
-    Raises
-    ------
-    ShapeError
-        If a segment is missing, no frame has it, or its length changes by more than a tenth.
     """
     found = {}
     for segment, beyond in (("shank", "foot"), ("thigh", "shank")):

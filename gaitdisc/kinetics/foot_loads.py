@@ -49,26 +49,12 @@ def foot_loads(
 
     Parameters
     ----------
-    found : sequence of Platform
-        As `platforms` gives them.
-    steps : sequence of PlateStep
-        As `plate_steps` gives them.
     time : ndarray (frame,) [s]
         Of the markers.
     cutoff_hz : float
         Of the filter of force and moment; infinite for none.
     airborne : mapping of str to sequence of (float, float), optional
         Spans in which a foot swings, `swings` for those of the file's events [s].
-
-    Returns
-    -------
-    dict of str to FootLoad
-        `r` and `l`.
-
-    Raises
-    ------
-    SamplingError
-        If the cut-off is not below half the rate of the platforms.
     """
     loads = {}
     for side in "rl":
@@ -84,13 +70,7 @@ def foot_loads(
 
 
 def swings(trial: Trial) -> dict[str, list[tuple[float, float]]]:
-    """Spans from foot off to the next initial contact of the same foot, by the events of the file [s].
-
-    Parameters
-    ----------
-    trial : Trial
-        With events.
-    """
+    """Spans from foot off to the next initial contact of the same foot, by the events of the file [s]."""
     found: dict[str, list[tuple[float, float]]] = {"r": [], "l": []}
     for side, spans in found.items():
         events = [event for event in trial.events if event.side == side]

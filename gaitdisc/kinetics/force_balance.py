@@ -68,13 +68,7 @@ class ForceBalance:
         )
 
     def finding(self, file: str) -> Finding:
-        """Give the balance as a finding: a note, or a warning above rms 15 % or mean 12 % of body weight.
-
-        Parameters
-        ----------
-        file : str
-            Name of the trial's file.
-        """
+        """Give the balance as a finding: a note, or a warning above rms 15 % or mean 12 % of body weight."""
         wrong = self.tested and (self.rms > LARGEST_RMS or abs(self.mean) > LARGEST_MEAN)
         spoils = "joint moments: check body mass, clocks, and which foot is on which plate" if wrong else ""
         return Finding("warning" if wrong else "note", "force balance", file, self.line(), spoils)
@@ -91,21 +85,10 @@ def force_balance(
 
     Parameters
     ----------
-    found : mapping of str to Leg
-        Both legs.
-    loads : mapping of str to FootLoad
-        Of both feet, filtered as the markers are.
     up : ndarray (3,)
         Unit vector against gravity.
-    person : Person
-        Whose mass is borne.
     trunk : ndarray (frame, 3) [m/s2], optional
         Acceleration of head, arms and trunk; that of the middle of the hips by default.
-
-    Raises
-    ------
-    ChannelError
-        If a leg is missing.
     """
     if set(found) != {"l", "r"}:
         raise ChannelError(

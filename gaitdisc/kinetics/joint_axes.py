@@ -23,8 +23,6 @@ class JointPart(NamedTuple):
 
     Attributes
     ----------
-    joint : str
-        `hip`, `knee` or `ankle`.
     angle : str
         Angle that a positive part drives, without its side: `knee_angle`.
     axis : int
@@ -40,13 +38,7 @@ class JointPart(NamedTuple):
     left: int
 
     def sign(self, side: str) -> int:
-        """Sign of the positive angle about the axis.
-
-        Parameters
-        ----------
-        side : str
-            `r` or `l`.
-        """
+        """Sign of the positive angle about the axis."""
         return self.right if side == "r" else self.left
 
 
@@ -98,9 +90,5 @@ def along(vector: NDArray[np.float64], axes: NDArray[np.float64], part: JointPar
         In the laboratory's frame, such as a moment [N m].
     axes : ndarray (frame, axis, 3)
         From `joint_axes`.
-    part : JointPart
-        Which one.
-    side : str
-        `r` or `l`.
     """
     return part.sign(side) * np.einsum("fx,fx->f", vector, axes[:, part.axis])

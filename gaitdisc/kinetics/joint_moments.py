@@ -42,13 +42,6 @@ class KineticsSettings:
         `joint`: parts along the axes of the joint angles; `distal`: along the axes of the segment beyond the joint, as
         Plug-in Gait gives them.
 
-    Raises
-    ------
-    SamplingError
-        If a cut-off is not positive.
-    SchemaError
-        If the table or the frame is unknown.
-
     References
     ----------
     Kristianslund, Krosshaug & van den Bogert (2012), J. Biomech. 45, 666-671.
@@ -81,17 +74,7 @@ class KineticsSettings:
 
 @dataclass(frozen=True, eq=False)
 class Leg:
-    """One leg in motion with its inertia.
-
-    Parameters
-    ----------
-    side : str
-        `r` or `l`.
-    moving : mapping of str to SegmentMotion
-        `pelvis`, `thigh`, `shank`, `foot`.
-    bodies : mapping of str to RigidBody
-        `thigh`, `shank`, `foot`.
-    """
+    """One leg in motion with its inertia."""
 
     side: str
     moving: Mapping[str, SegmentMotion]
@@ -109,15 +92,6 @@ def legs(
         `pelvis`, `thigh_r` and so on; origins in the proximal joint centres.
     feet : mapping of str to FootPath
         Heel and toe markers of `r` and `l`, on the frames of the poses.
-    person : Person
-        Mass, sex, stature.
-    settings : KineticsSettings
-        Cut-offs and table.
-
-    Raises
-    ------
-    GaitdiscError
-        If a length is none of a leg, the frames do not fit together, or the recording is too short.
     """
     names = {side: {"pelvis": "pelvis", **{one: f"{one}_{side}" for one in LEG}} for side in feet}
     whole = {side: own for side, own in names.items() if set(own.values()) <= set(poses)}
@@ -161,18 +135,10 @@ def joint_moments(
 
     Parameters
     ----------
-    found : mapping of str to Leg
-        As `legs` gives them.
-    loads : mapping of str to FootLoad
-        As `foot_loads` gives them.
     time : ndarray (frame,) [s]
         Of the poses.
     up : ndarray (3,)
         Unit vector against gravity.
-    person : Person
-        Whose mass everything is divided by.
-    settings : KineticsSettings
-        The frame of the moments.
 
     Returns
     -------

@@ -24,8 +24,6 @@ class RigidBody:
 
     Parameters
     ----------
-    mass_kg : float
-        Of the segment.
     centre : ndarray (3,) [m]
         Of mass, from the segment's origin.
     tensor : ndarray (3, 3) [kg m2]
@@ -47,10 +45,6 @@ def needed_wrench(moving: SegmentMotion, body: RigidBody, up: NDArray[np.float64
 
     Parameters
     ----------
-    moving : SegmentMotion
-        Of the segment.
-    body : RigidBody
-        Its inertia.
     up : ndarray (3,)
         Unit vector against gravity, in the laboratory's frame.
 
@@ -80,8 +74,6 @@ def joint_wrenches(
     chain : sequence of (SegmentMotion, RigidBody)
         Segments from the one on the ground (foot) to the nearest to the trunk (thigh); each one's proximal joint is
         the joint that is named after it.
-    ground : Wrench
-        Of the ground on the first segment.
     up : ndarray (3,)
         Unit vector against gravity.
 

@@ -31,17 +31,10 @@ class FootPath:
 
     Parameters
     ----------
-    side : str
-        `r` or `l`.
     time : ndarray (frame,) [s]
         Of the markers.
     heel, toe : ndarray (frame, 3) [m]
         Of the markers; NaN where one is missing.
-
-    Raises
-    ------
-    ShapeError
-        If they do not fit together.
     """
 
     side: str
@@ -98,11 +91,6 @@ def foot_paths(markers: Recording, names: Mapping[str, tuple[str, str]]) -> dict
         Channels `<marker>.x`, `<marker>.y`, `<marker>.z` [m].
     names : mapping of str to (str, str)
         Side (`r`, `l`) to the heel marker and the toe marker.
-
-    Raises
-    ------
-    ChannelError
-        If a marker is not there.
     """
     return {
         side: FootPath(side, markers.time, *(marker_position(markers, name) for name in pair))
@@ -116,8 +104,6 @@ class PlateStep:
 
     Parameters
     ----------
-    platform : str
-        Name of the platform.
     side : str
         `r` or `l`; empty where the foot is unknown.
     start, end : float [s]
@@ -146,13 +132,7 @@ class PlateStep:
         return not self.reason
 
     def finding(self, file: str) -> Finding | None:
-        """Why the step is left out, for a person to read; None where it is used.
-
-        Parameters
-        ----------
-        file : str
-            Name of the trial's file.
-        """
+        """Why the step is left out, for a person to read; None where it is used."""
         if self.clean:
             return None
         what = f"the step on {self.platform} from {self.start:.2f} to {self.end:.2f} s is left out: {self.reason}"
@@ -170,8 +150,6 @@ def plate_steps(
 
     Parameters
     ----------
-    found : sequence of Platform
-        As `platforms` gives them.
     feet : mapping of str to FootPath
         `r`, `l`; a platform that names its foot is only held against them.
     least_load_n : float
@@ -193,10 +171,6 @@ def empty_findings(found: Sequence[Platform], file: str, least_load_n: float = L
 
     Parameters
     ----------
-    found : sequence of Platform
-        As `platforms` gives them.
-    file : str
-        Name of the trial's file.
     least_load_n : float
         Force at which a loading ends [N].
     """

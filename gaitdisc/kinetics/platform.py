@@ -28,12 +28,8 @@ class Platform:
 
     Parameters
     ----------
-    name : str
-        First part of its channels' names.
     time : ndarray (sample,) [s]
         On the trial's clock.
-    wrench : Wrench
-        Of the ground on the foot.
     up : ndarray (3,)
         Unit vector from the ground to the foot, against gravity.
     point : ndarray (3,) [m]
@@ -90,15 +86,8 @@ class Platform:
 
         Parameters
         ----------
-        cutoff_hz : float
-            Of the zero-lag Butterworth filter; infinite for none.
         spans : sequence of (float, float) [s]
             Loadings by the foot that is meant.
-
-        Raises
-        ------
-        SamplingError
-            If the cut-off is not below half the rate, or the recording too short.
         """
         on = np.zeros(len(self.time), bool)
         for start, end in spans:
@@ -116,20 +105,6 @@ def platforms(trial: Trial) -> list[Platform]:
     Plates of a C3D file are `plate_1_fx` to `plate_1_mz`, with their corners in `trial.surfaces`; forces of a `.mot`
     or `.sto` file are `ground_force_r_vx`, with their point `ground_force_r_px` and moment `ground_torque_r_x`, in
     OpenSim's frame, y up.
-
-    Parameters
-    ----------
-    trial : Trial
-        With the stream `forces`.
-
-    Raises
-    ------
-    ChannelError
-        If there is no force platform, or one lacks a channel or its corners.
-    ReadError
-        If a force presses at a point that is missing.
-    UnitError
-        If a loaded platform pulls its foot down: the force is that of the foot on the ground.
 
     Examples
     --------

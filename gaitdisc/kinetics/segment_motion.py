@@ -22,8 +22,6 @@ class SegmentMotion:
 
     Parameters
     ----------
-    pose : Pose
-        Origin and axes.
     acceleration : ndarray (frame, 3) [m/s2]
         Of the origin.
     angular_velocity : ndarray (frame, 3) [rad/s]
@@ -55,22 +53,13 @@ def smoothed_pose(pose: Pose, time: NDArray[np.float64], cutoff_hz: float) -> Po
 
     Parameters
     ----------
-    pose : Pose
-        As it was reconstructed, frame by frame.
     time : ndarray (frame,) [s]
         Even.
-    cutoff_hz : float
-        Of the zero-lag Butterworth filter, as `lowpassed` counts it.
 
     Returns
     -------
     Pose
         Gaps up to 0.1 s are bridged, as in every filtered recording here; longer ones stay NaN.
-
-    Raises
-    ------
-    SamplingError
-        If the recording is too short for the filter.
     """
     frames = len(pose)
     values = np.hstack([pose.origin, pose.rotation.reshape(frames, 9)])
@@ -102,20 +91,7 @@ def nearest_rotations(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def segment_motion(pose: Pose, rate_hz: float) -> SegmentMotion:
-    """Derivatives of a pose by the package's five-point differences; NaN within two frames of an end or a gap.
-
-    Parameters
-    ----------
-    pose : Pose
-        Smooth.
-    rate_hz : float
-        Frames a second.
-
-    Raises
-    ------
-    SamplingError
-        If there are fewer than five frames.
-    """
+    """Derivatives of a pose by the package's five-point differences; NaN within two frames of an end or a gap."""
     flat = pose.rotation.reshape(len(pose), 9)
     turned = np.swapaxes(pose.rotation, 1, 2)
     rate = differentiated(flat, rate_hz).reshape(-1, 3, 3) @ turned
@@ -131,21 +107,8 @@ def segment_motions(
 
     Parameters
     ----------
-    poses : dict of str to Pose
-        Segments by name.
     time : ndarray (frame,) [s]
         Even.
-    cutoff_hz : float
-        Of the zero-lag filter; infinite for none.
-    names : sequence of str
-        Segments that are wanted, if they are there.
-
-    Raises
-    ------
-    ShapeError
-        If a pose has another number of frames than the times.
-    SamplingError
-        If the recording is too short.
     """
     found = {}
     rate_hz = (len(time) - 1) / float(time[-1] - time[0]) if len(time) > 1 else np.nan

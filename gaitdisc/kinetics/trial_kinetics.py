@@ -33,14 +33,6 @@ class TrialKinetics:
         Moments [N m/kg] and powers [W/kg] on the frames of the markers.
     steps : tuple of PlateStep
         On all platforms, with the reasons of those that are left out.
-    balance : ForceBalance
-        Measured against needed force.
-    loads : mapping of str to FootLoad
-        Of the ground on each foot.
-    found : mapping of str to Leg
-        Segments with their motion and inertia.
-    findings : tuple of Finding
-        What a person must know.
     """
 
     moments: Recording
@@ -70,19 +62,8 @@ def trial_kinetics(
         are the centres of hip, knee and ankle.
     feet : mapping of str to FootPath
         `r`, `l`: heel and toes, as `foot_paths` takes them from markers.
-    person : Person
-        Mass, sex, stature.
-    settings : KineticsSettings, optional
-        Cut-offs, least load, table, frame.
     trunk : sequence of str
         Markers whose mean moves as head, arms and trunk do (C7, CLAV), for the balance of forces only.
-
-    Raises
-    ------
-    ChannelError
-        If there are no forces, no markers, or no step of one foot alone.
-    GaitdiscError
-        If what is given fits no leg, or not together.
 
     Examples
     --------

@@ -24,11 +24,6 @@ class Wrench:
     moment : ndarray (sample, 3) [N m]
         About the origin of the laboratory.
 
-    Raises
-    ------
-    ShapeError
-        If one of them is not (sample, 3), or they differ in length.
-
     Examples
     --------
     >>> Wrench.at(np.array([[0.5, 0.0, 0.0]]), np.array([[0.0, 0.0, 700.0]])).moment

@@ -35,24 +35,6 @@ def train_bayesian(samples: Samples, nodes: int = NODES, seed: int = 0) -> Train
     weights descend on all samples with both as they are. A Gaussian process is fitted in the same two turns. No sample
     is held back, and nothing is stopped early.
 
-    Parameters
-    ----------
-    samples : Samples
-        Training part only; one output, few inputs.
-    nodes : int
-        Of either hidden layer.
-    seed : int
-        Of the first weights.
-
-    Returns
-    -------
-    TrainedNetwork
-
-    Raises
-    ------
-    TrainingError
-        If there are too few samples, missing numbers or a constant output.
-
     References
     ----------
     MacKay 1992, Neural Computation 4:415 and 4:448; Foresee and Hagan 1997, ICNN 3:1930. The published code of

@@ -20,8 +20,6 @@ class RecurrentWeights:
 
     Parameters
     ----------
-    cell : str
-        `gru` or `lstm`.
     layers : tuple of ((ndarray, ndarray), (ndarray, ndarray))
         Weights (input, gate * node) and (node, gate * node), and offsets, of each recurrent layer.
     decoder : (three of ndarray (input, output), three of ndarray (output,))
@@ -42,13 +40,7 @@ class RecurrentWeights:
 
 
 def recurrent_weights(network: TrainedNetwork) -> RecurrentWeights:
-    """Weights of a trained `Shred`.
-
-    Parameters
-    ----------
-    network : TrainedNetwork
-        Whose torch module is a `Shred`.
-    """
+    """Weights of a trained `Shred`."""
     shred = network.network
     assert isinstance(shred, Shred)  # nothing else is asked for
     found = {name: np.ascontiguousarray(values.T, float) for name, values in network.weights().items()}
@@ -78,8 +70,6 @@ class CarriedWindows:
 
     Parameters
     ----------
-    network : TrainedNetwork
-        Whose torch module is a `Shred`.
     count, spacing : int
         Readings of a window, and samples from one to the next.
 

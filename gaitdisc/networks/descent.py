@@ -29,8 +29,6 @@ class Descent:
         Mean squared error of the scaled outputs on the check part, after every epoch.
     best_epoch : int
         Epoch, from 1, whose weights the network has now.
-    arithmetic : str
-        What computed it: `fused` or `torch`.
     """
 
     losses: tuple[float, ...]
@@ -64,13 +62,7 @@ class Steps(Protocol):
         ...
 
     def restore(self, weights: Any) -> None:
-        """Give the network weights that it had before.
-
-        Parameters
-        ----------
-        weights : what `weights` gave
-            To take.
-        """
+        """Give the network weights that it had before."""
         ...
 
 
@@ -88,25 +80,8 @@ def descend(
 
     Parameters
     ----------
-    network : torch module
-        Changed in place.
     part, check : pair of Tensor ((sample, input), (sample, output))
         Scaled samples to descend on, and to judge each epoch by.
-    schedule : Schedule
-        Steps, learning rates, batch, decay.
-    settings : TrainingSettings
-        Seed of the order of the samples, and arithmetic.
-    progress : callable
-        Called after every epoch with the fraction done.
-
-    Returns
-    -------
-    Descent
-
-    Raises
-    ------
-    TrainingError
-        If the loss becomes infinite or NaN.
 
     References
     ----------

@@ -71,8 +71,6 @@ def save_ensemble(ensemble: Ensemble, path: Path) -> None:
 
     Parameters
     ----------
-    ensemble : Ensemble
-        What to keep.
     path : Path
         Of the `.npz` file that a single network would have.
     """
@@ -87,8 +85,6 @@ def member_path(path: Path, number: int) -> Path:
     ----------
     path : Path
         Of the `.npz` file that a single network would have.
-    number : int
-        From 1.
 
     Examples
     --------

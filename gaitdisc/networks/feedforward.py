@@ -13,8 +13,6 @@ class FeedForward(nn.Module):
 
     Parameters
     ----------
-    inputs, outputs : int
-        Number of inputs and outputs.
     nodes : int
         Nodes of either hidden layer; the dissertation has 64.
 

@@ -36,11 +36,6 @@ def exponential(x: np.float32) -> np.float32:
     Beyond -87 and 88 it has the value that it has there. The library's own exponential would be called element by
     element.
 
-    Parameters
-    ----------
-    x : float32
-        Exponent.
-
     References
     ----------
     Moshier, Cephes Mathematical Library, `expf`: Cody-Waite reduction and the polynomial of degree 5.
@@ -72,8 +67,6 @@ def layers(weights: NDArray[np.float32], inputs: int, nodes: int, outputs: int):
     ----------
     weights : ndarray (weight,)
         Weights or their gradient.
-    inputs, nodes, outputs : int
-        Size of the network.
 
     Examples
     --------
@@ -204,8 +197,6 @@ def mean_squared_error(
         Of the network.
     x, y : ndarray (sample, input), (sample, output)
         Scaled samples, contiguous.
-    nodes : int
-        Of either hidden layer.
     """
     hidden = np.empty((3, BLOCK, nodes), np.float32)
     found = np.empty((BLOCK, y.shape[1]), np.float32)
@@ -264,8 +255,6 @@ def descend_epoch(
         Scaled samples, contiguous.
     order : ndarray (sample,)
         In which the samples are seen.
-    sizes : tuple of int
-        Nodes, and samples of a batch.
     paces : ndarray (step, 3)
         Of each step: factor on the weight matrices (decoupled decay), step size over the bias correction of the mean,
         factor on the root of the mean square (its bias correction).

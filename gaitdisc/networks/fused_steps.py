@@ -20,12 +20,8 @@ class FusedSteps:
 
     Parameters
     ----------
-    network : FeedForward
-        Changed in `restore`.
     part, check : pair of Tensor ((sample, input), (sample, output))
         Scaled samples to descend on, and to judge by.
-    schedule : Schedule
-        Decay and batch.
     """
 
     arithmetic = "fused"
@@ -88,11 +84,6 @@ class FusedSteps:
 def matrices_then_offsets(network: FeedForward) -> tuple[Tensor, ...]:
     """Return the parameters in the order of the compiled code's one vector.
 
-    Parameters
-    ----------
-    network : FeedForward
-        Whose parameters.
-
     Examples
     --------
     >>> [tuple(p.shape) for p in matrices_then_offsets(FeedForward(3, 2, nodes=4))]
@@ -104,11 +95,6 @@ def matrices_then_offsets(network: FeedForward) -> tuple[Tensor, ...]:
 
 def can_be_fused(network: nn.Module) -> bool:
     """Tell whether the compiled code computes this network: the dissertation's own, in float32, on the CPU.
-
-    Parameters
-    ----------
-    network : torch module
-        Any.
 
     Examples
     --------

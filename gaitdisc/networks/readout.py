@@ -40,8 +40,6 @@ def solve_readout(network: nn.Module, part: tuple[Tensor, Tensor], penalty: floa
         With `features` and a linear layer `readout`; its readout is changed in place.
     part : pair of Tensor ((sample, input), (sample, output))
         Scaled samples.
-    penalty : float
-        Per sample; features are of the size of 1.
     """
     parts = cast(WithReadout, network)
     network.eval()
@@ -59,8 +57,6 @@ def choose_penalty(
 
     Parameters
     ----------
-    network : torch module
-        With `features` and a linear layer `readout`; not changed.
     part, check : pair of Tensor ((sample, input), (sample, output))
         Scaled samples to solve on, and to judge by.
 

@@ -23,8 +23,6 @@ class Schedule:
         Learning rate, from the first one to 0 along a cosine.
     decay : float
         Decoupled decay of weight matrices, times the learning rate each step.
-    batch : int
-        Samples a step.
     """
 
     rates: NDArray[np.float64]
@@ -33,11 +31,6 @@ class Schedule:
 
     def continued(self, decay: float) -> Schedule:
         """Return the schedule that goes on where this one led to: a third of its epochs, half its rate.
-
-        Parameters
-        ----------
-        decay : float
-            Another decoupled weight decay.
 
         Examples
         --------
@@ -50,19 +43,6 @@ class Schedule:
 
 def schedule_of(samples: int, decay: float, settings: TrainingSettings) -> Schedule:
     """Schedule for a training part of that many samples.
-
-    Parameters
-    ----------
-    samples : int
-        Samples of the training part.
-    decay : float
-        Decoupled weight decay.
-    settings : TrainingSettings
-        Epochs, batch, learning rate.
-
-    Returns
-    -------
-    Schedule
 
     References
     ----------
@@ -79,13 +59,6 @@ def schedule_of(samples: int, decay: float, settings: TrainingSettings) -> Sched
 
 def epochs_of(samples: int, settings: TrainingSettings) -> int:
     """Passes over a training part of that many samples: the epochs of the settings, or what 1,000 steps need.
-
-    Parameters
-    ----------
-    samples : int
-        Samples of the training part.
-    settings : TrainingSettings
-        Epochs and batch.
 
     Examples
     --------

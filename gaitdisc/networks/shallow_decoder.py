@@ -11,8 +11,6 @@ class ShallowDecoder(nn.Module):
 
     Parameters
     ----------
-    inputs, outputs : int
-        Number of inputs and states.
     first, second : int
         Nodes of the hidden layers; the code of SHRED has 350 and 400.
 

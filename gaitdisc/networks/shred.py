@@ -23,20 +23,11 @@ class Shred(nn.Module):
         Numbers of a window (readings times sensors, oldest first), and states.
     sensors : int
         Sensors; `inputs` is a multiple of it.
-    nodes : int
-        Of the recurrent cell.
     layers : int
         Recurrent layers; the dissertation's code has two of 64.
-    cell : str
-        `gru` or `lstm`.
     masked : bool
         Whether readings may be missing (NaN): the network then reads 0, the mean, in their place, and beside every
         reading whether it is missing.
-
-    Raises
-    ------
-    ShapeError
-        If a window does not hold as many readings of every sensor.
 
     References
     ----------

@@ -14,11 +14,6 @@ from threadpoolctl import threadpool_limits
 def torch_threads(count: int) -> Iterator[None]:
     """Let torch use that many threads on the CPU, and as many as before when the block ends.
 
-    Parameters
-    ----------
-    count : int
-        Threads, at least 1.
-
     Examples
     --------
     >>> with torch_threads(1):
@@ -38,11 +33,6 @@ def pinned_threads(count: int) -> Iterator[None]:
     """Let torch and every BLAS use that many threads on the CPU, and as many as before when the block ends.
 
     Matrices of 64 columns are slower on two threads than on one, and two trainings beside each other slower still.
-
-    Parameters
-    ----------
-    count : int
-        Threads, at least 1.
 
     Examples
     --------

@@ -20,12 +20,8 @@ class TorchSteps:
 
     Parameters
     ----------
-    network : torch module
-        Changed in place.
     part, check : pair of Tensor ((sample, input), (sample, output))
         Scaled samples to descend on, and to judge by; on the device of the network.
-    schedule : Schedule
-        Decay and batch.
     precision : str
         Of the matrix products: `float32` or `bfloat16`; weights stay float32.
 
@@ -84,11 +80,5 @@ class TorchSteps:
         return copy.deepcopy(self._network.state_dict())
 
     def restore(self, weights: dict[str, Any]) -> None:
-        """Give the network weights that it had before.
-
-        Parameters
-        ----------
-        weights : dict
-            From `weights`.
-        """
+        """Give the network weights that it had before."""
         self._network.load_state_dict(weights)

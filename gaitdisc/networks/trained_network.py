@@ -29,10 +29,6 @@ class TrainedNetwork:
 
     Parameters
     ----------
-    inputs, outputs : tuple of str
-        Names, in order.
-    x_scale, y_scale : Scale
-        Scales of the training part.
     network : torch module
         Takes and gives scaled numbers; on the CPU.
     """
@@ -66,8 +62,6 @@ def save_network(network: TrainedNetwork, path: Path) -> None:
 
     Parameters
     ----------
-    network : TrainedNetwork
-        What to keep.
     path : Path
         Of an `.npz` file; written whole or not at all.
     """
@@ -89,19 +83,8 @@ def load_network(path: Path, build: Callable[[int, int], nn.Module]) -> TrainedN
 
     Parameters
     ----------
-    path : Path
-        Of the `.npz` file.
     build : callable
         Takes the number of inputs and of outputs and makes the torch module, as in training: `FeedForward`.
-
-    Returns
-    -------
-    TrainedNetwork
-
-    Raises
-    ------
-    SchemaError
-        If the file is missing or damaged, of another format, or of another kind of network.
     """
     try:
         with np.load(path, allow_pickle=False) as file:

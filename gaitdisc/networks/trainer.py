@@ -33,8 +33,6 @@ class Training:
 
     Parameters
     ----------
-    network : TrainedNetwork
-        What was trained.
     decay, penalty : float
         Weight decay and readout penalty that did best on the inner block.
     epochs, best_epoch : int
@@ -87,27 +85,11 @@ def train(
 
     Parameters
     ----------
-    samples : Samples
-        Training part only.
     build : callable
         Takes the number of inputs and of outputs, makes a torch module with `features` and a linear `readout`:
         `FeedForward`.
-    settings : TrainingSettings, optional
-        The defaults without.
-    progress : callable, optional
-        Called after every epoch with the fraction done.
     check : Samples, optional
         What stops and chooses in place of the last `inner_share`: another stretch of time, or another person.
-
-    Returns
-    -------
-    Training
-
-    Raises
-    ------
-    TrainingError
-        If there are too few samples, missing numbers or constant outputs; if the loss does not stay finite; if a GPU is
-        asked for and there is none.
     """
     begun = time.perf_counter()
     settings, progress = settings or TrainingSettings(), progress or (lambda _: None)
@@ -180,11 +162,6 @@ def chosen_device(wanted: str) -> torch.device:
     ----------
     wanted : str
         `cpu`, `cuda`, or `auto`: the GPU where there is one.
-
-    Raises
-    ------
-    TrainingError
-        If it is not there.
 
     Examples
     --------

@@ -17,8 +17,6 @@ class TrainingSettings:
     ----------
     epochs : int
         Passes over the training part; more where 1,000 steps need more.
-    batch : int
-        Samples a step.
     learning_rate : float
         Of the first step; it falls to 0 along a cosine.
     decays : tuple of float
@@ -42,11 +40,6 @@ class TrainingSettings:
         not for the GRU of 64 (docs/results.md).
     missing_inputs : bool
         Whether inputs may be missing (NaN); the network has to know what to do with them, as `Shred` with `masked`.
-
-    Raises
-    ------
-    TrainingError
-        If a number is out of range.
 
     Examples
     --------

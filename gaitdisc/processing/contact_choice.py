@@ -38,8 +38,6 @@ class ContactChoice:
 
     Parameters
     ----------
-    contacts : mapping of str to Contacts
-        Side to contacts, of one detector.
     findings : tuple of Finding
         Which detector was taken and why, how far others differ [ms], and those that could not be used.
     offset_s : float, optional
@@ -70,21 +68,8 @@ def chosen_contacts(trial: Trial, detector: str = "auto", direction: str = "") -
 
     Parameters
     ----------
-    trial : Trial
-        With any streams; each detector needs its own.
-    detector : str
-        `auto`, `force`, `events`, `markers` or `angles`.
     direction : str
         Direction of walking in the laboratory's axes, `+x` to `-z`; inferred from the markers where it is empty.
-
-    Returns
-    -------
-    ContactChoice
-
-    Raises
-    ------
-    StrideError
-        If the detector asked for, or every detector, finds no stride; each one's reason is named.
     """
     seen, refused = seen_contacts(trial, direction)
     found = {name: contacts for name, contacts in seen.items() if _stride_count(contacts)}
@@ -111,8 +96,6 @@ def seen_contacts(
 
     Parameters
     ----------
-    trial : Trial
-        With any streams; each detector needs its own.
     direction : str
         Direction of walking in the laboratory's axes, `+x` to `-z`; inferred from the markers where it is empty.
     body_weight_n : float, optional
@@ -120,8 +103,6 @@ def seen_contacts(
 
     Returns
     -------
-    seen : dict of str to dict of str to Contacts
-        Detector -> side -> contacts.
     refused : dict of str to GaitdiscError or None
         Detector -> its error; None where it sees contacts, but no stride of both feet.
     """
@@ -201,25 +182,7 @@ def _markers(markers: Recording, direction: str) -> dict[str, Contacts]:
 
 
 def named_markers(markers: Recording) -> tuple[dict[str, str], list[str]]:
-    """Heel markers by side, and the pelvis markers, by the names that laboratories use.
-
-    Parameters
-    ----------
-    markers : Recording
-        Channels `<marker>.x`, `<marker>.y`, `<marker>.z`.
-
-    Returns
-    -------
-    heels : dict of str to str
-        Side to marker.
-    pelvis : list of str
-        Markers.
-
-    Raises
-    ------
-    ChannelError
-        If a heel or the pelvis has no marker of a known name.
-    """
+    """Heel markers by side, and the pelvis markers, by the names that laboratories use."""
     there = {name.rsplit(".", 1)[0] for name in markers.names}
     heels = {side: next((name for name in names if name in there), "") for side, names in HEELS.items()}
     pelvis = [name for name in PELVIS if name in there]
@@ -237,12 +200,6 @@ def trial_direction(markers: Recording, heels: Mapping[str, str], pelvis: list[s
 
     Parameters
     ----------
-    markers : Recording
-        Channels `<marker>.x`, `<marker>.y`, `<marker>.z`.
-    heels : mapping of str to str
-        Side to heel marker.
-    pelvis : list of str
-        Pelvis markers.
     direction : str
         In the laboratory's axes, `+x` to `-z`; inferred where it is empty.
     """

@@ -27,10 +27,6 @@ def cycle_channels(
 
     Parameters
     ----------
-    trial : Trial
-        As it was read.
-    filters : Filters
-        Of the study.
     smooth_moments : bool
         Whether moments and powers were computed of filtered markers and forces, so that they stay as they are.
 
@@ -40,8 +36,6 @@ def cycle_channels(
         Angles of the legs, gaps bridged where they may be, not filtered.
     states : tuple of Recording
         What cycles are cut of, each at its own rate.
-    findings : tuple of Finding
-        Channels that could not be filtered.
     """
     legs, states, findings = None, [], []
     for key, quantities in (

@@ -31,10 +31,6 @@ def filter_null(
 
     Parameters
     ----------
-    channels : sequence of Channel
-        Channels of a processed walk.
-    filters : Filters
-        Of the study.
     kinematics_hz : float
         Rate at which angles were measured and everything is differentiated.
     emg_hz : float, optional
@@ -71,13 +67,6 @@ def filter_null_of(walk: Walk, filters: Filters) -> dict[str, float]:
     ----------
     walk : Walk
         Whether its EMG is raw or holds envelopes is seen from the EMG.
-    filters : Filters
-        Of the study.
-
-    Returns
-    -------
-    dict of str to float
-        Of every channel, as `filter_null`.
     """
     emg = walk.trial.streams.get("emg")
     emg_hz = emg.rate_hz if emg is not None and is_raw(emg) else None

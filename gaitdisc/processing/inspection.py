@@ -78,11 +78,6 @@ class Inspection:
 def inspected_study(study: Study) -> Iterator[Inspection]:
     """Read and process every trial of a study as `gaitdisc run` would; those of unknown conditions are read too.
 
-    Parameters
-    ----------
-    study : Study
-        Settings and files.
-
     Yields
     ------
     Inspection
@@ -191,15 +186,7 @@ def _named(planned: PlannedTrial) -> str:
 
 
 def inspected_file(path: Path, reader: C3DReader | None = None) -> Inspection:
-    """Read one file and say what it holds and what is wrong with it.
-
-    Parameters
-    ----------
-    path : Path
-        A recording.
-    reader : C3DReader, optional
-        A running reader process to use again.
-    """
+    """Read one file and say what it holds and what is wrong with it."""
     try:
         trial = read_trial(path, reader=reader)
     except GaitdiscError as error:

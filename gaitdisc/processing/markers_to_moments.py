@@ -47,14 +47,6 @@ def with_angles_and_moments(
 
     Parameters
     ----------
-    trial : Trial
-        With markers, and forces for moments.
-    calibration : Calibration
-        Of the person, from the static trial.
-    person : Person or None
-        Mass, sex, stature; None for angles alone.
-    settings : KineticsSettings, optional
-        How moments are computed.
     forward : sequence of 3 floats, optional
         Direction of walking in the laboratory's axes; found from the pelvis where it is not given.
 
@@ -62,11 +54,6 @@ def with_angles_and_moments(
     -------
     Trial
         Streams `kinematics` [deg, m] and `moments` [N m/kg, W/kg] on the frames of the markers.
-
-    Raises
-    ------
-    GaitdiscError
-        If the markers give no angles.
     """
     return computed_trial(trial, calibration, person, settings, forward).trial
 
@@ -82,14 +69,6 @@ def computed_trial(
 
     Parameters
     ----------
-    trial : Trial
-        With markers, and forces for moments.
-    calibration : Calibration
-        Of the person, from the static trial.
-    person : Person or None
-        Mass, sex, stature; None for angles alone.
-    settings : KineticsSettings, optional
-        How moments are computed.
     forward : sequence of 3 floats, optional
         Direction of walking in the laboratory's axes; found from the pelvis where it is not given.
     """
@@ -129,8 +108,6 @@ def foot_paths_of(moved: Motion, calibration: Calibration) -> dict[str, FootPath
 
     Parameters
     ----------
-    moved : Motion
-        Of a trial.
     calibration : Calibration
         That says where heel and toes lie in the foot.
     """

@@ -17,24 +17,10 @@ def on_one_base(trial: Trial, rate_hz: float, keys: tuple[str, ...] | None = Non
     A stream that is faster than `rate_hz` is low-passed at 0.4 times that rate; raw EMG becomes its envelope (40 Hz
     high-pass, rectified, 10 Hz low-pass), since nothing of the raw signal would be left.
 
-    Parameters
-    ----------
-    trial : Trial
-        Streams at any rates.
-    rate_hz : float
-        Rate of the result.
-    keys : tuple of str, optional
-        Streams to bring together; all of them by default.
-
     Returns
     -------
     Recording
         The span that all streams cover; filter edges and bridged gaps are marked suspect.
-
-    Raises
-    ------
-    SamplingError
-        If the streams have no time in common.
 
     Examples
     --------

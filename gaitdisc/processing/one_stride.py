@@ -25,16 +25,6 @@ def repeated_stride(trial: Trial) -> Trial:
     trial : Trial
         With the kinematics of one stride, wherever in the stride it begins.
 
-    Returns
-    -------
-    Trial
-        Eight times the stride, with a finding.
-
-    Raises
-    ------
-    StrideError
-        If the recording is longer or shorter than a stride, or does not end where it began.
-
     Examples
     --------
     >>> from gaitdisc.channel import Channel

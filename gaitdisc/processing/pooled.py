@@ -90,15 +90,6 @@ def pooled_cycles(study: Study, participant: Participant, read: Read) -> tuple[P
     file sees a step that markers or angles see too, these are moved by the median difference of all such steps of the
     participant's session.
 
-    Parameters
-    ----------
-    study : Study
-        Settings.
-    participant : Participant
-        With walks.
-    read : callable
-        Reads a planned trial.
-
     Returns
     -------
     tuple of PooledCycles
@@ -271,13 +262,7 @@ def _pooled(
 
 
 def pooled_instead(found: Sequence[PooledCycles]) -> bool:
-    """Whether pooled cycles stand in for a comparison that was refused: all walks are over ground, and give cycles.
-
-    Parameters
-    ----------
-    found : sequence of PooledCycles
-        Of one participant.
-    """
+    """Whether pooled cycles stand in for a comparison that was refused: all walks are over ground, and give cycles."""
     return bool(found) and all(one.over_ground and len(one.kept) for one in found)
 
 

@@ -39,26 +39,6 @@ def processed(trial: Trial, study: Study) -> Walk:
 
     Gaps up to the study's `gap_s` are bridged by a cubic spline, up to twice that by the person's mean stride, beyond
     that left open and their strides dropped; plateaus, bridged gaps and filter edges are marked suspect.
-
-    Parameters
-    ----------
-    trial : Trial
-        With kinematics, and whatever else helps to find contacts.
-    study : Study
-        Filters, detector, angles and EMG that the models need.
-
-    Returns
-    -------
-    Walk
-
-    Raises
-    ------
-    ChannelError
-        If an angle or a muscle that the study names is missing or dead.
-    StrideError
-        If the trial is not walking, its sides are swapped, or its gait changes late and the study refuses that.
-    SamplingError
-        If the recording is too short or too slow for the filters.
     """
     raw = without_spikes(plateau_marked(_needed(trial, "kinematics", study.models.angles)))
     choice = chosen_contacts(trial, study.strides.detector, study.treadmill.direction if study.treadmill else "")
@@ -86,15 +66,7 @@ def processed(trial: Trial, study: Study) -> Walk:
 
 
 def quality_findings(trial: Trial, angles: Sequence[str] = (), emg: Sequence[str] = ()) -> list[Finding]:
-    """What the quality checks see in the raw streams of a trial.
-
-    Parameters
-    ----------
-    trial : Trial
-        As it was read.
-    angles, emg : sequence of str
-        Channels to look at; by default all.
-    """
+    """What the quality checks see in the raw streams of a trial."""
     findings: list[Finding] = []
     if "kinematics" in trial.streams:
         kinematics = trial.stream("kinematics")
@@ -114,15 +86,7 @@ def quality_findings(trial: Trial, angles: Sequence[str] = (), emg: Sequence[str
 
 
 def stride_findings(state: Recording, strides: Strides) -> list[Finding]:
-    """What the strides say: outliers against the person's own mean, a change late in the trial, and those dropped.
-
-    Parameters
-    ----------
-    state : Recording
-        Filtered angles.
-    strides : Strides
-        Of one side.
-    """
+    """What the strides say: outliers against the person's own mean, a change late in the trial, and those dropped."""
     angles = state.selected_by(lambda channel: channel.quantity == "angle")
     findings = outlier_findings(angles, strides) + late_change_findings(angles, strides)
     for dropped in strides.dropped:
@@ -184,13 +148,7 @@ def _state(trial: Trial, raw: Recording, study: Study) -> Recording:
 
 
 def is_raw(emg: Recording) -> bool:
-    """Tell raw EMG, which swings about zero, from an envelope, which does not fall below it.
-
-    Parameters
-    ----------
-    emg : Recording
-        Channels of quantity `emg`.
-    """
+    """Tell raw EMG, which swings about zero, from an envelope, which does not fall below it."""
     known = emg.values[np.isfinite(emg.values)]
     return len(known) > 0 and bool(np.min(known) < 0)
 

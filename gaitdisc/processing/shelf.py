@@ -46,24 +46,12 @@ class ShelvedRecordings:
 
 @dataclass(frozen=True)
 class Shelf:
-    """A folder for samples that are needed later.
-
-    Parameters
-    ----------
-    folder : Path
-        Of its own.
-    """
+    """A folder for samples that are needed later."""
 
     folder: Path
 
     def put(self, recordings: Sequence[Recording]) -> ShelvedRecordings:
-        """Put recordings away.
-
-        Parameters
-        ----------
-        recordings : sequence of Recording
-            Of one trial.
-        """
+        """Put recordings away."""
         files = []
         first = len([*self.folder.iterdir()])
         try:
@@ -78,12 +66,7 @@ class Shelf:
 
 @contextmanager
 def shelf() -> Iterator[Shelf]:
-    """Shelf that is cleared at the end.
-
-    Yields
-    ------
-    Shelf
-    """
+    """Shelf that is cleared at the end."""
     with tempfile.TemporaryDirectory(prefix="gaitdisc_", ignore_cleanup_errors=True) as folder:
         yield Shelf(Path(folder))
 

@@ -22,20 +22,7 @@ MOST, LEAST = 0.75, 0.25  # share of the steps that have their foot, exchanged a
 
 
 def side_findings(trial: Trial, strides: Mapping[str, Strides]) -> list[Finding]:
-    """What shows that sides, plates or muscles bear another's name.
-
-    Parameters
-    ----------
-    trial : Trial
-        As it was read.
-    strides : mapping of str to Strides
-        Side -> strides of that foot.
-
-    Returns
-    -------
-    list of Finding
-        Warnings.
-    """
+    """What shows that sides, plates or muscles bear another's name."""
     findings: list[Finding] = []
     if "markers" in trial.streams:
         findings += marker_side_findings(trial.stream("markers"))

@@ -31,14 +31,6 @@ class Standing:
     ----------
     study : Study
         With its `[kinematics]`.
-    participant : Participant
-        Who.
-    planned : PlannedTrial, optional
-        The static trial; None without one.
-    markers : Recording, optional
-        Of the static trial.
-    unread : str
-        Why there are no markers.
     """
 
     study: Study
@@ -50,15 +42,7 @@ class Standing:
     _said: set[Finding] = field(default_factory=set, init=False)
 
     def computed(self, planned: PlannedTrial, trial: Trial) -> tuple[Trial, tuple[PlateStep, ...] | None]:
-        """Trial with the angles that the study asks for, and its steps on plates where moments were computed.
-
-        Parameters
-        ----------
-        planned : PlannedTrial
-            The walk.
-        trial : Trial
-            As it was read.
-        """
+        """Trial with the angles that the study asks for, and its steps on plates where moments were computed."""
         source = self.study.kinematics.angles if self.study.kinematics else ""
         if source == "file" or "markers" not in trial.streams or (not source and has_leg_angles(trial)):
             return trial, None
@@ -80,13 +64,7 @@ class Standing:
         return replace(found.trial, findings=(*trial.findings, *self._new((*made, *findings)))), found.steps
 
     def body_weight_n(self, planned: PlannedTrial) -> float | None:
-        """Weight of the person [N]: by the study, else the static file, else the walk's; None where none states one.
-
-        Parameters
-        ----------
-        planned : PlannedTrial
-            The walk.
-        """
+        """Weight of the person [N]: by the study, else the static file, else the walk's; None where none states one."""
         try:
             mass = self.participant.mass_kg or self._measures(self.planned).mass_kg or self._measures(planned).mass_kg
         except GaitdiscError:
@@ -146,13 +124,7 @@ def marker_set_of(study: Study) -> str | Path | None:
 
 
 def has_leg_angles(trial: Trial) -> bool:
-    """Whether a trial's files hold a flexion angle of a leg.
-
-    Parameters
-    ----------
-    trial : Trial
-        As it was read.
-    """
+    """Whether a trial's files hold a flexion angle of a leg."""
     if "kinematics" not in trial.streams:
         return False
     return any(channel.name[:-2] in LEGS for channel in trial.stream("kinematics").channels)

@@ -59,13 +59,7 @@ class StepEvents:
     ground_offs: Mapping[str, tuple[tuple[float, str], ...]]
 
     def later_s(self, kind: str) -> Times:
-        """How much later the ground places the events that both see [s]; only steps that both see count.
-
-        Parameters
-        ----------
-        kind : str
-            `contacts` or `foot_offs`.
-        """
+        """How much later the ground places the events that both see [s]; only steps that both see count."""
         own, ground = self._of(kind)
         apart = []
         for side, times in own.items():
@@ -80,8 +74,6 @@ class StepEvents:
 
         Parameters
         ----------
-        kind : str
-            `contacts` or `foot_offs`.
         offset_s : float
             Added to what markers or angles say [s].
 
@@ -116,19 +108,10 @@ def step_events(
 
     Parameters
     ----------
-    trial : Trial
-        With any streams.
-    detector : str
-        `auto`, or the one that shall be taken.
     direction : str
         Direction of walking in the laboratory's axes, `+x` to `-z`; inferred where it is empty.
     body_weight_n : float, optional
         Mass x 9.81, by which a plate counts as loaded; 50 N without it.
-
-    Raises
-    ------
-    StrideError
-        If nothing sees two contacts of one foot; each detector's reason is named.
     """
     seen, refused = seen_contacts(trial, direction, body_weight_n)
     strides = {name: _stride_count(contacts) for name, contacts in seen.items()}
@@ -183,8 +166,6 @@ def trial_markers(trial: Trial, direction: str = "") -> tuple[dict[str, str], li
 
     Parameters
     ----------
-    trial : Trial
-        As it was read.
     direction : str
         In the laboratory's axes, `+x` to `-z`; inferred where it is empty.
     """

@@ -102,8 +102,6 @@ def plate_loadings(trial: Trial, rise_n: float = RISE_N) -> PlateLoadings:
 
     Parameters
     ----------
-    trial : Trial
-        With or without forces.
     rise_n : float
         Force above which a foot is on the ground [N].
     """
@@ -116,28 +114,12 @@ def plate_loadings(trial: Trial, rise_n: float = RISE_N) -> PlateLoadings:
 
 
 def with_plates(cycles: list[Cycle], plates: PlateLoadings) -> list[Cycle]:
-    """Same cycles, kinetic where the foot alone loaded one plate, or its own belt, for the whole stance.
-
-    Parameters
-    ----------
-    cycles : list of Cycle
-        Of the trial.
-    plates : PlateLoadings
-        Of the trial.
-    """
+    """Same cycles, kinetic where the foot alone loaded one plate, or its own belt, for the whole stance."""
     return [replace(one, kinetic=one.side in plates.belts or _alone(one, plates.spans)) for one in cycles]
 
 
 def with_plate_steps(cycles: list[Cycle], steps: Sequence[PlateStep]) -> list[Cycle]:
-    """Same cycles, kinetic where a clean step of the foot, whole in the recording, is this cycle's stance.
-
-    Parameters
-    ----------
-    cycles : list of Cycle
-        Of the trial.
-    steps : sequence of PlateStep
-        On the trial's platforms, as moments rest on them.
-    """
+    """Same cycles, kinetic where a clean step of the foot, whole in the recording, is this cycle's stance."""
     whole = [step for step in steps if step.clean and step.whole]
     return [replace(one, kinetic=any(_is_stance(step, one) for step in whole)) for one in cycles]
 
@@ -157,8 +139,6 @@ class HeelPaths:
         Of the markers.
     heels : mapping of str to ndarray (frame, 3) [m]
         By side.
-    way : Direction
-        Of walking.
     """
 
     time: NDArray[np.float64]
@@ -171,8 +151,6 @@ def heel_paths(trial: Trial, direction: str = "") -> HeelPaths | None:
 
     Parameters
     ----------
-    trial : Trial
-        With or without markers.
     direction : str
         In the laboratory's axes, `+x` to `-z`; inferred where it is empty.
     """
@@ -189,8 +167,6 @@ def feet_in(cycles: list[Cycle], feet: HeelPaths | None, belt_m_per_s: float = 0
 
     Parameters
     ----------
-    cycles : list of Cycle
-        Of the trial.
     feet : HeelPaths, optional
         Of the trial; without them only the step's time is known.
     belt_m_per_s : float
@@ -228,8 +204,6 @@ def with_gaps(cycles: list[Cycle], legs: Recording | None) -> list[Cycle]:
 
     Parameters
     ----------
-    cycles : list of Cycle
-        Of one trial.
     legs : Recording, optional
         Angles, gaps bridged where they may be; None where the trial has none.
     """
@@ -251,8 +225,6 @@ def moved_events(steps: StepEvents, contact_s: float, off_s: float) -> list[Cycl
 
     Parameters
     ----------
-    steps : StepEvents
-        As they were seen.
     contact_s, off_s : float
         Added to contacts and to foot offs of markers or angles [s].
     """

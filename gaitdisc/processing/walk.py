@@ -20,12 +20,8 @@ class Walk:
 
     Parameters
     ----------
-    trial : Trial
-        As it was read.
     state : Recording
         Filtered joint angles, and EMG envelopes where the study asks for them, on the time base of the kinematics.
-    strides : mapping of str to Strides
-        Side to strides.
     trajectory : Trajectory
         State, derivatives and percent stride of the study's side.
     findings : tuple of Finding
@@ -70,13 +66,7 @@ class Walk:
 
 
 def stride_table(strides: Strides) -> pd.DataFrame:
-    """Kept and dropped strides of one side in order of time, columns `STRIDE_COLUMNS`.
-
-    Parameters
-    ----------
-    strides : Strides
-        Of one side.
-    """
+    """Kept and dropped strides of one side in order of time, columns `STRIDE_COLUMNS`."""
     kept = [(strides.side, start, end, True, "") for start, end in zip(strides.start, strides.end, strict=True)]
     dropped = [(strides.side, d.start, d.end, False, d.reason) for d in strides.dropped]
     rows = sorted([*kept, *dropped], key=lambda row: row[1])

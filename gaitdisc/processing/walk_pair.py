@@ -49,23 +49,8 @@ def walk_pair(
 
     Parameters
     ----------
-    first, second : Trial
-        As they were read.
     cutoff_hz : float
         -3 dB frequency of one pass of the low-pass of angles and moments.
-    detector : str
-        `auto`, `force`, `events`, `markers` or `angles`.
-
-    Returns
-    -------
-    first, second : WalkSummary
-
-    Raises
-    ------
-    StrideError
-        If one of them has no strides or is no walking, or no detector serves both.
-    SamplingError
-        If a recording is too short or too slow for the filters.
 
     Examples
     --------

@@ -15,8 +15,6 @@ def read_only(values: ArrayLike, dtype: Any = float) -> NDArray[Any]:
     ----------
     values : array_like, any shape
         Numbers; they are not copied where they already have the type.
-    dtype : numpy dtype
-        Type of the view.
 
     Examples
     --------

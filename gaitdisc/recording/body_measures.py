@@ -39,11 +39,6 @@ class BodyMeasures:
     source : str
         Where they are from: a file's name, or `given`.
 
-    Raises
-    ------
-    UnitError
-        If a value is none that a person has; the unit is most likely another one.
-
     Examples
     --------
     >>> BodyMeasures(mass_kg=60.3, knee_width_m={"l": 0.124, "r": 0.121}).knee_width_m["l"]

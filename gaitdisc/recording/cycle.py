@@ -13,8 +13,6 @@ class Cycle:
 
     Parameters
     ----------
-    side : str
-        `r` or `l`.
     start, end : float
         Initial contacts [s].
     contacts_by : tuple of (str, str)

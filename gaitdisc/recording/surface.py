@@ -22,11 +22,6 @@ class Surface:
     corners : ndarray (4, 3) [m]
         In order around it, in the laboratory's frame.
 
-    Raises
-    ------
-    ShapeError
-        If there are not four corners, or they span no area.
-
     Examples
     --------
     >>> plate = Surface("plate_1", np.array([[0.0, 0, 0], [0.4, 0, 0], [0.4, 0.6, 0], [0, 0.6, 0]]))

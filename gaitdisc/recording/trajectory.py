@@ -25,17 +25,8 @@ class Trajectory:
         State and its time derivatives.
     phi : ndarray (time,) [% stride]
         0 <= phi < 100, NaN outside of strides.
-    channels : sequence of Channel
-        One a column of x.
     usable : ndarray of bool (time, channel)
         False where x, xdot or xddot is missing or not to be trusted.
-    subject, condition : str
-        Pseudonym and condition.
-
-    Raises
-    ------
-    ShapeError
-        If the arrays do not fit together.
 
     Examples
     --------
@@ -88,18 +79,7 @@ class Trajectory:
         return float(round((len(self.time) - 1) / (self.time[-1] - self.time[0]), 6))
 
     def columns(self, names: Sequence[str]) -> list[int]:
-        """Return the columns of channels.
-
-        Parameters
-        ----------
-        names : sequence of str
-            Names of the channels.
-
-        Raises
-        ------
-        ValueError
-            If the trajectory has no channel of that name; an analysis checks names where the recording enters.
-        """
+        """Return the columns of channels."""
         return [self.names.index(name) for name in names]
 
     def rows(self, chosen: slice | NDArray[np.bool_] | NDArray[np.intp]) -> Trajectory:
@@ -125,15 +105,6 @@ class Trajectory:
             Length of the held-out part [s]; the dissertation holds out the last 30 s of 240 s (section 4.2.2).
         seam_s : float
             Length left away before the seam [s].
-
-        Returns
-        -------
-        training, held_out : Trajectory
-
-        Raises
-        ------
-        SamplingError
-            If the held-out part and the seam leave nothing to train on.
         """
         held = round(held_out_s * self.rate_hz)
         last = len(self.time) - held - round(seam_s * self.rate_hz)

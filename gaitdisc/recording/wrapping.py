@@ -27,11 +27,6 @@ LEAST_LEAP = 0.75  # of a turn, from one sample to the next
 def turn_of(channel: Channel) -> float | None:
     """One turn in the unit of a channel that may come round; None for every other channel.
 
-    Parameters
-    ----------
-    channel : Channel
-        Any.
-
     Examples
     --------
     >>> turn_of(Channel("pelvis_rotation", "angle", "deg")), turn_of(Channel("knee_angle_r", "angle", "deg", "r"))
@@ -48,11 +43,6 @@ def unwrapped(recording: Recording) -> Recording:
     recording : Recording
         Any channels; only headings (of pelvis, trunk, head, foot) that leap by 270 deg or more from one sample to the
         next, or by more than 180 deg over a gap, are changed.
-
-    Returns
-    -------
-    Recording
-        The same object where nothing came round.
 
     Examples
     --------
@@ -81,8 +71,6 @@ def wrapped(recording: Recording, as_in: Recording) -> Recording:
 
     Parameters
     ----------
-    recording : Recording
-        Unwrapped, then filtered or filled.
     as_in : Recording
         Before it was unwrapped; where its smallest value is not negative, headings run from 0 to 360 deg, else from
         -180 to 180 deg.
@@ -113,8 +101,6 @@ def in_one_turn(curves: NDArray[np.float64], turn: float) -> NDArray[np.float64]
     ----------
     curves : ndarray (curve, point)
         Each without a leap; NaN allowed.
-    turn : float
-        One turn in their unit.
 
     Examples
     --------

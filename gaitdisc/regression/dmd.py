@@ -26,10 +26,6 @@ class Dmd:
 
     Parameters
     ----------
-    inputs : tuple of str
-        `t`.
-    outputs : tuple of str
-        Names, in order.
     modes : ndarray of complex (mode, output) [output's unit]
         With their amplitudes at `start`.
     eigenvalues : ndarray of complex (mode,) [1/s]
@@ -66,30 +62,13 @@ def fit_dmd(samples: Samples, delays: int = DELAYS, rank: int = RANK, bags: int 
     ----------
     samples : Samples
         Training part only, evenly in time; the inputs are not looked at.
-    delays : int
-        Rows of the Hankel matrix for each output.
-    rank : int
-        Modes.
     bags : int
         Fits on columns drawn at random (BOP-DMD), whose mean is taken; 0 for optimised DMD.
-    seed : int
-        Of the draws.
-
-    Returns
-    -------
-    Dmd
 
     Notes
     -----
     The Hankel matrix is projected on its first `rank` left singular vectors, and at most 600 of its columns, evenly in
     time, go into the variable projection: it takes seconds instead of minutes on 3,000 samples.
-
-    Raises
-    ------
-    SamplingError
-        If the record is too short for the delays, by how much, or not even in time.
-    TrainingError
-        If numbers are missing, or PyDMD is not installed.
 
     References
     ----------

@@ -12,16 +12,6 @@ from gaitdisc.errors import TrainingError
 def chapter3_library(name: str) -> ModuleType:
     """Library of the extra `chapter3`.
 
-    Parameters
-    ----------
-    name : str
-        As it is imported: `pysindy`, `pydmd`.
-
-    Raises
-    ------
-    TrainingError
-        If it is not installed; it says how to install it.
-
     Examples
     --------
     >>> chapter3_library("math").pi > 3

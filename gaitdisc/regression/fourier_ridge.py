@@ -23,10 +23,6 @@ class FourierRidge:
 
     Parameters
     ----------
-    inputs, outputs : tuple of str
-        Names, in order.
-    x_scale, y_scale : Scale
-        Of the training part.
     frequencies : ndarray (input, feature)
         Of the cosines, for scaled inputs; no feature makes it plain ridge regression.
     phases : ndarray (feature,) [rad]
@@ -69,17 +65,6 @@ def fit_fourier_ridge(training: Samples, check: Samples, features: int = 0, seed
         What is fitted, and what the penalty is chosen by.
     features : int
         Random Fourier features; 0 is ridge regression on the inputs alone.
-    seed : int
-        Of frequencies and phases.
-
-    Returns
-    -------
-    FourierRidge
-
-    Raises
-    ------
-    TrainingError
-        If there are too few samples, missing numbers or constant outputs.
 
     References
     ----------

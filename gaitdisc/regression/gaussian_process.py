@@ -24,10 +24,6 @@ class GaussianProcess:
 
     Parameters
     ----------
-    inputs, outputs : tuple of str
-        Names, in order.
-    scale : Scale
-        Of the inputs.
     centres : ndarray (centre, input)
         Scaled inputs that the kernel is laid on.
     lengths : ndarray (output, input)
@@ -38,8 +34,6 @@ class GaussianProcess:
         Mean of the training part.
     noise : ndarray (output,) [output's unit]
         Standard deviation of what the process takes for noise.
-    exact : bool
-        Every sample is a centre.
     """
 
     inputs: tuple[str, ...]
@@ -72,24 +66,6 @@ def fit_gaussian_process(samples: Samples, most_exact: int = MOST_EXACT, inducin
     Length scales, size and noise maximise the likelihood of at most 400 samples, evenly in time (scikit-learn). Then
     all samples are conditioned on: exactly, or, of long records, by the projected process on inducing points that are
     far apart from each other.
-
-    Parameters
-    ----------
-    samples : Samples
-        Training part only.
-    most_exact : int
-        Samples up to which every one is a centre.
-    inducing : int
-        Centres of longer records.
-
-    Returns
-    -------
-    GaussianProcess
-
-    Raises
-    ------
-    TrainingError
-        If there are too few samples, or missing numbers.
 
     References
     ----------
@@ -124,8 +100,6 @@ def far_apart(x: NDArray[np.float64], count: int) -> NDArray[np.int64]:
     ----------
     x : ndarray (point, input)
         Scaled.
-    count : int
-        How many.
 
     Examples
     --------

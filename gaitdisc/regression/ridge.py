@@ -23,8 +23,6 @@ class Ridge:
 
     Parameters
     ----------
-    inputs, outputs : tuple of str
-        Names, in order.
     harmonics : int
         Sines and cosines of 1 to so many cycles a stride, beside the inputs; 0 where `phi` is not among them.
     scale : Scale
@@ -63,21 +61,8 @@ def fit_ridge(samples: Samples, harmonics: int = 8, inner_share: float = 0.15) -
 
     Parameters
     ----------
-    samples : Samples
-        Training part only, in order of time.
     harmonics : int
         Harmonics of percent stride beside the inputs, where `phi` is among them; 0 for none.
-    inner_share : float
-        Share of the samples in the inner block.
-
-    Returns
-    -------
-    Ridge
-
-    Raises
-    ------
-    TrainingError
-        If there are too few samples, missing numbers, constant outputs, or no inner block.
 
     Examples
     --------

@@ -21,8 +21,6 @@ def save_ridge(model: FourierRidge, path: Path) -> None:
 
     Parameters
     ----------
-    model : FourierRidge
-        What to keep.
     path : Path
         Of an `.npz` file; written whole or not at all.
     """
@@ -43,22 +41,7 @@ def save_ridge(model: FourierRidge, path: Path) -> None:
 
 
 def load_ridge(path: Path) -> FourierRidge:
-    """Load a ridge regression that `save_ridge` wrote.
-
-    Parameters
-    ----------
-    path : Path
-        Of the `.npz` file.
-
-    Returns
-    -------
-    FourierRidge
-
-    Raises
-    ------
-    SchemaError
-        If the file is missing, damaged, or of another format.
-    """
+    """Load a ridge regression that `save_ridge` wrote."""
     try:
         with np.load(path, allow_pickle=False) as file:
             arrays = {name: file[name] for name in file.files}

@@ -30,14 +30,10 @@ class Sindy:
 
     Parameters
     ----------
-    inputs, outputs : tuple of str
-        Names, in order.
     powers : ndarray of int (term, input)
         Of each term of the library.
     coefficients : ndarray (term, output) [output's unit over term's unit]
         Zero where a term is not in the model.
-    threshold : float
-        Below which coefficients were dropped.
     """
 
     inputs: tuple[str, ...]
@@ -56,24 +52,12 @@ class Sindy:
         return products(x, self.powers) @ self.coefficients
 
     def terms(self, output: str) -> dict[str, float]:
-        """Terms of one output with their coefficients, as a simulation file writes them.
-
-        Parameters
-        ----------
-        output : str
-            Name.
-        """
+        """Terms of one output with their coefficients, as a simulation file writes them."""
         column = self.coefficients[:, self.outputs.index(output)]
         return {written(self.inputs, row): float(column[k]) for k, row in enumerate(self.powers) if column[k]}
 
     def expression(self, output: str) -> str:
-        """Return one output as an expression that a simulation file understands.
-
-        Parameters
-        ----------
-        output : str
-            Name.
-        """
+        """Return one output as an expression that a simulation file understands."""
         return " + ".join(f"{value:.8g}*{term}" for term, value in self.terms(output).items()) or "0"
 
 
@@ -87,27 +71,8 @@ def fit_sindy(samples: Samples, degree: int = 3, threshold: float | None = None,
 
     Parameters
     ----------
-    samples : Samples
-        Training part only, in order of time.
-    degree : int
-        Highest total power of the library.
-    threshold : float, optional
-        Below which coefficients are dropped [coefficient's unit].
     bags : int
         Fits on samples drawn with replacement, whose median is taken; 0 for one plain fit.
-    seed : int
-        Of the draws.
-
-    Returns
-    -------
-    Sindy
-
-    Raises
-    ------
-    TrainingError
-        If the library has more terms than there are samples, if numbers are missing, if pysindy is not installed, or if
-        terms of the library are the same on these samples (cos 2t = 1 - 2 sin^2 t): which of them belong in the model
-        cannot be found from such a record, and rounding would decide. The relation is named.
 
     References
     ----------
@@ -212,8 +177,6 @@ def written(inputs: tuple[str, ...], powers: NDArray[np.int64]) -> str:
 
     Parameters
     ----------
-    inputs : tuple of str
-        Names.
     powers : ndarray of int (input,)
         Of the term.
 
@@ -228,13 +191,6 @@ def written(inputs: tuple[str, ...], powers: NDArray[np.int64]) -> str:
 
 def library(inputs: int, degree: int) -> NDArray[np.int64]:
     """Powers of every product of the inputs up to a degree, (term, input), the constant first.
-
-    Parameters
-    ----------
-    inputs : int
-        How many.
-    degree : int
-        Highest total power.
 
     Examples
     --------

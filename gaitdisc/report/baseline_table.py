@@ -19,13 +19,7 @@ _COLUMNS = ("variable", "model", "n", *(f"against {words}" for words in BASELINE
 
 
 def baseline_table(run: ResponseRun) -> Table | None:
-    """R2 of the network minus that of each baseline, one row a variable and model; None where nothing was tested.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        With `over`.
-    """
+    """R2 of the network minus that of each baseline, one row a variable and model; None where nothing was tested."""
     if run.over is None or not len(run.over.baselines):
         return None
     tests = run.over.baselines
@@ -46,13 +40,7 @@ def baseline_table(run: ResponseRun) -> Table | None:
 
 
 def baseline_sentences(run: ResponseRun) -> list[str]:
-    """Name the variables in which no network is shown to be better than a baseline.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        With `over`.
-    """
+    """Name the variables in which no network is shown to be better than a baseline."""
     if run.over is None or not len(run.over.baselines):
         return []
     tests = run.over.baselines

@@ -15,16 +15,8 @@ class Block:
 
     Parameters
     ----------
-    anchor : str
-        Where the page links to.
-    heading : str
-        Of the part.
     sentences : tuple of str
         What the figures and tables say; a block without any is not shown.
-    figures : tuple of Figure
-        Drawn below.
-    tables : tuple of Table
-        Below the figures.
     """
 
     anchor: str
@@ -36,19 +28,7 @@ class Block:
 
 @dataclass(frozen=True, eq=False)
 class SavedBlock:
-    """One part, with its figures and tables on disk.
-
-    Parameters
-    ----------
-    anchor, heading : str
-        As in `Block`.
-    sentences : tuple of str
-        As in `Block`.
-    figures : tuple of SavedFigure
-        As the page shows them.
-    tables : tuple of Table
-        As the page shows them.
-    """
+    """One part, with its figures and tables on disk."""
 
     anchor: str
     heading: str
@@ -58,15 +38,7 @@ class SavedBlock:
 
 
 def save_block(block: Block, folder: Path) -> SavedBlock:
-    """Write the figures and tables of a part.
-
-    Parameters
-    ----------
-    block : Block
-        What to save.
-    folder : Path
-        Folder of the report.
-    """
+    """Write the figures and tables of a part."""
     figures = tuple(save_figures(block.figures, folder))
     save_tables(block.tables, folder)
     return SavedBlock(block.anchor, block.heading, block.sentences, figures, block.tables)

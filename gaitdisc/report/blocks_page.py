@@ -12,40 +12,12 @@ from gaitdisc.whole_file import write_whole
 
 
 def write_blocks(title: str, about: str, blocks: Sequence[Block], folder: Path) -> Path:
-    """Write a page of blocks: `report.html`, `figures/` and `tables/`.
-
-    Parameters
-    ----------
-    title, about : str
-        Of the page.
-    blocks : sequence of Block
-        In order.
-    folder : Path
-        Where it goes; made if missing.
-
-    Raises
-    ------
-    WriteError
-        If a file cannot be written.
-    """
+    """Write a page of blocks: `report.html`, `figures/` and `tables/`."""
     saved = [save_block(block, folder) for block in blocks]
     return write_page("blocks", {"title": title, "about": about, "blocks": saved}, folder)
 
 
 def write_markdown(blocks: Sequence[Block], folder: Path) -> Path:
-    """Write all tables of a page once more as Markdown, each under the heading of its block: `tables.md`.
-
-    Parameters
-    ----------
-    blocks : sequence of Block
-        Of the page.
-    folder : Path
-        Of the page; made if missing.
-
-    Raises
-    ------
-    WriteError
-        If the file cannot be written.
-    """
+    """Write all tables of a page once more as Markdown, each under the heading of its block: `tables.md`."""
     text = "\n\n".join(f"{block.heading}\n\n{as_markdown(table)}" for block in blocks for table in block.tables)
     return write_whole(folder / "tables.md", text + "\n")

@@ -22,16 +22,8 @@ def draw_box(
 
     Parameters
     ----------
-    axes : matplotlib.axes.Axes
-        Receives the box; its ticks are left alone.
     values : ndarray (participant,)
         Finite.
-    place : float
-        On the axis that the box stands on.
-    colour : str
-        Of all its lines.
-    orientation : str
-        `vertical` or `horizontal`.
     """
     line = {"color": colour, "linewidth": 0.9}
     axes.boxplot(

@@ -28,26 +28,14 @@ _COLUMNS = (
 
 
 def comparison_tables(run: ResponseRun) -> list[Table]:
-    """One table for each pair of models, and one of the other families; empty where nothing was tested.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        The whole result.
-    """
+    """One table for each pair of models, and one of the other families; empty where nothing was tested."""
     if run.tests is None or run.tests.too_few:
         return []
     return [*(_pair_table(run.tests, *pair) for pair in PAIRS), _families_table(run.tests)]
 
 
 def comparison_sentences(run: ResponseRun) -> list[str]:
-    """What the paired tests say, and what they cannot; empty where the run has none, or one participant only.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        The whole result.
-    """
+    """What the paired tests say, and what they cannot; empty where the run has none, or one participant only."""
     tests = run.tests
     if tests is None or len(run.responses) < 2:
         return []
@@ -64,11 +52,6 @@ def comparison_sentences(run: ResponseRun) -> list[str]:
 
 def p_text(p: float) -> str:
     """Write a p to three figures, or that it is smaller than 0.0001.
-
-    Parameters
-    ----------
-    p : float
-        NaN where nothing was tested.
 
     Examples
     --------

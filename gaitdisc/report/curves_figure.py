@@ -24,17 +24,7 @@ WALKS = ("nominal", "exo")
 
 @in_style
 def curves_figures(run: ResponseRun, participant: str, name: str) -> list[Figure]:
-    """Mean and standard deviation over strides of the walks without and with the device, one panel a channel.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        The whole result.
-    participant : str
-        Whose walks.
-    name : str
-        Participant's part of the file names.
-    """
+    """Mean and standard deviation over strides of the walks without and with the device, one panel a channel."""
     numbers = curve_numbers(run, participant)
     if not len(numbers):
         return []
@@ -48,13 +38,6 @@ def curves_figures(run: ResponseRun, participant: str, name: str) -> list[Figure
 
 def curve_numbers(run: ResponseRun, participant: str) -> pd.DataFrame:
     """Mean and standard deviation over strides of every channel and walk on 101 points.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        The whole result.
-    participant : str
-        Whose walks.
 
     Returns
     -------
@@ -91,28 +74,13 @@ def curve_numbers(run: ResponseRun, participant: str) -> pd.DataFrame:
 
 
 def walk_of(run: ResponseRun, participant: str, walk: str) -> WalkSummary | None:
-    """Return the walk of one participant, or None where it could not be processed.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        The whole result.
-    participant : str
-        Whose walk.
-    walk : str
-        `nominal` or `exo`.
-    """
+    """Return the walk of one participant, or None where it could not be processed."""
     condition = run.nominal if walk == "nominal" else run.exo
     return next((w for w in run.walks if w.subject == participant and w.condition == condition), None)
 
 
 def sides_together(names: list[str]) -> list[str]:
     """Channels with left and right of one joint side by side, left first; what has no other side comes last.
-
-    Parameters
-    ----------
-    names : list of str
-        Channel names in the order of the recording.
 
     Examples
     --------
@@ -132,12 +100,8 @@ def draw_walks(axes: Axes, curves: pd.DataFrame, colour: str) -> None:
 
     Parameters
     ----------
-    axes : matplotlib.axes.Axes
-        Receives the curves.
     curves : DataFrame
         Rows of `curve_numbers` of one channel.
-    colour : str
-        Of the walk with the device.
     """
     axes.axhline(0.0, color="#cccccc", linewidth=0.6, zorder=0)
     for walk, rows in curves.groupby("walk", sort=False):
@@ -188,13 +152,7 @@ def _title(channel: str) -> str:
 
 
 def walks_key(run: ResponseRun) -> list[Line2D]:
-    """Handles of the legend of both walks.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        Whose conditions are named.
-    """
+    """Handles of the legend of both walks."""
     from matplotlib.lines import Line2D
 
     without = {"color": WITHOUT_DEVICE.colour, "linestyle": WITHOUT_DEVICE.line}

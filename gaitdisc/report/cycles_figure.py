@@ -27,15 +27,7 @@ FEET = ("l", "r")
 
 @in_style
 def cycles_figures(pooled: PooledCycles, name: str) -> list[Figure]:
-    """Curves of one person, session and condition, a panel for each channel with left and right over each other.
-
-    Parameters
-    ----------
-    pooled : PooledCycles
-        With cycles that are kept.
-    name : str
-        Part of the file names.
-    """
+    """Curves of one person, session and condition, a panel for each channel with left and right over each other."""
     numbers = pooled.mean_curves()
     if not len(numbers):
         return []
@@ -91,14 +83,10 @@ def draw_cycles(
 
     Parameters
     ----------
-    axes : matplotlib.axes.Axes
-        Receives the curves.
     every : ndarray (cycle, phase)
         On 0 to 100 % in 101 points.
     mean, sd : ndarray (phase,)
         Over the cycles.
-    side : str
-        `l`, `r` or empty, which gives the colour.
     """
     look = SIDES[side]
     axes.axhline(0.0, color="#cccccc", linewidth=0.6, zorder=0)

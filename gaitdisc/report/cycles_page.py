@@ -52,20 +52,7 @@ COMPUTED = (
 
 
 def write_cycles_page(run: ResponseRun, folder: Path) -> Path:
-    """Write the report of a run that pooled cycles and fitted no models: `report.html`, `figures/` and `tables/`.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        With cycles.
-    folder : Path
-        Where it goes; made if missing.
-
-    Raises
-    ------
-    WriteError
-        If a file cannot be written.
-    """
+    """Write the report of a run that pooled cycles and fitted no models: `report.html`, `figures/` and `tables/`."""
     tables = {
         "refusals": refusals_table(run),
         "findings": findings_table(run),
@@ -88,28 +75,14 @@ def _computed(run: ResponseRun) -> bool:
 
 
 def save_cycle_tables(run: ResponseRun, folder: Path) -> None:
-    """Write all cycles, all mean curves and all spatiotemporal values of a run as three tables.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        With cycles.
-    folder : Path
-        Folder of the report.
-    """
+    """Write all cycles, all mean curves and all spatiotemporal values of a run as three tables."""
     save_table(all_cycles(run.cycles), folder / "tables" / "cycles.csv")
     save_table(all_means(run.cycles), folder / "tables" / "means.csv")
     save_table(all_spatiotemporal(run.cycles), folder / "tables" / "spatiotemporal.csv")
 
 
 def cycles_sentences(run: ResponseRun) -> list[str]:
-    """Who is reported, with how many cycles; who is not, and what the numbers do not carry.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        With cycles.
-    """
+    """Who is reported, with how many cycles; who is not, and what the numbers do not carry."""
     kept = [one for one in run.cycles if len(one.kept)]
     if not kept:
         return ["No cycle could be kept: see “Left out”."]
@@ -135,15 +108,7 @@ def cycles_sentences(run: ResponseRun) -> list[str]:
 
 
 def saved_cycle_blocks(run: ResponseRun, folder: Path) -> list[SavedBlock]:
-    """Part of the page for everybody together, then one for each person, with figures and tables written.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        With cycles; without any there is no part.
-    folder : Path
-        Folder of the report.
-    """
+    """Part of the page for everybody together, then one for each person, with figures and tables written."""
     if not run.cycles:
         return []
     unfitted = tuple(f"No models are fitted to {one.participant}: {one.reason}" for one in run.unfitted)
@@ -158,15 +123,7 @@ def saved_cycle_blocks(run: ResponseRun, folder: Path) -> list[SavedBlock]:
 
 
 def person_block(sets: Sequence[PooledCycles], name: str) -> Block:
-    """Part of the page for one person: counts, figures of each session and condition, and tables.
-
-    Parameters
-    ----------
-    sets : sequence of PooledCycles
-        Of one person.
-    name : str
-        Person's part of the file names.
-    """
+    """Part of the page for one person: counts, figures of each session and condition, and tables."""
     kept = [one for one in sets if len(one.kept)]
     left_out = left_out_cycles(sets, name)
     places = file_names([one.where for one in kept])

@@ -30,26 +30,14 @@ VALUES = {  # column -> words, unit, digits
 
 
 def all_cycles(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
-    """Every cycle of everybody, kept or left out, one row each.
-
-    Parameters
-    ----------
-    cycles : sequence of PooledCycles
-        Of a run.
-    """
+    """Every cycle of everybody, kept or left out, one row each."""
     tables = [_named(one, one.cycles) for one in cycles if len(one.cycles)]
     columns = ["participant", "group", "session", "condition", *CYCLE_COLUMNS]
     return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=pd.Index(columns))
 
 
 def all_means(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
-    """Mean curves of everybody, one row a channel, side and percent.
-
-    Parameters
-    ----------
-    cycles : sequence of PooledCycles
-        Of a run.
-    """
+    """Mean curves of everybody, one row a channel, side and percent."""
     tables = [_named(one, one.mean_curves()) for one in cycles if len(one.kept)]
     columns = ["participant", "group", "session", "condition", "channel", "unit", "side", "percent", "n", "mean", "sd"]
     return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=pd.Index(columns))
@@ -60,11 +48,6 @@ def mean_recordings(cycles: Sequence[PooledCycles]) -> dict[str, Recording]:
 
     Percent of the cycle becomes time, 0 to the mean duration of the cycles; a channel without a side is that over the
     cycles of the foot; one that is not known over the whole cycle is left out.
-
-    Parameters
-    ----------
-    cycles : sequence of PooledCycles
-        Of a run.
     """
     found = {}
     for one in cycles:
@@ -88,13 +71,7 @@ def mean_recordings(cycles: Sequence[PooledCycles]) -> dict[str, Recording]:
 
 
 def all_curves(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
-    """Every kept cycle of everybody, one row a cycle, channel and percent; channels without a value are not there.
-
-    Parameters
-    ----------
-    cycles : sequence of PooledCycles
-        Of a run.
-    """
+    """Every kept cycle of everybody, one row a cycle, channel and percent; channels without a value are not there."""
     columns = [
         "participant", "group", "session", "condition", "trial", "side", "start_s", "channel", "unit", "percent",
         "value",
@@ -123,13 +100,7 @@ def all_curves(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
 
 
 def all_spatiotemporal(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
-    """Spatiotemporal values of everybody: n, mean and standard deviation over kept cycles, by side.
-
-    Parameters
-    ----------
-    cycles : sequence of PooledCycles
-        Of a run.
-    """
+    """Spatiotemporal values of everybody: n, mean and standard deviation over kept cycles, by side."""
     rows = []
     for one in cycles:
         for side in FEET:
@@ -145,13 +116,7 @@ def all_spatiotemporal(cycles: Sequence[PooledCycles]) -> pd.DataFrame:
 
 
 def overview_table(cycles: Sequence[PooledCycles]) -> Table:
-    """Who has how many cycles of which foot, from how many trials, and what placed the contacts.
-
-    Parameters
-    ----------
-    cycles : sequence of PooledCycles
-        Of a run.
-    """
+    """Who has how many cycles of which foot, from how many trials, and what placed the contacts."""
     rows, records = [], []
     for one in cycles:
         kinetic = one.kept[one.kept["kinetic"].astype(bool)]
@@ -185,13 +150,7 @@ def overview_table(cycles: Sequence[PooledCycles]) -> Table:
 
 
 def emg_counts(one: PooledCycles) -> dict[str, int]:
-    """Kept cycles of its own foot in which each EMG channel is live.
-
-    Parameters
-    ----------
-    one : PooledCycles
-        Of one session and condition.
-    """
+    """Kept cycles of its own foot in which each EMG channel is live."""
     feet = one.kept["side"].to_numpy()
     columns = {column: c for column, c in enumerate(one.channels) if c.quantity == "emg"}
     if not columns:
@@ -204,13 +163,7 @@ def emg_counts(one: PooledCycles) -> dict[str, int]:
 
 
 def offset_words(one: PooledCycles) -> str:
-    """By how much contacts of markers or angles were moved, and on how many steps that rests.
-
-    Parameters
-    ----------
-    one : PooledCycles
-        Of one session and condition.
-    """
+    """By how much contacts of markers or angles were moved, and on how many steps that rests."""
     late = [name for name in one.detectors if name in ("markers", "angles")]
     if not late:
         return NONE
@@ -221,15 +174,7 @@ def offset_words(one: PooledCycles) -> str:
 
 
 def spatiotemporal_table(sets: Sequence[PooledCycles], name: str) -> Table:
-    """Spatiotemporal values of one person, mean ± standard deviation (n) for each foot, session and condition.
-
-    Parameters
-    ----------
-    sets : sequence of PooledCycles
-        Of one person, those with kept cycles.
-    name : str
-        Person's part of the file name.
-    """
+    """Spatiotemporal values of one person, mean ± standard deviation (n) for each foot, session and condition."""
     numbers = all_spatiotemporal(sets)
     rows = []
     for value, (words, unit, digits) in VALUES.items():
@@ -250,15 +195,7 @@ def spatiotemporal_table(sets: Sequence[PooledCycles], name: str) -> Table:
 
 
 def left_out_cycles(sets: Sequence[PooledCycles], name: str) -> Table | None:
-    """Cycles of one person that are left out, each with its reason; None where there are none.
-
-    Parameters
-    ----------
-    sets : sequence of PooledCycles
-        Of one person.
-    name : str
-        Person's part of the file name.
-    """
+    """Cycles of one person that are left out, each with its reason; None where there are none."""
     numbers = all_cycles([one for one in sets if len(one.left_out)])
     numbers = numbers[~numbers["kept"].astype(bool)].reset_index(drop=True) if len(numbers) else numbers
     if not len(numbers):

@@ -28,13 +28,7 @@ WORDS = ("measured", "simulated", "augmented")
 
 @in_style
 def discovery_figures(discovery: Discovery) -> list[Figure]:
-    """Draw a typical stretch over time, the stride where there is a phase, and the gap against each channel.
-
-    Parameters
-    ----------
-    discovery : Discovery
-        What was found.
-    """
+    """Draw a typical stretch over time, the stride where there is a phase, and the gap against each channel."""
     table = shown_runs(discovery)
     figures = [_over_time(discovery, table), _against_state(discovery, table)]
     if "phase" in table:
@@ -43,13 +37,7 @@ def discovery_figures(discovery: Discovery) -> list[Figure]:
 
 
 def shown_runs(discovery: Discovery) -> pd.DataFrame:
-    """Held-out runs in the units that are drawn, degrees in place of radians.
-
-    Parameters
-    ----------
-    discovery : Discovery
-        What was found.
-    """
+    """Held-out runs in the units that are drawn, degrees in place of radians."""
     table = pd.DataFrame(discovery.runs.table(discovery.channels)).dropna()
     for channel, unit in zip(discovery.channels, discovery.units, strict=True):
         table[[f"{channel}_{word}" for word in WORDS]] *= shown_unit(unit)[1]
@@ -63,8 +51,6 @@ def stretch_of(table: pd.DataFrame, channel: str) -> pd.DataFrame:
     ----------
     table : DataFrame
         Of `shown_runs`.
-    channel : str
-        By whose gap it is chosen.
     """
     one = table[table["trial"] == table["trial"].iloc[0]].reset_index(drop=True)
     gap = (one[f"{channel}_measured"] - one[f"{channel}_simulated"]).to_numpy() ** 2
@@ -77,12 +63,8 @@ def draw_runs(axes: Axes, numbers: pd.DataFrame, channel: str) -> None:
 
     Parameters
     ----------
-    axes : matplotlib.axes.Axes
-        Receives the curves.
     numbers : DataFrame
         Of `stretch_of`.
-    channel : str
-        Its name.
     """
     time = numbers["time"].to_numpy()
     seen, simulated, augmented = (numbers[f"{channel}_{word}"].to_numpy() for word in WORDS)
@@ -96,12 +78,8 @@ def draw_left(axes: Axes, numbers: pd.DataFrame, channel: str, floor: float) -> 
 
     Parameters
     ----------
-    axes : matplotlib.axes.Axes
-        Receives the curves.
     numbers : DataFrame
         Of `stretch_of`.
-    channel : str
-        Its name.
     floor : float
         Standard deviation of the sensor's noise [as drawn]; twice it is shaded grey.
     """
@@ -113,13 +91,7 @@ def draw_left(axes: Axes, numbers: pd.DataFrame, channel: str, floor: float) -> 
 
 
 def within_bounds(discovery: Discovery) -> str:
-    """Say that the simulation as read has numbers that were fitted, where it has.
-
-    Parameters
-    ----------
-    discovery : Discovery
-        What was found.
-    """
+    """Say that the simulation as read has numbers that were fitted, where it has."""
     return ", its numbers fitted within their bounds" if discovery.corrections else ""
 
 
@@ -130,8 +102,6 @@ def typical_stretch(gap: NDArray[np.float64], samples: int) -> tuple[int, int]:
     ----------
     gap : ndarray (sample,)
         Squared gap.
-    samples : int
-        Length of a stretch.
 
     Examples
     --------
@@ -162,27 +132,13 @@ def binned(along: NDArray[np.float64], values: NDArray[np.float64], edges: NDArr
 
 
 def ranked_channels(discovery: Discovery) -> list[str]:
-    """Channels, that with the largest gap against its noise first.
-
-    Parameters
-    ----------
-    discovery : Discovery
-        What was found.
-    """
+    """Channels, that with the largest gap against its noise first."""
     sizes = discovery.held_out.channels
     return sorted(discovery.channels, key=lambda name: -sizes[name][0] / (sizes[name][2] or 1.0))
 
 
 def noise_floor(discovery: Discovery, channel: str) -> tuple[str, float]:
-    """Unit in which a channel is drawn, and the standard deviation of its noise in it.
-
-    Parameters
-    ----------
-    discovery : Discovery
-        What was found.
-    channel : str
-        Its name.
-    """
+    """Unit in which a channel is drawn, and the standard deviation of its noise in it."""
     text, factor = shown_unit(dict(zip(discovery.channels, discovery.units, strict=True))[channel])
     return text or "1", factor * discovery.held_out.channels[channel][2]
 

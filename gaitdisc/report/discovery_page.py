@@ -54,25 +54,7 @@ METHOD = (
 
 
 def write_discovery_report(discovery: Discovery, folder: Path) -> Path:
-    """Write the report of a discovery: `report.html`, `figures/` and `tables/`.
-
-    Parameters
-    ----------
-    discovery : Discovery
-        What was found; nothing is computed again.
-    folder : Path
-        Where the report goes; made if missing.
-
-    Returns
-    -------
-    Path
-        The page.
-
-    Raises
-    ------
-    WriteError
-        If a file cannot be written; what stood there before still stands.
-    """
+    """Write the report of a discovery: `report.html`, `figures/` and `tables/`."""
     made = discovery.provenance
     tables = {
         "estimates": estimates_table(discovery),

@@ -18,13 +18,7 @@ from gaitdisc.results.told_apart import would_tell_apart
 
 
 def estimates_table(discovery: Discovery) -> Table:
-    """Every number of what was found, with its interval.
-
-    Parameters
-    ----------
-    discovery : Discovery
-        What was found.
-    """
+    """Every number of what was found, with its interval."""
     rows, records = [], []
     for effect in discovery.effects:
         for name, one in effect.estimates.items():
@@ -44,13 +38,7 @@ def estimates_table(discovery: Discovery) -> Table:
 
 
 def gap_table(discovery: Discovery) -> Table:
-    """How far the gap shrank, channel by channel, on what was fitted and on what was held out.
-
-    Parameters
-    ----------
-    discovery : Discovery
-        What was found.
-    """
+    """How far the gap shrank, channel by channel, on what was fitted and on what was held out."""
     rows, records = [], []
     for data, size in (("held out", discovery.held_out), ("fitted", discovery.train)):
         for channel, unit in zip(discovery.channels, discovery.units, strict=True):
@@ -75,13 +63,7 @@ def gap_table(discovery: Discovery) -> Table:
 
 
 def trials_table(discovery: Discovery) -> Table:
-    """Root mean square error of each held-out trial, before and after, channel by channel.
-
-    Parameters
-    ----------
-    discovery : Discovery
-        What was found.
-    """
+    """Root mean square error of each held-out trial, before and after, channel by channel."""
     runs, rows, records = discovery.runs, [], []
     errors = [(runs.measured - one) ** 2 for one in (runs.simulated, runs.augmented)]
     for number in np.unique(runs.trial):
@@ -114,13 +96,7 @@ def _unproven(discovery: Discovery) -> str:
 
 
 def where_table(discovery: Discovery) -> Table:
-    """Where the gap arises: place, share, part of the stride, region of the states.
-
-    Parameters
-    ----------
-    discovery : Discovery
-        What was found.
-    """
+    """Where the gap arises: place, share, part of the stride, region of the states."""
     rows, records = [], []
     for one in discovery.where:
         phase = f"{100 * one.phase[0]:.0f} to {100 * one.phase[1]:.0f} %" if one.phase else NONE
@@ -135,13 +111,7 @@ def where_table(discovery: Discovery) -> Table:
 
 
 def corrections_table(discovery: Discovery) -> Table:
-    """Numbers of the file that moved within their own bounds.
-
-    Parameters
-    ----------
-    discovery : Discovery
-        What was found.
-    """
+    """Numbers of the file that moved within their own bounds."""
     rows, records = [], []
     for one in discovery.corrections:
         found, unit = one.found, "" if one.found.unit == "1" else one.found.unit
@@ -159,13 +129,7 @@ def corrections_table(discovery: Discovery) -> Table:
 
 
 def rivals_table(discovery: Discovery) -> Table:
-    """What else was weighed, best first, and what would distinguish it from what was named.
-
-    Parameters
-    ----------
-    discovery : Discovery
-        What was found.
-    """
+    """What else was weighed, best first, and what would distinguish it from what was named."""
     rows, records = [], []
     named = discovery.effects[0].name if discovery.effects else ""
     for one in discovery.rivals:
@@ -193,23 +157,12 @@ def rivals_table(discovery: Discovery) -> Table:
 
 
 def data_findings(discovery: Discovery) -> Table:
-    """What was seen in the files on the way.
-
-    Parameters
-    ----------
-    discovery : Discovery
-        What was found.
-    """
+    """What was seen in the files on the way."""
     return seen_table(discovery.findings, f"Seen in the files, n = {len(discovery.findings)}.")
 
 
 def closed_share(before: float, after: float, floor: float) -> float:
     """Return which share of the squared gap above the noise is closed; NaN where there is none.
-
-    Parameters
-    ----------
-    before, after, floor : float
-        Root mean squares.
 
     Examples
     --------

@@ -45,12 +45,8 @@ def error_figure(cells: Sequence[DiscrepancyCell], name: str, source: str, chann
 
     Parameters
     ----------
-    cells : sequence of DiscrepancyCell
-        One a method, of one approach.
     name, source : str
         Of the files; the figure of the dissertation that it stands for.
-    channel : int
-        Which is drawn.
     """
     cells = [cell for cell in cells if cell.parts]
     drawn, grid = panels(len(cells), len(PARTS), 0.95, Room(across=0.4, down=0.5))
@@ -151,8 +147,6 @@ def accuracy_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) ->
 
     Parameters
     ----------
-    cells : sequence of DiscrepancyCell
-        All methods and noises of one system and variant.
     name, source : str
         Of the files; the figure of the dissertation that it stands for.
     """
@@ -199,8 +193,6 @@ def horizon_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) -> 
 
     Parameters
     ----------
-    cells : sequence of DiscrepancyCell
-        Of one noise.
     name, source : str
         Of the files; the figure of the dissertation that it stands for.
     """
@@ -244,8 +236,6 @@ def cost_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) -> Fig
 
     Parameters
     ----------
-    cells : sequence of DiscrepancyCell
-        Of one system.
     name, source : str
         Of the files; the figure of the dissertation that it stands for.
     """
@@ -281,10 +271,6 @@ def field_figure(found: PartAccuracy, places: Sequence[float], name: str, source
 
     Parameters
     ----------
-    found : PartAccuracy
-        Of a field.
-    places : sequence of float
-        Of the channels.
     name, source : str
         Of the files; the figure of the dissertation that it stands for.
     """

@@ -19,15 +19,7 @@ MOST_CHANNELS = 4  # that are listed one by one
 
 
 def grid_table(cells: Sequence[DiscrepancyCell], name: str) -> Table:
-    """Accuracy of every cell, a row a method, approach and noise; the median of the seeds.
-
-    Parameters
-    ----------
-    cells : sequence of DiscrepancyCell
-        Of one system.
-    name : str
-        Of the CSV.
-    """
+    """Accuracy of every cell, a row a method, approach and noise; the median of the seeds."""
     groups: dict[tuple, list[DiscrepancyCell]] = {}
     for cell in cells:
         groups.setdefault((cell.variant, cell.approach, cell.method, cell.noise), []).append(cell)
@@ -116,15 +108,7 @@ def _short(text: str) -> str:
 
 
 def statements_table(statements: Sequence[tuple[str, str, str]], name: str) -> Table:
-    """What the dissertation states, and what was found.
-
-    Parameters
-    ----------
-    statements : sequence of (str, str, str)
-        Place, statement, ours.
-    name : str
-        Of the CSV.
-    """
+    """What the dissertation states, and what was found."""
     columns = ("where", "dissertation", "ours")
     caption = "The dissertation's statements beside what was found here."
     return words_table(name, caption, columns, statements)

@@ -25,10 +25,6 @@ def disturbance_figure(found: pd.DataFrame, whose: str, name: str) -> Figure:
     ----------
     found : DataFrame
         disturbance, level, model, rmse_deg.
-    whose : str
-        Person and sensors, for the caption.
-    name : str
-        Of the files.
     """
     from matplotlib.lines import Line2D
 

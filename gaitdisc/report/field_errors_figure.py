@@ -90,8 +90,6 @@ def boxes_figure(cells: Sequence[FieldCell], name: str, source: str, ceilings: d
 
     Parameters
     ----------
-    cells : sequence of FieldCell
-        One a model; of one quantity.
     name, source : str
         Of the files; the figure of the dissertation that it stands for.
     ceilings : dict of str to float

@@ -71,12 +71,8 @@ def routes_figure(field: Field, routes: Mapping[str, NDArray[np.floating]], name
 
     Parameters
     ----------
-    field : Field
-        Whose points are shown in grey.
     routes : mapping of str to ndarray (time, axis)
         Name -> where the sensor is; one that stays is drawn as a point.
-    name, source : str
-        Of the files; what it stands for.
     """
     vertical, across = field.axes[-2:]
     height = float(np.clip(7.0 * np.ptp(vertical.coordinates) / np.ptp(across.coordinates), 1.2, 3.8))

@@ -15,10 +15,6 @@ def field_table(cells: Sequence[FieldCell], name: str, printed: Mapping[tuple[st
 
     Parameters
     ----------
-    cells : sequence of FieldCell
-        Of one field and quantity.
-    name : str
-        Of the CSV.
     printed : mapping of (str, str) to float, optional
         (route, split) -> what the dissertation prints for its SHRED on its field; shown in a column of its own.
     """
@@ -73,15 +69,7 @@ def _judged(cells: Sequence[FieldCell], split: str) -> str:
 
 
 def medians_table(cells: Sequence[FieldCell], name: str) -> Table:
-    """Median and range over runs of every route, split and model.
-
-    Parameters
-    ----------
-    cells : sequence of FieldCell
-        Of one field and quantity, several runs each.
-    name : str
-        Of the CSV.
-    """
+    """Median and range over runs of every route, split and model."""
     groups: dict[tuple[str, str, str], list[FieldCell]] = {}
     for cell in cells:
         route = "" if _is_bound(cell.model) else cell.route

@@ -30,16 +30,12 @@ class Figure:
 
     Parameters
     ----------
-    name : str
-        Name of the files, without ending.
     caption : str
         What is seen, with n, unit and split.
     alt : str
         What is seen, for those who cannot see it.
     numbers : DataFrame
         The very numbers drawn.
-    drawn : matplotlib.figure.Figure
-        The drawing.
     """
 
     name: str
@@ -55,10 +51,6 @@ class SavedFigure:
 
     Parameters
     ----------
-    name, caption, alt : str
-        As in `Figure`.
-    data : str
-        `data:` address of the picture.
     width : float
         Natural width [px at 96 dots per inch].
     """
@@ -77,8 +69,6 @@ def save_figure(figure: Figure, folder: Path, inline_bytes: int = LARGEST_INLINE
     ----------
     figure : Figure
         What to save; its drawing is closed for further use.
-    folder : Path
-        Where the files go.
     inline_bytes : int
         Largest SVG that is shown in the page; beyond it the smaller of SVG and PNG is.
     """
@@ -94,27 +84,12 @@ def save_figure(figure: Figure, folder: Path, inline_bytes: int = LARGEST_INLINE
 
 
 def save_figures(figures: Iterable[Figure], folder: Path, inline_bytes: int = LARGEST_INLINE_SVG) -> list[SavedFigure]:
-    """Write figures into the folder `figures/` of a report.
-
-    Parameters
-    ----------
-    figures : iterable of Figure
-        What to save.
-    folder : Path
-        Folder of the report.
-    inline_bytes : int
-        As of `save_figure`.
-    """
+    """Write figures into the folder `figures/` of a report."""
     return [save_figure(figure, folder / "figures", inline_bytes) for figure in figures]
 
 
 def file_names(participants: Sequence[str]) -> dict[str, str]:
     """Part of a file name for every participant: letters, digits, `-` and `_`, no two alike.
-
-    Parameters
-    ----------
-    participants : sequence of str
-        Pseudonyms.
 
     Examples
     --------

@@ -31,11 +31,6 @@ JOINTS = {
 def region_words(row: Mapping[str, Any]) -> str:
     """Part of the stride in words.
 
-    Parameters
-    ----------
-    row : mapping
-        A row of `Mismatch.regions`.
-
     Examples
     --------
     >>> region_words({"from_percent": 12.0, "to_percent": 55.0})
@@ -50,11 +45,6 @@ def region_words(row: Mapping[str, Any]) -> str:
 def p_words(p: float) -> str:
     """A p as it is printed.
 
-    Parameters
-    ----------
-    p : float
-        0 to 1.
-
     Examples
     --------
     >>> p_words(0.0004), p_words(0.0312)
@@ -68,12 +58,8 @@ def direction_words(name: str, gap: float, unit: str) -> str:
 
     Parameters
     ----------
-    name : str
-        Of the channel.
     gap : float
         First minus second [unit].
-    unit : str
-        Of the gap.
 
     Examples
     --------
@@ -91,11 +77,6 @@ def direction_words(name: str, gap: float, unit: str) -> str:
 def spoken(name: str) -> str:
     """Name of a channel as it is said in a sentence, the side first.
 
-    Parameters
-    ----------
-    name : str
-        Of the channel.
-
     Examples
     --------
     >>> spoken("knee_angle_r"), spoken("emg_sol_l"), spoken("pelvis_tilt")
@@ -108,13 +89,6 @@ def spoken(name: str) -> str:
 def with_unit(size: str, unit: str) -> str:
     """Size with its unit; a ratio has none.
 
-    Parameters
-    ----------
-    size : str
-        A number as it is printed.
-    unit : str
-        As the package writes it.
-
     Examples
     --------
     >>> with_unit("6.1", "deg"), with_unit("0.15", "1")
@@ -125,11 +99,6 @@ def with_unit(size: str, unit: str) -> str:
 
 def amount(value: float) -> str:
     """Write a size with one digit after the point, or two significant digits where it is small.
-
-    Parameters
-    ----------
-    value : float
-        In any unit.
 
     Examples
     --------

@@ -24,15 +24,7 @@ _DRAWN = ("nominal", "augmented")
 
 @in_style
 def held_out_figures(response: ParticipantResponse, name: str) -> list[Figure]:
-    """Measured against predicted in the last seconds of the held-out device walk, one panel an output.
-
-    Parameters
-    ----------
-    response : ParticipantResponse
-        Whose walk.
-    name : str
-        Participant's part of the file names.
-    """
+    """Measured against predicted in the last seconds of the held-out device walk, one panel an output."""
     numbers = held_out_numbers(response)
     if not len(numbers):
         return []
@@ -49,11 +41,6 @@ def held_out_figures(response: ParticipantResponse, name: str) -> list[Figure]:
 
 def held_out_numbers(response: ParticipantResponse) -> pd.DataFrame:
     """Measured and predicted second derivatives of the last `WINDOW_S` seconds.
-
-    Parameters
-    ----------
-    response : ParticipantResponse
-        Whose walk.
 
     Returns
     -------

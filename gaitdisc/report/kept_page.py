@@ -21,23 +21,6 @@ def page_of(run_folder: Path, draw: Callable[[], Path]) -> Path:
     The page stands for as long as the run's files, this package's code and the report's own files are what they were;
     the time at which a run was looked at again is no part of that.
 
-    Parameters
-    ----------
-    run_folder : Path
-        Folder of the run; the report is in `report/`.
-    draw : callable
-        Writes the report and gives its page.
-
-    Returns
-    -------
-    Path
-        The page.
-
-    Raises
-    ------
-    WriteError
-        If a file cannot be written.
-
     Examples
     --------
     >>> page_of(folder, lambda: write_report(run, folder / "report"))  # doctest: +SKIP

@@ -14,13 +14,7 @@ _COLUMNS = ("training [s]", "n", "different", "which", "largest shift", "differe
 
 
 def length_table(run: ResponseRun) -> Table | None:
-    """One row a training length; None where nothing was tested.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        With `over` and `quantities`.
-    """
+    """One row a training length; None where nothing was tested."""
     if run.over is None or not len(run.over.lengths):
         return None
     tests = run.over.lengths
@@ -38,13 +32,7 @@ def length_table(run: ResponseRun) -> Table | None:
 
 
 def length_sentences(run: ResponseRun) -> list[str]:
-    """From which training length on no difference is shown, and what that does not mean.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        With `over`.
-    """
+    """From which training length on no difference is shown, and what that does not mean."""
     over = run.over
     if over is None or not run.quantities:
         return []

@@ -12,13 +12,7 @@ _FILTER_WORDS = ("filter", "cutoff", "low_pass", "high_pass", "lowpass", "highpa
 
 
 def method_sentences(run: ResponseRun) -> list[str]:
-    """Five sentences: state, models, discrepancy, judgement, filters.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        The whole result.
-    """
+    """Five sentences: state, models, discrepancy, judgement, filters."""
     held_out = held_out_text(run)
     return [
         "The state X holds joint angles and, where there are any, EMG envelopes (Eq. 4.1); each model sees X, its "

@@ -28,13 +28,7 @@ SHADE = "#f2b632"  # a gap; no side and no model has this colour
 
 @in_style
 def mismatch_figures(mismatch: Mismatch) -> list[Figure]:
-    """Curves of both walks, then the gap with its band; some dozen channels a figure.
-
-    Parameters
-    ----------
-    mismatch : Mismatch
-        What was found.
-    """
+    """Curves of both walks, then the gap with its band; some dozen channels a figure."""
     parts = sheets(sides_together(list(mismatch.names)), COLUMNS * MOST_ROWS)
     figures = []
     for kind, draw in (("curves", draw_both), ("gap", draw_gap)):
@@ -45,15 +39,7 @@ def mismatch_figures(mismatch: Mismatch) -> list[Figure]:
 
 
 def mismatch_numbers(mismatch: Mismatch, names: list[str]) -> pd.DataFrame:
-    """Everything drawn of some channels, one row a channel and percent.
-
-    Parameters
-    ----------
-    mismatch : Mismatch
-        What was found.
-    names : list of str
-        Channels.
-    """
+    """Everything drawn of some channels, one row a channel and percent."""
     tables = []
     for name in names:
         table = mismatch.curve_table(name)
@@ -90,14 +76,8 @@ def draw_both(axes: Axes, curves: pd.DataFrame, regions: list[dict[str, Any]], c
 
     Parameters
     ----------
-    axes : matplotlib.axes.Axes
-        Receives the curves.
     curves : DataFrame
         Rows of `mismatch_numbers` of one channel.
-    regions : list of dict
-        Of `Mismatch.regions_of`.
-    colour : str
-        Of the first walk, by its side.
     """
     percent = curves["percent"].to_numpy()
     sd = curves["sd_second"].fillna(0.0)
@@ -125,14 +105,8 @@ def draw_gap(axes: Axes, curves: pd.DataFrame, regions: list[dict[str, Any]], co
 
     Parameters
     ----------
-    axes : matplotlib.axes.Axes
-        Receives the curves.
     curves : DataFrame
         Rows of `mismatch_numbers` of one channel.
-    regions : list of dict
-        Of `Mismatch.regions_of`.
-    colour : str
-        Of the first walk, by its side.
     """
     percent = curves["percent"].to_numpy()
     axes.axhline(0.0, color="#888888", linewidth=0.6, zorder=0)
@@ -166,15 +140,7 @@ def _bars(axes: Axes, regions: list[dict[str, Any]]) -> None:
 
 
 def mismatch_key(mismatch: Mismatch, kind: str) -> list[Artist]:
-    """Handles of the legend of a kind of figure.
-
-    Parameters
-    ----------
-    mismatch : Mismatch
-        Whose walks are named.
-    kind : str
-        `curves` or `gap`.
-    """
+    """Handles of the legend of a kind of figure."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 

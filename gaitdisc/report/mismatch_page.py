@@ -15,25 +15,7 @@ from gaitdisc.results.mismatch import Mismatch
 
 
 def write_mismatch_report(mismatch: Mismatch, folder: Path) -> Path:
-    """Write the report of a mismatch: `report.html`, `figures/`, `tables/`, and `channels/` with a CSV a channel.
-
-    Parameters
-    ----------
-    mismatch : Mismatch
-        What was found; nothing is computed again.
-    folder : Path
-        Where the report goes; made if missing.
-
-    Returns
-    -------
-    Path
-        The page.
-
-    Raises
-    ------
-    WriteError
-        If a file cannot be written; what stood there before still stands.
-    """
+    """Write the report of a mismatch: `report.html`, `figures/`, `tables/`, and `channels/` with a CSV a channel."""
     tables = {
         "regions": regions_table(mismatch),
         "channels": channels_table(mismatch),

@@ -17,13 +17,7 @@ MOSTLY_TIMING = 0.6  # of the gap that is left when the curve is moved along the
 
 
 def mismatch_sentences(mismatch: Mismatch) -> list[str]:
-    """Answer first: the largest gaps, or none; then what agrees, and to within how much.
-
-    Parameters
-    ----------
-    mismatch : Mismatch
-        What was found.
-    """
+    """Answer first: the largest gaps, or none; then what agrees, and to within how much."""
     ordered = mismatch.ordered()
     moved = alignment_sentences(mismatch)
     small = [name for name in mismatch.names if mismatch.summary_of(name)["too_small"]]
@@ -44,13 +38,7 @@ def mismatch_sentences(mismatch: Mismatch) -> list[str]:
 
 
 def alignment_sentences(mismatch: Mismatch) -> list[str]:
-    """How far apart the marks of initial contact lie, where that is more than contacts scatter; else nothing.
-
-    Parameters
-    ----------
-    mismatch : Mismatch
-        What was found.
-    """
+    """How far apart the marks of initial contact lie, where that is more than contacts scatter; else nothing."""
     found = mismatch.alignment
     if not found.applied or abs(found.percent) < SAID_FROM:
         return []
@@ -87,13 +75,7 @@ def _kind(mismatch: Mismatch, name: str) -> str:
 
 
 def method_sentences(mismatch: Mismatch) -> list[str]:
-    """How the mismatch was found, and what its p speaks of.
-
-    Parameters
-    ----------
-    mismatch : Mismatch
-        What was found.
-    """
+    """How the mismatch was found, and what its p speaks of."""
     done = mismatch.exchange
     named_from = _by_unit(mismatch, list(mismatch.names), "limit", smallest=True)
     band = f"{100 * (1 - done.alpha):g} %"

@@ -19,13 +19,7 @@ HEADINGS = ("channel", "stride [%]", "gap", "at [%]", "in sd", "p")
 
 
 def regions_table(mismatch: Mismatch) -> Table:
-    """Every stretch that differs, channel by channel, the largest gap against its spread first.
-
-    Parameters
-    ----------
-    mismatch : Mismatch
-        What was found.
-    """
+    """Every stretch that differs, channel by channel, the largest gap against its spread first."""
     rows = [row for name in mismatch.ordered() for row in _rows(mismatch, name)]
     caption = (
         f"Where they differ, n = {len(mismatch.regions)} parts of the stride: {mismatch.first} minus "
@@ -36,13 +30,7 @@ def regions_table(mismatch: Mismatch) -> Table:
 
 
 def channels_table(mismatch: Mismatch) -> Table:
-    """Every channel, whether it differs or not, and what the comparison could have seen of it.
-
-    Parameters
-    ----------
-    mismatch : Mismatch
-        What was found.
-    """
+    """Every channel, whether it differs or not, and what the comparison could have seen of it."""
     rows = tuple(
         (
             spoken(str(row["channel"])),
@@ -78,24 +66,12 @@ def channels_table(mismatch: Mismatch) -> Table:
 
 
 def findings_of(mismatch: Mismatch) -> Table:
-    """What was seen on the way, the severest first.
-
-    Parameters
-    ----------
-    mismatch : Mismatch
-        What was found.
-    """
+    """What was seen on the way, the severest first."""
     return seen_table(mismatch.findings, f"Seen on the way, n = {len(mismatch.findings)}.")
 
 
 def mismatch_text(mismatch: Mismatch) -> rich.table.Table:
-    """Table for a terminal of 80 columns: what differs, then what does not.
-
-    Parameters
-    ----------
-    mismatch : Mismatch
-        What was found.
-    """
+    """Table for a terminal of 80 columns: what differs, then what does not."""
     from rich import box
     from rich.table import Table as Printed
 

@@ -21,13 +21,7 @@ FARTHEST = 1.0  # a fall beyond it is drawn at the edge
 
 @in_style
 def modalities_figure(run: VariantRun) -> Figure | None:
-    """Fall of R2, median over the variables of a group, by family of inputs; None where nobody has numbers.
-
-    Parameters
-    ----------
-    run : VariantRun
-        Of the question `modalities`.
-    """
+    """Fall of R2, median over the variables of a group, by family of inputs; None where nobody has numbers."""
     numbers = falls(run)
     if not len(numbers):
         return None
@@ -60,11 +54,6 @@ def modalities_figure(run: VariantRun) -> Figure | None:
 def falls(run: VariantRun) -> pd.DataFrame:
     """Fall of R2 without each family of inputs, median over the variables of a group; networks only.
 
-    Parameters
-    ----------
-    run : VariantRun
-        Of the question `modalities`.
-
     Returns
     -------
     DataFrame
@@ -82,13 +71,7 @@ def falls(run: VariantRun) -> pd.DataFrame:
 
 
 def modalities_table(run: VariantRun) -> Table:
-    """Shift of R2 of the Augmented model without each family, by variable; a star where it is shown to differ.
-
-    Parameters
-    ----------
-    run : VariantRun
-        Of the question `modalities`, with tests.
-    """
+    """Shift of R2 of the Augmented model without each family, by variable; a star where it is shown to differ."""
     own = run.tests[run.tests["model"] == "augmented"]
     variables = list(dict.fromkeys(own["variable"]))
     rows = []
@@ -107,13 +90,7 @@ def modalities_table(run: VariantRun) -> Table:
 
 
 def modalities_sentences(run: VariantRun) -> tuple[str, ...]:
-    """What the others cannot replace, and what the numbers cannot say.
-
-    Parameters
-    ----------
-    run : VariantRun
-        Of the question `modalities`.
-    """
+    """What the others cannot replace, and what the numbers cannot say."""
     numbers = falls(run)
     if not len(numbers):
         return ("Nobody's models could be fitted.",)
@@ -138,11 +115,6 @@ def modalities_sentences(run: VariantRun) -> tuple[str, ...]:
 
 def family_words(family: str) -> str:
     """Name of a family of inputs as it is read.
-
-    Parameters
-    ----------
-    family : str
-        Of `gaitdisc.response.modalities.input_families`.
 
     Examples
     --------

@@ -33,15 +33,7 @@ FEW, MANY = -999.0, 99.5  # accuracies beyond are written as such
 
 @in_style
 def naming_figure(namings: Sequence[Naming], name: str) -> Figure:
-    """A row a case, a column a tool and noise; the tile shows the answer, and the forecast.
-
-    Parameters
-    ----------
-    namings : sequence of Naming
-        Of all seeds.
-    name : str
-        Of the files.
-    """
+    """A row a case, a column a tool and noise; the tile shows the answer, and the forecast."""
     from matplotlib.patches import Patch
 
     table = namings_table(namings)

@@ -14,15 +14,7 @@ TOOL_WORDS = {"discover": "discover", "sindy": "SINDy", "dmd": "DMD", "gp": "Gau
 
 
 def naming_table(namings: Sequence[Naming], name: str) -> Table:
-    """What each tool answers, a row a case and noise.
-
-    Parameters
-    ----------
-    namings : sequence of Naming
-        Of all seeds.
-    name : str
-        Of the CSV.
-    """
+    """What each tool answers, a row a case and noise."""
     table = namings_table(namings)
     tools = [tool for tool in TOOL_WORDS if tool in set(table["tool"])]
     rows = []

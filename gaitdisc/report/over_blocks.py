@@ -16,13 +16,7 @@ Item = TypeVar("Item")
 
 
 def over_blocks(run: ResponseRun) -> list[Block]:
-    """Parts of the page that have something to say, in their order.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        The whole result.
-    """
+    """Parts of the page that have something to say, in their order."""
     blocks = [
         Block("reduced", "What the models leave over the stride", tuple(reduction_sentences(run)),
               _there(reduction_figure(run)), _there(reduction_table(run))),
@@ -36,13 +30,7 @@ def over_blocks(run: ResponseRun) -> list[Block]:
 
 
 def responder_sentences(run: ResponseRun) -> tuple[str, ...]:
-    """Verdict on sub-groups, and what `none` is worth; empty for one participant.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        With `over`.
-    """
+    """Verdict on sub-groups, and what `none` is worth; empty for one participant."""
     if run.over is None or len(run.responses) < 2:
         return ()
     verdict = f"{run.over.responders_said}."
@@ -55,13 +43,7 @@ def responder_sentences(run: ResponseRun) -> tuple[str, ...]:
 
 
 def responder_table(run: ResponseRun) -> Table | None:
-    """Sub-group of each participant; None where there are none.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        With `over`.
-    """
+    """Sub-group of each participant; None where there are none."""
     if run.over is None or not len(run.over.responders) or not run.over.responders["group"].any():
         return None
     found = run.over.responders

@@ -9,13 +9,7 @@ if TYPE_CHECKING:
 
 
 def axes_or_new(axes: Axes | None) -> Axes:
-    """Axes that were given, or those of a new figure of pyplot, which a notebook shows.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes or None
-        Of the caller.
-    """
+    """Axes that were given, or those of a new figure of pyplot, which a notebook shows."""
     if axes is not None:
         return axes
     import matplotlib.pyplot as plt

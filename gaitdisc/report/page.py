@@ -19,22 +19,8 @@ def write_page(template: str, shown: Mapping[str, Any], folder: Path) -> Path:
 
     Parameters
     ----------
-    template : str
-        Name of a template of `report/templates/`, without endings.
     shown : mapping
         What the template names, but for the version of this package.
-    folder : Path
-        Where the page goes; made if missing.
-
-    Returns
-    -------
-    Path
-        The page.
-
-    Raises
-    ------
-    WriteError
-        If the file cannot be written; what stood there before still stands.
     """
     text = _templates().get_template(f"{template}.html.j2").render(version=gaitdisc.__version__, **shown)
     return write_whole(folder / "report.html", text)

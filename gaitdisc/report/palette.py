@@ -16,12 +16,8 @@ class Look:
 
     Parameters
     ----------
-    colour : str
-        Six hexadecimal digits.
     line : Any
         Matplotlib's line style: a word, or lengths of dashes.
-    mark : str
-        Matplotlib's marker.
     """
 
     colour: str

@@ -70,12 +70,8 @@ def panels(rows: int, columns: int, height: float, room: Room) -> tuple[matplotl
 
     Parameters
     ----------
-    rows, columns : int
-        How many.
     height : float
         Of one panel [inch].
-    room : Room
-        Around and between the panels.
     """
     from matplotlib.figure import Figure as Drawing
 
@@ -104,10 +100,6 @@ def legend(drawn: matplotlib.figure.Figure, handles: Sequence[Artist], down: flo
 
     Parameters
     ----------
-    drawn : matplotlib.figure.Figure
-        Receives the legend.
-    handles : sequence of Artist
-        What is explained, each with its label.
     down : float
         Below the top of the figure [inch]: a second row stands under the first.
     """
@@ -116,26 +108,14 @@ def legend(drawn: matplotlib.figure.Figure, handles: Sequence[Artist], down: flo
 
 
 def lines_of(looks: Mapping[str, Look]) -> list[Artist]:
-    """Handles of a legend that explains lines.
-
-    Parameters
-    ----------
-    looks : mapping of str to Look
-        Words -> colour and line style.
-    """
+    """Handles of a legend that explains lines."""
     from matplotlib.lines import Line2D
 
     return [Line2D([], [], color=look.colour, linestyle=look.line, label=words) for words, look in looks.items()]
 
 
 def decades(axes: Axes) -> None:
-    """Make the vertical axis logarithmic, with plain numbers at 1, 2 and 5 of every decade.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        With values above zero.
-    """
+    """Make the vertical axis logarithmic, with plain numbers at 1, 2 and 5 of every decade."""
     from matplotlib.ticker import LogLocator, NullFormatter
 
     axes.set_yscale("log")
@@ -145,13 +125,7 @@ def decades(axes: Axes) -> None:
 
 
 def in_style(draw: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
-    """Let a function draw in the report's style, whatever the user's own style is.
-
-    Parameters
-    ----------
-    draw : callable
-        Draws figures.
-    """
+    """Let a function draw in the report's style, whatever the user's own style is."""
 
     @functools.wraps(draw)
     def styled(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Result:
@@ -167,13 +141,6 @@ def in_style(draw: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
 
 def sheets(items: Sequence[Item], most: int) -> list[list[Item]]:
     """Split what would make too long a figure into parts of nearly equal length.
-
-    Parameters
-    ----------
-    items : sequence
-        In order.
-    most : int
-        Longest part.
 
     Examples
     --------

@@ -11,13 +11,7 @@ from gaitdisc.results.provenance import Provenance
 
 
 def provenance_tables(made: Provenance) -> dict[str, Table]:
-    """Tables `settings`, `versions` and `files` of a result.
-
-    Parameters
-    ----------
-    made : Provenance
-        Of the result.
-    """
+    """Tables `settings`, `versions` and `files` of a result."""
     files = sorted(made.files.items())
     return {
         "settings": words_table(
@@ -30,13 +24,6 @@ def provenance_tables(made: Provenance) -> dict[str, Table]:
 
 def flattened(settings: Mapping[str, Any], prefix: str = "") -> list[tuple[str, str]]:
     """Settings as rows of dotted name and value; of files the name alone, without the folders of this machine.
-
-    Parameters
-    ----------
-    settings : mapping
-        May hold mappings.
-    prefix : str
-        Name of what holds these settings.
 
     Examples
     --------
@@ -59,13 +46,7 @@ def flattened(settings: Mapping[str, Any], prefix: str = "") -> list[tuple[str, 
 
 
 def provenance_rows(provenance: Provenance) -> list[tuple[str, str]]:
-    """Circumstances of the run: section, date, seed, versions.
-
-    Parameters
-    ----------
-    provenance : Provenance
-        Of the run.
-    """
+    """Circumstances of the run: section, date, seed, versions."""
     return [
         ("follows section", provenance.section),
         ("computed", provenance.created),

@@ -26,13 +26,7 @@ ENOUGH = 0.01  # as near to the whole training part as this
 
 @in_style
 def quantity_figure(run: ResponseRun) -> Figure | None:
-    """Median R2 over variables of Nominal, Augmented and Exo by training length; None where nothing was ablated.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        With `quantities`.
-    """
+    """Median R2 over variables of Nominal, Augmented and Exo by training length; None where nothing was ablated."""
     if not run.quantities:
         return None
     numbers = quantity_numbers(run)
@@ -49,11 +43,6 @@ def quantity_figure(run: ResponseRun) -> Figure | None:
 
 def quantity_numbers(run: ResponseRun) -> pd.DataFrame:
     """Median R2 over the variables of a group, for each participant, length and model; networks only.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        With `quantities`.
 
     Returns
     -------
@@ -72,13 +61,7 @@ def quantity_numbers(run: ResponseRun) -> pd.DataFrame:
 
 
 def quantity_sentences(run: ResponseRun) -> list[str]:
-    """How much data the Exo model needs to come near to what the whole training part gives, and what was left away.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        With `quantities`.
-    """
+    """How much data the Exo model needs to come near to what the whole training part gives, and what was left away."""
     if not run.quantities:
         return []
     near = pd.DataFrame([_near(quantity) for quantity in run.quantities], columns=pd.Index(["from", "whole", "r2"]))

@@ -28,13 +28,7 @@ _OFFSETS = {"nominal": -0.24, "augmented": 0.0, "exo": 0.24}
 
 @in_style
 def r2_figures(run: ResponseRun) -> list[Figure]:
-    """R2 on the held-out device walk, one row a variable; points for one participant, boxes for several.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        With at least one response.
-    """
+    """R2 on the held-out device walk, one row a variable; points for one participant, boxes for several."""
     numbers = r2_numbers(run)
     parts = sheets(variables(run), 12)
     return [
@@ -45,11 +39,6 @@ def r2_figures(run: ResponseRun) -> list[Figure]:
 
 def r2_numbers(run: ResponseRun) -> pd.DataFrame:
     """R2 of every participant and variable on the held-out device walk.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        The whole result.
 
     Returns
     -------
@@ -92,8 +81,6 @@ def draw_r2(axes: Axes, numbers: pd.DataFrame) -> None:
 
     Parameters
     ----------
-    axes : matplotlib.axes.Axes
-        Receives the rows.
     numbers : DataFrame
         Of `r2_numbers`.
     """
@@ -144,15 +131,7 @@ def _below(values: np.ndarray, low: float) -> str:
 
 
 def r2_key(people: int, null: bool) -> list[Line2D]:
-    """Handles of the legend.
-
-    Parameters
-    ----------
-    people : int
-        Participants drawn.
-    null : bool
-        Whether what noise reaches is drawn.
-    """
+    """Handles of the legend."""
     from matplotlib.lines import Line2D
 
     models = [

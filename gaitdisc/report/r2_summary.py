@@ -17,8 +17,6 @@ class R2Column:
 
     Parameters
     ----------
-    key : str
-        Name in the CSV.
     model, kind, walk : str
         As in the response's table; the null belongs to no model.
     """
@@ -79,13 +77,7 @@ def medians(table: pd.DataFrame) -> pd.Series:
 
 
 def participant_medians(run: ResponseRun) -> pd.DataFrame:
-    """Median over variables of every participant, (participant, column of `R2_TABLE`).
-
-    Parameters
-    ----------
-    run : ResponseRun
-        The whole result.
-    """
+    """Median over variables of every participant, (participant, column of `R2_TABLE`)."""
     names = pd.Index([response.participant for response in run.responses], name="participant")
     rows = [medians(r2_by_variable(response)) for response in run.responses]
     return pd.DataFrame(rows, columns=pd.Index([c.key for c in R2_TABLE])).set_axis(names, axis=0)
@@ -93,11 +85,6 @@ def participant_medians(run: ResponseRun) -> pd.DataFrame:
 
 def quartiles_over_participants(run: ResponseRun) -> pd.DataFrame:
     """Median, quartiles and number of participants of every variable and column, one row each.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        The whole result.
 
     Returns
     -------
@@ -116,26 +103,12 @@ def quartiles_over_participants(run: ResponseRun) -> pd.DataFrame:
 
 
 def variables(run: ResponseRun) -> tuple[str, ...]:
-    """Outputs of all participants, each once, in the order of the first who has it.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        The whole result.
-    """
+    """Outputs of all participants, each once, in the order of the first who has it."""
     return tuple(dict.fromkeys(name for response in run.responses for name in response.outputs))
 
 
 def sample_counts(response: ParticipantResponse, walk: str = "exo") -> str:
-    """Held-out samples behind the numbers of one walk: one number, or the range where variables differ.
-
-    Parameters
-    ----------
-    response : ParticipantResponse
-        Whose samples.
-    walk : str
-        `nominal` or `exo`.
-    """
+    """Held-out samples behind the numbers of one walk: one number, or the range where variables differ."""
     counts = response.r2.loc[(response.r2["walk"] == walk) & (response.r2["kind"] == "network"), "n"]
     if not len(counts):
         return "0"
@@ -144,12 +117,6 @@ def sample_counts(response: ParticipantResponse, walk: str = "exo") -> str:
 
 
 def held_out_text(run: ResponseRun) -> str:
-    """Length of the held-out part in words [s]: one number, the few that there are, or their range.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        The whole result.
-    """
+    """Length of the held-out part in words [s]: one number, the few that there are, or their range."""
     seconds = sorted({f"{response.held_out_s:.4g}" for response in run.responses}, key=float)
     return " or ".join(seconds) if len(seconds) < 4 else f"{seconds[0]} to {seconds[-1]}"

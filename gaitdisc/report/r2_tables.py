@@ -22,15 +22,7 @@ _R2_GROUPS = (("", 1), ("network", 4), ("ridge, phase harmonics", 4), ("ridge, i
 
 
 def r2_table(response: ParticipantResponse, name: str) -> Table:
-    """R2 of one participant: rows variables, columns models, with the median below.
-
-    Parameters
-    ----------
-    response : ParticipantResponse
-        Whose numbers.
-    name : str
-        Participant's part of the file name.
-    """
+    """R2 of one participant: rows variables, columns models, with the median below."""
     table = r2_by_variable(response)
     units = dict(zip(response.outputs, response.units, strict=True))
     rows = [
@@ -53,13 +45,7 @@ def r2_table(response: ParticipantResponse, name: str) -> Table:
 
 
 def study_r2_table(run: ResponseRun) -> Table:
-    """R2 over participants: median and quartiles of every variable, with the median participant below.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        With several responses.
-    """
+    """R2 over participants: median and quartiles of every variable, with the median participant below."""
     long = quartiles_over_participants(run)
     rows = []
     for variable in variables(run):
@@ -82,13 +68,7 @@ def study_r2_table(run: ResponseRun) -> Table:
 
 
 def participants_table(run: ResponseRun) -> Table:
-    """Median over variables of every participant, with the median participant below.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        With several responses.
-    """
+    """Median over variables of every participant, with the median participant below."""
     people = participant_medians(run)
     counts = [sample_counts(response) for response in run.responses]
     rows = [
@@ -108,15 +88,7 @@ def participants_table(run: ResponseRun) -> Table:
 
 
 def not_computed(run: ResponseRun, response: ParticipantResponse) -> list[str]:
-    """Reasons for the numbers that stand as `not computed`, as far as they are known.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        Whose findings are searched.
-    response : ParticipantResponse
-        Whose numbers.
-    """
+    """Reasons for the numbers that stand as `not computed`, as far as they are known."""
     table = r2_by_variable(response).drop(columns="null_on_exo")
     reasons = []
     findings = [f for walk in run.walks if walk.subject == response.participant for f in walk.findings]

@@ -21,17 +21,7 @@ MOST_PANELS = 16
 
 @in_style
 def reconstruction_figures(done: Reconstruction, participant: str, name: str) -> list[Figure]:
-    """One panel a state: the mean of what was measured with its spread, and what the models tell.
-
-    Parameters
-    ----------
-    done : Reconstruction
-        The whole result.
-    participant : str
-        Whose judged windows.
-    name : str
-        Participant's part of the file names.
-    """
+    """One panel a state: the mean of what was measured with its spread, and what the models tell."""
     curves = shown_curves(done, participant)
     return [
         _figure(done, participant, curves[curves["state"].isin([channel.name for channel in part])], f"{name}-{k + 1}")
@@ -40,28 +30,14 @@ def reconstruction_figures(done: Reconstruction, participant: str, name: str) ->
 
 
 def shown_curves(done: Reconstruction, participant: str) -> pd.DataFrame:
-    """Curves of one person, of the models that are drawn: linear, the recommended one, SHRED.
-
-    Parameters
-    ----------
-    done : Reconstruction
-        The whole result.
-    participant : str
-        Whose judged windows.
-    """
+    """Curves of one person, of the models that are drawn: linear, the recommended one, SHRED."""
     shown = [kind for kind in ("linear", done.recommended, "shred") if kind in done.models]
     shown = list(dict.fromkeys(shown))
     return done.curves[(done.curves["participant"] == participant) & done.curves["model"].isin(shown)]
 
 
 def states_key(models: list[str]) -> list[Artist]:
-    """Handles of the legend: what was measured, and the models.
-
-    Parameters
-    ----------
-    models : list of str
-        Names of the models drawn.
-    """
+    """Handles of the legend: what was measured, and the models."""
     from matplotlib.patches import Patch
 
     looks = {model: RECONSTRUCTED[model.removesuffix(", calibrated")] for model in models}
@@ -101,8 +77,6 @@ def draw_state(axes: Axes, numbers: pd.DataFrame) -> None:
 
     Parameters
     ----------
-    axes : matplotlib.axes.Axes
-        Receives the curves.
     numbers : DataFrame
         Rows of `Reconstruction.curves` of one person and state.
     """

@@ -24,25 +24,7 @@ FINDINGS = "Findings in the recordings, n = {}; windows on plateaus and filled g
 
 
 def write_reconstruction_report(done: Reconstruction, folder: Path) -> Path:
-    """Write the report of a reconstruction: `report.html`, `figures/` and `tables/`.
-
-    Parameters
-    ----------
-    done : Reconstruction
-        The whole result; nothing is fitted again.
-    folder : Path
-        Where the report goes; made if missing.
-
-    Returns
-    -------
-    Path
-        The page.
-
-    Raises
-    ------
-    WriteError
-        If a file cannot be written; what stood there before still stands.
-    """
+    """Write the report of a reconstruction: `report.html`, `figures/` and `tables/`."""
     tables = {
         "models": models_table(done),
         "states": states_table(done),
@@ -67,13 +49,7 @@ def write_reconstruction_report(done: Reconstruction, folder: Path) -> Path:
 
 
 def method_sentences(done: Reconstruction) -> list[str]:
-    """How the numbers were made.
-
-    Parameters
-    ----------
-    done : Reconstruction
-        The whole result.
-    """
+    """How the numbers were made."""
     return [
         f"A window holds {done.history} (Eqs. 5.1-5.7). No window reaches over a missing value, or from "
         "one trial into another.",

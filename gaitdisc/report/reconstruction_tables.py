@@ -23,13 +23,7 @@ NOT_MSE = (
 
 
 def models_table(done: Reconstruction) -> Table:
-    """Every model, over the participants.
-
-    Parameters
-    ----------
-    done : Reconstruction
-        The whole result.
-    """
+    """Every model, over the participants."""
     numbers: Any = done.over_participants().rename_axis("model").reset_index()
     angles = _has_angles(done)
     rows = tuple(
@@ -66,13 +60,7 @@ def models_table(done: Reconstruction) -> Table:
 
 
 def states_table(done: Reconstruction) -> Table:
-    """RMSE of every state and model, mean over participants, with relative L2 and R2 of the recommended model.
-
-    Parameters
-    ----------
-    done : Reconstruction
-        The whole result.
-    """
+    """RMSE of every state and model, mean over participants, with relative L2 and R2 of the recommended model."""
     over: Any = done.over_states()
     units = {channel.name: channel.unit for channel in done.states}
     rows = []
@@ -89,13 +77,7 @@ def states_table(done: Reconstruction) -> Table:
 
 
 def participants_table(done: Reconstruction) -> Table:
-    """RMSE of the angles for every participant and model.
-
-    Parameters
-    ----------
-    done : Reconstruction
-        The whole result.
-    """
+    """RMSE of the angles for every participant and model."""
     angles = _has_angles(done)
     measure = "rmse_deg" if angles else "relative_l2"
     wide: Any = done.summary.pivot_table(index="participant", columns="model", values=measure)[list(done.models)]
@@ -110,13 +92,7 @@ def participants_table(done: Reconstruction) -> Table:
 
 
 def reconstruction_sentences(done: Reconstruction) -> list[str]:
-    """What is told from which sensors, how well, by which model, and what history and a network buy.
-
-    Parameters
-    ----------
-    done : Reconstruction
-        The whole result.
-    """
+    """What is told from which sensors, how well, by which model, and what history and a network buy."""
     best = done.recommended
     over: Any = done.over_participants()
     sensors, kinds = listed([label(channel.name) for channel in done.sensors]), list(done.models)
@@ -171,13 +147,7 @@ def _after_calibration(done: Reconstruction, best: str) -> list[str]:
 
 
 def reconstruction_text(done: Reconstruction) -> rich.table.Table:
-    """Print the models for a terminal of 80 columns.
-
-    Parameters
-    ----------
-    done : Reconstruction
-        The whole result.
-    """
+    """Print the models for a terminal of 80 columns."""
     from rich import box
     from rich.table import Table as Printed
 

@@ -15,17 +15,7 @@ if TYPE_CHECKING:
 
 
 def draw_recording(axes: Axes, recording: Recording, names: Sequence[str]) -> None:
-    """Draw channels over time; what stands but is not to be trusted is drawn over in grey.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        Receives the lines.
-    recording : Recording
-        Whose channels.
-    names : sequence of str
-        Of the channels.
-    """
+    """Draw channels over time; what stands but is not to be trusted is drawn over in grey."""
     chosen = recording.selected(names)
     for column, channel in enumerate(chosen.channels):
         values = chosen.values[:, column]

@@ -25,13 +25,7 @@ LOWEST = -100.0  # percent; what a model makes more than twice as large stands a
 
 @in_style
 def reduction_figure(run: ResponseRun) -> Figure | None:
-    """Reduction of the stride-averaged residual against Nominal, one row a variable; None without numbers.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        With `over`.
-    """
+    """Reduction of the stride-averaged residual against Nominal, one row a variable; None without numbers."""
     if run.over is None or not run.over.reductions["rms_reduction"].notna().any():
         return None
     reductions, tests = run.over.reductions, run.over.reduction_tests
@@ -53,13 +47,7 @@ def reduction_figure(run: ResponseRun) -> Figure | None:
 
 
 def reduction_table(run: ResponseRun) -> Table | None:
-    """Reduction of every variable: over participants with its interval, or of the only ones; None without numbers.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        With `over`.
-    """
+    """Reduction of every variable: over participants with its interval, or of the only ones; None without numbers."""
     if run.over is None or not run.over.reductions["rms_reduction"].notna().any():
         return None
     reductions, tests = run.over.reductions, run.over.reduction_tests
@@ -86,13 +74,7 @@ def reduction_table(run: ResponseRun) -> Table | None:
 
 
 def reduction_sentences(run: ResponseRun) -> list[str]:
-    """Range of the reductions by Augmented over the variables, for each measure.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        With `over`.
-    """
+    """Range of the reductions by Augmented over the variables, for each measure."""
     if run.over is None:
         return []
     own = run.over.reductions[run.over.reductions["model"] == "augmented"]

@@ -26,15 +26,7 @@ MOST_VECTOR_POINTS = 6_000  # faint strides beyond this are drawn as pixels, or 
 
 @in_style
 def residual_figures(response: ParticipantResponse, name: str) -> list[Figure]:
-    """Measured minus predicted over 0-100 % of the stride: one row an output, one column a model.
-
-    Parameters
-    ----------
-    response : ParticipantResponse
-        Whose residuals.
-    name : str
-        Participant's part of the file names.
-    """
+    """Measured minus predicted over 0-100 % of the stride: one row an output, one column a model."""
     models = [model for model in MODELS if model in response.residuals]
     if not models or not len(response.residuals[models[0]]):
         return []
@@ -52,11 +44,6 @@ def residual_figures(response: ParticipantResponse, name: str) -> list[Figure]:
 
 def residual_numbers(response: ParticipantResponse) -> pd.DataFrame:
     """Mean residual with its interval, and every stride, point by point.
-
-    Parameters
-    ----------
-    response : ParticipantResponse
-        Whose residuals.
 
     Returns
     -------

@@ -37,20 +37,8 @@ class Section:
 
     Parameters
     ----------
-    participant : str
-        Pseudonym.
-    anchor : str
-        Where the page links to.
     sentences : list of str
         The answer for this participant; empty where there is no response.
-    r2 : Table or None
-        R2 by variable.
-    reasons : list of str
-        Why some numbers were not computed.
-    dropped : Table or None
-        Dropped strides by reason.
-    figures : dict of str to list of SavedFigure
-        By subject: `held_out`, `residual`, `curves`, `strides`.
     """
 
     participant: str
@@ -67,23 +55,6 @@ def write_report(run: ResponseRun, folder: Path) -> Path:
 
     The page needs nothing but itself: figures are inside it, no script, nothing from a network. Beside every figure
     lies a CSV with the numbers drawn. Writing the same run again gives the same bytes.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        The whole result; nothing is fitted again.
-    folder : Path
-        Where the report goes; made if missing.
-
-    Returns
-    -------
-    Path
-        The page.
-
-    Raises
-    ------
-    WriteError
-        If a file cannot be written; what stood there before still stands.
     """
     if run.cycles and not run.walks:
         return write_cycles_page(run, folder)

@@ -12,13 +12,7 @@ from gaitdisc.results import ResponseRun
 
 
 def walks_table(run: ResponseRun) -> Table:
-    """Every walk with its light, its strides and what found them.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        The whole result.
-    """
+    """Every walk with its light, its strides and what found them."""
     rows, records = [], []
     for walk in run.walks:
         colour, word = LIGHTS[walk.worst]
@@ -54,24 +48,12 @@ def walks_table(run: ResponseRun) -> Table:
 
 
 def refusals_table(run: ResponseRun) -> Table:
-    """Everybody and everything left out, with the reason.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        The whole result.
-    """
+    """Everybody and everything left out, with the reason."""
     return left_out_table(run.refusals, "refusals", f"Left out, n = {len(run.refusals)}, and why.")
 
 
 def findings_table(run: ResponseRun) -> Table:
-    """Every finding of every walk, the severest first.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        The whole result.
-    """
+    """Every finding of every walk, the severest first."""
     numbers = run.findings_table()
     rows = tuple(
         (
@@ -89,17 +71,7 @@ def findings_table(run: ResponseRun) -> Table:
 
 
 def dropped_table(run: ResponseRun, participant: str, name: str) -> Table | None:
-    """Dropped strides of a participant counted by kind of reason, or None where none was dropped.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        The whole result.
-    participant : str
-        Whose strides.
-    name : str
-        Participant's part of the file name.
-    """
+    """Dropped strides of a participant counted by kind of reason, or None where none was dropped."""
     strides = stride_numbers(run, participant)
     dropped = strides[~strides["kept"].astype(bool)]
     if not len(dropped):
@@ -117,13 +89,7 @@ def dropped_table(run: ResponseRun, participant: str, name: str) -> Table | None
 
 
 def fits_table(run: ResponseRun) -> Table:
-    """What was fitted, on how much, with which decay, in how long.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        The whole result.
-    """
+    """What was fitted, on how much, with which decay, in how long."""
     tables = [r.fits.assign(participant=r.participant) for r in run.responses]
     columns = ["participant", "model", "kind", "decay", "epochs", "n_training", "n_inner"]
     numbers = pd.concat(tables, ignore_index=True)[columns] if tables else pd.DataFrame(columns=pd.Index(columns))

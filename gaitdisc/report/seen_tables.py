@@ -12,15 +12,6 @@ from gaitdisc.results import Refusal
 def seen_table(findings: Sequence[Finding], caption: str, what: str = "what") -> Table:
     """What was seen in the files, in the order given.
 
-    Parameters
-    ----------
-    findings : sequence of Finding
-        Of the readers and the quality checks.
-    caption : str
-        What it shows, with their number.
-    what : str
-        Heading of the column that says what was seen.
-
     Examples
     --------
     >>> seen_table([Finding("note", "unit", "a.c3d", "mm taken as m", "")], "Seen, n = 1.").rows
@@ -32,15 +23,6 @@ def seen_table(findings: Sequence[Finding], caption: str, what: str = "what") ->
 
 def left_out_table(refusals: Sequence[Refusal], name: str, caption: str) -> Table:
     """Everybody and everything left out, with the reason.
-
-    Parameters
-    ----------
-    refusals : sequence of Refusal
-        Of participants and of single walks.
-    name : str
-        Of the CSV.
-    caption : str
-        What it shows, with their number.
 
     Examples
     --------

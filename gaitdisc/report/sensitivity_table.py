@@ -15,11 +15,6 @@ HEADINGS = ("Nominal", "Augmented", "Exo", "null")
 def setting_medians(run: VariantRun) -> pd.DataFrame:
     """Median over participants of the median over variables, for each setting, group of variables and model.
 
-    Parameters
-    ----------
-    run : VariantRun
-        Of the question `sensitivity`.
-
     Returns
     -------
     DataFrame
@@ -48,11 +43,6 @@ def setting_medians(run: VariantRun) -> pd.DataFrame:
 def orders(run: VariantRun) -> pd.DataFrame:
     """In how many participants Nominal < Augmented holds, and in how many variables the two are shown to differ.
 
-    Parameters
-    ----------
-    run : VariantRun
-        Of the question `sensitivity`.
-
     Returns
     -------
     DataFrame
@@ -72,13 +62,7 @@ def orders(run: VariantRun) -> pd.DataFrame:
 
 
 def sensitivity_table(run: VariantRun) -> Table:
-    """Medians under every setting, and whether Nominal < Augmented holds.
-
-    Parameters
-    ----------
-    run : VariantRun
-        Of the question `sensitivity`.
-    """
+    """Medians under every setting, and whether Nominal < Augmented holds."""
     medians, held = setting_medians(run), orders(run)
     counts = held[["holds", "participants", "different", "variables"]].to_numpy(float)
     order = dict(zip(held["variant"].astype(str), counts, strict=True))
@@ -113,13 +97,7 @@ def sensitivity_table(run: VariantRun) -> Table:
 
 
 def sensitivity_sentences(run: VariantRun) -> tuple[str, ...]:
-    """Whether the order of the models holds under every setting, and what was left away.
-
-    Parameters
-    ----------
-    run : VariantRun
-        Of the question `sensitivity`.
-    """
+    """Whether the order of the models holds under every setting, and what was left away."""
     if not run.people:
         return ("Nobody's models could be fitted.",)
     medians = setting_medians(run)

@@ -27,12 +27,6 @@ def sensor_sets_figure(errors: pd.DataFrame, data: str, name: str, rule: str) ->
     ----------
     errors : DataFrame
         `errors` of reconstructions, with a column `sensors`.
-    data : str
-        What was recorded, for the caption.
-    name : str
-        Of the files.
-    rule : str
-        The split, for the caption.
     """
     from matplotlib.lines import Line2D
 

@@ -29,10 +29,6 @@ def sensor_sets_table(summary: pd.DataFrame, printed: pd.DataFrame, name: str, r
         `summary` of reconstructions, with columns `data` and `sensors`.
     printed : DataFrame
         sensors, model, mean, sd: of the dissertation.
-    name : str
-        Of the CSV.
-    rule : str
-        The split, for the caption.
     """
     numbers = pd.DataFrame(
         [

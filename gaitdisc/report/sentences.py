@@ -15,13 +15,7 @@ _ON_EXO = {model: f"{model}_on_exo" for model in ("nominal", "augmented", "exo")
 
 
 def study_sentences(run: ResponseRun) -> list[str]:
-    """What the study as a whole says: who was analysed, and what the models explain over participants.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        The whole result.
-    """
+    """What the study as a whole says: who was analysed, and what the models explain over participants."""
     refused = sorted({refusal.participant for refusal in run.refusals})
     left_out = f"; left out in whole or in part: {listed(refused)} (see “Left out”)" if refused else ""
     if not run.responses:
@@ -54,13 +48,7 @@ def study_sentences(run: ResponseRun) -> list[str]:
 
 
 def participant_sentences(response: ParticipantResponse) -> list[str]:
-    """What one participant shows: what the models explain, whether the device model helps, ridge, and the null.
-
-    Parameters
-    ----------
-    response : ParticipantResponse
-        Whose result.
-    """
+    """What one participant shows: what the models explain, whether the device model helps, ridge, and the null."""
     table = r2_by_variable(response)
     middle = medians(table)
     sentences = [_headline(response, table, middle)]

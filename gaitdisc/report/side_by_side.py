@@ -18,8 +18,6 @@ def drawn_side_by_side(draw: Callable[..., Result], each: Sequence[tuple[Any, ..
     ----------
     draw : callable
         Can be sent to another process, as its arguments and what it gives.
-    each : sequence of tuple
-        Arguments.
     alone : int
         Up to so many are drawn here, one after the other.
 

@@ -27,13 +27,6 @@ _HEIGHTS = {"r": 1.0, "l": 0.0, "": 0.5}
 def stride_numbers(run: ResponseRun, participant: str) -> pd.DataFrame:
     """Every stride of a participant with its duration, and a letter for the kind of reason that dropped it.
 
-    Parameters
-    ----------
-    run : ResponseRun
-        The whole result.
-    participant : str
-        Whose strides.
-
     Returns
     -------
     DataFrame
@@ -58,11 +51,6 @@ def stride_numbers(run: ResponseRun, participant: str) -> pd.DataFrame:
 def reason_kind(reason: str) -> str:
     """Kind of a reason: its words without its numbers, so that like reasons are counted together.
 
-    Parameters
-    ----------
-    reason : str
-        As the stride carries it.
-
     Examples
     --------
     >>> reason_kind("lasts 1.62 s, the median is 1.08 s")
@@ -73,17 +61,7 @@ def reason_kind(reason: str) -> str:
 
 @in_style
 def strides_figure(run: ResponseRun, participant: str, name: str) -> Figure | None:
-    """Every stride as a bar, and stride durations over time, for each walk; None where there is no stride.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        The whole result.
-    participant : str
-        Whose strides.
-    name : str
-        Participant's part of the file name.
-    """
+    """Every stride as a bar, and stride durations over time, for each walk; None where there is no stride."""
     numbers = stride_numbers(run, participant)
     if not len(numbers):
         return None

@@ -17,14 +17,8 @@ class Table:
 
     Parameters
     ----------
-    name : str
-        Name of the CSV, without ending.
     caption : str
         What it shows, with n, unit and split where there are numbers.
-    columns : tuple of str
-        Headings.
-    rows : tuple of tuple of str
-        Cells.
     numbers : DataFrame
         What the CSV holds.
     groups : tuple of (str, int)
@@ -45,17 +39,6 @@ class Table:
 def words_table(name: str, caption: str, headings: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> Table:
     """Table whose CSV holds the very words that are read: settings, hashes, findings, reasons.
 
-    Parameters
-    ----------
-    name : str
-        Name of the CSV.
-    caption : str
-        What it shows.
-    headings : tuple of str
-        Of the columns.
-    rows : iterable of tuple of str
-        Cells.
-
     Examples
     --------
     >>> words_table("files", "Files.", ("file", "SHA-256"), [("a.c3d", "ff")]).numbers["file"].tolist()
@@ -66,15 +49,7 @@ def words_table(name: str, caption: str, headings: tuple[str, ...], rows: Iterab
 
 
 def save_tables(tables: Iterable[Table], folder: Path) -> None:
-    """Write the numbers of tables into the folder `tables/` of a report, each as CSV of its name.
-
-    Parameters
-    ----------
-    tables : iterable of Table
-        What to save.
-    folder : Path
-        Folder of the report.
-    """
+    """Write the numbers of tables into the folder `tables/` of a report, each as CSV of its name."""
     for table in tables:
         save_table(table.numbers, folder / "tables" / f"{table.name}.csv")
 
@@ -86,19 +61,12 @@ def save_table(table: pd.DataFrame, path: Path) -> None:
     ----------
     table : DataFrame
         Its index is not written.
-    path : Path
-        File to write.
     """
     write_csv(table, path, "%.8g")
 
 
 def as_markdown(table: Table) -> str:
     """Return a table as documents of the project hold it.
-
-    Parameters
-    ----------
-    table : Table
-        Any.
 
     Examples
     --------

@@ -21,10 +21,6 @@ def flow_figure(numbers: pd.DataFrame, power: float, name: str) -> Figure:
     ----------
     numbers : DataFrame
         From `gaitdisc.turbulence.isotropic.record_turbulence`.
-    power : float
-        Put in, per mass and time.
-    name : str
-        Of the files.
     """
     drawn, ((left, right),) = panels(1, 2, 2.2, Room(across=0.8, top=0.3))
     shells = [column for column in numbers.columns if SHELL.fullmatch(column)]

@@ -18,25 +18,7 @@ HEADINGS = {
 
 
 def write_variants(run: VariantRun, folder: Path) -> Path:
-    """Write `report.html`, `figures/` and `tables/` of one question; self-contained, the same bytes for the same run.
-
-    Parameters
-    ----------
-    run : VariantRun
-        The whole result; nothing is fitted again.
-    folder : Path
-        Where they go; made if missing.
-
-    Returns
-    -------
-    Path
-        The page.
-
-    Raises
-    ------
-    WriteError
-        If a file cannot be written.
-    """
+    """Write `report.html`, `figures/` and `tables/` of one question; the same bytes for the same run."""
     figure = modalities_figure(run) if run.question == "modalities" else None
     tables = variant_tables(run)
     save_tables(tables, folder)
@@ -52,13 +34,7 @@ def write_variants(run: VariantRun, folder: Path) -> Path:
 
 
 def variant_tables(run: VariantRun) -> list[Table]:
-    """Tables of a question; none where nobody has numbers.
-
-    Parameters
-    ----------
-    run : VariantRun
-        The whole result.
-    """
+    """Tables of a question; none where nobody has numbers."""
     if not run.people:
         return []
     if run.question == "sensitivity":
@@ -67,11 +43,5 @@ def variant_tables(run: VariantRun) -> list[Table]:
 
 
 def variant_sentences(run: VariantRun) -> tuple[str, ...]:
-    """Sentences of a question.
-
-    Parameters
-    ----------
-    run : VariantRun
-        The whole result.
-    """
+    """Sentences of a question."""
     return modalities_sentences(run) if run.question == "modalities" else sensitivity_sentences(run)

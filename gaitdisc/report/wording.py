@@ -22,11 +22,6 @@ _TRANSLATIONS = {"pelvis_tx": "pelvis fore-aft", "pelvis_ty": "pelvis vertical",
 def sideless(name: str) -> str:
     """Name of a channel without its side: what the two sides have in common.
 
-    Parameters
-    ----------
-    name : str
-        Name of a channel.
-
     Examples
     --------
     >>> sideless("ankle_angle_r"), sideless("hip_flexion_l_moment")
@@ -60,11 +55,6 @@ def label(name: str) -> str:
 def upwards(name: str) -> str:
     """What upwards means in a figure of a channel, or empty where the vocabulary does not say.
 
-    Parameters
-    ----------
-    name : str
-        Name of a channel.
-
     Examples
     --------
     >>> upwards("knee_angle_r"), upwards("emg_sol_r")
@@ -76,11 +66,6 @@ def upwards(name: str) -> str:
 def unit_text(unit: str) -> str:
     """Unit as it is printed.
 
-    Parameters
-    ----------
-    unit : str
-        As the package writes it.
-
     Examples
     --------
     >>> unit_text("deg/s2")
@@ -91,13 +76,6 @@ def unit_text(unit: str) -> str:
 
 def number(value: float, digits: int = 2) -> str:
     """Write a number with a proper minus sign, or `not computed`.
-
-    Parameters
-    ----------
-    value : float
-        Any number; NaN is what could not be computed.
-    digits : int
-        Digits after the point.
 
     Examples
     --------
@@ -115,11 +93,6 @@ def number(value: float, digits: int = 2) -> str:
 def p_cell(p: float) -> str:
     """Write a p as it stands in a table.
 
-    Parameters
-    ----------
-    p : float
-        0 to 1, or NaN where nothing was tested.
-
     Examples
     --------
     >>> p_cell(0.0004), p_cell(0.0312), p_cell(float("nan"))
@@ -131,13 +104,6 @@ def p_cell(p: float) -> str:
 def counted(count: int, noun: str) -> str:
     """Count with its noun in the right number.
 
-    Parameters
-    ----------
-    count : int
-        How many.
-    noun : str
-        In the singular.
-
     Examples
     --------
     >>> counted(1, "stride"), counted(2, "stride")
@@ -148,11 +114,6 @@ def counted(count: int, noun: str) -> str:
 
 def listed(words: list[str]) -> str:
     """Words as they stand in a sentence.
-
-    Parameters
-    ----------
-    words : list of str
-        One or more.
 
     Examples
     --------

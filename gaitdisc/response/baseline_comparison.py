@@ -17,8 +17,6 @@ def compare_baselines(responses: Sequence[ParticipantResponse], alpha: float = A
 
     Parameters
     ----------
-    responses : sequence of ParticipantResponse
-        The participants; fewer than six are not tested.
     alpha : float
         Of each family: the variables of one model and baseline.
 

@@ -25,10 +25,6 @@ def compare_models(responses: Sequence[ParticipantResponse]) -> PairTests:
     responses : sequence of ParticipantResponse
         The participants; fewer than six are not tested, and the result says why.
 
-    Returns
-    -------
-    PairTests
-
     References
     ----------
     Ebers 2023, section 4.2.3: Wilcoxon signed-rank tests, Holm-Sidak step-down corrections, alpha = 0.05. The family is
@@ -54,8 +50,6 @@ def compare_columns(first: pd.DataFrame, second: pd.DataFrame, alpha: float = AL
     ----------
     first, second : DataFrame (participant, variable)
         With the same participants and variables; NaN where a number was not computed.
-    alpha : float
-        Of the family of all columns.
 
     Returns
     -------
@@ -82,8 +76,6 @@ def by_family(tests: pd.DataFrame, alpha: float = ALPHA) -> pd.DataFrame:
     ----------
     tests : DataFrame
         first, second, variable, p.
-    alpha : float
-        Of each family.
 
     Returns
     -------
@@ -116,17 +108,7 @@ def by_family(tests: pd.DataFrame, alpha: float = ALPHA) -> pd.DataFrame:
 
 
 def r2_by_participant(responses: Sequence[ParticipantResponse], model: str, kind: str = "network") -> pd.DataFrame:
-    """R2 on held-out device walking, (participant, variable); NaN where it was not computed.
-
-    Parameters
-    ----------
-    responses : sequence of ParticipantResponse
-        The participants.
-    model : str
-        `nominal`, `augmented` or `exo`.
-    kind : str
-        `network` or `ridge`.
-    """
+    """R2 on held-out device walking, (participant, variable); NaN where it was not computed."""
     variables = dict.fromkeys(name for response in responses for name in response.outputs)
     rows = {r.participant: {v: r.r2_of(v, model, kind) for v in r.outputs} for r in responses}
     return pd.DataFrame.from_dict(rows, orient="index", columns=list(variables), dtype=float)
@@ -134,11 +116,6 @@ def r2_by_participant(responses: Sequence[ParticipantResponse], model: str, kind
 
 def too_few(participants: int) -> str:
     """Why so few participants are not tested.
-
-    Parameters
-    ----------
-    participants : int
-        Fewer than six.
 
     Examples
     --------

@@ -32,28 +32,13 @@ def fit_data_quantity(
 
     Parameters
     ----------
-    nominal, exo : Trajectory
-        Whole walks of one participant.
-    settings : ResponseSettings
-        Outputs, held-out part, training.
     lengths_s : sequence of float
         Lengths of the training part [s]; its whole length is always added.
     part : str
         `first` takes the beginning of the training part, from its first usable sample on, `last` its end, next to what
         is held out. The text does not say which; the two differ where gait drifts.
-    progress : callable, optional
-        Called with the fraction done.
     whole : ParticipantResponse, optional
         What the whole training part gave, fitted to the same walks with the same settings; it is then not fitted again.
-
-    Returns
-    -------
-    DataQuantity
-
-    Raises
-    ------
-    SamplingError
-        If `part` is neither word, or a walk is too short to hold a part out.
 
     References
     ----------
@@ -97,14 +82,8 @@ def shortened(walk: Trajectory, settings: ResponseSettings, length_s: float, par
 
     Parameters
     ----------
-    walk : Trajectory
-        Whole walk.
-    settings : ResponseSettings
-        Held-out part.
     length_s : float
         Length that stays usable [s].
-    part : str
-        `first`, counted from the first usable sample, or `last`.
     """
     training, _ = held_out_part(walk, settings)
     count, keep = len(training.time), round(length_s * walk.rate_hz)

@@ -29,14 +29,10 @@ class ResponseSettings:
 
     Parameters
     ----------
-    outputs : tuple of str
-        Channels whose second derivatives are predicted.
     held_out_s : float, optional
         Length held out at the end of both walks [s]; without it, `held_out_share` of each.
     held_out_share : float
         Share held out; the dissertation has 12.5 %, 30 s of 240 s.
-    training : TrainingSettings
-        Of the networks; holds the seed.
     harmonics : int
         Harmonics of percent stride in the ridge regression.
 
@@ -81,25 +77,8 @@ def fit_response(
     ----------
     nominal, exo : Trajectory
         Whole walks of one participant without and with the device, with the same channels.
-    settings : ResponseSettings
-        Outputs, held-out part, training.
     null_r2 : mapping of str to float, optional
         R2 that noise reaches through the same filters, for each output (`gaitdisc.statistics.band_limit_null`).
-    progress : callable, optional
-        Called with the fraction done.
-
-    Returns
-    -------
-    ParticipantResponse
-
-    Raises
-    ------
-    ChannelError
-        If the walks differ in channels or an output is not among them.
-    SamplingError
-        If a walk is too short to hold a part out.
-    TrainingError
-        If a model cannot be fitted.
 
     References
     ----------
@@ -133,21 +112,7 @@ def fit_both(
     settings: ResponseSettings,
     progress: Callable[[float], None] | None = None,
 ) -> FittedResponse:
-    """Fit networks and ridge regressions to the training parts; the held-out parts are not looked at.
-
-    Parameters
-    ----------
-    nominal, exo : Trajectory
-        Whole walks of one participant.
-    settings : ResponseSettings
-        Outputs, held-out part, training.
-    progress : callable, optional
-        Called with the fraction done.
-
-    Returns
-    -------
-    FittedResponse
-    """
+    """Fit networks and ridge regressions to the training parts; the held-out parts are not looked at."""
     samples = [gait_samples(held_out_part(walk, settings)[0], settings.outputs)[0] for walk in (nominal, exo)]
     ridge = fit_models(*samples, fit=lambda part, _: fit_linear(part, settings.harmonics))
     linear = fit_models(*samples, fit=lambda part, _: fit_linear(part, harmonics=0))
@@ -158,38 +123,13 @@ def fit_both(
 
 
 def held_out_part(walk: Trajectory, settings: ResponseSettings) -> tuple[Trajectory, Trajectory]:
-    """Training part and held-out part of a walk.
-
-    Parameters
-    ----------
-    walk : Trajectory
-        Whole walk.
-    settings : ResponseSettings
-        Length or share that is held out.
-
-    Returns
-    -------
-    training, held_out : Trajectory
-    """
+    """Training part and held-out part of a walk."""
     length = settings.held_out_s or settings.held_out_share * len(walk.time) / walk.rate_hz
     return walk.split(length)
 
 
 def held_out_samples(held_out: Trajectory, settings: ResponseSettings) -> Samples:
-    """Samples of a held-out part that models are judged on.
-
-    Parameters
-    ----------
-    held_out : Trajectory
-        Of `held_out_part`.
-    settings : ResponseSettings
-        Outputs.
-
-    Raises
-    ------
-    TrainingError
-        If there are fewer than `LEAST_HELD_OUT`.
-    """
+    """Samples of a held-out part that models are judged on."""
     samples, dropped = gait_samples(held_out, settings.outputs)
     if len(samples) < LEAST_HELD_OUT:
         raise TrainingError(
@@ -205,10 +145,6 @@ def residual_strides(held_out: Trajectory, samples: Samples, predicted: NDArray[
 
     Parameters
     ----------
-    held_out : Trajectory
-        Held-out part, on an even time base.
-    samples : Samples
-        Its usable samples.
     predicted : ndarray (sample, output) [unit/s2]
         For these samples.
 

@@ -16,8 +16,6 @@ def compare_lengths(quantities: Sequence[DataQuantity], alpha: float = ALPHA) ->
 
     Parameters
     ----------
-    quantities : sequence of DataQuantity
-        The participants; fewer than six are not tested.
     alpha : float
         Of each family: the variables at one length. One family of all lengths could show nothing at n = 11, for it
         would hold 72 tests or more and at most 52 can.
@@ -56,13 +54,7 @@ def compare_lengths(quantities: Sequence[DataQuantity], alpha: float = ALPHA) ->
 
 
 def why_no_lengths(quantities: Sequence[DataQuantity]) -> str:
-    """Why the lengths are not tested; empty where they are.
-
-    Parameters
-    ----------
-    quantities : sequence of DataQuantity
-        The participants.
-    """
+    """Why the lengths are not tested; empty where they are."""
     return too_few(len(quantities)) if len(quantities) < FEWEST else ""
 
 

@@ -27,11 +27,6 @@ Fitted = Callable[[Samples], Model]
 def input_families(inputs: Sequence[str]) -> dict[str, tuple[str, ...]]:
     """Families of inputs that are left away, one at a time.
 
-    Parameters
-    ----------
-    inputs : sequence of str
-        Names of the samples' inputs: `knee_angle_r`, `d(knee_angle_r)/dt`, `phi`.
-
     Returns
     -------
     dict of str to tuple of str
@@ -76,24 +71,10 @@ def fit_without(
 
     The Nominal model keeps all of its inputs, so that what Augmented loses is what the Discrepancy model lost.
 
-    Parameters
-    ----------
-    nominal, exo : Trajectory
-        Whole walks of one participant.
-    settings : ResponseSettings
-        Outputs, held-out part, training.
-    progress : callable, optional
-        Called with the fraction done.
-
     Returns
     -------
     DataFrame
         Columns `VARIANT_COLUMNS`; variant is `ALL` or the name of a family.
-
-    Raises
-    ------
-    TrainingError
-        If a model cannot be fitted, or too little is held out.
 
     References
     ----------

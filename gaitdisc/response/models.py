@@ -20,8 +20,6 @@ class Fit:
 
     Parameters
     ----------
-    model : Model
-        What was fitted.
     decay : float
         Weight decay of a network, penalty of a ridge regression.
     epochs : int
@@ -79,19 +77,6 @@ def fit_models(
     ----------
     nominal, exo : Samples
         Training parts of the walks without and with the device; same inputs and outputs.
-    fit : callable
-        Takes samples and a progress callback, gives a Fit.
-    progress : callable, optional
-        Called with the fraction done.
-
-    Returns
-    -------
-    ResponseModels
-
-    Raises
-    ------
-    TrainingError
-        If a model cannot be fitted; it names the model.
     """
     parts = [partial(_third, progress or (lambda _: None), done) for done in range(3)]
     f = _named("Nominal", fit, nominal, parts[0])
@@ -122,17 +107,7 @@ def fit_network(
     settings: TrainingSettings | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Fit:
-    """Fit the dissertation's feed-forward network.
-
-    Parameters
-    ----------
-    samples : Samples
-        Training part.
-    settings : TrainingSettings, optional
-        The defaults without.
-    progress : callable, optional
-        Called with the fraction done.
-    """
+    """Fit the dissertation's feed-forward network."""
     from gaitdisc.networks.feedforward import FeedForward  # brings torch, which takes two seconds
     from gaitdisc.networks.trainer import train
 
@@ -141,15 +116,7 @@ def fit_network(
 
 
 def fit_linear(samples: Samples, harmonics: int = 8) -> Fit:
-    """Fit the ridge regression that stands beside the network.
-
-    Parameters
-    ----------
-    samples : Samples
-        Training part.
-    harmonics : int
-        Of percent stride, beside the inputs.
-    """
+    """Fit the ridge regression that stands beside the network."""
     begun = time.perf_counter()
     ridge = fit_ridge(samples, harmonics)
     return Fit(ridge, ridge.penalty, 0, ridge.n_training, ridge.n_inner, time.perf_counter() - begun)

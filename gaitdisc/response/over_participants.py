@@ -14,21 +14,7 @@ from gaitdisc.results import DataQuantity, OverParticipants, ParticipantResponse
 def compare_participants(
     responses: Sequence[ParticipantResponse], quantities: Sequence[DataQuantity] = (), seed: int = 0
 ) -> OverParticipants:
-    """Compare training lengths, residuals and baselines over participants, and look for sub-groups of responders.
-
-    Parameters
-    ----------
-    responses : sequence of ParticipantResponse
-        The participants.
-    quantities : sequence of DataQuantity
-        What less data gave; empty where nothing was ablated.
-    seed : int
-        Of the clouds that sub-groups are held against.
-
-    Returns
-    -------
-    OverParticipants
-    """
+    """Compare training lengths, residuals and baselines over participants, and look for sub-groups of responders."""
     reductions = residual_reductions(responses)
     responders, said = responder_table(responses, seed)
     return OverParticipants(

@@ -84,10 +84,6 @@ def representative(reductions: pd.DataFrame, model: str = "augmented", measure: 
     ----------
     reductions : DataFrame
         Of `residual_reductions`.
-    model : str
-        Whose residual.
-    measure : str
-        `peak_to_peak` or `rms`.
 
     Returns
     -------

@@ -22,12 +22,8 @@ class DroppedSamples:
     ----------
     total, kept : int
         Samples there are, and those that are used.
-    outside_strides : int
-        Samples without a percent stride.
     unusable : mapping of str to int
         Channel -> samples within strides that are missing or not to be trusted; one sample may count for many channels.
-    walk : str
-        Subject and condition.
 
     Examples
     --------
@@ -61,23 +57,10 @@ def gait_samples(trajectory: Trajectory, outputs: Sequence[str]) -> tuple[Sample
     from 0 to 100 and back to 0 in one step; sine and cosine in its place changed the mean R2 of a network by .0004 at
     most, up and down, on 60 s of running (ten angles), and are not offered.
 
-    Parameters
-    ----------
-    trajectory : Trajectory
-        A walk or a part of it.
-    outputs : sequence of str
-        Channels whose second derivative is to be predicted.
-
     Returns
     -------
     samples : Samples
         Inputs `knee_angle_r`, ..., `d(knee_angle_r)/dt`, ..., `phi`; outputs `d2(knee_angle_r)/dt2`, ...
-    dropped : DroppedSamples
-
-    Raises
-    ------
-    ChannelError
-        If an output is not a channel of the trajectory, or there is none.
     """
     walk = " ".join(part for part in (trajectory.subject, trajectory.condition) if part)
     _check_outputs(trajectory, outputs, walk or "the trajectory")

@@ -22,8 +22,6 @@ class Setting:
 
     Parameters
     ----------
-    name : str
-        In words.
     angles_hz, emg_hz : float
         Low-pass of the joint angles and of the rectified EMG [Hz].
     share : float
@@ -48,8 +46,6 @@ def settings_around(angles_hz: float, emg_hz: float, emg: bool = True) -> tuple[
     ----------
     angles_hz, emg_hz : float
         The study's low-pass of the joint angles and of the rectified EMG [Hz].
-    emg : bool
-        Whether the study has EMG.
     """
     angles = [Setting(f"angles {hz:g} Hz", hz, emg_hz) for hz in ANGLES_HZ if hz != angles_hz]
     envelopes = [Setting(f"EMG {hz:g} Hz", angles_hz, hz) for hz in EMG_HZ if emg and hz != emg_hz]

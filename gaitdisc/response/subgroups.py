@@ -21,15 +21,11 @@ def responder_table(responses: Sequence[ParticipantResponse], seed: int = 0) -> 
     ----------
     responses : sequence of ParticipantResponse
         The participants. Who lacks a point of the stride in an output is left out by name.
-    seed : int
-        Of the clouds that the sub-groups are held against.
 
     Returns
     -------
     table : DataFrame
         Columns `RESPONDER_COLUMNS`; empty where there were too few, or outputs differ.
-    said : str
-        The verdict, or why there is none.
     """
     complete = [response for response in responses if _complete(response)]
     absent = [response.participant for response in responses if not _complete(response)]
@@ -49,44 +45,17 @@ def responder_table(responses: Sequence[ParticipantResponse], seed: int = 0) -> 
 
 
 def find_responders(responses: Sequence[ParticipantResponse], seed: int = 0) -> Groups:
-    """Look for sub-groups of participants whose discrepancies have one shape over the stride.
-
-    Parameters
-    ----------
-    responses : sequence of ParticipantResponse
-        Six or more, with the same outputs.
-    seed : int
-        Of the clouds that the sub-groups are held against.
-
-    Returns
-    -------
-    Groups
-
-    Raises
-    ------
-    ComparisonError
-        If the participants differ in outputs, or there are fewer than six.
-    """
+    """Look for sub-groups of participants whose discrepancies have one shape over the stride."""
     return find_groups(discrepancy_curves(responses), seed=seed)
 
 
 def discrepancy_curves(responses: Sequence[ParticipantResponse]) -> NDArray[np.float64]:
     """Mean over strides of what the Nominal model leaves of device walking, one row a participant.
 
-    Parameters
-    ----------
-    responses : sequence of ParticipantResponse
-        With the same outputs.
-
     Returns
     -------
     ndarray (participant, output and phase) [1]
         Every output over its root mean square of all participants, so that angles and EMG weigh alike.
-
-    Raises
-    ------
-    ComparisonError
-        If the participants differ in outputs.
     """
     outputs = {response.outputs for response in responses}
     if len(outputs) != 1:

@@ -15,11 +15,6 @@ _RAD = re.compile(r"^rad(?=$|/s)")
 def shown_unit(unit: str) -> tuple[str, float]:
     """Return the unit in which a person reads a number, and the factor to it: degrees for an angle or its rates.
 
-    Parameters
-    ----------
-    unit : str
-        Of the simulation file.
-
     Examples
     --------
     >>> shown_unit("N m/rad"), shown_unit("rad/s")[0], round(shown_unit("rad")[1], 3)
@@ -32,13 +27,6 @@ def shown_unit(unit: str) -> tuple[str, float]:
 
 def amount(value: float, step: float = math.nan) -> str:
     """Write a number with three digits, or with those that a step of it leaves worth writing.
-
-    Parameters
-    ----------
-    value : float
-        Any.
-    step : float
-        What is too small to be told.
 
     Examples
     --------
@@ -59,11 +47,6 @@ def amount(value: float, step: float = math.nan) -> str:
 def with_unit(value: str, unit: str) -> str:
     """Put a unit behind a number.
 
-    Parameters
-    ----------
-    value, unit : str
-        As they are read.
-
     Examples
     --------
     >>> with_unit("286", "N m/rad"), with_unit("0.3", "")
@@ -74,11 +57,6 @@ def with_unit(value: str, unit: str) -> str:
 
 def estimate_text(estimate: Estimate) -> str:
     """Write an estimate with its interval.
-
-    Parameters
-    ----------
-    estimate : Estimate
-        In the file's unit.
 
     Examples
     --------
@@ -98,11 +76,6 @@ def estimate_text(estimate: Estimate) -> str:
 
 def brief_text(estimate: Estimate) -> str:
     """Write an estimate without its interval.
-
-    Parameters
-    ----------
-    estimate : Estimate
-        In the file's unit.
 
     Examples
     --------

@@ -10,15 +10,7 @@ from gaitdisc.results.unit_folder import load_unit, save_unit, with_words
 
 
 def save_tests(tests: PairTests, folder: Path) -> None:
-    """Save the paired tests of the models.
-
-    Parameters
-    ----------
-    tests : PairTests
-        What to keep.
-    folder : Path
-        Folder of the tests alone.
-    """
+    """Save the paired tests of the models."""
     data = {
         "participants": tests.participants,
         "alpha": tests.alpha,
@@ -29,18 +21,7 @@ def save_tests(tests: PairTests, folder: Path) -> None:
 
 
 def load_tests(folder: Path) -> PairTests:
-    """Load the paired tests of the models.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder that `save_tests` wrote.
-
-    Raises
-    ------
-    SchemaError
-        If a file is missing, damaged or of another format.
-    """
+    """Load the paired tests of the models."""
     data, tables, _ = load_unit(folder, "tests.json", {"tests.csv": TEST_COLUMNS, "families.csv": FAMILY_COLUMNS})
     return PairTests(
         data["participants"],
@@ -53,32 +34,13 @@ def load_tests(folder: Path) -> PairTests:
 
 
 def save_over(over: OverParticipants, folder: Path) -> None:
-    """Save the other comparisons over participants.
-
-    Parameters
-    ----------
-    over : OverParticipants
-        What to keep.
-    folder : Path
-        Folder of these comparisons alone.
-    """
+    """Save the other comparisons over participants."""
     data = {"lengths_said": over.lengths_said, "responders_said": over.responders_said}
     save_unit(folder, "over.json", data, {f"{name}.csv": table for name, table in over.tables().items()}, {})
 
 
 def load_over(folder: Path) -> OverParticipants:
-    """Load the other comparisons over participants.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder that `save_over` wrote.
-
-    Raises
-    ------
-    SchemaError
-        If a file is missing, damaged or of another format.
-    """
+    """Load the other comparisons over participants."""
     data, files, _ = load_unit(folder, "over.json", {f"{name}.csv": columns for name, columns in TABLES.items()})
     tables = {name: with_words(files[f"{name}.csv"], "left_out") for name in TABLES}
     return OverParticipants(**tables, lengths_said=data["lengths_said"], responders_said=data["responders_said"])

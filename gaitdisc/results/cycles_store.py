@@ -23,10 +23,6 @@ def save_cycles(pooled: PooledCycles, folder: Path, key: str) -> None:
 
     Parameters
     ----------
-    pooled : PooledCycles
-        What to keep.
-    folder : Path
-        Folder of these cycles alone.
     key : str
         What they were computed from: a hash of files and settings.
     """
@@ -56,18 +52,7 @@ def save_cycles(pooled: PooledCycles, folder: Path, key: str) -> None:
 
 
 def load_cycles(folder: Path) -> tuple[PooledCycles, str]:
-    """Load pooled cycles, and the key they were computed from.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder that `save_cycles` wrote.
-
-    Raises
-    ------
-    SchemaError
-        If a file is missing, damaged or of another format.
-    """
+    """Load pooled cycles, and the key they were computed from."""
     data, tables, arrays = load_unit(folder, "cycles.json", {"cycles.csv": CYCLE_COLUMNS})
     cycles = tables["cycles.csv"]
     for column in WORDS:
@@ -97,11 +82,6 @@ def load_cycles(folder: Path) -> tuple[PooledCycles, str]:
 
 def cycles_name(subject: str, session: str, condition: str) -> str:
     """Folder name of pooled cycles, another one for every person, session and condition.
-
-    Parameters
-    ----------
-    subject, session, condition : str
-        Pseudonym and words of the study.
 
     Examples
     --------

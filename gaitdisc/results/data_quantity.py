@@ -19,19 +19,12 @@ class DataQuantity:
 
     Parameters
     ----------
-    participant : str
-        Pseudonym.
     part : str
         `first` or `last`: which seconds of the training part are taken.
     table : DataFrame
         length_s [s], n_training (samples of the device walk), and the columns of `ParticipantResponse.r2`.
     left_away : mapping of float to str
         Length [s] -> why there is no row of it: longer than the training part, or too short to fit.
-
-    Raises
-    ------
-    SchemaError
-        If the table lacks a column.
     """
 
     participant: str
@@ -50,14 +43,6 @@ class DataQuantity:
             )
 
     def medians(self, walk: str = "exo", kind: str = "network") -> pd.DataFrame:
-        """Median R2 over variables: one row a length, one column a model.
-
-        Parameters
-        ----------
-        walk : str
-            `exo` or `nominal`: the held-out walking that is predicted.
-        kind : str
-            `network` or `ridge`.
-        """
+        """Median R2 over variables: one row a length, one column a model."""
         chosen = self.table[(self.table["walk"] == walk) & (self.table["kind"] == kind)]
         return chosen.pivot_table(index="length_s", columns="model", values="r2", aggfunc="median")

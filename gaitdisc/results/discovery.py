@@ -31,15 +31,7 @@ VERDICTS = (
 
 @dataclass(frozen=True)
 class Estimate:
-    """A number with its 95 % interval.
-
-    Parameters
-    ----------
-    value, low, high : float
-        In `unit`.
-    unit : str
-        Empty where it has none.
-    """
+    """A number with its 95 % interval."""
 
     value: float
     low: float
@@ -55,14 +47,10 @@ class FoundEffect:
     ----------
     kind : str
         What `place` is: `port`, `equation`, `parameter`, `input`, `observation`, `state`.
-    place : str
-        Its name in the simulation file.
     name : str
         Name of the effect, of the catalogue.
     term : str
         For a missing term, its expression, in the unit of the place; else what was changed.
-    estimates : mapping of str to Estimate
-        Its numbers.
     held_out : float
         Share of the gap on held-out data that goes with all that was found.
     bic : float
@@ -103,10 +91,6 @@ class Correction:
 
     Parameters
     ----------
-    parameter : str
-        Its name.
-    given : float
-        In the file [the parameter's unit].
     found : Estimate
         What it was fitted to; the interval lies inside the bounds.
     """
@@ -122,14 +106,10 @@ class Whereabouts:
 
     Parameters
     ----------
-    kind, place : str
-        A port or an equation.
     share_of_gap : float
         Part of the gap's variance that pushes there account for.
     phase : tuple of float
         From and to, in shares of the stride; empty without a stride.
-    region : str
-        In which states, in words.
     """
 
     kind: str
@@ -145,8 +125,6 @@ class GapSize:
 
     Parameters
     ----------
-    before, after : float
-        Without and with what was found.
     noise_floor : float
         What the sensors' noise alone would leave.
     p : float
@@ -154,8 +132,6 @@ class GapSize:
         runs, one-sided). Where nothing is named: of what the data that were fitted spoke for most.
     channels : mapping of str to tuple of float
         For each channel: before, after, noise floor [the channel's unit].
-    pieces : int
-        How many pieces were compared.
     """
 
     before: float
@@ -205,13 +181,7 @@ class Runs:
     names: tuple[str, ...] = ()
 
     def table(self, channels: tuple[str, ...]) -> dict[str, NDArray[Any]]:
-        """Return the runs as columns: run, trial, time, phase, and each channel three times.
-
-        Parameters
-        ----------
-        channels : tuple of str
-            Names of the channels.
-        """
+        """Return the runs as columns: run, trial, time, phase, and each channel three times."""
         runs, samples = self.time.shape
         trial = np.asarray(self.names)[self.trial] if self.names else self.trial + 1
         columns = {

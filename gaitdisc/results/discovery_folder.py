@@ -32,25 +32,7 @@ FORMAT = 1
 
 
 def save_discovery(discovery: Discovery, folder: Path) -> Path:
-    """Save a discovery.
-
-    Parameters
-    ----------
-    discovery : Discovery
-        What was found.
-    folder : Path
-        Where; made if missing.
-
-    Returns
-    -------
-    Path
-        Its JSON file.
-
-    Raises
-    ------
-    WriteError
-        If a file cannot be written; what stood there before still stands.
-    """
+    """Save a discovery."""
     import pandas as pd
 
     write_csv(pd.DataFrame(discovery.runs.table(discovery.channels)).dropna(), folder / RUNS, "%.8g")
@@ -59,18 +41,7 @@ def save_discovery(discovery: Discovery, folder: Path) -> Path:
 
 
 def load_discovery(folder: Path) -> Discovery:
-    """Load a discovery; the runs have the eight digits of their table, and those samples that were measured.
-
-    Parameters
-    ----------
-    folder : Path
-        That `save_discovery` wrote.
-
-    Raises
-    ------
-    SchemaError
-        If a file is missing, damaged or of another form.
-    """
+    """Load a discovery; the runs have the eight digits of their table, and those samples that were measured."""
     from gaitdisc.results.unit_folder import stored_finding  # brings jsonschema, which saving does not need
 
     data = read_sealed(folder / NAME)

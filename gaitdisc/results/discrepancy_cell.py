@@ -53,8 +53,6 @@ class PartAccuracy:
 
         Parameters
         ----------
-        model : str
-            `known` or `augmented`.
         until_s : float, optional
             Horizon [s]; the whole part where absent.
         """
@@ -66,8 +64,6 @@ class PartAccuracy:
 
         Parameters
         ----------
-        clipped : bool
-            To -100 and 100, as the published figures.
         until_s : float, optional
             Horizon [s].
         """
@@ -91,8 +87,6 @@ class PartAccuracy:
 
         Parameters
         ----------
-        model : str
-            `known` or `augmented`.
         tolerance : float
             Root mean square over the channels of error over standard deviation.
         """
@@ -101,13 +95,7 @@ class PartAccuracy:
         return float(self.time[int(np.argmax(beyond))] if beyond.any() else self.time[-1])
 
     def first_jump_s(self, channel: int = 0) -> float:
-        """Time at which the truth first changes its sign, where an attractor's lobe is left [s].
-
-        Parameters
-        ----------
-        channel : int
-            That changes its sign.
-        """
+        """Time at which the truth first changes its sign, where an attractor's lobe is left [s]."""
         turned = np.sign(self.truth[:, channel]) != np.sign(self.truth[0, channel])
         return float(self.time[int(np.argmax(turned))] if turned.any() else self.time[-1])
 
@@ -118,16 +106,8 @@ class DiscrepancyCell:
 
     Parameters
     ----------
-    system, method, approach : str
-        The three arguments.
-    variant : str
-        `right`, or `as published`.
     noise : float
         Share of each channel's standard deviation, or its unit in the published variant.
-    seed : int
-        Of noise and fit.
-    channels : tuple of str
-        Names.
     parts : dict of str to PartAccuracy
         `reconstruction`: the training part, from the true first state. `oracle forecast`: from the noise-free true
         state at the end of the training part, which no user has. `forecast`: from that state as it is estimated from
@@ -136,8 +116,6 @@ class DiscrepancyCell:
         Of a core, to fit, and to estimate the start and run the augmented model over all parts.
     terms : str
         What was found, for a method that says so.
-    refused : str
-        Why nothing was fitted.
     units : tuple of str
         Of the states, of which the channels are the first; empty where they have none.
     """
@@ -170,13 +148,7 @@ class DiscrepancyCell:
 
 
 def cells_table(cells: Sequence[DiscrepancyCell]) -> pd.DataFrame:
-    """Return the numbers of all cells, one row a cell, part and channel.
-
-    Parameters
-    ----------
-    cells : sequence of DiscrepancyCell
-        Of any systems.
-    """
+    """Return the numbers of all cells, one row a cell, part and channel."""
     rows = []
     for cell in cells:
         head = {

@@ -11,11 +11,6 @@ from gaitdisc.results.discovery import Estimate, FoundEffect
 def spoken(name: str) -> str:
     """Return an effect's name as it is said.
 
-    Parameters
-    ----------
-    name : str
-        As in discovery.md.
-
     Examples
     --------
     >>> spoken("one_sided_spring"), spoken("coulomb_friction")
@@ -26,11 +21,6 @@ def spoken(name: str) -> str:
 
 def at_place(kind: str, place: str) -> str:
     """Say where something enters.
-
-    Parameters
-    ----------
-    kind, place : str
-        `port` and its name, `equation` and its state, ...
 
     Examples
     --------
@@ -44,13 +34,6 @@ def at_place(kind: str, place: str) -> str:
 
 def outside_text(effect: FoundEffect, found: Estimate) -> str:
     """Say that a wrong parameter lies outside the bounds that the file gives it; nothing where it does not.
-
-    Parameters
-    ----------
-    effect : FoundEffect
-        Any; one that has no bounds lies nowhere outside.
-    found : Estimate
-        Its number.
 
     Examples
     --------

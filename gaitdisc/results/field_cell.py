@@ -48,10 +48,6 @@ class FieldCell:
 
     Parameters
     ----------
-    field, quantity, unit : str
-        Names, and the quantity's unit.
-    route, split, model : str
-        What was varied.
     relative_l2 : float
         Norm of the error over the norm of the field about zero, of all judged values at once (Eq. 2.21); 1 for a model
         that says 0.
@@ -60,14 +56,10 @@ class FieldCell:
     r2 : float
         1 - mean squared error over the mean squared distance from the training part's mean field; 0 for a model that
         says that mean.
-    fitted, judged : int
-        Windows.
     seconds : float [s]
         Processor time of the fit.
     run : int
         Number of the run, where one cell was computed several times with other seeds.
-    errors : ErrorCounts
-        For the histograms.
     """
 
     field: str
@@ -89,13 +81,7 @@ class FieldCell:
 
 
 def field_cells_table(cells: Sequence[FieldCell]) -> pd.DataFrame:
-    """Numbers of all cells, one row each, without the counts of errors.
-
-    Parameters
-    ----------
-    cells : sequence of FieldCell
-        Of any study.
-    """
+    """Numbers of all cells, one row each, without the counts of errors."""
     rows = [{name: value for name, value in vars(cell).items() if name != "errors"} for cell in cells]
     columns = [name for name in FieldCell.__dataclass_fields__ if name != "errors"]
     return pd.DataFrame(rows, columns=pd.Index(columns))
@@ -126,10 +112,6 @@ def save_cells(cells: Sequence[FieldCell], made_by: Mapping[str, Any], path: Pat
 
     Parameters
     ----------
-    cells : sequence of FieldCell
-        That belong together.
-    made_by : mapping
-        Every setting that could change a number; plain values.
     path : Path
         Of a JSON file; written whole or not at all.
     """
@@ -141,15 +123,7 @@ def save_cells(cells: Sequence[FieldCell], made_by: Mapping[str, Any], path: Pat
 
 
 def load_cells(made_by: Mapping[str, Any], path: Path) -> list[FieldCell] | None:
-    """Cells that were kept, or None where there are none, other settings made them, or they were changed since.
-
-    Parameters
-    ----------
-    made_by : mapping
-        As in `save_cells`.
-    path : Path
-        Of the file.
-    """
+    """Cells that were kept, or None where there are none, other settings made them, or they were changed since."""
     try:
         held = read_sealed(path)
     except DamagedError:

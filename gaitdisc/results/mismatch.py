@@ -31,14 +31,10 @@ class Exchange:
 
     Parameters
     ----------
-    unit : str
-        `stride`, `block of 3 strides`, `participant`.
     first, second : int
         Units of either walk; 1 for a walk that was taken as a curve without spread of its own.
     strides_first, strides_second : int
         Strides of either walk that the units hold.
-    permutations : int
-        How many.
     exact : bool
         Whether these are all that there are.
     threshold : float
@@ -110,8 +106,6 @@ class Smallest:
 
         Parameters
         ----------
-        unit : str
-            Of the channel.
         reach : float
             Range of its mean curve [unit].
         """

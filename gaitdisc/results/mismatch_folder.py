@@ -17,20 +17,7 @@ TABLES = {"regions.csv": REGION_COLUMNS, "summary.csv": CHANNEL_COLUMNS}
 
 
 def save_mismatch(mismatch: Mismatch, folder: Path) -> None:
-    """Save a mismatch.
-
-    Parameters
-    ----------
-    mismatch : Mismatch
-        What to keep.
-    folder : Path
-        Its own folder.
-
-    Raises
-    ------
-    WriteError
-        If a file cannot be written.
-    """
+    """Save a mismatch."""
     save_unit(
         folder,
         NAME,
@@ -49,18 +36,7 @@ def save_mismatch(mismatch: Mismatch, folder: Path) -> None:
 
 
 def load_mismatch(folder: Path) -> Mismatch:
-    """Load a mismatch.
-
-    Parameters
-    ----------
-    folder : Path
-        That `save_mismatch` wrote.
-
-    Raises
-    ------
-    SchemaError
-        If a file is missing, damaged or of another format.
-    """
+    """Load a mismatch."""
     data, tables, arrays = load_unit(folder, NAME, TABLES)
     regions, summary = (pd.DataFrame(tables[name], columns=pd.Index(columns)) for name, columns in TABLES.items())
     return Mismatch(

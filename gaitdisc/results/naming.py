@@ -19,18 +19,10 @@ class Naming:
     ----------
     case, hidden : str
         What was recorded; what the known model lacks, empty where nothing is hidden.
-    tool : str
-        One of `TOOLS`.
-    noise : float
-        Share of each channel's standard deviation.
-    seed : int
-        Of the noise.
     answer : str
         One of `ANSWERS`: the hidden effect and nothing else, it and another from which the data cannot tell it
         (whichever stands first), more than it, something else, a curve without a name, that nothing is missing, or a
         refusal.
-    said : str
-        The answer in words.
     amount : float
         The effect's number over its true one; NaN where the hidden effect was not named.
     accuracy : float
@@ -38,8 +30,6 @@ class Naming:
         noise-free true state, an oracle [%]; NaN where it diverged or was not run.
     diverged_s : float or None
         When the forecast left every bound [s since its start].
-    seconds : float
-        Of a core.
     """
 
     case: str
@@ -67,11 +57,6 @@ class Naming:
 
 def namings_table(namings: Sequence[Naming]) -> pd.DataFrame:
     """Return all answers, one row each.
-
-    Parameters
-    ----------
-    namings : sequence of Naming
-        Of any cases.
 
     Examples
     --------

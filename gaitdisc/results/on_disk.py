@@ -36,12 +36,8 @@ class OnDisk(Generic[T]):
 
     Parameters
     ----------
-    path : Path
-        An `.npz` file.
     sha256 : str
         Hash it had when it was saved.
-    made : callable
-        Takes the arrays by name.
     """
 
     path: Path
@@ -59,8 +55,6 @@ class StoredArrays(Mapping[str, NDArray[np.float64]]):
 
     Parameters
     ----------
-    path : Path
-        An `.npz` file.
     sha256 : str
         Hash it had when it was saved; empty where there is no file, and no array.
     """
@@ -78,13 +72,7 @@ class StoredArrays(Mapping[str, NDArray[np.float64]]):
         return len(self._read())
 
     def later(self, made: Callable[[Arrays], T]) -> Any:
-        """Return what shall be made of the arrays when it is looked at, for a field that `may_lie_on_disk`.
-
-        Parameters
-        ----------
-        made : callable
-            Takes the arrays by name.
-        """
+        """Return what shall be made of the arrays when it is looked at, for a field that `may_lie_on_disk`."""
         return OnDisk(self.path, self.sha256, made)
 
     def _read(self) -> Arrays:
@@ -93,16 +81,6 @@ class StoredArrays(Mapping[str, NDArray[np.float64]]):
 
 def may_lie_on_disk(*fields: str) -> Callable[[type[Kind]], type[Kind]]:
     """Let fields of a dataclass be given as `OnDisk`; who reads such a field gets its value, which is not kept.
-
-    Parameters
-    ----------
-    *fields : str
-        Names of the fields.
-
-    Returns
-    -------
-    callable
-        Decorator, to stand above `@dataclass`.
 
     Examples
     --------
@@ -123,28 +101,12 @@ def may_lie_on_disk(*fields: str) -> Callable[[type[Kind]], type[Kind]]:
 
 
 def lies_on_disk(thing: object, field: str) -> bool:
-    """Tell whether a field was given as `OnDisk`.
-
-    Parameters
-    ----------
-    thing : object
-        Of a class marked by `may_lie_on_disk`.
-    field : str
-        Name of the field.
-    """
+    """Tell whether a field was given as `OnDisk`."""
     return isinstance(vars(thing)[field], OnDisk)
 
 
 def damaged(path: Path, what: str) -> DamagedError:
-    """Return the refusal of a file that is not as it was saved.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    what : str
-        What it is instead.
-    """
+    """Return the refusal of a file that is not as it was saved."""
     error = DamagedError(
         "results need every file of their folder as it was saved",
         f"{path.parent.name}/{path.name} is {what}",

@@ -51,11 +51,6 @@ class OverParticipants:
         Why there is no test of the lengths; empty where there is one, or nothing was ablated.
     responders_said : str
         The verdict on sub-groups in a sentence.
-
-    Raises
-    ------
-    SchemaError
-        If a table lacks a column.
     """
 
     lengths: pd.DataFrame
@@ -82,11 +77,6 @@ class OverParticipants:
 
         That nothing is shown is no proof of equality, least of all with few participants: the shifts say how far apart
         the two may be.
-
-        Parameters
-        ----------
-        second : str
-            `exo`, or `exo, whole training part`.
         """
         chosen = self.lengths[self.lengths["second"] == second]
         found = None
@@ -103,11 +93,5 @@ class OverParticipants:
 
 
 def no_rows(name: str) -> pd.DataFrame:
-    """Table of that name without any row.
-
-    Parameters
-    ----------
-    name : str
-        Of `TABLES`.
-    """
+    """Table of that name without any row."""
     return pd.DataFrame(columns=pd.Index(TABLES[name]))

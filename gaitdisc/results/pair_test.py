@@ -23,12 +23,6 @@ class PairTests:
 
     Parameters
     ----------
-    participants : int
-        Who could be compared.
-    alpha : float
-        Of each family.
-    level : float
-        Of the intervals.
     too_few : str
         Why there is no test; empty where there is one.
     tests : DataFrame
@@ -39,11 +33,6 @@ class PairTests:
     families : DataFrame
         The same tests under every family of `FAMILIES`, columns `FAMILY_COLUMNS`: all variables of a pair, all tests of
         the three pairs of models, the three pairs of a variable. critical: level at which the family stopped.
-
-    Raises
-    ------
-    SchemaError
-        If a table lacks a column.
     """
 
     participants: int
@@ -68,11 +57,5 @@ class PairTests:
                 )
 
     def of_pair(self, first: str, second: str) -> pd.DataFrame:
-        """Tests of one pair of models, one row a variable.
-
-        Parameters
-        ----------
-        first, second : str
-            As in `PAIRS`.
-        """
+        """Tests of one pair of models, one row a variable."""
         return self.tests[(self.tests["first"] == first) & (self.tests["second"] == second)]

@@ -50,8 +50,6 @@ class ParticipantResponse:
 
     Parameters
     ----------
-    participant : str
-        Pseudonym.
     inputs, outputs : tuple of str
         Names of what goes in and what is predicted.
     units : tuple of str
@@ -69,11 +67,6 @@ class ParticipantResponse:
         Measured minus predicted, every held-out stride of the device walk on 101 points; keys among `MODELS`.
     held_out_s : float
         Length of the held-out part [s].
-
-    Raises
-    ------
-    ShapeError
-        If arrays, names and units do not fit together.
     """
 
     participant: str
@@ -113,19 +106,7 @@ class ParticipantResponse:
                 )
 
     def r2_of(self, variable: str, model: str, kind: str = "network", walk: str = "exo") -> float:
-        """Coefficient of determination of one variable, one model, one held-out walk; NaN where it was not computed.
-
-        Parameters
-        ----------
-        variable : str
-            Name of an output.
-        model : str
-            One of `MODELS`.
-        kind : str
-            Of `KINDS`.
-        walk : str
-            `nominal` or `exo`.
-        """
+        """Coefficient of determination of one variable, one model, one held-out walk; NaN where it was not computed."""
         return self._r2.get((variable, model, kind, walk), float("nan"))
 
     @cached_property

@@ -25,12 +25,6 @@ class Provenance:
     ----------
     settings : mapping
         Every setting that could change a number, as written in the study with all defaults.
-    seed : int
-        Seed of every random act.
-    files : mapping of str to str
-        File name -> SHA-256.
-    versions : mapping of str to str
-        Distribution -> version.
     section : str
         Part of the dissertation that the result follows.
     created : str
@@ -52,17 +46,6 @@ class Provenance:
 
 def made_now(settings: Mapping[str, Any], seed: int, files: Mapping[str, str], section: str) -> Provenance:
     """Return what a result rests on that is computed now, by what is installed here.
-
-    Parameters
-    ----------
-    settings : mapping
-        Every setting that could change a number.
-    seed : int
-        Seed of every random act.
-    files : mapping of str to str
-        File name -> SHA-256.
-    section : str
-        Part of the dissertation that the result follows.
 
     Examples
     --------

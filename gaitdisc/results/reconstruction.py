@@ -180,20 +180,7 @@ def enough_sensors(found: pd.DataFrame) -> int:
 
 
 def save_reconstruction(done: Reconstruction, folder: Path) -> None:
-    """Save a reconstruction: `reconstruction.json` and its tables as CSV, every file hashed.
-
-    Parameters
-    ----------
-    done : Reconstruction
-        What to keep.
-    folder : Path
-        Its own folder.
-
-    Raises
-    ------
-    WriteError
-        If a file cannot be written.
-    """
+    """Save a reconstruction: `reconstruction.json` and its tables as CSV, every file hashed."""
     data = {
         "title": done.title,
         "sensors": [asdict(channel) for channel in done.sensors],
@@ -213,18 +200,7 @@ def save_reconstruction(done: Reconstruction, folder: Path) -> None:
 
 
 def load_reconstruction(folder: Path) -> Reconstruction:
-    """Load a reconstruction.
-
-    Parameters
-    ----------
-    folder : Path
-        That `save_reconstruction` wrote.
-
-    Raises
-    ------
-    SchemaError
-        If a file is missing, damaged or of another form.
-    """
+    """Load a reconstruction."""
     data, tables, _ = load_unit(folder, NAME, TABLES)
     tables = {name: read_csv(folder / name, WORDS) for name in tables}
     return Reconstruction(

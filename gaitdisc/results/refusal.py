@@ -11,12 +11,8 @@ class Refusal:
 
     Parameters
     ----------
-    participant : str
-        Pseudonym.
     condition : str
         Condition of the trial, or empty where the participant as a whole is refused.
-    reason : str
-        The error's sentence: needed, found, remedy.
     """
 
     participant: str

@@ -20,10 +20,6 @@ def save_response(response: ParticipantResponse, folder: Path, key: str) -> None
 
     Parameters
     ----------
-    response : ParticipantResponse
-        What to keep.
-    folder : Path
-        Folder of this participant alone.
     key : str
         What it was computed from: a hash of files and settings.
     """
@@ -51,18 +47,7 @@ def save_response(response: ParticipantResponse, folder: Path, key: str) -> None
 
 
 def load_response(folder: Path) -> tuple[ParticipantResponse, str]:
-    """Load the response of one participant, and the key it was computed from.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder that `save_response` wrote.
-
-    Raises
-    ------
-    SchemaError
-        If a file is missing, damaged or of another format.
-    """
+    """Load the response of one participant, and the key it was computed from."""
     data, tables, arrays = load_unit(folder, "response.json", {"r2.csv": R2_COLUMNS, "fits.csv": FIT_COLUMNS})
     response = ParticipantResponse(
         data["participant"],
@@ -83,10 +68,6 @@ def save_quantity(quantity: DataQuantity, folder: Path, key: str) -> None:
 
     Parameters
     ----------
-    quantity : DataQuantity
-        What to keep.
-    folder : Path
-        Folder of this participant alone.
     key : str
         What it was computed from: a hash of files and settings.
     """
@@ -96,18 +77,7 @@ def save_quantity(quantity: DataQuantity, folder: Path, key: str) -> None:
 
 
 def load_quantity(folder: Path) -> tuple[DataQuantity, str]:
-    """Load what less data would have given, and the key it was computed from.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder that `save_quantity` wrote.
-
-    Raises
-    ------
-    SchemaError
-        If a file is missing, damaged or of another format.
-    """
+    """Load what less data would have given, and the key it was computed from."""
     data, tables, _ = load_unit(folder, "quantity.json", {"quantity.csv": QUANTITY_COLUMNS})
     left_away = {float(row["length_s"]): str(row["reason"]) for row in data["left_away"]}
     return DataQuantity(data["participant"], data["part"], tables["quantity.csv"], left_away), data["key"]
@@ -118,12 +88,6 @@ def save_refused(refusals: tuple[Refusal, ...], walks: tuple[str, ...], folder: 
 
     Parameters
     ----------
-    refusals : tuple of Refusal
-        In the words of the errors.
-    walks : tuple of str
-        Conditions whose walk could be processed all the same.
-    folder : Path
-        Folder of this participant alone.
     key : str
         What it was computed from: a hash of files and settings.
     """
@@ -132,18 +96,7 @@ def save_refused(refusals: tuple[Refusal, ...], walks: tuple[str, ...], folder: 
 
 
 def load_refused(folder: Path) -> tuple[tuple[Refusal, ...], tuple[str, ...], str]:
-    """Load why a participant was refused, the conditions whose walk was processed, and the key.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder that `save_refused` wrote.
-
-    Raises
-    ------
-    SchemaError
-        If the file is missing, damaged or of another format.
-    """
+    """Load why a participant was refused, the conditions whose walk was processed, and the key."""
     data, _, _ = load_unit(folder, "refused.json")
     return tuple(Refusal(**refusal) for refusal in data["refusals"]), tuple(data["walks"]), data["key"]
 

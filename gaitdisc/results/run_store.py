@@ -37,15 +37,7 @@ NO_KEY = "saved by itself"  # of no files and settings: what was not computed by
 
 
 def save_run(run: ResponseRun, folder: Path) -> None:
-    """Save what a run is, beside the units that were saved as they were computed.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        The whole result.
-    folder : Path
-        Folder of the run.
-    """
+    """Save what a run is, beside the units that were saved as they were computed."""
     if run.tests is not None:
         save_tests(run.tests, folder / "tests")
     if run.over is not None:
@@ -54,15 +46,7 @@ def save_run(run: ResponseRun, folder: Path) -> None:
 
 
 def save_whole_run(run: ResponseRun, folder: Path) -> None:
-    """Save a run with all its units, as it is in memory; `gaitdisc run` in that folder computes the units anew.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        The whole result.
-    folder : Path
-        Folder of the run.
-    """
+    """Save a run with all its units, as it is in memory; `gaitdisc run` in that folder computes the units anew."""
     for walk in run.walks:
         save_walk(walk, folder / "walks" / unit_name(walk.subject, walk.condition), NO_KEY)
     for response in run.responses:
@@ -79,16 +63,8 @@ def created_before(run: ResponseRun, folder: Path) -> ResponseRun:
 
     Parameters
     ----------
-    run : ResponseRun
-<<<<<<< HEAD
-        Just made.
     folder : Path
         Folder of the run, where an earlier one may be saved.
-=======
-        The whole result.
-    folder : Path
-        Folder of the run.
->>>>>>> door
     """
     if run.renewed or not (folder / "run.json").is_file():
         return run
@@ -120,18 +96,7 @@ def _described(run: ResponseRun) -> dict[str, Any]:
 
 
 def load_run(folder: Path) -> ResponseRun:
-    """Load a run with all its units.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder that `gaitdisc run` wrote.
-
-    Raises
-    ------
-    SchemaError
-        If the folder holds no finished run, or a unit of it is missing or damaged.
-    """
+    """Load a run with all its units."""
     data = read_json(folder / "run.json")
     return ResponseRun(
         data["title"],

@@ -14,23 +14,7 @@ OWN = "own_sha256"
 
 
 def read_sealed(path: Path) -> dict[str, Any]:
-    """Read a JSON file that `sealed_text` made, if it is as it was written.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    dict
-        What is named; without its own hash.
-
-    Raises
-    ------
-    SchemaError
-        If the file is missing, no JSON, without its own hash, or edited.
-    """
+    """Read a JSON file that `sealed_text` made, if it is as it was written."""
     if not path.is_file():
         raise damaged(path, "missing")
     try:
@@ -53,11 +37,6 @@ def read_sealed(path: Path) -> dict[str, Any]:
 def sealed_text(data: Mapping[str, Any]) -> str:
     """Write JSON with a hash of its own, which covers everything else in it.
 
-    Parameters
-    ----------
-    data : mapping
-        What is named.
-
     Examples
     --------
     >>> sealed_text({"rate_hz": 100.0}) != sealed_text({"rate_hz": 999.0})
@@ -68,24 +47,12 @@ def sealed_text(data: Mapping[str, Any]) -> str:
 
 
 def json_text(data: Mapping[str, Any]) -> str:
-    """Write JSON the same way each time.
-
-    Parameters
-    ----------
-    data : mapping
-        What is named.
-    """
+    """Write JSON the same way each time."""
     return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
 
 
 def file_sha256(path: Path) -> str:
-    """SHA-256 of a file's bytes.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    """
+    """SHA-256 of a file's bytes."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
@@ -96,20 +63,7 @@ def _own_sha256(data: Mapping[str, Any]) -> str:
 
 
 def check_files(folder: Path, hashes: Mapping[str, str]) -> None:
-    """Refuse a folder of which a file is not as it was saved.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder of a unit.
-    hashes : mapping of str to str
-        File name -> SHA-256.
-
-    Raises
-    ------
-    SchemaError
-        If a file is missing or changed.
-    """
+    """Refuse a folder of which a file is not as it was saved."""
     for file, wanted in hashes.items():
         path = folder / file
         if not path.is_file():

@@ -52,11 +52,6 @@ BETWEEN = (
 def would_tell_apart(name: str, other: str) -> str:
     """Return which recording would separate two explanations.
 
-    Parameters
-    ----------
-    name, other : str
-        Names of discovery.md's tables, in any order.
-
     Examples
     --------
     >>> would_tell_apart("coulomb_friction", "viscous_damping")

@@ -41,21 +41,12 @@ def save_unit(
 
     Parameters
     ----------
-    folder : Path
-        Folder of this unit alone.
     name : str
         Name of the JSON file, which is also its place in `results.schema.json`.
-    data : mapping
-        What is named.
     tables : mapping of str to DataFrame
         File name -> table, written as CSV.
     arrays : mapping of str to ndarray
         Written as `arrays.npz`; no file where there are none.
-
-    Raises
-    ------
-    WriteError
-        If a file cannot be written; an older unit of that place is then told as damaged by its hashes.
     """
     for file, table in tables.items():
         write_csv(table, folder / file)
@@ -73,26 +64,13 @@ def load_unit(folder: Path, name: str, columns: Mapping[str, Sequence[str]] | No
 
     Parameters
     ----------
-    folder : Path
-        Folder that `save_unit` wrote.
-    name : str
-        Name of the JSON file.
     columns : mapping of str to sequence of str, optional
         Tables that the unit must have, and the columns that each must have.
 
     Returns
     -------
-    data : dict
-        What is named.
     tables : dict of str to DataFrame
         By file name.
-    arrays : StoredArrays
-        By name; they are not read here.
-
-    Raises
-    ------
-    SchemaError
-        If a file is missing, damaged or of another form.
     """
     data = read_json(folder / name)
     check_files(folder, data["sha256"])
@@ -108,11 +86,6 @@ def load_unit(folder: Path, name: str, columns: Mapping[str, Sequence[str]] | No
 
 def damaged_units(folder: Path) -> tuple[str, ...]:
     """Say which units below a folder are not as they were saved; nothing is changed.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder of a run.
 
     Returns
     -------
@@ -152,11 +125,6 @@ def with_words(table: pd.DataFrame, column: str) -> pd.DataFrame:
 def stored_finding(row: Mapping[str, Any]) -> Finding:
     """Return a finding as it was before JSON made lists of its spans.
 
-    Parameters
-    ----------
-    row : mapping
-        `asdict` of a finding, read back.
-
     Examples
     --------
     >>> gap = {"severity": "warning", "kind": "gap", "file": "a.mot", "what": "0.1 s", "spoils": ""}
@@ -173,16 +141,6 @@ def read_json(path: Path) -> dict[str, Any]:
     ----------
     path : Path
         `run.json`, `walk.json`, `response.json`, `tests.json` or another that the schema names.
-
-    Returns
-    -------
-    dict
-        What is named; without its own hash.
-
-    Raises
-    ------
-    SchemaError
-        If the file is missing, no JSON, edited, or not of the agreed form.
     """
     data = read_sealed(path)
     if data.get("format") != FORMAT:

@@ -15,10 +15,6 @@ def save_variants(variants: Variants, folder: Path, key: str) -> None:
 
     Parameters
     ----------
-    variants : Variants
-        What to keep.
-    folder : Path
-        Folder of this participant and question alone.
     key : str
         What they were computed from: a hash of files and settings.
     """
@@ -32,33 +28,14 @@ def save_variants(variants: Variants, folder: Path, key: str) -> None:
 
 
 def load_variants(folder: Path) -> tuple[Variants, str]:
-    """Load the variants of one participant, and the key they were computed from.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder that `save_variants` wrote.
-
-    Raises
-    ------
-    SchemaError
-        If a file is missing, damaged or of another format.
-    """
+    """Load the variants of one participant, and the key they were computed from."""
     data, tables, _ = load_unit(folder, "variants.json", {"variants.csv": VARIANT_COLUMNS})
     left_away = {str(row["variant"]): str(row["reason"]) for row in data["left_away"]}
     return Variants(data["participant"], data["question"], tables["variants.csv"], left_away), data["key"]
 
 
 def save_variant_run(run: VariantRun, folder: Path) -> None:
-    """Save what was found over the participants, beside theirs, which were saved as they were computed.
-
-    Parameters
-    ----------
-    run : VariantRun
-        The whole result.
-    folder : Path
-        Folder of the question.
-    """
+    """Save what was found over the participants, beside theirs, which were saved as they were computed."""
     data = {
         "title": run.title,
         "exo": run.exo,
@@ -71,18 +48,7 @@ def save_variant_run(run: VariantRun, folder: Path) -> None:
 
 
 def load_variant_run(folder: Path) -> VariantRun:
-    """Load what was found over the participants.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder of a question.
-
-    Raises
-    ------
-    SchemaError
-        If a file is missing, damaged or of another format.
-    """
+    """Load what was found over the participants."""
     data, tables, _ = load_unit(folder, "variant_run.json", {"tests.csv": VARIANT_TEST_COLUMNS})
     return VariantRun(
         data["title"],

@@ -22,19 +22,12 @@ class Variants:
 
     Parameters
     ----------
-    participant : str
-        Pseudonym.
     question : str
         Of `QUESTIONS`: `modalities`, inputs left away; `sensitivity`, filters and training lengths.
     table : DataFrame
         Columns `VARIANT_COLUMNS`: variant (in words), variable, model, kind, r2, n (held-out samples).
     left_away : mapping of str to str
         Variant -> why there is no row of it.
-
-    Raises
-    ------
-    SchemaError
-        If the table lacks a column, or the question is none.
     """
 
     participant: str
@@ -60,22 +53,14 @@ class VariantRun:
 
     Parameters
     ----------
-    title : str
-        Title of the study.
     exo : str
         The study's word for the device walk.
-    question : str
-        Of `QUESTIONS`.
     people : tuple of Variants
         Every participant whose models could be fitted.
     tests : DataFrame
         Columns `VARIANT_TEST_COLUMNS`; empty for fewer than six participants.
-    refusals : tuple of Refusal
-        Everybody left out.
     held_out_s : tuple of float
         Shortest and longest held-out part [s].
-    renewed : tuple of str
-        As of the run.
     """
 
     title: str

@@ -20,10 +20,6 @@ def save_walk(walk: WalkSummary, folder: Path, key: str) -> None:
 
     Parameters
     ----------
-    walk : WalkSummary
-        What to keep.
-    folder : Path
-        Folder of this walk alone.
     key : str
         What the walk was computed from: a hash of files and settings.
     """
@@ -47,18 +43,7 @@ def save_walk(walk: WalkSummary, folder: Path, key: str) -> None:
 
 
 def load_walk(folder: Path) -> tuple[WalkSummary, str]:
-    """Load one walk, and the key it was computed from.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder that `save_walk` wrote.
-
-    Raises
-    ------
-    SchemaError
-        If a file is missing, damaged or of another format.
-    """
+    """Load one walk, and the key it was computed from."""
     data, tables, arrays = load_unit(folder, "walk.json", {"strides.csv": STRIDE_COLUMNS})
     strides = with_words(tables["strides.csv"], "reason")
     walk = WalkSummary(
@@ -78,11 +63,6 @@ def load_walk(folder: Path) -> tuple[WalkSummary, str]:
 
 def unit_name(subject: str, condition: str) -> str:
     """Folder name of a walk: letters, digits, `-` and `_` only, another one for every person and condition.
-
-    Parameters
-    ----------
-    subject, condition : str
-        Pseudonym and condition.
 
     Examples
     --------

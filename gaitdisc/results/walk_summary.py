@@ -29,23 +29,12 @@ class WalkSummary:
         Pseudonym; the study's word for the condition.
     duration_s, rate_hz : float
         Length and rate of the processed recording.
-    detector : str
-        What found the initial contacts.
-    channels : tuple of Channel
-        Channels of `curves`.
     curves : ndarray (stride, phase, channel) [channel's unit]
         Every kept stride on 101 points; of a walk that was loaded it is read each time it is looked at.
     strides : DataFrame
         One row a stride, kept or dropped: side, start_s, end_s, kept, reason.
     findings : tuple of Finding
         Everything the reader and the quality checks saw.
-    files : mapping of str to str
-        File name -> SHA-256.
-
-    Raises
-    ------
-    ShapeError
-        If the curves do not have 101 points or one column a channel.
     """
 
     subject: str
@@ -78,12 +67,6 @@ class WalkSummary:
         return min(self.findings, key=lambda finding: finding.rank).severity if self.findings else "clean"
 
     def counted(self, kept: bool = True) -> dict[str, int]:
-        """Number of strides of each side.
-
-        Parameters
-        ----------
-        kept : bool
-            Count the kept strides, or the dropped ones.
-        """
+        """Number of strides of each side."""
         chosen = self.strides[self.strides["kept"] == kept]
         return {str(side): int(count) for side, count in chosen["side"].value_counts().sort_index().items()}

@@ -26,8 +26,6 @@ class Corrected:
 
     Parameters
     ----------
-    model : ScaledModel
-        Of the population.
     mean : ndarray (column,)
         Of readings and told states in the calibration strides, each scaled as in the model's training part.
     weights : ndarray (column, state) [each state's unit]
@@ -73,8 +71,6 @@ class FirstStrides:
 
     Parameters
     ----------
-    strides : Samples
-        Windows of the first strides.
     rest : ndarray of bool (window,)
         Which windows of all trials, stacked, come after these and share no reading with them.
     """
@@ -88,21 +84,8 @@ def first_strides(trials: Sequence[Samples], count: int, reach_s: float) -> Firs
 
     Parameters
     ----------
-    trials : sequence of Samples
-        Windows of each trial of a person.
-    count : int
-        Strides to calibrate on.
     reach_s : float
         From the first reading of a window to its last [s].
-
-    Returns
-    -------
-    FirstStrides
-
-    Raises
-    ------
-    StrideError
-        If nothing comes after these strides.
     """
     kept = [each for each in trials if len(each)]
     windows, stride = stacked(kept), stride_numbers(kept)
@@ -127,17 +110,8 @@ def calibrated(done: Reconstructor, strides: Samples, penalty: float = USUAL_PEN
 
     Parameters
     ----------
-    done : Reconstructor
-        Of the population.
-    strides : Samples
-        Windows of the person with known states.
     penalty : float
         From `rehearsed`; a large one takes off the mean error alone.
-
-    Returns
-    -------
-    Reconstructor
-        Of this person.
     """
     return _calibrated(done, strides, (penalty,))[0]
 
@@ -163,16 +137,8 @@ def rehearsed(done: Reconstructor, trials: Sequence[Samples], count: int) -> Reh
 
     Parameters
     ----------
-    done : Reconstructor
-        Of the population.
     trials : sequence of Samples
         Windows of each trial of the person whom models are chosen by, never of the one they are judged on.
-    count : int
-        Strides to calibrate on.
-
-    Returns
-    -------
-    Rehearsal
     """
     parted = first_strides(trials, count, done.sensing.reach_s)
     rest = stacked([each for each in trials if len(each)]).rows(parted.rest)

@@ -22,17 +22,6 @@ def crossed_errors(kind: str, what: Sensing, parts: Parts, seed: int = 0) -> NDA
     """Errors (window, state) on everybody of the fitted and the checked part, each by a model of others.
 
     The people are dealt out to five groups; for each group a model is fitted to the others and chosen by one of them.
-
-    Parameters
-    ----------
-    kind : str
-        A word of `gaitdisc.sensing.reconstructor.KINDS`.
-    what : Sensing
-        What is read and told.
-    parts : Parts
-        Of one person left out, who has no say.
-    seed : int
-        Of every random act.
     """
     people = people_of((*parts.check, *parts.training))
     names = list(people)
@@ -57,16 +46,8 @@ def crossed_widths(
 
     Parameters
     ----------
-    kind : str
-        A word of `gaitdisc.sensing.reconstructor.KINDS`.
-    what : Sensing
-        What is read and told.
-    parts : Parts
-        Of one person left out.
     missed : ndarray (window, state) [each state's unit]
         Errors of the model on the checked person.
-    seed : int
-        Of every random act.
 
     References
     ----------
@@ -84,13 +65,7 @@ def crossed_widths(
 
 
 def people_of(trials: Sequence[Samples]) -> dict[str, list[Samples]]:
-    """Trials of each person, by pseudonym.
-
-    Parameters
-    ----------
-    trials : sequence of Samples
-        Windows of each trial.
-    """
+    """Trials of each person, by pseudonym."""
     found: dict[str, list[Samples]] = {}
     for trial in trials:
         if len(trial):

@@ -27,14 +27,8 @@ def noisy(recording: Recording, sensors: Sequence[str], share: float, seed: int 
 
     Parameters
     ----------
-    recording : Recording
-        One trial.
-    sensors : sequence of str
-        Channels that are read with noise.
     share : float
         Standard deviation of the noise, by that of the sensor in this trial.
-    seed : int
-        Of the noise.
 
     Examples
     --------
@@ -62,14 +56,6 @@ def against_noise(
     ----------
     walks : sequence of (Recording, ndarray (time,) [% stride])
         Of one person.
-    what : Sensing
-        What is read and told.
-    channels : sequence of Channel
-        Of the states.
-    kinds : sequence of str
-        Words of `KINDS`.
-    seed : int
-        Of every random act.
 
     Returns
     -------
@@ -101,14 +87,6 @@ def against_missing(
     ----------
     walks : sequence of (Recording, ndarray (time,) [% stride])
         Of one person.
-    what : Sensing
-        What is read and told.
-    channels : sequence of Channel
-        Of the states.
-    kinds : sequence of str
-        Words of `KINDS`, or `masked shred`.
-    seed : int
-        Of every random act.
 
     Returns
     -------

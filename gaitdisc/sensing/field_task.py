@@ -10,15 +10,7 @@ from gaitdisc.sensing.windows import Lags
 
 
 class Label(NamedTuple):
-    """Which cell it is.
-
-    Attributes
-    ----------
-    field, route, split, model : str
-        What was varied.
-    run : int
-        Seed.
-    """
+    """Which cell it is."""
 
     field: str
     route: str
@@ -33,12 +25,8 @@ class FieldTask:
 
     Parameters
     ----------
-    name : str
-        Of the field.
     lags : Lags
         Readings of a window, snapshots from one to the next, and how far ahead the field is told.
-    rule : str
-        Split, a word of `gaitdisc.sensing.splits.RULES`.
     energy : float
         Share of the training snapshots' energy that the modes keep.
     season : int
@@ -48,8 +36,6 @@ class FieldTask:
     departures : bool
         Whether sensors read, and models tell, departures from the training part's mean at the place and time of year:
         what a reading means then depends less on where the sensor is. The season is added to what is told.
-    seed : int
-        Of every fit.
     """
 
     name: str
@@ -62,21 +48,9 @@ class FieldTask:
     seed: int = 0
 
     def label(self, route: str, model: str) -> Label:
-        """Return which cell a route and a model are.
-
-        Parameters
-        ----------
-        route, model : str
-            In words.
-        """
+        """Return which cell a route and a model are."""
         return Label(self.name, route, self.rule, model, self.seed)
 
     def named(self, kind: str) -> str:
-        """Return what a kind of model is called that tells what this task asks for.
-
-        Parameters
-        ----------
-        kind : str
-            A word of `gaitdisc.sensing.reconstructor.KINDS`.
-        """
+        """Return what a kind of model is called that tells what this task asks for."""
         return f"{kind}, departures" if self.departures else kind

@@ -19,10 +19,6 @@ def reading_names(field: Field, route: Route, positions: bool = False) -> tuple[
 
     Parameters
     ----------
-    field : Field
-        To be read.
-    route : Route
-        Where the sensors are.
     positions : bool
         Whether each sensor tells where it is, beside what it reads.
     """
@@ -35,10 +31,6 @@ def field_windows(field: Field, route: Route, lags: Lags, positions: bool = Fals
 
     Parameters
     ----------
-    field : Field
-        To be read.
-    route : Route
-        Where the sensors are.
     lags : Lags
         Readings of a window, snapshots from one to the next, and from the last to the one that is told.
     positions : bool
@@ -49,11 +41,6 @@ def field_windows(field: Field, route: Route, lags: Lags, positions: bool = Fals
     Samples
         x (window, reading * sensor), oldest first; no outputs; time is the snapshot that is told, counted from 0: that
         of the last reading, or `lags.ahead` later.
-
-    Raises
-    ------
-    SamplingError
-        If the field has fewer snapshots than a window spans.
     """
     if len(field) <= lags.reach + lags.ahead:
         forth = f" and {lags.ahead} ahead" if lags.ahead else ""
@@ -79,13 +66,7 @@ def field_windows(field: Field, route: Route, lags: Lags, positions: bool = Fals
 
 
 def snapshots_of(windows: Samples) -> NDArray[np.intp]:
-    """Number of the snapshot that each window is to tell, (window,).
-
-    Parameters
-    ----------
-    windows : Samples
-        From `field_windows`.
-    """
+    """Number of the snapshot that each window is to tell, (window,)."""
     return np.rint(windows.time).astype(int)
 
 
@@ -94,11 +75,7 @@ def with_coefficients(windows: Samples, coefficients: NDArray[np.float64], names
 
     Parameters
     ----------
-    windows : Samples
-        From `field_windows`.
     coefficients : ndarray (snapshot, mode)
         Of all snapshots of the field.
-    names : sequence of str
-        Of the coefficients.
     """
     return replace(windows, y=coefficients[snapshots_of(windows)], outputs=tuple(names))

@@ -68,8 +68,6 @@ class PhaseAverage:
 
         Parameters
         ----------
-        trials : sequence of Samples
-            Windows of each trial.
         ahead_s : float
             From the last reading to the state that is told [s].
         """
@@ -87,18 +85,7 @@ class PhaseAverage:
 
 
 def phase_average(trials: Sequence[Samples]) -> PhaseAverage:
-    """Mean stride of a fitted part.
-
-    Parameters
-    ----------
-    trials : sequence of Samples
-        Windows of each trial, with percent stride.
-
-    Raises
-    ------
-    StrideError
-        If there is no whole stride, or a percent of the stride without a window.
-    """
+    """Mean stride of a fitted part."""
     durations = np.concatenate([np.diff(contact_times(trial)) for trial in trials])
     phi, y = (np.concatenate([getattr(trial, name) for trial in trials]) for name in ("phi", "y"))
     known = np.isfinite(phi)
@@ -117,11 +104,6 @@ def phase_average(trials: Sequence[Samples]) -> PhaseAverage:
 
 def contact_times(trial: Samples) -> NDArray[np.float64]:
     """Contacts that percent stride tells of, in order [s].
-
-    Parameters
-    ----------
-    trial : Samples
-        Windows of one trial.
 
     Examples
     --------

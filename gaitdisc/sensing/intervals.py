@@ -21,17 +21,10 @@ def half_widths(errors: NDArray[np.float64], level: float = LEVEL) -> NDArray[np
     ----------
     errors : ndarray (window, state) [each state's unit]
         Of a model on windows that it was not fitted to, in order of time.
-    level : float
-        Wanted coverage, between 0 and 1.
 
     Returns
     -------
     ndarray (state,) [each state's unit]
-
-    Raises
-    ------
-    SamplingError
-        If there are too few errors for that level.
 
     References
     ----------

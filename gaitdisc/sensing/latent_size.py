@@ -24,14 +24,6 @@ def latent_sizes(
 
     Parameters
     ----------
-    field : Field
-        To be told.
-    route : Route
-        Where the sensors are.
-    task : FieldTask
-        Lags, split, share of the energy, seed.
-    sizes : sequence of int
-        Nodes of the recurrent layer.
     epochs : int
         Passes over the training part; more where 1,000 steps need more.
 

@@ -29,10 +29,6 @@ def missing_runs(share: NDArray[np.float64], run: NDArray[np.float64], length: i
         Readings of the column that are missing, between 0 and below 1.
     run : ndarray (column,)
         Readings that are missing in a row, on average; at least 1, at which each is drawn alone if the share allows.
-    length : int
-        Readings of each column.
-    seed : int
-        Of the draw.
 
     Returns
     -------
@@ -60,21 +56,10 @@ def with_missing(recording: Recording, sensors: Sequence[str], share: float, run
 
     Parameters
     ----------
-    recording : Recording
-        One trial.
-    sensors : sequence of str
-        Channels that lose readings.
     share : float
         Of each sensor's readings that are missing, from 0 to below 1.
     run_s : float
         Mean duration of a drop-out [s]; 0 for readings drawn one by one.
-    seed : int
-        Of the draw.
-
-    Returns
-    -------
-    Recording
-        NaN where a reading is missing.
     """
     shares, runs = np.full(len(sensors), share), np.full(len(sensors), max(1.0, run_s * recording.rate_hz))
     values = recording.values.copy()
@@ -89,23 +74,10 @@ def filled(recording: Recording, sensors: Sequence[str], way: str, means: NDArra
 
     Parameters
     ----------
-    recording : Recording
-        One trial.
-    sensors : sequence of str
-        Channels that a model reads.
     way : str
         A word of `WAYS`; `last` takes the mean before a sensor's first reading.
     means : ndarray (sensor,) [each sensor's unit]
         Of the training part.
-
-    Returns
-    -------
-    Recording
-
-    Raises
-    ------
-    SchemaError
-        If there is no such way.
     """
     refuse_unknown_way(way)
     values = recording.values.copy()
@@ -121,18 +93,7 @@ def filled(recording: Recording, sensors: Sequence[str], way: str, means: NDArra
 
 
 def refuse_unknown_way(way: str) -> None:
-    """Refuse what is no way to deal with missing readings.
-
-    Parameters
-    ----------
-    way : str
-        To look up in `WAYS`.
-
-    Raises
-    ------
-    SchemaError
-        If it is not there.
-    """
+    """Refuse what is no way to deal with missing readings."""
     if way not in WAYS:
         raise SchemaError(
             "missing readings are dealt with in one of three ways", f"{way!r} is none", "Use none, mean or last."
@@ -143,15 +104,6 @@ def hidden(samples: Samples, sensors: int, seed: int = 0) -> Samples:
     """Hide readings of every second window, for training: a model learns to do without them.
 
     Each sensor of such a window loses a share of its readings that is drawn between 0 and 0.6, singly or in runs.
-
-    Parameters
-    ----------
-    samples : Samples
-        Windows; readings that are missing already stay so.
-    sensors : int
-        Sensors of a window.
-    seed : int
-        Of the draw.
 
     Returns
     -------

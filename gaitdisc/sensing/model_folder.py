@@ -41,8 +41,6 @@ class SensingModel:
 
     Parameters
     ----------
-    reconstructor : Reconstructor
-        What tells the states.
     channels : tuple of Channel
         Of the sensors, then of the states.
     half_widths : ndarray (state,) [each state's unit]
@@ -87,20 +85,7 @@ class SensingModel:
 
 
 def save_model(model: SensingModel, folder: Path) -> None:
-    """Save a model: `weights.npz`, and `model.json` with the hashes of both.
-
-    Parameters
-    ----------
-    model : SensingModel
-        What to keep.
-    folder : Path
-        Its own folder.
-
-    Raises
-    ------
-    WriteError
-        If a file cannot be written.
-    """
+    """Save a model: `weights.npz`, and `model.json` with the hashes of both."""
     from gaitdisc.regression.fourier_ridge import FourierRidge
     from gaitdisc.regression.ridge_file import save_ridge
 
@@ -134,22 +119,7 @@ def save_model(model: SensingModel, folder: Path) -> None:
 
 
 def load_model(folder: Path) -> SensingModel:
-    """Load a model that `save_model` wrote.
-
-    Parameters
-    ----------
-    folder : Path
-        Of the model.
-
-    Returns
-    -------
-    SensingModel
-
-    Raises
-    ------
-    SchemaError
-        If a file is missing, damaged, or of another version.
-    """
+    """Load a model that `save_model` wrote."""
     try:
         data = read_sealed(folder / NAME)
         if data["format"] != FORMAT:

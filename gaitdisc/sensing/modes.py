@@ -81,17 +81,6 @@ def fit_modes(values: NDArray[np.floating], energy: float = ENERGY, most: int | 
         Training snapshots only.
     energy : float
         Share of the energy that is kept, above 0, at most 1.
-    most : int, optional
-        Modes that are kept at most.
-
-    Returns
-    -------
-    Modes
-
-    Raises
-    ------
-    TrainingError
-        If there are fewer than two snapshots, one quantity does not vary, or the share is out of range.
 
     References
     ----------

@@ -38,11 +38,6 @@ def write_onnx(model: SensingModel, path: Path) -> None:
         What to write; ridge regression in double precision, networks in single, as they are computed here.
     path : Path
         Of an `.onnx` file; written whole or not at all.
-
-    Raises
-    ------
-    SchemaError
-        If onnx is not installed.
     """
     helper, checker = _onnx()
     from gaitdisc.networks.ensemble import Ensemble

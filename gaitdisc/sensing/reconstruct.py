@@ -37,10 +37,6 @@ class Fits:
 
     Parameters
     ----------
-    kinds : tuple of str
-        Words of `KINDS` or `ON_REQUEST`.
-    seed : int
-        Of every random act.
     device : str
         That networks are fitted on: `cpu`, `cuda`, or `auto`, the GPU where there is one.
     calibration : int
@@ -75,13 +71,7 @@ class PersonReconstruction:
     fitted: tuple[SensingModel, ...]
 
     def model(self, kind: str) -> SensingModel:
-        """Return the model of one kind.
-
-        Parameters
-        ----------
-        kind : str
-            One that was fitted.
-        """
+        """Return the model of one kind."""
         return next(each for each in self.fitted if each.reconstructor.kind == kind)
 
 
@@ -96,20 +86,8 @@ def reconstruct(
 
     Parameters
     ----------
-    participant : str
-        On whom the models are judged.
-    parts : Parts
-        Windows to fit, to choose by, to judge on.
-    what : Sensing
-        What is read and told.
     channels : sequence of Channel
         Of the sensors, then of the states, in the order of `what`.
-    fits : Fits, optional
-        Kinds of models, seed, device, calibration; the defaults without.
-
-    Returns
-    -------
-    PersonReconstruction
     """
     fits = fits or Fits()
     test, own = parts.judged(), channels[len(what.sensors) :]

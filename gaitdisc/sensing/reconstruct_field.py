@@ -30,13 +30,9 @@ class Targets:
     ----------
     read : Field
         What sensors read: the field itself, or its departures.
-    modes : Modes
-        Of the training part's snapshots alone.
     coefficients : ndarray (snapshot, mode)
         Of all snapshots.
     mean : ndarray (point, quantity) [each quantity's unit]
-        Of the training part's snapshots.
-    season : Season
         Of the training part's snapshots.
     departures : bool
         Whether modes and readings are of departures from the season.
@@ -56,8 +52,6 @@ class Targets:
         ----------
         coefficients : ndarray (window, mode)
             Told.
-        windows : Samples
-            At which times they were told.
         """
         told = self.modes.fields(coefficients)
         return told + self.season.at(snapshots_of(windows)) if self.departures else told
@@ -65,17 +59,7 @@ class Targets:
 
 @dataclass(frozen=True, eq=False)
 class Prepared:
-    """Windows of the three parts and the modes that they tell.
-
-    Parameters
-    ----------
-    training, check, test : Samples
-        Their outputs are the modes' coefficients.
-    targets : Targets
-        What the outputs stand for.
-    what : Sensing
-        What is read and told.
-    """
+    """Windows of the three parts and the modes that they tell."""
 
     training: Samples
     check: Samples
@@ -84,26 +68,12 @@ class Prepared:
     what: Sensing
 
     def told(self, model: Callable[[Samples], NDArray[np.float64]]) -> NDArray[np.float32]:
-        """Field at each window of the test part, (window, point, quantity) [each quantity's unit].
-
-        Parameters
-        ----------
-        model : callable
-            Tells the modes' coefficients, (window, mode).
-        """
+        """Field at each window of the test part, (window, point, quantity) [each quantity's unit]."""
         return self.targets.fields(model(self.test), self.test)
 
 
 def targets_of(field: Field, task: FieldTask) -> Targets:
-    """Fit the modes to the part that models are fitted to; which part that is depends on times alone, not on a route.
-
-    Parameters
-    ----------
-    field : Field
-        To be told.
-    task : FieldTask
-        Lags, split, share of the energy.
-    """
+    """Fit the modes to the part that models are fitted to, which depends on times alone and not on a route."""
     parts = _parts(field, fixed(field, [0]), task)
     fitted = snapshots_of(parts.fitted())
     season = season_of(field, fitted, task.season)
@@ -118,19 +88,8 @@ def prepare(field: Field, route: Route, task: FieldTask, targets: Targets | None
 
     Parameters
     ----------
-    field : Field
-        To be told.
-    route : Route
-        Where the sensors are.
-    task : FieldTask
-        Lags, split, share of the energy.
     targets : Targets, optional
         From `targets_of` with the same field and task; computed without.
-
-    Raises
-    ------
-    SamplingError
-        If a window is longer than the field, or a part is left without windows.
     """
     told = targets or targets_of(field, task)
     parts = _parts(told.read, route, task)
@@ -157,31 +116,11 @@ def reconstruct_field(
 
     Parameters
     ----------
-    field : Field
-        To be told.
-    route : Route
-        Where the sensors are.
-    task : FieldTask
-        Lags, split, share of the energy, seed.
-    kinds : sequence of str
-        Words of `gaitdisc.sensing.reconstructor.KINDS`.
     floors : bool
         Whether what needs no sensor is judged too (the training part's mean, its mean season), and the ceiling: the
         test part projected onto the training part's modes, which no model that tells those modes can beat.
     targets : Targets, optional
         From `targets_of` with the same field and task; computed without.
-
-    Returns
-    -------
-    list of FieldCell
-        One a model and quantity.
-
-    Raises
-    ------
-    SamplingError
-        If a window is longer than the field, or a part is left without windows.
-    TrainingError
-        If the windows are too few.
     """
     ready = prepare(field, route, task, targets)
     cells = []
@@ -201,12 +140,6 @@ def field_cells(
 
     Parameters
     ----------
-    field : Field
-        That was to be told.
-    ready : Prepared
-        Its test part is judged.
-    label : Label
-        Which cell it is.
     told : ndarray (window, point, quantity) [each quantity's unit]
         The field at each window of the test part.
     seconds : float [s]

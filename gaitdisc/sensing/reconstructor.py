@@ -57,19 +57,8 @@ class Sensing:
 
     Parameters
     ----------
-    sensors : tuple of str
-        Channels that are read.
     states : tuple of str
         Channels that are told; none of them is a sensor, unless the future is told.
-    lags : Lags
-        Reach and density of the windows.
-    rate_hz : float
-        Samples a second of every recording.
-
-    Raises
-    ------
-    ChannelError
-        If there is no sensor, or no state that is not one.
 
     Examples
     --------
@@ -92,8 +81,6 @@ class Sensing:
 
         Parameters
         ----------
-        recording : Recording
-            One trial.
         phi : ndarray (time,) [% stride]
             Percent stride of its samples.
         missing : bool
@@ -107,19 +94,8 @@ def sensing(all_states: tuple[str, ...], sensors: tuple[str, ...], lags: Lags, r
 
     Parameters
     ----------
-    all_states : tuple of str
-        Channels that make up the state.
     sensors : tuple of str
         Channels that are read; they may be among the states.
-    lags : Lags
-        Reach and density of the windows.
-    rate_hz : float
-        Samples a second.
-
-    Raises
-    ------
-    ChannelError
-        If there is no sensor, one stands twice, or every state is a sensor.
     """
     states = all_states if lags.ahead else tuple(name for name in all_states if name not in sensors)
     if not sensors or len(set(sensors)) < len(sensors):
@@ -143,14 +119,8 @@ class Reconstructor:
 
     Parameters
     ----------
-    kind : str
-        A word of `KINDS` or `ON_REQUEST`.
-    sensing : Sensing
-        What it reads and tells.
     model : ScaledModel
         Takes the present readings where the kind is without history, whole windows otherwise.
-    n_fitted : int
-        Windows it was fitted to.
     seconds : float
         Processor time of the fit [s].
     device : str
@@ -180,15 +150,8 @@ def fitting_device(kinds: Sequence[str], wanted: str) -> str:
 
     Parameters
     ----------
-    kinds : sequence of str
-        Words of `KINDS` or `ON_REQUEST`.
     wanted : str
         `cpu`, `cuda`, or `auto`: the GPU where there is one.
-
-    Raises
-    ------
-    TrainingError
-        If a network is among them, and the device that is wanted is not there.
 
     Examples
     --------
@@ -209,27 +172,10 @@ def fit_reconstructor(
 
     Parameters
     ----------
-    kind : str
-        A word of `KINDS` or `ON_REQUEST`.
-    what : Sensing
-        What is read and told.
     training, check : Samples
         Windows to fit, and windows to choose by; readings may be missing for the kind that is told of it.
-    seed : int
-        Of every random act.
     device : str
         That a network is fitted on: `cpu`, `cuda`, or `auto`, the GPU where there is one.
-
-    Returns
-    -------
-    Reconstructor
-
-    Raises
-    ------
-    SchemaError
-        If there is no such kind.
-    TrainingError
-        If the windows are too few, an output does not vary, or a GPU is asked for and there is none.
     """
     if kind not in (*KINDS, *ON_REQUEST):
         known = ", ".join((*KINDS, *ON_REQUEST))

@@ -22,8 +22,6 @@ class Route:
 
     Parameters
     ----------
-    name : str
-        In words.
     points : ndarray of int (time, sensor)
         Number of the point that each sensor reads at each snapshot.
 
@@ -46,43 +44,16 @@ class Route:
         return self.points.shape[1]
 
     def readings(self, field: Field) -> NDArray[np.float64]:
-        """y_t = C_t x_t: what the sensors read, (time, sensor, quantity) [each quantity's unit].
-
-        Parameters
-        ----------
-        field : Field
-            That the route was made for.
-        """
+        """y_t = C_t x_t: what the sensors read, (time, sensor, quantity) [each quantity's unit]."""
         return field.values[np.arange(len(field))[:, None], self.points].astype(float)
 
     def places(self, field: Field) -> NDArray[np.float64]:
-        """Where the sensors are, (time, sensor, axis) [each axis's unit].
-
-        Parameters
-        ----------
-        field : Field
-            That the route was made for.
-        """
+        """Where the sensors are, (time, sensor, axis) [each axis's unit]."""
         return field.places[self.points]
 
 
 def fixed(field: Field, points: Sequence[int], name: str = "fixed") -> Route:
-    """Sensors that stay where they are.
-
-    Parameters
-    ----------
-    field : Field
-        To be read.
-    points : sequence of int
-        One a sensor.
-    name : str
-        In words.
-
-    Raises
-    ------
-    ChannelError
-        If there is no sensor, or one stands outside the field.
-    """
+    """Sensors that stay where they are."""
     chosen = np.asarray(points, int)
     outside = (chosen < 0) | (chosen >= field.points)
     if not len(chosen) or outside.any():
@@ -95,37 +66,13 @@ def fixed(field: Field, points: Sequence[int], name: str = "fixed") -> Route:
 
 
 def fixed_at_random(field: Field, sensors: int, seed: int) -> Route:
-    """Sensors at points drawn at random, no two alike, that stay there.
-
-    Parameters
-    ----------
-    field : Field
-        To be read.
-    sensors : int
-        How many.
-    seed : int
-        Of the draw.
-    """
+    """Sensors at points drawn at random, no two alike, that stay there."""
     drawn = np.random.default_rng(seed).choice(field.points, sensors, replace=False)
     return fixed(field, drawn.tolist(), f"{sensors} fixed")
 
 
 def along(field: Field, places: ArrayLike, name: str) -> Route:
     """One sensor carried along a given path; at each snapshot it reads the node whose cell it is in.
-
-    Parameters
-    ----------
-    field : Field
-        To be read.
-    places : array_like (time, axis) [each axis's unit]
-        Where the sensor is at each snapshot.
-    name : str
-        In words.
-
-    Raises
-    ------
-    ChannelError
-        If the path is not as long as the field, or leaves it.
 
     Examples
     --------
@@ -165,19 +112,8 @@ def circuit(field: Field, stops: ArrayLike, period: int, name: str) -> Route:
 
     Parameters
     ----------
-    field : Field
-        To be read.
     stops : array_like (stop, axis) [each axis's unit]
         Corners of the path; from the last it returns to the first.
-    period : int
-        Snapshots of one round: a year in the dissertation.
-    name : str
-        In words.
-
-    Raises
-    ------
-    ChannelError
-        If the path leaves the field.
     """
     corners = np.asarray(stops, float)
     corners = np.vstack([corners, corners[:1]])
@@ -195,14 +131,8 @@ def random_walk(field: Field, seed: int, start: int | None = None, every: int = 
 
     Parameters
     ----------
-    field : Field
-        To be read.
-    seed : int
-        Of the walk.
     start : int, optional
         Point where it begins; the one nearest to the centre of the grid without.
-    every : int
-        Snapshots from one step to the next.
 
     References
     ----------
@@ -226,13 +156,7 @@ def random_walk(field: Field, seed: int, start: int | None = None, every: int = 
 
 
 def joined(routes: Sequence[Route]) -> Route:
-    """Sensors of several routes side by side.
-
-    Parameters
-    ----------
-    routes : sequence of Route
-        Of one field.
-    """
+    """Sensors of several routes side by side."""
     return Route(" + ".join(route.name for route in routes), np.hstack([route.points for route in routes]))
 
 

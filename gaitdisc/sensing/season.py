@@ -38,13 +38,7 @@ class Season:
         return self.course[snapshots % len(self.course)]
 
     def departures(self, field: Field) -> Field:
-        """Departures of every snapshot from the mean of its time of year.
-
-        Parameters
-        ----------
-        field : Field
-            Whose training part the season was taken from.
-        """
+        """Departures of every snapshot from the mean of its time of year."""
         return replace(field, values=field.values - self.at(np.arange(len(field))))
 
 
@@ -53,8 +47,6 @@ def season_of(field: Field, snapshots: NDArray[np.intp], period: int) -> Season:
 
     Parameters
     ----------
-    field : Field
-        Of any length.
     snapshots : ndarray of int (snapshot,)
         Of the training part.
     period : int

@@ -35,10 +35,6 @@ def search_sensors(people: Sequence[Parts], channels: Sequence[Channel], most: i
     ----------
     people : sequence of Parts
         Windows in which every candidate is read, and every state told: candidates and states are the same channels.
-    channels : sequence of Channel
-        Of the candidates, in the order of the windows.
-    most : int
-        Sensors of the largest set.
 
     Returns
     -------
@@ -47,11 +43,6 @@ def search_sensors(people: Sequence[Parts], channels: Sequence[Channel], most: i
         all angles on the check parts, sensors counted as exact [deg2]; of the scaled states where there is no angle),
         `rmse_deg` (on the judged parts, angles that no sensor measures; mean over people), `fits` and `seconds`
         (regressions and processor time for this size).
-
-    Raises
-    ------
-    ChannelError
-        If there are fewer than two channels, or no sensor is asked for.
 
     Examples
     --------

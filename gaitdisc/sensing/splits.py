@@ -73,25 +73,8 @@ def split_within(trials: Sequence[Samples], rule: str, reach_s: float, seed: int
 
     Parameters
     ----------
-    trials : sequence of Samples
-        Windows of each trial, in order of time.
-    rule : str
-        A word of `RULES`.
     reach_s : float
         From the first reading of a window to its last [s].
-    seed : int
-        Of the random rule.
-
-    Returns
-    -------
-    Parts
-
-    Raises
-    ------
-    SchemaError
-        If there is no such rule.
-    SamplingError
-        If a part is left without windows.
 
     Examples
     --------
@@ -115,17 +98,6 @@ def split_by_subject(people: Sequence[Sequence[Samples]], judged: int) -> Parts:
     ----------
     people : sequence of sequence of Samples
         Windows of each trial of each person; at least three people.
-    judged : int
-        Place of the person on whom models are judged.
-
-    Returns
-    -------
-    Parts
-
-    Raises
-    ------
-    SamplingError
-        If there are fewer than three people.
     """
     if len(people) < 3:
         raise SamplingError(
@@ -143,16 +115,8 @@ def split_by_trial(trials: Sequence[Samples], judged: Sequence[int], reach_s: fl
 
     Parameters
     ----------
-    trials : sequence of Samples
-        Windows of each trial of a person.
-    judged : sequence of int
-        Places of the trials on which models are judged.
     reach_s : float
         From the first reading of a window to its last [s].
-
-    Returns
-    -------
-    Parts
     """
     others = [each for k, each in enumerate(trials) if k not in judged]
     labels = [_apart(each.time, np.where(_share(each.time) < 0.85, TRAINING, CHECK), reach_s) for each in others]

@@ -24,8 +24,6 @@ class Judged:
 
     Parameters
     ----------
-    windows : Samples
-        Judged windows of all trials.
     stride : ndarray of int (window,)
         Number of the stride, -1 outside of strides.
     told : ndarray (window, state)
@@ -44,11 +42,6 @@ class Judged:
 
 def stride_numbers(trials: Sequence[Samples]) -> NDArray[np.int_]:
     """Number of the stride of each window, counted through all trials.
-
-    Parameters
-    ----------
-    trials : sequence of Samples
-        In the order in which they are stacked.
 
     Examples
     --------
@@ -73,15 +66,6 @@ def stride_numbers(trials: Sequence[Samples]) -> NDArray[np.int_]:
 
 def state_errors(judged: Judged, channels: Sequence[Channel], seed: int = 0) -> pd.DataFrame:
     """Error of every state: RMSE in its unit, relative L2, and R2.
-
-    Parameters
-    ----------
-    judged : Judged
-        What was measured and told.
-    channels : sequence of Channel
-        Of the states, in order.
-    seed : int
-        Of the draws of strides.
 
     Returns
     -------
@@ -110,11 +94,6 @@ def state_errors(judged: Judged, channels: Sequence[Channel], seed: int = 0) -> 
 def angle_columns(channels: Sequence[Channel]) -> list[int]:
     """Columns that are angles.
 
-    Parameters
-    ----------
-    channels : sequence of Channel
-        In the order of the columns.
-
     Examples
     --------
     >>> angle_columns([Channel("pelvis_tx", "translation", "m"), Channel("knee_angle_r", "angle", "deg", "r")])
@@ -128,10 +107,6 @@ def angles_error(judged: Judged, channels: Sequence[Channel], sensors: NDArray[n
 
     Parameters
     ----------
-    judged : Judged
-        What was measured and told.
-    channels : sequence of Channel
-        Of the states, in order.
     sensors : ndarray (window, sensor) [deg]
         Readings of those sensors that are angles: they belong to the state, and their error is none.
 
@@ -157,15 +132,6 @@ def angles_error(judged: Judged, channels: Sequence[Channel], sensors: NDArray[n
 
 def phase_curves(judged: Judged, states: Sequence[str], points: int = 51) -> pd.DataFrame:
     """Mean and spread over the stride of what was measured and what was told.
-
-    Parameters
-    ----------
-    judged : Judged
-        What was measured and told.
-    states : sequence of str
-        Names of the states.
-    points : int
-        Bins from 0 to 100 % of the stride.
 
     Returns
     -------

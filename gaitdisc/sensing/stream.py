@@ -24,16 +24,9 @@ class Stream:
 
     Parameters
     ----------
-    reconstructor : Reconstructor
-        What tells the states.
     missing : str
         A word of `gaitdisc.sensing.missing.WAYS`: what stands for a reading that is missing, unless the model was
         fitted to be told of it.
-
-    Raises
-    ------
-    SchemaError
-        If there is no such way.
 
     Examples
     --------
@@ -59,11 +52,6 @@ class Stream:
         ----------
         reading : array_like (sensor,) [each sensor's unit]
             In the order of the sensors; NaN where a sensor dropped out. One call a sample, at the model's rate.
-
-        Raises
-        ------
-        ShapeError
-            If there are not as many values as sensors.
         """
         new = np.asarray(reading, float)
         if new.shape != (len(self._sensors),):

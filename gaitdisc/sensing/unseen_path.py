@@ -29,26 +29,13 @@ def unseen_path(
 
     Parameters
     ----------
-    field : Field
-        To be told.
     routes : sequence of Route
         To fit on, at least two, each with as many sensors as `unseen`.
-    unseen : Route
-        To be judged on.
-    task : FieldTask
-        Lags, split, share of the energy, seed.
-    kinds : sequence of str
-        Words of `gaitdisc.sensing.reconstructor.KINDS`.
 
     Returns
     -------
     list of FieldCell
         `route` says on which path it was judged, and how the model was fitted.
-
-    Raises
-    ------
-    ChannelError
-        If there are fewer than two paths to fit on, or their sensors differ in number.
     """
     if len(routes) < 2 or {route.sensors for route in routes} != {unseen.sensors}:
         counts = ", ".join(str(route.sensors) for route in routes) or "none"

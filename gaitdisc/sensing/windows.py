@@ -25,11 +25,6 @@ class Lags:
     ahead : int
         Samples from the last reading to the state that is told: 0 tells the present, more of them forecast.
 
-    Raises
-    ------
-    ShapeError
-        If one of the first two is below 1, or the last below 0.
-
     Examples
     --------
     >>> Lags(25, 4).reach
@@ -71,12 +66,8 @@ def windows_of(
 
     Parameters
     ----------
-    recording : Recording
-        One trial; windows never join two.
     sensors, states : sequence of str
         Channels that are read, and channels that are to be told.
-    lags : Lags
-        Reach and density of the windows.
     phi : ndarray (time,) [% stride]
         Percent stride of every sample of the recording.
     missing : bool
@@ -87,13 +78,6 @@ def windows_of(
     Samples
         x (window, reading * sensor), oldest reading first, sensors side by side; y, time and phi those of the state
         that is told, at the last reading or `lags.ahead` samples later. Windows that lack a value are not among them.
-
-    Raises
-    ------
-    SamplingError
-        If the recording is shorter than a window.
-    ChannelError
-        If a channel is missing.
 
     Examples
     --------
@@ -129,26 +113,12 @@ def windows_of(
 
 
 def present(samples: Samples, sensors: Sequence[str]) -> Samples:
-    """Keep the present reading of each window: what a model without history sees.
-
-    Parameters
-    ----------
-    samples : Samples
-        From `windows_of`.
-    sensors : sequence of str
-        Whose readings the windows hold.
-    """
+    """Keep the present reading of each window: what a model without history sees."""
     return replace(samples, x=samples.x[:, -len(sensors) :], inputs=tuple(sensors))
 
 
 def stacked(samples: Sequence[Samples]) -> Samples:
-    """Put windows of several trials one below the other; each window still belongs to one trial.
-
-    Parameters
-    ----------
-    samples : sequence of Samples
-        At least one; of the same inputs and outputs.
-    """
+    """Put windows of several trials one below the other; each window still belongs to one trial."""
     first = samples[0]
     joined = {name: np.concatenate([getattr(each, name) for each in samples]) for name in ("x", "y", "time", "phi")}
     subjects = {each.subject for each in samples}
@@ -156,13 +126,5 @@ def stacked(samples: Sequence[Samples]) -> Samples:
 
 
 def thinned(samples: Samples, most: int) -> Samples:
-    """Keep every k-th window, as few as needed to have no more than so many: neighbours say nearly the same.
-
-    Parameters
-    ----------
-    samples : Samples
-        Any.
-    most : int
-        Windows that may stay.
-    """
+    """Keep every k-th window, as few as needed to have no more than so many: neighbours say nearly the same."""
     return samples.rows(slice(None, None, max(1, -(-len(samples) // most))))

@@ -31,17 +31,6 @@ def effective_cutoff_hz(cutoff_hz: float, rate_hz: float, order: int = 4, kind: 
     Each pass has |H|^2 = 1 / (1 + w^(2n)) with w = tan(pi f / rate) / tan(pi fc / rate); both together pass half of the
     power where w^(2n) = sqrt(2) - 1 (low-pass; its inverse for a high-pass).
 
-    Parameters
-    ----------
-    cutoff_hz : float
-        -3 dB frequency of one pass.
-    rate_hz : float
-        Samples a second.
-    order : int
-        Order n of one pass.
-    kind : str
-        `lowpass` or `highpass`.
-
     Examples
     --------
     >>> round(effective_cutoff_hz(6.0, 100.0), 2)
@@ -140,15 +129,6 @@ def highpassed(
 def needed_samples(cutoff_hz: float, rate_hz: float, order: int = 4) -> int:
     """Shortest run that is filtered: longer than the padding, which is one period of the cut-off.
 
-    Parameters
-    ----------
-    cutoff_hz : float
-        -3 dB frequency of one pass.
-    rate_hz : float
-        Samples a second.
-    order : int
-        Order of one pass.
-
     Examples
     --------
     >>> needed_samples(6.0, 100.0)
@@ -164,18 +144,8 @@ def short_run_findings(
 
     Parameters
     ----------
-    recording : Recording
-        As it is before filtering.
-    cutoff_hz : float
-        -3 dB frequency of one pass.
-    order : int
-        Order of one pass.
     max_gap_s : float
         Longest gap that is bridged [s].
-
-    Returns
-    -------
-    list of Finding
     """
     bridged = filled(recording, None, max_gap_s)
     need = needed_samples(cutoff_hz, recording.rate_hz, order)

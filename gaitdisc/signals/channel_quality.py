@@ -31,10 +31,6 @@ def channel_findings(recording: Recording) -> list[Finding]:
     ----------
     recording : Recording
         As read, not filtered. EMG has rules of its own (`emg_findings`); its channels are looked at for gaps only.
-
-    Returns
-    -------
-    list of Finding
     """
     findings = gap_findings(recording)
     recording = unwrapped(recording)
@@ -72,8 +68,6 @@ def frozen(x: NDArray[np.float64], rate_hz: float) -> NDArray[np.bool_]:
     ----------
     x : ndarray (time,)
         One channel.
-    rate_hz : float
-        Samples a second.
 
     Examples
     --------
@@ -94,8 +88,6 @@ def clipped(x: NDArray[np.float64], rests_at_zero: bool = False) -> NDArray[np.b
     ----------
     x : ndarray (time,)
         One channel.
-    rests_at_zero : bool
-        Zero does not count, as with forces.
 
     Examples
     --------

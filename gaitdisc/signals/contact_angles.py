@@ -40,20 +40,6 @@ def angle_contacts(kinematics: Recording, sides: tuple[str, ...] = ("r", "l")) -
     ----------
     kinematics : Recording
         `hip_flexion_<side>` and, for the better mark, `knee_angle_<side>`, flexion positive [deg].
-    sides : tuple of str
-        Sides wanted.
-
-    Returns
-    -------
-    dict of str to Contacts
-        The note says which mark was used.
-
-    Raises
-    ------
-    ChannelError
-        If a hip angle is not there.
-    StrideError
-        If the hip does not swing or does not repeat.
     """
     found = {}
     for side in sides:

@@ -14,21 +14,6 @@ CONTACT, OFF = "initial contact", "foot off"
 def event_contacts(trial: Trial) -> dict[str, Contacts]:
     """Contacts of both feet from the events of a trial.
 
-    Parameters
-    ----------
-    trial : Trial
-        With events `initial contact` of side `r` or `l`.
-
-    Returns
-    -------
-    dict of str to Contacts
-        For each side that has one.
-
-    Raises
-    ------
-    StrideError
-        If there is no initial contact, or none of them names its foot.
-
     Examples
     --------
     >>> from gaitdisc.recording import Event

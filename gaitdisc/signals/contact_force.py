@@ -23,11 +23,6 @@ SHORTEST_S = 0.1  # neither stance nor swing is shorter; what is, is chatter
 def rise_of(body_weight_n: float | None) -> float:
     """Force above which a foot is on the ground [N]: 50 N, or a tenth of a light body's weight, at least 20 N.
 
-    Parameters
-    ----------
-    body_weight_n : float or None
-        Mass x 9.81.
-
     Examples
     --------
     >>> rise_of(None), rise_of(64 * 9.81), round(rise_of(30 * 9.81), 2), rise_of(15 * 9.81)
@@ -48,8 +43,6 @@ def loaded(force_n: NDArray[np.float64], rate_hz: float, rise_n: float = RISE_N)
     ----------
     force_n : ndarray (time,) [N]
         Positive upwards on the foot; NaN counts as unloaded.
-    rate_hz : float
-        Samples a second.
     rise_n : float
         Force above which a foot is on the ground [N].
 
@@ -92,18 +85,11 @@ def force_contacts(
         Channels of quantity `vertical_force` [N].
     sides : mapping of str to str, optional
         Channel to `r` or `l`; by default the channels' own sides.
-    body_weight_n : float, optional
-        Mass x 9.81.
 
     Returns
     -------
     dict of str to Contacts
         For each side with a channel, with foot off.
-
-    Raises
-    ------
-    ChannelError
-        If there is no vertical force that belongs to a side.
     """
     if sides is None:
         sides = {c.name: c.side for c in forces.channels if c.quantity == "vertical_force" and c.side}
@@ -139,24 +125,13 @@ def plate_contacts(
     ----------
     forces : Recording
         Channels of quantity `vertical_force` [N], one a plate.
-    markers : Recording
-        Of the same trial, on the same clock.
     heels : mapping of str to str
         Side (`r`, `l`) to the name of its heel marker.
-    direction : Direction
-        From `walking_direction` or `given_direction`.
-    body_weight_n : float, optional
-        Mass x 9.81.
 
     Returns
     -------
     dict of str to Contacts
         Both sides; empty where no plate was hit by that foot.
-
-    Raises
-    ------
-    StrideError
-        If at a contact a heel marker is missing, so that the foot cannot be told.
     """
     times: dict[str, list[float]] = {"r": [], "l": []}
     offs: dict[str, list[float]] = {"r": [], "l": []}

@@ -30,8 +30,6 @@ def marker_contacts(
         Channels `<marker>.x`, `<marker>.y`, `<marker>.z` [m].
     heels : mapping of str to str
         Side (`r`, `l`) to the name of its heel marker.
-    pelvis : sequence of str
-        Names of the pelvis markers; their mean is taken.
     direction : Direction, optional
         Direction of walking; inferred (`walking_direction`) and said in the note where it is not given.
 
@@ -39,13 +37,6 @@ def marker_contacts(
     -------
     dict of str to Contacts
         For each side in `heels`; foot off (heel farthest behind the pelvis) is not given, since the toe leaves later.
-
-    Raises
-    ------
-    StrideError
-        If the heel never swings, or the direction cannot be inferred.
-    ChannelError
-        If a marker is not there.
 
     References
     ----------

@@ -114,8 +114,6 @@ def compared(first: Contacts, second: Contacts, within_s: float = MATCH_S) -> Ag
 
     Parameters
     ----------
-    first, second : Contacts
-        Same foot, same clock.
     within_s : float
         Farther apart is no pair [s].
 
@@ -124,11 +122,6 @@ def compared(first: Contacts, second: Contacts, within_s: float = MATCH_S) -> Ag
     Agreement
         Contacts before the first or after the last of the other detector (by more than `within_s`) count as neither
         missed nor extra: a plate sees two steps of a walk.
-
-    Raises
-    ------
-    StrideError
-        If the two are not of one foot.
 
     Examples
     --------
@@ -159,13 +152,6 @@ def compared(first: Contacts, second: Contacts, within_s: float = MATCH_S) -> Ag
 
 def order_findings(right: Contacts, left: Contacts, file: str = "") -> list[Finding]:
     """Find where right and left contacts do not alternate.
-
-    Parameters
-    ----------
-    right, left : Contacts
-        Of one trial.
-    file : str
-        Name for the findings.
 
     Returns
     -------

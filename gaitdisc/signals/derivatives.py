@@ -30,20 +30,11 @@ def differentiated(values: NDArray[np.float64], rate_hz: float, order: int = 1) 
     ----------
     values : ndarray (time, channel) [unit]
         Filtered; the difference quotient passes on what noise is left.
-    rate_hz : float
-        Samples a second.
-    order : int
-        1 or 2.
 
     Returns
     -------
     ndarray (time, channel) [unit/s or unit/s2]
         NaN at the first and last two samples and within two samples of a missing one: no one-sided guess.
-
-    Raises
-    ------
-    SamplingError
-        If there are fewer than five samples.
 
     References
     ----------
@@ -108,8 +99,6 @@ def trajectory(filtered: Recording, strides: Strides) -> Trajectory:
 
     Parameters
     ----------
-    filtered : Recording
-        From `lowpassed` or `enveloped`, with its marks.
     strides : Strides
         Strides of the leg that percent stride is counted by.
 
@@ -118,11 +107,6 @@ def trajectory(filtered: Recording, strides: Strides) -> Trajectory:
     Trajectory
         `usable` where x, xdot and xddot are there and none of the five samples they rest on is suspect: not in filled
         gaps, not at the filter's edges, not on plateaus. phi is NaN outside of the strides.
-
-    Raises
-    ------
-    SamplingError
-        If there are fewer than five samples.
 
     References
     ----------

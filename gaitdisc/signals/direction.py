@@ -53,20 +53,7 @@ class Direction:
 
 
 def marker_position(markers: Recording, name: str) -> NDArray[np.float64]:
-    """Position of one marker, (time, 3) [m].
-
-    Parameters
-    ----------
-    markers : Recording
-        Channels `<marker>.x`, `<marker>.y`, `<marker>.z`.
-    name : str
-        Name of the marker.
-
-    Raises
-    ------
-    ChannelError
-        If the marker is not there; the nearest name is given.
-    """
+    """Position of one marker, (time, 3) [m]."""
     return np.stack([markers[f"{name}.{axis}"] for axis in "xyz"], axis=1)
 
 
@@ -75,15 +62,8 @@ def pelvis_position(markers: Recording, pelvis: Sequence[str]) -> NDArray[np.flo
 
     Parameters
     ----------
-    markers : Recording
-        Channels `<marker>.x`, `<marker>.y`, `<marker>.z`.
     pelvis : sequence of str
         Names of the pelvis markers; the two or four at the iliac spines, or one at the sacrum.
-
-    Raises
-    ------
-    ChannelError
-        If none is named.
     """
     if not pelvis:
         raise ChannelError(
@@ -102,20 +82,8 @@ def walking_direction(markers: Recording, heels: Mapping[str, str], pelvis: Sequ
 
     Parameters
     ----------
-    markers : Recording
-        Channels `<marker>.x`, `<marker>.y`, `<marker>.z`.
     heels : mapping of str to str
         Side (`r`, `l`) to the name of its heel marker.
-    pelvis : sequence of str
-        Names of the pelvis markers.
-
-    Raises
-    ------
-    StrideError
-        If on a treadmill forwards cannot be told from backwards (skewness of the velocity below 0.2), or no frame has
-        a heel and the pelvis.
-    ChannelError
-        If a marker is not there.
     """
     centre = pelvis_position(markers, pelvis)
     swings = [marker_position(markers, name) - centre for name in heels.values()]
@@ -194,16 +162,6 @@ def _shown(forward: NDArray[np.float64]) -> str:
 
 def given_direction(forward: Sequence[float], up: Sequence[float] = (0.0, 0.0, 1.0)) -> Direction:
     """Direction that the laboratory states.
-
-    Parameters
-    ----------
-    forward, up : sequence of 3 floats
-        Any length but zero, at right angles.
-
-    Raises
-    ------
-    StrideError
-        If one of them is zero or they are not at right angles.
 
     Examples
     --------

@@ -20,17 +20,7 @@ _SHIN = re.compile(r"emg_(ta)_([rl])")
 
 
 def stance_over_swing(envelope: Recording, strides: Strides, name: str) -> float:
-    """Natural logarithm of a channel's mean in stance over that in swing; NaN without a whole stride.
-
-    Parameters
-    ----------
-    envelope : Recording
-        Rectified and smoothed EMG.
-    strides : Strides
-        Of the foot of that leg.
-    name : str
-        Of the channel.
-    """
+    """Natural logarithm of a channel's mean in stance over that in swing; NaN without a whole stride."""
     curves = strides.normalised(envelope.selected([name]))[:, :, 0]
     curves = curves[np.isfinite(curves).all(axis=1)]
     if not len(curves):
@@ -45,18 +35,6 @@ def order_of_muscles(envelope: Recording, strides: Mapping[str, Strides]) -> lis
 
     A muscle alone is not judged: a foot that drops or a calf that is spastic has its own course. Two that each do what
     the other should are.
-
-    Parameters
-    ----------
-    envelope : Recording
-        Rectified and smoothed EMG of channels that live.
-    strides : mapping of str to Strides
-        Side -> strides of that foot.
-
-    Returns
-    -------
-    list of Finding
-        A warning for each pair.
     """
     seen: dict[tuple[str, str], tuple[str, float]] = {}
     for name in envelope.names:

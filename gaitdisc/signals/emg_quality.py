@@ -30,8 +30,6 @@ class AmplifierRange:
 
     Parameters
     ----------
-    volts : float
-        Either side of zero.
     how : str
         `given`, or what it was inferred from.
     """
@@ -138,8 +136,6 @@ def burst_ratio(x: NDArray[np.float64], rate_hz: float) -> float:
     ----------
     x : ndarray (time,) [V]
         Raw EMG of one channel.
-    rate_hz : float
-        Samples a second.
 
     Returns
     -------

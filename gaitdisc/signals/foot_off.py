@@ -49,10 +49,6 @@ def marker_foot_off(
         Channels `<marker>.x`, `<marker>.y`, `<marker>.z` [m].
     toe : str
         Marker at the toes; one at the heel leaves earlier.
-    pelvis : sequence of str
-        Names of the pelvis markers; their mean is taken.
-    direction : Direction
-        From `walking_direction` or `given_direction`.
     windows : sequence of (float, float)
         From `stance_windows` [s].
 
@@ -80,8 +76,6 @@ def angle_foot_off(kinematics: Recording, ankle: str, windows: Sequence[tuple[fl
     ----------
     kinematics : Recording
         With the ankle, dorsiflexion positive [deg].
-    ankle : str
-        Name of its channel.
     windows : sequence of (float, float)
         From `stance_windows` [s].
     """

@@ -23,8 +23,6 @@ def swing_baseline(force_n: NDArray[np.float64], rate_hz: float) -> NDArray[np.f
     ----------
     force_n : ndarray (time,) [N]
         Vertical force of one plate, of either sign.
-    rate_hz : float
-        Samples a second.
 
     Returns
     -------

@@ -20,13 +20,6 @@ FEWEST_TEMPLATE_STRIDES = 5
 def gap_spans(recording: Recording, name: str) -> tuple[tuple[float, float], ...]:
     """Spans without a value in one channel.
 
-    Parameters
-    ----------
-    recording : Recording
-        NaN where nothing was measured.
-    name : str
-        Name of the channel.
-
     Returns
     -------
     tuple of (float, float) [s]
@@ -56,17 +49,10 @@ def filled(
 
     Parameters
     ----------
-    recording : Recording
-        NaN where nothing was measured.
     strides : Strides, optional
         Strides of one leg, for the template; at least 5 of them must be without a gap in the channel.
     max_spline_s, max_template_s : float
         Longest gap for the spline and for the template [s].
-
-    Returns
-    -------
-    Recording
-        Filled samples suspect.
     """
     given, recording = recording, unwrapped(recording)
     values, marks = np.array(recording.values), np.zeros(recording.values.shape, bool)
@@ -99,8 +85,6 @@ def gap_findings(recording: Recording, max_gap_s: float = MAX_SPLINE_S) -> list[
 
     Parameters
     ----------
-    recording : Recording
-        NaN where nothing was measured.
     max_gap_s : float
         Longest gap that is filled [s].
 

@@ -64,19 +64,6 @@ def late_change(recording: Recording, strides: Strides, seed: int = 0) -> LateCh
     stationary autoregressive series of the same length and dependence, treated alike. Outlying strides are left out
     first.
 
-    Parameters
-    ----------
-    recording : Recording
-        Joint angles, on the trial's clock; filtered or not.
-    strides : Strides
-        Of one leg, in order.
-    seed : int
-        Of the simulated series.
-
-    Returns
-    -------
-    LateChange
-
     Notes
     -----
     Measured on 300 made-up stationary trials each of 40, 100 and 224 strides, dependence 0 to 0.8: p is 0.05 or less in
@@ -84,11 +71,6 @@ def late_change(recording: Recording, strides: Strides, seed: int = 0) -> LateCh
     the last fifth has p of 0.01 or less in every trial of 224 strides (four minutes); of 100 strides in all where
     strides depend little on each other (0.3 or less: 93 to 100 %) and in 15 to 48 % at 0.6; of 40 strides only where
     they do not depend on each other at all (75 to 97 %).
-
-    Raises
-    ------
-    StrideError
-        If fewer than 24 strides are whole.
 
     References
     ----------
@@ -127,17 +109,6 @@ def late_change(recording: Recording, strides: Strides, seed: int = 0) -> LateCh
 
 def late_change_findings(recording: Recording, strides: Strides, alpha: float = ALPHA, seed: int = 0) -> list[Finding]:
     """Say whether gait changes late in a trial.
-
-    Parameters
-    ----------
-    recording : Recording
-        Joint angles, on the trial's clock.
-    strides : Strides
-        Of one leg.
-    alpha : float
-        Largest p value that counts.
-    seed : int
-        Of the simulated series.
 
     Returns
     -------

@@ -17,12 +17,6 @@ def savgol_filter(
     ----------
     values : ndarray (sample,)
         Evenly sampled, finite, `width` samples or more.
-    width : int
-        Samples that each polynomial is fitted to; odd.
-    degree : int
-        Of the polynomials.
-    derivative : int
-        Which derivative; 0 smooths only.
     step : float
         Between two samples [s].
 

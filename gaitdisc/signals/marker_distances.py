@@ -53,13 +53,6 @@ def segment_distances(markers: Recording) -> dict[tuple[str, str], float]:
 def person_findings(static: Recording, walk: Recording, file: str) -> list[Finding]:
     """Say that a static trial is another person's, or that its markers were moved.
 
-    Parameters
-    ----------
-    static, walk : Recording
-        Markers of the two trials.
-    file : str
-        Name of the walk, for the finding.
-
     Returns
     -------
     list of Finding

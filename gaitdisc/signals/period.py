@@ -24,8 +24,6 @@ def stride_period(
     ----------
     x : ndarray (time,)
         NaN allowed; lags use the pairs that are there.
-    rate_hz : float
-        Samples a second.
     shortest_s, longest_s : float
         Range searched [s].
 

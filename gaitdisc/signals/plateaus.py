@@ -27,8 +27,6 @@ class Plateau:
 
     Parameters
     ----------
-    channel : str
-        Name of the angle.
     limit : float
         Value at the plateau [deg].
     marks : ndarray of bool (time,)
@@ -96,10 +94,6 @@ def plateau_findings(kinematics: Recording) -> list[Finding]:
     ----------
     kinematics : Recording
         Joint angles [deg].
-
-    Returns
-    -------
-    list of Finding
     """
     return [
         Finding(
@@ -124,11 +118,6 @@ def plateau_marked(kinematics: Recording) -> Recording:
     ----------
     kinematics : Recording
         Joint angles [deg]; mark before filtering, so that the limits are still sharp.
-
-    Returns
-    -------
-    Recording
-        Same values.
     """
     marks = np.zeros(kinematics.values.shape, bool)
     beside = round(BESIDE_S * kinematics.rate_hz)

@@ -45,8 +45,6 @@ class Spectrum:
         As a share of the rate.
     power : ndarray (line,)
         [the channel's unit squared].
-    windows : int
-        How many were averaged.
     """
 
     frequency: NDArray[np.float64]
@@ -54,13 +52,7 @@ class Spectrum:
     windows: int
 
     def lines(self, kept: slice) -> Spectrum:
-        """Return some of the lines.
-
-        Parameters
-        ----------
-        kept : slice
-            Which.
-        """
+        """Return some of the lines."""
         return Spectrum(self.frequency[kept], self.power[kept], self.windows)
 
 
@@ -70,8 +62,6 @@ class RecordedFilter:
 
     Parameters
     ----------
-    cutoff_hz : float
-        -3 dB frequency of one pass.
     gained : float
         Log likelihood with it less that without it.
     signal : float
@@ -92,8 +82,6 @@ def recorded_filter(
     ----------
     trials : sequence of ndarray (sample,)
         One channel of each trial, evenly sampled; NaN where nothing was measured.
-    rate_hz : float
-        Samples a second.
     like : sequence of ndarray (sample,), optional
         The same channel as a simulation has it, before any filter: the signal's spectrum is like that of these.
 

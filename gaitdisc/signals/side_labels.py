@@ -89,8 +89,6 @@ def sway_findings(kinematics: Recording, strides: Sequence[Strides]) -> list[Fin
     ----------
     kinematics : Recording
         With `pelvis_tx`, `pelvis_tz` [m] and `pelvis_rotation` [deg] as OpenSim has them, y up.
-    strides : sequence of Strides
-        Of one foot or of both.
 
     Returns
     -------

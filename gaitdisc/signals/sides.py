@@ -18,15 +18,6 @@ def knee_peak_percent(kinematics: Recording, strides: Strides, knee: str) -> flo
     ----------
     kinematics : Recording
         With the knee's flexion [deg].
-    strides : Strides
-        Of either foot.
-    knee : str
-        Name of the channel.
-
-    Raises
-    ------
-    ChannelError
-        If the knee is not there.
     """
     curves = strides.normalised(kinematics.selected([knee]))[:, :, 0]
     curves = curves[np.isfinite(curves).all(axis=1)]
@@ -48,20 +39,11 @@ def verify_sides(kinematics: Recording, strides: Strides) -> float:
     ----------
     kinematics : Recording
         With both knees, flexion positive [deg].
-    strides : Strides
-        Of one foot.
 
     Returns
     -------
     float
         Percent stride of the knee's peak; NaN where no stride has the knee.
-
-    Raises
-    ------
-    StrideError
-        If the sides are swapped, or the knee peaks in stance for another reason (a knee whose extension is positive).
-    ChannelError
-        If the knee is not there.
     """
     own, other = (f"knee_angle_{side}" for side in (strides.side, "l" if strides.side == "r" else "r"))
     at = knee_peak_percent(kinematics, strides, own)

@@ -27,11 +27,6 @@ def spikes(recording: Recording) -> NDArray[np.bool_]:
     hundred exceeds: a stumble is fast too, but has samples on its way. Within 0.03 s of an end or of a gap nothing is
     judged. A heading is looked at as it goes on.
 
-    Parameters
-    ----------
-    recording : Recording
-        As read, not filtered; forces and EMG have none.
-
     References
     ----------
     Hampel 1974, J. Am. Stat. Assoc. 69, 383; Pearson 2002, IEEE Trans. Control Syst. Technol. 10, 55. Differs: the
@@ -69,30 +64,13 @@ def spikes(recording: Recording) -> NDArray[np.bool_]:
 
 
 def without_spikes(recording: Recording) -> Recording:
-    """Recording in which spikes are gaps: bridged and marked suspect where short (`filled`), else left out.
-
-    Parameters
-    ----------
-    recording : Recording
-        As read, not filtered.
-    """
+    """Recording in which spikes are gaps: bridged and marked suspect where short (`filled`), else left out."""
     marks = spikes(recording)
     return recording.with_values(np.where(marks, np.nan, recording.values)) if marks.any() else recording
 
 
 def spike_findings(recording: Recording) -> list[Finding]:
-    """Say which channels have spikes, how large and where.
-
-    Parameters
-    ----------
-    recording : Recording
-        As read, not filtered.
-
-    Returns
-    -------
-    list of Finding
-        One warning a channel.
-    """
+    """Say which channels have spikes, how large and where."""
     marks = spikes(recording)
     findings = []
     for column in np.flatnonzero(marks.any(axis=0)):

@@ -21,13 +21,6 @@ def stride_distances(recording: Recording, strides: Strides) -> NDArray[np.float
 
     The root mean square over the stride; the median curve is not moved by the strides that are looked for.
 
-    Parameters
-    ----------
-    recording : Recording
-        Any channels, on the trial's clock.
-    strides : Strides
-        Of one leg.
-
     Examples
     --------
     >>> from gaitdisc.channel import Channel
@@ -53,13 +46,6 @@ def outlying(recording: Recording, strides: Strides) -> NDArray[np.bool_]:
 
     Far means: the logarithm of the distance is 3.5 robust standard deviations above its median, and the distance twice
     the usual one. Steady changes do not count; `late_change` looks for these.
-
-    Parameters
-    ----------
-    recording : Recording
-        Any channels, on the trial's clock.
-    strides : Strides
-        Of one leg; fewer than 8 have no outliers.
     """
     distance = stride_distances(recording, strides)
     far = np.zeros(distance.shape, bool)
@@ -76,20 +62,7 @@ def outlying(recording: Recording, strides: Strides) -> NDArray[np.bool_]:
 
 
 def stride_findings(recording: Recording, strides: Strides) -> list[Finding]:
-    """Say which strides are unlike the others, channel by channel.
-
-    Parameters
-    ----------
-    recording : Recording
-        Any channels, on the trial's clock.
-    strides : Strides
-        Of one leg.
-
-    Returns
-    -------
-    list of Finding
-        One warning a channel that has such strides.
-    """
+    """Say which strides are unlike the others, channel by channel."""
     far, distance = outlying(recording, strides), stride_distances(recording, strides)
     findings = []
     for column, channel in enumerate(recording.channels):
@@ -122,16 +95,8 @@ def without_outlying(recording: Recording, strides: Strides, fewest_channels: in
 
     Parameters
     ----------
-    recording : Recording
-        Any channels, on the trial's clock.
-    strides : Strides
-        Of one leg.
     fewest_channels : int
         In how many channels a stride must be outlying to be dropped.
-
-    Returns
-    -------
-    Strides
     """
     far, distance = outlying(recording, strides), stride_distances(recording, strides)
     out = far.sum(axis=1) >= fewest_channels

@@ -27,22 +27,10 @@ def cut_strides(
 
     Parameters
     ----------
-    contacts : Contacts
-        Of one foot.
     recording : Recording, optional
         What will be analysed in the strides; channels without any value do not count.
     min_s, max_s : float
         Limits of a stride's duration [s].
-
-    Returns
-    -------
-    Strides
-        With `dropped`.
-
-    Raises
-    ------
-    StrideError
-        If there are fewer than two contacts, or no stride is left.
 
     Examples
     --------

@@ -22,8 +22,6 @@ class Walking:
 
     Parameters
     ----------
-    strides : int
-        Strides used.
     stride_s : float
         Median duration [s].
     coverage : float
@@ -49,8 +47,6 @@ def measured_walking(kinematics: Recording, strides: Strides) -> Walking:
     ----------
     kinematics : Recording
         With hip and knee flexion [deg].
-    strides : Strides
-        As cut; dropped ones do not count.
     """
     hips_and_knees = [
         n for n in kinematics.names if n in {f"{j}_{s}" for j in ("hip_flexion", "knee_angle") for s in "rl"}
@@ -84,22 +80,8 @@ def verify_walking(
     ----------
     kinematics : Recording
         With hip and knee flexion [deg].
-    strides : Strides
-        As cut.
-    fewest : int
-        Strides needed.
     least_coverage : float
         Share of the trial that strides must cover; 0 for walks over ground that begin and end within the trial.
-
-    Returns
-    -------
-    Walking
-        The numbers.
-
-    Raises
-    ------
-    StrideError
-        If it is not walking; all numbers that fail are named.
     """
     found = measured_walking(kinematics, strides)
     fails = []

@@ -38,8 +38,6 @@ def at_points(
 
     Parameters
     ----------
-    program : Program
-        Compiled expressions.
     columns : sequence of ndarray (point,) or ()
         Values of its leaves; one number serves all points.
     late : ndarray (point, delay), optional
@@ -59,15 +57,7 @@ def at_points(
 
 
 class PointTable:
-    """Values of a program's leaves at a number of points, to be filled in part and evaluated again and again.
-
-    Parameters
-    ----------
-    program : Program
-        Compiled expressions.
-    points : int
-        How many.
-    """
+    """Values of a program's leaves at a number of points, to be filled in part and evaluated again and again."""
 
     def __init__(self, program: Program, points: int) -> None:
         self._used = tuple(program.used())
@@ -80,8 +70,6 @@ class PointTable:
 
         Parameters
         ----------
-        first : int
-            Number of the first of these leaves.
         columns : sequence of ndarray (point,) or ()
             Their values; one number serves all points.
         """

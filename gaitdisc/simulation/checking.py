@@ -23,18 +23,7 @@ _KEYWORDS = frozenset(keyword.kwlist)
 
 
 def check(simulation: Simulation) -> None:
-    """Refuse a simulation whose parts do not hold together.
-
-    Parameters
-    ----------
-    simulation : Simulation
-        While it is made.
-
-    Raises
-    ------
-    SimulationError
-        With the part that is wrong as its place.
-    """
+    """Refuse a simulation whose parts do not hold together."""
     _check_size(simulation)
     _check_names(simulation)
     _check_numbers(simulation)
@@ -169,17 +158,8 @@ def check_expression(text: str, known: tuple[str, ...], simulation: Simulation) 
 
     Parameters
     ----------
-    text : str
-        Expression.
-    known : tuple of str
-        Names that may stand in it.
     simulation : Simulation
         Whose states and inputs may be delayed, by its parameters.
-
-    Raises
-    ------
-    SimulationError
-        If it does not parse, a name is unknown, or a delay is not of a state or an input.
     """
     tree = parsed(text)
     unknown = next((name for name in names(tree) if name not in known), None)

@@ -24,10 +24,6 @@ class Compiled:
 
     Parameters
     ----------
-    simulation : Simulation
-        What it was made from.
-    states, inputs, parameters, observed : tuple of str
-        Names, in order.
     defaults : ndarray (parameter,)
         The parameters' own values.
     right_hand_side, observation : Program
@@ -56,14 +52,6 @@ class Compiled:
 
         Parameters
         ----------
-        drive : Drive
-            Inputs of all trials.
-        rows : Rows
-            Where each row starts, and with which parameters.
-        steps : int
-            Samples to go.
-        substeps : int
-            Steps for each sample.
         past : ndarray (trial, sample, state), optional
             Measured states, for delays that reach before a row's start; held at the start where absent or NaN.
 
@@ -110,11 +98,6 @@ class Compiled:
             Parameters; the simulation's own where absent.
         late : ndarray (point, delay), optional
             Delayed signals, in the order of `right_hand_side.delays`.
-
-        Raises
-        ------
-        SimulationError
-            If the simulation has delays and `late` is absent.
         """
         values = self.defaults if values is None else np.asarray(values, float)
         return at_points(self.right_hand_side, leaf_columns(t, x, u, values), late).T
@@ -130,10 +113,6 @@ class Compiled:
 
         Parameters
         ----------
-        drive : Drive
-            Inputs of all trials.
-        rows : Rows
-            The rows that were run.
         states : ndarray (row, step, state)
             From `run`.
         past : ndarray (trial, sample, state), optional

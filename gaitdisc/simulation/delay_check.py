@@ -22,17 +22,8 @@ def refuse_delays(simulation: Simulation | PythonSimulation, shortest_s: float =
 
     Parameters
     ----------
-    simulation : Simulation or PythonSimulation
-        With its parameters' values.
     shortest_s : float
         Length of the shortest trial [s].
-    trial : str
-        Its name.
-
-    Raises
-    ------
-    SimulationError
-        With the delay, its seconds and its place.
     """
     values = simulation.values()
     inputs = tuple(each.name for each in simulation.inputs)
@@ -50,21 +41,8 @@ def refuse_delays_of(
 
     Parameters
     ----------
-    tree : Number, Name or Operation
-        From `parsed`.
-    values : dict of str to float
-        Of the names that may stand in the seconds.
-    inputs : tuple of str
-        Names of the inputs.
     shortest_s : float
         Length of the shortest trial [s].
-    trial : str
-        Its name.
-
-    Raises
-    ------
-    SimulationError
-        With the delay and its seconds.
     """
     for call in delays(tree):
         signal, ago = call.arguments

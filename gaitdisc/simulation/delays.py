@@ -44,8 +44,6 @@ def linear_in_rows(
         Trial of each row.
     at : ndarray (row, step)
         Places, in samples, inside the trial.
-    wraps : bool
-        Whether the signal wraps at 1.
     """
     k = np.minimum(at.astype(int), series.shape[1] - 2) if series.shape[1] > 1 else np.zeros(at.shape, int)
     value, after = series[which[:, None], k], series[which[:, None], np.minimum(k + 1, series.shape[1] - 1)]

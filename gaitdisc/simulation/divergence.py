@@ -27,8 +27,6 @@ class Divergence:
         Of its last finite sample [s].
     state : str
         That changes fastest there, relative to its size.
-    value : float
-        Its value there.
     parameter : str
         That the state's rate depends on most there; empty where it depends on none.
     """
@@ -48,12 +46,6 @@ def divergences(
 
     Parameters
     ----------
-    compiled : Compiled
-        What was run.
-    drive : Drive
-        Inputs.
-    rows : Rows
-        What was run.
     states : ndarray (row, step, state)
         From `Compiled.run`.
     ok : ndarray of bool (row,)
@@ -65,18 +57,7 @@ def divergences(
 def refuse_divergence(
     compiled: Compiled, drive: Drive, rows: Rows, states: NDArray[np.float64], ok: NDArray[np.bool_]
 ) -> None:
-    """Refuse a run of which a row did not stay finite.
-
-    Parameters
-    ----------
-    compiled, drive, rows, states, ok : as for `divergences`
-        The run.
-
-    Raises
-    ------
-    SimulationError
-        With the first such row's trial, time and state, and the parameter that drives it.
-    """
+    """Refuse a run of which a row did not stay finite."""
     if np.all(ok):
         return
     first, *others = divergences(compiled, drive, rows, states, ok)

@@ -27,11 +27,6 @@ class Drive:
     samples : ndarray of int (trial,)
         Length of each trial.
 
-    Raises
-    ------
-    ShapeError
-        If they do not fit together.
-
     Examples
     --------
     >>> Drive.of([np.zeros((300, 1)), np.zeros((200, 1))], 100.0).samples.tolist()

@@ -55,13 +55,6 @@ def evaluate(simulation: Simulation, expression: str, points: Points) -> NDArray
         Whose names may stand in it: states, inputs, parameters, ports, definitions, `t`.
     expression : str
         As in a simulation file; also the extras of the points.
-    points : Points
-        Where.
-
-    Raises
-    ------
-    SimulationError
-        If a name is unknown, or a delay is asked for at points that are no series.
 
     Examples
     --------
@@ -75,22 +68,7 @@ def evaluate(simulation: Simulation, expression: str, points: Points) -> NDArray
 
 
 def evaluate_many(simulation: Simulation, expressions: Sequence[str], points: Points) -> NDArray[np.float64]:
-    """Value of many expressions at each point, (expression, point); what they share is computed once.
-
-    Parameters
-    ----------
-    simulation : Simulation
-        Whose names may stand in them.
-    expressions : sequence of str
-        As for `evaluate`.
-    points : Points
-        Where.
-
-    Raises
-    ------
-    SimulationError
-        As `evaluate`.
-    """
+    """Value of many expressions at each point, (expression, point); what they share is computed once."""
     compiled = compile_simulation(simulation)
     names = ("t", *compiled.states, *compiled.inputs, *compiled.parameters, *points.extras)
     scope = simulation_scope(simulation)

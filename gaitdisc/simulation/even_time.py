@@ -24,8 +24,6 @@ class TrialColumns:
 
     Parameters
     ----------
-    name : str
-        Of the trial.
     time : ndarray (sample,) [s]
         As measured.
     inputs, observed : ndarray (sample, input), (sample, channel)
@@ -45,12 +43,8 @@ def on_even_time(
 
     Parameters
     ----------
-    trial : TrialColumns
-        As measured.
     inputs : tuple of str
         Names of its inputs; one called `phase` wraps at 1.
-    source : str
-        Name of the file.
 
     Returns
     -------
@@ -58,15 +52,6 @@ def on_even_time(
         At even times; rows that were missing are NaN in the observed channels, and bridged in the inputs.
     rate : float
         Samples a second [Hz].
-    findings : list of Finding
-        What was resampled or bridged.
-
-    Raises
-    ------
-    SamplingError
-        If the trial is too short, or its time is doubled, runs backwards or is uneven.
-    ReadError
-        If a gap of an input is too long to be bridged.
     """
     where = f"{source}, trial {trial.name!r}"
     _refuse_short(trial, where)
@@ -94,12 +79,8 @@ def clock_findings(trials: list[TrialColumns], rate: float, source: str) -> list
 
     Parameters
     ----------
-    trials : list of TrialColumns
-        At even times.
     rate : float
         Samples a second [Hz].
-    source : str
-        Name of the file.
     """
     whole = all(np.array_equal(trial.time, np.rint(trial.time)) for trial in trials)
     if rate >= SLOW_HZ or not whole:

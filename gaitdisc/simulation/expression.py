@@ -45,13 +45,7 @@ _SIGNS = {
 
 @dataclass(frozen=True, slots=True)
 class Number:
-    """A finite number.
-
-    Parameters
-    ----------
-    value : float
-        Its value.
-    """
+    """A finite number."""
 
     value: float
 
@@ -77,8 +71,6 @@ class Operation:
     ----------
     symbol : str
         `+ - * / **`, `neg`, or a function's name.
-    arguments : tuple of Number, Name or Operation
-        What it works on.
     """
 
     symbol: str
@@ -96,12 +88,6 @@ def parsed(text: str) -> Tree:
     ----------
     text : str
         Numbers, names, `+ - * / **`, parentheses, and the functions of a simulation file.
-
-    Raises
-    ------
-    SimulationError
-        If anything else is met, or the text is too long, too deep or too large; it names the line, the column, what
-        was met and what is allowed.
 
     Examples
     --------
@@ -136,11 +122,6 @@ def parsed(text: str) -> Tree:
 def names(tree: Tree) -> Iterator[str]:
     """Names in an expression, each as often as it stands there.
 
-    Parameters
-    ----------
-    tree : Number, Name or Operation
-        From `parsed`.
-
     Examples
     --------
     >>> sorted(set(names(parsed("-k*max(0, x - x0) + k"))))
@@ -156,11 +137,6 @@ def names(tree: Tree) -> Iterator[str]:
 def delays(tree: Tree) -> Iterator[Operation]:
     """Every `delay(signal, seconds)` of an expression.
 
-    Parameters
-    ----------
-    tree : Number, Name or Operation
-        From `parsed`.
-
     Examples
     --------
     >>> [each.arguments[0].name for each in delays(parsed("1 - 2*delay(v, 0.1)"))]
@@ -175,15 +151,6 @@ def delays(tree: Tree) -> Iterator[Operation]:
 
 def unknown_name(text: str, name: str, known: tuple[str, ...]) -> SimulationError:
     """Refusal of a name that has no value, with the nearest one that has.
-
-    Parameters
-    ----------
-    text : str
-        The expression.
-    name : str
-        A name in it.
-    known : tuple of str
-        Names that may stand there.
 
     Examples
     --------

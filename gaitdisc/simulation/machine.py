@@ -80,8 +80,6 @@ def integrate_block(program, drive, rows, plan, past, into):
         Rate [Hz], first times (trial,), inputs (trial, sample, input), samples (trial,), which inputs wrap (input,).
     rows : tuple
         Place (row, 2) as trial and first sample, starts (row, state), values (row, parameter), seconds (row, delay).
-    plan : tuple of int
-        Samples to go, steps for each.
     past : ndarray (trial, sample, state)
         Measured states before the rows begin; of no trials where there are none.
     into : tuple

@@ -21,23 +21,12 @@ class Measured:
 
     Parameters
     ----------
-    drive : Drive
-        Inputs of each trial.
     observed : ndarray (trial, sample, channel)
         Measured channels; NaN beyond a trial's end.
-    trials : tuple of str
-        Names of the trials.
     channels : tuple of str
         Names of the observed channels, in the order of the simulation's observations.
     findings : tuple of Finding
         What a user must know of them.
-    source : str
-        Name of the file.
-
-    Raises
-    ------
-    ShapeError
-        If they do not fit together.
 
     Examples
     --------
@@ -76,23 +65,11 @@ class Measured:
         return self.drive.samples
 
     def time(self, trial: int) -> NDArray[np.float64]:
-        """Times of a trial's samples (sample,) [s].
-
-        Parameters
-        ----------
-        trial : int
-            Its number.
-        """
+        """Times of a trial's samples (sample,) [s]."""
         return self.drive.time0[trial] + np.arange(self.samples[trial]) / self.rate
 
     def selected(self, trials: Sequence[int]) -> Measured:
-        """Some of the trials.
-
-        Parameters
-        ----------
-        trials : sequence of int
-            Their numbers.
-        """
+        """Some of the trials."""
         which = np.asarray(trials, int)
         longest = int(self.samples[which].max())
         drive = Drive(self.rate, self.drive.time0[which], self.drive.inputs[which, :longest], self.drive.samples[which])
@@ -100,13 +77,7 @@ class Measured:
         return Measured(drive, self.observed[which, :longest], names, self.channels, self.findings, self.source)
 
     def between(self, first: int, end: int) -> Measured:
-        """Samples first to end of every trial that has them all.
-
-        Parameters
-        ----------
-        first, end : int
-            Counted from each trial's start; `end` is not included.
-        """
+        """Samples first to end of every trial that has them all."""
         which = np.flatnonzero(self.samples >= end)
         if first < 0 or end <= first or not which.size:
             raise SamplingError(
@@ -127,28 +98,7 @@ def measured_of_trials(
     source: str,
     findings: Sequence[Finding] = (),
 ) -> Measured:
-    """Measured trials, checked.
-
-    Parameters
-    ----------
-    trials : sequence of TrialColumns
-        In order.
-    inputs, channels : sequence of str
-        Names of their columns.
-    source : str
-        Name of the file.
-    findings : sequence of Finding
-        What was seen before.
-
-    Raises
-    ------
-    SamplingError
-        If a trial is too short, its time is uneven or doubled, or the rates differ.
-    ReadError
-        If an input has a gap too long to be bridged, or a trial next to nothing of a channel.
-    ShapeError
-        If an observed channel never varies.
-    """
+    """Measured trials, checked."""
     if not trials:
         raise SamplingError(
             f"a trial has {SHORTEST} samples or more",

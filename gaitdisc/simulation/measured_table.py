@@ -32,22 +32,6 @@ def read_measured(path: Path | str, simulation: Simulation) -> Measured:
     Without a column `trial` the table is one trial. Of observations that the simulation file does not list (each state
     under its own name) those are taken that the table has.
 
-    Parameters
-    ----------
-    path : Path or str
-        CSV (comma, or semicolon with decimal commas) or Parquet.
-    simulation : Simulation
-        Whose inputs and observations are wanted.
-
-    Raises
-    ------
-    ReadError
-        If the file cannot be read, or a cell is no number: trial, line and column are named.
-    ChannelError
-        If a column is missing; the nearest one is named.
-    SamplingError, ShapeError
-        As `measured_of_trials`.
-
     Examples
     --------
     >>> read_measured("walk.csv", read_simulation("ankle.toml")).channels  # doctest: +SKIP
@@ -64,15 +48,6 @@ def measured_of_table(table: pd.DataFrame, simulation: Simulation, source: str) 
     ----------
     table : DataFrame
         Columns `trial`, `time` [s], each input and each observed channel [the simulation's units].
-    simulation : Simulation
-        Whose inputs and observations are wanted.
-    source : str
-        What the table is called in findings and refusals.
-
-    Raises
-    ------
-    ReadError, ChannelError, SamplingError, ShapeError
-        As `read_measured`.
     """
     columns = [str(column).strip() for column in table.columns]
     _refuse_doubled(columns, source)
@@ -104,15 +79,6 @@ def measured_of_recordings(recordings: Sequence[Recording], simulation: Simulati
     ----------
     recordings : sequence of Recording
         With a channel for each input and each observation, at one rate.
-    simulation : Simulation
-        Whose inputs and observations are wanted.
-
-    Raises
-    ------
-    ChannelError
-        If a channel is missing.
-    UnitError
-        If a channel's unit measures something else than the simulation's.
 
     Examples
     --------

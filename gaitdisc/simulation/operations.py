@@ -27,11 +27,6 @@ _FAR = 1e5  # beyond, the library reduces the angle
 def exponential(x):
     """e^x, with x held at 700 at most.
 
-    Parameters
-    ----------
-    x : float
-        Exponent.
-
     References
     ----------
     Moshier, Cephes Mathematical Library, `exp`: Cody-Waite reduction and a rational function.
@@ -60,11 +55,6 @@ def exponential(x):
 def hyperbolic_tangent(x):
     """Tanh x.
 
-    Parameters
-    ----------
-    x : float
-        Argument.
-
     References
     ----------
     Moshier, Cephes Mathematical Library, `tanh`.
@@ -91,8 +81,6 @@ def sine(x, quarter):
     ----------
     x : float
         Angle [rad].
-    quarter : int
-        1 gives the cosine.
 
     References
     ----------
@@ -133,8 +121,6 @@ def execute(code, registers, outputs, width):  # noqa: PLR0912 a branch for each
         Operation, then the first place of what is written and of what is read.
     registers, outputs : ndarray (register * BLOCK,), (output * BLOCK,)
         Changed in place.
-    width : uint64
-        Rows that count.
     """
     for i in range(code.shape[0]):
         op, z, a, b = code[i, 0], code[i, 1], code[i, 2], code[i, 3]

@@ -11,8 +11,6 @@ class State:
 
     Parameters
     ----------
-    name, unit, meaning : str
-        As in the file.
     initial : float, optional
         Where it starts [unit]; estimated from each trial's first samples where absent.
     """
@@ -49,16 +47,10 @@ class Parameter:
 
     Parameters
     ----------
-    name : str
-        As in the file.
     value : float
         [unit].
-    unit : str
-        As in the file.
     low, high : float, optional
         What the user would believe [unit].
-    meaning : str
-        As in the file.
     """
 
     name: str
@@ -71,13 +63,7 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Port:
-    """A physical place where a missing effect may enter.
-
-    Parameters
-    ----------
-    name, unit, meaning : str
-        As in the file.
-    """
+    """A physical place where a missing effect may enter."""
 
     name: str
     unit: str = "1"
@@ -92,12 +78,6 @@ class Term:
     ----------
     place : str
         Port, or state whose derivative it adds to.
-    kind : str
-        `port` or `equation`.
-    name : str
-        Name of the effect, `one_sided_spring`.
-    term : str
-        Expression.
     """
 
     place: str
@@ -112,8 +92,6 @@ class Sensor:
 
     Parameters
     ----------
-    channel : str
-        The observation that it belongs to.
     unit : str
         Of the column; empty where it follows from the expression.
     sd : float, optional

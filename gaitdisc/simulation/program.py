@@ -39,8 +39,6 @@ class Program:
         Operation, register (or output) written, registers read.
     setup : int
         How many operations at the head depend on parameters alone.
-    registers, outputs : int
-        How many there are.
     """
 
     leaves: tuple[str, ...]
@@ -52,13 +50,7 @@ class Program:
     outputs: int
 
     def placed(self, rows: int) -> NDArray[np.uint64]:
-        """Code with first places in flat memory instead of the numbers of registers, (operation, 4).
-
-        Parameters
-        ----------
-        rows : int
-            Places that each register and each output takes.
-        """
+        """Code with first places in flat memory instead of the numbers of registers, (operation, 4)."""
         return (self.code * np.array([1, rows, rows, rows])).astype(np.uint64)
 
     def used(self) -> NDArray[np.bool_]:
@@ -78,10 +70,6 @@ def compiled_program(
 
     Parameters
     ----------
-    outputs : sequence of tree
-        What is wanted.
-    leaves : sequence of str
-        Names that are given as numbers.
     fixed : sequence of str
         Those of them that do not change during a run.
     definitions : mapping of str to tree, optional

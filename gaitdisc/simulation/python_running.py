@@ -23,8 +23,6 @@ class PythonCompiled(Compiled):
     ----------
     simulation, states, inputs, parameters, observed, defaults, right_hand_side, observation : as for `Compiled`
         The right-hand side gives what the function is fed with.
-    model : PythonSimulation
-        Whose function is called.
     """
 
     model: PythonSimulation
@@ -38,13 +36,7 @@ class PythonCompiled(Compiled):
         substeps: int = SUBSTEPS,
         past: NDArray[np.float64] | None = None,
     ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-        """States along each row, as `Compiled.run`.
-
-        Parameters
-        ----------
-        drive, rows, steps, substeps, past : as for `Compiled.run`
-            The same.
-        """
+        """States along each row, as `Compiled.run`."""
         place, starts, values = self._rows(drive, rows)
         walk = _Walk(self, drive, (place, starts, values), past, substeps)
         found = np.full((len(starts), steps + 1, len(self.states)), np.nan)
@@ -68,13 +60,7 @@ class PythonCompiled(Compiled):
         values: NDArray[np.float64] | None = None,
         late: NDArray[np.float64] | None = None,
     ) -> NDArray[np.float64]:
-        """Right-hand side at many points, as `Compiled.rates`.
-
-        Parameters
-        ----------
-        t, x, u, values, late : as for `Compiled.rates`
-            The same.
-        """
+        """Right-hand side at many points, as `Compiled.rates`."""
         x = np.asarray(x, float)
         given = self.defaults if values is None else np.asarray(values, float)
         columns = leaf_columns(np.broadcast_to(np.asarray(t, float), len(x)), x, u, given)

@@ -28,8 +28,6 @@ class PythonSimulation:
     rates : callable
         Takes t (row,), x (row, state), u (row, input), values (row, parameter), ports (row, port) and gives the
         derivatives (row, state). Parameters that are added later follow the model's own.
-    parts : Simulation
-        Everything else: made by `python_simulation`.
     replaced : tuple of (str, str)
         Inputs that are replaced by an expression of the measured ones.
 
@@ -92,23 +90,11 @@ class PythonSimulation:
         return self.parts.sensors
 
     def sensor(self, channel: str) -> Sensor:
-        """How an observed channel was recorded.
-
-        Parameters
-        ----------
-        channel : str
-            Name of the observation.
-        """
+        """How an observed channel was recorded."""
         return self.parts.sensor(channel)
 
     def with_sensor(self, sensor: Sensor) -> PythonSimulation:
-        """Simulation in which an observed channel was recorded in another way.
-
-        Parameters
-        ----------
-        sensor : Sensor
-            Of the channel that it names.
-        """
+        """Simulation in which an observed channel was recorded in another way."""
         return replace(self, parts=self.parts.with_sensor(sensor))
 
     @property
@@ -142,13 +128,7 @@ class PythonSimulation:
         return self.parts.values()
 
     def with_effect(self, term: Term) -> PythonSimulation:
-        """Simulation with one effect more.
-
-        Parameters
-        ----------
-        term : Term
-            What is added, and to which port or equation.
-        """
+        """Simulation with one effect more."""
         return replace(self, parts=self.parts.with_effect(term))
 
     def without_effects(self) -> PythonSimulation:
@@ -156,67 +136,27 @@ class PythonSimulation:
         return replace(self, parts=self.parts.without_effects())
 
     def with_values(self, values: Mapping[str, float]) -> PythonSimulation:
-        """Simulation with other values of some parameters.
-
-        Parameters
-        ----------
-        values : mapping of str to float
-            By parameter's name.
-        """
+        """Simulation with other values of some parameters."""
         return replace(self, parts=self.parts.with_values(values))
 
     def with_starts(self, starts: Mapping[str, float]) -> PythonSimulation:
-        """Simulation of which some states have another `initial`.
-
-        Parameters
-        ----------
-        starts : mapping of str to float
-            By state's name [the state's unit].
-        """
+        """Simulation of which some states have another `initial`."""
         return replace(self, parts=self.parts.with_starts(starts))
 
     def with_parameter(self, parameter: Parameter) -> PythonSimulation:
-        """Simulation with a further parameter, for effects to use.
-
-        Parameters
-        ----------
-        parameter : Parameter
-            Name, value, unit.
-        """
+        """Simulation with a further parameter, for effects to use."""
         return replace(self, parts=self.parts.with_parameter(parameter))
 
     def with_observation(self, name: str, expression: str) -> PythonSimulation:
-        """Simulation with a further observed channel, or another expression for one that it has.
-
-        Parameters
-        ----------
-        name : str
-            Measured column.
-        expression : str
-            In states, inputs, parameters and `t`.
-        """
+        """Simulation with a further observed channel, or another expression for one that it has."""
         return replace(self, parts=self.parts.with_observation(name, expression))
 
     def observing(self, names: Sequence[str]) -> PythonSimulation:
-        """Simulation with some of its observations only.
-
-        Parameters
-        ----------
-        names : sequence of str
-            Measured columns.
-        """
+        """Simulation with some of its observations only."""
         return replace(self, parts=self.parts.observing(names))
 
     def with_input(self, name: str, expression: str) -> PythonSimulation:
-        """Simulation in which an input is replaced by an expression of itself.
-
-        Parameters
-        ----------
-        name : str
-            Input.
-        expression : str
-            In states, inputs, parameters and `t`.
-        """
+        """Simulation in which an input is replaced by an expression of itself."""
         seen = self.parts.with_observation("replaced", dict(self.replaced).get(name, name)).with_input(name, expression)
         kept = dict(self.replaced) | {name: dict(seen.observations)["replaced"]}
         rest = tuple(line for line in seen.observations if line[0] != "replaced")
@@ -237,12 +177,6 @@ def python_simulation(
 
     Parameters
     ----------
-    title : str
-        One line for a person.
-    rates : callable
-        As for `PythonSimulation`.
-    states, inputs, parameters, ports : sequence of State, Input, Parameter, Port
-        Its parts, in the order of the function's columns.
     observations : sequence of (str, str)
         Measured column and expression; by default each state under its own name.
     """
@@ -265,8 +199,6 @@ def called(
 
     Parameters
     ----------
-    simulation : PythonSimulation
-        Whose function is called.
     t : ndarray (row,)
         Time [s].
     x : ndarray (row, state)
@@ -275,11 +207,6 @@ def called(
         Ports, sums of the equations' effects, inputs: the observations of `PythonSimulation.feeds`.
     values : ndarray (row, parameter)
         Parameters.
-
-    Raises
-    ------
-    SimulationError
-        If the function gives anything but a derivative for each row and state.
     """
     ports, states = len(simulation.ports), len(simulation.states)
     own = np.asarray(simulation.rates(np.asarray(t, float), x, fed[:, ports + states :], values, fed[:, :ports]))

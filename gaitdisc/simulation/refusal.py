@@ -10,8 +10,6 @@ class SimulationError(SchemaError):
 
     Parameters
     ----------
-    needed, found, remedy : str
-        As in `GaitdiscError`.
     place : tuple of str
         Section and key of the simulation file, `("equations", "omega")`; empty where the whole file is meant.
 
@@ -30,11 +28,5 @@ class SimulationError(SchemaError):
         return where + super().__str__()
 
     def at(self, *place: str) -> SimulationError:
-        """Return the same refusal, told of a part of the simulation.
-
-        Parameters
-        ----------
-        *place : str
-            Section, and key in it.
-        """
+        """Return the same refusal, told of a part of the simulation."""
         return SimulationError(self.needed, self.found, self.remedy, place)

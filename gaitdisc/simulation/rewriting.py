@@ -14,15 +14,6 @@ def substituted(tree: Tree, by: Mapping[str, Tree], signals: Collection[str] = (
 
     A delayed signal that is replaced becomes its replacement that many seconds ago.
 
-    Parameters
-    ----------
-    tree : Number, Name or Operation
-        From `parsed`.
-    by : mapping of str to tree
-        What stands for each name.
-    signals : collection of str
-        States and inputs: the names that change in time.
-
     Examples
     --------
     >>> from gaitdisc.simulation.expression import parsed
@@ -41,11 +32,6 @@ def substituted(tree: Tree, by: Mapping[str, Tree], signals: Collection[str] = (
 
 def written(tree: Tree) -> str:
     """Text of an expression, with no more parentheses than it needs.
-
-    Parameters
-    ----------
-    tree : Number, Name or Operation
-        From `parsed`.
 
     Examples
     --------

@@ -69,13 +69,7 @@ def _of_python(model: PythonSimulation) -> Compiled:
 
 
 def simulation_scope(simulation: Simulation) -> dict[str, Tree]:
-    """Ports, as the sum of the effects on them, then definitions.
-
-    Parameters
-    ----------
-    simulation : Simulation
-        Whose names they are.
-    """
+    """Ports, as the sum of the effects on them, then definitions."""
     scope = {}
     for port in simulation.ports:
         scope[port.name] = _with_effects(Number(0.0), simulation, "port", port.name)

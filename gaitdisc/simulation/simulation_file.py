@@ -84,22 +84,7 @@ def read_simulation(path: Path | str) -> Simulation:
 
 
 def simulation_of(text: str, file: str = "the simulation", source: Path | None = None) -> Simulation:
-    """Simulation of the text of a TOML file.
-
-    Parameters
-    ----------
-    text : str
-        The file.
-    file : str
-        What refusals call it.
-    source : Path, optional
-        Where it was read from.
-
-    Raises
-    ------
-    ReadError, SchemaError
-        As `read_simulation`.
-    """
+    """Simulation of the text of a TOML file."""
     if len(re.findall(r"^\s*\[", text, re.MULTILINE)) > MOST_TABLES:
         raise _not_toml(file, f"more than {MOST_TABLES} tables")
     try:

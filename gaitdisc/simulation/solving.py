@@ -29,21 +29,10 @@ def solve(
 
     Parameters
     ----------
-    simulation : Simulation
-        Without delays.
     time : ndarray (sample,)
         Increasing [s].
     inputs : mapping of str to ndarray (sample,)
         Linear between the samples; each sample is a corner that a step ends at.
-    initial : mapping of str to float
-        State at the first sample.
-    tolerance : float
-        Relative and absolute.
-
-    Raises
-    ------
-    SimulationError
-        If the simulation has delays, or the solution leaves every bound; it says when, and which state.
 
     References
     ----------

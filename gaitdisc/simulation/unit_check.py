@@ -18,11 +18,6 @@ def unit_findings(simulation: Simulation) -> tuple[Finding, ...]:
 
     A number without a name may carry any unit, and so does what it multiplies; an angle counts as a pure number.
 
-    Parameters
-    ----------
-    simulation : Simulation
-        Whose definitions, equations and effects are looked at.
-
     Examples
     --------
     >>> from gaitdisc.simulation.simulation_file import simulation_of
@@ -46,15 +41,7 @@ def unit_findings(simulation: Simulation) -> tuple[Finding, ...]:
 
 
 def dimension_in(simulation: Simulation, text: str) -> Dimension | None:
-    """Dimension of an expression in a simulation's names; None where it may be any.
-
-    Parameters
-    ----------
-    simulation : Simulation
-        Whose names have units.
-    text : str
-        Expression.
-    """
+    """Dimension of an expression in a simulation's names; None where it may be any."""
     check = _Check(simulation)
     for name, definition in simulation.definitions:
         check.known[name] = check.unit(parsed(definition), name)

@@ -84,11 +84,6 @@ def _parsed(unit: str) -> tuple[float, Dimension] | None:
 def dimension_of(unit: str) -> Dimension | None:
     """Powers of kg, m, s and V in a unit, an angle counting as a pure number; None where the unit is unknown.
 
-    Parameters
-    ----------
-    unit : str
-        Product of base units with powers.
-
     Examples
     --------
     >>> dimension_of("N m s/rad") == dimension_of("kg m^2/s")

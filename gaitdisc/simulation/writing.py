@@ -66,11 +66,6 @@ def simulation_text(simulation: Simulation) -> str:
 
     What it was read from is changed only where the simulation differs; where that cannot be done (values inside inline
     tables, say) everything is written anew.
-
-    Parameters
-    ----------
-    simulation : Simulation
-        What the text shall hold.
     """
     if simulation.layout:
         text = _changed_text(simulation)
@@ -83,20 +78,7 @@ def simulation_text(simulation: Simulation) -> str:
 
 
 def read_into(model: PythonSimulation, path: Path | str) -> PythonSimulation:
-    """Give a Python object what was written of it: effects, numbers, starts, observations, inputs.
-
-    Parameters
-    ----------
-    model : PythonSimulation
-        With the right-hand side that no file holds.
-    path : Path or str
-        File that `write_simulation` wrote of it.
-
-    Raises
-    ------
-    ReadError, SchemaError
-        If the file cannot be read, or was written of a model of other states, inputs or ports.
-    """
+    """Give a Python object what was written of it: effects, numbers, starts, observations, inputs."""
     path = Path(path)
     try:
         text = path.read_text(encoding="utf-8")

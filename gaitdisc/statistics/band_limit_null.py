@@ -17,15 +17,7 @@ EDGE = 0.05  # share left away at either end, where filters ring
 
 @dataclass(frozen=True)
 class BandLimitNull:
-    """R2 of x'' regressed on x and x' of the same noise.
-
-    Parameters
-    ----------
-    r2 : float
-        Mean over the walks of noise.
-    standard_error : float
-        Of that mean.
-    """
+    """R2 of x'' regressed on x and x' of the same noise."""
 
     r2: float
     standard_error: float
@@ -44,14 +36,6 @@ def simulate_null(filtered: Filtered, samples: int, walks: int = 40, seed: int =
         measurement was: 6 Hz low-pass for angles; high-pass, rectify, low-pass for EMG.
     samples : int
         Length of a walk of noise, at the rate that `filtered` takes.
-    walks : int
-        How many are averaged.
-    seed : int
-        Of the noise.
-
-    Returns
-    -------
-    BandLimitNull
 
     Examples
     --------

@@ -26,10 +26,6 @@ class Cluster:
 
     Parameters
     ----------
-    channel : int
-        Column of the curves.
-    first, last : int
-        Points of the stride, both inside.
     sign : int
         1 where the first set lies above, -1 where it lies below.
     mass : float
@@ -94,21 +90,8 @@ def one_sample_test(
     ----------
     curves : ndarray (unit, phase, channel) [each channel's unit]
         Complete; units are exchangeable: people, strides, or blocks of strides.
-    plan : PermutationPlan
-        Level, number, seed.
     worth : ndarray (channel,), optional
         Independent units that one unit is worth, at most 1; t is divided by the root of its inverse.
-
-    Returns
-    -------
-    ClusterTest
-
-    Raises
-    ------
-    ShapeError
-        If the curves are not (unit, phase, channel), or a value is missing.
-    ComparisonError
-        If there are fewer than six units, or so few permutations that none could be significant.
 
     References
     ----------
@@ -154,21 +137,8 @@ def two_sample_test(
     ----------
     first, second : ndarray (unit, phase, channel) [each channel's unit]
         Complete; units are exchangeable: people, strides, or blocks of strides.
-    plan : PermutationPlan
-        Level, number, seed.
     worth : ndarray (channel,), optional
         Independent units that one unit is worth, at most 1; t is divided by the root of its inverse.
-
-    Returns
-    -------
-    ClusterTest
-
-    Raises
-    ------
-    ShapeError
-        If the curves are not (unit, phase, channel), differ in phase or channel, or a value is missing.
-    ComparisonError
-        If a set has fewer than six units, or there are so few permutations that none could be significant.
 
     References
     ----------

@@ -33,8 +33,6 @@ class Groups:
         Share of normal clouds of the same covariance that part as well, or better.
     stability : float
         Mean adjusted Rand index between these groups and those found among four fifths of the participants.
-    why : str
-        The verdict in a sentence.
     """
 
     count: int
@@ -61,21 +59,6 @@ def find_groups(
         In comparable units; complete.
     most : int
         Largest number of sub-groups tried; none smaller than two participants is.
-    clouds : int
-        Normal clouds that are drawn.
-    seed : int
-        Of clouds and sub-samples.
-    alpha : float
-        Largest p that is believed.
-
-    Returns
-    -------
-    Groups
-
-    Raises
-    ------
-    ComparisonError
-        If a feature is missing, or there are fewer than six participants.
 
     References
     ----------
@@ -119,15 +102,11 @@ def best_cut(features: NDArray[np.float64], most: int = 4) -> tuple[NDArray[np.i
     ----------
     features : ndarray (participant, feature)
         Complete.
-    most : int
-        Largest number of groups.
 
     Returns
     -------
     labels : ndarray of int (participant,)
         From 1; all 1 where no cut leaves two in every group.
-    silhouette : float
-        Of it; -1 where there is no cut.
     """
     between = pdist(features)
     tree = linkage(between, "ward")

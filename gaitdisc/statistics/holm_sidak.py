@@ -39,13 +39,6 @@ class StepDown:
 def step_levels(tests: int, alpha: float = 0.05) -> NDArray[np.float64]:
     """Levels of the steps, 1 - (1 - alpha)^(1/k) with k = m, m - 1, ..., 1 tests left: the smallest p meets the first.
 
-    Parameters
-    ----------
-    tests : int
-        Number of tests m in the family.
-    alpha : float
-        Of the family.
-
     Examples
     --------
     >>> step_levels(8).round(4)
@@ -61,8 +54,6 @@ def largest_family(p: float, alpha: float = 0.05) -> int:
     ----------
     p : float
         For example the smallest that the number of participants allows.
-    alpha : float
-        Of the family.
 
     Examples
     --------
@@ -134,15 +125,6 @@ def holm_sidak(p: ArrayLike, alpha: float = 0.05) -> StepDown:
 
 def holm_sidak_by(p: ArrayLike, families: Sequence[str], alpha: float = 0.05) -> dict[str, StepDown]:
     """Correct several families, each by itself, in the order in which they come.
-
-    Parameters
-    ----------
-    p : array_like (test,)
-        Of all tests.
-    families : sequence of str
-        Family of each test.
-    alpha : float
-        Of each family: several families have several chances.
 
     Examples
     --------

@@ -20,8 +20,6 @@ class PermutationPlan:
         Chance of a false alarm anywhere in the stride and in any channel.
     permutations : int
         Most of them; where there are no more, all are taken.
-    seed : int
-        Of those drawn.
     """
 
     alpha: float = 0.05
@@ -35,24 +33,10 @@ USUAL = PermutationPlan()
 def sign_flips(n: int, plan: PermutationPlan) -> tuple[NDArray[np.float64], bool]:
     """Signs of every permutation but that of the units as they are.
 
-    Parameters
-    ----------
-    n : int
-        Units.
-    plan : PermutationPlan
-        How many at the most, and their seed.
-
     Returns
     -------
     signs : ndarray (permutation, unit)
         1 or -1; with all signs turned |t| is the same, so the first unit keeps its own.
-    exact : bool
-        Whether these are all that there are.
-
-    Raises
-    ------
-    ComparisonError
-        If there are so few that none could be significant.
 
     Examples
     --------

@@ -54,11 +54,6 @@ def why_no_r2(measured: NDArray[np.float64], predicted: NDArray[np.float64]) -> 
     measured, predicted : ndarray (sample, column) [each column's unit]
         As for `r2`.
 
-    Raises
-    ------
-    ShapeError
-        If the two differ in shape.
-
     Examples
     --------
     >>> why_no_r2(np.full((3, 1), 0.5), np.zeros((3, 1)))

@@ -26,8 +26,6 @@ class SignedRank:
         Some differences are equally large; p is that of their mean ranks.
     w : float
         The smaller of the two sums of ranks.
-    p : float
-        Exact, two-sided.
     rank_biserial : float
         (W+ - W-) / (W+ + W-): -1 every pair falls, 1 every pair rises; NaN where no pair differs.
     median : float
@@ -148,11 +146,6 @@ def exact_p(differences: NDArray[np.float64]) -> float:
 def smallest_p(n: int) -> float:
     """Smallest two-sided p that n pairs can give: all n differences of one sign.
 
-    Parameters
-    ----------
-    n : int
-        Pairs that differ.
-
     Examples
     --------
     >>> smallest_p(11), smallest_p(5)
@@ -172,8 +165,6 @@ def shift_interval(differences: NDArray[np.float64], level: float = 0.95) -> tup
     ----------
     differences : ndarray (pair,)
         Complete.
-    level : float
-        Of the interval.
 
     Returns
     -------

@@ -33,13 +33,6 @@ def block_length(correlation: float, strides: int) -> int:
     Strides are taken for a first-order autoregression. The shortest block is taken whose mean correlates with that of
     its neighbour by 0.15 or less, but eight blocks are kept.
 
-    Parameters
-    ----------
-    correlation : float
-        Of successive strides, of the most dependent channel.
-    strides : int
-        How many there are.
-
     Examples
     --------
     >>> block_length(0.0, 80), block_length(0.3, 80), block_length(0.6, 80), block_length(0.6, 24)
@@ -64,8 +57,6 @@ def block_worth(correlation: NDArray[np.float64], length: int) -> NDArray[np.flo
     ----------
     correlation : ndarray (channel,)
         Of successive strides.
-    length : int
-        Strides in a block.
 
     Examples
     --------

@@ -27,12 +27,6 @@ def strides_of_phase(time: NDArray[np.float64], phi: NDArray[np.float64], side: 
         Even.
     phi : ndarray (time,) [% stride]
         As `Strides.phi` gives it; NaN outside of strides.
-    side : str
-        Leg whose contacts phi counts from.
-
-    Returns
-    -------
-    Strides
 
     Examples
     --------
@@ -68,8 +62,6 @@ def stride_curves(time: NDArray[np.float64], values: NDArray[np.float64], stride
         Even.
     values : ndarray (time, column) [each column's unit]
         NaN where missing.
-    strides : Strides
-        On the same clock.
     """
     points = strides.start[:, None] + strides.duration_s[:, None] * PERCENT / 100.0
     return interpolated(time, values, points)
@@ -132,17 +124,6 @@ def mean_over_strides(curves: NDArray[np.float64], level: float = 0.95) -> Strid
     ----------
     curves : ndarray (stride, phase, column) [each column's unit]
         In order of time; NaN where missing.
-    level : float
-        Of the interval.
-
-    Returns
-    -------
-    StrideMean
-
-    Raises
-    ------
-    StrideError
-        If there are fewer than five strides.
 
     References
     ----------

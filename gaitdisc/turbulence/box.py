@@ -22,11 +22,6 @@ class Box:
     nodes : int
         Along each side; even, at least 8.
 
-    Raises
-    ------
-    ShapeError
-        If there are too few nodes, or an odd number.
-
     Examples
     --------
     >>> box = Box(8)

@@ -31,25 +31,12 @@ class FlowSettings:
 
     Parameters
     ----------
-    nodes : int
-        Of the box along each side.
     cut : int
         Nodes of the cube that is kept along each side, from a corner.
-    snapshots : int
-        That are kept.
     every : int
         Steps from one snapshot to the next.
-    spin_up : int
-        Steps before the first.
     power : float
         Energy put in per mass and time.
-    seed : int
-        Of the first velocity.
-
-    Raises
-    ------
-    ShapeError
-        If the cut is larger than the box, or nothing is to be kept.
     """
 
     nodes: int = 48
@@ -84,15 +71,6 @@ class FlowSettings:
 def first_velocity(box: Box, energy: float, seed: int) -> NDArray[np.complexfloating]:
     """Random velocity without divergence, most of it in the largest scales.
 
-    Parameters
-    ----------
-    box : Box
-        Where the flow is.
-    energy : float
-        Kinetic, per mass.
-    seed : int
-        Of the draw.
-
     Examples
     --------
     >>> box = Box(16)
@@ -111,12 +89,8 @@ def record_turbulence(
 
     Parameters
     ----------
-    settings : FlowSettings
-        How.
     folder : Path
         Where snapshots and state lie. What is there of the same settings is not computed again.
-    progress : callable, optional
-        Called with the fraction done.
 
     Returns
     -------
@@ -124,13 +98,6 @@ def record_turbulence(
         `u`, the velocity along x, at the nodes of the cut; time in units of the box. Without unit.
     numbers : DataFrame
         snapshot, energy, dissipation, re_lambda, kmax_eta, integral_length, turnover, and the spectrum as e_1, e_2, ...
-
-    Raises
-    ------
-    SchemaError
-        If the folder holds a flow of other settings.
-    ReadError
-        If what lies there is damaged.
     """
     folder.mkdir(parents=True, exist_ok=True)
     box = Box(settings.nodes)

@@ -16,12 +16,6 @@ class FlowNumbers:
 
     Parameters
     ----------
-    energy : float
-        Kinetic.
-    dissipation : float
-        Rate at which viscosity takes it.
-    re_lambda : float
-        Reynolds number of Taylor's microscale.
     kmax_eta : float
         Largest wavenumber times Kolmogorov's length: 1 or more resolves the dissipation.
     integral_length, turnover : float
@@ -41,8 +35,6 @@ def energy_spectrum(box: Box, u: NDArray[np.complexfloating]) -> NDArray[np.floa
 
     Parameters
     ----------
-    box : Box
-        Where the flow is.
     u : ndarray (3, x, y, z)
         Modes of a velocity.
 
@@ -64,16 +56,8 @@ def flow_numbers(box: Box, u: NDArray[np.complexfloating], viscosity: float) -> 
 
     Parameters
     ----------
-    box : Box
-        Where the flow is.
     u : ndarray (3, x, y, z)
         Modes of a velocity without divergence.
-    viscosity : float
-        Kinematic.
-
-    Returns
-    -------
-    FlowNumbers
 
     References
     ----------

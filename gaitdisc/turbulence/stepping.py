@@ -25,14 +25,10 @@ class Stepper:
 
     Parameters
     ----------
-    box : Box
-        Where the flow is.
     viscosity : float
         Kinematic, in units of box and time.
     power : float
         Energy per mass and time that the force puts in; 0 lets the flow decay.
-    dt : float
-        Length of a step.
 
     References
     ----------
@@ -60,11 +56,6 @@ class Stepper:
         ----------
         u : ndarray (3, x, y, z)
             Modes of a velocity without divergence.
-
-        Raises
-        ------
-        SamplingError
-            If the step is too long for the flow, which shows as numbers that are not finite.
         """
         first = self.rates(u)
         ahead = self._damping * (u + self.dt * first)
