@@ -1,8 +1,16 @@
-"""The scripts of docs/library.md, run as they stand, and their pictures: `python studies/library_pictures.py`."""
+"""The scripts of docs/library.md, run as they stand, and their pictures.
+
+    python studies/library_pictures.py
+
+Writes docs/pictures.
+"""
 
 from __future__ import annotations
 
-import argparse
+from command_line import command_line
+
+GIVEN = command_line(__name__, __doc__)
+
 import os
 import re
 import shutil
@@ -37,7 +45,6 @@ def run_script(text: str, folder: Path) -> None:
 
 def main() -> None:
     """Run every script and keep its picture."""
-    argparse.ArgumentParser(description=__doc__).parse_args()
     for name, text in scripts().items():
         with tempfile.TemporaryDirectory() as folder:
             run_script(text, Path(folder))

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.account import Part
-from gaitdisc.discovery.by_share import scale_of
+from gaitdisc.discovery.by_share import leaves_noise, scale_of
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.catalogue import Shape, known_shapes
 from gaitdisc.discovery.decision import borne_out
@@ -72,7 +72,7 @@ def read_shape(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> Verdict:
     if verdict.word != NAME or len(shape.account.parts) != 1 or not verdict.proof:
         return verdict
     search, scale = inquiry.search, scale_of(inquiry)
-    plain = weighed(scale, shape.shooting, search.base, (), as_read.under(shape, search.base).account)
+    plain = weighed(scale, shape.shooting, search.base, (), shape.account)
     if not np.isfinite(plain.gap):
         return verdict
     readings = [
@@ -91,11 +91,13 @@ def read_shape(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> Verdict:
 def read_instead(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> Verdict:
     """Return a verdict on several names at one place, or on a shape that reads as less than they are and errs less.
 
-    Pieces of the catalogue laid beside each other imitate any curve.
+    Pieces of the catalogue laid beside each other imitate any curve; names that leave mere noise are never given up.
     """
     named = verdict.account
     places = [part.candidate.place for part in named.account.parts if part.candidate.verdict == "missing_physics"]
     if named.account.size < FEWEST_NUMBERS or len(set(places)) == len(places):
+        return verdict
+    if leaves_noise(inquiry, named):
         return verdict
     shape = fitted_shape(as_read, inquiry.search, scale_of(inquiry))
     if shape is None:

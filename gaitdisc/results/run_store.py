@@ -59,13 +59,7 @@ def save_whole_run(run: ResponseRun, folder: Path) -> None:
 
 
 def created_before(run: ResponseRun, folder: Path) -> ResponseRun:
-    """The run with the time of the one saved there, where it repeats that one: nothing was computed anew.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder of the run, where an earlier one may be saved.
-    """
+    """The run with the time of the one saved there, where it repeats that one: nothing was computed anew."""
     if run.renewed or not (folder / "run.json").is_file():
         return run
     try:

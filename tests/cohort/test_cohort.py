@@ -86,6 +86,7 @@ def test_the_cohort_comes_one_person_at_a_time():
     assert names == ["W01", "W02"]
 
 
+@pytest.mark.slow
 def test_who_changes_late_is_found_by_the_quality_checks_alone():
     kinds = {}
     for number in (CHANGES, CHANGES + 1):

@@ -135,6 +135,7 @@ def test_effects_with_states_of_their_own_and_of_inputs_are_named_and_written(tr
     assert again == augmented
 
 
+@pytest.mark.slow
 def test_a_spring_beside_hysteresis_is_named_with_it():
     both = remembering("v - abs(v)*z/0.25", "-25*z").with_effect(Term("load", "port", "hidden", "-14*x**3"))
     discovery, augmented = _found(both)
@@ -183,6 +184,7 @@ def test_of_forty_nulls_at_most_two_are_named():
     assert sum(verdict != "no_gap" for verdict, _ in named) <= 2, named
 
 
+@pytest.mark.slow
 def test_two_effects_are_both_named():
     truth = with_load("-14*x**3").with_effect(Term("load", "port", "second", "-1.5*sign(v)"))
     discovery, augmented = _found(truth, Experiment(seconds=10.0))
@@ -245,6 +247,7 @@ def test_a_spring_that_the_held_out_trial_never_reaches_is_proven_on_another():
     assert note.what == "with and without what was found, trial 4 runs alike; trial 3 is held out in its place"
 
 
+@pytest.mark.slow
 def test_where_one_trial_comes_to_rest_its_first_quarter_proves_the_friction():
     still = mass().with_values({"c": 0.1})
     measured = record(still.with_effect(Term("load", "port", "friction", "-1.5*sign(v)")), 2, Experiment(1, 40.0, 0.05))

@@ -1,3 +1,4 @@
+import pytest
 from manufactured_field import travelling_wave
 
 from gaitdisc.sensing.field_task import FieldTask
@@ -6,6 +7,7 @@ from gaitdisc.sensing.routes import fixed
 from gaitdisc.sensing.windows import Lags
 
 
+@pytest.mark.slow
 def test_four_modes_need_more_than_one_node(monkeypatch):
     monkeypatch.setattr("gaitdisc.networks.schedule.epochs_of", lambda *_: 100)  # of two steps each
     wave = travelling_wave(200)

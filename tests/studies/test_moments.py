@@ -27,10 +27,10 @@ def median(rows, source, channel):
 
 def test_moments_from_markers_are_those_of_plug_in_gait_within_the_goal(found):
     rows = study("moments").against_plug_in_gait(found)
-    goals = {"ankle_angle_moment": 0.08, "knee_angle_moment": 0.12, "hip_flexion_moment": 0.16}
+    goals = {"ankle_angle_moment": 0.08, "knee_angle_moment": 0.12, "hip_flexion_moment": 0.15}
     for channel, goal in goals.items():
-        assert median(rows, "markers", channel) < goal
-        assert median(rows, "markers, Davis's hip", channel) < 0.75 * goal
+        assert median(rows, "markers", channel) < 0.75 * goal
+        assert median(rows, "markers, Harrington's hip", channel) < 1.1 * goal
         assert median(rows, "bones", channel) < 0.75 * goal
 
 

@@ -17,6 +17,7 @@ def study(monkeypatch):
     return module
 
 
+@pytest.mark.slow
 def test_three_faults_in_three_files_are_found_and_the_files_themselves_raise_no_alarm(study, gait_data):
     found, alarms = study.outcomes(gait_data.parent, quick=True)
     assert alarms == []
