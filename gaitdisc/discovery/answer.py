@@ -180,14 +180,16 @@ def phase_of(inquiry: Inquiry, now: Judged, part: Part) -> tuple[float, ...]:
     names = [one.name for one in inquiry.search.base.inputs]
     if "phase" not in names or part.candidate.verdict != "missing_physics":
         return ()
-    segments, drive = now.shooting.segments, inquiry.measured.drive
-    inputs = segments.of(drive.inputs).reshape(-1, len(names))
-    states = now.account.fit.states.reshape(len(inputs), -1)
-    time = (drive.time0[segments.trial][:, None] + segments.samples / drive.rate).ravel()
     term = part.candidate.term({slot: f"{value:.9g}" for slot, value in part.values.items()})
     if "delay(" in term:
         return ()
-    push = np.abs(evaluate(now.account.simulation, term, Points(time, states, inputs, now.account.fit.values)))
+    segments, drive, fit = now.shooting.segments, inquiry.measured.drive, now.account.fit
+    inputs = segments.of(drive.inputs)
+    time = drive.time0[segments.trial][:, None] + segments.samples / drive.rate
+    # run by run: what stands beside the effect may be late, and a delay needs consecutive samples
+    runs = [Points(*one, fit.values, rate=drive.rate) for one in zip(time, fit.states, inputs, strict=True)]
+    push = np.abs(np.concatenate([evaluate(now.account.simulation, term, run) for run in runs]))
+    inputs = inputs.reshape(-1, len(names))
     phase = inputs[:, names.index("phase")]
     bins = np.minimum((phase * 100).astype(int), 99)
     mean = np.bincount(bins, push, 100) / np.maximum(np.bincount(bins, minlength=100), 1)

@@ -91,8 +91,13 @@ def test_units_are_those_of_what_is_observed(inquiry):
     assert units_of(inquiry) == ("m",)
 
 
-def test_the_part_of_the_stride_is_where_the_effect_is_half_as_strong_as_at_its_strongest():
-    stride = simulation_of(MASS.replace("[parameters.m]", '[inputs.phase]\nunit = "1"\n[parameters.m]'), "stride.toml")
+@pytest.mark.parametrize(("seen", "centre"), [("phase", 0.4), ("late", 0.5)])
+def test_the_part_of_the_stride_is_where_the_effect_is_half_as_strong_as_at_its_strongest(seen, centre):
+    """Also of an effect over something that comes 0.1 s late, a tenth of the stride."""
+    text = MASS.replace("[parameters.m]", '[inputs.phase]\nunit = "1"\n[parameters.m]')
+    stride = simulation_of(
+        text.replace("[equations]", '[definitions]\nlate = "delay(phase, 0.1)"\n[equations]'), "s.toml"
+    )
     measured = record(mass(), 0, Experiment(2, 10.0))
     time = np.arange(measured.samples[0]) / measured.rate
     phase = np.broadcast_to((time % 1.0)[None, :, None], (2, len(time), 1))
@@ -103,12 +108,12 @@ def test_the_part_of_the_stride_is_where_the_effect_is_half_as_strong_as_at_its_
         "port",
         "load",
         "pulse",
-        ("exp(-((phase - _c)/_w)**2)",),
+        (f"exp(-(({seen} - _c)/_w)**2)",),
         {"c": "phases", "w": "phase widths"},
     )
     half = 0.1 * np.sqrt(np.log(2))
     begin, end = phase_of(inquiry, inquiry.as_read(), Part(pulse, {"factor": 3.0, "c": 0.4, "w": 0.1}))
-    assert (begin, end) == pytest.approx((0.4 - half, 0.4 + half), abs=0.03)
+    assert (begin, end) == pytest.approx((centre - half, centre + half), abs=0.03)
 
 
 def test_random_pushes_of_a_function_are_answered(tmp_path):
