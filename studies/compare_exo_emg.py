@@ -24,7 +24,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
-from gaitdisc.discovery.compare import compare_people
+from gaitdisc.comparison.compare import compare_people
 from gaitdisc.recording import PERCENT
 from gaitdisc.report.mismatch_page import write_mismatch_report
 from gaitdisc.report.mismatch_sentences import mismatch_sentences

@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gaitdisc.channel import Channel, vocabulary
-from gaitdisc.discovery.compare import compare_walks
+from gaitdisc.comparison.compare import compare_walks
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.processing.walk_pair import walk_pair
 from gaitdisc.recording import Event, Recording, Source, Trial

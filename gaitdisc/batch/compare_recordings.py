@@ -8,7 +8,7 @@ from pathlib import Path
 
 from gaitdisc.batch.processed_walks import processed_walks
 from gaitdisc.batch.public_words import PublicWords, package_words, public_settings
-from gaitdisc.discovery.compare import CLINICAL, compare_people, compare_walks
+from gaitdisc.comparison.compare import CLINICAL, compare_people, compare_walks
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.study import Study

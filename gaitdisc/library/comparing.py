@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaitdisc.batch.compare_recordings import compare_files
-from gaitdisc.discovery.compare import compare_walks
+from gaitdisc.comparison.compare import compare_walks
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.processing.walk_pair import walk_pair
 from gaitdisc.recording import Trial

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from driven_walker import DrivenWalker
 
-from gaitdisc.discovery.compare import compare_walks
+from gaitdisc.comparison.compare import compare_walks
 from gaitdisc.processing.walk_pair import walk_pair
 from gaitdisc.report.figure import save_figure
 from gaitdisc.report.mismatch_figure import mismatch_figures, mismatch_numbers

@@ -2,7 +2,7 @@ from html.parser import HTMLParser
 
 from driven_walker import DrivenWalker
 
-from gaitdisc.discovery.compare import compare_walks
+from gaitdisc.comparison.compare import compare_walks
 from gaitdisc.processing.walk_pair import walk_pair
 from gaitdisc.report.mismatch_page import write_mismatch_report
 

@@ -5,7 +5,7 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.channel import Channel
-from gaitdisc.discovery.compare import compare_walks
+from gaitdisc.comparison.compare import compare_walks
 from gaitdisc.recording import PERCENT
 from gaitdisc.report.mismatch_sentences import method_sentences, mismatch_sentences
 from gaitdisc.results import WalkSummary

@@ -1,7 +1,7 @@
 import pytest
 from driven_walker import DrivenWalker
 
-from gaitdisc.discovery.compare import compare_walks
+from gaitdisc.comparison.compare import compare_walks
 from gaitdisc.processing.walk_pair import walk_pair
 from gaitdisc.report.mismatch_tables import channels_table, findings_of, mismatch_text, regions_table
 

@@ -3,7 +3,7 @@ import pandas as pd
 import pytest
 from driven_walker import DrivenWalker
 
-from gaitdisc.discovery.compare import compare_walks
+from gaitdisc.comparison.compare import compare_walks
 from gaitdisc.errors import SchemaError
 from gaitdisc.processing.walk_pair import walk_pair
 from gaitdisc.results.mismatch_folder import load_mismatch, save_mismatch

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from gaitdisc.channel import Channel
-from gaitdisc.discovery.compare_channels import common_curves
+from gaitdisc.comparison.common_curves import common_curves
 from gaitdisc.errors import ChannelError
 from gaitdisc.recording import Finding
 from gaitdisc.results import WalkSummary

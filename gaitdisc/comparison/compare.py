@@ -10,8 +10,8 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
-from gaitdisc.discovery.alignment import aligned, common_shift
-from gaitdisc.discovery.compare_channels import CommonCurves, common_curves
+from gaitdisc.comparison.alignment import aligned, common_shift
+from gaitdisc.comparison.common_curves import CommonCurves, common_curves
 from gaitdisc.errors import ComparisonError
 from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.results import WalkSummary

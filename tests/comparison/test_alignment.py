@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from gaitdisc.discovery.alignment import aligned, common_shift, own_shift, shifted
+from gaitdisc.comparison.alignment import aligned, common_shift, own_shift, shifted
 from gaitdisc.recording import PERCENT
 
 CURVES = np.stack(

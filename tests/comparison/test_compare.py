@@ -6,7 +6,7 @@ import pytest
 from scipy.ndimage import gaussian_filter1d
 
 from gaitdisc.channel import Channel
-from gaitdisc.discovery.compare import best_shift, compare_people, compare_walks
+from gaitdisc.comparison.compare import best_shift, compare_people, compare_walks
 from gaitdisc.errors import ComparisonError
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.processing.walk_pair import walk_pair
