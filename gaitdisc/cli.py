@@ -13,6 +13,7 @@ import typer
 import gaitdisc
 from gaitdisc.commands.ablate import ablate
 from gaitdisc.commands.angles import angles
+from gaitdisc.commands.apply import apply
 from gaitdisc.commands.check import check
 from gaitdisc.commands.compare import compare
 from gaitdisc.commands.demo import demo
@@ -36,6 +37,7 @@ COMMANDS = (
     compare,
     discover,
     reconstruct,
+    apply,
     run,
     ablate,
     modalities,

@@ -230,7 +230,7 @@ def test_models_and_what_they_tell_hold_none_of_them(study, recordings, tmp_path
     assert (tmp_path / "out" / "models" / "P01" / "model.json").exists(), done.output
     assert planted(done.output.replace(str(tmp_path), "")) == []
     recording = recordings / "Zqperson_aaa" / "Zqfile_exo_ik.mot"
-    called("reconstruct", recording, "--model", tmp_path / "out" / "models" / "P01", "--out", tmp_path / "told.mot")
+    called("apply", tmp_path / "out" / "models" / "P01", recording, "--out", tmp_path / "told.mot")
     assert (tmp_path / "told.mot").exists()
     assert found_in(tmp_path) == {}
 

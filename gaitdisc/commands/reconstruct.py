@@ -1,4 +1,4 @@
-"""`gaitdisc reconstruct`: the full state from a few sensors and their history."""
+"""`gaitdisc reconstruct`: models of the full state from a few sensors and their history."""
 
 from __future__ import annotations
 
@@ -10,18 +10,13 @@ import typer
 
 from gaitdisc.commands.exit_codes import SOME_REFUSED
 from gaitdisc.commands.options import Quiet
-from gaitdisc.errors import SchemaError
 
 if TYPE_CHECKING:
     from gaitdisc.results.reconstruction import Reconstruction
 
-OF_A_STUDY = ("sensors", "search", "split", "condition", "targets", "ahead", "kinds", "device")
-OF_A_RECORDING = ("calibrate", "missing")
-
 
 def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
-    context: typer.Context,
-    study: Annotated[Path, typer.Argument(help="The study file or its folder; with --model one recording.")],
+    study: Annotated[Path, typer.Argument(help="The study file or its folder.")],
     sensors: Annotated[
         list[str] | None, typer.Option("--sensors", "-s", help="Channels that are read: a,b,c or repeated.")
     ] = None,
@@ -38,23 +33,16 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     targets: Annotated[str, typer.Option(help="What is reconstructed: states, emg, forces or moments.")] = "states",
     ahead: Annotated[float, typer.Option(min=0.0, help="Forecast the states so many seconds ahead.")] = 0.0,
     kinds: Annotated[str, typer.Option(help='As in "delay ridge,masked shred"; by default five kinds of model.')] = "",
-    model: Annotated[
-        Path | None,
-        typer.Option(help="Folder of a model that this command saved: reconstruct the states of a recording."),
-    ] = None,
-    calibrate: Annotated[
-        Path | None, typer.Option(help="With --model: a walk of the same person with all states, to correct it by.")
-    ] = None,
-    missing: Annotated[
-        str, typer.Option(help="With --model: what stands for a missing reading: none, mean or last.")
-    ] = "none",
     device: Annotated[
         str, typer.Option(help="That networks are fitted on: cpu, cuda, or auto, the GPU where there is one.")
     ] = "auto",
     out: Annotated[Path | None, typer.Option(help="Folder of the report; by default STUDY/reconstruct.")] = None,
     quiet: Quiet = False,
 ) -> None:
-    """Reconstruct all states from a few sensors, by SHRED and by what it has to beat; tested on unseen walking."""
+    """Fit models of all states from a few sensors, by SHRED and by what it has to beat; tested on unseen walking.
+
+    Each participant's recommended model is saved; `gaitdisc apply` reconstructs a recording with it.
+    """
     from gaitdisc.batch.reconstruct_study import ReconstructionSettings, reconstruct_study
     from gaitdisc.batch.search_study import search_study
     from gaitdisc.ingest.study_file import load_study
@@ -64,10 +52,6 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     from gaitdisc.sensing.model_folder import save_model
     from gaitdisc.sensing.reconstructor import KINDS
 
-    _refuse_others(context, model)
-    if model is not None:
-        _by_model(study, model, out, calibrate, missing)
-        return
     loaded = load_study(study)
     folder = out or loaded.folder / "reconstruct"
     chosen = tuple(kind.strip() for kind in kinds.split(",")) if kinds else tuple(KINDS)
@@ -98,30 +82,6 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     typer.echo(f"report: {page}")
     if done.refusals:
         raise typer.Exit(SOME_REFUSED)
-
-
-def _refuse_others(context: typer.Context, model: Path | None) -> None:
-    others = OF_A_STUDY if model is not None else OF_A_RECORDING
-    sources = {name: context.get_parameter_source(name) for name in others}
-    given = [name for name, source in sources.items() if source is not None and source.name == "COMMANDLINE"]
-    if given:
-        words = " and ".join(f"--{name}" for name in given)
-        told = ("a saved model reads a recording as it was fitted", "Leave them out, or leave --model out.")
-        fitted = (
-            "these correct what a saved model reconstructs of a recording",
-            "Name the model's folder with --model.",
-        )
-        needed, remedy = told if model is not None else fitted
-        raise SchemaError(needed, f"{words} {'with' if model is not None else 'without'} --model", remedy)
-
-
-def _by_model(recording: Path, model: Path, out: Path | None, calibrate: Path | None, missing: str) -> None:
-    from gaitdisc.batch.reconstruct_recording import reconstruct_recording
-
-    file = out or Path(f"{recording.stem}_reconstructed.mot")
-    told = reconstruct_recording(recording, model, file, calibration=calibrate, missing=missing)
-    for line in told.lines():
-        typer.echo(line)
 
 
 def _tell(done: Reconstruction) -> None:

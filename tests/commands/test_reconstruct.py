@@ -5,7 +5,6 @@ from typer.testing import CliRunner
 
 from gaitdisc.cli import app
 from gaitdisc.commands.exit_codes import REFUSED
-from gaitdisc.errors import SchemaError
 
 pytestmark = pytest.mark.usefixtures("unpainted")
 FAST = ("--kinds", "linear,delay ridge")  # no network, where none is asked about
@@ -30,17 +29,6 @@ def test_a_sensor_that_is_not_there_is_one_sentence(study, called):
     assert "Traceback" not in done.stderr
 
 
-def test_a_model_tells_a_recording(study, recordings, tmp_path, called):
-    words = ["-s", "hip_flexion_r", "-s", "knee_angle_r", "--condition", "natural", "--out", tmp_path, "-q", *FAST]
-    assert called("reconstruct", study, *words).returncode == 0
-    [model] = (tmp_path / "models").iterdir()
-    file, out = recordings / "walker1" / "exo.mot", tmp_path / "told.mot"
-    done = called("reconstruct", file, "--model", model, "--out", out)
-    assert done.returncode == 0, done.stderr
-    assert "ankle_angle_r: RMSE" in done.stdout
-    assert out.is_file()
-
-
 def test_the_saved_model_is_of_the_kind_that_the_page_recommends(study, tmp_path):
     words = ["reconstruct", str(study), "-s", "hip_flexion_r", "--out", str(tmp_path), "-q", *FAST]
     done = CliRunner().invoke(app, words)
@@ -49,19 +37,6 @@ def test_the_saved_model_is_of_the_kind_that_the_page_recommends(study, tmp_path
     [model] = (tmp_path / "models").iterdir()
     assert json.loads((model / "model.json").read_text())["kind"] == recommended
     assert f"models: {tmp_path / 'models'}, {recommended} for each participant" in done.stdout
-
-
-@pytest.mark.parametrize(
-    ("words", "found"),
-    [
-        (("--calibrate", "walk.mot", "--missing", "last"), "--calibrate and --missing without --model. Name the model"),
-        (("--model", "m", "--split", "blocked", "-s", "a"), "--sensors and --split with --model. Leave them out"),
-    ],
-)
-def test_options_that_would_do_nothing_are_refused(study, words, found):
-    done = CliRunner().invoke(app, ["reconstruct", str(study), *words])
-    assert isinstance(done.exception, SchemaError)
-    assert found in str(done.exception)
 
 
 def test_without_sensors_it_is_refused(study, called):

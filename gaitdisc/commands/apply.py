@@ -1,0 +1,35 @@
+"""`gaitdisc apply`: a recording's states by a model that `gaitdisc reconstruct` saved."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from gaitdisc.errors import SchemaError
+
+
+def apply(
+    model: Annotated[Path, typer.Argument(help="Folder of a model that `gaitdisc reconstruct` saved.")],
+    recording: Annotated[Path, typer.Argument(help="File with the model's sensors.")],
+    calibrate: Annotated[
+        Path | None, typer.Option(help="A walk of the same person with all states, to correct the model by.")
+    ] = None,
+    missing: Annotated[str, typer.Option(help="What stands for a missing reading: none, mean or last.")] = "none",
+    out: Annotated[
+        Path | None, typer.Option(help="File to write; by default RECORDING_reconstructed.mot in this folder.")
+    ] = None,
+) -> None:
+    """Reconstruct the states of a recording by a saved model, with their errors where the recording has them."""
+    from gaitdisc.batch.reconstruct_recording import reconstruct_recording
+
+    if model.is_file():
+        raise SchemaError(
+            "a model is a folder that `gaitdisc reconstruct` saved",
+            f"{model.name} is a file",
+            "Name the model first: gaitdisc apply MODEL RECORDING.",
+        )
+    file = out or Path(f"{recording.stem}_reconstructed.mot")
+    for line in reconstruct_recording(recording, model, file, calibration=calibrate, missing=missing).lines():
+        typer.echo(line)
