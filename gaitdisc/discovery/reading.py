@@ -91,13 +91,15 @@ def read_shape(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> Verdict:
 def read_instead(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> Verdict:
     """Return a verdict on several names at one place, or on a shape that reads as less than they are and errs less.
 
-    Pieces of the catalogue laid beside each other imitate any curve; names that leave mere noise are never given up.
+    Pieces of the catalogue laid beside each other imitate any curve, above all one piece laid twice; other names
+    that leave mere noise are never given up.
     """
     named = verdict.account
     places = [part.candidate.place for part in named.account.parts if part.candidate.verdict == "missing_physics"]
     if named.account.size < FEWEST_NUMBERS or len(set(places)) == len(places):
         return verdict
-    if leaves_noise(inquiry, named):
+    twice = len(set(named.labels)) < len(named.labels)
+    if leaves_noise(inquiry, named) and not twice:
         return verdict
     shape = fitted_shape(as_read, inquiry.search, scale_of(inquiry))
     if shape is None:
