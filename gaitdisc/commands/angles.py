@@ -27,23 +27,19 @@ def angles(
     """Joint angles from markers, with the package's signs; widths are taken from the static C3D where it has them."""
     from dataclasses import replace
 
-    from gaitdisc.ingest.c3d_measures import read_body_measures
+    from gaitdisc.ingest.c3d_measures import body_measures_in
     from gaitdisc.ingest.reading import read_trial
     from gaitdisc.ingest.storage import write_storage
     from gaitdisc.ingest.table import write_table
-    from gaitdisc.kinematics.calibration import calibrated
-    from gaitdisc.kinematics.motion import chosen_marker_set, motion
-    from gaitdisc.recording.body_measures import BodyMeasures
+    from gaitdisc.kinematics.motion import moved_body
 
     walk, stood = (read_trial(file) for file in (trial, static))
     markers, standing = walk.stream("markers"), stood.stream("markers")
-    measures = read_body_measures(static) if static.suffix.lower() == ".c3d" else BodyMeasures()
+    measures = body_measures_in(static)
     if widths is not None:
         knees, ankles = (dict(zip("lr", pair, strict=True)) for pair in (widths[:2], widths[2:]))
         measures = replace(measures, knee_width_m=knees, ankle_width_m=ankles)
-    chosen = chosen_marker_set(markers, standing, marker_set or None)
-    chosen = chosen.with_joints(joints) if joints else chosen
-    found = motion(markers, calibrated(standing, chosen, measures), forward)
+    found = moved_body(markers, standing, marker_set or None, measures, forward, joints or None).motion
     write = write_storage if out.suffix.lower() in (".mot", ".sto") else write_table
     write(found.angles, out)
     for finding in dict.fromkeys((*stood.findings, *walk.findings, *found.findings)):

@@ -22,26 +22,20 @@ def moments(
     ] = 20.0,
 ) -> None:
     """Joint moments [N m/kg] and powers [W/kg], internal; frames without a known load of the foot are empty."""
-    from gaitdisc.ingest.c3d_measures import read_body_measures
+    from gaitdisc.ingest.c3d_measures import body_measures_in
     from gaitdisc.ingest.reading import read_trial
     from gaitdisc.ingest.storage import write_storage
     from gaitdisc.ingest.table import write_table
-    from gaitdisc.kinematics.calibration import calibrated
-    from gaitdisc.kinematics.motion import chosen_marker_set, motion
+    from gaitdisc.kinematics.motion import moved_body
     from gaitdisc.kinetics.body_inertia import Person
     from gaitdisc.kinetics.joint_moments import KineticsSettings
     from gaitdisc.kinetics.trial_kinetics import trial_kinetics
     from gaitdisc.processing.markers_to_moments import foot_paths_of
-    from gaitdisc.recording.body_measures import BodyMeasures
 
     walk, stood = read_trial(trial), read_trial(static)
-    standing = stood.stream("markers")
-    measures = read_body_measures(static) if static.suffix.lower() == ".c3d" else BodyMeasures()
+    standing, measures = stood.stream("markers"), body_measures_in(static)
     person = Person(measures.mass_kg if mass is None else mass, sex, measures.height_m)
-    markers = walk.stream("markers")
-    chosen = chosen_marker_set(markers, standing, marker_set or None)
-    body = calibrated(standing, chosen, measures)
-    moved = motion(markers, body)
+    body, moved = moved_body(walk.stream("markers"), standing, marker_set or None, measures)
     settings = KineticsSettings(force_cutoff_hz=force_hz)
     found = trial_kinetics(walk, moved.poses, foot_paths_of(moved, body), person, settings)
     write = write_storage if out.suffix.lower() in (".mot", ".sto") else write_table

@@ -41,6 +41,11 @@ def read_body_measures(path: Path | str) -> BodyMeasures:
     return body_measures_of(read_c3d_parameters(path, read_c3d_header(path)), path.name)
 
 
+def body_measures_in(path: Path) -> BodyMeasures:
+    """Measures of the person in a file, if it is a C3D file; no other kind has any."""
+    return read_body_measures(path) if path.suffix.lower() == ".c3d" else BodyMeasures()
+
+
 def body_measures_of(parameters: C3DParameters, file: str) -> BodyMeasures:
     """Measures of the person that stand in parameters.
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,9 +90,29 @@ def joint_angles(
     >>> walk, static = read_trial("walk.c3d"), read_trial("static.c3d")  # doctest: +SKIP
     >>> angles = joint_angles(walk.stream("markers"), static.stream("markers"))  # doctest: +SKIP
     """
+    return moved_body(markers, static, marker_set, measures, forward, joints).motion.angles
+
+
+class MovedBody(NamedTuple):
+    """A body as its static trial calibrated it, and how it moved in a trial."""
+
+    calibration: Calibration
+    motion: Motion
+
+
+def moved_body(
+    markers: Recording,
+    static: Recording | None,
+    marker_set: MarkerSet | str | Path | None = None,
+    measures: BodyMeasures | None = None,
+    forward: Sequence[float] | None = None,
+    joints: str | None = None,
+) -> MovedBody:
+    """Calibrate a body by its static trial and follow it through a trial; arguments as of `joint_angles`."""
     chosen = chosen_marker_set(markers, static, marker_set)
     chosen = chosen if joints is None else chosen.with_joints(joints)
-    return motion(markers, calibrated(static, chosen, measures), forward).angles
+    body = calibrated(static, chosen, measures)
+    return MovedBody(body, motion(markers, body, forward))
 
 
 def chosen_marker_set(

@@ -5,21 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from gaitdisc.ingest.c3d_measures import read_body_measures
+from gaitdisc.ingest.c3d_measures import body_measures_in
 from gaitdisc.ingest.reading import read_trial
-from gaitdisc.kinematics.calibration import Calibration, calibrated
-from gaitdisc.kinematics.motion import chosen_marker_set, motion
+from gaitdisc.kinematics.motion import joint_angles, moved_body
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
 from gaitdisc.kinetics.trial_kinetics import trial_kinetics
 from gaitdisc.processing.markers_to_moments import foot_paths_of
 from gaitdisc.recording import Recording, Trial
 from gaitdisc.recording.body_measures import BodyMeasures
-
-if TYPE_CHECKING:
-    from gaitdisc.kinematics.motion import Motion
 
 Walk = Trial | Path | str | Sequence[Path | str]
 
@@ -64,8 +59,10 @@ def angles(
     >>> import gaitdisc as gd
     >>> gd.angles("walk.c3d", "static.c3d")["knee_angle_r"]  # doctest: +SKIP
     """
-    _, moved, _, _ = _moved(walk, static, marker_set, joints, forward)
-    return moved.angles
+    trial = _trial(walk)
+    standing, measures = _standing(static)
+    found = joint_angles(trial.stream("markers"), standing, marker_set, measures, forward, joints)
+    return replace(found, subject=trial.subject, condition=trial.condition)
 
 
 def moments(
@@ -112,28 +109,20 @@ def moments(
     >>> import gaitdisc as gd
     >>> gd.moments("walk.c3d", "static.c3d", mass_kg=70.0)["knee_moment_r"]  # doctest: +SKIP
     """
-    trial, moved, body, measures = _moved(walk, static, marker_set, None, None)
+    trial = _trial(walk)
+    standing, measures = _standing(static)
+    body, moved = moved_body(trial.stream("markers"), standing, marker_set, measures)
     person = Person(measures.mass_kg if mass_kg is None else mass_kg, sex, measures.height_m)
     settings = KineticsSettings(force_cutoff_hz=force_cutoff_hz)
     return trial_kinetics(trial, moved.poses, foot_paths_of(moved, body), person, settings).moments
 
 
-def _moved(
-    walk: Walk,
-    static: Trial | Path | str,
-    marker_set: Path | str | None,
-    joints: str | None,
-    forward: Sequence[float] | None,
-) -> tuple[Trial, Motion, Calibration, BodyMeasures]:
-    trial = walk if isinstance(walk, Trial) else read_trial(walk)
-    measures = BodyMeasures()
-    if not isinstance(static, Trial):
-        place = Path(static)
-        measures = read_body_measures(place) if place.suffix.lower() == ".c3d" else measures
-        static = read_trial(place)
-    markers, standing = trial.stream("markers"), static.stream("markers")
-    chosen = chosen_marker_set(markers, standing, marker_set)
-    body = calibrated(standing, chosen if joints is None else chosen.with_joints(joints), measures)
-    moved = motion(markers, body, forward)
-    named = replace(moved.angles, subject=trial.subject, condition=trial.condition)
-    return trial, replace(moved, angles=named), body, measures
+def _trial(walk: Walk) -> Trial:
+    return walk if isinstance(walk, Trial) else read_trial(walk)
+
+
+def _standing(static: Trial | Path | str) -> tuple[Recording, BodyMeasures]:
+    """Markers of the static trial, and the measures in its file."""
+    if isinstance(static, Trial):
+        return static.stream("markers"), BodyMeasures()
+    return read_trial(static).stream("markers"), body_measures_in(Path(static))
