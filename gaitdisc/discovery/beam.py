@@ -12,7 +12,7 @@ from gaitdisc.discovery.borne_out import LEVEL, signed_rank_p, speaking
 from gaitdisc.discovery.candidate import Identity
 from gaitdisc.discovery.gap_share import GapScale, Weighed, weighed
 from gaitdisc.discovery.price import price_of
-from gaitdisc.discovery.score import Score, Scorer
+from gaitdisc.discovery.score import Score
 from gaitdisc.discovery.search import Search
 
 WIDTH = 5  # sets that are extended side by side
@@ -93,8 +93,7 @@ class Beam:
         fit, account = now.account.fit, now.account
         if not np.isfinite(now.gap):
             return []
-        scorer = Scorer(now.shooting, account.simulation, account.machine, fit, self.search.places, self.search.rhythm)
-        scores = scorer.scores(self.search.open_beside(account))
+        scores = self.search.scorer(now.shooting, account).scores(self.search.open_beside(account))
         whole = float((fit.projected[0] ** 2).sum())
         wanted = self.cost(self.best) + SLACK
         promising = []

@@ -16,7 +16,6 @@ from gaitdisc.discovery.evidence import Judged, judged
 from gaitdisc.discovery.gap_share import REMEMBERED, GapScale, Weighed, weighed
 from gaitdisc.discovery.nameless import MEANS, NAME
 from gaitdisc.discovery.places import Place
-from gaitdisc.discovery.score import Scorer
 from gaitdisc.discovery.search import Search
 from gaitdisc.simulation.evaluating import Points, evaluate_many
 
@@ -115,8 +114,7 @@ def _weighed(scale: GapScale, search: Search, plain: Weighed, part: Part) -> Wei
 
 def _promising(now: Judged, search: Search, plain: Weighed) -> list[Part]:
     """Shapes that promise most, to first order, with the factors that they promise it with."""
-    account = plain.account
-    scorer = Scorer(plain.shooting, account.simulation, account.machine, account.fit, search.places, search.rhythm)
+    scorer = search.scorer(plain.shooting, plain.account)
     shapes = tuple(shape for place in search.places for shape in shapes_at(place, now, search))
     price = float(np.log(plain.shooting.known.sum() / REMEMBERED))
     scores = sorted(scorer.scores(shapes), key=lambda one: price * len(one.candidate.slots) - one.gain)

@@ -13,6 +13,7 @@ from gaitdisc.discovery.evidence import Judged, compared
 from gaitdisc.discovery.grids import Rhythm
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.score import Scorer
+from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.simulation import Simulation
 
@@ -53,7 +54,7 @@ class Search:
             Empty where no explanation fits; in no order after the first.
         """
         account, shooting = now.account, now.shooting
-        scorer = Scorer(shooting, account.simulation, account.machine, account.fit, self.places, self.rhythm)
+        scorer = self.scorer(shooting, account)
         open_ones = self.open_beside(account)
         price = float(np.log(account.fit.white.size))
         scores = sorted(scorer.scores(open_ones), key=lambda one: price * len(one.candidate.slots) - one.gain)
@@ -77,6 +78,10 @@ class Search:
             return []
         before, *more = compared([now, *(Judged(one, shooting) for one in tried)], self.base)
         return [before, *(replace(one, gained=before.evidence - one.evidence) for one in more)]
+
+    def scorer(self, shooting: Shooting, account: Account) -> Scorer:
+        """Return what scores further explanations beside an account, to first order."""
+        return Scorer(shooting, account.simulation, account.machine, account.fit, self.places, self.rhythm)
 
     def open_beside(self, account: Account) -> tuple[Candidate, ...]:
         """Return the explanations that are not in an account."""

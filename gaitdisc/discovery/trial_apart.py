@@ -12,7 +12,6 @@ from gaitdisc.discovery.gap_share import MODEL_ERROR
 from gaitdisc.discovery.growth import leaves
 from gaitdisc.discovery.inquiry import Inquiry
 from gaitdisc.discovery.odd_trials import KIND
-from gaitdisc.discovery.score import Scorer
 from gaitdisc.recording import Finding
 from gaitdisc.simulation.measured import Measured
 
@@ -65,8 +64,7 @@ def without_trial_apart(inquiry: Inquiry) -> Measured:
 def _promised(inquiry: Inquiry, as_read: Judged) -> NDArray[np.float64]:
     """Mean square that the best single explanation leaves of all other trials, to first order (trial,)."""
     search, account = inquiry.search, as_read.account
-    scorer = Scorer(as_read.shooting, account.simulation, account.machine, account.fit, search.places, search.rhythm)
-    return scorer.left_without_each(search.open_beside(account))
+    return search.scorer(as_read.shooting, account).left_without_each(search.open_beside(account))
 
 
 def _as_read_left(as_read: Judged, trial: int, spread: NDArray[np.float64]) -> float:

@@ -246,7 +246,8 @@ class _Fields(Mapping[str, Any]):
 
 def _of_hdf5(path: Path, name: str) -> Any:
     """Node of a variable of a v7.3 file; structs are groups, cells are references, arrays stand transposed."""
-    return _Group(path, name)[""] if name else None
+    with hdf5_file(path) as file:
+        return _hdf5_node(file, name, path)
 
 
 class _Group(Mapping[str, Any]):
@@ -256,9 +257,7 @@ class _Group(Mapping[str, Any]):
         self._path, self._name, self._number = path, name, number
 
     def __getitem__(self, field: str) -> Any:
-        name = f"{self._name}/{field}" if field else self._name
-        with hdf5_file(self._path) as file:
-            found = _hdf5_node(file, name, self._path)
+        found = _of_hdf5(self._path, f"{self._name}/{field}")
         return found.held[self._number] if self._number is not None and isinstance(found, Cells) else found
 
     def __contains__(self, field: object) -> bool:

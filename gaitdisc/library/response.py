@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
 
@@ -79,7 +79,9 @@ def fit_response(
         word: replace(one if isinstance(one, Trial) else read_trial(one), condition=word)
         for word, one in ((WITHOUT, nominal), (WITH, exo))
     }
-    study = _study(trials, tuple(outputs), angles, tuple(emg), (held_out_share, seed))
+    inputs = _angles(trials, outputs, angles)
+    models = Models(angles=inputs, emg=tuple(emg), outputs=tuple(outputs), seed=seed)
+    study = _study(trials, models, HeldOut(share=held_out_share))
     walks = {word: processed(trial, study) for word, trial in trials.items()}
     settings, null = response_settings(study), filter_null_of(walks[WITH], study.filters)
     response = fitted(walks[WITHOUT].trajectory, walks[WITH].trajectory, settings, null)
@@ -92,17 +94,10 @@ def fit_response(
     return ResponseRun(f"Response of {person}", WITHOUT, WITH, summaries, responses, (), provenance)
 
 
-def _study(
-    trials: dict[str, Trial],
-    outputs: tuple[str, ...],
-    angles: Sequence[str] | None,
-    emg: tuple[str, ...],
-    fits: tuple[float, int],
-) -> Study:
-    """The settings of these two walks as a study has them."""
-    share, seed = fits
+def _angles(trials: Mapping[str, Trial], outputs: Sequence[str], given: Sequence[str] | None) -> tuple[str, ...]:
+    """Angles among the inputs: those given, or the usual ones that both walks have."""
     both = [set(trial.stream("kinematics").names) for trial in trials.values()]
-    chosen = tuple(angles) if angles is not None else tuple(name for name in ANGLES if name in both[0] & both[1])
+    chosen = tuple(given) if given is not None else tuple(name for name in ANGLES if name in both[0] & both[1])
     absent = [name for name in outputs if name not in chosen]
     if absent:
         raise ChannelError(
@@ -110,10 +105,14 @@ def _study(
             f"{absent[0]!r} is not among {', '.join(chosen) or 'them'}",
             "Leave it out of outputs, or name it in angles.",
         )
-    subject = trials[WITH].subject or trials[WITHOUT].subject or "P01"
+    return chosen
+
+
+def _study(trials: Mapping[str, Trial], models: Models, held_out: HeldOut) -> Study:
+    """The settings of these two walks as a study has them."""
     return Study(
         conditions=Conditions(nominal=WITHOUT, device=WITH),
-        models=Models(angles=chosen, emg=emg, outputs=outputs, seed=seed),
-        held_out=HeldOut(share=share),
-        participants=(Participant(id=subject),),
+        models=models,
+        held_out=held_out,
+        participants=(Participant(id=trials[WITH].subject or trials[WITHOUT].subject or "P01"),),
     )

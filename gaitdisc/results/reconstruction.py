@@ -16,7 +16,6 @@ from gaitdisc.recording import Finding
 from gaitdisc.results.provenance import Provenance
 from gaitdisc.results.refusal import Refusal
 from gaitdisc.results.unit_folder import load_unit, save_unit, stored_finding
-from gaitdisc.spreadsheet import read_csv
 
 NAME = "reconstruction.json"
 TABLES = {
@@ -201,8 +200,7 @@ def save_reconstruction(done: Reconstruction, folder: Path) -> None:
 
 def load_reconstruction(folder: Path) -> Reconstruction:
     """Load a reconstruction."""
-    data, tables, _ = load_unit(folder, NAME, TABLES)
-    tables = {name: read_csv(folder / name, WORDS) for name in tables}
+    data, tables, _ = load_unit(folder, NAME, TABLES, WORDS)
     return Reconstruction(
         title=data["title"],
         sensors=tuple(Channel(**channel) for channel in data["sensors"]),

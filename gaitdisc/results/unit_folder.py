@@ -59,13 +59,17 @@ def save_unit(
     write_whole(folder / name, sealed_text({"format": FORMAT, **data, "sha256": hashes}))
 
 
-def load_unit(folder: Path, name: str, columns: Mapping[str, Sequence[str]] | None = None) -> Unit:
+def load_unit(
+    folder: Path, name: str, columns: Mapping[str, Sequence[str]] | None = None, words: Sequence[str] = ()
+) -> Unit:
     """Read a unit, after its hashes were compared.
 
     Parameters
     ----------
     columns : mapping of str to sequence of str, optional
         Tables that the unit must have, and the columns that each must have.
+    words : sequence of str
+        Columns whose cells are words, also where they look like numbers.
 
     Returns
     -------
@@ -74,7 +78,7 @@ def load_unit(folder: Path, name: str, columns: Mapping[str, Sequence[str]] | No
     """
     data = read_json(folder / name)
     check_files(folder, data["sha256"])
-    tables = {file: _read_table(folder / file) for file in data["sha256"] if file.endswith(".csv")}
+    tables = {file: _read_table(folder / file, words) for file in data["sha256"] if file.endswith(".csv")}
     for file, wanted in (columns or {}).items():
         if file not in tables:
             raise damaged(folder / file, f"not among the files that {name} names")
@@ -151,9 +155,9 @@ def read_json(path: Path) -> dict[str, Any]:
     return data
 
 
-def _read_table(path: Path) -> pd.DataFrame:
+def _read_table(path: Path, words: Sequence[str]) -> pd.DataFrame:
     try:
-        return read_csv(path)
+        return read_csv(path, words)
     except (OSError, ValueError, pd.errors.ParserError) as error:
         raise damaged(path, f"not readable as a table ({error})") from error
 
