@@ -95,6 +95,7 @@ def _where(row: Mapping[str, Any]) -> Whereabouts:
 def _effect(row: Mapping[str, Any]) -> FoundEffect:
     bounds = tuple(_number(bound, edge) for bound, edge in zip(row.get("bounds", ()), (-np.inf, np.inf), strict=False))
     kind, place = _place(row)
+    reading = row.get("reads_as", {"expression": "", "effect": None})
     return FoundEffect(
         kind=kind,
         place=place,
@@ -107,6 +108,8 @@ def _effect(row: Mapping[str, Any]) -> FoundEffect:
         small=row.get("small", False),
         bounds=bounds,
         states=row.get("states", {}),
+        reads_as=reading["expression"],
+        reads_as_effect=reading["effect"] or "",
     )
 
 

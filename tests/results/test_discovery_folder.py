@@ -39,8 +39,11 @@ def test_every_part_of_a_discovery_comes_back(tmp_path):
     inf = float("inf")
     wrong = FoundEffect("parameter", "mass", "changed", "", {"mass": Estimate(2.0, 1.9, 2.1, "kg")}, 0.4, 9.0,
                         bounds=(-inf, 3.0), states={"z": "-z"})  # fmt: skip
+    read = FoundEffect("port", "load", "unnamed", "-14.02*(x**3)", held_out=0.4, bic=9.0, reads_as="-14*(x**3)",
+                       reads_as_effect="cubic_stiffness")  # fmt: skip
+    nameless = replace(read, term="-8.0725*(x**2*v)", reads_as="-8.07*(x**2*v)", reads_as_effect="")
     moved = (Correction("mass", 1.5, Estimate(2.0, 1.9, 2.1, "kg")),)
-    discovery = manufactured(effects=(wrong,), corrections=moved)
+    discovery = manufactured(effects=(wrong, read, nameless), corrections=moved)
     save_discovery(discovery, tmp_path)
     again = load_discovery(tmp_path)
     assert (again.effects, again.corrections) == (discovery.effects, discovery.corrections)
