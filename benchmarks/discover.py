@@ -1,10 +1,11 @@
-"""`gaitdisc discover` and stock PySINDy on the same blind cases, side by side.
+"""`gaitdisc discover`, stock PySINDy and a plain grey-box fit on the same blind cases, side by side.
 
-    python benchmarks/discover.py BENCH [OUT] [--seed 21] [--cases 30] [--noise 0.05] [--jobs 2]
+    python benchmarks/discover.py BENCH [OUT] [--seed 21] [--cases 30] [--noise 0.05] [--jobs 2] [--made OPTIONS]
 
 BENCH is the folder of make_cases.py and score.py (../shared/bench/hidden_effects), which are run as they are: cases
 are made there, every tool is run as a command on them, and score.py alone reads the answers. PySINDy is not among the
-package's dependencies (pip install pysindy); stock_pysindy.py says what it is given.
+package's dependencies (pip install pysindy); stock_pysindy.py says what it is given. grey_box.py refits every number
+of the model and can name no effect: beside it stands what of the gap numbers alone close.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ GIVEN = command_line(
     argument("--cases", "how many are kept", 30),
     argument("--noise", "of the sensors, share of the signal", 0.05),
     argument("--jobs", "cases side by side", 2),
+    argument("--made", "further options of make_cases.py, in one word", ""),
 )  # before the slow imports
 
 import json
@@ -34,17 +36,18 @@ import numpy as np
 import pandas as pd
 
 OURS = "gaitdisc discover {simulation} {measured} --out {out} --no-report --quiet"
-THEIRS = (
-    f"{sys.executable} {Path(__file__).with_name('stock_pysindy.py')} {{simulation}} {{measured}} --out {{out}} --how "
-)
-TOOLS = {"gaitdisc": OURS} | {f"PySINDy, {how}": THEIRS + how for how in ("sweep", "ensemble", "weak")}
+BESIDE = f"{sys.executable} {Path(__file__).parent}/{{tool}}.py {{{{simulation}}}} {{{{measured}}}} --out {{{{out}}}}"
+TOOLS = {"gaitdisc": OURS, "grey box": BESIDE.format(tool="grey_box")} | {
+    f"PySINDy, {how}": f"{BESIDE.format(tool='stock_pysindy')} --how {how}" for how in ("sweep", "ensemble", "weak")
+}
 LIMIT_S = 300
 
 
-def make(bench: Path, out: Path, seed: int, count: int, noise: float) -> None:
+def make(bench: Path, out: Path, count: int, options: list[str]) -> None:
     """Make the cases, and keep so many of them, evenly from all."""
-    made = [sys.executable, str(bench / "make_cases.py"), str(out), "--seed", str(seed), "--noise", str(noise)]
-    subprocess.run(made, check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(
+        [sys.executable, str(bench / "make_cases.py"), str(out), *options], check=True, stdout=subprocess.DEVNULL
+    )
     cases = sorted(path.name for path in (out / "cases").iterdir())
     kept = {cases[i] for i in np.linspace(0, len(cases) - 1, min(count, len(cases))).round().astype(int)}
     for name in set(cases) - kept:
@@ -76,7 +79,8 @@ def line(name: str, rows: pd.DataFrame) -> dict[str, object]:
 
 
 if __name__ == "__main__":
-    make(GIVEN.bench, GIVEN.out, GIVEN.seed, GIVEN.cases, GIVEN.noise)
+    options = ["--seed", str(GIVEN.seed), "--noise", str(GIVEN.noise), *GIVEN.made.split()]
+    make(GIVEN.bench, GIVEN.out, GIVEN.cases, options)
     lines = []
     for tool, command in TOOLS.items():
         rows = scored(GIVEN.bench, GIVEN.out, command, GIVEN.jobs)
