@@ -54,6 +54,11 @@ class Fitted:
         squares = (self.white**2).sum(axis=1)
         return np.where(np.isfinite(squares), squares, np.inf)
 
+    def among(self, some: NDArray[np.intp]) -> Fitted:
+        """Return the fit of some of the segments, by their numbers."""
+        parts = (each[some] for each in (self.starts, self.states, self.residual, self.white, self.slopes))
+        return Fitted(self.free, self.values, *parts, prior=self.prior)
+
     def where(self, better: NDArray[np.bool_], other: Fitted) -> Fitted:
         """Return another fit's segments where these are better, and its constants if all are.
 

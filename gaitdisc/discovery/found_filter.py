@@ -1,7 +1,7 @@
 """The low-pass that a record went through, where the file does not say: found in its spectrum, with a finding.
 
-Where noise shows at the cut-off, the record's spectrum alone shows it. Where the signal reaches beyond it, the signal's
-own fall is in the way; then the simulation as read, laid over the record run by run, says how the signal falls.
+Where noise alone shows at the cut-off, the record's spectrum shows it. Where the signal reaches there, the signal's own
+fall is in the way; then the simulation as read, laid over the record run by run, may say better how the signal falls.
 """
 
 from __future__ import annotations
@@ -23,6 +23,8 @@ from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
 
 SURE = 4.0  # times the noise's power at the cut-off, up to which a signal there is not in the way
+FELT = 1e-3  # times the noise's power at the cut-off, from which on a signal there may be in the way
+LIKELIER = 10.0  # log likelihood, by which the signal has to be more like the simulation than like any that dies out
 ALIKE = 1.3  # between the cut-offs of channels that went through one filter
 OVERLAP = 4  # times as long a run is as what it shares with the next on either side
 FEWEST_SAMPLES = 16  # of a run
@@ -47,7 +49,7 @@ def record_filter_of(
     unknown = [number for number, cutoff in enumerate(stated) if cutoff is None]
     seen = {number: found for number in unknown if (found := recorded_filter(_trials(measured, number), measured.rate))}
     inputs = bool(seen) and _inputs_are_filtered(measured)
-    if inputs or any(one.signal > SURE for one in seen.values()):
+    if inputs or any(one.signal > FELT for one in seen.values()):
         seen = _beside_the_simulation(simulation, measured, period, guess, seen, inputs)
     cutoffs = _together({number: one.cutoff_hz for number, one in seen.items()})
     passed = RecordFilter(tuple(cutoffs.get(number, cutoff) for number, cutoff in enumerate(stated)), measured.rate)
@@ -97,10 +99,13 @@ def _beside_the_simulation(
     like = _stitched(shooting, account, measured)
     found = dict(seen)
     for number, one in seen.items():
+        if one.signal <= FELT:
+            continue
+        again = recorded_filter(_trials(measured, number), measured.rate, [each[:, number] for each in like])
         if one.signal > SURE:
-            again = recorded_filter(_trials(measured, number), measured.rate, [each[:, number] for each in like])
             found.pop(number)
-            found |= {number: again} if again else {}
+        if again and (one.signal > SURE or again.likelihood > one.likelihood + LIKELIER):
+            found[number] = again
     if not inputs or not found:
         return found
     cutoffs = tuple(found[number].cutoff_hz if number in found else None for number in range(len(measured.channels)))

@@ -21,6 +21,8 @@ from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
 AT_ONCE = 96
+MOST = 1000  # candidates that are scored on all segments; of more, some segments say which are worth it
+KEPT, PART, FEWEST = 300, 0.15, 8  # candidates that are, share of the segments that say so, and how many at least
 NUDGE = 1e-4
 TRIED = "tried"  # begins the names of the numbers of what is scored
 
@@ -62,7 +64,19 @@ class Scorer:
     rhythm: Rhythm
 
     def scores(self, candidates: tuple[Candidate, ...]) -> list[Score]:
-        """Return the best score of each candidate, the greatest gain first."""
+        """Return the best score of each candidate, the greatest gain first; of a great many, those worth it alone."""
+        if len(candidates) > MOST:
+            candidates = tuple(one.candidate for one in self._on_some_segments()._scores(candidates)[:KEPT])
+        return self._scores(candidates)
+
+    def _on_some_segments(self) -> Scorer:
+        """The same on some of the segments, evenly from all."""
+        count = len(self.shooting.segments)
+        some = np.unique(np.linspace(0, count - 1, min(max(round(PART * count), FEWEST), count)).astype(np.intp))
+        shooting = replace(self.shooting, segments=self.shooting.segments.among(some))
+        return replace(self, shooting=shooting, fit=self.fit.among(some))
+
+    def _scores(self, candidates: tuple[Candidate, ...]) -> list[Score]:
         basis, known, left = self._explained()
         best: dict[int, Score] = {}
         for some, columns in self._columns(candidates):

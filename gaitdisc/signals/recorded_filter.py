@@ -64,12 +64,15 @@ class RecordedFilter:
     ----------
     gained : float
         Log likelihood with it less that without it.
+    likelihood : float
+        Log likelihood with it, of the same lines whatever the signal is taken to be like.
     signal : float
         Power of the signal over that of the noise at the cut-off: where it is far above 1, the number is rough.
     """
 
     cutoff_hz: float
     gained: float
+    likelihood: float
     signal: float
 
 
@@ -113,11 +116,12 @@ def recorded_filter(
     shape = np.ones(len(above.power)) if model is None else np.interp(above.frequency, model.frequency, model.power)
     fits = [_Fit(above, shape / shape[0], order) for order in (ORDER, OTHER)]
     found, other = (max(fit.best((begin,)) for begin in BEGINNINGS) for fit in fits)
-    gained, cutoff = (found[0] - fits[0].best(())[0]) * spectrum.windows, found[1]
+    likelihood, cutoff = found[0] * spectrum.windows, found[1]
+    gained = likelihood - fits[0].best(())[0] * spectrum.windows
     steeper = (other[0] - found[0]) * spectrum.windows > CLEARLY
     if gained < CLEARLY or cutoff > HIGHEST or not _falls_far(above, cutoff) or steeper:
         return None
-    return RecordedFilter(cutoff * rate_hz, gained, found[2])
+    return RecordedFilter(cutoff * rate_hz, gained, likelihood, found[2])
 
 
 def spectrum_of(trials: Sequence[NDArray[np.float64]]) -> Spectrum | None:

@@ -6,10 +6,11 @@ import keyword
 import math
 import re
 from collections.abc import Iterable, Iterator
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from gaitdisc.channel import nearest_word
-from gaitdisc.simulation.expression import RESERVED, Tree, delays, names, parsed, unknown_name
+from gaitdisc.simulation.expression import RESERVED, Operation, Tree, delays, names, parsed, unknown_name
 from gaitdisc.simulation.parts import Term
 from gaitdisc.simulation.refusal import SimulationError
 
@@ -161,13 +162,15 @@ def check_expression(text: str, known: tuple[str, ...], simulation: Simulation) 
     simulation : Simulation
         Whose states and inputs may be delayed, by its parameters.
     """
-    tree = parsed(text)
-    unknown = next((name for name in names(tree) if name not in known), None)
+    tree, named, late = _parts_of(text)
+    unknown = next((name for name in named if name not in known), None)
     if unknown is not None:
         raise unknown_name(text, unknown, known)
+    if not late:
+        return tree
     fixed = set(known) - set(simulation.signals) - {"t"} - {port.name for port in simulation.ports}
     fixed -= {name for name, _ in simulation.definitions}
-    for call in delays(tree):
+    for call in late:
         signal, seconds = call.arguments
         if next(names(signal), None) not in simulation.signals or set(names(signal)) != {getattr(signal, "name", None)}:
             raise SimulationError(
@@ -183,6 +186,13 @@ def check_expression(text: str, known: tuple[str, ...], simulation: Simulation) 
                 "Write a number or a parameter.",
             )
     return tree
+
+
+@lru_cache(maxsize=4096)  # a search checks the same equations with each explanation that it tries
+def _parts_of(text: str) -> tuple[Tree, tuple[str, ...], tuple[Operation, ...]]:
+    """Tree of an expression, the names in it, each once, and its calls of delay."""
+    tree = parsed(text)
+    return tree, tuple(dict.fromkeys(names(tree))), tuple(delays(tree))
 
 
 def _check_place(term: Term, ports: Iterable[str], states: Iterable[str], number: int) -> None:

@@ -96,3 +96,15 @@ def test_what_is_left_without_a_trial_is_what_the_others_alone_would_leave(inqui
         best = others.scores(candidates)[0].gain
         expected = (np.square(others.fit.projected[0]).sum() - best) / others.fit.white.size
         assert left[trial] == pytest.approx(expected, rel=1e-9)
+
+
+def test_of_a_great_many_candidates_those_worth_it_are_scored_as_all_are(monkeypatch):
+    inquiry, now = _inquiry(with_load("-0.3*x"))
+    every = _scores(inquiry, now)
+    monkeypatch.setattr("gaitdisc.discovery.score.MOST", len(every) // 2)
+    monkeypatch.setattr("gaitdisc.discovery.score.KEPT", len(every) // 3)
+    some = _scores(inquiry, now)
+    assert len(every) // 4 < len(some) <= len(every) // 3
+    best = max(every.values(), key=lambda one: one.gain)
+    assert max(some.values(), key=lambda one: one.gain).candidate.label == best.candidate.label
+    assert some[best.candidate.label].gain == pytest.approx(best.gain, rel=1e-9)
