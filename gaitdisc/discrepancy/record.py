@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.discrepancy.record_noise import NoiseKind, drawn_noise
 from gaitdisc.discrepancy.smoothing import smoothed
 from gaitdisc.discrepancy.system import System
 from gaitdisc.errors import SamplingError
@@ -42,6 +43,7 @@ class Conditions:
     duration_s: float = 50.0
     train_share: float = 0.6
     published: bool = False
+    kind: NoiseKind = "normal"
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,7 +124,8 @@ def recorded(system: System, conditions: Conditions) -> Record:
         )
     clean = truth @ system.observation.T
     size = conditions.noise * (np.ones(clean.shape[1]) if conditions.absolute else clean.std(axis=0))
-    measured = clean + size * np.random.default_rng(conditions.seed).standard_normal(clean.shape)
+    rng = np.random.default_rng(conditions.seed)
+    measured = clean + drawn_noise(conditions.kind, clean, size, conditions.dt_s, rng)
     time = conditions.dt_s * np.arange(steps + 1.0)
     training = measured[:split]
     if conditions.noise:
