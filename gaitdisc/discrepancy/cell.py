@@ -9,12 +9,12 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from gaitdisc.discrepancy.augmented_run import AugmentedRun, on_states, with_learned_rates
-from gaitdisc.discrepancy.error_signal import Approach, error_samples, refined_samples
+from gaitdisc.discrepancy.error_signal import Approach, error_samples, known_rates_samples, refined_samples
 from gaitdisc.discrepancy.forecast_start import forecast_start
 from gaitdisc.discrepancy.methods import OF_TIME, Method, MethodSettings, fitted
 from gaitdisc.discrepancy.record import Conditions, Record, recorded
 from gaitdisc.discrepancy.system import System
-from gaitdisc.errors import GaitdiscError
+from gaitdisc.errors import GaitdiscError, TrainingError
 from gaitdisc.model import Model
 from gaitdisc.regression.sindy import Sindy
 from gaitdisc.results.discrepancy_cell import FORECAST, PARTS, RECONSTRUCTION, DiscrepancyCell, PartAccuracy
@@ -77,6 +77,14 @@ def cell_of(
 
 def learned_model(record: Record, method: Method, approach: Approach, settings: MethodSettings) -> Model:
     """Fit a method to an error signal; the dynamical error is measured a second time with what was learned first."""
+    if method == "wsindy":
+        if approach == "state":
+            raise TrainingError(
+                "the weak form of SINDy learns rates",
+                "the residual of the states was given",
+                "Take the approach `dynamics`, or `sindy`.",
+            )
+        return fitted(known_rates_samples(record), method, settings, record.conditions.seed)
     samples = error_samples(record, approach, method in OF_TIME)
     learned = fitted(samples, method, settings, record.conditions.seed)
     if approach == "state" or method in OF_TIME or record.conditions.published:

@@ -65,6 +65,18 @@ def _dynamics(record: Record) -> tuple[NDArray[np.float64], NDArray[np.float64],
     return y[inner], error, inner.start, inner.stop
 
 
+def known_rates_samples(record: Record) -> Samples:
+    """Samples of the known model's rates at the measured states, with the time that they belong to.
+
+    The weak form of SINDy compares them with the states themselves. States are those that noise was filtered from: what
+    noise squares and cubes of the states would add is no longer in the terms.
+    """
+    states, _, first, last = _dynamics(record)
+    time = record.time[first:last]
+    names = record.system.states
+    return Samples(states, record.system.known(states), names, names, time, np.full(len(time), np.nan))
+
+
 def refined_samples(record: Record, samples: Samples, learned: Model) -> Samples:
     """Samples of the dynamical error, measured again from the model that was augmented once.
 
