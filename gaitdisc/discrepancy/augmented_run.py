@@ -55,7 +55,8 @@ def with_learned_rates(
 
     Examples
     --------
-    >>> from gaitdisc.regression.sindy import Sindy, library
+    >>> from gaitdisc.regression.polynomials import library
+    >>> from gaitdisc.regression.sindy import Sindy
     >>> from gaitdisc.simulation.parts import State
     >>> from gaitdisc.simulation.simulation import Simulation
     >>> still = KnownRates(Simulation("still", (State("x"),), equations=(("x", "0*x"),)))

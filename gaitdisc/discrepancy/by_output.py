@@ -23,7 +23,8 @@ class ByOutput:
 
     Examples
     --------
-    >>> from gaitdisc.regression.sindy import Sindy, library
+    >>> from gaitdisc.regression.polynomials import library
+    >>> from gaitdisc.regression.sindy import Sindy
     >>> twice = Sindy(("x",), ("a",), library(1, 1), np.array([[0.0], [2.0]]), 0.1)
     >>> half = Sindy(("x",), ("b",), library(1, 1), np.array([[0.0], [0.5]]), 0.1)
     >>> ByOutput((twice, half))(np.array([[4.0]])).tolist()

@@ -9,12 +9,18 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from gaitdisc.discrepancy.augmented_run import AugmentedRun, on_states, with_learned_rates
-from gaitdisc.discrepancy.error_signal import Approach, error_samples, refined_samples
+from gaitdisc.discrepancy.error_signal import (
+    Approach,
+    error_samples,
+    known_rates_samples,
+    one_after_another,
+    refined_samples,
+)
 from gaitdisc.discrepancy.forecast_start import forecast_start
 from gaitdisc.discrepancy.methods import OF_TIME, Method, MethodSettings, fitted
 from gaitdisc.discrepancy.record import Conditions, Record, recorded
 from gaitdisc.discrepancy.system import System
-from gaitdisc.errors import GaitdiscError
+from gaitdisc.errors import GaitdiscError, TrainingError
 from gaitdisc.model import Model
 from gaitdisc.regression.sindy import Sindy
 from gaitdisc.results.discrepancy_cell import FORECAST, PARTS, RECONSTRUCTION, DiscrepancyCell, PartAccuracy
@@ -77,15 +83,37 @@ def cell_of(
 
 def learned_model(record: Record, method: Method, approach: Approach, settings: MethodSettings) -> Model:
     """Fit a method to an error signal; the dynamical error is measured a second time with what was learned first."""
-    samples = error_samples(record, approach, method in OF_TIME)
-    learned = fitted(samples, method, settings, record.conditions.seed)
+    records, seed = learned_from(record, approach), record.conditions.seed
+    if len(records) > 1 and method in (*OF_TIME, "wsindy"):
+        raise TrainingError(
+            "several records are learned from by methods that take samples in any order",
+            f"{method} was asked for with {len(records)}",
+            "Take sindy, gp or nn, or one record.",
+        )
+    if method == "wsindy":
+        if approach == "state":
+            raise TrainingError(
+                "the weak form of SINDy learns rates",
+                "the residual of the states was given",
+                "Take the approach `dynamics`, or `sindy`.",
+            )
+        return fitted(known_rates_samples(record), method, settings, seed)
+    samples = [error_samples(each, approach, method in OF_TIME) for each in records]
+    learned = fitted(one_after_another(samples), method, settings, seed)
     if approach == "state" or method in OF_TIME or record.conditions.published:
         return learned
     with np.errstate(all="ignore"):
-        refined = refined_samples(record, samples, learned)
-    if not np.isfinite(refined.y).all():
+        refined = [refined_samples(each, some, learned) for each, some in zip(records, samples, strict=True)]
+    if not all(np.isfinite(some.y).all() for some in refined):
         return learned  # it drives the states out of every bound within a sample; the run will say when
-    return fitted(refined, method, settings, record.conditions.seed)
+    return fitted(one_after_another(refined), method, settings, seed)
+
+
+def learned_from(record: Record, approach: Approach) -> tuple[Record, ...]:
+    """The record, those from other starts, and the forecast's beginning where it is sacrificed."""
+    if not record.conditions.sacrificed_s:
+        return record, *record.others
+    return record, *record.others, record.beginning_of_forecast(forecast_start(record, None, approach))
 
 
 def part(record: Record, learned: Model, approach: Approach, name: str) -> PartAccuracy:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -17,6 +18,7 @@ from gaitdisc.recording import Samples
 Approach = Literal["dynamics", "state"]
 APPROACHES: tuple[Approach, ...] = ("dynamics", "state")
 TIME = "t"
+SEAM_S = 1.0  # between two records that are learned from as one
 FLOW_STEPS = 8  # of Runge-Kutta, between two samples
 
 
@@ -63,6 +65,32 @@ def _dynamics(record: Record) -> tuple[NDArray[np.float64], NDArray[np.float64],
     inner = slice(edge + 1, len(y) - edge - 1)
     error = flow_error(system.known, y, made.dt_s)[inner.start - 1 : inner.stop - 1]
     return y[inner], error, inner.start, inner.stop
+
+
+def one_after_another(parts: Sequence[Samples]) -> Samples:
+    """Samples of several records as of one, each record's time going on where the last one's ended."""
+    first, *others = parts
+    if not others:
+        return first
+    time, begins = [first.time], first.time[-1]
+    for part in others:
+        begins = begins + SEAM_S
+        time.append(begins + part.time - part.time[0])
+        begins = time[-1][-1]
+    whole = {name: np.concatenate([getattr(part, name) for part in parts]) for name in ("x", "y", "phi")}
+    return replace(first, time=np.concatenate(time), **whole)
+
+
+def known_rates_samples(record: Record) -> Samples:
+    """Samples of the known model's rates at the measured states, with the time that they belong to.
+
+    The weak form of SINDy compares them with the states themselves. States are those that noise was filtered from: what
+    noise squares and cubes of the states would add is no longer in the terms.
+    """
+    states, _, first, last = _dynamics(record)
+    time = record.time[first:last]
+    names = record.system.states
+    return Samples(states, record.system.known(states), names, names, time, np.full(len(time), np.nan))
 
 
 def refined_samples(record: Record, samples: Samples, learned: Model) -> Samples:

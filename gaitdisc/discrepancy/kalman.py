@@ -1,4 +1,4 @@
-"""Kalman filters with the bias of a measurement among the states: the well-founded rival of a residual model."""
+"""Kalman filters: linear, unscented, and of an ensemble, whose states may hold the bias of a measurement."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from gaitdisc.recording.arrays import read_only
 
 SPREAD = 1e-1  # alpha of the sigma points
+MEMBERS, INFLATION = 60, 1.02  # of an ensemble
 Step = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 
@@ -24,10 +25,13 @@ class Filtered:
         After each measurement.
     sd : ndarray (sample, state)
         Their standard deviations.
+    likelihood : float
+        Logarithm of the density of what was measured, each sample given those before.
     """
 
     states: NDArray[np.float64]
     sd: NDArray[np.float64]
+    likelihood: float
 
     def __post_init__(self) -> None:
         """Freeze the numbers."""
@@ -45,11 +49,13 @@ class Uncertainty:
         Standard deviation of the first state.
     step : ndarray (state,)
         That each step adds.
+    measured : float or ndarray (channel,)
+        Of what is measured.
     """
 
     first: NDArray[np.float64]
     step: NDArray[np.float64]
-    measured: float
+    measured: float | NDArray[np.float64]
 
 
 def linear_kalman(
@@ -81,14 +87,17 @@ def linear_kalman(
     """
     x, p = np.array(start, float), np.diag(noise.first**2)
     states, sd = np.empty((len(y), len(x))), np.empty((len(y), len(x)))
+    likelihood = 0.0
     for k, value in enumerate(y):
         if k:
             x, p = turn @ x, turn @ p @ turn.T + np.diag(noise.step**2)
-        gain = p @ seen / (seen @ p @ seen + noise.measured**2)
-        x = x + gain * (value - seen @ x)
+        variance = float(seen @ p @ seen + noise.measured**2)
+        gain, missed = p @ seen / variance, float(value - seen @ x)
+        likelihood += _log_density(np.array([missed]), np.array([[variance]]))
+        x = x + gain * missed
         p = p - np.outer(gain, seen @ p)
         states[k], sd[k] = x, np.sqrt(np.diag(p))
-    return Filtered(states, sd)
+    return Filtered(states, sd, likelihood)
 
 
 def unscented_kalman(
@@ -98,7 +107,9 @@ def unscented_kalman(
 
     Parameters
     ----------
-    y : ndarray (sample,)
+    seen : callable
+        From states (point, state) to what is measured of them, (point,) or (point, channel).
+    y : ndarray (sample,) or (sample, channel)
         Measured.
     start : ndarray (state,)
         First state.
@@ -120,21 +131,84 @@ def unscented_kalman(
     spread = mean.copy()
     spread[0] += 1 - SPREAD**2 + 2
     x, p = np.array(start, float), np.diag(noise.first**2)
-    states, sd = np.empty((len(y), n)), np.empty((len(y), n))
-    for k, value in enumerate(y):
+    values = np.reshape(np.asarray(y, float), (len(y), -1))
+    states, sd, likelihood = np.empty((len(y), n)), np.empty((len(y), n)), 0.0
+    for k, value in enumerate(values):
         if k:
             points = turn(_sigma_points(x, p, scale))
             x = mean @ points
             p = (points - x).T * spread @ (points - x) + np.diag(noise.step**2)
         points = _sigma_points(x, p, scale)
-        found = seen(points)
-        guess = float(mean @ found)
-        variance = float(spread @ (found - guess) ** 2) + noise.measured**2
+        found = np.reshape(seen(points), (len(points), -1))
+        guess = mean @ found
+        variance = (found - guess).T * spread @ (found - guess) + np.diag(
+            np.broadcast_to(noise.measured, value.shape) ** 2
+        )
         across = (points - x).T * spread @ (found - guess)
-        x = x + across / variance * (value - guess)
-        p = p - np.outer(across, across) / variance
+        gain = np.linalg.solve(variance, across.T).T
+        likelihood += _log_density(value - guess, variance)
+        x = x + gain @ (value - guess)
+        p = p - gain @ across.T
+        p = 0.5 * (p + p.T)
         states[k], sd[k] = x, np.sqrt(np.diag(p))
-    return Filtered(states, sd)
+    return Filtered(states, sd, likelihood)
+
+
+def ensemble_kalman(
+    turn: Step,
+    seen: Step,
+    y: NDArray[np.float64],
+    start: NDArray[np.float64],
+    noise: Uncertainty,
+    members: int = MEMBERS,
+    seed: int = 0,
+) -> Filtered:
+    """Ensemble Kalman filter, every member moved towards a measurement with noise of its own.
+
+    Parameters
+    ----------
+    seen : callable
+        From states (member, state) to what is measured of them, (member,) or (member, channel).
+    y : ndarray (sample,) or (sample, channel)
+        Measured.
+    start : ndarray (state,)
+        First state; the members are drawn around it.
+
+    References
+    ----------
+    Evensen 1994, J. Geophys. Res. 99:10143; Burgers, van Leeuwen, Evensen 1998, Mon. Weather Rev. 126:1719. The spread
+    is multiplied by 1.02 at each sample (Anderson and Anderson 1999, Mon. Weather Rev. 127:2741).
+
+    Examples
+    --------
+    >>> noise = Uncertainty(np.ones(1), np.zeros(1), 1.0)
+    >>> found = ensemble_kalman(lambda x: x, lambda x: x[:, 0], np.ones(99), np.zeros(1), noise)
+    >>> bool(abs(found.states[-1, 0] - 1) < 0.3)
+    True
+    """
+    rng = np.random.default_rng(seed)
+    crowd = start + noise.first * rng.standard_normal((members, len(start)))
+    values = np.reshape(np.asarray(y, float), (len(y), -1))
+    states, sd, likelihood = np.empty((len(y), len(start))), np.empty((len(y), len(start))), 0.0
+    for k, value in enumerate(values):
+        if k:
+            crowd = turn(crowd) + noise.step * rng.standard_normal(crowd.shape)
+            crowd = crowd.mean(axis=0) + INFLATION * (crowd - crowd.mean(axis=0))
+        found = np.reshape(seen(crowd), (members, -1))
+        size = np.broadcast_to(noise.measured, value.shape)
+        apart, guess = crowd - crowd.mean(axis=0), found.mean(axis=0)
+        variance = (found - guess).T @ (found - guess) / (members - 1) + np.diag(size**2)
+        gain = np.linalg.solve(variance, (apart.T @ (found - guess) / (members - 1)).T).T
+        likelihood += _log_density(value - guess, variance)
+        crowd = crowd + (value + size * rng.standard_normal(found.shape) - found) @ gain.T
+        states[k], sd[k] = crowd.mean(axis=0), crowd.std(axis=0, ddof=1)
+    return Filtered(states, sd, likelihood)
+
+
+def _log_density(missed: NDArray[np.float64], variance: NDArray[np.float64]) -> float:
+    """Logarithm of a normal density of errors (channel,) with covariance (channel, channel)."""
+    _, size = np.linalg.slogdet(2 * np.pi * variance)
+    return float(-0.5 * (size + missed @ np.linalg.solve(variance, missed)))
 
 
 def _sigma_points(x: NDArray[np.float64], p: NDArray[np.float64], scale: float) -> NDArray[np.float64]:

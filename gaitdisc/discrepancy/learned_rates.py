@@ -56,6 +56,7 @@ def _products(tables, x, out):
 @compiled(error_model="numpy", fastmath=True)
 def _kernels(tables, x, out):
     centres, weights, inverse, scale, offset = tables[0], tables[1], tables[2], tables[3], tables[4]
+    kind = int(tables[5][0, 0])
     scaled = np.empty(x.size)
     for j in range(x.size):
         scaled[j] = (x[j] - scale[0, j]) * scale[1, j]
@@ -66,7 +67,14 @@ def _kernels(tables, x, out):
             for j in range(x.size):
                 step = (scaled[j] - centres[k, j]) * inverse[o, j]
                 apart += step * step
-            total += weights[k, o] * exponential(-0.5 * apart)
+            if kind == 0:
+                total += weights[k, o] * exponential(-0.5 * apart)
+            elif kind == 1:
+                far = math.sqrt(3.0 * apart)
+                total += weights[k, o] * (1.0 + far) * exponential(-far)
+            else:
+                far = math.sqrt(5.0 * apart)
+                total += weights[k, o] * (1.0 + far + far * far / 3.0) * exponential(-far)
         out[o] = total + offset[0, o]
 
 

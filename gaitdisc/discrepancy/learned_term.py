@@ -13,6 +13,7 @@ from gaitdisc.errors import TrainingError
 from gaitdisc.model import Model
 from gaitdisc.regression.dmd import Dmd
 from gaitdisc.regression.gaussian_process import GaussianProcess
+from gaitdisc.regression.kernels import KERNELS as KERNEL_KINDS
 from gaitdisc.regression.sindy import Sindy
 
 Tables = tuple[NDArray[np.float64], ...]
@@ -45,7 +46,7 @@ def learned_term(model: Model, times: NDArray[np.float64]) -> LearnedTerm:
 
     Examples
     --------
-    >>> from gaitdisc.regression.sindy import library
+    >>> from gaitdisc.regression.polynomials import library
     >>> cubic = Sindy(("x",), ("x",), library(1, 3), np.array([[0.0], [0], [0], [0.01]]), 0.005)
     >>> learned_term(cubic, np.empty(0)).kind == PRODUCTS
     True
@@ -54,7 +55,8 @@ def learned_term(model: Model, times: NDArray[np.float64]) -> LearnedTerm:
         return LearnedTerm(PRODUCTS, _six(model.powers, model.coefficients))
     if isinstance(model, GaussianProcess):
         scale = np.vstack([model.scale.mean, 1 / model.scale.sd])
-        return LearnedTerm(KERNELS, _six(model.centres, model.weights, 1 / model.lengths, scale, model.offset))
+        kind = np.array([[KERNEL_KINDS.index(model.kind)]])
+        return LearnedTerm(KERNELS, _six(model.centres, model.weights, 1 / model.lengths, scale, model.offset, kind))
     if isinstance(model, Dmd):
         return LearnedTerm(TIMES, _six(model(times[:, None])))
     return LearnedTerm(LAYERS, _six(*_layers(model)))

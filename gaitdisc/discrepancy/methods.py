@@ -10,12 +10,14 @@ from gaitdisc.discrepancy.by_output import fitted_by_output
 from gaitdisc.model import Model
 from gaitdisc.recording import Samples
 from gaitdisc.regression.dmd import DELAYS, RANK, fit_dmd
+from gaitdisc.regression.exact_dmd import fit_exact_dmd
 from gaitdisc.regression.gaussian_process import MOST_EXACT, fit_gaussian_process
 from gaitdisc.regression.sindy import fit_sindy
+from gaitdisc.regression.weak_sindy import fit_weak_sindy
 
-Method = Literal["sindy", "dmd", "bopdmd", "gp", "nn"]
-OF_TIME: tuple[Method, ...] = ("dmd", "bopdmd")  # what they learn is a function of time
-BAGS = 10  # of BOP-DMD, where none are asked for
+Method = Literal["sindy", "esindy", "wsindy", "dmd", "exactdmd", "bopdmd", "gp", "gpm", "nn"]
+OF_TIME: tuple[Method, ...] = ("dmd", "exactdmd", "bopdmd")  # what they learn is a function of time
+BAGS, SINDY_BAGS = 10, 20  # of BOP-DMD and of SINDy's ensemble, where none are asked for
 
 
 @dataclass(frozen=True)
@@ -27,7 +29,7 @@ class MethodSettings:
     threshold : float, optional
         Of SINDy; chosen on an inner block where absent.
     bags : int
-        Of SINDy's ensemble and of BOP-DMD; 0 for plain SINDy, and for ten bags of BOP-DMD.
+        Of SINDy's ensemble and of BOP-DMD; 0 for plain SINDy, for twenty of `esindy` and for ten of BOP-DMD.
     most_exact : int
         Samples up to which the Gaussian process is exact.
     nodes : int
@@ -54,13 +56,17 @@ def fitted(samples: Samples, method: Method, settings: MethodSettings, seed: int
     Parameters
     ----------
     samples : Samples
-        Of states, or of time for the methods of `OF_TIME`.
+        Of states, or of time for the methods of `OF_TIME`; outputs are the error signal, for `wsindy` the known rates.
     """
     fits: dict[str, Callable[[], Model]] = {
         "sindy": lambda: fit_sindy(samples, settings.degree, settings.threshold, settings.bags, seed),
+        "esindy": lambda: fit_sindy(samples, settings.degree, settings.threshold, settings.bags or SINDY_BAGS, seed),
+        "wsindy": lambda: fit_weak_sindy(samples, settings.degree),
+        "exactdmd": lambda: fit_exact_dmd(samples, settings.delays, settings.rank),
         "dmd": lambda: fit_dmd(samples, settings.delays, settings.rank),
         "bopdmd": lambda: fit_dmd(samples, settings.delays, settings.rank, settings.bags or BAGS, seed),
         "gp": lambda: fit_gaussian_process(samples, settings.most_exact),
+        "gpm": lambda: fit_gaussian_process(samples, settings.most_exact, kind="matern_5_2"),
         "nn": lambda: _network(samples, settings.nodes, seed),
     }
     return fits[method]()

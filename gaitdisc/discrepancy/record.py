@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.discrepancy.record_noise import NoiseKind, drawn_noise
 from gaitdisc.discrepancy.smoothing import smoothed
 from gaitdisc.discrepancy.system import System
 from gaitdisc.errors import SamplingError
 from gaitdisc.recording.arrays import read_only
 
+STARTS_SEED, OTHER_NOISE = 41, 1000  # of further starts; what is added to the seed of their noise
 LEAST_SAMPLES = 60  # a training part shorter than this carries no smoothing and no inner block
 
 
@@ -42,6 +44,9 @@ class Conditions:
     duration_s: float = 50.0
     train_share: float = 0.6
     published: bool = False
+    kind: NoiseKind = "normal"
+    trajectories: int = 1
+    sacrificed_s: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +63,8 @@ class Record:
         y of Eqs. 3.3 and 3.15.
     filtered : ndarray (training sample, channel)
         Measured in the training part, smoothed.
+    others : tuple of Record
+        From other starts, learned from as well; their training parts alone are looked at.
     """
 
     system: System
@@ -67,6 +74,7 @@ class Record:
     measured: NDArray[np.float64]
     filtered: NDArray[np.float64]
     split: int
+    others: tuple[Record, ...] = ()
 
     def __post_init__(self) -> None:
         """Freeze the numbers."""
@@ -95,6 +103,24 @@ class Record:
             states = self.system.true.run(self.start(forecast)[None], self.conditions.dt_s, len(states) - 1)[0]
         return states @ self.system.observation.T
 
+    def beginning_of_forecast(self, start: NDArray[np.float64]) -> Record:
+        """What of the forecast is sacrificed, as a record of its own, in which the known model begins at a start."""
+        made = self.conditions
+        count = round(made.sacrificed_s / made.dt_s) + 1
+        last = self.split - 1 + count
+        if count < LEAST_SAMPLES or last >= len(self.time):
+            raise SamplingError(
+                f"what is sacrificed of a forecast has {LEAST_SAMPLES} samples at least, and leaves some to be judged",
+                f"{made.sacrificed_s:g} s have {count} of the forecast's {len(self.time) - self.split + 1}",
+                "Change sacrificed_s.",
+            )
+        part = slice(self.split - 1, last)
+        measured = self.measured[part]
+        filtered = smoothed(measured, 1.0 / made.dt_s) if made.noise else measured
+        system = replace(self.system, assumed=start)
+        time = self.time[part] - self.time[self.split - 1]
+        return Record(system, made, time, self.truth[part], measured, filtered, count)
+
 
 def recorded(system: System, conditions: Conditions) -> Record:
     """Run the true system and measure it.
@@ -122,9 +148,22 @@ def recorded(system: System, conditions: Conditions) -> Record:
         )
     clean = truth @ system.observation.T
     size = conditions.noise * (np.ones(clean.shape[1]) if conditions.absolute else clean.std(axis=0))
-    measured = clean + size * np.random.default_rng(conditions.seed).standard_normal(clean.shape)
+    rng = np.random.default_rng(conditions.seed)
+    measured = clean + drawn_noise(conditions.kind, clean, size, conditions.dt_s, rng)
     time = conditions.dt_s * np.arange(steps + 1.0)
     training = measured[:split]
     if conditions.noise:
         training = smoothed(training, 1.0 / conditions.dt_s, 4.0 if conditions.published else None)
-    return Record(system, conditions, np.asarray(time, float), truth, measured, training, split)
+    others = _from_other_starts(system, conditions, truth)
+    return Record(system, conditions, np.asarray(time, float), truth, measured, training, split, others)
+
+
+def _from_other_starts(system: System, conditions: Conditions, truth: NDArray[np.float64]) -> tuple[Record, ...]:
+    """Further records, their starts drawn evenly from where the first one went, one after the other."""
+    low, high = truth.min(axis=0), truth.max(axis=0)
+    found = []
+    for number in range(1, conditions.trajectories):
+        start = np.random.default_rng([STARTS_SEED, number]).uniform(low, high)
+        seed = conditions.seed + OTHER_NOISE * number
+        found.append(recorded(replace(system, start=start), replace(conditions, seed=seed, trajectories=1)))
+    return tuple(found)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,6 +83,36 @@ def fit_dmd(samples: Samples, delays: int = DELAYS, rank: int = RANK, bags: int 
     >>> bool(abs(fit_dmd(s, delays=20, rank=2)(np.array([[4.0]]))[0, 0] - np.sin(36.0)) < 1e-6)
     True
     """
+    hankel = delayed(samples, delays, rank)
+    axes, size, count = hankel.axes, hankel.size, hankel.columns.shape[1]
+    some = np.unique(np.linspace(0, count - 1, min(MOST_COLUMNS, count)).astype(int))
+    times = samples.time[some] - samples.time[0]
+    found = _modes(axes.T @ hankel.columns[:, some], times, (axes.shape[1], bags, seed))
+    modes = (axes[: len(size)] @ found.modes * size[:, None] * found.amplitudes).T
+    spread = np.asarray(found.eigenvalues_std if bags else np.zeros(axes.shape[1]), float)
+    return Dmd((TIME,), samples.outputs, modes, np.asarray(found.eigs), float(samples.time[0]), spread)
+
+
+class Hankel(NamedTuple):
+    """Outputs stacked with their delays.
+
+    Parameters
+    ----------
+    columns : ndarray (delay x output, column)
+        Outputs over their size.
+    axes : ndarray (delay x output, mode)
+        First left singular vectors, less those whose singular values are rounding.
+    size : ndarray (output,)
+        Root mean square.
+    """
+
+    columns: NDArray[np.float64]
+    axes: NDArray[np.float64]
+    size: NDArray[np.float64]
+
+
+def delayed(samples: Samples, delays: int, rank: int) -> Hankel:
+    """Stack the outputs of even samples with their delays, or refuse what is too short or uneven."""
     least = delays + 2 * rank
     if len(samples) < least:
         raise SamplingError(
@@ -102,16 +133,10 @@ def fit_dmd(samples: Samples, delays: int = DELAYS, rank: int = RANK, bags: int 
     size[size == 0] = 1.0
     count = len(samples) - delays + 1
     stacked = np.concatenate([samples.y[k : k + count].T / size[:, None] for k in range(delays)])
-    values, axes = np.linalg.eigh(
-        stacked @ stacked.T
-    )  # of some hundred rows: the singular value decomposition's left side
+    # of some hundred rows: the singular value decomposition's left side
+    values, axes = np.linalg.eigh(stacked @ stacked.T)
     most = min(rank, int(np.sum(values > SMALLEST * values[-1])))
-    axes = axes[:, ::-1][:, :most]
-    some = np.unique(np.linspace(0, count - 1, min(MOST_COLUMNS, count)).astype(int))
-    found = _modes(axes.T @ stacked[:, some], samples.time[some] - samples.time[0], (most, bags, seed))
-    modes = (axes[: len(size)] @ found.modes * size[:, None] * found.amplitudes).T
-    spread = np.asarray(found.eigenvalues_std if bags else np.zeros(most), float)
-    return Dmd((TIME,), samples.outputs, modes, np.asarray(found.eigs), float(samples.time[0]), spread)
+    return Hankel(stacked, axes[:, ::-1][:, :most], size)
 
 
 def _varying(samples: Samples) -> Samples:

@@ -1,20 +1,24 @@
-"""Gaussian process regression: exact on records of some thousand samples, on inducing points beyond."""
+"""Gaussian process regression with its variance: exact on some thousand samples, on inducing points beyond."""
 
 from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.errors import TrainingError
 from gaitdisc.recording import Samples, Scale, scale_of
 from gaitdisc.recording.arrays import read_only
+from gaitdisc.regression.kernels import KernelKind, kernel
 
 MOST_EXACT = 1500  # samples: memory grows with their square, time with their cube
 MOST_FOR_LENGTHS = 300  # samples, evenly in time, that the length scales are found on
 INDUCING = 300
 LEAST_SAMPLES = 20
+NOTHING_KNOWN = np.empty((0, 0))
 JITTER = 1e-9  # of the signal's variance, so that a matrix stays positive
 
 
@@ -34,6 +38,12 @@ class GaussianProcess:
         Mean of the training part.
     noise : ndarray (output,) [output's unit]
         Standard deviation of what the process takes for noise.
+    size : ndarray (output,) [output's unit]
+        Standard deviation of the process far from any sample.
+    known : ndarray (output, centre, centre)
+        What the samples take away from that variance; empty where it was not kept.
+    kind : str
+        Of the kernel.
     """
 
     inputs: tuple[str, ...]
@@ -45,32 +55,68 @@ class GaussianProcess:
     offset: NDArray[np.float64]
     noise: NDArray[np.float64]
     exact: bool
+    size: NDArray[np.float64]
+    known: NDArray[np.float64]
+    kind: KernelKind = "squared_exponential"
 
     def __post_init__(self) -> None:
         """Freeze the numbers."""
-        for name in ("centres", "lengths", "weights", "offset", "noise"):
+        for name in ("centres", "lengths", "weights", "offset", "noise", "size", "known"):
             object.__setattr__(self, name, read_only(getattr(self, name)))
 
     def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """Outputs (sample, output) for inputs (sample, input)."""
         scaled = self.scale.scaled(np.asarray(x, float))
         columns = [
-            _kernel(scaled, self.centres, self.lengths[k]) @ self.weights[:, k] for k in range(len(self.outputs))
+            kernel(self.kind, scaled, self.centres, self.lengths[k]) @ self.weights[:, k]
+            for k in range(len(self.outputs))
         ]
         return np.column_stack(columns) + self.offset
 
+    def sd(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Standard deviation of the outputs without their noise, (sample, output) [output's unit].
 
-def fit_gaussian_process(samples: Samples, most_exact: int = MOST_EXACT, inducing: int = INDUCING) -> GaussianProcess:
-    """Fit a Gaussian process with a squared-exponential kernel and white noise to each output.
+        Parameters
+        ----------
+        x : ndarray (sample, input)
+            Inputs.
+        """
+        if not len(self.known):
+            raise TrainingError(
+                "the variance of a Gaussian process is kept when it is fitted",
+                "this one was fitted without",
+                "Fit it with variance=True.",
+            )
+        scaled, found = self.scale.scaled(np.asarray(x, float)), []
+        for k, size in enumerate(self.size):
+            across = kernel(self.kind, scaled, self.centres, self.lengths[k])
+            left = 1.0 - np.einsum("sc,cd,sd->s", across, self.known[k], across, optimize=True)
+            found.append(size * np.sqrt(np.maximum(left, 0.0)))
+        return np.column_stack(found)
 
-    Length scales, size and noise maximise the likelihood of at most 400 samples, evenly in time (scikit-learn). Then
+
+def fit_gaussian_process(
+    samples: Samples,
+    most_exact: int = MOST_EXACT,
+    inducing: int = INDUCING,
+    kind: KernelKind = "squared_exponential",
+    variance: bool = False,
+) -> GaussianProcess:
+    """Fit a Gaussian process with a stationary kernel and white noise to each output.
+
+    Length scales, size and noise maximise the likelihood of at most 300 samples, evenly in time (scikit-learn). Then
     all samples are conditioned on: exactly, or, of long records, by the projected process on inducing points that are
     far apart from each other.
 
+    Parameters
+    ----------
+    variance : bool
+        Keep what the standard deviation is computed from: the square of the centres for each output.
+
     References
     ----------
-    Rasmussen and Williams 2006, Gaussian Processes for Machine Learning, Eqs. 2.25, 5.9, 8.26. The published code uses
-    MATLAB's `fitrgp` with one length scale for all inputs; here each input has its own.
+    Rasmussen and Williams 2006, Gaussian Processes for Machine Learning, Eqs. 2.25, 2.26, 4.17, 5.9, 8.26, 8.27. The
+    published code uses MATLAB's `fitrgp` with one length scale for all inputs; here each input has its own.
 
     Examples
     --------
@@ -86,11 +132,20 @@ def fit_gaussian_process(samples: Samples, most_exact: int = MOST_EXACT, inducin
     some = np.unique(np.linspace(0, len(x) - 1, min(MOST_FOR_LENGTHS, len(x))).astype(int))
     exact = len(x) <= most_exact
     centres = x if exact else x[far_apart(x, inducing)]
-    found = [_likeliest(x[some], y[some, k]) for k in range(y.shape[1])]
-    solve = _exact_weights if exact else _projected_weights
-    weights = np.column_stack([solve(x, y[:, k], centres, each) for k, each in enumerate(found)]) * size
-    lengths, noise = np.array([each[1] for each in found]), np.sqrt([each[2] for each in found]) * size
-    return GaussianProcess(samples.inputs, samples.outputs, scale, centres, lengths, weights, offset, noise, exact)
+    found = [_likeliest(x[some], y[some, k], kind) for k in range(y.shape[1])]
+    solved = [
+        _conditioned(x, y[:, k], each, variance) if exact else _projected(x, y[:, k], centres, each, variance)
+        for k, each in enumerate(found)
+    ]
+    weights = np.column_stack([each for each, _ in solved]) * size
+    known = np.array([each for _, each in solved if each.size])
+    lengths, noise, own = (
+        np.array(column) for column in zip(*((f.lengths, f.noise, f.size) for f in found), strict=True)
+    )
+    return GaussianProcess(
+        samples.inputs, samples.outputs, scale, centres, lengths, weights, offset, np.sqrt(noise) * size, exact,
+        np.sqrt(own) * size, known, kind,
+    )  # fmt: skip
 
 
 def far_apart(x: NDArray[np.float64], count: int) -> NDArray[np.int64]:
@@ -113,48 +168,61 @@ def far_apart(x: NDArray[np.float64], count: int) -> NDArray[np.int64]:
     return np.array(chosen)
 
 
-def _likeliest(x: NDArray[np.float64], y: NDArray[np.float64]) -> tuple[float, NDArray[np.float64], float]:
-    """Variance of the signal, length scales, variance of the noise."""
-    from sklearn.gaussian_process import GaussianProcessRegressor
-    from sklearn.gaussian_process.kernels import RBF, ConstantKernel, WhiteKernel
+class Likeliest(NamedTuple):
+    """Variance of the process, length scales (input,) and variance of the noise, of scaled samples."""
 
-    shape = RBF(np.ones(x.shape[1]), (1e-2, 1e3))  # type: ignore[arg-type]
-    kernel = ConstantKernel(1.0, (1e-3, 1e6)) * shape + WhiteKernel(1e-2, (1e-10, 1e1))
+    size: float
+    lengths: NDArray[np.float64]
+    noise: float
+    kind: KernelKind
+
+
+Conditioned = tuple[NDArray[np.float64], NDArray[np.float64]]  # weights (centre,), known variance (centre, centre)
+
+
+def _likeliest(x: NDArray[np.float64], y: NDArray[np.float64], kind: KernelKind) -> Likeliest:
+    from sklearn.gaussian_process import GaussianProcessRegressor
+    from sklearn.gaussian_process.kernels import RBF, ConstantKernel, Matern, WhiteKernel
+
+    first, bounds = np.ones(x.shape[1]), (1e-2, 1e3)
+    shape = {
+        "squared_exponential": lambda: RBF(first, bounds),  # type: ignore[arg-type]
+        "matern_3_2": lambda: Matern(first, bounds, nu=1.5),  # type: ignore[arg-type]
+        "matern_5_2": lambda: Matern(first, bounds, nu=2.5),  # type: ignore[arg-type]
+    }[kind]()
+    whole = ConstantKernel(1.0, (1e-3, 1e6)) * shape + WhiteKernel(1e-2, (1e-10, 1e1))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of length scales at their bounds, which are as good as without end
-        fit = GaussianProcessRegressor(kernel, alpha=1e-10).fit(x, y)
+        fit = GaussianProcessRegressor(whole, alpha=1e-10).fit(x, y)
     size, *lengths, noise = np.exp(getattr(fit.kernel_, "theta"))  # noqa: B009 unknown to its types
-    return float(size), np.array(lengths), float(noise)
+    return Likeliest(float(size), np.array(lengths), float(noise), kind)
 
 
-def _exact_weights(
-    x: NDArray[np.float64], y: NDArray[np.float64], centres: NDArray[np.float64], found: tuple
-) -> NDArray[np.float64]:
+def _conditioned(x: NDArray[np.float64], y: NDArray[np.float64], found: Likeliest, variance: bool) -> Conditioned:
+    """Weights and the share of the variance that all samples take away, each sample a centre."""
     from scipy.linalg import cho_factor, cho_solve
 
-    size, lengths, noise = found
-    covariance = size * _kernel(x, centres, lengths)
-    covariance[np.diag_indices_from(covariance)] += noise + JITTER * size
-    return size * cho_solve(cho_factor(covariance, lower=True, overwrite_a=True), y)
+    covariance = found.size * kernel(found.kind, x, x, found.lengths)
+    covariance[np.diag_indices_from(covariance)] += found.noise + JITTER * found.size
+    factor = cho_factor(covariance, lower=True, overwrite_a=True)
+    known = found.size * cho_solve(factor, np.eye(len(x))) if variance else NOTHING_KNOWN
+    return found.size * cho_solve(factor, y), known
 
 
-def _projected_weights(
-    x: NDArray[np.float64], y: NDArray[np.float64], centres: NDArray[np.float64], found: tuple
-) -> NDArray[np.float64]:
-    """Solved by least squares, which loses half as many digits as the normal equations of Eq. 8.26."""
-    size, lengths, noise = found
-    across = np.sqrt(size) * _kernel(x, centres, lengths)
-    among = _kernel(centres, centres, lengths)
+def _projected(
+    x: NDArray[np.float64], y: NDArray[np.float64], centres: NDArray[np.float64], found: Likeliest, variance: bool
+) -> Conditioned:
+    """The same on fewer centres, by least squares, which loses half as many digits as normal equations (Eq. 8.26)."""
+    across = np.sqrt(found.size) * kernel(found.kind, x, centres, found.lengths)
+    among = kernel(found.kind, centres, centres, found.lengths)
     among[np.diag_indices_from(among)] += JITTER
     values, vectors = np.linalg.eigh(among)
     root = (np.sqrt(np.maximum(values, 0.0)) * vectors).T
-    stacked = np.vstack([across, np.sqrt(noise + JITTER * size) * root])
+    noise = found.noise + JITTER * found.size
+    stacked = np.vstack([across, np.sqrt(noise) * root])
     q, r = np.linalg.qr(stacked)
-    found_weights = np.linalg.lstsq(r, q[: len(y)].T @ y, rcond=None)[0]
-    return np.sqrt(size) * found_weights
-
-
-def _kernel(a: NDArray[np.float64], b: NDArray[np.float64], lengths: NDArray[np.float64]) -> NDArray[np.float64]:
-    a, b = a / lengths, b / lengths
-    apart = np.sum(a**2, axis=1)[:, None] + np.sum(b**2, axis=1) - 2 * a @ b.T
-    return np.exp(-0.5 * np.maximum(apart, 0.0))
+    weights = np.sqrt(found.size) * np.linalg.lstsq(r, q[: len(y)].T @ y, rcond=None)[0]
+    if not variance:
+        return weights, NOTHING_KNOWN
+    upright, left = np.linalg.pinv(root), np.sqrt(noise) * np.linalg.pinv(r)
+    return weights, upright @ upright.T - left @ left.T  # Eq. 8.27 without the noise of what is measured next

@@ -21,16 +21,24 @@ if TYPE_CHECKING:
 
 METHOD_WORDS = {
     "sindy": "SINDy",
+    "esindy": "SINDy, ensemble",
+    "wsindy": "SINDy, weak form",
     "dmd": "DMD",
+    "exactdmd": "exact DMD",
     "bopdmd": "BOP-DMD",
     "gp": "Gaussian process",
+    "gpm": "Gaussian process, Matern",
     "nn": "neural network",
 }
 METHOD_LOOKS = {
     "sindy": Look("#00875a", "-", "s"),
+    "esindy": Look("#4caf7d", (0, (4.0, 1.6)), "P"),
+    "wsindy": Look("#0b5f3f", (0, (1.2, 1.2)), "X"),
     "dmd": Look("#d97700", (0, (4.0, 1.6)), "o"),
     "bopdmd": Look("#7a3fa0", (0, (3.0, 1.0, 1.0, 1.0)), "D"),
+    "exactdmd": Look("#a85f00", (0, (1.2, 1.2)), "p"),
     "gp": Look("#1f4fc8", (0, (1.2, 1.2)), "^"),
+    "gpm": Look("#6f8fe0", "-", "<"),
     "nn": Look("#c8102e", (0, (4.0, 1.2, 1.2, 1.2)), "v"),
 }
 KNOWN, AUGMENTED = Look("#1f4fc8", "-", ""), Look("#111111", (0, (4.0, 1.6)), "")

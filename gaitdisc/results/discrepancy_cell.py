@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.recording.arrays import read_only
 
-METHODS = ("sindy", "dmd", "bopdmd", "gp", "nn")
+METHODS = ("sindy", "esindy", "wsindy", "dmd", "exactdmd", "bopdmd", "gp", "gpm", "nn")
 RECONSTRUCTION, ORACLE, FORECAST = PARTS = ("reconstruction", "oracle forecast", "forecast")
 PART_WORDS = {
     RECONSTRUCTION: "reconstruction",

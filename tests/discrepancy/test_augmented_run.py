@@ -4,7 +4,8 @@ import pytest
 from gaitdisc.discrepancy.augmented_run import on_states, with_learned_rates
 from gaitdisc.discrepancy.burgers import BurgersRates
 from gaitdisc.discrepancy.known_rates import KnownRates
-from gaitdisc.regression.sindy import Sindy, library
+from gaitdisc.regression.polynomials import library
+from gaitdisc.regression.sindy import Sindy
 from gaitdisc.simulation.parts import State
 from gaitdisc.simulation.simulation import Simulation
 

@@ -1,3 +1,4 @@
+import numpy as np
 import pytest
 
 from gaitdisc.discrepancy.cell import cell, cell_of
@@ -46,3 +47,17 @@ def test_parts_say_when_in_the_record_they_begin_and_channels_their_unit(van_der
     found = cell(van_der_pol, "sindy", "dynamics", Conditions(duration_s=10.0))
     assert [part.begins_s for part in found.parts.values()] == pytest.approx([0.0, 6.0, 6.0])
     assert found.units == ("1", "1/s")
+
+
+def test_more_starts_make_a_residual_that_carries_over_to_a_new_one(van_der_pol):
+    one, four = (
+        cell(van_der_pol, "gp", "state", Conditions(duration_s=25.0, trajectories=count)).parts["oracle forecast"]
+        for count in (1, 4)
+    )
+    assert np.median(four.accuracy()) > np.median(one.accuracy())
+
+
+def test_methods_of_time_refuse_several_records(van_der_pol):
+    found = cell(van_der_pol, "dmd", "dynamics", Conditions(duration_s=10.0, trajectories=2))
+    assert "dmd was asked for with 2" in found.refused
+    assert "learns rates" in cell(van_der_pol, "wsindy", "state", Conditions(duration_s=10.0)).refused

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from gaitdisc.discrepancy.error_signal import error_samples, refined_samples
+from gaitdisc.discrepancy.error_signal import error_samples, one_after_another, refined_samples
 from gaitdisc.discrepancy.record import Conditions, recorded
 from gaitdisc.discrepancy.system import system_of
 from gaitdisc.errors import ShapeError
@@ -46,3 +46,13 @@ def test_rates_of_states_that_are_not_measured_are_refused():
     record = recorded(system_of(bundled("mass_spring_damper"), gain=(1.01,)), Conditions(duration_s=5.0))
     with pytest.raises(ShapeError, match="needs all 2 states measured; 1 are: x"):
         error_samples(record, "dynamics")
+
+
+def test_records_that_are_learned_from_as_one_keep_their_samples_and_a_seam(van_der_pol):
+    record = recorded(van_der_pol, Conditions(duration_s=10.0, trajectories=3))
+    parts = [error_samples(each, "dynamics") for each in (record, *record.others)]
+    whole = one_after_another(parts)
+    assert len(whole) == sum(map(len, parts))
+    assert np.array_equal(whole.y[len(parts[0]) : 2 * len(parts[0])], parts[1].y)
+    assert np.sort(np.diff(whole.time))[-2:] == pytest.approx([1.0, 1.0])
+    assert one_after_another(parts[:1]) is parts[0]

@@ -6,7 +6,8 @@ import pytest
 from gaitdisc.discrepancy.burgers import burgers
 from gaitdisc.discrepancy.forecast_start import forecast_start
 from gaitdisc.discrepancy.record import Conditions, recorded
-from gaitdisc.regression.sindy import Sindy, library
+from gaitdisc.regression.polynomials import library
+from gaitdisc.regression.sindy import Sindy
 
 
 def cubic(weight=-0.01):

@@ -7,7 +7,7 @@ from gaitdisc.discrepancy.learned_term import learned_term
 from gaitdisc.discrepancy.methods import OF_TIME, MethodSettings, fitted
 
 
-@pytest.mark.parametrize("method", ["sindy", "gp", "nn", "dmd", "bopdmd"])
+@pytest.mark.parametrize("method", ["sindy", "gp", "gpm", "nn", "dmd", "bopdmd"])
 def test_compiled_code_gives_the_numbers_of_the_model(quiet, method):
     samples = error_samples(quiet, "dynamics", of_time=method in OF_TIME)
     settings = MethodSettings(nodes=4, bags=2 if method == "bopdmd" else 0)

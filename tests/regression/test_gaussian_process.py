@@ -4,6 +4,7 @@ import pytest
 from gaitdisc.errors import TrainingError
 from gaitdisc.recording import Samples
 from gaitdisc.regression.gaussian_process import far_apart, fit_gaussian_process
+from gaitdisc.regression.kernels import KERNELS, kernel
 
 RNG = np.random.default_rng(0)
 X = RNG.uniform(-2, 2, (700, 2))
@@ -37,3 +38,47 @@ def test_too_few_samples_are_refused():
 def test_points_far_apart_cover_a_line():
     line = np.linspace(0, 1, 101)[:, None]
     assert np.diff(np.sort(line[far_apart(line, 5)].ravel())).max() <= 0.26
+
+
+@pytest.mark.parametrize("kind", KERNELS)
+def test_the_standard_deviation_is_that_of_the_textbook(kind):
+    line = np.linspace(-3, 3, 60)
+    y = np.sin(line) + 0.1 * np.random.default_rng(2).standard_normal(60)
+    found = fit_gaussian_process(
+        Samples(line[:, None], y[:, None], ("a",), ("b",), line, np.full(60, np.nan)), kind=kind, variance=True
+    )
+    new = np.linspace(-4, 4, 9)[:, None]
+    size, noise, lengths = found.size[0] ** 2, found.noise[0] ** 2, found.lengths[0]
+    scaled, there = found.scale.scaled(new), found.centres
+    among = size * kernel(kind, there, there, lengths) + noise * np.eye(60)
+    across = size * kernel(kind, scaled, there, lengths)
+    wanted = size - np.sum(across * np.linalg.solve(among, across.T).T, axis=1)  # Eq. 2.26
+    assert found.sd(new)[:, 0] == pytest.approx(np.sqrt(wanted), rel=1e-4)
+
+
+def test_inducing_points_tell_nearly_the_standard_deviation_of_all_samples():
+    new = np.random.default_rng(5).uniform(-3, 3, (40, 2))
+    noisy = samples(Y + 0.2 * np.random.default_rng(4).standard_normal(Y.shape))
+    whole, projected = (fit_gaussian_process(noisy, most, 200, variance=True).sd(new)[:, 0] for most in (700, 100))
+    assert projected == pytest.approx(whole, rel=0.1)
+
+
+def test_ninety_five_of_a_hundred_values_lie_within_two_standard_deviations():
+    def truth(x):
+        return np.sin(2 * x[:, :1]) * np.cos(x[:, 1:])
+
+    inside = []
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        x, new = rng.uniform(-2, 2, (2, 300, 2))
+        y = truth(x) + 0.3 * rng.standard_normal((300, 1))
+        found = fit_gaussian_process(
+            Samples(x, y, ("a", "b"), ("p",), np.arange(300) / 100, np.full(300, np.nan)), variance=True
+        )
+        inside.append(np.abs(found(new) - truth(new)) < 1.96 * found.sd(new))
+    assert np.mean(inside) == pytest.approx(0.95, abs=0.05)
+
+
+def test_a_variance_that_was_not_kept_is_refused():
+    with pytest.raises(TrainingError, match="kept when it is fitted; this one was fitted without"):
+        fit_gaussian_process(samples(Y)).sd(X)

@@ -3,7 +3,8 @@ import pytest
 
 from gaitdisc.errors import TrainingError
 from gaitdisc.recording import Samples
-from gaitdisc.regression.sindy import fit_sindy, library, products
+from gaitdisc.regression.polynomials import library, products
+from gaitdisc.regression.sindy import fit_sindy
 
 RNG = np.random.default_rng(0)
 
