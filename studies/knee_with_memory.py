@@ -20,16 +20,16 @@ GIVEN = command_line(
 )  # before the slow imports
 
 import numpy as np
+from driven_trials import Driven, Sensed
+from driven_trials import recorded as trials_of
 
 from gaitdisc.discovery.discover import discover
 from gaitdisc.simulation.bundled import bundled
-from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import State, Term
-from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
-RATE_HZ, SECONDS, TRIALS = 100.0, 8.0, 4
+DRIVEN = Driven((9.0, 5.0), 0.3, 2.0, starts=(0.3, 2))
 BENT = "(knee_rate - hip_rate)"
 KINDS = ("hysteresis", "series_elasticity", "input_lag", "nothing")
 
@@ -50,21 +50,7 @@ def hidden(kind: str, rng: np.random.Generator) -> tuple[Simulation, float]:
 
 def recorded(truth: Simulation, rng: np.random.Generator, noise: float) -> Measured:
     """Trials of the leg, driven at hip and knee."""
-    t = np.arange(int(SECONDS * RATE_HZ)) / RATE_HZ
-    moments = [np.column_stack([_sines(rng, t, size) for size in (9.0, 5.0)]) for _ in range(TRIALS)]
-    drive, machine = Drive.of(moments, RATE_HZ), compile_simulation(truth)
-    starts = np.zeros((TRIALS, len(machine.states)))
-    starts[:, :2] = rng.uniform(-0.3, 0.3, (TRIALS, 2))
-    rows = Rows(np.arange(TRIALS), np.zeros(TRIALS, int), starts)
-    states, _ = machine.run(drive, rows, len(t) - 1)
-    seen = machine.observe(drive, rows, states)[..., [machine.observed.index(name) for name in ("hip", "knee")]]
-    seen = seen + noise * seen.std(axis=(0, 1)) * rng.normal(size=seen.shape)
-    return Measured(drive, seen, tuple(str(trial + 1) for trial in range(TRIALS)), ("hip", "knee"))
-
-
-def _sines(rng: np.random.Generator, t: np.ndarray, size: float) -> np.ndarray:
-    waves = np.sin(2 * np.pi * np.outer(t, rng.uniform(0.3, 2.0, 5)) + rng.uniform(0, 2 * np.pi, 5))
-    return (size * rng.uniform(0.3, 1.0, 5) * waves).sum(axis=1)
+    return trials_of(truth, DRIVEN, Sensed(noise, channels=("hip", "knee")), rng)
 
 
 def run(seeds: int, noise: float) -> list[str]:
