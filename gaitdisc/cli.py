@@ -14,6 +14,7 @@ import gaitdisc
 from gaitdisc.commands.ablate import ablate
 from gaitdisc.commands.angles import angles
 from gaitdisc.commands.apply import apply
+from gaitdisc.commands.chapter import chapter
 from gaitdisc.commands.check import check
 from gaitdisc.commands.compare import compare
 from gaitdisc.commands.demo import demo
@@ -45,6 +46,7 @@ COMMANDS = (
     report,
     export,
     demo,
+    chapter,
 )
 
 app = typer.Typer(add_completion=False, no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False)

@@ -1,6 +1,6 @@
 """Section 3.4 over twelve noise seeds: every cell, its forecast from the true state and from the estimated one.
 
-    python studies/ch3_seeds.py FOLDER [--seeds 12] [--sets van_der_pol_text lorenz] [--noises 0.01 0.1]
+    python studies/ch3_seeds.py FOLDER [--seeds 12] [--sets van_der_pol_text lorenz] [--noises 0.01 0.1] [--quick]
     python studies/ch3_seeds.py FOLDER --keep
 
 Each cell is a file of its own in FOLDER, written whole: a run that was stopped goes on where it stopped. With `--keep`
@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from command_line import argument, command_line
+from command_line import QUICK, argument, command_line
 
 SEEDS = 12
 GIVEN = command_line(
@@ -23,8 +23,10 @@ GIVEN = command_line(
     argument("--sets", "names of sets, all where absent", nargs="+"),
     argument("--noises", "shares of each channel's standard deviation, all where absent", nargs="+", type=float),
     argument("--keep", "compute nothing; write studies/ch3_cells.csv and what `recommend` answers from", False),
+    QUICK,
 )  # before the slow imports
 
+import sys
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -34,7 +36,7 @@ import ch3_measurement_bias
 import ch3_van_der_pol
 import numpy as np
 import pandas as pd
-from ch3_tables import CELLS, measured
+from ch3_tables import CELLS, measured, sets_tables
 
 from gaitdisc.discrepancy.cell import cell_of
 from gaitdisc.discrepancy.error_signal import Approach
@@ -150,7 +152,7 @@ def compute(folder: Path, sets: dict[str, CellSet], seeds: int) -> None:
                 table = rows_of(cell_of(record, method, cell_set.approach, cell_set.settings))
                 table.insert(0, "set", name.removesuffix("_bopdmd"))
                 save_table(table, path)
-                print(path.name, flush=True)
+                print(path.name, file=sys.stderr, flush=True)
 
 
 def _asked(cell_set: CellSet, seed: int) -> Iterator[tuple[float, Method]]:
@@ -217,4 +219,6 @@ if __name__ == "__main__":
         GIVEN.folder.mkdir(parents=True, exist_ok=True)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            compute(GIVEN.folder, chosen_sets(GIVEN.sets, GIVEN.noises), GIVEN.seeds)
+            quick = (["van_der_pol_text"], [0.0, 0.01]) if GIVEN.quick else (GIVEN.sets, GIVEN.noises)
+            compute(GIVEN.folder, chosen_sets(*quick), 1 if GIVEN.quick else GIVEN.seeds)
+        print(sets_tables(gathered(GIVEN.folder)))

@@ -3,8 +3,8 @@
     python studies/ch3_tables.py TABLE
 
 TABLE is `readme`, `recommended`, `evidence`, `rankings`, or a set of `ch3_seeds.py` with the number that is shown:
-`lorenz:valid`, `lorenz:jump`, `van_der_pol_text:forecast`. Where a number has two starts, `estimated` is a state
-estimated from the noisy measurement; the true state is an oracle.
+`lorenz:valid`, `lorenz:jump`, `van_der_pol_text:forecast`; `all` for each of them. Where a number has two starts,
+`estimated` is a state estimated from the noisy measurement; the true state is an oracle.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pathlib import Path
 from command_line import argument, command_line
 
 GIVEN = command_line(
-    __name__, __doc__, argument("table", "readme, recommended, evidence, rankings, or SET:NUMBER")
+    __name__, __doc__, argument("table", "readme, recommended, evidence, rankings, SET:NUMBER, or all")
 )  # before the slow imports
 
 import numpy as np
@@ -179,6 +179,25 @@ def rankings(table: pd.DataFrame) -> str:
     return "\n".join(f"- {line}" for line in (counted, *sure))
 
 
+def sets_tables(table: pd.DataFrame) -> str:
+    """Every number of every set of a table of cells, under its name."""
+    said = []
+    for name in dict.fromkeys(table["set"]):
+        chaotic = str(name).startswith("lorenz")
+        for number in ("forecast", "valid", "jump") if chaotic else ("forecast",):
+            unit = {"forecast": "less RMSE than the known model [%]", "valid": "valid [Lyapunov times]"}
+            said.append(f"## {name}: {unit.get(number, 'the same until the first jump [%]')}\n")
+            said.append(set_table(table, str(name), number))
+    return "\n".join(said)
+
+
+def every_table(table: pd.DataFrame) -> str:
+    """All that this study prints of the kept cells."""
+    named = {"In short": readme_table(table), "Rankings": rankings(table)}
+    named |= {"What `recommend` answers": recommended_table(), "What it answers from": evidence_table()}
+    return "\n".join([f"## {words}\n\n{said}" for words, said in named.items()] + [sets_tables(table)])
+
+
 def printed(name: str) -> str:
     """A table by its name.
 
@@ -187,6 +206,8 @@ def printed(name: str) -> str:
     name : str
         As on the command line.
     """
+    if name == "all":
+        return every_table(measured())
     if name == "readme":
         return readme_table(measured())
     if name == "recommended":

@@ -90,7 +90,7 @@ def test_a_folder_of_a_newer_version_is_refused_in_words_and_nothing_is_drawn(tm
 
 def test_a_folder_without_a_result_is_refused_with_what_it_holds(tmp_path):
     (tmp_path / "study.toml").write_text("")
-    with pytest.raises(SchemaError, match="a saved result is a folder with one of run.json.* holds study.toml"):
+    with pytest.raises(SchemaError, match=r"a saved result is a folder with one of run.json.* holds study.toml"):
         draw_saved(tmp_path)
     (tmp_path / "discovery.json").write_text(json.dumps({"verdict": "no_gap"}))
     with pytest.raises(SchemaError, match="without a hash of its own"):
