@@ -58,20 +58,8 @@ class CellSet:
 
     Parameters
     ----------
-    system : System
-        What is recorded.
-    conditions : Conditions
-        Sampling; noise and seed are replaced.
-    approach : str
-        `dynamics` or `state`.
-    methods : tuple of str
-        Of every seed.
     noises : tuple of float
         As shares of each channel's standard deviation.
-    seeds : int
-        Most that are computed.
-    settings : MethodSettings, optional
-        Of the methods.
     """
 
     system: System
@@ -110,15 +98,7 @@ def cell_sets() -> dict[str, CellSet]:
 
 
 def chosen_sets(names: list[str] | None, noises: list[float] | None) -> dict[str, CellSet]:
-    """Sets of these names, at these noises; all where absent.
-
-    Parameters
-    ----------
-    names : list of str, optional
-        Of `cell_sets`.
-    noises : list of float, optional
-        As in `CellSet`.
-    """
+    """Sets of these names, at these noises; all where absent."""
     sets = cell_sets()
     found = {name: sets[name] for name in names or sets}
     some = set(noises or NOISES)
@@ -126,17 +106,7 @@ def chosen_sets(names: list[str] | None, noises: list[float] | None) -> dict[str
 
 
 def compute(folder: Path, sets: dict[str, CellSet], seeds: int) -> None:
-    """Compute what is not there yet: all sets of a seed before the next seed.
-
-    Parameters
-    ----------
-    folder : Path
-        A file a cell.
-    sets : dict of str to CellSet
-        By name.
-    seeds : int
-        Most of each.
-    """
+    """Compute what is not there yet: all sets of a seed before the next seed."""
     warm = set()
     for seed in range(seeds):
         for name, cell_set in sets.items():
@@ -163,13 +133,7 @@ def _asked(cell_set: CellSet, seed: int) -> Iterator[tuple[float, Method]]:
 
 
 def rows_of(cell: DiscrepancyCell) -> pd.DataFrame:
-    """Numbers of a cell, a row a part: medians over the channels, but the worst of them until the first jump.
-
-    Parameters
-    ----------
-    cell : DiscrepancyCell
-        Fitted or refused.
-    """
+    """Numbers of a cell, a row a part: medians over the channels, but the worst of them until the first jump."""
     head = {
         "system": cell.system, "variant": cell.variant, "approach": cell.approach, "method": cell.method,
         "noise": cell.noise, "dt_s": cell.dt_s, "samples": cell.samples, "seed": cell.seed,
@@ -186,13 +150,7 @@ def rows_of(cell: DiscrepancyCell) -> pd.DataFrame:
 
 
 def gathered(folder: Path) -> pd.DataFrame:
-    """Every cell of a folder, in the order of the sets, methods, noises and seeds.
-
-    Parameters
-    ----------
-    folder : Path
-        Of `compute`.
-    """
+    """Every cell of a folder, in the order of the sets, methods, noises and seeds."""
     table = pd.concat([pd.read_csv(path) for path in sorted(folder.glob("*-*-*-*.csv"))], ignore_index=True)
     order = {name: k for k, name in enumerate([*cell_sets(), *METHODS])}
     rank = table.assign(set=table["set"].map(order), method=table["method"].map(order))
@@ -200,13 +158,7 @@ def gathered(folder: Path) -> pd.DataFrame:
 
 
 def keep(folder: Path) -> None:
-    """Write the table of all cells, and what `recommend` answers from.
-
-    Parameters
-    ----------
-    folder : Path
-        Of `compute`.
-    """
+    """Write the table of all cells, and what `recommend` answers from."""
     save_table(gathered(folder), CELLS)
     seeds = measured()
     save_table(evidence_of(seeds[(seeds["approach"] == "dynamics") & (seeds["variant"] == "right")]), FOUND)

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import butter, sosfiltfilt
 
+import gaitdisc as gd
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.running import compile_simulation
-from gaitdisc.simulation.simulation import Simulation
 
 RATE_HZ, SECONDS, TRIALS = 100.0, 8.0, 4
 WAVES = 5  # sines in what drives a system
@@ -35,7 +35,7 @@ class Sensed(NamedTuple):
     channels: Sequence[str] = ()
 
 
-def recorded(truth: Simulation, driven: Driven, sensed: Sensed, rng: np.random.Generator) -> Measured:
+def recorded(truth: gd.Simulation, driven: Driven, sensed: Sensed, rng: np.random.Generator) -> Measured:
     """Trials of the true system as they come from a laboratory; all channels where none is named."""
     t, machine = np.arange(int(SECONDS * RATE_HZ)) / RATE_HZ, compile_simulation(truth)
     drive = Drive.of(

@@ -34,12 +34,10 @@ import numpy as np
 from driven_trials import Driven, Sensed
 from driven_trials import recorded as trials_of
 
+import gaitdisc as gd
 from gaitdisc.discovery.discover import discover
-from gaitdisc.simulation.bundled import bundled
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import Term
-from gaitdisc.simulation.simulation import Simulation
-from gaitdisc.simulation.simulation_file import read_simulation
 
 SYSTEMS = Path(__file__).parent / "systems"
 
@@ -89,19 +87,19 @@ class Record(NamedTuple):
     lowpass_hz: float
 
 
-def model_of(hidden: Hidden) -> Simulation:
+def model_of(hidden: Hidden) -> gd.Simulation:
     """The model as its author believes it."""
     own = SYSTEMS / f"{hidden.model}.toml"
-    return read_simulation(own) if own.is_file() else bundled(hidden.model)
+    return gd.read_simulation(own) if own.is_file() else gd.bundled_simulation(hidden.model)
 
 
-def complete(model: Simulation, hidden: Hidden, rng: np.random.Generator) -> Simulation:
+def complete(model: gd.Simulation, hidden: Hidden, rng: np.random.Generator) -> gd.Simulation:
     """The model with what is hidden in it."""
     a, b = (f"{rng.uniform(*limits):.4g}" for limits in (hidden.a, hidden.b))
     return model.with_effect(Term(hidden.port, "port", hidden.effect, hidden.term.format(a=a, b=b)))
 
 
-def put_off(model: Simulation, share: float, rng: np.random.Generator) -> Simulation:
+def put_off(model: gd.Simulation, share: float, rng: np.random.Generator) -> gd.Simulation:
     """The model with each number a little wrong, and bounds that say so."""
     if not share:
         return model
@@ -113,7 +111,7 @@ def put_off(model: Simulation, share: float, rng: np.random.Generator) -> Simula
     return replace(model, parameters=tuple(wrong))
 
 
-def recorded(truth: Simulation, hidden: Hidden, record: Record, rng: np.random.Generator) -> Measured:
+def recorded(truth: gd.Simulation, hidden: Hidden, record: Record, rng: np.random.Generator) -> Measured:
     """Trials of the true system, driven by sums of sines, as they come from a laboratory."""
     driven = Driven(hidden.driven_by, 0.2, hidden.fastest_hz)
     return trials_of(truth, driven, Sensed(record.noise, record.lowpass_hz), rng)

@@ -23,20 +23,19 @@ import numpy as np
 from driven_trials import Driven, Sensed
 from driven_trials import recorded as trials_of
 
+import gaitdisc as gd
 from gaitdisc.discovery.discover import discover
-from gaitdisc.simulation.bundled import bundled
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import State, Term
-from gaitdisc.simulation.simulation import Simulation
 
 DRIVEN = Driven((9.0, 5.0), 0.3, 2.0, starts=(0.3, 2))
 BENT = "(knee_rate - hip_rate)"
 KINDS = ("hysteresis", "series_elasticity", "input_lag", "nothing")
 
 
-def hidden(kind: str, rng: np.random.Generator) -> tuple[Simulation, float]:
+def hidden(kind: str, rng: np.random.Generator) -> tuple[gd.Simulation, float]:
     """The leg with something hidden at its knee, and the number that tells its memory (yield, relaxation, lag)."""
-    leg, stiffness = bundled("swing_leg"), rng.uniform(15.0, 40.0)
+    leg, stiffness = gd.bundled_simulation("swing_leg"), rng.uniform(15.0, 40.0)
     memory = float(rng.uniform(0.08, 0.25))
     rates = {"hysteresis": f"{BENT} - abs({BENT})*z/{memory}", "series_elasticity": f"{BENT} - z/{memory}"}
     if kind in rates:
@@ -48,14 +47,14 @@ def hidden(kind: str, rng: np.random.Generator) -> tuple[Simulation, float]:
     return leg, float("nan")
 
 
-def recorded(truth: Simulation, rng: np.random.Generator, noise: float) -> Measured:
+def recorded(truth: gd.Simulation, rng: np.random.Generator, noise: float) -> Measured:
     """Trials of the leg, driven at hip and knee."""
     return trials_of(truth, DRIVEN, Sensed(noise, channels=("hip", "knee")), rng)
 
 
 def run(seeds: int, noise: float) -> list[str]:
     """Hide each, ask, and count."""
-    nominal, lines = bundled("swing_leg").observing(["hip", "knee"]), []
+    nominal, lines = gd.bundled_simulation("swing_leg").observing(["hip", "knee"]), []
     for kind in KINDS:
         right, errors, others = 0, [], []
         for seed in range(seeds):
