@@ -16,6 +16,7 @@ from gaitdisc.commands.angles import angles
 from gaitdisc.commands.apply import apply
 from gaitdisc.commands.chapter import chapter
 from gaitdisc.commands.check import check
+from gaitdisc.commands.cite import cite
 from gaitdisc.commands.compare import compare
 from gaitdisc.commands.demo import demo
 from gaitdisc.commands.discover import discover
@@ -45,6 +46,7 @@ COMMANDS = (
     sensitivity,
     report,
     export,
+    cite,
     demo,
     chapter,
 )
