@@ -39,7 +39,7 @@ MENTIONED = {  # a method in words -> the keys of data_schema/methods.bib
     "Holm-Sidak corrections": ("holm1979", "sidak1967"),
     "permutation test over the stride": ("nichols2002", "pataky2015"),
     "sub-groups of people": ("ward1963",),
-    "C3D files": ("michaud2021",),
+    "C3D files, where some were read": ("michaud2021",),
     "contacts from markers": ("zeni2008",),
     "segments from markers": ("soderkvist1993",),
     "joint angles": ("grood1983", "wu2002"),
@@ -164,8 +164,9 @@ def _of_discovery(found: Discovery) -> Iterator[str]:
 
 
 def _of_files(files: Iterable[str]) -> Iterator[str]:
-    if any(name.lower().endswith(".c3d") for name in files):
-        yield "C3D files"
+    """Of files named by person and walk the ending is not kept: they may be C3D."""
+    if any(name.lower().endswith(".c3d") or re.search(r", file \d+$", name) for name in files):
+        yield "C3D files, where some were read"
 
 
 def _of_contacts(detectors: Iterable[str]) -> Iterator[str]:

@@ -56,7 +56,8 @@ def test_a_discovery_cites_its_search_and_a_reading_only_where_there_is_one(tmp_
 
 
 def test_cycles_cite_the_detectors_hips_and_angles_that_made_them(tmp_path):
-    assert keys(made_cycles().save(tmp_path / "events")) == {"gaitdisc"}
+    assert keys(made_cycles().save(tmp_path / "events")) == {"gaitdisc", "michaud2021"}  # "file 1" may be a C3D
+    assert keys(made_cycles(files={"a.mot": 64 * "a"}).save(tmp_path / "mot")) == {"gaitdisc"}
     assert "zeni2008" in keys(made_cycles(detectors={"markers": 2}).save(tmp_path / "markers"))
     davis = of_markers(("marker set", "plug_in_gait: Plug-in Gait; joints free"))
     assert davis >= {"segments from markers", "joint angles", "hip centres after Davis"}
