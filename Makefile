@@ -11,7 +11,7 @@ JOBS   ?= 2
 PYTEST := PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q
 BESIDE := -n $(JOBS) --dist worksteal
 
-.PHONY: demo test elsewhere slow lint format bench docs clean
+.PHONY: demo test elsewhere slow lint format bench docs release clean
 
 demo: $(VENV)/.base
 	$(BIN)/gaitdisc demo $(DEMO)
@@ -66,3 +66,12 @@ clean:
 docs: $(VENV)/.dev
 	$(BIN)/python -m pip install --quiet --editable '.[docs]'
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --site-dir build/site
+
+# A release: versions agree and the changes have their date, or nothing is built; then wheel, sdist and pages.
+release: $(VENV)/.dev
+	$(BIN)/python .ci/agreed_version.py
+	$(BIN)/python -m pip install --quiet build
+	rm -rf dist
+	$(BIN)/python -m build --outdir dist .
+	$(MAKE) docs
+	ls -l dist build/site/index.html

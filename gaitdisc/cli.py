@@ -14,7 +14,9 @@ import gaitdisc
 from gaitdisc.commands.ablate import ablate
 from gaitdisc.commands.angles import angles
 from gaitdisc.commands.apply import apply
+from gaitdisc.commands.chapter import chapter
 from gaitdisc.commands.check import check
+from gaitdisc.commands.cite import cite
 from gaitdisc.commands.compare import compare
 from gaitdisc.commands.demo import demo
 from gaitdisc.commands.discover import discover
@@ -44,7 +46,9 @@ COMMANDS = (
     sensitivity,
     report,
     export,
+    cite,
     demo,
+    chapter,
 )
 
 app = typer.Typer(add_completion=False, no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False)

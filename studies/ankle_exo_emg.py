@@ -56,8 +56,6 @@ class Walks:
         30 bins from right initial contact on.
     energy_w : DataFrame (person, setting) [W]
         Metabolic power as the source has it.
-    strides : int
-        Of all recordings together.
     """
 
     curves: Mapping[tuple[str, str], pd.DataFrame]
@@ -66,13 +64,7 @@ class Walks:
 
 
 def read_walks(folder: Path) -> Walks:
-    """Read the recordings; the median over strides is not moved by the spikes that some strides have.
-
-    Parameters
-    ----------
-    folder : Path
-        ankle_exo_emg_grf.
-    """
+    """Read the recordings; the median over strides is not moved by the spikes that some strides have."""
     with np.load(folder / "assisted.npz") as stored:
         names = [str(name) for name in stored["signals"]]
         strides = {(p, s): np.asarray(stored[f"x_{p}{s}"], float) for p in PEOPLE for s in SETTINGS}
@@ -100,13 +92,7 @@ def part_of_stride(force: NDArray[np.float64]) -> NDArray[np.str_]:
 
 
 def faulty_electrodes(walks: Walks) -> dict[tuple[str, str], str]:
-    """Electrodes (person, signal) that are left out in all settings, with the reason.
-
-    Parameters
-    ----------
-    walks : Walks
-        All recordings.
-    """
+    """Electrodes (person, signal) that are left out in all settings, with the reason."""
     found = {}
     for person in PEOPLE:
         for name in _electrodes():
@@ -125,15 +111,6 @@ def log_ratios(walks: Walks, setting: str, part: str, faulty: Mapping[tuple[str,
     """Logarithm of EMG in a setting over EMG in the easiest, (person, muscle), mean over the electrodes that work.
 
     A ratio does not depend on the unknown reference, as long as it is the same in all settings of a person.
-
-    Parameters
-    ----------
-    walks : Walks
-        All recordings.
-    setting, part : str
-        Of `SETTINGS` and `PARTS`.
-    faulty : mapping
-        Of `faulty_electrodes`.
     """
     table = pd.DataFrame(np.nan, index=list(PEOPLE), columns=list(MUSCLES))
     for person in PEOPLE:
@@ -150,15 +127,6 @@ def log_ratios(walks: Walks, setting: str, part: str, faulty: Mapping[tuple[str,
 def contrast(walks: Walks, setting: str, faulty: Mapping[tuple[str, str], str]) -> pd.DataFrame:
     """Tests of one setting against the easiest, one row a part of the stride and muscle.
 
-    Parameters
-    ----------
-    walks : Walks
-        All recordings.
-    setting : str
-        Any but the easiest.
-    faulty : mapping
-        Of `faulty_electrodes`.
-
     Returns
     -------
     DataFrame
@@ -174,13 +142,7 @@ def contrast(walks: Walks, setting: str, faulty: Mapping[tuple[str, str], str]) 
 
 
 def run(data: Path) -> tuple[Walks, dict[tuple[str, str], str], pd.DataFrame]:
-    """Recordings, faulty electrodes, and the tests of every setting against the easiest.
-
-    Parameters
-    ----------
-    data : Path
-        Holds ankle_exo_emg_grf.
-    """
+    """Recordings, faulty electrodes, and the tests of every setting against the easiest."""
     walks = read_walks(data / "ankle_exo_emg_grf")
     faulty = faulty_electrodes(walks)
     others = [setting for setting in SETTINGS if setting != EASIEST]

@@ -23,6 +23,7 @@ GIVEN = command_line(
 import numpy as np
 from ch3_report import Result, written
 
+import gaitdisc as gd
 from gaitdisc.discrepancy.augmented_run import with_learned_rates
 from gaitdisc.discrepancy.burgers import burgers, places
 from gaitdisc.discrepancy.cell import cell_of, learned_model
@@ -31,7 +32,6 @@ from gaitdisc.discrepancy.grid import NOISES
 from gaitdisc.discrepancy.local_field import local_cell, recorded_field
 from gaitdisc.discrepancy.methods import Method, MethodSettings
 from gaitdisc.discrepancy.record import Conditions, Record, recorded
-from gaitdisc.errors import GaitdiscError
 from gaitdisc.report.block import Block
 from gaitdisc.report.discrepancy_figure import field_figure
 from gaitdisc.report.discrepancy_tables import grid_table, statements_table
@@ -45,15 +45,7 @@ CUBICS = {"text, with the pulse of the code": 0.01, "code": 0.1}
 
 
 def run(quick: bool = False, folder: Path = Path("ch3_burgers")) -> Result:
-    """Compute both variants, draw the errors, set the published metric beside the right one.
-
-    Parameters
-    ----------
-    quick : bool
-        5 s, without noise.
-    folder : Path
-        Where the report goes.
-    """
+    """Compute both variants, draw the errors, set the published metric beside the right one."""
     duration_s, noises = (5.0, NOISES[:1]) if quick else (50.0, NOISES)
     conditions = Conditions(duration_s=duration_s)
     said = [("Eq. 3.12", "starts from exp((x + 2)^2)", text_start(conditions))]
@@ -80,15 +72,7 @@ def run(quick: bool = False, folder: Path = Path("ch3_burgers")) -> Result:
 
 
 def cells_of(cubic: float, asked: list[Conditions]) -> tuple[DiscrepancyCell, ...]:
-    """DMD by both approaches, and what is learned at each point.
-
-    Parameters
-    ----------
-    cubic : float
-        What is hidden.
-    asked : list of Conditions
-        Noises and seeds.
-    """
+    """DMD by both approaches, and what is learned at each point."""
     found = []
     for conditions in asked:
         record = recorded_field(burgers(cubic), conditions)
@@ -100,28 +84,16 @@ def cells_of(cubic: float, asked: list[Conditions]) -> tuple[DiscrepancyCell, ..
 
 
 def text_start(conditions: Conditions) -> str:
-    """What comes of the text's first pulse.
-
-    Parameters
-    ----------
-    conditions : Conditions
-        Of the record.
-    """
+    """What comes of the text's first pulse."""
     try:
         recorded(burgers(0.01, +1.0), conditions)
-    except GaitdiscError as error:
+    except gd.GaitdiscError as error:
         return f"cannot run: {error.found}"
     return "runs"
 
 
 def artefact(record: Record) -> str:
-    """Forecast improvement by the published way and metric, then each put right.
-
-    Parameters
-    ----------
-    record : Record
-        Training part and forecast.
-    """
+    """Forecast improvement by the published way and metric, then each put right."""
     system, dt = record.system, record.conditions.dt_s
     learned = learned_model(record, "dmd", "dynamics", SETTINGS)
     time = record.time[record.split - 1 :]

@@ -20,6 +20,7 @@ import numpy as np
 import pandas as pd
 from ch3_report import Cells, Result, blocks_of, written
 
+import gaitdisc as gd
 from gaitdisc.discrepancy.error_signal import APPROACHES
 from gaitdisc.discrepancy.grid import ALL_METHODS, NOISES, grid
 from gaitdisc.discrepancy.record import Conditions
@@ -27,7 +28,6 @@ from gaitdisc.discrepancy.system import System, system_of
 from gaitdisc.report.block import Block
 from gaitdisc.report.table import Table
 from gaitdisc.results.discrepancy_cell import FORECAST, ORACLE, PART_WORDS
-from gaitdisc.simulation.bundled import bundled
 from gaitdisc.simulation.parts import Term
 
 SEEDS = (0, 1, 2)
@@ -52,19 +52,11 @@ STATED = (
 
 def system() -> System:
     """Text and code agree."""
-    return system_of(bundled("lorenz"), Term("x", "equation", "cubic", "0.01*x**3"))
+    return system_of(gd.bundled_simulation("lorenz"), Term("x", "equation", "cubic", "0.01*x**3"))
 
 
 def run(quick: bool = False, folder: Path = Path("ch3_lorenz")) -> Result:
-    """Compute all cells, draw the figures, set the chapter's statements beside them.
-
-    Parameters
-    ----------
-    quick : bool
-        20 s, one noise, one seed, no finer sampling.
-    folder : Path
-        Where the report goes.
-    """
+    """Compute all cells, draw the figures, set the chapter's statements beside them."""
     noises, seeds, duration_s = (NOISES[:1], SEEDS[:1], 20.0) if quick else (NOISES, SEEDS, 50.0)
     cells = {
         "done right": grid(system(), Conditions(duration_s=duration_s), noises, seeds),
@@ -81,13 +73,7 @@ def run(quick: bool = False, folder: Path = Path("ch3_lorenz")) -> Result:
 
 
 def jump_table(cells: Cells) -> Table:
-    """Forecast until the truth's first jump, and valid time.
-
-    Parameters
-    ----------
-    cells : mapping
-        By variant.
-    """
+    """Forecast until the truth's first jump, and valid time."""
     rows = [
         (variant, c.approach, c.method, c.noise, PART_WORDS[name], c.seed,
          float(np.min(part.accuracy(until_s=part.first_jump_s()))), part.first_jump_s(),

@@ -21,6 +21,7 @@ import numpy as np
 from ch3_report import Result, blocks_of, written
 from numpy.typing import NDArray
 
+import gaitdisc as gd
 from gaitdisc.discrepancy.grid import ALL_METHODS, NOISES, grid
 from gaitdisc.discrepancy.kalman import Uncertainty, linear_kalman, unscented_kalman
 from gaitdisc.discrepancy.methods import MethodSettings
@@ -28,7 +29,6 @@ from gaitdisc.discrepancy.record import Conditions, Record, recorded
 from gaitdisc.discrepancy.system import System, system_of
 from gaitdisc.report.block import Block
 from gaitdisc.report.discrepancy_tables import statements_table
-from gaitdisc.simulation.bundled import bundled
 from gaitdisc.simulation.parts import Term
 
 SEEDS = (0, 1, 2)
@@ -41,7 +41,7 @@ STATED = tuple(
 
 def systems() -> dict[str, System]:
     """Text and code."""
-    free = bundled("mass_spring_damper")
+    free = gd.bundled_simulation("mass_spring_damper")
     text, code = (Term("force", "port", "cubic", "x**3"), Term("v", "equation", "cubic", "x**3"))
     return {
         "text": system_of(free.with_effect(text), gain=(1.01,)),
@@ -50,15 +50,7 @@ def systems() -> dict[str, System]:
 
 
 def run(quick: bool = False, folder: Path = Path("ch3_measurement_bias")) -> Result:
-    """Compute all cells and both filters, draw the figures.
-
-    Parameters
-    ----------
-    quick : bool
-        Two noises, one seed.
-    folder : Path
-        Where the report goes.
-    """
+    """Compute all cells and both filters, draw the figures."""
     noises, seeds = (NOISES[:2], SEEDS[:1]) if quick else (NOISES, SEEDS)
     conditions = Conditions(duration_s=20.0)
     cells, rows = {}, []
@@ -76,13 +68,7 @@ def run(quick: bool = False, folder: Path = Path("ch3_measurement_bias")) -> Res
 
 
 def filters(record: Record) -> str:
-    """Share of the bias that each filter removes from the measured position, after 2 s, and the bias it states.
-
-    Parameters
-    ----------
-    record : Record
-        Of the biased position.
-    """
+    """Share of the bias that each filter removes from the measured position, after 2 s, and the bias it states."""
     system, dt, y = record.system, record.conditions.dt_s, record.measured[:, 0]
     clean, settled = record.truth @ system.observation[0], slice(200, None)
     sd = max(float(np.std(y - clean)), 1e-6)

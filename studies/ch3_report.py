@@ -31,17 +31,7 @@ ARTEFACT = (
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """A study of chapter 3.
-
-    Parameters
-    ----------
-    cells : mapping of str to tuple of DiscrepancyCell
-        By variant.
-    tables : tuple of Table
-        Of the page.
-    page : Path
-        The report.
-    """
+    """A study of chapter 3."""
 
     cells: Cells
     tables: tuple[Table, ...]
@@ -51,19 +41,7 @@ class Result:
 def blocks_of(
     cells: Cells, figures: Mapping[str, str], stated: Sequence[Stated], systems: Mapping[str, System] | None = None
 ) -> list[Block]:
-    """Parts of a page: a variant each, with the figures that the chapter has.
-
-    Parameters
-    ----------
-    cells : mapping
-        By variant.
-    figures : mapping of str to str
-        Figure of the dissertation by `system`, `dynamics`, `state`, `noise`, `horizon`, `cost`.
-    stated : sequence of Stated
-        Statements to answer.
-    systems : mapping of str to System, optional
-        By variant, of those whose system is drawn.
-    """
+    """Parts of a page: a variant each, with the figures that the chapter has."""
     statements = [(where, words, answered(cells, approach, noise)) for where, words, approach, noise in stated]
     statements += of_figures(cells, figures)
     blocks = [Block("stated", "What the chapter states", (ARTEFACT,), tables=(statements_table(statements, "stated"),))]
@@ -88,19 +66,7 @@ def blocks_of(
 
 
 def written(cells: Cells, blocks: Sequence[Block], title: str, folder: Path) -> Result:
-    """Write page, figures, tables, and all tables once more as Markdown.
-
-    Parameters
-    ----------
-    cells : mapping
-        By variant.
-    blocks : sequence of Block
-        Of the page.
-    title : str
-        Of the page.
-    folder : Path
-        Where it goes.
-    """
+    """Write page, figures, tables, and all tables once more as Markdown."""
     folder.mkdir(parents=True, exist_ok=True)
     page = write_blocks(title, "Ebers 2023, chapter 3, computed anew.", blocks, folder)
     tables = tuple(table for block in blocks for table in block.tables)

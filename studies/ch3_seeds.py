@@ -1,6 +1,6 @@
 """Section 3.4 over twelve noise seeds: every cell, its forecast from the true state and from the estimated one.
 
-    python studies/ch3_seeds.py FOLDER [--seeds 12] [--sets van_der_pol_text lorenz] [--noises 0.01 0.1]
+    python studies/ch3_seeds.py FOLDER [--seeds 12] [--sets van_der_pol_text lorenz] [--noises 0.01 0.1] [--quick]
     python studies/ch3_seeds.py FOLDER --keep
 
 Each cell is a file of its own in FOLDER, written whole: a run that was stopped goes on where it stopped. With `--keep`
@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from command_line import argument, command_line
+from command_line import QUICK, argument, command_line
 
 SEEDS = 12
 GIVEN = command_line(
@@ -23,8 +23,10 @@ GIVEN = command_line(
     argument("--sets", "names of sets, all where absent", nargs="+"),
     argument("--noises", "shares of each channel's standard deviation, all where absent", nargs="+", type=float),
     argument("--keep", "compute nothing; write studies/ch3_cells.csv and what `recommend` answers from", False),
+    QUICK,
 )  # before the slow imports
 
+import sys
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -34,7 +36,7 @@ import ch3_measurement_bias
 import ch3_van_der_pol
 import numpy as np
 import pandas as pd
-from ch3_tables import CELLS, measured
+from ch3_tables import CELLS, measured, sets_tables
 
 from gaitdisc.discrepancy.cell import cell_of
 from gaitdisc.discrepancy.error_signal import Approach
@@ -56,20 +58,8 @@ class CellSet:
 
     Parameters
     ----------
-    system : System
-        What is recorded.
-    conditions : Conditions
-        Sampling; noise and seed are replaced.
-    approach : str
-        `dynamics` or `state`.
-    methods : tuple of str
-        Of every seed.
     noises : tuple of float
         As shares of each channel's standard deviation.
-    seeds : int
-        Most that are computed.
-    settings : MethodSettings, optional
-        Of the methods.
     """
 
     system: System
@@ -108,15 +98,7 @@ def cell_sets() -> dict[str, CellSet]:
 
 
 def chosen_sets(names: list[str] | None, noises: list[float] | None) -> dict[str, CellSet]:
-    """Sets of these names, at these noises; all where absent.
-
-    Parameters
-    ----------
-    names : list of str, optional
-        Of `cell_sets`.
-    noises : list of float, optional
-        As in `CellSet`.
-    """
+    """Sets of these names, at these noises; all where absent."""
     sets = cell_sets()
     found = {name: sets[name] for name in names or sets}
     some = set(noises or NOISES)
@@ -124,17 +106,7 @@ def chosen_sets(names: list[str] | None, noises: list[float] | None) -> dict[str
 
 
 def compute(folder: Path, sets: dict[str, CellSet], seeds: int) -> None:
-    """Compute what is not there yet: all sets of a seed before the next seed.
-
-    Parameters
-    ----------
-    folder : Path
-        A file a cell.
-    sets : dict of str to CellSet
-        By name.
-    seeds : int
-        Most of each.
-    """
+    """Compute what is not there yet: all sets of a seed before the next seed."""
     warm = set()
     for seed in range(seeds):
         for name, cell_set in sets.items():
@@ -150,7 +122,7 @@ def compute(folder: Path, sets: dict[str, CellSet], seeds: int) -> None:
                 table = rows_of(cell_of(record, method, cell_set.approach, cell_set.settings))
                 table.insert(0, "set", name.removesuffix("_bopdmd"))
                 save_table(table, path)
-                print(path.name, flush=True)
+                print(path.name, file=sys.stderr, flush=True)
 
 
 def _asked(cell_set: CellSet, seed: int) -> Iterator[tuple[float, Method]]:
@@ -161,13 +133,7 @@ def _asked(cell_set: CellSet, seed: int) -> Iterator[tuple[float, Method]]:
 
 
 def rows_of(cell: DiscrepancyCell) -> pd.DataFrame:
-    """Numbers of a cell, a row a part: medians over the channels, but the worst of them until the first jump.
-
-    Parameters
-    ----------
-    cell : DiscrepancyCell
-        Fitted or refused.
-    """
+    """Numbers of a cell, a row a part: medians over the channels, but the worst of them until the first jump."""
     head = {
         "system": cell.system, "variant": cell.variant, "approach": cell.approach, "method": cell.method,
         "noise": cell.noise, "dt_s": cell.dt_s, "samples": cell.samples, "seed": cell.seed,
@@ -184,13 +150,7 @@ def rows_of(cell: DiscrepancyCell) -> pd.DataFrame:
 
 
 def gathered(folder: Path) -> pd.DataFrame:
-    """Every cell of a folder, in the order of the sets, methods, noises and seeds.
-
-    Parameters
-    ----------
-    folder : Path
-        Of `compute`.
-    """
+    """Every cell of a folder, in the order of the sets, methods, noises and seeds."""
     table = pd.concat([pd.read_csv(path) for path in sorted(folder.glob("*-*-*-*.csv"))], ignore_index=True)
     order = {name: k for k, name in enumerate([*cell_sets(), *METHODS])}
     rank = table.assign(set=table["set"].map(order), method=table["method"].map(order))
@@ -198,13 +158,7 @@ def gathered(folder: Path) -> pd.DataFrame:
 
 
 def keep(folder: Path) -> None:
-    """Write the table of all cells, and what `recommend` answers from.
-
-    Parameters
-    ----------
-    folder : Path
-        Of `compute`.
-    """
+    """Write the table of all cells, and what `recommend` answers from."""
     save_table(gathered(folder), CELLS)
     seeds = measured()
     save_table(evidence_of(seeds[(seeds["approach"] == "dynamics") & (seeds["variant"] == "right")]), FOUND)
@@ -217,4 +171,6 @@ if __name__ == "__main__":
         GIVEN.folder.mkdir(parents=True, exist_ok=True)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            compute(GIVEN.folder, chosen_sets(GIVEN.sets, GIVEN.noises), GIVEN.seeds)
+            quick = (["van_der_pol_text"], [0.0, 0.01]) if GIVEN.quick else (GIVEN.sets, GIVEN.noises)
+            compute(GIVEN.folder, chosen_sets(*quick), 1 if GIVEN.quick else GIVEN.seeds)
+        print(sets_tables(gathered(GIVEN.folder)))

@@ -19,27 +19,13 @@ HORIZONS_S = (0.3, 1.0, 5.0, 20.0)
 
 
 def of_figures(cells: Cells, figures: Mapping[str, str]) -> list[tuple[str, str, str]]:
-    """Answer the statements that captions make, of the figures that a study has.
-
-    Parameters
-    ----------
-    cells : mapping
-        By variant.
-    figures : mapping of str to str
-        Figure of the dissertation by `system`, `horizon`, `cost`.
-    """
+    """Answer the statements that captions make, of the figures that a study has."""
     own = (("system", APART, apart_words), ("horizon", HORIZON, horizon_words), ("cost", COST, cost_words))
     return [(figures[key], words, answer(cells)) for key, words, answer in own if key in figures]
 
 
 def apart_words(cells: Cells) -> str:
-    """Say how long the known system stays near the true one, by variant.
-
-    Parameters
-    ----------
-    cells : mapping
-        By variant.
-    """
+    """Say how long the known system stays near the true one, by variant."""
     said = []
     for variant, found in cells.items():
         part = next(c.parts[RECONSTRUCTION] for c in found if c.parts and not c.noise)
@@ -48,13 +34,7 @@ def apart_words(cells: Cells) -> str:
 
 
 def cost_words(cells: Cells) -> str:
-    """Seconds of a core of each method, cheapest first, by approach: median over variants, noises and seeds.
-
-    Parameters
-    ----------
-    cells : mapping
-        By variant.
-    """
+    """Seconds of a core of each method, cheapest first, by approach: median over variants, noises and seeds."""
     said = []
     for approach in ("dynamics", "state"):
         some = [c for found in cells.values() for c in found if c.approach == approach and c.parts]
@@ -67,13 +47,7 @@ def cost_words(cells: Cells) -> str:
 
 
 def horizon_words(cells: Cells) -> str:
-    """Say how much less error the forecasts have within a few horizons, without noise, by variant and method.
-
-    Parameters
-    ----------
-    cells : mapping
-        By variant.
-    """
+    """Say how much less error the forecasts have within a few horizons, without noise, by variant and method."""
     said = []
     for variant, found in cells.items():
         quiet = [c for c in found if c.approach == "dynamics" and c.parts and not c.noise]
@@ -91,17 +65,7 @@ def _within(cell: DiscrepancyCell) -> str:
 
 
 def answered(cells: Cells, approach: str, noise: float) -> str:
-    """Forecast (oracle; reconstruction) accuracy of each method, by variant: median and range over seeds.
-
-    Parameters
-    ----------
-    cells : mapping
-        By variant.
-    approach : str
-        `dynamics` or `state`.
-    noise : float
-        Level.
-    """
+    """Forecast (oracle; reconstruction) accuracy of each method, by variant: median and range over seeds."""
     said = []
     for variant, found in cells.items():
         some = [c for c in found if c.approach == approach and c.noise == noise]

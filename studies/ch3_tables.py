@@ -3,8 +3,8 @@
     python studies/ch3_tables.py TABLE
 
 TABLE is `readme`, `recommended`, `evidence`, `rankings`, or a set of `ch3_seeds.py` with the number that is shown:
-`lorenz:valid`, `lorenz:jump`, `van_der_pol_text:forecast`. Where a number has two starts, `estimated` is a state
-estimated from the noisy measurement; the true state is an oracle.
+`lorenz:valid`, `lorenz:jump`, `van_der_pol_text:forecast`; `all` for each of them. Where a number has two starts,
+`estimated` is a state estimated from the noisy measurement; the true state is an oracle.
 """
 
 from __future__ import annotations
@@ -15,18 +15,18 @@ from pathlib import Path
 from command_line import argument, command_line
 
 GIVEN = command_line(
-    __name__, __doc__, argument("table", "readme, recommended, evidence, rankings, or SET:NUMBER")
+    __name__, __doc__, argument("table", "readme, recommended, evidence, rankings, SET:NUMBER, or all")
 )  # before the slow imports
 
 import numpy as np
 import pandas as pd
 
+import gaitdisc as gd
 from gaitdisc.discrepancy.recommend import FOUND, STARTS, WANTS, recommend
 from gaitdisc.report.discrepancy_figure import METHOD_WORDS
 from gaitdisc.report.discrepancy_tables import spread_words
 from gaitdisc.report.table import as_markdown, words_table
 from gaitdisc.results.discrepancy_cell import FORECAST, ORACLE, RECONSTRUCTION
-from gaitdisc.statistics.holm_sidak import holm_sidak
 from gaitdisc.statistics.signed_rank import exact_p
 
 CELLS = Path(__file__).with_name("ch3_cells.csv")
@@ -58,13 +58,6 @@ def set_table(table: pd.DataFrame, name: str, number: str) -> str:
     """One number of a set: a row a method and start, a column a noise; median and range over the n seeds with noise.
 
     Where the noises have unlike numbers of seeds, n names each in the order of the columns.
-
-    Parameters
-    ----------
-    table : DataFrame
-        From `measured`.
-    name, number : str
-        Set; a word of `NUMBERS`.
     """
     column, factor, parts = NUMBERS[number]
     of_set = table[table["set"] == name]
@@ -90,13 +83,7 @@ def _said(found: pd.DataFrame, column: str, factor: float) -> str:
 
 
 def readme_table(table: pd.DataFrame) -> str:
-    """Van der Pol in short: medians from the estimated start, in brackets from the true state.
-
-    Parameters
-    ----------
-    table : DataFrame
-        From `measured`.
-    """
+    """Van der Pol in short: medians from the estimated start, in brackets from the true state."""
     of_set, rows = table[table["set"] == "van_der_pol_text"], []
     noises = sorted(of_set["noise"].unique())
     for method in IN_README:
@@ -151,13 +138,7 @@ def evidence_table() -> str:
 
 
 def rankings(table: pd.DataFrame) -> str:
-    """Methods paired by noise seed, forecast accuracy (on Lorenz valid time): the pairs that differ beyond chance.
-
-    Parameters
-    ----------
-    table : DataFrame
-        From `measured`.
-    """
+    """Methods paired by noise seed, forecast accuracy (on Lorenz valid time): the pairs that differ beyond chance."""
     pairs = []
     for name, number in RANKED.items():
         column, factor, parts = NUMBERS[number]
@@ -169,7 +150,7 @@ def rankings(table: pd.DataFrame) -> str:
                 what = f"{name}, {noise:.1%} noise, {START_WORDS[part]}: {METHOD_WORDS[one]} against"
                 size = f"{np.median(ahead):+.2g} {'Lyapunov times' if number == 'valid' else 'points'}"
                 pairs.append((exact_p(ahead), f"{what} {METHOD_WORDS[other]} {size} in the median, n = {len(ahead)}"))
-    corrected = holm_sidak([p for p, _ in pairs])
+    corrected = gd.holm_sidak([p for p, _ in pairs])
     sure = [
         f"{said}, p = {p:.3g} ({p_corrected:.2g} corrected)"
         for (p, said), p_corrected, differs in zip(pairs, corrected.adjusted, corrected.rejected, strict=True)
@@ -179,14 +160,29 @@ def rankings(table: pd.DataFrame) -> str:
     return "\n".join(f"- {line}" for line in (counted, *sure))
 
 
-def printed(name: str) -> str:
-    """A table by its name.
+def sets_tables(table: pd.DataFrame) -> str:
+    """Every number of every set of a table of cells, under its name."""
+    said = []
+    for name in dict.fromkeys(table["set"]):
+        chaotic = str(name).startswith("lorenz")
+        for number in ("forecast", "valid", "jump") if chaotic else ("forecast",):
+            unit = {"forecast": "less RMSE than the known model [%]", "valid": "valid [Lyapunov times]"}
+            said.append(f"## {name}: {unit.get(number, 'the same until the first jump [%]')}\n")
+            said.append(set_table(table, str(name), number))
+    return "\n".join(said)
 
-    Parameters
-    ----------
-    name : str
-        As on the command line.
-    """
+
+def every_table(table: pd.DataFrame) -> str:
+    """All that this study prints of the kept cells."""
+    named = {"In short": readme_table(table), "Rankings": rankings(table)}
+    named |= {"What `recommend` answers": recommended_table(), "What it answers from": evidence_table()}
+    return "\n".join([f"## {words}\n\n{said}" for words, said in named.items()] + [sets_tables(table)])
+
+
+def printed(name: str) -> str:
+    """A table by its name."""
+    if name == "all":
+        return every_table(measured())
     if name == "readme":
         return readme_table(measured())
     if name == "recommended":

@@ -20,12 +20,12 @@ GIVEN = command_line(
 
 from ch3_report import Result, blocks_of, written
 
+import gaitdisc as gd
 from gaitdisc.discrepancy.error_signal import APPROACHES
 from gaitdisc.discrepancy.grid import ALL_METHODS, NOISES, grid
 from gaitdisc.discrepancy.record import Conditions
 from gaitdisc.discrepancy.system import System, system_of
 from gaitdisc.results.discrepancy_cell import DiscrepancyCell
-from gaitdisc.simulation.bundled import bundled
 from gaitdisc.simulation.parts import Term
 
 SEEDS = (0, 1, 2)
@@ -42,22 +42,15 @@ STATED = (
 
 def systems() -> dict[str, System]:
     """Text and code, each with its start and sign."""
+    sides = {"text": ("van_der_pol", "-0.01*x**3"), "code": ("van_der_pol_published", "0.01*x**3")}
     return {
-        "text": system_of(bundled("van_der_pol"), Term("y", "equation", "cubic_stiffness", "-0.01*x**3")),
-        "code": system_of(bundled("van_der_pol_published"), Term("y", "equation", "cubic_stiffness", "0.01*x**3")),
+        word: system_of(gd.bundled_simulation(name), Term("y", "equation", "cubic_stiffness", term))
+        for word, (name, term) in sides.items()
     }
 
 
 def run(quick: bool = False, folder: Path = Path("ch3_van_der_pol")) -> Result:
-    """Compute all cells, draw the figures, set the chapter's statements beside them.
-
-    Parameters
-    ----------
-    quick : bool
-        20 s, two noises, one seed.
-    folder : Path
-        Where the report goes.
-    """
+    """Compute all cells, draw the figures, set the chapter's statements beside them."""
     noises, seeds, duration_s = (NOISES[:2], SEEDS[:1], 20.0) if quick else (NOISES, SEEDS, 50.0)
     cells: dict[str, tuple[DiscrepancyCell, ...]] = {}
     for variant, system in systems().items():

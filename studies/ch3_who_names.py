@@ -22,6 +22,7 @@ GIVEN = command_line(
 import numpy as np
 from ch3_report import Result, written
 
+import gaitdisc as gd
 from gaitdisc.batch.discover_answer import discover_answer
 from gaitdisc.discrepancy.grid import NOISES
 from gaitdisc.discrepancy.hidden_effect import HiddenEffect, method_answer
@@ -34,7 +35,6 @@ from gaitdisc.report.block import Block
 from gaitdisc.report.naming_figure import naming_figure
 from gaitdisc.report.naming_table import naming_table
 from gaitdisc.results.naming import Naming
-from gaitdisc.simulation.bundled import bundled
 from gaitdisc.simulation.parts import Term
 
 SEEDS = (0, 1, 2)
@@ -46,16 +46,10 @@ CUBIC = ("y", "cubic_stiffness")
 
 
 def cases(seed: int = 0) -> tuple[HiddenEffect, ...]:
-    """Every case.
-
-    Parameters
-    ----------
-    seed : int
-        Of random pushes.
-    """
-    text, code, lorenz = bundled("van_der_pol"), bundled("van_der_pol_published"), bundled("lorenz")
+    """Every case."""
+    names = ("van_der_pol", "van_der_pol_published", "lorenz", "mass_spring_damper")
+    text, code, lorenz, free = map(gd.bundled_simulation, names)
     minus, plus = (Term("y", "equation", "cubic_stiffness", f"{eps}*x**3") for eps in (-0.01, 0.01))
-    free = bundled("mass_spring_damper")
     by_text = system_of(free.with_effect(Term("force", "port", "cubic", "x**3")), gain=(1.01,))
     by_code = system_of(free.with_effect(Term("v", "equation", "cubic", "x**3")), gain=(1.1,))
     hidden, alike = system_of(text, minus), system_of(text)
@@ -84,15 +78,7 @@ def cases(seed: int = 0) -> tuple[HiddenEffect, ...]:
 
 
 def run(quick: bool = False, folder: Path = Path("ch3_who_names")) -> Result:
-    """Ask everybody about every case.
-
-    Parameters
-    ----------
-    quick : bool
-        Two noises, one seed.
-    folder : Path
-        Where the report goes.
-    """
+    """Ask everybody about every case."""
     noises, seeds = (NOISES[1:3], SEEDS[:1]) if quick else (NOISES, SEEDS)
     found: list[Naming] = []
     for noise in noises:

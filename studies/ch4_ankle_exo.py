@@ -27,12 +27,12 @@ from dataclasses import dataclass
 import pandas as pd
 from ch4_ours import OURS
 
+import gaitdisc as gd
 from gaitdisc.batch.ablate_study import ablate_study
 from gaitdisc.batch.demonstration import write_demonstration
 from gaitdisc.batch.workers import Workers
 from gaitdisc.ingest.study_file import load_study
 from gaitdisc.report.response_page import write_report
-from gaitdisc.results import ResponseRun
 
 WALK_S, PEOPLE = 240.0, 12
 QUICK_S, QUICK_PEOPLE = 60.0, 1
@@ -42,35 +42,15 @@ PRINTED = Path(__file__).with_name("ch4_printed.toml")
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """The chapter.
+    """The chapter."""
 
-    Parameters
-    ----------
-    run : ResponseRun
-        Everything computed.
-    printed : DataFrame
-        what, printed, ours, why, source.
-    page : Path
-        The report.
-    """
-
-    run: ResponseRun
+    run: gd.ResponseRun
     printed: pd.DataFrame
     page: Path
 
 
 def run(quick: bool, folder: Path = Path("ch4"), jobs: int = 2) -> Result:
-    """Walk, measure, read, fit, ablate, test, draw, and set what the dissertation prints beside it.
-
-    Parameters
-    ----------
-    quick : bool
-        One person and 60 s instead of twelve and 240 s: nothing is tested then.
-    folder : Path
-        Where recordings, results and report go; what is there is not computed again.
-    jobs : int
-        Participants side by side.
-    """
+    """Walk, measure, read, fit, ablate, test, draw, and set what the dissertation prints beside it."""
     if not (folder / "study.toml").exists():
         write_demonstration(folder, QUICK_S if quick else WALK_S, QUICK_PEOPLE if quick else PEOPLE)
     lengths = LENGTHS_S[:2] if quick else LENGTHS_S

@@ -6,25 +6,17 @@ from collections.abc import Callable
 
 import pandas as pd
 
+import gaitdisc as gd
 from gaitdisc.batch.demonstration import OUTPUTS
 from gaitdisc.report.wording import sideless
 from gaitdisc.response.comparison import r2_by_participant
 from gaitdisc.response.residual_reduction import representative
-from gaitdisc.results import ResponseRun
 
 ANGLES, EMG = OUTPUTS[:3], OUTPUTS[3:]
 
 
-def medians(run: ResponseRun, model: str, walk: str = "exo") -> pd.Series:
-    """Median over participants of the network's R2, one number a variable.
-
-    Parameters
-    ----------
-    run : ResponseRun
-        With responses.
-    model, walk : str
-        As in `ParticipantResponse.r2`.
-    """
+def medians(run: gd.ResponseRun, model: str, walk: str = "exo") -> pd.Series:
+    """Median over participants of the network's R2, one number a variable."""
     rows = run.r2_table()
     chosen = rows[(rows["model"] == model) & (rows["walk"] == walk) & (rows["kind"] == "network")]
     return chosen.groupby("variable")["r2"].median().reindex(OUTPUTS)
@@ -34,7 +26,7 @@ def _range(values: pd.Series, factor: float = 1.0, digits: int = 3) -> str:
     return f"{factor * values.min():.{digits}f}-{factor * values.max():.{digits}f}"
 
 
-def _differ(run: ResponseRun, first: str, second: str, sign: int) -> pd.DataFrame:
+def _differ(run: gd.ResponseRun, first: str, second: str, sign: int) -> pd.DataFrame:
     rows = run.tests.of_pair(first, second) if run.tests else pd.DataFrame()
     return rows[rows["different"].astype(bool) & (sign * rows["rank_biserial"] > 0)] if len(rows) else rows
 
@@ -43,19 +35,19 @@ def _named(rows: pd.DataFrame) -> str:
     return ", ".join(sideless(name) for name in rows["variable"]) if len(rows) else "none"
 
 
-def _gain(run: ResponseRun) -> str:
+def _gain(run: gd.ResponseRun) -> str:
     responses = run.responses
     return _range(
         (r2_by_participant(responses, "augmented") - r2_by_participant(responses, "nominal")).median(), 100, 1
     )
 
 
-def _over_nominal(run: ResponseRun) -> str:
+def _over_nominal(run: gd.ResponseRun) -> str:
     rows = _differ(run, "nominal", "augmented", 1)
     return f"{len(rows)} of {len(OUTPUTS)}, p <= {rows['p'].max():.3f}" if len(rows) else "not tested"
 
 
-def _hip(run: ResponseRun) -> str:
+def _hip(run: gd.ResponseRun) -> str:
     if run.over is None or not (person := representative(run.over.reductions)):
         return "too few strides"
     rows = run.over.reductions
@@ -64,12 +56,12 @@ def _hip(run: ResponseRun) -> str:
     return f"{'; '.join(both)} ({person})"
 
 
-def _reduced(run: ResponseRun) -> pd.DataFrame:
+def _reduced(run: gd.ResponseRun) -> pd.DataFrame:
     rows = run.over.reduction_tests if run.over else pd.DataFrame()
     return rows[rows["second"] == "augmented"] if len(rows) else rows
 
 
-def _hip_all(run: ResponseRun) -> str:
+def _hip_all(run: gd.ResponseRun) -> str:
     rows = _reduced(run)
     rows = rows[rows["variable"] == ANGLES[0]] if len(rows) else rows
     found = [
@@ -78,18 +70,18 @@ def _hip_all(run: ResponseRun) -> str:
     return "; ".join(f"{middle} [{low}, {high}]" for middle, low, high in found)
 
 
-def _emg_reduced(run: ResponseRun) -> str:
+def _emg_reduced(run: gd.ResponseRun) -> str:
     rows = _reduced(run)
     rows = rows[(rows["measure"] == "rms") & rows["variable"].isin(EMG)] if len(rows) else rows
     return _named(rows[rows["different"].astype(bool) & (rows["shift"] > 0)]) if len(rows) else "not tested"
 
 
-def _below_exo_by(run: ResponseRun) -> str:
+def _below_exo_by(run: gd.ResponseRun) -> str:
     apart = medians(run, "exo") - medians(run, "augmented")
     return ", ".join(f"{apart[name]:.4f}" for name in ("knee_angle_r", "ankle_angle_r", "emg_ham_r", "emg_vas_r"))
 
 
-def _at_one_second(run: ResponseRun) -> str:
+def _at_one_second(run: gd.ResponseRun) -> str:
     table = pd.DataFrame(
         [quantity.medians().loc[1.0] for quantity in run.quantities if 1.0 in quantity.medians().index]
     )
@@ -98,7 +90,7 @@ def _at_one_second(run: ResponseRun) -> str:
     )
 
 
-def _lengths(run: ResponseRun) -> str:
+def _lengths(run: gd.ResponseRun) -> str:
     rows = run.over.lengths if run.over else pd.DataFrame()
     if not len(rows):
         return "not tested"
@@ -107,14 +99,14 @@ def _lengths(run: ResponseRun) -> str:
     return "; ".join(f"{length:g} ({count} variables)" for length, count in counts.items()) or "none"
 
 
-def _enough(run: ResponseRun) -> str:
+def _enough(run: gd.ResponseRun) -> str:
     if run.over is None or not len(run.over.lengths):
         return "not tested"
     found = run.over.enough_length()
     return f"{found:g}" if found else "not even 180"
 
 
-OURS: dict[str, Callable[[ResponseRun], str]] = {
+OURS: dict[str, Callable[[gd.ResponseRun], str]] = {
     "people": lambda run: str(len(run.responses)),
     "nominal_angles_without": lambda run: _range(medians(run, "nominal", "nominal")[list(ANGLES)]),
     "nominal_emg_without": lambda run: _range(medians(run, "nominal", "nominal")[list(EMG)]),

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from command_line import SHARED
 
+import gaitdisc as gd
 from gaitdisc.ingest.monthly_fields import read_navy_winds, read_sst_pacific
 from gaitdisc.ingest.sea_surface import read_oisst, read_sst_mat
-from gaitdisc.recording import Field, Samples
 from gaitdisc.report.block import Block
 from gaitdisc.report.blocks_page import write_blocks, write_markdown
 from gaitdisc.report.table import Table
@@ -29,24 +29,14 @@ WALKS = 12  # fitted, before one that never was
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """A field study of chapter 5.
-
-    Parameters
-    ----------
-    cells : tuple of FieldCell
-        Every route, split, model, quantity and run.
-    tables : tuple of Table
-        Of the page.
-    page : Path
-        The report.
-    """
+    """A field study of chapter 5."""
 
     cells: tuple[FieldCell, ...]
     tables: tuple[Table, ...]
     page: Path
 
 
-def fields() -> Iterator[tuple[Field, FieldTask, str]]:
+def fields() -> Iterator[tuple[gd.Field, FieldTask, str]]:
     """Every field that is there, its task, and whose circuits it has."""
     noaa = FIELDS / "noaa"
     if (noaa / "sst.wkmean.1990-present.nc").exists():
@@ -60,22 +50,8 @@ def fields() -> Iterator[tuple[Field, FieldTask, str]]:
     yield winds, FieldTask("winds of the globe", Lags(7, 1), season=12), "globe"
 
 
-def maps_told(field: Field, route: Route, task: FieldTask, kind: str, rules: Sequence[str]) -> dict:
-    """One snapshot of the judged part as measured, and as reconstructed, under each split.
-
-    Parameters
-    ----------
-    field : Field
-        To be reconstructed.
-    route : Route
-        Where the sensors are.
-    task : FieldTask
-        Lags, seed.
-    kind : str
-        Of the model.
-    rules : sequence of str
-        Splits.
-    """
+def maps_told(field: gd.Field, route: Route, task: FieldTask, kind: str, rules: Sequence[str]) -> dict:
+    """One snapshot of the judged part as measured, and as reconstructed, under each split."""
     shown = {}
     for rule in rules:
         ready = prepare(field, route, replace(task, rule=rule))
@@ -86,32 +62,14 @@ def maps_told(field: Field, route: Route, task: FieldTask, kind: str, rules: Seq
     return shown
 
 
-def middle_of(judged: Samples) -> tuple[Samples, int]:
-    """Return the window in the middle of the judged ones, and the number of its snapshot.
-
-    Parameters
-    ----------
-    judged : Samples
-        Windows.
-    """
+def middle_of(judged: gd.Samples) -> tuple[gd.Samples, int]:
+    """Return the window in the middle of the judged ones, and the number of its snapshot."""
     middle = judged.rows(slice(len(judged) // 2, len(judged) // 2 + 1))
     return middle, int(snapshots_of(middle)[0])
 
 
-def on_departures(field: Field, routes: Sequence[Route], task: FieldTask, rules: Sequence[str]) -> list[FieldCell]:
-    """Every route again, with readings and field taken as departures from the season: the cheap models.
-
-    Parameters
-    ----------
-    field : Field
-        To be reconstructed.
-    routes : sequence of Route
-        Where the sensors are.
-    task : FieldTask
-        Lags, season, seed.
-    rules : sequence of str
-        Splits.
-    """
+def on_departures(field: gd.Field, routes: Sequence[Route], task: FieldTask, rules: Sequence[str]) -> list[FieldCell]:
+    """Every route again, with readings and field taken as departures from the season: the cheap models."""
     cells: list[FieldCell] = []
     for rule in rules:
         asked = replace(task, rule=rule, departures=True)
@@ -121,18 +79,8 @@ def on_departures(field: Field, routes: Sequence[Route], task: FieldTask, rules:
     return cells
 
 
-def unseen_walks(field: Field, task: FieldTask, kinds: Sequence[str]) -> list[FieldCell]:
-    """Random walks from starts all over the field: one that was never fitted, after one and after twelve others.
-
-    Parameters
-    ----------
-    field : Field
-        To be reconstructed.
-    task : FieldTask
-        Lags, split, seed.
-    kinds : sequence of str
-        Of the models.
-    """
+def unseen_walks(field: gd.Field, task: FieldTask, kinds: Sequence[str]) -> list[FieldCell]:
+    """Random walks from starts all over the field: one that was never fitted, after one and after twelve others."""
     starts = fixed_at_random(field, WALKS + 1, 0).points[0]
     unseen, *walks = [random_walk(field, 100 + k, start=int(start)) for k, start in enumerate(starts)]
     apart = unseen_path(field, walks, unseen, replace(task, departures=True), ("delay ridge",))
@@ -140,19 +88,7 @@ def unseen_walks(field: Field, task: FieldTask, kinds: Sequence[str]) -> list[Fi
 
 
 def written(cells: Sequence[FieldCell], blocks: Sequence[Block], title: str, folder: Path) -> Result:
-    """Write page, figures, tables, and all tables once more as Markdown.
-
-    Parameters
-    ----------
-    cells : sequence of FieldCell
-        What was found.
-    blocks : sequence of Block
-        Of the page.
-    title : str
-        Of the page.
-    folder : Path
-        Where it goes.
-    """
+    """Write page, figures, tables, and all tables once more as Markdown."""
     page = write_blocks(title, "Ebers 2023, chapter 5, on fields that can be had.", blocks, folder)
     tables = tuple(table for block in blocks for table in block.tables)
     write_markdown(blocks, folder)

@@ -10,13 +10,13 @@ import numpy as np
 import pandas as pd
 from command_line import SHARED
 
+import gaitdisc as gd
 from gaitdisc.batch.demonstration import write_demonstration
 from gaitdisc.batch.reconstruct_study import ReconstructionSettings, reconstruct_study
 from gaitdisc.channel import vocabulary
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Quality, Study
 from gaitdisc.ingest.study_file import load_study
-from gaitdisc.recording import Recording
 from gaitdisc.report.reconstruction_page import write_reconstruction_report
 from gaitdisc.results.reconstruction import save_reconstruction
 
@@ -43,28 +43,14 @@ RUNS = {
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """One of the two studies.
-
-    Parameters
-    ----------
-    table : DataFrame
-        Every participant, model, sensor set and data set: `gaitdisc.results.reconstruction.MEASURES`.
-    page : Path
-        The report.
-    """
+    """One of the two studies."""
 
     table: pd.DataFrame
     page: Path
 
 
 def printed(kind: str) -> pd.DataFrame:
-    """Values of Table 5.2: sensors, model, mean, sd.
-
-    Parameters
-    ----------
-    kind : str
-        `individual` or `population`.
-    """
+    """Values of Table 5.2: sensors, model, mean, sd."""
     rows = tomllib.loads(Path(__file__).with_name("ch5_printed.toml").read_text(encoding="utf-8"))["row"]
     models = ("shred", "shallow decoder", "linear")
     found = [(row["sensors"], model, *row[model]) for row in rows if row["kind"] == kind for model in models]
@@ -72,19 +58,7 @@ def printed(kind: str) -> pd.DataFrame:
 
 
 def cell(study: Study, sensors: str, settings: ReconstructionSettings, folder: Path) -> dict[str, pd.DataFrame]:
-    """Summary and errors of one sensor set in one data set, with their report; what is in the folder is not redone.
-
-    Parameters
-    ----------
-    study : Study
-        Who walked.
-    sensors : str
-        A word of `SENSORS`.
-    settings : ReconstructionSettings
-        Split, models, condition.
-    folder : Path
-        Of this cell.
-    """
+    """Summary and errors of one sensor set in one data set, with their report; what is in the folder is not redone."""
     if not (folder / "report.html").exists():
         done, _ = reconstruct_study(study, SENSORS[sensors], settings)
         save_reconstruction(done, folder)
@@ -93,13 +67,7 @@ def cell(study: Study, sensors: str, settings: ReconstructionSettings, folder: P
 
 
 def first_person(study: Study) -> Study:
-    """The study with its first participant alone.
-
-    Parameters
-    ----------
-    study : Study
-        Of any number.
-    """
+    """The study with its first participant alone."""
     return study.model_copy(update={"participants": study.participants[:1]}).placed(study.folder)
 
 
@@ -108,10 +76,6 @@ def cohort(folder: Path, people: int = PEOPLE, walk_s: float = WALK_S) -> Study:
 
     Parameters
     ----------
-    folder : Path
-        Where its recordings lie, or are written.
-    people : int
-        The first so many.
     walk_s : float
         Length of each walk [s].
     """
@@ -121,15 +85,7 @@ def cohort(folder: Path, people: int = PEOPLE, walk_s: float = WALK_S) -> Study:
 
 
 def treadmill(data: Path, folder: Path) -> Study:
-    """One person of treadmill_walk_ik, twelve walks of 21 s, all 18 states.
-
-    Parameters
-    ----------
-    data : Path
-        Folder of the gait recordings.
-    folder : Path
-        Where the walks are unpacked to.
-    """
+    """One person of treadmill_walk_ik, twelve walks of 21 s, all 18 states."""
     with np.load(data / "treadmill_walk_ik" / "addbio_expert3_ik.npz") as packed:
         named = [vocabulary().named(str(name)) for name in packed["columns"]]
         kept = [k for k, channel in enumerate(named) if channel is not None]
@@ -137,19 +93,13 @@ def treadmill(data: Path, folder: Path) -> Study:
             values = np.asarray(packed[f"S01DE{number}"], float)[:, kept]
             channels = tuple(channel for channel in named if channel is not None)
             folder.mkdir(parents=True, exist_ok=True)
-            write_storage(Recording(np.arange(len(values)) / 100.0, values, channels), folder / f"{number}.mot")
+            write_storage(gd.Recording(np.arange(len(values)) / 100.0, values, channels), folder / f"{number}.mot")
     trials = tuple(PlannedTrial(condition="walk", files=(f"{number}.mot",)) for number in TREADMILL)
     return _study("treadmill_walk_ik", ("walk", "none"), (Participant(id="S01", trials=trials),)).placed(folder)
 
 
 def exotendon(data: Path) -> Study:
-    """Two runners of exotendon_run, one of them without and with the device.
-
-    Parameters
-    ----------
-    data : Path
-        Folder of the gait recordings.
-    """
+    """Two runners of exotendon_run, one of them without and with the device."""
     folder = data / "exotendon_run"
     found = {path.name: path.relative_to(folder) for path in sorted(folder.rglob("*.mot"))}
     found["welk002"] = next(path for path in found.values() if path.parts[0] == "welk002")

@@ -61,17 +61,7 @@ QUICK_KINDS = ("linear", "delay ridge", "fourier ridge")
 
 
 def run(quick: bool = False, folder: Path = Path("ch5_individual"), data: Path = DATA) -> Result:
-    """Reconstruct everybody from own walks, with every sensor set, and write the page.
-
-    Parameters
-    ----------
-    quick : bool
-        One person of the cohort, 30 s, no network.
-    folder : Path
-        Where recordings, cells and report go; what is there is not computed again.
-    data : Path
-        Folder of the real gait recordings; those that are absent are left out.
-    """
+    """Reconstruct everybody from own walks, with every sensor set, and write the page."""
     kinds = QUICK_KINDS if quick else tuple(KINDS)
     walks = studies(quick, folder, data)
     blocks, summaries = [], []

@@ -45,19 +45,7 @@ RULE = "one person left out"
 def run(
     quick: bool = False, folder: Path = Path("ch5_population"), data: Path = DATA, kinds: tuple[str, ...] = tuple(KINDS)
 ) -> Result:
-    """Reconstruct everybody by models of the others, before and after ten strides, and write the page.
-
-    Parameters
-    ----------
-    quick : bool
-        Four people of the cohort, 30 s, no network.
-    folder : Path
-        Where recordings, cells and report go; what is there is not computed again.
-    data : Path
-        Folder of the real gait recordings; those that are absent are left out.
-    kinds : tuple of str
-        Words of `gaitdisc.sensing.reconstructor.KINDS`.
-    """
+    """Reconstruct everybody by models of the others, before and after ten strides, and write the page."""
     kinds = WITHOUT if quick else kinds
     study = cohort(folder / "recordings", 4, 30.0) if quick else cohort(folder / "recordings")
     settings = ReconstructionSettings(split=SUBJECT, condition="nominal", kinds=kinds)

@@ -30,7 +30,7 @@ from dataclasses import replace
 import pandas as pd
 from ch5_fields import Result, fields, maps_told, on_departures, unseen_walks, written
 
-from gaitdisc.recording import Field
+import gaitdisc as gd
 from gaitdisc.report.block import Block
 from gaitdisc.report.field_errors_figure import histograms_figure, latent_figure
 from gaitdisc.report.field_maps_figure import maps_figure, routes_figure
@@ -53,33 +53,15 @@ PRINTED = (
 )
 
 
-def routes_of(field: Field, period: int, region: str) -> list[Route]:
-    """Rows of Table 5.1: 3 and 1 fixed sensors, three circuits of a year, every pair of them, all three.
-
-    Parameters
-    ----------
-    field : Field
-        To be read.
-    period : int
-        Snapshots of a year.
-    region : str
-        `globe` or `pacific`.
-    """
+def routes_of(field: gd.Field, period: int, region: str) -> list[Route]:
+    """Rows of Table 5.1: 3 and 1 fixed sensors, three circuits of a year, every pair of them, all three."""
     a, b, c = (circuit(field, stops, period, name) for name, stops in WRITTEN_DOWN["routes"][region].items())
     several = [joined(some) for some in ((a, b), (a, c), (b, c), (a, b, c))]
     return [fixed_at_random(field, 3, 0), fixed_at_random(field, 1, 0), a, b, c, *several]
 
 
 def run(quick: bool = False, folder: Path = Path("ch5_sea_surface")) -> Result:
-    """Compute every route under both splits, the latent sizes, and a path never seen.
-
-    Parameters
-    ----------
-    quick : bool
-        Ridge regressions alone, and no sizes.
-    folder : Path
-        Where the report goes.
-    """
+    """Compute every route under both splits, the latent sizes, and a path never seen."""
     kinds = ("linear", "delay ridge") if quick else tuple(KINDS)
     every, blocks = [], [Block("printed", "What Table 5.1 prints", (PRINTED,))]
     for number, (field, task, region) in enumerate(fields(), 1):

@@ -65,21 +65,7 @@ def run(
     nodes: int = 48,
     cut: int | None = None,
 ) -> Result:
-    """Compute the flow, tell it from fixed and from walking sensors under both splits, and draw what Fig. 5.2 shows.
-
-    Parameters
-    ----------
-    quick : bool
-        A small box, ridge regressions alone.
-    folder : Path
-        Where the flow and the report go.
-    models : int
-        Of each kind of sensor.
-    nodes : int
-        Of the box along each side.
-    cut : int, optional
-        Nodes along each side of the cube that is kept; five sixths of the box without.
-    """
+    """Compute the flow, tell it from fixed and from walking sensors under both splits, and draw what Fig. 5.2 shows."""
     settings = FlowSettings(nodes=24, cut=16, spin_up=300) if quick else FlowSettings(nodes, cut or 5 * nodes // 6)
     kinds = KINDS[:2] if quick else KINDS
     flow, numbers = record_turbulence(settings, folder / "flow", _said("flow"))

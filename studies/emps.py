@@ -21,15 +21,13 @@ from pathlib import Path
 
 import numpy as np
 
+import gaitdisc as gd
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.evidence import Judged
 from gaitdisc.discovery.growth import grown
 from gaitdisc.discovery.held_out import Trial, runs_of
 from gaitdisc.discovery.inquiry import Inquiry, begin_inquiry
-from gaitdisc.results.discovery import Discovery
 from gaitdisc.simulation.measured import Measured, TrialColumns, measured_of_trials
-from gaitdisc.simulation.simulation import Simulation
-from gaitdisc.simulation.simulation_file import read_simulation
 
 MODEL = Path(__file__).with_name("emps.toml")
 PUBLISHED_N = 20.3935
@@ -42,26 +40,22 @@ class Result:
 
     Parameters
     ----------
-    named, place : str
-        The explanation that is named first.
     friction_n : float
         Its force [N].
     left_mm : dict of str to tuple
         Free-run error before and after, of the held-out stretches and of the pulses [mm].
-    whole : Discovery or None
-        What the whole search says, with everything else that it finds; left out of a quick run.
     """
 
     named: str
     place: str
     friction_n: float
     left_mm: dict[str, tuple[float, float]]
-    whole: Discovery | None
+    whole: gd.Discovery | None
 
 
 def run(quick: bool, data: Path) -> Result:
     """Search the first record; test on its end, and on the pulses where they are there."""
-    simulation = read_simulation(MODEL)
+    simulation = gd.read_simulation(MODEL)
     measured = stretches(data / "DATA_EMPS.mat", simulation)
     inquiry = begin_inquiry(simulation, measured)
     as_read = inquiry.as_read()
@@ -77,7 +71,7 @@ def run(quick: bool, data: Path) -> Result:
     return Result(named, place, -part.values.get("factor", float("nan")), left, whole)
 
 
-def stretches(path: Path, simulation: Simulation) -> Measured:
+def stretches(path: Path, simulation: gd.Simulation) -> Measured:
     """Trials of half a second: force of the motor [N], position [mm]."""
     from scipy.io import loadmat
     from scipy.signal import decimate

@@ -15,8 +15,8 @@ command_line(__name__, __doc__)  # before the slow imports
 import numpy as np
 from numpy.typing import NDArray
 
+import gaitdisc as gd
 from gaitdisc.results.pair_test import FAMILIES
-from gaitdisc.statistics.holm_sidak import holm_sidak
 from gaitdisc.statistics.signed_rank import exact_p
 
 PAIRS = ((0, 1), (0, 2), (1, 2))
@@ -24,13 +24,7 @@ CASES = ((11, 8, 0.0), (11, 8, 0.8), (12, 8, 0.0), (8, 6, 0.0))
 
 
 def p_of_sums(participants: int) -> NDArray[np.float64]:
-    """Exact p of every smaller sum of ranks W, 0 to the largest.
-
-    Parameters
-    ----------
-    participants : int
-        Pairs without zeros and ties.
-    """
+    """Exact p of every smaller sum of ranks W, 0 to the largest."""
     found = []
     for w in range(participants * (participants + 1) // 4 + 1):
         differences, left = np.arange(1.0, participants + 1), w
@@ -44,24 +38,7 @@ def p_of_sums(participants: int) -> NDArray[np.float64]:
 def false_alarms(
     participants: int, variables: int, correlation: float, studies: int = 20000, seed: int = 0
 ) -> dict[str, float]:
-    """Share of studies without any effect in which at least one test says that two models differ.
-
-    Parameters
-    ----------
-    participants, variables : int
-        Of one study.
-    correlation : float
-        Of the variables within a participant.
-    studies : int
-        How many are simulated.
-    seed : int
-        Of the numbers.
-
-    Returns
-    -------
-    dict of str to float
-        one pair: in the family of the first pair; and in any of the three pairs under each family of `FAMILIES`.
-    """
+    """Share of studies without any effect in which at least one test says that two models differ."""
     rng = np.random.default_rng(seed)
     table = p_of_sums(participants)
     alarms = dict.fromkeys(("one pair", *FAMILIES), 0)
@@ -69,11 +46,11 @@ def false_alarms(
         shared = np.sqrt(correlation) * rng.standard_normal((3, participants, 1))
         r2 = shared + np.sqrt(1 - correlation) * rng.standard_normal((3, participants, variables))
         p = np.array([table[_smaller_sum(r2[b] - r2[a])] for a, b in PAIRS])
-        by_pair = [bool(holm_sidak(row).rejected.any()) for row in p]
+        by_pair = [bool(gd.holm_sidak(row).rejected.any()) for row in p]
         alarms["one pair"] += by_pair[0]
         alarms["pair"] += any(by_pair)
-        alarms["all"] += bool(holm_sidak(p).rejected.any())
-        alarms["variable"] += any(holm_sidak(column).rejected.any() for column in p.T)
+        alarms["all"] += bool(gd.holm_sidak(p).rejected.any())
+        alarms["variable"] += any(gd.holm_sidak(column).rejected.any() for column in p.T)
     return {name: count / studies for name, count in alarms.items()}
 
 

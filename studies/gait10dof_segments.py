@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.spatial.transform import Rotation
 
-from gaitdisc.ingest.reading import read_trial
+import gaitdisc as gd
 from gaitdisc.kinematics.calibration import calibrated
 from gaitdisc.kinematics.marker_set_file import marker_set
 from gaitdisc.kinematics.motion import motion
@@ -25,8 +25,6 @@ from gaitdisc.kinetics.platform import platforms
 from gaitdisc.kinetics.segment_motion import segment_motion
 from gaitdisc.kinetics.trial_kinetics import trial_kinetics
 from gaitdisc.kinetics.wrench import Wrench
-from gaitdisc.recording import Recording, Trial
-from gaitdisc.signals.butterworth import lowpassed
 
 FEET = {"r": ("R.Heel", "R.Toe.Tip"), "l": ("L.Heel", "L.Toe.Tip")}
 JOINTS = {"ankle_angle": "foot", "knee_angle": "shank", "hip_flexion": "thigh"}
@@ -37,13 +35,7 @@ Angles = Mapping[str, NDArray[np.float64]]
 
 
 class Gait10dof:
-    """The planar model: its segments, its inertia, and a knee that slides as it bends.
-
-    Parameters
-    ----------
-    path : Path
-        `subject01.osim`.
-    """
+    """The planar model: its segments, its inertia, and a knee that slides as it bends."""
 
     def __init__(self, path: Path) -> None:
         self.root = ElementTree.parse(path).getroot()
@@ -91,7 +83,7 @@ class Gait10dof:
             tensor += own + one * (arm @ arm * np.eye(3) - np.outer(arm, arm))
         return RigidBody(mass, middle, tensor)
 
-    def poses(self, motion: Recording) -> dict[str, Pose]:
+    def poses(self, motion: gd.Recording) -> dict[str, Pose]:
         """Segments at the joint angles of a recording that has flexion of the knee positive, as all do here."""
         angle = {name: np.radians(motion[name]) for name in motion.names if not name.startswith("pelvis_t")}
         tilt = np.radians(motion["pelvis_tilt"])
@@ -115,12 +107,12 @@ class Gait10dof:
         return (self.slide(knee + 1e-4) - self.slide(knee - 1e-4)) / 2e-4
 
 
-def generalised_forces(model: Gait10dof, motion: Recording, ground: Trial) -> dict[str, NDArray[np.float64]]:
+def generalised_forces(model: Gait10dof, motion: gd.Recording, ground: gd.Trial) -> dict[str, NDArray[np.float64]]:
     """Inverse dynamics with the model's own segments, as OpenSim counts it [N m]; knee flexion positive.
 
     The knee of this model slides as it bends, so the force in the joint does work at its angle too.
     """
-    smooth = lowpassed(motion, 6.0, order=OPENSIM_ORDER)
+    smooth = gd.lowpass(motion, 6.0, order=OPENSIM_ORDER)
     poses, found = model.poses(smooth), {}
     moving = {name: segment_motion(pose, smooth.rate_hz) for name, pose in poses.items()}
     for platform in platforms(ground):
@@ -142,11 +134,11 @@ def generalised_forces(model: Gait10dof, motion: Recording, ground: Trial) -> di
 def against_opensim(folder: Path) -> list[tuple[str, ...]]:
     """Rows of a table: each joint's rms and largest difference, with the model's segments and with those of markers."""
     model, walk = Gait10dof(folder / "subject01.osim"), folder / "ExperimentalData"
-    solved = read_trial([folder / "ID" / "Results" / "subject01_walk_ID.sto", folder / "IK" / "subject01_walk_IK.mot"])
-    ground = read_trial(walk / "subject01_walk_grf.mot")
+    solved = gd.read([folder / "ID" / "Results" / "subject01_walk_ID.sto", folder / "IK" / "subject01_walk_IK.mot"])
+    ground = gd.read(walk / "subject01_walk_grf.mot")
     own = generalised_forces(model, solved.stream("kinematics"), ground)
-    trial = read_trial([walk / "subject01_walk.trc", walk / "subject01_walk_grf.mot"])
-    static = read_trial(walk / "subject01_static.trc").stream("markers")
+    trial = gd.read([walk / "subject01_walk.trc", walk / "subject01_walk_grf.mot"])
+    static = gd.read(walk / "subject01_static.trc").stream("markers")
     feet = foot_paths(trial.stream("markers"), FEET)
     theirs, sources = solved.stream("moments"), {"the model": own}
     for joints in ("free", "held", "planar"):

@@ -23,12 +23,12 @@ import numpy as np
 import pandas as pd
 from ankle_records import ankle_trials, own_foot_kg
 
+import gaitdisc as gd
 from gaitdisc.cohort.cohort import the_twelve
 from gaitdisc.cohort.device import STIFFNESS, Spring
 from gaitdisc.cohort.person import Person
 from gaitdisc.cohort.walk import walked
 from gaitdisc.discovery.discover import discover
-from gaitdisc.simulation.simulation_file import read_simulation
 
 MODEL = Path(__file__).with_name("tracked_ankle.toml")
 WALK_S = 24.0
@@ -89,7 +89,7 @@ def found_in(person: Person, hidden: str) -> dict[str, object]:
     walk = walked(walker, spring, WALK_S + 4.0, seed=list(RIGHT).index(hidden))
     kg = own_foot_kg(person)
     measured = ankle_trials(walk, LATE_S if hidden == "late EMG" else 0.0)
-    found = discover(read_simulation(MODEL).with_values({"foot_mass": kg}), measured)[0]
+    found = discover(gd.read_simulation(MODEL).with_values({"foot_mass": kg}), measured)[0]
     named = [(each.name, each.place) for each in found.effects]
     right = found.verdict == "no_gap" if hidden == "nothing" else RIGHT[hidden] in named
     row: dict[str, object] = {

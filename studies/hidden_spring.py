@@ -21,12 +21,11 @@ import numpy as np
 import pandas as pd
 from ankle_records import INPUTS, ankle_trials, own_foot_kg
 
+import gaitdisc as gd
 from gaitdisc.cohort.cohort import the_twelve
 from gaitdisc.cohort.device import STIFFNESS, Spring
 from gaitdisc.cohort.walk import walked
 from gaitdisc.simulation.measured import Measured
-from gaitdisc.simulation.simulation_file import read_simulation
-from gaitdisc.simulation.writing import write_simulation
 
 MODEL = Path(__file__).with_name("tracked_ankle.toml")
 WALK_S, STARTING_S = 24.0, 4.0
@@ -36,8 +35,8 @@ def run(folder: Path) -> tuple[Path, Path]:
     """Write `ankle.toml` and `walk.csv` into the folder."""
     person, spring = the_twelve()[0], Spring(STIFFNESS)
     walk = walked(person.adapted_to(spring), spring, WALK_S + STARTING_S, seed=1)
-    simulation = read_simulation(MODEL).with_values({"foot_mass": own_foot_kg(person)})
-    write_simulation(simulation, folder / "ankle.toml")
+    simulation = gd.read_simulation(MODEL).with_values({"foot_mass": own_foot_kg(person)})
+    gd.write_simulation(simulation, folder / "ankle.toml")
     table_of(ankle_trials(walk, 0.0)).to_csv(folder / "walk.csv", index=False, float_format="%.6g")
     return folder / "ankle.toml", folder / "walk.csv"
 

@@ -31,21 +31,15 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.signal import butter, sosfiltfilt
+from driven_trials import Driven, Sensed
+from driven_trials import recorded as trials_of
 
+import gaitdisc as gd
 from gaitdisc.discovery.discover import discover
-from gaitdisc.simulation.bundled import bundled
-from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import Term
-from gaitdisc.simulation.running import compile_simulation
-from gaitdisc.simulation.simulation import Simulation
-from gaitdisc.simulation.simulation_file import read_simulation
 
-RATE_HZ, SECONDS, TRIALS = 100.0, 8.0, 4
 SYSTEMS = Path(__file__).parent / "systems"
-WAVES = 5  # sines in what drives a system
 
 
 class Hidden(NamedTuple):
@@ -63,56 +57,26 @@ class Hidden(NamedTuple):
 
 KNOWN = {
     "leg": Hidden(
-        "swing_leg",
-        "knee_moment",
-        "one_sided_spring",
-        "-{a}*max(0, knee - hip - {b})",
-        a=(80.0, 160.0),
-        b=(0.05, 0.2),
-        driven_by=(9.0, 5.0),
-        fastest_hz=2.0,
+        "swing_leg", "knee_moment", "one_sided_spring", "-{a}*max(0, knee - hip - {b})",
+        a=(80.0, 160.0), b=(0.05, 0.2), driven_by=(9.0, 5.0), fastest_hz=2.0,
     ),
     "exo ankle": Hidden(
-        "ankle",
-        "ankle_moment",
-        "one_sided_spring",
-        "-{a}*max(0, theta - {b})",
-        a=(20.0, 60.0),
-        b=(0.0, 0.08),
-        driven_by=(6.0, 0.0),
-        fastest_hz=2.0,
+        "ankle", "ankle_moment", "one_sided_spring", "-{a}*max(0, theta - {b})",
+        a=(20.0, 60.0), b=(0.0, 0.08), driven_by=(6.0, 0.0), fastest_hz=2.0,
     ),
     "elbow": Hidden(
-        "elbow",
-        "elbow_moment",
-        "coulomb_friction",
-        "-{a}*tanh(omega/0.02)",
-        a=(0.3, 0.8),
-        b=(0.0, 1.0),
-        driven_by=(3.0,),
-        fastest_hz=2.0,
+        "elbow", "elbow_moment", "coulomb_friction", "-{a}*tanh(omega/0.02)",
+        a=(0.3, 0.8), b=(0.0, 1.0), driven_by=(3.0,), fastest_hz=2.0,
     ),
     "standing": Hidden(
-        "standing",
-        "ankle_moment",
-        "delayed_feedback",
-        "-{a}*delay(lean, {b})",
-        a=(150.0, 300.0),
-        b=(0.1, 0.2),
-        driven_by=(40.0,),
-        fastest_hz=1.0,
+        "standing", "ankle_moment", "delayed_feedback", "-{a}*delay(lean, {b})",
+        a=(150.0, 300.0), b=(0.1, 0.2), driven_by=(40.0,), fastest_hz=1.0,
     ),
     "chain": Hidden(
-        "chain",
-        "force_2",
-        "cubic_stiffness",
-        "-{a}*x2**3",
-        a=(300.0, 700.0),
-        b=(0.0, 1.0),
-        driven_by=(12.0,),
-        fastest_hz=2.0,
+        "chain", "force_2", "cubic_stiffness", "-{a}*x2**3",
+        a=(300.0, 700.0), b=(0.0, 1.0), driven_by=(12.0,), fastest_hz=2.0,
     ),
-}
+}  # fmt: skip
 
 
 class Record(NamedTuple):
@@ -123,19 +87,19 @@ class Record(NamedTuple):
     lowpass_hz: float
 
 
-def model_of(hidden: Hidden) -> Simulation:
+def model_of(hidden: Hidden) -> gd.Simulation:
     """The model as its author believes it."""
     own = SYSTEMS / f"{hidden.model}.toml"
-    return read_simulation(own) if own.is_file() else bundled(hidden.model)
+    return gd.read_simulation(own) if own.is_file() else gd.bundled_simulation(hidden.model)
 
 
-def complete(model: Simulation, hidden: Hidden, rng: np.random.Generator) -> Simulation:
+def complete(model: gd.Simulation, hidden: Hidden, rng: np.random.Generator) -> gd.Simulation:
     """The model with what is hidden in it."""
     a, b = (f"{rng.uniform(*limits):.4g}" for limits in (hidden.a, hidden.b))
     return model.with_effect(Term(hidden.port, "port", hidden.effect, hidden.term.format(a=a, b=b)))
 
 
-def put_off(model: Simulation, share: float, rng: np.random.Generator) -> Simulation:
+def put_off(model: gd.Simulation, share: float, rng: np.random.Generator) -> gd.Simulation:
     """The model with each number a little wrong, and bounds that say so."""
     if not share:
         return model
@@ -147,23 +111,10 @@ def put_off(model: Simulation, share: float, rng: np.random.Generator) -> Simula
     return replace(model, parameters=tuple(wrong))
 
 
-def recorded(truth: Simulation, hidden: Hidden, record: Record, rng: np.random.Generator) -> Measured:
+def recorded(truth: gd.Simulation, hidden: Hidden, record: Record, rng: np.random.Generator) -> Measured:
     """Trials of the true system, driven by sums of sines, as they come from a laboratory."""
-    t, machine = np.arange(int(SECONDS * RATE_HZ)) / RATE_HZ, compile_simulation(truth)
-    drives = [np.column_stack([_sines(rng, t, size, hidden) for size in hidden.driven_by]) for _ in range(TRIALS)]
-    drive = Drive.of(drives, RATE_HZ)
-    rows = Rows(np.arange(TRIALS), np.zeros(TRIALS, int), np.zeros((TRIALS, len(machine.states))))
-    states, _ = machine.run(drive, rows, len(t) - 1)
-    seen = machine.observe(drive, rows, states)
-    seen = seen + record.noise * seen.std(axis=(0, 1)) * rng.normal(size=seen.shape)
-    if record.lowpass_hz:
-        seen = sosfiltfilt(butter(2, record.lowpass_hz, fs=RATE_HZ, output="sos"), seen, axis=1)
-    return Measured(drive, seen, tuple(str(trial + 1) for trial in range(TRIALS)), tuple(machine.observed))
-
-
-def _sines(rng: np.random.Generator, t: NDArray[np.float64], size: float, hidden: Hidden) -> NDArray[np.float64]:
-    frequencies, phases = rng.uniform(0.2, hidden.fastest_hz, WAVES), rng.uniform(0, 2 * np.pi, WAVES)
-    return (size * rng.uniform(0.3, 1.0, WAVES) * np.sin(2 * np.pi * np.outer(t, frequencies) + phases)).sum(axis=1)
+    driven = Driven(hidden.driven_by, 0.2, hidden.fastest_hz)
+    return trials_of(truth, driven, Sensed(record.noise, record.lowpass_hz), rng)
 
 
 def answer(name: str, seed: int, record: Record, nothing: bool) -> tuple[str, float]:

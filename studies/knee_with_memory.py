@@ -20,23 +20,22 @@ GIVEN = command_line(
 )  # before the slow imports
 
 import numpy as np
+from driven_trials import Driven, Sensed
+from driven_trials import recorded as trials_of
 
+import gaitdisc as gd
 from gaitdisc.discovery.discover import discover
-from gaitdisc.simulation.bundled import bundled
-from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import State, Term
-from gaitdisc.simulation.running import compile_simulation
-from gaitdisc.simulation.simulation import Simulation
 
-RATE_HZ, SECONDS, TRIALS = 100.0, 8.0, 4
+DRIVEN = Driven((9.0, 5.0), 0.3, 2.0, starts=(0.3, 2))
 BENT = "(knee_rate - hip_rate)"
 KINDS = ("hysteresis", "series_elasticity", "input_lag", "nothing")
 
 
-def hidden(kind: str, rng: np.random.Generator) -> tuple[Simulation, float]:
+def hidden(kind: str, rng: np.random.Generator) -> tuple[gd.Simulation, float]:
     """The leg with something hidden at its knee, and the number that tells its memory (yield, relaxation, lag)."""
-    leg, stiffness = bundled("swing_leg"), rng.uniform(15.0, 40.0)
+    leg, stiffness = gd.bundled_simulation("swing_leg"), rng.uniform(15.0, 40.0)
     memory = float(rng.uniform(0.08, 0.25))
     rates = {"hysteresis": f"{BENT} - abs({BENT})*z/{memory}", "series_elasticity": f"{BENT} - z/{memory}"}
     if kind in rates:
@@ -48,28 +47,14 @@ def hidden(kind: str, rng: np.random.Generator) -> tuple[Simulation, float]:
     return leg, float("nan")
 
 
-def recorded(truth: Simulation, rng: np.random.Generator, noise: float) -> Measured:
+def recorded(truth: gd.Simulation, rng: np.random.Generator, noise: float) -> Measured:
     """Trials of the leg, driven at hip and knee."""
-    t = np.arange(int(SECONDS * RATE_HZ)) / RATE_HZ
-    moments = [np.column_stack([_sines(rng, t, size) for size in (9.0, 5.0)]) for _ in range(TRIALS)]
-    drive, machine = Drive.of(moments, RATE_HZ), compile_simulation(truth)
-    starts = np.zeros((TRIALS, len(machine.states)))
-    starts[:, :2] = rng.uniform(-0.3, 0.3, (TRIALS, 2))
-    rows = Rows(np.arange(TRIALS), np.zeros(TRIALS, int), starts)
-    states, _ = machine.run(drive, rows, len(t) - 1)
-    seen = machine.observe(drive, rows, states)[..., [machine.observed.index(name) for name in ("hip", "knee")]]
-    seen = seen + noise * seen.std(axis=(0, 1)) * rng.normal(size=seen.shape)
-    return Measured(drive, seen, tuple(str(trial + 1) for trial in range(TRIALS)), ("hip", "knee"))
-
-
-def _sines(rng: np.random.Generator, t: np.ndarray, size: float) -> np.ndarray:
-    waves = np.sin(2 * np.pi * np.outer(t, rng.uniform(0.3, 2.0, 5)) + rng.uniform(0, 2 * np.pi, 5))
-    return (size * rng.uniform(0.3, 1.0, 5) * waves).sum(axis=1)
+    return trials_of(truth, DRIVEN, Sensed(noise, channels=("hip", "knee")), rng)
 
 
 def run(seeds: int, noise: float) -> list[str]:
     """Hide each, ask, and count."""
-    nominal, lines = bundled("swing_leg").observing(["hip", "knee"]), []
+    nominal, lines = gd.bundled_simulation("swing_leg").observing(["hip", "knee"]), []
     for kind in KINDS:
         right, errors, others = 0, [], []
         for seed in range(seeds):

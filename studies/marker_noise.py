@@ -25,11 +25,11 @@ from pathlib import Path
 import numpy as np
 from markers_to_angles import opensim, people
 
+import gaitdisc as gd
 from gaitdisc.kinematics.calibration import Calibration, calibrated
 from gaitdisc.kinematics.marker_set import METHODS
 from gaitdisc.kinematics.marker_set_file import marker_set
 from gaitdisc.kinematics.motion import motion
-from gaitdisc.recording import Recording
 
 SIZES_MM, SHARES = (2.0, 5.0, 10.0, 15.0), (1, 5, 10, 20)
 PART_OF_SKIN = {"pelvis": 0.5, "thigh": 1.0, "shank": 0.5, "foot": 0.25}
@@ -45,10 +45,10 @@ class Body:
 
     name: str
     calibration: Calibration
-    markers: Recording
-    rigid: Recording
+    markers: gd.Recording
+    rigid: gd.Recording
 
-    def angles(self, markers: Recording) -> Recording:
+    def angles(self, markers: gd.Recording) -> gd.Recording:
         """Angles of other markers of this person."""
         return motion(markers, self.calibration, FORWARD).angles
 
@@ -71,7 +71,7 @@ def bodies(data: Path) -> list[Body]:
     return found
 
 
-def rigid(markers: Recording, calibration: Calibration) -> Recording:
+def rigid(markers: gd.Recording, calibration: Calibration) -> gd.Recording:
     """The markers where their segments have them, joints held together so that no segment leaves its joint."""
     held = replace(calibration, marker_set=calibration.marker_set.with_joints("held"))
     poses = motion(markers, held, FORWARD).poses
@@ -83,12 +83,12 @@ def rigid(markers: Recording, calibration: Calibration) -> Recording:
     return markers.with_values(values)
 
 
-def columns(markers: Recording, label: str) -> list[int]:
+def columns(markers: gd.Recording, label: str) -> list[int]:
     """The three columns of a marker."""
     return [markers.index(f"{label}.{axis}") for axis in "xyz"]
 
 
-def slid(body: Body, size_mm: float, random: np.random.Generator) -> Recording:
+def slid(body: Body, size_mm: float, random: np.random.Generator) -> gd.Recording:
     """Markers that slide on their segments."""
     labels = body.calibration.marker_set.names([name[:-2] for name in body.rigid.names if name.endswith(".x")])
     values = np.array(body.rigid.values)
@@ -106,7 +106,7 @@ def slid(body: Body, size_mm: float, random: np.random.Generator) -> Recording:
     return body.rigid.with_values(values)
 
 
-def lost(body: Body, share: float, random: np.random.Generator) -> Recording:
+def lost(body: Body, share: float, random: np.random.Generator) -> gd.Recording:
     """The real markers with a share of samples missing, 0.2 s at a time."""
     labels = body.calibration.marker_set.names([name[:-2] for name in body.markers.names if name.endswith(".x")])
     values = np.array(body.markers.values)
@@ -120,7 +120,7 @@ def lost(body: Body, share: float, random: np.random.Generator) -> Recording:
     return body.markers.with_values(values)
 
 
-def errors(found: list[Recording], truth: Recording) -> dict[str, float]:
+def errors(found: list[gd.Recording], truth: gd.Recording) -> dict[str, float]:
     """Root mean square error of each angle over both legs [deg]."""
     return {
         name: float(

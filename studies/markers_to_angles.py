@@ -22,14 +22,13 @@ from pathlib import Path
 
 import numpy as np
 
+import gaitdisc as gd
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.c3d_measures import read_body_measures
-from gaitdisc.ingest.reading import read_trial
 from gaitdisc.kinematics.calibration import calibrated
 from gaitdisc.kinematics.marker_set import JOINTS, MarkerSet
 from gaitdisc.kinematics.marker_set_file import marker_set
 from gaitdisc.kinematics.motion import joint_angles, motion
-from gaitdisc.recording import Recording, Trial
 from gaitdisc.recording.body_measures import BodyMeasures
 
 Row = tuple[str, ...]
@@ -52,8 +51,8 @@ class Person:
     """The recordings of one person."""
 
     name: str
-    static: Trial
-    walks: dict[str, Trial]
+    static: gd.Trial
+    walks: dict[str, gd.Trial]
     measures: BodyMeasures
 
 
@@ -64,10 +63,8 @@ def people(data: Path, names: tuple[str, ...]) -> list[Person]:
         for name in names:
             walks = data / "gait" / "young_straight_and_turn" / name
             [static] = [*(data / "gait" / "young_static").glob(f"{name}/*.c3d"), *walks.glob("static/*.c3d")]
-            trials = {
-                kind: read_trial(next(walks.glob(f"{kind}/*.c3d")), reader=reader) for kind in ("straight", "turn")
-            }
-            found.append(Person(name, read_trial(static, reader=reader), trials, read_body_measures(static)))
+            trials = {kind: gd.read(next(walks.glob(f"{kind}/*.c3d")), reader=reader) for kind in ("straight", "turn")}
+            found.append(Person(name, gd.read(static, reader=reader), trials, read_body_measures(static)))
     return found
 
 
@@ -77,7 +74,7 @@ def nearest_axis(direction: np.ndarray) -> tuple[float, ...]:
     return tuple(float(np.sign(direction[axis])) * np.eye(3)[axis])
 
 
-def theirs(trial: Trial, ours: str) -> np.ndarray:
+def theirs(trial: gd.Trial, ours: str) -> np.ndarray:
     """An angle of the file, with our sign."""
     angles = trial.stream("kinematics")
     if ours in LEVEL_ANGLES:
@@ -136,12 +133,12 @@ def against_plug_in_gait(several: list[Person], chosen: str) -> list[Row]:
     return rows
 
 
-def opensim(data: Path) -> tuple[Recording, Recording, Recording]:
+def opensim(data: Path) -> tuple[gd.Recording, gd.Recording, gd.Recording]:
     """Static markers, walking markers and OpenSim's angles of subject01."""
     folder = data / "opensim_gait10dof"
     files = (folder / "ExperimentalData" / "subject01_static.trc", folder / "ExperimentalData" / "subject01_walk.trc")
-    static, walk = (read_trial(file).stream("markers") for file in files)
-    return static, walk, read_trial(folder / "IK" / "subject01_walk_IK.mot").stream("kinematics")
+    static, walk = (gd.read(file).stream("markers") for file in files)
+    return static, walk, gd.read(folder / "IK" / "subject01_walk_IK.mot").stream("kinematics")
 
 
 def opensim_curves(data: Path, joints: str) -> dict[str, tuple[np.ndarray, np.ndarray]]:

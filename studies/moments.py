@@ -22,6 +22,7 @@ from gait10dof_segments import against_opensim
 from moments_tables import NAMES, SETS, SETTINGS, Curves, Walk, against_plug_in_gait, balances, filter_effect
 from plug_in_gait_bones import TRUNK, WALKERS, bones, feet, static_file
 
+import gaitdisc as gd
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.c3d_measures import read_body_measures
 from gaitdisc.kinematics.calibration import calibrated
@@ -29,7 +30,6 @@ from gaitdisc.kinematics.marker_set_file import marker_set
 from gaitdisc.kinematics.motion import motion
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.trial_kinetics import TrialKinetics, trial_kinetics
-from gaitdisc.recording import Trial
 
 SET = marker_set("plug_in_gait")
 
@@ -55,7 +55,7 @@ def walks(data: Path, quick: bool = False) -> list[Walk]:
     return found
 
 
-def steps(trial: Trial, made: TrialKinetics) -> list[Curves]:
+def steps(trial: gd.Trial, made: TrialKinetics) -> list[Curves]:
     """Ours and the file's curves over each clean step."""
     theirs, found = trial.stream("moments"), []
     for step in (one for one in made.steps if one.clean):

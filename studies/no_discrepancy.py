@@ -15,17 +15,16 @@ GIVEN = command_line(__name__, __doc__, QUICK)  # before the slow imports
 import numpy as np
 from numpy.typing import NDArray
 
+import gaitdisc as gd
 from gaitdisc.cohort.device import Spring
 from gaitdisc.cohort.measurement import measured
 from gaitdisc.cohort.person import MUSCLES, Person, drawn
 from gaitdisc.cohort.walk import walked
 from gaitdisc.ingest.study import Conditions, Models, Participant, Quality, Study
 from gaitdisc.processing.process import processed
-from gaitdisc.recording import Samples
 from gaitdisc.response.fit_response import ResponseSettings, held_out_part
 from gaitdisc.response.models import fit_linear
 from gaitdisc.response.samples import gait_samples
-from gaitdisc.statistics.r2 import r2
 
 OUTPUTS = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", *(f"{muscle}_r" for muscle in MUSCLES[:5]))
 EMG = tuple(f"{muscle}_{side}" for side in "rl" for muscle in MUSCLES)
@@ -35,13 +34,7 @@ WALK_S = 240.0
 
 
 def run(quick: bool = False) -> NDArray[np.float64]:
-    """Walk the pairs, print mean difference and standard error by variable, and return every pair's difference.
-
-    Parameters
-    ----------
-    quick : bool
-        Two people, one pair of 40 s each.
-    """
+    """Walk the pairs, print mean difference and standard error by variable, and return every pair's difference."""
     people, pairs, duration_s = (2, 1, 40.0) if quick else (PEOPLE, PAIRS, WALK_S)
     found = []
     for pair in range(pairs):
@@ -62,20 +55,16 @@ def difference(person: Person, duration_s: float, seed: int) -> NDArray[np.float
 
     Parameters
     ----------
-    person : Person
-        Who never learns.
     duration_s : float
         Length of each walk [s]; the last eighth is held out.
-    seed : int
-        Of the first walk; the second has the next one.
     """
     train, held = _parts(person, None, duration_s, seed)
     _, other = _parts(person, Spring(0.0), duration_s, seed + 1)
     model = fit_linear(train).model
-    return r2(other.y, model(other.x)) - r2(held.y, model(held.x))
+    return gd.r2(other.y, model(other.x)) - gd.r2(held.y, model(held.x))
 
 
-def _parts(person: Person, device: Spring | None, duration_s: float, seed: int) -> tuple[Samples, Samples]:
+def _parts(person: Person, device: Spring | None, duration_s: float, seed: int) -> tuple[gd.Samples, gd.Samples]:
     study = Study(
         conditions=Conditions(nominal="nominal", device="exo"),
         participants=(Participant(id="A"),),

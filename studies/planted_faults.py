@@ -29,8 +29,8 @@ from typing import NamedTuple
 from fault_cases import cases
 from faults_of_meaning import Case
 
+import gaitdisc as gd
 from gaitdisc.commands.moments import moments
-from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Quality, Study
 from gaitdisc.processing.inspection import inspected_study
 
@@ -102,7 +102,7 @@ def _moments(folder: Path, walk: Sequence[str], static: str) -> list[str]:
     try:
         for line in _printed(folder, walk, static):
             lines += [line] if line.startswith("warning") or "plate step" in line else []
-    except GaitdiscError as error:
+    except gd.GaitdiscError as error:
         lines.append(str(error))
     return lines
 

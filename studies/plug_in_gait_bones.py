@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
+import gaitdisc as gd
 from gaitdisc.kinematics.pose import Pose
 from gaitdisc.kinetics.plate_steps import FootPath, foot_paths
 from gaitdisc.kinetics.segment_motion import nearest_rotations
-from gaitdisc.recording import Trial
 from gaitdisc.signals.direction import marker_position
 
 WALKERS = ("HC002D", "HC030A", "HC031A", "HC032A", "HC033A", "HC036A")
@@ -17,7 +17,7 @@ TRUNK = ("C7", "T10", "CLAV", "STRN")
 FEET = {side: (f"{side.upper()}HEE", f"{side.upper()}TOE") for side in "rl"}
 
 
-def feet(trial: Trial) -> dict[str, FootPath]:
+def feet(trial: gd.Trial) -> dict[str, FootPath]:
     """Paths of both feet by their markers."""
     return foot_paths(trial.stream("markers"), FEET)
 
@@ -28,7 +28,7 @@ def static_file(gait: Path, person: str) -> Path:
     return next(file for folder in folders for file in folder.glob("*.c3d"))
 
 
-def bones(trial: Trial) -> dict[str, Pose]:
+def bones(trial: gd.Trial) -> dict[str, Pose]:
     """Poses of pelvis, thighs, shanks, feet from the points O (origin), A, L, P (forward, left, proximal) of each."""
     markers = trial.stream("markers")
 

@@ -21,13 +21,12 @@ from pathlib import Path
 
 import numpy as np
 
+import gaitdisc as gd
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.new_study import found_study
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Study
 from gaitdisc.processing.pooled import pooled_cycles
-from gaitdisc.recording import Trial
-from gaitdisc.results import PooledCycles
 
 ONE_EVENT_S = 0.2  # farther apart is no pair
 EVENTS = {"contacts": "initial contact", "foot offs": "foot off"}
@@ -39,7 +38,7 @@ def study_of(data: Path, quick: bool = False) -> Study:
     return found_study(folder / "HC030A" if quick else folder)[0]
 
 
-def pooled(study: Study, withhold: bool = False) -> tuple[list[PooledCycles], dict[str, Trial]]:
+def pooled(study: Study, withhold: bool = False) -> tuple[list[gd.PooledCycles], dict[str, gd.Trial]]:
     """Cycles of everybody, and the trials as they were read, by name."""
     found, trials = [], {}
     with C3DReader() as reader:
@@ -54,7 +53,7 @@ def pooled(study: Study, withhold: bool = False) -> tuple[list[PooledCycles], di
     return found, trials
 
 
-def differences_ms(found: Sequence[PooledCycles], trials: dict[str, Trial], kind: str) -> np.ndarray:
+def differences_ms(found: Sequence[gd.PooledCycles], trials: dict[str, gd.Trial], kind: str) -> np.ndarray:
     """Events of kept cycles minus the files' own, each file's event once [ms]."""
     columns = ("start_s", "end_s") if kind == "contacts" else ("foot_off_s",)
     apart = []
@@ -70,7 +69,7 @@ def differences_ms(found: Sequence[PooledCycles], trials: dict[str, Trial], kind
     return np.array(apart)
 
 
-def counts(found: Sequence[PooledCycles]) -> list[tuple[str, str]]:
+def counts(found: Sequence[gd.PooledCycles]) -> list[tuple[str, str]]:
     """How many walks, cycles, cycles on a plate, and cycles of live EMG channels."""
     kept = [one for one in found if len(one.kept)]
     muscles = [name for one in kept for name in (c.name for c in one.channels) if name.startswith("emg_")]
@@ -92,7 +91,7 @@ def counts(found: Sequence[PooledCycles]) -> list[tuple[str, str]]:
     ]
 
 
-def against_events(found: Sequence[PooledCycles], trials: dict[str, Trial]) -> list[tuple[str, str, str]]:
+def against_events(found: Sequence[gd.PooledCycles], trials: dict[str, gd.Trial]) -> list[tuple[str, str, str]]:
     """Events found without the file's own, straight and in turns: median, 95 % of the absolute differences, n."""
     rows = []
     for kind in EVENTS:

@@ -41,17 +41,7 @@ PLACEHOLDER, WIDTH = "#", 150
 
 @dataclass(frozen=True)
 class Block:
-    """One block of a page.
-
-    Parameters
-    ----------
-    commands : tuple of str
-        As a reader types them in the project's folder.
-    form : str
-        A word of `FORMS`.
-    written : str
-        What stands there.
-    """
+    """One block of a page."""
 
     commands: tuple[str, ...]
     form: str
@@ -140,15 +130,7 @@ def difference(block: Block, printed: str) -> str:
 
 
 def apart(written: str, printed: str, numbers: bool = True) -> str:
-    """The first line that differs in words, or in a number by more than one unit of its last digit; empty if none.
-
-    Parameters
-    ----------
-    written, printed : str
-        What stands on the page; what the command prints.
-    numbers : bool
-        Whether numbers are compared.
-    """
+    """The first line that differs in words, or in a number by more than one unit of its last digit; empty if none."""
     old, new = (text.replace("\n> ", " ").split("\n") for text in (written, printed))  # a quotation is one line
     for one, other in zip(old, new, strict=False):
         if " ".join(NUMBER.sub(PLACEHOLDER, one).split()) != " ".join(NUMBER.sub(PLACEHOLDER, other).split()):

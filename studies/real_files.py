@@ -19,12 +19,11 @@ from pathlib import Path
 
 import numpy as np
 
-from gaitdisc.errors import GaitdiscError, StrideError
+import gaitdisc as gd
+from gaitdisc.errors import StrideError
 from gaitdisc.ingest.c3d import C3DReader
-from gaitdisc.ingest.reading import read_trial
 from gaitdisc.processing.contact_choice import named_markers
 from gaitdisc.processing.one_base import on_one_base
-from gaitdisc.recording import Trial
 from gaitdisc.signals.contact_events import event_contacts
 from gaitdisc.signals.contact_force import plate_contacts
 from gaitdisc.signals.contacts import compared
@@ -53,7 +52,7 @@ def young_people(folder: Path) -> list[Row]:
     walks = [file for file in files if file.parent.name != "static"]
     with C3DReader() as reader:
         for file in files:
-            trial = read_trial(file, reader=reader)
+            trial = gd.read(file, reader=reader)
             wanted = {f"emg_{MUSCLES[n[2:]]}_{n[0].lower()}" for n in manifest[file.name].split("|") if n}
             live = {name for name in live_channels(trial.stream("emg")) if name.split("_")[1] in MUSCLES.values()}
             agree += live == wanted
@@ -67,7 +66,7 @@ def young_people(folder: Path) -> list[Row]:
     ]
 
 
-def plates_against_events(trial: Trial) -> list[float]:
+def plates_against_events(trial: gd.Trial) -> list[float]:
     """Plate minus event at every contact that both have [ms]; none where the trial has no events or no whole plate."""
     markers = trial.stream("markers")
     heels, pelvis = named_markers(markers)
@@ -86,12 +85,12 @@ def opensim_dialects(folder: Path) -> list[Row]:
     read, refused = 0, []
     for file in files:
         try:
-            read_trial(file)
+            gd.read(file)
             read += 1
-        except GaitdiscError as error:
+        except gd.GaitdiscError as error:
             refused.append(str(error))
     walk = [folder / "mrs_emg_walking" / name for name in ("IK_gait.mot", "GRF_gait.mot", "EMG_gait.mot")]
-    both = on_one_base(read_trial(walk), 100.0)
+    both = on_one_base(gd.read(walk), 100.0)
     span = f"{both.time[0]:.2f} to {both.time[-1]:.2f} s"
     return [
         (f"opensim_walks, {len(files)} files", "every dialect read", f"{read} read" + "".join(refused)),
@@ -110,8 +109,8 @@ def encodings(folder: Path) -> list[Row]:
     with C3DReader() as reader:
         for file in files:
             try:
-                trial = read_trial(file, reader=reader)
-            except GaitdiscError:
+                trial = gd.read(file, reader=reader)
+            except gd.GaitdiscError:
                 refused.append(file.name)
                 continue
             read += 1

@@ -19,15 +19,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.channel import Channel, vocabulary
+import gaitdisc as gd
+from gaitdisc.channel import vocabulary
 from gaitdisc.errors import StrideError
-from gaitdisc.ingest.reading import read_trial
 from gaitdisc.processing.contact_choice import named_markers
-from gaitdisc.recording import Recording, Source
+from gaitdisc.recording import Source
 from gaitdisc.signals.contact_angles import angle_contacts
 from gaitdisc.signals.contact_force import plate_contacts
 from gaitdisc.signals.direction import walking_direction
-from gaitdisc.signals.envelope import enveloped
 from gaitdisc.signals.plateaus import plateaus
 from gaitdisc.signals.strides import cut_strides
 from gaitdisc.signals.walking import verify_walking
@@ -51,7 +50,7 @@ def exotendon(folder: Path) -> list[Row]:
     rows = []
     for word, count in RUNNING_STRIDES.items():
         [file] = [path for path in folder.rglob("*.mot") if word in path.name]
-        kinematics = read_trial(file).stream("kinematics")
+        kinematics = gd.read(file).stream("kinematics")
         strides = cut_strides(angle_contacts(kinematics)["r"], kinematics)
         rows.append(
             (f"exotendon_run/{word}", f"{count} strides, +-1", f"{len(strides)}, {len(strides.dropped)} dropped")
@@ -78,7 +77,7 @@ def treadmill_angles(folder: Path) -> list[Row]:
         with_plateau += len(found) > 0
         limits += [p.limit for p in found]
     try:
-        kinematics = read_trial(folder / "S01DN603_ik.mot").stream("kinematics")
+        kinematics = gd.read(folder / "S01DN603_ik.mot").stream("kinematics")
         verify_walking(kinematics, cut_strides(angle_contacts(kinematics)["r"], kinematics))
     except StrideError as error:
         refused.append(f"S01DN603: {error.found.split(': ', 1)[-1]}")
@@ -99,12 +98,12 @@ def treadmill_angles(folder: Path) -> list[Row]:
 
 def treadmill_c3d(folder: Path) -> list[Row]:
     """EMG channels kept apart; strides from belts whose force chatters."""
-    trial = read_trial(folder / "walking_1.c3d")
+    trial = gd.read(folder / "walking_1.c3d")
     emg, markers = trial.stream("emg"), trial.stream("markers")
     heels, pelvis = named_markers(markers)
     contacts = plate_contacts(trial.stream("forces"), markers, heels, walking_direction(markers, heels, pelvis))
     strides = {side: len(cut_strides(found)) for side, found in contacts.items()}
-    envelopes = enveloped(emg)
+    envelopes = gd.envelope(emg)
     peaks = 1e3 * np.nanmax(envelopes.values, axis=0)
     return [
         ("treadmill_c3d_emg", "16 EMG channels apart", f"{len(set(emg.names))}: {emg.names[0]} to {emg.names[-1]}"),
@@ -113,11 +112,11 @@ def treadmill_c3d(folder: Path) -> list[Row]:
     ]
 
 
-def _angles(names: list[str], values: NDArray[np.float32], trial: str) -> Recording:
+def _angles(names: list[str], values: NDArray[np.float32], trial: str) -> gd.Recording:
     kept = [i for i, name in enumerate(names) if name != "time"]
-    channels = tuple(vocabulary().named(names[i]) or Channel(names[i], "angle", "deg") for i in kept)
+    channels = tuple(vocabulary().named(names[i]) or gd.Channel(names[i], "angle", "deg") for i in kept)
     angles = np.asarray(values[:, kept], float)
-    return Recording(np.arange(len(angles)) / 100.0, angles, channels, source=Source(f"{trial}.npz"))
+    return gd.Recording(np.arange(len(angles)) / 100.0, angles, channels, source=Source(f"{trial}.npz"))
 
 
 def main() -> None:

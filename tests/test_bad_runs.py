@@ -223,6 +223,6 @@ def test_a_damaged_unit_is_told_by_report_and_mended_by_run(ran, tmp_path, monke
     with pytest.raises(SystemExit):
         main()
     words = " ".join(capsys.readouterr().err.split())
-    assert f"P01/{file} is" in words and "Run `gaitdisc run` on the study again" in words
+    assert f"P01/{file} is" in words and "`gaitdisc run` keeps what is whole" in words
     assert said("run", folder)[0] == 0
     assert damaged.read_bytes() == whole

@@ -1,4 +1,4 @@
-"""`gaitdisc report`: the pages of a run, drawn again."""
+"""`gaitdisc report`: the page of a saved result, drawn again."""
 
 from __future__ import annotations
 
@@ -8,17 +8,20 @@ from typing import Annotated
 import typer
 
 
-def report(run_folder: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a run.")]) -> None:
-    """Draw the report of a run again, and those of modalities and sensitivity where it has them, without fitting."""
-    from gaitdisc.report.response_page import write_report
-    from gaitdisc.report.variants_page import write_variants
-    from gaitdisc.results.run_store import load_run
-    from gaitdisc.results.variant_store import load_variant_run
-    from gaitdisc.results.variants import QUESTIONS
+def report(
+    folder: Annotated[
+        Path, typer.Argument(help="Folder that run, modalities, sensitivity, discover, compare or reconstruct wrote.")
+    ],
+) -> None:
+    """Draw the page of a saved result again, without fitting; of a run also those of modalities and sensitivity."""
+    from gaitdisc.errors import SchemaError
+    from gaitdisc.report.saved_page import draw_saved
 
-    page = write_report(load_run(run_folder), run_folder / "report")
-    typer.echo(f"report: {page}")
-    for question in QUESTIONS:
-        folder = run_folder / question
-        if (folder / "variant_run.json").is_file():
-            typer.echo(f"{question}: {write_variants(load_variant_run(folder), folder)}")
+    if (folder / "model.json").is_file():
+        raise SchemaError(
+            "a page is drawn of a result",
+            f"{folder.name} holds a saved model, which has none",
+            "Name the folder above its `models`, or use the model: gaitdisc apply MODEL RECORDING.",
+        )
+    for word, page in draw_saved(folder).items():
+        typer.echo(f"{word}: {page}")

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from gaitdisc.errors import SchemaError
+from gaitdisc.results.saved import READERS, load_saved
 
 if TYPE_CHECKING:
     from gaitdisc.library.reconstructor import Reconstructor
@@ -17,15 +15,7 @@ if TYPE_CHECKING:
     from gaitdisc.results.reconstruction import Reconstruction
     from gaitdisc.results.variants import VariantRun
 
-KINDS = {
-    "run.json": ("gaitdisc.results.run_store", "load_run"),
-    "discovery.json": ("gaitdisc.results.discovery_folder", "load_discovery"),
-    "reconstruction.json": ("gaitdisc.results.reconstruction", "load_reconstruction"),
-    "mismatch.json": ("gaitdisc.results.mismatch_folder", "load_mismatch"),
-    "variant_run.json": ("gaitdisc.results.variant_store", "load_variant_run"),
-    "cycles.json": ("gaitdisc.results.cycles_store", "load_cycles"),
-    "model.json": ("gaitdisc.library.reconstructor", "load_reconstructor"),
-}
+MODEL = {"model.json": "gaitdisc.library.reconstructor:load_reconstructor"}
 
 
 def load(
@@ -54,15 +44,4 @@ def load(
     >>> import gaitdisc as gd
     >>> gd.load("found").sentence  # doctest: +SKIP
     """
-    place = Path(folder)
-    for name, (module, function) in KINDS.items():
-        if (place / name).is_file():
-            read: Callable[[Path], Any] = getattr(import_module(module), function)
-            found = read(place)
-            return found[0] if isinstance(found, tuple) else found
-    held = sorted(path.name for path in place.iterdir())[:6] if place.is_dir() else []
-    raise SchemaError(
-        f"a saved result is a folder with one of {', '.join(KINDS)}",
-        f"{place.name} {'holds ' + (', '.join(held) or 'nothing') if place.is_dir() else 'is no folder'}",
-        "Give the folder that the command or .save(folder) wrote.",
-    )
+    return load_saved(Path(folder), READERS | MODEL)

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ShapeError, TrainingError
 from gaitdisc.recording import Recording, Samples
+from gaitdisc.results.saved import Saved
 from gaitdisc.sensing.intervals import half_widths
 from gaitdisc.sensing.model_folder import SensingModel, load_model, save_model
 from gaitdisc.sensing.reconstructor import Sensing, fit_reconstructor
@@ -23,7 +24,7 @@ SEAM_S = 0.3  # zero-lag filters look ahead and back over the border
 Trials = ArrayLike | Sequence[ArrayLike]
 
 
-class Reconstructor:
+class Reconstructor(Saved, by="gaitdisc.library.reconstructor:save_reconstructor"):
     """Estimate the states of a system from the readings of a few sensors and their history.
 
     Parameters
@@ -175,22 +176,6 @@ class Reconstructor:
         """Half width of the 90 % interval of each state (state,), in its unit."""
         return self.model.half_widths
 
-    def save(self, folder: Path | str) -> Path:
-        """Save the fitted model; `gaitdisc.load` reads it.
-
-        Parameters
-        ----------
-        folder : path
-            Its own folder; made if missing.
-
-        Returns
-        -------
-        Path
-            The folder.
-        """
-        save_model(self.model, Path(folder))
-        return Path(folder)
-
     def __repr__(self) -> str:
         fitted = "not fitted"
         if self._model is not None:
@@ -224,6 +209,11 @@ class Reconstructor:
             (*read.channels, *(Channel(name, "signal", "1") for name in what.states)),
         )
         return windows_of(both, what.sensors, what.states, what.lags, np.zeros(len(read.time)))
+
+
+def save_reconstructor(fitted: Reconstructor, folder: Path) -> None:
+    """Save the fitted model."""
+    save_model(fitted.model, folder)
 
 
 def load_reconstructor(folder: Path) -> Reconstructor:

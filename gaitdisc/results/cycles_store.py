@@ -12,7 +12,7 @@ from gaitdisc.channel import Channel
 from gaitdisc.results.on_disk import Arrays
 from gaitdisc.results.pooled_cycles import CYCLE_COLUMNS, PooledCycles
 from gaitdisc.results.refusal import Refusal
-from gaitdisc.results.unit_folder import load_unit, save_unit, stored_finding, with_words
+from gaitdisc.results.unit_folder import NO_KEY, load_unit, save_unit, stored_finding, with_words
 from gaitdisc.results.walk_store import unit_name
 
 WORDS = ("reason", "foot_off_by")
@@ -78,6 +78,16 @@ def load_cycles(folder: Path) -> tuple[PooledCycles, str]:
         data["files"],
     )
     return pooled, data["key"]
+
+
+def save_pooled_cycles(pooled: PooledCycles, folder: Path) -> None:
+    """Save pooled cycles that stand alone, of no run."""
+    save_cycles(pooled, folder, NO_KEY)
+
+
+def load_pooled_cycles(folder: Path) -> PooledCycles:
+    """Load pooled cycles, of a run or alone."""
+    return load_cycles(folder)[0]
 
 
 def cycles_name(subject: str, session: str, condition: str) -> str:

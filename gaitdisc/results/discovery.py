@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 from gaitdisc.notebook import html_of
 from gaitdisc.recording import Finding
 from gaitdisc.results.provenance import Provenance
+from gaitdisc.results.saved import Saved
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -198,7 +198,7 @@ class Runs:
 
 
 @dataclass(frozen=True)
-class Discovery:
+class Discovery(Saved, by="gaitdisc.results.discovery_folder:save_discovery"):
     """The answer to one inquiry.
 
     Parameters
@@ -251,24 +251,6 @@ class Discovery:
         import pandas as pd
 
         return pd.DataFrame(self.runs.table(self.channels))
-
-    def save(self, folder: Path | str) -> Path:
-        """Save to a folder that `gaitdisc.load` reads.
-
-        Parameters
-        ----------
-        folder : path
-            Where; made if missing.
-
-        Returns
-        -------
-        Path
-            The folder.
-        """
-        from gaitdisc.results.discovery_folder import save_discovery
-
-        save_discovery(self, Path(folder))
-        return Path(folder)
 
     def __repr__(self) -> str:
         return f"Discovery({self.verdict}: {self.sentence})"

@@ -17,7 +17,7 @@ from gaitdisc.results.discovery import (
     Runs,
     Whereabouts,
 )
-from gaitdisc.results.on_disk import damaged
+from gaitdisc.results.on_disk import damaged, of_another_format
 from gaitdisc.results.provenance import Provenance
 from gaitdisc.results.sealed_json import check_files, file_sha256, read_sealed, sealed_text
 from gaitdisc.spreadsheet import read_csv, write_csv
@@ -46,7 +46,7 @@ def load_discovery(folder: Path) -> Discovery:
 
     data = read_sealed(folder / NAME)
     if data.get("format", FORMAT) != FORMAT:  # before there was a number, the form was this one
-        raise damaged(folder / NAME, f"of format {str(data['format'])[:20]}, not {FORMAT}")
+        raise of_another_format(folder / NAME, data["format"], FORMAT)
     try:
         check_files(folder, data["sha256"])
         table = read_csv(folder / RUNS, ("trial",))

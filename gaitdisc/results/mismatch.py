@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,6 +15,7 @@ from gaitdisc.errors import SchemaError, ShapeError
 from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.recording.arrays import read_only
 from gaitdisc.results.provenance import Provenance
+from gaitdisc.results.saved import Saved
 
 CURVES = ("first", "second", "sd_first", "sd_second", "gap", "low", "high", "t")
 REGION_COLUMNS = ("channel", "unit", "from_percent", "to_percent", "gap", "at_percent", "gap_sd", "mean_gap", "p")
@@ -117,7 +117,7 @@ class Smallest:
 
 
 @dataclass(frozen=True, eq=False)
-class Mismatch:
+class Mismatch(Saved, by="gaitdisc.results.mismatch_folder:save_mismatch"):
     """First minus second, over the stride.
 
     Parameters
@@ -196,24 +196,6 @@ class Mismatch:
         """Curves and gap of every channel, one row a channel and percent of the stride."""
         tables = [self.curve_table(name).assign(channel=name) for name in self.names]
         return pd.concat(tables, ignore_index=True)
-
-    def save(self, folder: Path | str) -> Path:
-        """Save to a folder that `gaitdisc.load` reads.
-
-        Parameters
-        ----------
-        folder : path
-            Where; made if missing.
-
-        Returns
-        -------
-        Path
-            The folder.
-        """
-        from gaitdisc.results.mismatch_folder import save_mismatch
-
-        save_mismatch(self, Path(folder))
-        return Path(folder)
 
     def __repr__(self) -> str:
         return f"Mismatch({self.first} minus {self.second}: {len(self.names)} channels, {len(self.regions)} regions)"

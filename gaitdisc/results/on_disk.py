@@ -14,12 +14,14 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+import gaitdisc
 from gaitdisc.errors import SchemaError
 
 T = TypeVar("T")
 Kind = TypeVar("Kind")
 Arrays = Mapping[str, NDArray[np.float64]]
 KEPT_FILES = 2  # of which the arrays stay in memory: both walks of one participant
+AGAIN = "Run the command that wrote it again; `gaitdisc run` keeps what is whole and computes the rest anew."
 CHANGED = "changed since it was saved (SHA-256 differs)"
 
 
@@ -105,15 +107,19 @@ def lies_on_disk(thing: object, field: str) -> bool:
     return isinstance(vars(thing)[field], OnDisk)
 
 
-def damaged(path: Path, what: str) -> DamagedError:
+def damaged(path: Path, what: str, do: str = AGAIN) -> DamagedError:
     """Return the refusal of a file that is not as it was saved."""
     error = DamagedError(
-        "results need every file of their folder as it was saved",
-        f"{path.parent.name}/{path.name} is {what}",
-        "Run `gaitdisc run` on the study again: what is whole is kept, the rest is computed anew.",
+        "results need every file of their folder as it was saved", f"{path.parent.name}/{path.name} is {what}", do
     )
     error.path, error.what = path, what
     return error
+
+
+def of_another_format(path: Path, found: object, ours: int) -> DamagedError:
+    """Return the refusal of a file that another version of gaitdisc wrote."""
+    do = f"Another version wrote it: install that one to read it, or compute it again with {gaitdisc.__version__}."
+    return damaged(path, f"of format {str(found)[:20]}, not {ours}", do)
 
 
 class _Field:

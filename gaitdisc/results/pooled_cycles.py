@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -16,6 +15,7 @@ from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.recording.arrays import read_only
 from gaitdisc.results.on_disk import lies_on_disk, may_lie_on_disk
 from gaitdisc.results.refusal import Refusal
+from gaitdisc.results.saved import Saved
 
 CYCLE_COLUMNS = (
     "trial",
@@ -48,7 +48,7 @@ SPATIOTEMPORAL = CYCLE_COLUMNS[CYCLE_COLUMNS.index("stride_s") :]
 
 @may_lie_on_disk("curves")
 @dataclass(frozen=True, eq=False)
-class PooledCycles:
+class PooledCycles(Saved, by="gaitdisc.results.cycles_store:save_pooled_cycles"):
     """Cycles of one person in one session under one condition.
 
     Parameters
@@ -149,24 +149,6 @@ class PooledCycles:
     def to_frame(self) -> pd.DataFrame:
         """Every cycle with its times, events and, where it is left out, why; one row each."""
         return self.cycles
-
-    def save(self, folder: Path | str) -> Path:
-        """Save to a folder that `gaitdisc.load` reads.
-
-        Parameters
-        ----------
-        folder : path
-            Where; made if missing.
-
-        Returns
-        -------
-        Path
-            The folder.
-        """
-        from gaitdisc.results.cycles_store import save_cycles
-
-        save_cycles(self, Path(folder), "saved by itself")
-        return Path(folder)
 
     def __repr__(self) -> str:
         kept, cut = len(self.kept), len(self.cycles)

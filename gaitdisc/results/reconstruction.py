@@ -15,6 +15,7 @@ from gaitdisc.notebook import html_of
 from gaitdisc.recording import Finding
 from gaitdisc.results.provenance import Provenance
 from gaitdisc.results.refusal import Refusal
+from gaitdisc.results.saved import Saved
 from gaitdisc.results.unit_folder import load_unit, save_unit, stored_finding
 
 NAME = "reconstruction.json"
@@ -33,7 +34,7 @@ MEASURES = ("rmse_deg", "relative_l2", "r2", "relative_l2_whole", "check_loss", 
 
 
 @dataclass(frozen=True, eq=False)
-class Reconstruction:
+class Reconstruction(Saved, by="gaitdisc.results.reconstruction:save_reconstruction"):
     """All that a report of a reconstruction needs.
 
     Parameters
@@ -105,22 +106,6 @@ class Reconstruction:
     def to_frame(self) -> pd.DataFrame:
         """Errors of every participant, model and state."""
         return self.errors
-
-    def save(self, folder: Path | str) -> Path:
-        """Save to a folder that `gaitdisc.load` reads.
-
-        Parameters
-        ----------
-        folder : path
-            Where; made if missing.
-
-        Returns
-        -------
-        Path
-            The folder.
-        """
-        save_reconstruction(self, Path(folder))
-        return Path(folder)
 
     def __repr__(self) -> str:
         return (

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import pandas as pd
 
@@ -15,11 +14,12 @@ from gaitdisc.results.participant_response import ParticipantResponse
 from gaitdisc.results.pooled_cycles import PooledCycles
 from gaitdisc.results.provenance import Provenance
 from gaitdisc.results.refusal import Refusal
+from gaitdisc.results.saved import Saved
 from gaitdisc.results.walk_summary import WalkSummary
 
 
 @dataclass(frozen=True, eq=False)
-class ResponseRun:
+class ResponseRun(Saved, by="gaitdisc.results.run_store:save_whole_run"):
     """All that a report needs; nothing is fitted again to draw it.
 
     Parameters
@@ -101,24 +101,6 @@ class ResponseRun:
     def to_frame(self) -> pd.DataFrame:
         """R2 of every participant, variable, model, kind and walk, one row each."""
         return self.r2_table()
-
-    def save(self, folder: Path | str) -> Path:
-        """Save to a folder that `gaitdisc.load` reads.
-
-        Parameters
-        ----------
-        folder : path
-            Where; made if missing.
-
-        Returns
-        -------
-        Path
-            The folder.
-        """
-        from gaitdisc.results.run_store import save_whole_run
-
-        save_whole_run(self, Path(folder))
-        return Path(folder)
 
     def __repr__(self) -> str:
         counts = f"{len(self.responses)} responses, {len(self.cycles)} sets of cycles, {len(self.refusals)} refusals"

@@ -29,11 +29,9 @@ from gaitdisc.results.refusal import Refusal
 from gaitdisc.results.response_run import ResponseRun
 from gaitdisc.results.response_store import load_quantity, load_response, save_quantity, save_response
 from gaitdisc.results.sealed_json import read_sealed, sealed_text
-from gaitdisc.results.unit_folder import FORMAT, read_json
+from gaitdisc.results.unit_folder import FORMAT, NO_KEY, read_json
 from gaitdisc.results.walk_store import load_walk, save_walk, unit_name
 from gaitdisc.whole_file import write_whole
-
-NO_KEY = "saved by itself"  # of no files and settings: what was not computed by a run in this folder
 
 
 def save_run(run: ResponseRun, folder: Path) -> None:

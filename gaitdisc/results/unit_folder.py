@@ -20,12 +20,13 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import schema_folder
 from gaitdisc.recording import Finding
-from gaitdisc.results.on_disk import DamagedError, StoredArrays, damaged
+from gaitdisc.results.on_disk import DamagedError, StoredArrays, damaged, of_another_format
 from gaitdisc.results.sealed_json import check_files, file_sha256, read_sealed, sealed_text
 from gaitdisc.spreadsheet import read_csv, write_csv
 from gaitdisc.whole_file import whole_file, write_whole
 
 FORMAT = 1
+NO_KEY = "saved by itself"  # of no files and settings: what was not computed by a run in its folder
 SHOWN = 4  # files of one line
 Unit = tuple[dict[str, Any], dict[str, pd.DataFrame], StoredArrays]
 
@@ -148,7 +149,7 @@ def read_json(path: Path) -> dict[str, Any]:
     """
     data = read_sealed(path)
     if data.get("format") != FORMAT:
-        raise damaged(path, f"of format {str(data.get('format'))[:20]}, not {FORMAT}")
+        raise of_another_format(path, data.get("format"), FORMAT)
     wrong = next(iter(_validator(path.stem).iter_errors(data)), None)
     if wrong is not None:
         raise damaged(path, f"not of the agreed form at {wrong.json_path}: {wrong.message[:200]}")

@@ -6,7 +6,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from gaitdisc.results.refusal import Refusal
-from gaitdisc.results.unit_folder import load_unit, save_unit, with_words
+from gaitdisc.results.unit_folder import NO_KEY, load_unit, save_unit, with_words
 from gaitdisc.results.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, VariantRun, Variants
 
 
@@ -45,6 +45,13 @@ def save_variant_run(run: VariantRun, folder: Path) -> None:
         "held_out_s": list(run.held_out_s),
     }
     save_unit(folder, "variant_run.json", data, {"tests.csv": run.tests}, {})
+
+
+def save_whole_variant_run(run: VariantRun, folder: Path) -> None:
+    """Save what was found over the participants, and the variants of each, as they are in memory."""
+    for each in run.people:
+        save_variants(each, folder / "people" / each.participant, NO_KEY)
+    save_variant_run(run, folder)
 
 
 def load_variant_run(folder: Path) -> VariantRun:

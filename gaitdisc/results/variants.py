@@ -10,6 +10,7 @@ import pandas as pd
 from gaitdisc.errors import SchemaError
 from gaitdisc.results.pair_test import TEST_COLUMNS
 from gaitdisc.results.refusal import Refusal
+from gaitdisc.results.saved import Saved
 
 QUESTIONS = ("modalities", "sensitivity")
 VARIANT_COLUMNS = ("variant", "variable", "model", "kind", "r2", "n")
@@ -48,7 +49,7 @@ class Variants:
 
 
 @dataclass(frozen=True, eq=False)
-class VariantRun:
+class VariantRun(Saved, by="gaitdisc.results.variant_store:save_whole_variant_run"):
     """The variants of a study, over its participants.
 
     Parameters
@@ -77,3 +78,7 @@ class VariantRun:
         tables = [each.table.assign(participant=each.participant) for each in self.people]
         columns = ["participant", *VARIANT_COLUMNS]
         return pd.concat(tables, ignore_index=True)[columns] if tables else pd.DataFrame(columns=pd.Index(columns))
+
+    def to_frame(self) -> pd.DataFrame:
+        """R2 of every participant, variant, variable, model and kind, one row each."""
+        return self.r2_table()

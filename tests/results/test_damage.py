@@ -115,7 +115,7 @@ def test_damaged_bytes_are_refused_in_words(folder, place):
             try:
                 read(folder, place)
             except SchemaError as error:
-                assert f"{file.name} is " in str(error) and "Run `gaitdisc run` on the study again" in str(error)
+                assert f"{file.name} is " in str(error) and "`gaitdisc run` keeps what is whole" in str(error)
                 assert len(damaged_units(folder)) == 1
             else:  # of the JSON file, blanks between its words alone
                 assert json.loads(content) == json.loads(whole)

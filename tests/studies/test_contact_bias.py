@@ -39,8 +39,8 @@ def test_markers_place_contacts_some_fifty_milliseconds_before_a_plate(contact_b
 
 def test_a_correction_by_the_other_step_leaves_the_steps_difference():
     module = study("contact_bias")
-    contacts = module.Contacts(np.array([1.0, 2.0]), "r", "force")
-    early = module.Contacts(np.array([0.95, 1.97]), "r", "markers")
+    contacts = module.gd.Contacts(np.array([1.0, 2.0]), "r", "force")
+    early = module.gd.Contacts(np.array([0.95, 1.97]), "r", "markers")
     walk = {Path("walk.c3d"): {"force": {"r": contacts}, "markers": {"r": early}, "angles": {"r": early}}}
     offsets, corrections = module.against_plates(walk)
     assert offsets[0] == ("markers", "1", "2", "-40", "-40 to -40")

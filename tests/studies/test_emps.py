@@ -37,7 +37,7 @@ def test_free_runs_that_were_never_fitted_lose_three_quarters_of_their_error(fou
 
 
 def test_the_model_is_the_published_one_without_friction(study):
-    values = study.read_simulation(study.MODEL).values()
+    values = study.gd.read_simulation(study.MODEL).values()
     assert values == {"mass": 95.1089, "viscous": 203.5034, "offset": -3.1648}
 
 

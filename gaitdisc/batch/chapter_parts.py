@@ -1,0 +1,99 @@
+"""The studies that make the tables and figures of chapters 3, 4 and 5: their names, and what each costs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+from gaitdisc.channel import nearest_word
+from gaitdisc.errors import SchemaError
+
+OUT = "OUT"  # stands for the folder of the part
+METHODS = ("pysindy", "pydmd")  # libraries of the extra `chapter3`
+
+
+class Part(NamedTuple):
+    """A part of a chapter.
+
+    Parameters
+    ----------
+    minutes, quick_minutes : float
+        Of one core, about, whole and with `--quick`.
+    words, quick_words : tuple of str
+        What the study is called with.
+    """
+
+    chapter: int
+    name: str
+    study: str
+    makes: str
+    minutes: float
+    quick_minutes: float
+    words: tuple[str, ...] = (OUT,)
+    quick_words: tuple[str, ...] = (OUT, "--quick")
+    libraries: tuple[str, ...] = ()
+    data: str = ""  # folder of recordings or fields without which there is nothing to compute
+
+
+PARTS = (
+    Part(3, "tables", "ch3_tables", "every table of 3.4, printed from the cells that come along", 0.1, 0.1,
+         ("all",), ("all",)),
+    Part(3, "van_der_pol", "ch3_van_der_pol", "3.4.1, Figs. 3.2-3.5, 3.11", 12, 1, libraries=METHODS),
+    Part(3, "lorenz", "ch3_lorenz", "3.4.2, Figs. 3.6-3.11", 12, 1, libraries=METHODS),
+    Part(3, "burgers", "ch3_burgers", "3.4.3, Fig. 3.12", 15, 1, libraries=METHODS),
+    Part(3, "measurement_bias", "ch3_measurement_bias", "3.4.4, Fig. 3.13", 5, 1, libraries=METHODS),
+    Part(3, "who_names", "ch3_who_names", "who names the hidden effect, 3.4 and 3.5", 20, 3, libraries=METHODS),
+    Part(3, "seeds", "ch3_seeds", "the cells of `tables` computed anew, twelve seeds", 35, 1,
+         (OUT, "--sets", "van_der_pol_text", "van_der_pol_code", "lorenz", "van_der_pol_text_short", "lorenz_short",
+          "lorenz_fine"), libraries=METHODS),
+    Part(4, "ankle_exo", "ch4_ankle_exo", "the whole chapter, Figs. 4.2-4.4", 15, 1),
+    Part(5, "gait_individual", "ch5_gait_individual", "5.3.3, Table 5.2 above, Fig. 5.4", 60, 1),
+    Part(5, "gait_population", "ch5_gait_population", "5.3.3, Table 5.2 below, Fig. 5.5", 90, 1),
+    Part(5, "sea_surface", "ch5_sea_surface", "5.3.2, Table 5.1, Figs. 5.1, 5.3", 5, 0.2, data="fields/sst_pacific"),
+    Part(5, "turbulence", "ch5_turbulence", "5.3.1, Fig. 5.2, on a stand-in", 120, 1),
+)  # fmt: skip
+CHAPTERS = tuple(dict.fromkeys(part.chapter for part in PARTS))
+
+
+def parts_of(chapter: int, name: str = "") -> tuple[Part, ...]:
+    """Parts of a chapter, or the one of that name.
+
+    Examples
+    --------
+    >>> [part.name for part in parts_of(4)]
+    ['ankle_exo']
+    """
+    if chapter not in CHAPTERS:
+        raise SchemaError(
+            f"chapters {', '.join(map(str, CHAPTERS))} can be computed", f"{chapter} is named", "Name one of them."
+        )
+    parts = tuple(part for part in PARTS if part.chapter == chapter)
+    names = [part.name for part in parts]
+    if name and name not in names:
+        nearest = nearest_word(name, names)
+        raise SchemaError(
+            f"the parts of chapter {chapter} are {', '.join(names)}",
+            f"{name!r} is none of them" + (f", the nearest is {nearest!r}" if nearest else ""),
+            "Name one of them, or none for all.",
+        )
+    return tuple(part for part in parts if name in ("", part.name))
+
+
+def costs() -> str:
+    """The parts with what each makes and costs, a line each."""
+    lines = [
+        f"{part.chapter} {part.name}: {part.makes}; {_minutes(part.minutes)} ({_minutes(part.quick_minutes)})"
+        for part in PARTS
+    ]
+    return "\n".join(lines)
+
+
+def studies_folder() -> Path:
+    """Folder of the studies, in a checkout or in an installed wheel."""
+    package = Path(__file__).parents[1]
+    installed = package / "studies"
+    return installed if installed.is_dir() else package.parent / "studies"
+
+
+def _minutes(count: float) -> str:
+    return f"{60 * count:.0f} s" if count < 1 else f"{count:.0f} min"

@@ -1,0 +1,207 @@
+"""Which literature a saved result rests on: what each method cites, and when a result used it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import gaitdisc
+from gaitdisc.batch.chapter_parts import PARTS
+from gaitdisc.batch.chapter_run import NAME as CHAPTER
+from gaitdisc.channel import schema_folder
+from gaitdisc.errors import SchemaError
+from gaitdisc.kinematics.marker_set_file import shipped_marker_sets
+from gaitdisc.recording import Finding
+from gaitdisc.results import PooledCycles, ResponseRun
+from gaitdisc.results.discovery import Discovery
+from gaitdisc.results.mismatch import Mismatch
+from gaitdisc.results.reconstruction import Reconstruction
+from gaitdisc.results.saved import load_saved
+from gaitdisc.results.sealed_json import read_sealed
+from gaitdisc.results.variants import VariantRun
+
+MENTIONED = {  # a method in words -> the keys of data_schema/methods.bib
+    "this program": ("gaitdisc",),
+    "the Nominal, Exo, Discrepancy and Augmented models": ("ebers2023", "ebers2023exoskeletons"),
+    "discrepancies of dynamics and of state": ("ebers2023", "ebers2024discrepancy"),
+    "reconstruction of states from a few sensors": ("ebers2023",),
+    "networks, fitted by AdamW": ("loshchilov2019",),
+    "networks, fitted with Bayesian regularisation": ("mackay1992",),
+    "ridge regression": ("hoerl1970",),
+    "random Fourier features": ("rahimi2007",),
+    "SHRED": ("williams2024",),
+    "shallow decoder": ("erichson2020",),
+    "an ensemble of networks": ("lakshminarayanan2017",),
+    "Wilcoxon's signed-rank test": ("wilcoxon1945", "vallat2018"),
+    "Holm-Sidak corrections": ("holm1979", "sidak1967"),
+    "permutation test over the stride": ("nichols2002", "pataky2015"),
+    "sub-groups of people": ("ward1963",),
+    "C3D files, where some were read": ("michaud2021",),
+    "contacts from markers": ("zeni2008",),
+    "segments from markers": ("soderkvist1993",),
+    "joint angles": ("grood1983", "wu2002"),
+    "hip centres after Davis": ("davis1991",),
+    "hip centres after Harrington": ("harrington2007",),
+    "inertia of the segments": ("dumas2007",),
+    "multiple shooting": ("bock1984",),
+    "information criterion": ("schwarz1978",),
+    "a term read by regression on a library": ("brunton2016",),
+    "spiked samples": ("hampel1974",),
+    "SINDy": ("brunton2016", "fasel2022"),
+    "optimised and bagged dynamic mode decomposition": ("askham2018", "sashidhar2022"),
+    "Gaussian processes": ("rasmussen2006",),
+}
+OF_MODELS = {
+    "linear": ("ridge regression",),
+    "delay ridge": ("ridge regression",),
+    "fourier ridge": ("ridge regression", "random Fourier features"),
+    "shallow decoder": ("shallow decoder", "networks, fitted by AdamW"),
+    "shred": ("SHRED", "networks, fitted by AdamW"),
+    "masked shred": ("SHRED", "networks, fitted by AdamW"),
+    "shred ensemble": ("SHRED", "an ensemble of networks", "networks, fitted by AdamW"),
+}
+DISCREPANCIES = (
+    "discrepancies of dynamics and of state",
+    "SINDy",
+    "optimised and bagged dynamic mode decomposition",
+    "Gaussian processes",
+    "networks, fitted with Bayesian regularisation",
+)
+RESPONSES = ("the Nominal, Exo, Discrepancy and Augmented models", "networks, fitted by AdamW", "ridge regression")
+SENSED = (
+    "reconstruction of states from a few sensors",
+    *dict.fromkeys(one for each in OF_MODELS.values() for one in each),
+)
+TESTED = ("Wilcoxon's signed-rank test", "Holm-Sidak corrections")
+SEARCHED = ("multiple shooting", "information criterion")
+OF_CHAPTERS = {3: DISCREPANCIES, 4: (*RESPONSES, *TESTED), 5: SENSED}
+MORE = {"tables": TESTED, "who_names": SEARCHED}  # of these parts, beside what their chapter cites
+OF_PARTS = {part.name: (*OF_CHAPTERS[part.chapter], *MORE.get(part.name, ())) for part in PARTS}
+
+
+class Cited(NamedTuple):
+    """An entry of BibTeX, and the methods that it is cited for."""
+
+    key: str
+    methods: tuple[str, ...]
+    entry: str
+
+
+def citations_of(folder: Path) -> list[Cited]:
+    """Literature of the methods that the result in a folder used, in the order of the table."""
+    used = {"this program", *(_of_part(folder) if (folder / CHAPTER).is_file() else methods_of(load_saved(folder)))}
+    by_key: dict[str, list[str]] = {}
+    for method, keys in MENTIONED.items():
+        for key in keys if method in used else ():
+            by_key.setdefault(key, []).append(method)
+    return [Cited(key, tuple(words), entries()[key]) for key, words in by_key.items()]
+
+
+def methods_of(result: Any) -> Iterator[str]:
+    """Methods, in words of `MENTIONED`, that a result used."""
+    if isinstance(result, ResponseRun):
+        yield from _of_run(result)
+    elif isinstance(result, VariantRun):
+        yield from RESPONSES[:2]
+        yield from TESTED if len(result.tests) else ()
+    elif isinstance(result, PooledCycles):
+        yield from _of_files(result.files)
+        yield from _of_contacts(result.detectors)
+        yield from _of_markers(result.findings, None)
+    elif isinstance(result, Discovery):
+        yield from _of_discovery(result)
+    elif isinstance(result, Mismatch):
+        yield "permutation test over the stride"
+        yield from _of_files(result.provenance.files)
+    elif isinstance(result, Reconstruction):
+        yield "reconstruction of states from a few sensors"
+        for name in result.models:
+            yield from OF_MODELS.get(name, ())
+        yield from _of_files(result.provenance.files)
+
+
+def _of_part(folder: Path) -> tuple[str, ...]:
+    part = read_sealed(folder / CHAPTER).get("part")
+    if part not in OF_PARTS:
+        raise SchemaError(
+            f"a part of a chapter is one of {', '.join(OF_PARTS)}",
+            f"{folder.name}/{CHAPTER} names {str(part)[:40]!r}",
+            "Another version of gaitdisc wrote it: ask that one.",
+        )
+    return OF_PARTS[part]
+
+
+def _of_run(run: ResponseRun) -> Iterator[str]:
+    kinds = {str(kind) for response in run.responses for kind in response.r2["kind"]}
+    yield from RESPONSES[:1] if run.responses else ()
+    if "network" in kinds:
+        yield "networks, fitted by AdamW"
+    if kinds & {"ridge", "linear"}:
+        yield "ridge regression"
+    yield from TESTED if run.tests is not None and len(run.tests.tests) else ()
+    if run.over is not None and run.over.responders["silhouette"].notna().any():
+        yield "sub-groups of people"
+    yield from _of_files(run.provenance.files)
+    yield from _of_contacts([walk.detector for walk in run.walks])
+    kinematics = run.provenance.settings.get("kinematics") or {}
+    for one in (*run.walks, *run.cycles):
+        yield from _of_markers(one.findings, kinematics.get("hip"))
+    for one in run.cycles:
+        yield from _of_contacts(one.detectors)
+
+
+def _of_discovery(found: Discovery) -> Iterator[str]:
+    yield from SEARCHED
+    if found.held_out.p == found.held_out.p:  # a test was made
+        yield "Wilcoxon's signed-rank test"
+    if any(one.reads_as for one in (*found.effects, *found.rivals)):
+        yield "a term read by regression on a library"
+    if any("spike" in finding.kind for finding in found.findings):
+        yield "spiked samples"
+
+
+def _of_files(files: Iterable[str]) -> Iterator[str]:
+    """Of files named by person and walk the ending is not kept: they may be C3D."""
+    if any(name.lower().endswith(".c3d") or re.search(r", file \d+$", name) for name in files):
+        yield "C3D files, where some were read"
+
+
+def _of_contacts(detectors: Iterable[str]) -> Iterator[str]:
+    if "markers" in detectors:
+        yield "contacts from markers"
+
+
+def _of_markers(findings: Iterable[Finding], hip: str | None) -> Iterator[str]:
+    """Where angles were computed from markers, which a note on the marker set says: segments, angles, hips."""
+    by_kind = {finding.kind: finding.what for finding in findings}
+    if "marker set" not in by_kind:
+        return
+    yield from ("segments from markers", "joint angles")
+    named = shipped_marker_sets().get(by_kind["marker set"].partition(":")[0])
+    first = hip or (named.joint_centres["hip"][0] if named else "")
+    if first == "davis" and "hip" not in by_kind:
+        yield "hip centres after Davis"
+    elif first:
+        yield "hip centres after Harrington"
+    if "residual" in by_kind:  # said where joint moments were computed too
+        yield "inertia of the segments"
+
+
+@cache
+def entries() -> dict[str, str]:
+    """Every entry of `data_schema/methods.bib`, by key."""
+    text = (
+        (schema_folder() / "methods.bib")
+        .read_text(encoding="utf-8")
+        .replace("{VERSION}", f"{{{gaitdisc.__version__}}}")
+    )
+    found = {match[1]: match[0] for match in re.finditer(r"^@\w+\{(\w+),\n.*?^\}", text, re.MULTILINE | re.DOTALL)}
+    absent = sorted({key for keys in MENTIONED.values() for key in keys} - set(found))
+    if absent:
+        raise SchemaError(
+            "every method that is cited stands in methods.bib", f"it lacks {', '.join(absent)}", "Add it."
+        )
+    return found

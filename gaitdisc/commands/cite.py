@@ -1,0 +1,24 @@
+"""`gaitdisc cite`: literature of the methods that a result used, as BibTeX."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def cite(
+    folder: Annotated[Path, typer.Argument(help="Folder of a result, or of a part of a chapter.")],
+    out: Annotated[Path | None, typer.Option(help="File to write, .bib; by default it is printed.")] = None,
+) -> None:
+    """Print BibTeX of this program and of the methods that the result in a folder really used."""
+    from gaitdisc.batch.citations import citations_of
+    from gaitdisc.whole_file import write_whole
+
+    cited = citations_of(folder)
+    text = "\n\n".join(f"% {'; '.join(one.methods)}\n{one.entry}" for one in cited) + "\n"
+    if out is None:
+        typer.echo(text, nl=False)
+    else:
+        typer.echo(f"{write_whole(out, text)}: {len(cited)} entries")

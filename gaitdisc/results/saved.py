@@ -1,0 +1,67 @@
+"""A result on disk: it saves itself to a folder, and any of them is read back by the JSON file of that folder."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from importlib import import_module
+from pathlib import Path
+from typing import Any, ClassVar
+
+from gaitdisc.errors import SchemaError
+
+HERE = "gaitdisc.results"
+READERS = {  # the JSON file of each kind, and what reads its folder
+    "run.json": f"{HERE}.run_store:load_run",
+    "discovery.json": f"{HERE}.discovery_folder:load_discovery",
+    "reconstruction.json": f"{HERE}.reconstruction:load_reconstruction",
+    "mismatch.json": f"{HERE}.mismatch_folder:load_mismatch",
+    "variant_run.json": f"{HERE}.variant_store:load_variant_run",
+    "cycles.json": f"{HERE}.cycles_store:load_pooled_cycles",
+}
+SHOWN = 6  # files of a folder that holds no result
+
+
+class Saved:
+    """A result that saves itself; its class says by what, as `class Kind(Saved, by="module:function")`."""
+
+    _by: ClassVar[str]
+
+    def __init_subclass__(cls, by: str, **others: Any) -> None:
+        super().__init_subclass__(**others)
+        cls._by = by
+
+    def save(self, folder: Path | str) -> Path:
+        """Save to a folder that `gaitdisc.load` reads.
+
+        Parameters
+        ----------
+        folder : path
+            Where; made if missing.
+
+        Returns
+        -------
+        Path
+            The folder.
+        """
+        place = Path(folder)
+        _function(self._by)(self, place)
+        return place
+
+
+def load_saved(folder: Path, readers: Mapping[str, str] = READERS) -> Any:
+    """Read whatever result a folder holds; what was changed since is refused."""
+    for name, reader in readers.items():
+        if (folder / name).is_file():
+            return _function(reader)(folder)
+    held = sorted(path.name for path in folder.iterdir())[:SHOWN] if folder.is_dir() else []
+    raise SchemaError(
+        f"a saved result is a folder with one of {', '.join(readers)}",
+        f"{folder.name} {'holds ' + (', '.join(held) or 'nothing') if folder.is_dir() else 'is no folder'}",
+        "Give the folder that the command or .save(folder) wrote.",
+    )
+
+
+def _function(place: str) -> Callable[..., Any]:
+    """What stands at `module:function`, loaded now: a result that is not saved loads no store."""
+    module, _, name = place.partition(":")
+    return getattr(import_module(module), name)

@@ -1,0 +1,66 @@
+import pytest
+
+from gaitdisc.batch import chapter_run
+from gaitdisc.batch.chapter_parts import PARTS
+from gaitdisc.commands.exit_codes import REFUSED, SOME_REFUSED, STOPPED
+from gaitdisc.errors import SchemaError
+
+
+@pytest.fixture
+def computed(monkeypatch):
+    """Which parts were computed; none is."""
+    seen = []
+
+    def run(part, out, quick, data, ticked):
+        seen.append(part.name)
+        ticked(1.0)
+        return chapter_run.Made(out / part.name, False)
+
+    monkeypatch.setattr(chapter_run, "run_part", run)
+    monkeypatch.setattr(chapter_run, "lack_of", lambda *_: None)
+    return seen
+
+
+def test_help_lists_every_part_with_its_cost(called):
+    said = called("chapter", "--help").stdout
+    for part in PARTS:
+        assert f"{part.chapter} {part.name}: {part.makes}; " in said
+    assert "van_der_pol: 3.4.1, Figs. 3.2-3.5, 3.11; " in said and "in brackets with --quick" in said
+
+
+def test_all_parts_of_a_chapter_are_computed_and_the_rest_is_counted(computed, called, tmp_path):
+    done = called("chapter", 5, tmp_path, "--quick")
+    assert (done.returncode, computed) == (0, [part.name for part in PARTS if part.chapter == 5])
+    assert f"turbulence: done: {tmp_path / 'turbulence'}" in done.stdout
+    assert "gait_individual, 1 of 4: about " in done.stderr
+    assert called("chapter", 4, tmp_path, "--quiet").stderr == ""
+
+
+def test_what_a_machine_cannot_compute_is_left_out_and_said(computed, called, tmp_path, monkeypatch):
+    lack = SchemaError("sea_surface needs data", "none is there", "Name the folder.")
+    monkeypatch.setattr(chapter_run, "lack_of", lambda part, _: lack if part.name == "sea_surface" else None)
+    done = called("chapter", 5, tmp_path)
+    assert done.returncode == SOME_REFUSED and "sea_surface" not in computed
+    assert "left out: sea_surface needs data; none is there. Name the folder." in done.stderr
+
+
+def test_a_wrong_name_is_refused_and_a_stop_is_said(computed, called, tmp_path, monkeypatch):
+    done = called("chapter", 3, tmp_path, "--part", "lorentz")
+    assert done.returncode == REFUSED and "the nearest is 'lorenz'" in done.stderr
+
+    def stopped(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(chapter_run, "run_part", stopped)
+    done = called("chapter", 4, tmp_path)
+    assert done.returncode == STOPPED and "the same command goes on from there" in done.stderr
+
+
+@pytest.mark.slow
+def test_the_quickest_part_prints_the_tables_of_the_pages(called, tmp_path):
+    done = called("chapter", 3, tmp_path, "--part", "tables")
+    assert done.returncode == 0, done.stderr
+    text = (tmp_path / "tables" / "printed.md").read_text(encoding="utf-8")
+    assert "| Van der Pol with a hidden cubic spring | no noise | 0.1 % | 1 % | 10 % |" in text
+    assert text.count("## ") > 8
+    assert "kept as it stands" in called("chapter", 3, tmp_path, "--part", "tables").stdout

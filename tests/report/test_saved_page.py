@@ -1,0 +1,97 @@
+"""Every result that is saved is drawn again from its folder: the same page as of the result in memory."""
+
+import json
+
+import pandas as pd
+import pytest
+from driven_walker import DrivenWalker
+from made_cycles import made_cycles
+from manufactured_discovery import manufactured
+
+from gaitdisc.comparison.compare import compare_walks
+from gaitdisc.errors import SchemaError
+from gaitdisc.processing.walk_pair import walk_pair
+from gaitdisc.report.discovery_page import write_discovery_report
+from gaitdisc.report.mismatch_page import write_mismatch_report
+from gaitdisc.report.reconstruction_page import write_reconstruction_report
+from gaitdisc.report.response_page import write_report
+from gaitdisc.report.saved_page import PAGES, draw_saved
+from gaitdisc.report.variants_page import write_variants
+from gaitdisc.results.saved import READERS, Saved
+from gaitdisc.results.sealed_json import read_sealed, sealed_text
+from gaitdisc.results.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, VariantRun, Variants
+
+pytestmark = pytest.mark.usefixtures("unpainted")
+
+
+def variants():
+    models = (("nominal", 0.5), ("augmented", 0.6), ("exo", 0.7))
+    rows = [
+        (word, "knee_angle_r", model, "network", r2, 50)
+        for word in ("as the study has it", "EMG 4 Hz")
+        for model, r2 in models
+    ]
+    table = pd.DataFrame(rows, columns=pd.Index(VARIANT_COLUMNS))
+    tests = pd.DataFrame(columns=pd.Index(VARIANT_TEST_COLUMNS))
+    return VariantRun("a study", "exo", "sensitivity", (Variants("P01", "sensitivity", table, {}),), tests, (), (5, 9))
+
+
+def mismatch():
+    walks = [DrivenWalker("A", seed=1, spring_per_s2=k).walked(20.0, str(k)) for k in (250.0, 0.0)]
+    return compare_walks(*walk_pair(*walks), ("ankle_angle_r",))
+
+
+KINDS = {
+    "ResponseRun": (lambda request: request.getfixturevalue("run_maker")(outputs=("ankle_angle_l",)), write_report),
+    "Discovery": (lambda _: manufactured(), write_discovery_report),
+    "Mismatch": (lambda _: mismatch(), write_mismatch_report),
+    "Reconstruction": (lambda request: request.getfixturevalue("reconstruction"), write_reconstruction_report),
+    "VariantRun": (lambda _: variants(), write_variants),
+}
+
+
+def test_every_kind_that_is_read_has_a_page():
+    kinds = {kind.__name__ for kind in Saved.__subclasses__() if kind.__module__.startswith("gaitdisc.results")}
+    assert kinds == set(PAGES) and len(kinds) == len(READERS)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_saved_result_is_drawn_as_it_was_in_memory(kind, request, tmp_path):
+    made, write = KINDS[kind][0](request), KINDS[kind][1]
+    assert type(made).__name__ == kind
+    pages = draw_saved(made.save(tmp_path / "saved"))
+    assert list(pages) == ["report"]
+    assert pages["report"].read_bytes() == write(made, tmp_path / "memory").read_bytes()
+
+
+def test_cycles_that_stand_alone_are_drawn_and_claim_no_date(tmp_path):
+    made = made_cycles()
+    text = draw_saved(made.save(tmp_path))["report"].read_text()
+    assert "4 left cycles and 4 right cycles of 2 trials are kept" in text
+    assert "Computed in the run that they come from, whose run.json has settings and date" in text
+    assert pd.read_csv(tmp_path / "report" / "tables" / "cycles.csv")["kept"].sum() == 8
+
+
+def test_the_questions_beside_a_run_are_drawn_with_it(run, tmp_path):
+    variants().save(run.save(tmp_path) / "sensitivity")
+    pages = draw_saved(tmp_path)
+    assert set(pages) == {"report", "sensitivity"}
+    assert pages["sensitivity"] == tmp_path / "sensitivity" / "report.html"
+
+
+def test_a_folder_of_a_newer_version_is_refused_in_words_and_nothing_is_drawn(tmp_path):
+    for made, file in ((manufactured(), "discovery.json"), (made_cycles(), "cycles.json")):
+        place = made.save(tmp_path / file) / file
+        place.write_text(sealed_text(read_sealed(place) | {"format": 2}))
+        with pytest.raises(SchemaError, match=r"is of format 2, not 1\. Another version wrote it: install that one"):
+            draw_saved(place.parent)
+        assert not list(tmp_path.rglob("*.html"))
+
+
+def test_a_folder_without_a_result_is_refused_with_what_it_holds(tmp_path):
+    (tmp_path / "study.toml").write_text("")
+    with pytest.raises(SchemaError, match=r"a saved result is a folder with one of run.json.* holds study.toml"):
+        draw_saved(tmp_path)
+    (tmp_path / "discovery.json").write_text(json.dumps({"verdict": "no_gap"}))
+    with pytest.raises(SchemaError, match="without a hash of its own"):
+        draw_saved(tmp_path)
