@@ -160,7 +160,7 @@ class Filters(_Part):
 
 
 class Kinematics(_Part):
-    """Where joint angles of pooled cycles come from."""
+    """Where joint angles come from."""
 
     angles: Literal["file", "markers"] | None = Field(
         default=None,

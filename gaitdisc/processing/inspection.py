@@ -13,8 +13,9 @@ from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import is_static, is_walk, not_compared, refused_participant, trial_sets
 from gaitdisc.processing.contact_choice import chosen_contacts
 from gaitdisc.processing.pooled import pooled_cycles, pooled_instead
-from gaitdisc.processing.process import processed, quality_findings, stride_findings
+from gaitdisc.processing.process import quality_findings, stride_findings
 from gaitdisc.processing.side_checks import side_findings
+from gaitdisc.processing.study_walks import ReadWalk, StudyWalks
 from gaitdisc.recording import Finding, Strides, Trial
 from gaitdisc.results import PooledCycles
 from gaitdisc.signals.contacts import order_findings
@@ -103,12 +104,12 @@ def inspected_study(study: Study) -> Iterator[Inspection]:
 def _processed(study: Study, participant: Participant, reader: C3DReader) -> dict[int, Inspection]:
     """Trials that models are to be fitted to, each alone, by their place in the study."""
     found = {}
+    walks = StudyWalks(study, participant, lambda planned: read_planned_trial(study, participant, planned, reader))
     for place, planned in enumerate(participant.trials):
         if not is_walk(study, planned):
             continue
         try:
-            trial = read_planned_trial(study, participant, planned, reader)
-            found[place] = _of_study(trial, study, _named(planned))
+            found[place] = _of_study(walks.read_walk(planned), study, _named(planned))
         except GaitdiscError as error:
             found[place] = Inspection(_named(planned), participant.id, planned.condition, refusal=str(error))
     return found
@@ -194,9 +195,10 @@ def inspected_file(path: Path, reader: C3DReader | None = None) -> Inspection:
     return _looked_at(trial, path.name)
 
 
-def _of_study(trial: Trial, study: Study, name: str) -> Inspection:
+def _of_study(read: ReadWalk, study: Study, name: str) -> Inspection:
+    trial = read.trial
     try:
-        walk = processed(trial, study)
+        walk = read.processed(study)
     except GaitdiscError as error:
         seen = _looked_at(trial, name)
         return Inspection(name, trial.subject, trial.condition, seen.streams, seen.strides, seen.findings, str(error))
