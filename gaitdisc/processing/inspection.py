@@ -11,6 +11,7 @@ from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial, read_trial
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import is_static, is_walk, not_compared, refused_participant, trial_sets
+from gaitdisc.processing.angles_of_segments import with_segment_angles
 from gaitdisc.processing.contact_choice import chosen_contacts
 from gaitdisc.processing.pooled import pooled_cycles, pooled_instead
 from gaitdisc.processing.process import quality_findings, stride_findings
@@ -208,6 +209,7 @@ def _of_study(read: ReadWalk, study: Study, name: str) -> Inspection:
 
 
 def _looked_at(trial: Trial, name: str) -> Inspection:
+    trial = with_segment_angles(trial)
     findings = [*trial.findings, *quality_findings(trial)]
     strides: dict[str, Strides] = {}
     refusal = ""
