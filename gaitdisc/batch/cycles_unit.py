@@ -12,7 +12,7 @@ from gaitdisc.batch.unit_key import person_key, unit_key
 from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
-from gaitdisc.ingest.trial_sets import static_trial, trial_sets
+from gaitdisc.ingest.trial_sets import functional_trial, static_trial, trial_sets
 from gaitdisc.recording import Trial
 from gaitdisc.results import PooledCycles
 from gaitdisc.results.cycles_store import cycles_name, load_cycles, save_cycles
@@ -53,8 +53,8 @@ def cycles_key(study: Study, participant: Participant) -> str:
     """Hash of all that decides a participant's pooled cycles: files, settings, and the package's own code."""
     parts = [participant.id, participant.group, person_key(study, participant)]
     for one in trial_sets(study, participant):
-        standing = static_trial(study, participant, one.session)
-        trials = (*one.trials, *((standing,) if standing else ()))
+        beside = (static_trial(study, participant, one.session), functional_trial(study, participant, one.session))
+        trials = (*one.trials, *(trial for trial in beside if trial))
         parts += [one.session, one.condition, *(unit_key(study, trial) for trial in trials)]
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()
 

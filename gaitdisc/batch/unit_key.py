@@ -8,7 +8,7 @@ from collections.abc import Mapping
 
 from gaitdisc.ingest.file_hash import file_sha256
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
-from gaitdisc.ingest.trial_sets import static_trial
+from gaitdisc.ingest.trial_sets import functional_trial, static_trial
 from gaitdisc.results.provenance import code_sha256
 
 
@@ -18,7 +18,8 @@ def unit_keys(study: Study, participant: Participant) -> dict[str, str]:
     for word in study.conditions.both:
         trial = participant.trials_of(word)[0]
         standing = static_trial(study, participant, trial.session or "")
-        parts = [person_key(study, participant), *(unit_key(study, one) for one in (trial, standing) if one)]
+        circled = functional_trial(study, participant, trial.session or "")
+        parts = [person_key(study, participant), *(unit_key(study, one) for one in (trial, standing, circled) if one)]
         keys[word] = hashlib.sha256("\n".join(parts).encode()).hexdigest()
     return keys
 

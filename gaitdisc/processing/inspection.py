@@ -10,7 +10,7 @@ from gaitdisc.errors import GaitdiscError, StrideError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial, read_trial
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
-from gaitdisc.ingest.trial_sets import is_static, is_walk, not_compared, refused_participant, trial_sets
+from gaitdisc.ingest.trial_sets import is_functional, is_static, is_walk, not_compared, refused_participant, trial_sets
 from gaitdisc.processing.angles_of_segments import with_segment_angles
 from gaitdisc.processing.contact_choice import chosen_contacts
 from gaitdisc.processing.pooled import pooled_cycles, pooled_instead
@@ -179,7 +179,8 @@ def _unused(study: Study, participant: Participant, reader: C3DReader) -> dict[i
             found[place] = Inspection(name, participant.id, planned.condition, refusal=str(error))
             continue
         standing = Inspection(name, trial.subject, trial.condition, _streams(trial), {}, _sorted(trial.findings))
-        found[place] = standing if is_static(study, planned) else _looked_at(trial, name)
+        looked_at = not is_static(study, planned) and not is_functional(study, planned)
+        found[place] = _looked_at(trial, name) if looked_at else standing
     return found
 
 

@@ -9,8 +9,10 @@ from pathlib import Path
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.c3d_measures import read_body_measures
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
-from gaitdisc.ingest.trial_sets import static_trial
+from gaitdisc.ingest.trial_sets import functional_trial, static_trial
 from gaitdisc.kinematics.calibration import Calibration, calibrated
+from gaitdisc.kinematics.functional_hips import functional_hips
+from gaitdisc.kinematics.marker_set import MarkerSet
 from gaitdisc.kinematics.motion import chosen_marker_set
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
@@ -44,6 +46,7 @@ class Standing:
     markers: Recording | None
     unread: str = ""
     emg_sizes: Mapping[str, float] = field(default_factory=dict)
+    circled: Recording | None = None
     _calibrations: dict[str, Calibration] = field(default_factory=dict, init=False)
     _said: set[Finding] = field(default_factory=set, init=False)
     _walked: tuple[str, Mapping[str, float]] | None = field(default=None, init=False)
@@ -121,8 +124,23 @@ class Standing:
         if chosen.name not in self._calibrations:
             kept = chosen.with_joints(wanted.joints) if wanted and wanted.joints else chosen
             kept = kept.with_hip(wanted.hip) if wanted and wanted.hip else kept
-            self._calibrations[chosen.name] = calibrated(self.markers, kept, self._measures(self.planned))
+            self._calibrations[chosen.name] = self._calibrated(kept)
         return self._calibrations[chosen.name]
+
+    def _calibrated(self, chosen: MarkerSet) -> Calibration:
+        """Hips by function where a trial of the session shows them and the study names no others."""
+        measures = self._measures(self.planned)
+        body = calibrated(self.markers, chosen, measures)
+        if self.circled is None or (self.study.kinematics and self.study.kinematics.hip):
+            return body
+        try:
+            hips, findings = functional_hips(self.circled, body)
+        except GaitdiscError as error:
+            file = self.circled.source.file or "the functional trial"
+            said = Finding("warning", "functional hip", file, str(error).rstrip("."), "hips by 1 to 2 cm")
+            return replace(body, findings=(*body.findings, said))
+        own = calibrated(self.markers, chosen, measures, hips) if hips else body
+        return replace(own, findings=(*own.findings, *findings))
 
     def _person(self, planned: PlannedTrial, trial: Trial) -> tuple[Person | None, tuple[Finding, ...]]:
         """Mass and sex: the study's own, else the static file's, else the walk's; without a mass why not."""
@@ -154,8 +172,19 @@ def standing_of(study: Study, participant: Participant, session: str, read: Read
     except GaitdiscError as error:
         return Standing(study, participant, planned, None, f"the static trial cannot be used: {error}")
     sizes = emg_sizes(trial.stream("emg")) if "emg" in trial.streams else {}
-    unread = "the static trial has no markers"
-    return Standing(study, participant, planned, trial.streams.get("markers"), unread, sizes)
+    unread, circled = "the static trial has no markers", _circled(study, participant, session, read)
+    return Standing(study, participant, planned, trial.streams.get("markers"), unread, sizes, circled)
+
+
+def _circled(study: Study, participant: Participant, session: str, read: Read) -> Recording | None:
+    """Markers of the trial in which the legs are circled about the hips; `check` says why it cannot be read."""
+    planned = functional_trial(study, participant, session)
+    if planned is None:
+        return None
+    try:
+        return read(planned).streams.get("markers")
+    except GaitdiscError:
+        return None
 
 
 def marker_set_of(study: Study) -> str | Path | None:

@@ -87,6 +87,22 @@ def test_markers_without_a_static_trial_are_refused_in_words(trials, change, wor
         walks(own, kinematics, planned).walk(WALK)
 
 
+def test_hips_come_from_a_trial_of_circled_legs_unless_the_study_names_others(trials):
+    turn = 2 * np.pi * np.arange(600) / 500
+    angles = {name: np.zeros(600) for name in known_angles(2)}
+    for side in "rl":
+        angles |= {f"hip_flexion_{side}": 25 * np.sin(turn), f"hip_adduction_{side}": 20 * np.sin(1.5 * turn + 0.4)}
+    circled = {"markers": markers_of(angles, RAJAGOPAL, speed=0.0, file="circles.trc")}
+    own = {**trials, "functional": Trial("P01 functional", circled)}
+    planned = (WALK, STATIC, PlannedTrial(condition="functional", files=("circles.trc",)))
+    for kinematics, by_function in ((FREE, True), (Kinematics(joints="free", hip="harrington"), False)):
+        read = walks(trials, kinematics, planned)
+        read.read = lambda one: own["walk" if one is WALK else one.condition]
+        said = [finding for finding in read.read_walk(WALK).trial.findings if finding.kind == "functional hip"]
+        assert len(said) == 2 * by_function
+        assert all("hip_" in one.what and "by function, 0.0 mm from the hip" in one.what for one in said)
+
+
 def test_the_weight_comes_from_the_study(trials):
     assert walks(trials).read_walk(WALK).body_weight_n is None
     assert walks(trials, mass_kg=30.0).read_walk(WALK).body_weight_n == pytest.approx(294.2, abs=0.1)
