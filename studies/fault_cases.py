@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import re
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from faults_of_meaning import (
@@ -35,7 +35,10 @@ MASSES = {"mrs": 75.0, "moco": 75.3, "gait10dof": 72.6}
 
 def cases(data: Path, quick: bool = False) -> Iterator[Case]:
     """Every case; three of three files where it is to be quick."""
-    every = itertools.chain(_young(data / "gait"), _treadmill(data / "gait"), _opensim(data), _angles(data / "gait"))
+    gait = data / "gait"
+    records = {path.stem[:12]: path for path in (gait / "treadmill_walk_ik").glob("S01DE*.mot")}
+    records |= {f"exotendon {path.stem[-27:-22]}": path for path in (gait / "exotendon_run").glob("*.mot")}
+    every = itertools.chain(_young(gait), _treadmill(gait), _opensim(data), _angles(records))
     if not quick:
         yield from every
         return
@@ -46,9 +49,32 @@ def cases(data: Path, quick: bool = False) -> Iterator[Case]:
             yield case
 
 
-def _young(gait: Path) -> Iterator[Case]:
+def held_back(data: Path) -> Iterator[Case]:
+    """Cases in files that nothing was set on: the turns, another laboratory's walks, two treadmill files."""
+    gait = data / "gait"
+    yield from _young(gait, "turn")
+    for path in sorted((gait / "opensim_walks" / "c3d_walk_noemg").glob("*.c3d")):
+        yield from _without_emg(path)
+    names = {"S01DN603": gait / "treadmill_walk_ik" / "S01DN603_ik.mot"}
+    names |= {f"exotendon {path.parent.name}": path for path in (gait / "exotendon_run").glob("*/manual_ik.mot")}
+    yield from _angles(names)
+
+
+def _without_emg(path: Path) -> Iterator[Case]:
+    files = {"walk.c3d": path}
+
+    def case(fault, turn, words):
+        return Case(fault, path.stem, files, in_c3d("walk.c3d", turn), words)
+
+    yield case("numbers in m for mm", points_times(1e-3), "looks like m")
+    yield case("forces per kg", analog("^[FM]", 0.014), "per kg")
+    yield case("left and right swapped", point_labels(_mirrored), "left and right are (exchanged|swapped)")
+    yield case("plates swapped", in_plates, r"follows the other|swapped|cm beside the nearest foot")
+
+
+def _young(gait: Path, kind: str = "straight") -> Iterator[Case]:
     for place, person in enumerate(WALKERS):
-        walk = next((gait / "young_straight_and_turn" / person / "straight").glob("*.c3d"))
+        walk = next((gait / "young_straight_and_turn" / person / kind).glob("*.c3d"))
         files = {"walk.c3d": walk, "static.c3d": static_file(gait, person)}
         live = LIVE[person]
 
@@ -174,9 +200,7 @@ def _swapped(sided: bool) -> Turn:
     return turn
 
 
-def _angles(gait: Path) -> Iterator[Case]:
-    records = {path.stem[:12]: path for path in (gait / "treadmill_walk_ik").glob("S01DE*.mot")}
-    records |= {f"exotendon {path.stem[-27:-22]}": path for path in (gait / "exotendon_run").glob("*.mot")}
+def _angles(records: Mapping[str, Path]) -> Iterator[Case]:
     for name, path in sorted(records.items()):
         files = {"ik.mot": path}
         header = in_storage("ik.mot", scaled("^$", 1.0), ("inDegrees=yes", "inDegrees=no"))

@@ -1,6 +1,6 @@
 """How many planted faults of meaning are found with the right words, and how many clean walks raise a false alarm.
 
-    python studies/planted_faults.py [DATA] [--only WORD] [--quick]
+    python studies/planted_faults.py [DATA] [--only WORD] [--held-back] [--quick]
 
 DATA holds gait and opensim_gait10dof; by default ../shared/data. Each case is a copy of real files in which one meaning
 is turned: mm for m, degrees for radians, left for right. It is given to what a user runs: `check` of a study and, where
@@ -16,6 +16,7 @@ GIVEN = command_line(
     __doc__,
     argument("data", "folder of the real recordings", SHARED),
     argument("--only", "only faults whose name has this word", type=str, default=""),
+    argument("--held-back", "cases in files that nothing was set on", False),
     QUICK,
 )  # before the slow imports
 
@@ -26,7 +27,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from fault_cases import cases
+from fault_cases import cases, held_back
 from faults_of_meaning import Case
 
 import gaitdisc as gd
@@ -49,11 +50,11 @@ class Outcome(NamedTuple):
     said: list[str]
 
 
-def outcomes(data: Path, only: str = "", quick: bool = False) -> tuple[list[Outcome], list[str]]:
-    """Every case, and the alarms of the same walks untouched."""
+def outcomes(data: Path, only: str = "", quick: bool = False, kept: bool = False) -> tuple[list[Outcome], list[str]]:
+    """Every case, those held back where they are asked for, and the alarms of the same walks untouched."""
     clean: dict[tuple[Path, ...], set[str]] = {}
     found, alarms = [], []
-    for case in cases(data, quick):
+    for case in held_back(data) if kept else cases(data, quick):
         if only not in case.fault:
             continue
         key = tuple(case.files.values())
@@ -131,7 +132,7 @@ def table(found: Sequence[Outcome]) -> list[tuple[str | int, ...]]:
 
 def main() -> None:
     """Print the table, the false alarms and what was missed."""
-    found, alarms = outcomes(GIVEN.data, GIVEN.only, GIVEN.quick)
+    found, alarms = outcomes(GIVEN.data, GIVEN.only, GIVEN.quick, GIVEN.held_back)
     print("| fault | n | found | other words | not found |\n|---|---|---|---|---|")
     for row in table(found):
         print(f"| {' | '.join(map(str, row))} |")

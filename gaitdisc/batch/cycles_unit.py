@@ -6,14 +6,13 @@ import hashlib
 from dataclasses import replace
 from pathlib import Path
 
-from gaitdisc.batch.public_words import PublicWords, of_trial, words_of
-from gaitdisc.batch.unit_key import unit_key
+from gaitdisc.batch.processed_walks import public_trial
+from gaitdisc.batch.public_words import PublicWords, words_of
+from gaitdisc.batch.unit_key import person_key, unit_key
 from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.ingest.c3d import C3DReader
-from gaitdisc.ingest.file_hash import file_sha256
-from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
-from gaitdisc.ingest.trial_sets import static_trial, trial_sets
+from gaitdisc.ingest.trial_sets import functional_trial, static_trial, trial_sets
 from gaitdisc.recording import Trial
 from gaitdisc.results import PooledCycles
 from gaitdisc.results.cycles_store import cycles_name, load_cycles, save_cycles
@@ -36,9 +35,8 @@ def computed_cycles(study: Study, participant: Participant, folder: Path) -> tup
     with C3DReader() as reader:  # one process for all trials
 
         def read(planned: PlannedTrial) -> Trial:
-            public = of_trial(words, participant, planned)
             try:
-                return public.of(lambda: public.trial(read_planned_trial(study, participant, planned, reader)))
+                return public_trial(study, participant, words, reader, planned)
             except ReadError as error:
                 unread.append(error)
                 raise
@@ -53,13 +51,10 @@ def computed_cycles(study: Study, participant: Participant, folder: Path) -> tup
 
 def cycles_key(study: Study, participant: Participant) -> str:
     """Hash of all that decides a participant's pooled cycles: files, settings, and the package's own code."""
-    parts = [participant.id, participant.group, f"{participant.mass_kg} {participant.height_m} {participant.sex}"]
-    named = study.kinematics.marker_set if study.kinematics else ""
-    if named.endswith(".toml") and study.path_of(named).is_file():
-        parts.append(file_sha256(study.path_of(named)))
+    parts = [participant.id, participant.group, person_key(study, participant)]
     for one in trial_sets(study, participant):
-        standing = static_trial(study, participant, one.session)
-        trials = (*one.trials, *((standing,) if standing else ()))
+        beside = (static_trial(study, participant, one.session), functional_trial(study, participant, one.session))
+        trials = (*one.trials, *(trial for trial in beside if trial))
         parts += [one.session, one.condition, *(unit_key(study, trial) for trial in trials)]
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()
 

@@ -11,8 +11,9 @@ from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import not_compared
-from gaitdisc.processing.process import processed
+from gaitdisc.processing.study_walks import StudyWalks
 from gaitdisc.processing.walk import Walk
+from gaitdisc.recording import Trial
 from gaitdisc.response.samples import gait_samples
 from gaitdisc.results import Refusal
 
@@ -37,19 +38,26 @@ def walks_and_errors(study: Study, participant: Participant) -> tuple[dict[str, 
     walks, errors = {}, {}
     words = words_of(study, participant)
     with C3DReader() as reader:  # starts its process at the first C3D file, one for both walks
+        own = StudyWalks(study, participant, partial(public_trial, study, participant, words, reader))
         for word in study.conditions.both:
             try:
                 planned = participant.trials_of(word)[0]
                 public = of_trial(words, participant, planned)
-                walks[word] = public.of(partial(_walk, study, participant, planned, reader, public))
+                walks[word] = public.of(partial(_walk, own, planned, public))
             except GaitdiscError as error:
                 errors[word] = error
     return walks, errors
 
 
-def _walk(
-    study: Study, participant: Participant, planned: PlannedTrial, reader: C3DReader, public: PublicWords
-) -> Walk:
-    walk = processed(public.trial(read_planned_trial(study, participant, planned, reader)), study)
-    left_away = gait_samples(walk.trajectory, study.models.outputs)[1].finding()
+def public_trial(
+    study: Study, participant: Participant, words: PublicWords, reader: C3DReader, planned: PlannedTrial
+) -> Trial:
+    """Trial of a study, read, whose files and findings are called by public words alone."""
+    public = of_trial(words, participant, planned)
+    return public.of(lambda: public.trial(read_planned_trial(study, participant, planned, reader)))
+
+
+def _walk(own: StudyWalks, planned: PlannedTrial, public: PublicWords) -> Walk:
+    walk = own.walk(planned)
+    left_away = gait_samples(walk.trajectory, own.study.models.outputs)[1].finding()
     return replace(walk, findings=tuple(map(public.finding, (*walk.findings, left_away))))

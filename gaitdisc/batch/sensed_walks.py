@@ -4,21 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.batch.processed_walks import public_trial
 from gaitdisc.batch.public_words import PublicWords, of_trial, words_of
 from gaitdisc.batch.target_walks import STATES as STATE_TARGETS
 from gaitdisc.batch.target_walks import TARGETS, refuse_unknown_targets, target_walk
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, GaitdiscError, SamplingError, UnitError
 from gaitdisc.ingest.c3d import C3DReader
-from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Models, Participant, Study
 from gaitdisc.ingest.trial_sets import is_walk
-from gaitdisc.processing.process import processed
-from gaitdisc.recording import Finding, Recording, Trial
+from gaitdisc.processing.study_walks import ReadWalk, StudyWalks
+from gaitdisc.recording import Finding, Recording
 from gaitdisc.results import Refusal
 
 EDGE_S = 0.3  # where a zero-lag filter lacks one side
@@ -105,9 +106,10 @@ def sensed_walks(
                 refusals.append(Refusal(person.id, "", f"excluded in the study: {person.excluded}"))
                 continue
             public = words_of(study, person, sensors)
-            for trial in _trials(study, person, condition, reader, public, refusals):
+            for read in _walks(study, person, condition, reader, public, refusals):
+                trial = read.trial
                 try:
-                    walk, seen = _sensed(trial, study, sensors, targets)
+                    walk, seen = _sensed(read, study, sensors, targets)
                 except GaitdiscError as error:
                     reason = f"{trial.name}: {public.error(error)}"
                     refusals.append(Refusal(person.id, trial.condition, reason))
@@ -132,28 +134,30 @@ def sensed_walks(
     return SensedWalks(people, channels, tuple(refusals), (*left_out, *findings), files)
 
 
-def _trials(
+def _walks(
     study: Study,
     person: Participant,
     condition: str,
     reader: C3DReader,
     public: PublicWords,
     refusals: list[Refusal],
-) -> list[Trial]:
+) -> list[ReadWalk]:
     found = []
+    own = StudyWalks(study, person, partial(public_trial, study, person, public, reader))
     for planned in person.trials:
         if not is_walk(study, planned) or (condition and planned.condition != condition):
             continue
         try:
-            own = of_trial(public, person, planned)
-            trial = own.trial(read_planned_trial(study, person, planned, reader))
-            found.append(own.known_channels(trial, TOLD))
+            read = own.read_walk(planned)
+            trial = of_trial(public, person, planned).known_channels(read.trial, TOLD)
+            found.append(replace(read, trial=trial))
         except GaitdiscError as error:
             refusals.append(Refusal(person.id, planned.condition, str(public.error(error))))
     return found
 
 
-def _sensed(trial: Trial, study: Study, sensors: Sequence[str], targets: str) -> tuple[SensedWalk, list[Finding]]:
+def _sensed(read: ReadWalk, study: Study, sensors: Sequence[str], targets: str) -> tuple[SensedWalk, list[Finding]]:
+    trial = read.trial
     if targets != STATE_TARGETS:
         both, strides, seen = target_walk(trial, study, sensors, targets)
         kept = both.between(both.time[0] + EDGE_S, both.time[-1] - EDGE_S)
@@ -164,7 +168,7 @@ def _sensed(trial: Trial, study: Study, sensors: Sequence[str], targets: str) ->
     wanted = dict.fromkeys([*(name for name in STATES if name in kinematics.names), *sensors])
     legs = [f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle") for side in "rl"]
     needed = tuple(dict.fromkeys([*wanted, *(name for name in legs if name in kinematics.names)]))
-    walk = processed(trial, study.model_copy(update={"models": Models().model_copy(update={"angles": needed})}))
+    walk = read.processed(study.model_copy(update={"models": Models().model_copy(update={"angles": needed})}))
     state = walk.state.selected(list(wanted))
     inner = state.between(state.time[0] + EDGE_S, state.time[-1] - EDGE_S)
     phi = walk.strides[walk.side].phi(inner.time)

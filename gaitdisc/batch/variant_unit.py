@@ -18,8 +18,8 @@ from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.processing.filter_null import filter_null_of
-from gaitdisc.processing.process import processed
-from gaitdisc.recording import Trajectory, Trial
+from gaitdisc.processing.study_walks import ReadWalk, StudyWalks
+from gaitdisc.recording import Trajectory
 from gaitdisc.response.data_quantity import shortened
 from gaitdisc.response.fit_response import ResponseSettings, fit_response, held_out_part
 from gaitdisc.response.modalities import fit_without
@@ -75,7 +75,8 @@ def _sensitivity(study: Study, participant: Participant, progress: Progress) -> 
     try:
         with C3DReader() as reader:
             planned = {word: participant.trials_of(word)[0] for word in study.conditions.both}
-            trials = {word: read_planned_trial(study, participant, one, reader) for word, one in planned.items()}
+            own = StudyWalks(study, participant, lambda one: read_planned_trial(study, participant, one, reader))
+            trials = {word: own.read_walk(one) for word, one in planned.items()}
     except GaitdiscError as error:
         return Refusal(participant.id, "", str(public.error(error)))
     tables, left_away = [], {}
@@ -92,11 +93,11 @@ def _sensitivity(study: Study, participant: Participant, progress: Progress) -> 
     return Variants(participant.id, "sensitivity", table, left_away)
 
 
-def _under(study: Study, trials: Mapping[str, Trial], setting: Setting, told: Progress) -> pd.DataFrame:
+def _under(study: Study, trials: Mapping[str, ReadWalk], setting: Setting, told: Progress) -> pd.DataFrame:
     """R2 on device walking under one setting."""
     cut_offs = {"kinematics_hz": setting.angles_hz, "emg_lowpass_hz": setting.emg_hz}
     filtered = study.model_copy(update={"filters": study.filters.model_copy(update=cut_offs)})
-    nominal, exo = (processed(trials[word], filtered) for word in study.conditions.both)
+    nominal, exo = (trials[word].processed(filtered) for word in study.conditions.both)
     fits = response_settings(study)
     null = filter_null_of(exo, filtered.filters)
     less_nominal, less_exo = (_first_share(walk.trajectory, fits, setting.share) for walk in (nominal, exo))

@@ -9,9 +9,12 @@ import typer
 
 
 def angles(
-    trial: Annotated[Path, typer.Argument(help="Markers of the trial: .c3d or .trc.")],
-    static: Annotated[Path, typer.Option("--static", help="Markers of the same person standing: .c3d or .trc.")],
+    trial: Annotated[Path, typer.Argument(help="Markers of the trial, .c3d or .trc; or segments of Theia3D, .c3d.")],
     out: Annotated[Path, typer.Option("--out", help="File to write: .csv, .tsv, .parquet, .mot, .sto.")],
+    static: Annotated[
+        Path | None,
+        typer.Option("--static", help="Markers of the same person standing: .c3d or .trc; segments need none."),
+    ] = None,
     marker_set: Annotated[
         str, typer.Option(help="plug_in_gait, oxford_foot, ..., or a .toml file; recognised by the labels by default.")
     ] = "",
@@ -24,7 +27,7 @@ def angles(
         typer.Option(help="Left and right knee, left and right ankle [m], where the static file has none."),
     ] = None,
 ) -> None:
-    """Joint angles from markers, with the package's signs; widths are taken from the static C3D where it has them."""
+    """Joint angles from markers or segments, with the package's signs; widths are those of the static C3D, if any."""
     from dataclasses import replace
 
     from gaitdisc.ingest.c3d_measures import body_measures_in
@@ -32,16 +35,26 @@ def angles(
     from gaitdisc.ingest.storage import write_storage
     from gaitdisc.ingest.table import write_table
     from gaitdisc.kinematics.motion import moved_body
+    from gaitdisc.kinematics.segment_angles import segment_angles
+    from gaitdisc.recording.body_measures import BodyMeasures
 
-    walk, stood = (read_trial(file) for file in (trial, static))
-    markers, standing = walk.stream("markers"), stood.stream("markers")
-    measures = body_measures_in(static)
-    if widths is not None:
-        knees, ankles = (dict(zip("lr", pair, strict=True)) for pair in (widths[:2], widths[2:]))
-        measures = replace(measures, knee_width_m=knees, ankle_width_m=ankles)
-    found = moved_body(markers, standing, marker_set or None, measures, forward, joints or None).motion
+    walk = read_trial(trial)
+    seen = [*walk.findings]
+    if static is None and "segments" in walk.streams:
+        found, made = segment_angles(walk.stream("segments"))
+    else:
+        stood = read_trial(static) if static is not None else None
+        measures = body_measures_in(static) if static is not None else BodyMeasures()
+        if widths is not None:
+            knees, ankles = (dict(zip("lr", pair, strict=True)) for pair in (widths[:2], widths[2:]))
+            measures = replace(measures, knee_width_m=knees, ankle_width_m=ankles)
+        standing = stood.stream("markers") if stood is not None else None
+        asked = (marker_set or None, measures, forward, joints or None)
+        moved = moved_body(walk.stream("markers"), standing, *asked).motion
+        found, made = moved.angles, moved.findings
+        seen = [*(stood.findings if stood is not None else ()), *seen]
     write = write_storage if out.suffix.lower() in (".mot", ".sto") else write_table
-    write(found.angles, out)
-    for finding in dict.fromkeys((*stood.findings, *walk.findings, *found.findings)):
+    write(found, out)
+    for finding in dict.fromkeys((*seen, *made)):
         typer.echo(finding.line())
-    typer.echo(f"{out}: {len(found.angles.names)} channels, {len(found.angles.time)} samples")
+    typer.echo(f"{out}: {len(found.names)} channels, {len(found.time)} samples")

@@ -14,6 +14,7 @@ from gaitdisc.recording import Finding
 
 FULL_TURN = 2 * math.pi  # a joint angle beyond this cannot be in radians
 WALKING_RAD = (0.35, 2.5)  # range of hip flexion or of the knee in a moving trial, in radians (20 to 143 deg)
+PERCENTILES = (5, 95)
 SHORTEST_S, FEWEST = 0.5, 20  # a shorter piece, or one of fewer samples, may hold no movement
 _COPIED = re.compile(r"(knee_angle_[rl])_beta")
 
@@ -46,14 +47,15 @@ def judged_unit(
         if stated:
             return stated, None
         raise _undecided(file, "it has no joint angle that would show it")
-    most = _largest(values[:, joints])
+    bounded = [i for i in joints if "_rot" not in names[i]] or joints  # an arm or a thigh may wind on by whole turns
+    most = _largest(values[:, bounded])
     moving = [i for i in joints if re.match(r"hip_flexion|knee_angle", names[i])]
     reach = _largest_range(values[:, moving or joints])
     long_enough = time[-1] - time[0] >= SHORTEST_S and len(time) >= FEWEST
     beyond = most > FULL_TURN
     like_rad = not beyond and long_enough and WALKING_RAD[0] <= reach <= WALKING_RAD[1]
     if stated == "rad" and beyond:
-        which = next(names[i] for i in joints if _largest(values[:, i]) == most)
+        which = next(names[i] for i in bounded if _largest(values[:, i]) == most)
         raise UnitError(
             f"{file} states radians (inDegrees=no), so no joint angle may exceed {FULL_TURN:.2f}",
             f"{which} reaches {most:.4g}, which looks like degrees",
@@ -115,8 +117,9 @@ def _largest(values: NDArray[np.float64]) -> float:
 
 
 def _largest_range(values: NDArray[np.float64]) -> float:
+    """Widest range of a column, without the twentieth at either end, where a fit may have lost its markers."""
     columns = [column[np.isfinite(column)] for column in values.T]
-    return max((float(column.max() - column.min()) for column in columns if column.size), default=0.0)
+    return max((float(np.ptp(np.percentile(column, PERCENTILES))) for column in columns if column.size), default=0.0)
 
 
 def _undecided(file: str, why: str) -> UnitError:

@@ -19,6 +19,7 @@ from gaitdisc.ingest.c3d_labels import LabelMap
 from gaitdisc.ingest.c3d_layout import C3DLayout, expected_layout
 from gaitdisc.ingest.c3d_parameters import C3DParameters, read_c3d_parameters
 from gaitdisc.ingest.c3d_points import Streams, point_names, point_streams
+from gaitdisc.ingest.c3d_rotations import file_segments
 from gaitdisc.ingest.c3d_scales import check_common_scales, unscaled_channels
 from gaitdisc.ingest.file_hash import file_sha256
 from gaitdisc.ingest.force_plates import force_plates, plate_loads, plate_streams
@@ -61,11 +62,12 @@ class C3DReader:
     def read(self, path: str | Path, channels: Mapping[str, str] | None = None) -> Trial:
         """Trial of one C3D file.
 
-        Streams: `markers` [m] as `<marker>.x`; `kinematics` [deg], the model's angles under the names of the
-        vocabulary where it knows them, `<label>.x` otherwise; `moments`, the model's, internal, [N m/kg, N/kg, W/kg]
-        where the file holds them per body mass and [N m, N, W] otherwise; `emg` [V]; `forces`
-        [N, N m, m], ground on foot (see `force_plates`); `signals`, every other analog channel. The first frame is at
-        0 s. Nothing passes that names a person: neither label prefixes nor the groups SUBJECTS, TRIAL, MANUFACTURER.
+        Streams: `markers` [m] as `<marker>.x`; `segments`, the poses of the group ROTATION (see `file_segments`);
+        `kinematics` [deg], the model's angles under the names of the vocabulary where it knows them, `<label>.x`
+        otherwise; `moments`, the model's, internal, [N m/kg, N/kg, W/kg] where the file holds them per body mass and
+        [N m, N, W] otherwise; `emg` [V]; `forces` [N, N m, m], ground on foot (see `force_plates`); `signals`, every
+        other analog channel. The first frame is at 0 s. Nothing passes that names a person: neither label prefixes nor
+        the groups SUBJECTS, TRIAL, MANUFACTURER.
 
         Parameters
         ----------
@@ -92,6 +94,9 @@ class C3DReader:
         header = read_c3d_header(path)
         parameters = read_c3d_parameters(path, header)
         check_common_scales(header, parameters)
+        if not header.points and not header.analog_values and parameters.count("ROTATION", "USED"):
+            segments = file_segments(path, header, parameters, Source(header.file, file_sha256(path)))
+            return Trial(path.stem, {"segments": segments} if segments is not None else {})
         layout, findings = expected_layout(header, parameters)
         rate_hz, doubts = _rate(header, parameters, layout)
         with ThreadPoolExecutor(1) as beside:  # the hash is done while the other process reads
@@ -113,6 +118,8 @@ class C3DReader:
             key: Recording(times["analog" if key in ANALOG_STREAMS else "points"], values, columns, source=source)
             for key, (values, columns) in streams.items()
         }
+        segments = file_segments(path, header, parameters, source)
+        recordings |= {"segments": segments} if segments is not None else {}
         return Trial(path.stem, recordings, events, tuple(findings), surfaces=surfaces)
 
     def _raw(self, path: Path, header: C3DHeader, layout: C3DLayout) -> tuple[RawTrial, list[Finding]]:

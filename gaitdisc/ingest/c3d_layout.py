@@ -115,7 +115,8 @@ def expected_layout(header: C3DHeader, parameters: C3DParameters) -> tuple[C3DLa
             f"{header.file} has room for {room}, says 65535",
             "Export the trial in parts, or with software that writes the group TRIAL.",
         )
-    return layout, [*_contradictions(said, layout, header), *_leftover(layout, header)]
+    rotations = parameters.count("ROTATION", "USED")  # their block follows the frames
+    return layout, [*_contradictions(said, layout, header), *([] if rotations else _leftover(layout, header))]
 
 
 def _frames(header: C3DHeader, parameters: C3DParameters) -> tuple[int, ...]:

@@ -44,7 +44,8 @@ WALK_WORDS = (
 PLAIN = "walking"  # what these say, and nothing else
 PLAIN_WORDS = (PLAIN, "walk", "gait")
 STATIC_WORDS = ("static", "stat", "standing", "stand", "calibration", "calib", "cal", "tpose", "anatomical")
-NO_WALK_WORDS = ("rom", "functional", "star", "mvc", "mvic", "jump", "squat", "sitting", "noise")
+FUNCTIONAL_WORDS = ("functional", "circumduction", "stararc", "star", "hjc")
+NO_WALK_WORDS = ("rom", "mvc", "mvic", "jump", "squat", "sitting", "noise")
 GROUP_WORDS = (
     "controls", "patients", "healthy", "typical", "td", "cp", "stroke", "parkinson", "amputees", "adults", "children",
 )  # fmt: skip
@@ -183,16 +184,20 @@ def session_word(path: Path) -> tuple[str, str]:
 
 
 def kind_of_trial(path: Path) -> str:
-    """Tell whether names say that somebody stands (`static`) or does something else than walk (`other`); or empty.
+    """Tell whether names say that somebody stands, circles the legs, or does something else than walk; or empty.
 
     Examples
     --------
     >>> kind_of_trial(Path("P01/Static/a.c3d")), kind_of_trial(Path("P01/hip_ROM1.c3d")), kind_of_trial(Path("a.c3d"))
     ('static', 'other', '')
+    >>> kind_of_trial(Path("P01/star_arc_right.c3d"))
+    'functional'
     """
     words = {word for name in (path.stem, *path.parent.parts) for word in (name.lower(), *words_in(name))}
     if words & set(STATIC_WORDS):
         return "static"
+    if words & set(FUNCTIONAL_WORDS):
+        return "functional"
     return "other" if words & set(NO_WALK_WORDS) else ""
 
 

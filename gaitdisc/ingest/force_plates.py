@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +17,9 @@ from gaitdisc.recording import Finding
 from gaitdisc.units import convert, inner_unit, parsed_unit
 
 CLEAR_LOAD_N = 100.0  # what a drifting plate does not show, and a foot does
+STRAY = 0.05  # share of the loaded samples that may lie beside a plate
 BESIDE_M = 0.05  # a centre of pressure farther outside of the plate than this is wrong
+Measured = tuple[ForcePlate, NDArray[np.float64], tuple[str, ...]]  # a plate, its channels, their units
 _CHANNELS_OF_TYPE = {1: 6, 2: 6, 3: 8, 4: 6}
 
 
@@ -98,7 +102,7 @@ def plate_streams(
         Analog channels in the file's units.
     """
     findings: list[Finding] = []
-    wrenches = []
+    wrenches, measured = [], []
     for plate in plates:
         units, doubts = _units(plate, parameters, length_unit, file)
         findings += doubts
@@ -108,7 +112,9 @@ def plate_streams(
         findings += doubts
         placed, doubts = _with_origin(plate, values, units, file)
         findings += doubts
+        measured.append((placed, values, units))
         wrenches.append((placed, *placed.wrench(values, units)))
+    findings += _exchanged(measured, file)
     up = [_upward(plate, force) for plate, force, _ in wrenches]
     most = float(np.sign(sum(up)))
     parts, channels = [], []
@@ -199,10 +205,10 @@ def _with_origin(
 ) -> tuple[ForcePlate, list[Finding]]:
     """Plate with its origin turned around if only then the centre of pressure lies on it."""
     beside = _beside(plate, values, units)
-    if beside < 0.05:
+    if beside < STRAY:
         return plate, []
     turned = replace(plate, origin=-plate.origin)
-    if plate.kind in (2, 4) and _beside(turned, values, units) < 0.05:
+    if plate.kind in (2, 4) and _beside(turned, values, units) < STRAY:
         what = f"force plate {plate.number}: ORIGIN points from the surface to the sensors; turned around"
         return turned, [
             Finding("note", "plate origin", file, what, "nothing; the centre of pressure lies on the plate")
@@ -211,6 +217,21 @@ def _with_origin(
     return plate, [
         Finding("warning", "centre of pressure", file, what, "joint moments; check offset, ORIGIN and units")
     ]
+
+
+def _exchanged(measured: Sequence[Measured], file: str) -> list[Finding]:
+    """Say which two plates bear each other's channels: with these exchanged each has its centre of pressure on it."""
+    findings = []
+    for (one, own, units), (other, others, their_units) in itertools.combinations(measured, 2):
+        astray = min(_beside(one, own, units), _beside(other, others, their_units))
+        if one.kind != other.kind or astray < STRAY:
+            continue
+        if max(_beside(one, others, their_units), _beside(other, own, units)) < STRAY:
+            what = f"force plates {one.number} and {other.number} are swapped: the centre of pressure lies beside each "
+            what += f"in {astray:.0%} of the loaded samples, and on each with their channels exchanged"
+            spoils = "which foot is on which plate, moments and powers; correct FORCE_PLATFORM:CHANNEL"
+            findings.append(Finding("warning", "swapped plates", file, what, spoils))
+    return findings
 
 
 def _beside(plate: ForcePlate, values: NDArray[np.float64], units: tuple[str, ...]) -> float:

@@ -29,6 +29,7 @@ from gaitdisc.ingest.people_table import Measured, is_people_table, measured_peo
 from gaitdisc.ingest.reading import ENDINGS, read_trial
 from gaitdisc.ingest.study import (
     ANGLES,
+    FUNCTIONAL,
     OUTPUTS,
     STATIC,
     UNKNOWN,
@@ -60,7 +61,7 @@ class FoundTrial:
     session : str
         What the session is put in order by, or empty.
     word, which : str
-        Word that tells the condition, and `nominal`, `device`, `static`, `other` (no walk) or empty.
+        Word that tells the condition, and `nominal`, `device`, `static`, `functional`, `other` (no walk) or empty.
     angles, varying, emg : tuple of str, optional
         Joint angles, those of them that vary, and EMG channels; None where the files hold no such stream.
     """
@@ -78,7 +79,7 @@ class FoundTrial:
     @property
     def walked(self) -> bool:
         """Whether it is taken as a walk."""
-        return self.which not in (STATIC, "other")
+        return self.which not in (STATIC, FUNCTIONAL, "other")
 
 
 def found_study(folder: Path | str, home: Path | str | None = None) -> tuple[Study, list[str]]:
@@ -185,7 +186,10 @@ def _found_trials(folder: Path, files: Sequence[Path], notes: list[str]) -> list
     standing = [each.files[0].as_posix() for each in found if each.which == STATIC]
     if standing:
         notes.append(f"standing, so {STATIC!r}: {', '.join(standing)}")
-    order = ("nominal", "device", "", STATIC, "other")
+    circled = [each.files[0].as_posix() for each in found if each.which == FUNCTIONAL]
+    if circled:
+        notes.append(f"legs circled about the hips by their names, so {FUNCTIONAL!r}: {', '.join(circled)}")
+    order = ("nominal", "device", "", STATIC, FUNCTIONAL, "other")
     return sorted(found, key=lambda each: order.index(each.which))
 
 
@@ -289,7 +293,7 @@ def named_conditions(found: Sequence[FoundTrial], notes: list[str]) -> tuple[Con
     rest = tuple(word for word in words if word not in (reference, device))
     called = {trial.word: told.get(trial.which, trial.word) for trial in walks}
     called[""] = PLAIN if others == [PLAIN] else UNKNOWN
-    called |= {STATIC: STATIC, "other": UNKNOWN}
+    called |= {STATIC: STATIC, FUNCTIONAL: FUNCTIONAL, "other": UNKNOWN}
     unnamed = [trial.files[0].as_posix() for trial in found if called[trial.word] == UNKNOWN]
     if unnamed:
         notes.append(

@@ -19,6 +19,7 @@ from gaitdisc.ingest.study_rules import (
 
 UNKNOWN = "unknown"  # condition of a trial that is listed but not used
 STATIC = "static"  # condition of a trial in which the person stands
+FUNCTIONAL = "functional"  # condition of a trial in which the legs are circled about the hips
 ANGLES = tuple(
     f"{angle}_{side}"
     for side in "rl"
@@ -72,7 +73,8 @@ class PlannedTrial(_Part):
     """One walk: the files that hold it, and what the files do not say."""
 
     condition: Word = Field(
-        description="a word of [conditions], 'static' for standing, or 'unknown' for a trial that is not used"
+        description="a word of [conditions], 'static' for standing, 'functional' for legs circled about the hips, or "
+        "'unknown' for a trial that is not used"
     )
     session: Word | None = Field(default=None, description="a word of sessions, never a date")
     files: tuple[FileName, ...] = Field(min_length=1, description="files of this one walk, relative to the study file")
@@ -160,7 +162,7 @@ class Filters(_Part):
 
 
 class Kinematics(_Part):
-    """Where joint angles of pooled cycles come from."""
+    """Where joint angles come from."""
 
     angles: Literal["file", "markers"] | None = Field(
         default=None,
@@ -288,7 +290,7 @@ class Study(_Part):
     def _check(self) -> Study:
         check_conditions(self.conditions, UNKNOWN)
         check_sessions(self)
-        check_participants(self, (UNKNOWN, STATIC))
+        check_participants(self, (UNKNOWN, STATIC, FUNCTIONAL))
         check_channels(self.channels)
         check_variables(self.models, self.channels)
         return self

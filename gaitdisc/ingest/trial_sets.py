@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from gaitdisc.ingest.study import STATIC, UNKNOWN, Participant, PlannedTrial, Study
+from gaitdisc.ingest.study import FUNCTIONAL, STATIC, UNKNOWN, Participant, PlannedTrial, Study
 
 
 @dataclass(frozen=True)
@@ -38,6 +38,11 @@ def is_static(study: Study, planned: PlannedTrial) -> bool:
     return planned.condition == STATIC and STATIC not in study.conditions.words
 
 
+def is_functional(study: Study, planned: PlannedTrial) -> bool:
+    """Whether a trial is one in which the legs are circled about the hips, but for a study that walks by that word."""
+    return planned.condition == FUNCTIONAL and FUNCTIONAL not in study.conditions.words
+
+
 def is_walk(study: Study, planned: PlannedTrial) -> bool:
     """Whether a trial is used as a walk.
 
@@ -46,7 +51,7 @@ def is_walk(study: Study, planned: PlannedTrial) -> bool:
     >>> is_walk(study, planned)  # doctest: +SKIP
     True
     """
-    return planned.condition != UNKNOWN and not is_static(study, planned)
+    return planned.condition != UNKNOWN and not is_static(study, planned) and not is_functional(study, planned)
 
 
 def trial_sets(study: Study, participant: Participant) -> tuple[TrialSet, ...]:
@@ -73,9 +78,17 @@ def static_trial(study: Study, participant: Participant, session: str) -> Planne
     --------
     >>> static_trial(study, study.participants[0], "")  # doctest: +SKIP
     """
-    standing = [trial for trial in participant.trials if is_static(study, trial)]
-    own = [trial for trial in standing if (trial.session or "") == session]
-    return own[0] if own else standing[0] if len(standing) == 1 else None
+    return _of_session([trial for trial in participant.trials if is_static(study, trial)], session)
+
+
+def functional_trial(study: Study, participant: Participant, session: str) -> PlannedTrial | None:
+    """Trial in which the legs are circled about the hips: of the session, else the only one; None without."""
+    return _of_session([trial for trial in participant.trials if is_functional(study, trial)], session)
+
+
+def _of_session(trials: list[PlannedTrial], session: str) -> PlannedTrial | None:
+    own = [trial for trial in trials if (trial.session or "") == session]
+    return own[0] if own else trials[0] if len(trials) == 1 else None
 
 
 def refused_participant(study: Study, participant: Participant) -> str:

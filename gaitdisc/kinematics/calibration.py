@@ -48,7 +48,12 @@ class Calibration:
     findings: tuple[Finding, ...] = ()
 
 
-def calibrated(static: Recording | None, marker_set: MarkerSet, measures: BodyMeasures | None = None) -> Calibration:
+def calibrated(
+    static: Recording | None,
+    marker_set: MarkerSet,
+    measures: BodyMeasures | None = None,
+    hips: Points | None = None,
+) -> Calibration:
     """Frames, joint centres and marker places of a person from the static trial.
 
     Parameters
@@ -56,6 +61,8 @@ def calibrated(static: Recording | None, marker_set: MarkerSet, measures: BodyMe
     measures : BodyMeasures, optional
         Widths of knee and ankle, distance of the iliac spines, leg lengths, diameter of the markers. What the static
         trial shows itself (both condyles, both malleoli) needs none.
+    hips : mapping of str to ndarray (3,) [m], optional
+        `hip_l`, `hip_r` in the pelvis' frame, as `functional_hips` finds them; of the marker set where there is none.
     """
     if static is None:
         raise ChannelError(
@@ -75,7 +82,7 @@ def calibrated(static: Recording | None, marker_set: MarkerSet, measures: BodyMe
             f"in {file} they move by {moved * 1000:.0f} mm in the stillest half second, at {start:.2f} s",
             "Give the trial in which the person stands.",
         )
-    builder = _Builder(marker_set, places, measures or BodyMeasures(), file)
+    builder = _Builder(marker_set, places, measures or BodyMeasures(), file, hips or {})
     return builder.calibration()
 
 
@@ -103,8 +110,9 @@ def _needed_markers(marker_set: MarkerSet, names: Mapping[str, str]) -> list[str
 class _Builder:
     """Builds the segments of one static trial, from the pelvis down."""
 
-    def __init__(self, marker_set: MarkerSet, places: Points, measures: BodyMeasures, file: str) -> None:
+    def __init__(self, marker_set: MarkerSet, places: Points, measures: BodyMeasures, file: str, hips: Points) -> None:
         self.marker_set, self.places, self.measures, self.file = marker_set, places, measures, file
+        self.hips = hips
         self.findings: list[Finding] = []
         self.centres: dict[str, NDArray[np.float64]] = {}
         self.static: dict[str, Pose] = {}
@@ -153,7 +161,9 @@ class _Builder:
             self._note("pelvis width", f"{what}{width * 1000:.0f} mm between the markers")
             width = self.measures.inter_asis_m
         for side in "lr":
-            self.centres[f"hip_{side}"] = self.static["pelvis"].to_laboratory(self._hip(side, width, depth))[0]
+            hip = self.hips.get(f"hip_{side}")
+            hip = self._hip(side, width, depth) if hip is None else hip
+            self.centres[f"hip_{side}"] = self.static["pelvis"].to_laboratory(hip)[0]
 
     def _hip(self, side: str, width: float, depth: float) -> NDArray[np.float64]:
         legs = self.measures.leg_length_m

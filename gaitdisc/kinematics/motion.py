@@ -165,7 +165,7 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
     for segment in SEGMENTS:
         findings += _gaps(segment, ~poses[segment].known, bridged[segment], markers)
         findings += _other_shape(segment, residuals[segment], file)
-    angles = _angles(markers, poses, bridged, walking)
+    angles = angles_of_poses(markers, poses, bridged, walking)
     return Motion(
         _of_the_plane(angles) if chosen.joints == "planar" else angles,
         MappingProxyType(poses),
@@ -217,9 +217,18 @@ def _spans(marked: NDArray[np.bool_], time: NDArray[np.float64]) -> tuple[tuple[
     return tuple((float(time[first]), float(time[last - 1])) for first, last in edges.reshape(-1, 2))
 
 
-def _angles(
-    markers: Recording, poses: Mapping[str, Pose], bridged: Mapping[str, NDArray[np.bool_]], walking: WalkingFrame
+def angles_of_poses(
+    base: Recording, poses: Mapping[str, Pose], bridged: Mapping[str, NDArray[np.bool_]], walking: WalkingFrame
 ) -> Recording:
+    """Joint angles, pelvis and foot progression [deg], pelvis translations [m] of segments in space.
+
+    Parameters
+    ----------
+    base : Recording
+        Whose times and names the angles get.
+    bridged : mapping of str to ndarray (frame,)
+        Segment -> frames in which it is not to be trusted.
+    """
     turns = {segment: pose.rotation for segment, pose in poses.items()}
     columns: list[tuple[Channel, NDArray[np.float64], NDArray[np.bool_]]] = []
 
@@ -242,7 +251,7 @@ def _angles(
     for name, column in zip(("pelvis_tx", "pelvis_ty", "pelvis_tz"), place.T, strict=True):
         columns.append((Channel(name, "translation", "m"), column, bridged["pelvis"]))
     return replace(
-        markers,
+        base,
         values=np.stack([values for _, values, _ in columns], axis=1),
         channels=tuple(channel for channel, _, _ in columns),
         suspect=np.stack([doubt for _, _, doubt in columns], axis=1),

@@ -59,7 +59,9 @@ class ContactChoice:
         return self.contacts if self.offset_s is None else _moved(self.contacts, -self.offset_s)
 
 
-def chosen_contacts(trial: Trial, detector: str = "auto", direction: str = "") -> ContactChoice:
+def chosen_contacts(
+    trial: Trial, detector: str = "auto", direction: str = "", body_weight_n: float | None = None
+) -> ContactChoice:
     """Initial contacts by the detector asked for, or by the best one that the trial allows.
 
     `auto` takes force before the file's events before markers before joint angles, but none that sees fewer than 80 %
@@ -70,8 +72,10 @@ def chosen_contacts(trial: Trial, detector: str = "auto", direction: str = "") -
     ----------
     direction : str
         Direction of walking in the laboratory's axes, `+x` to `-z`; inferred from the markers where it is empty.
+    body_weight_n : float, optional
+        Mass x 9.81, by which a plate counts as loaded; 50 N without it.
     """
-    seen, refused = seen_contacts(trial, direction)
+    seen, refused = seen_contacts(trial, direction, body_weight_n)
     found = {name: contacts for name, contacts in seen.items() if _stride_count(contacts)}
     if detector != "auto":
         if detector not in found:

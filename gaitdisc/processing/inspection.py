@@ -10,11 +10,13 @@ from gaitdisc.errors import GaitdiscError, StrideError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial, read_trial
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
-from gaitdisc.ingest.trial_sets import is_static, is_walk, not_compared, refused_participant, trial_sets
+from gaitdisc.ingest.trial_sets import is_functional, is_static, is_walk, not_compared, refused_participant, trial_sets
+from gaitdisc.processing.angles_of_segments import with_segment_angles
 from gaitdisc.processing.contact_choice import chosen_contacts
 from gaitdisc.processing.pooled import pooled_cycles, pooled_instead
-from gaitdisc.processing.process import processed, quality_findings, stride_findings
+from gaitdisc.processing.process import quality_findings, stride_findings
 from gaitdisc.processing.side_checks import side_findings
+from gaitdisc.processing.study_walks import ReadWalk, StudyWalks
 from gaitdisc.recording import Finding, Strides, Trial
 from gaitdisc.results import PooledCycles
 from gaitdisc.signals.contacts import order_findings
@@ -103,12 +105,12 @@ def inspected_study(study: Study) -> Iterator[Inspection]:
 def _processed(study: Study, participant: Participant, reader: C3DReader) -> dict[int, Inspection]:
     """Trials that models are to be fitted to, each alone, by their place in the study."""
     found = {}
+    walks = StudyWalks(study, participant, lambda planned: read_planned_trial(study, participant, planned, reader))
     for place, planned in enumerate(participant.trials):
         if not is_walk(study, planned):
             continue
         try:
-            trial = read_planned_trial(study, participant, planned, reader)
-            found[place] = _of_study(trial, study, _named(planned))
+            found[place] = _of_study(walks.read_walk(planned), study, _named(planned))
         except GaitdiscError as error:
             found[place] = Inspection(_named(planned), participant.id, planned.condition, refusal=str(error))
     return found
@@ -177,7 +179,8 @@ def _unused(study: Study, participant: Participant, reader: C3DReader) -> dict[i
             found[place] = Inspection(name, participant.id, planned.condition, refusal=str(error))
             continue
         standing = Inspection(name, trial.subject, trial.condition, _streams(trial), {}, _sorted(trial.findings))
-        found[place] = standing if is_static(study, planned) else _looked_at(trial, name)
+        looked_at = not is_static(study, planned) and not is_functional(study, planned)
+        found[place] = _looked_at(trial, name) if looked_at else standing
     return found
 
 
@@ -194,9 +197,10 @@ def inspected_file(path: Path, reader: C3DReader | None = None) -> Inspection:
     return _looked_at(trial, path.name)
 
 
-def _of_study(trial: Trial, study: Study, name: str) -> Inspection:
+def _of_study(read: ReadWalk, study: Study, name: str) -> Inspection:
+    trial = read.trial
     try:
-        walk = processed(trial, study)
+        walk = read.processed(study)
     except GaitdiscError as error:
         seen = _looked_at(trial, name)
         return Inspection(name, trial.subject, trial.condition, seen.streams, seen.strides, seen.findings, str(error))
@@ -206,6 +210,7 @@ def _of_study(trial: Trial, study: Study, name: str) -> Inspection:
 
 
 def _looked_at(trial: Trial, name: str) -> Inspection:
+    trial = with_segment_angles(trial)
     findings = [*trial.findings, *quality_findings(trial)]
     strides: dict[str, Strides] = {}
     refusal = ""

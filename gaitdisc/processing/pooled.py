@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import GaitdiscError, StrideError
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
-from gaitdisc.ingest.trial_sets import TrialSet, static_trial, trial_sets
+from gaitdisc.ingest.trial_sets import TrialSet, trial_sets
 from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.contact_choice import EARLY_MS, EARLY_RANGE, SEEN_LATE
 from gaitdisc.processing.cycle_channels import cycle_channels
 from gaitdisc.processing.process import quality_findings
 from gaitdisc.processing.shelf import Shelf, ShelvedRecordings, shelf
 from gaitdisc.processing.side_checks import side_findings
-from gaitdisc.processing.standing import Standing
+from gaitdisc.processing.standing import Read, Standing, standing_of
 from gaitdisc.processing.step_events import StepEvents, over_ground, step_events
 from gaitdisc.processing.trial_cycles import (
     HeelPaths,
@@ -38,12 +38,10 @@ from gaitdisc.recording import PERCENT, Cycle, Finding, Recording, Strides, Tria
 from gaitdisc.results import PooledCycles, Refusal
 from gaitdisc.results.pooled_cycles import CYCLE_COLUMNS
 from gaitdisc.signals.contact_force import rise_of
-from gaitdisc.signals.marker_distances import person_findings
 from gaitdisc.signals.sides import verify_sides
 from gaitdisc.signals.strides import duration_reasons
 from gaitdisc.signals.walking import LEAST_COVERAGE, verify_walking
 
-Read = Callable[[PlannedTrial], Trial]
 KINETIC = ("moment", "power")  # quantities that need a plate under the foot
 
 
@@ -98,7 +96,7 @@ def pooled_cycles(study: Study, participant: Participant, read: Read) -> tuple[P
     sets = trial_sets(study, participant)
     found: list[PooledCycles] = []
     for session in dict.fromkeys(one.session for one in sets):
-        standing = _standing(study, participant, session, read)
+        standing = standing_of(study, participant, session, read)
         seen: dict[str, list[_Seen]] = {}
         lost: dict[str, list[Refusal]] = {}
         with shelf() as shelved:
@@ -126,30 +124,6 @@ def _seen_trials(standing: Standing, one: TrialSet, read: Read, shelved: Shelf) 
     return seen, lost
 
 
-def _standing(study: Study, participant: Participant, session: str, read: Read) -> Standing:
-    """Markers of the static trial, and why there are none."""
-    planned = static_trial(study, participant, session)
-    if planned is None:
-        return Standing(study, participant, None, None, "there is no static trial")
-    try:
-        trial = read(planned)
-    except GaitdiscError as error:
-        return Standing(study, participant, planned, None, f"the static trial cannot be used: {error}")
-    return Standing(study, participant, planned, trial.streams.get("markers"), "the static trial has no markers")
-
-
-def _static_findings(standing: Standing, trial: Trial, with_legs: bool) -> tuple[Finding, ...]:
-    """What the static trial says of a walk: that it is another person's, or that there is none."""
-    markers = trial.streams.get("markers")
-    if markers is None:
-        return ()
-    if standing.markers is not None:
-        return tuple(person_findings(standing.markers, markers, trial.name))
-    severity = "note" if with_legs else "warning"
-    spoils = "angles from markers" + ("; those of the file are used" if with_legs else "")
-    return (Finding(severity, "static trial", trial.name, standing.unread, spoils),)
-
-
 def _seen(standing: Standing, planned: PlannedTrial, number: int, read: Trial, shelved: Shelf) -> _Seen:
     """What a trial shows; its samples are not kept but for those that cycles are cut of, and these on disk."""
     study = standing.study
@@ -162,7 +136,7 @@ def _seen(standing: Standing, planned: PlannedTrial, number: int, read: Trial, s
     strides = _strides(steps, study)
     _verify(trial, strides, outside)
     findings = (*trial.findings, *quality_findings(_known(trial)), *side_findings(trial, strides), *lost)
-    findings += _static_findings(standing, trial, legs is not None)
+    findings += standing.findings(trial, legs is not None)
     files = {s.source.file: s.source.sha256 for s in trial.streams.values() if s.source.sha256}
     plates, feet = plate_loadings(trial, rise_of(weight_n)), heel_paths(trial, direction)
     kept = shelved.put(states)

@@ -34,14 +34,20 @@ from gaitdisc.signals.walking import verify_walking
 TEMPLATE_TIMES = 2.0  # the mean stride bridges gaps twice as long as the spline does (docs/derivatives.md)
 
 
-def processed(trial: Trial, study: Study) -> Walk:
+def processed(trial: Trial, study: Study, body_weight_n: float | None = None) -> Walk:
     """Process one trial of a study.
 
     Gaps up to the study's `gap_s` are bridged by a cubic spline, up to twice that by the person's mean stride, beyond
     that left open and their strides dropped; plateaus, bridged gaps and filter edges are marked suspect.
+
+    Parameters
+    ----------
+    body_weight_n : float, optional
+        Mass x 9.81, by which a plate counts as loaded; 50 N without it.
     """
     raw = without_spikes(plateau_marked(_needed(trial, "kinematics", study.models.angles)))
-    choice = chosen_contacts(trial, study.strides.detector, study.treadmill.direction if study.treadmill else "")
+    direction = study.treadmill.direction if study.treadmill else ""
+    choice = chosen_contacts(trial, study.strides.detector, direction, body_weight_n)
     limits = (study.strides.min_s, study.strides.max_s)
     side = study.strides.side
     if side not in choice.contacts:

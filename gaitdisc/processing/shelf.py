@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -49,14 +50,14 @@ class Shelf:
     """A folder for samples that are needed later."""
 
     folder: Path
+    _numbers: Iterator[int] = field(default_factory=itertools.count, init=False, repr=False, compare=False)
 
     def put(self, recordings: Sequence[Recording]) -> ShelvedRecordings:
         """Put recordings away."""
         files = []
-        first = len([*self.folder.iterdir()])
         try:
-            for number, one in enumerate(recordings, first):
-                file = self.folder / f"{number}.npz"
+            for one in recordings:
+                file = self.folder / f"{next(self._numbers)}.npz"
                 np.savez(file, time=one.time, values=one.values, suspect=np.asarray(one.suspect))
                 files.append(file)
         except OSError:  # no room on disk

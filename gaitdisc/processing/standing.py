@@ -2,23 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.c3d_measures import read_body_measures
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
+from gaitdisc.ingest.trial_sets import functional_trial, static_trial
 from gaitdisc.kinematics.calibration import Calibration, calibrated
+from gaitdisc.kinematics.functional_hips import functional_hips
+from gaitdisc.kinematics.marker_set import MarkerSet
 from gaitdisc.kinematics.motion import chosen_marker_set
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
 from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.kinetics.plate_steps import PlateStep
+from gaitdisc.processing.angles_of_segments import with_segment_angles
 from gaitdisc.processing.markers_to_moments import computed_trial
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.recording.body_measures import BodyMeasures
+from gaitdisc.signals.emg_size import OVER_STANDING, OVER_WALKING, emg_sizes, other_unit_findings
+from gaitdisc.signals.marker_distances import person_findings
 
+Read = Callable[[PlannedTrial], Trial]
 LEGS = ("hip_flexion", "knee_angle", "ankle_angle")
 MODEL = ("kinematics", "moments")
 
@@ -38,12 +45,16 @@ class Standing:
     planned: PlannedTrial | None
     markers: Recording | None
     unread: str = ""
+    emg_sizes: Mapping[str, float] = field(default_factory=dict)
+    circled: Recording | None = None
     _calibrations: dict[str, Calibration] = field(default_factory=dict, init=False)
     _said: set[Finding] = field(default_factory=set, init=False)
+    _walked: tuple[str, Mapping[str, float]] | None = field(default=None, init=False)
 
     def computed(self, planned: PlannedTrial, trial: Trial) -> tuple[Trial, tuple[PlateStep, ...] | None]:
         """Trial with the angles that the study asks for, and its steps on plates where moments were computed."""
         source = self.study.kinematics.angles if self.study.kinematics else ""
+        trial = trial if source == "file" or "markers" in trial.streams else with_segment_angles(trial)
         if source == "file" or "markers" not in trial.streams or (not source and has_leg_angles(trial)):
             return trial, None
         bare = replace(trial, streams={key: value for key, value in trial.streams.items() if key not in MODEL})
@@ -62,6 +73,31 @@ class Standing:
             return self._without_angles(given_up, trial.name, error), None
         made = found.trial.findings[len(trial.findings) :]
         return replace(found.trial, findings=(*trial.findings, *self._new((*made, *findings)))), found.steps
+
+    def findings(self, trial: Trial, with_angles: bool) -> tuple[Finding, ...]:
+        """What the static trial says of a walk: that it is another person's, of another unit, or that there is none."""
+        units = tuple(self._unit_findings(trial))
+        markers = trial.streams.get("markers")
+        if markers is None:
+            return units
+        if self.markers is not None:
+            return (*person_findings(self.markers, markers, trial.name), *units)
+        severity = "note" if with_angles else "warning"
+        spoils = "angles from markers" + ("; those of the file are used" if with_angles else "")
+        return (Finding(severity, "static trial", trial.name, self.unread, spoils), *units)
+
+    def _unit_findings(self, trial: Trial) -> list[Finding]:
+        """Size of a walk's EMG beside that of the static trial, or of the session's first walk where that has none."""
+        if "emg" not in trial.streams:
+            return []
+        own = emg_sizes(trial.stream("emg"))
+        if self.emg_sizes:
+            return other_unit_findings(own, self.emg_sizes, OVER_STANDING, trial.name, "the static trial")
+        if self._walked is None:
+            self._walked = trial.name, own
+            return []
+        other, sizes = self._walked
+        return other_unit_findings(own, sizes, OVER_WALKING, trial.name, other)
 
     def body_weight_n(self, planned: PlannedTrial) -> float | None:
         """Weight of the person [N]: by the study, else the static file, else the walk's; None where none states one."""
@@ -88,8 +124,23 @@ class Standing:
         if chosen.name not in self._calibrations:
             kept = chosen.with_joints(wanted.joints) if wanted and wanted.joints else chosen
             kept = kept.with_hip(wanted.hip) if wanted and wanted.hip else kept
-            self._calibrations[chosen.name] = calibrated(self.markers, kept, self._measures(self.planned))
+            self._calibrations[chosen.name] = self._calibrated(kept)
         return self._calibrations[chosen.name]
+
+    def _calibrated(self, chosen: MarkerSet) -> Calibration:
+        """Hips by function where a trial of the session shows them and the study names no others."""
+        measures = self._measures(self.planned)
+        body = calibrated(self.markers, chosen, measures)
+        if self.circled is None or (self.study.kinematics and self.study.kinematics.hip):
+            return body
+        try:
+            hips, findings = functional_hips(self.circled, body)
+        except GaitdiscError as error:
+            file = self.circled.source.file or "the functional trial"
+            said = Finding("warning", "functional hip", file, str(error).rstrip("."), "hips by 1 to 2 cm")
+            return replace(body, findings=(*body.findings, said))
+        own = calibrated(self.markers, chosen, measures, hips) if hips else body
+        return replace(own, findings=(*own.findings, *findings))
 
     def _person(self, planned: PlannedTrial, trial: Trial) -> tuple[Person | None, tuple[Finding, ...]]:
         """Mass and sex: the study's own, else the static file's, else the walk's; without a mass why not."""
@@ -109,6 +160,31 @@ class Standing:
             return BodyMeasures()
         files = [file for file in planned.files if file.lower().endswith(".c3d")]
         return read_body_measures(self.study.path_of(files[0])) if files else BodyMeasures()
+
+
+def standing_of(study: Study, participant: Participant, session: str, read: Read) -> Standing:
+    """Markers of a session's static trial, or why there are none."""
+    planned = static_trial(study, participant, session)
+    if planned is None:
+        return Standing(study, participant, None, None, "there is no static trial")
+    try:
+        trial = read(planned)
+    except GaitdiscError as error:
+        return Standing(study, participant, planned, None, f"the static trial cannot be used: {error}")
+    sizes = emg_sizes(trial.stream("emg")) if "emg" in trial.streams else {}
+    unread, circled = "the static trial has no markers", _circled(study, participant, session, read)
+    return Standing(study, participant, planned, trial.streams.get("markers"), unread, sizes, circled)
+
+
+def _circled(study: Study, participant: Participant, session: str, read: Read) -> Recording | None:
+    """Markers of the trial in which the legs are circled about the hips; `check` says why it cannot be read."""
+    planned = functional_trial(study, participant, session)
+    if planned is None:
+        return None
+    try:
+        return read(planned).streams.get("markers")
+    except GaitdiscError:
+        return None
 
 
 def marker_set_of(study: Study) -> str | Path | None:

@@ -16,7 +16,7 @@ from gaitdisc.recording.strides import interpolated
 from gaitdisc.recording.surface import Surface
 from gaitdisc.recording.wrapping import unwrapped, wrapped
 
-STREAMS = ("kinematics", "markers", "emg", "forces", "moments", "signals")
+STREAMS = ("kinematics", "markers", "segments", "emg", "forces", "moments", "signals")
 
 
 @dataclass(frozen=True)
@@ -47,8 +47,9 @@ class Trial:
     name : str
         Name of the file without its ending, or what the study calls it.
     streams : mapping of str to Recording
-        Keys among `STREAMS`: `kinematics` (joint angles, pelvis translations), `markers`, `emg`, `forces` (ground
-        reactions), `moments` (joint moments and powers), `signals` (everything else that was digitised).
+        Keys among `STREAMS`: `kinematics` (joint angles, pelvis translations), `markers`, `segments` (poses, as systems
+        without markers give them), `emg`, `forces` (ground reactions), `moments` (joint moments and powers), `signals`
+        (everything else that was digitised).
     events : tuple of Event
         Events of the file, in order of time.
     findings : tuple of Finding

@@ -12,9 +12,10 @@ _FILTER_WORDS = ("filter", "cutoff", "low_pass", "high_pass", "lowpass", "highpa
 
 
 def method_sentences(run: ResponseRun) -> list[str]:
-    """Five sentences: state, models, discrepancy, judgement, filters."""
+    """State, where angles come from markers, models, discrepancy, judgement, filters, a sentence each."""
     held_out = held_out_text(run)
     return [
+        *_markers_sentence(run),
         "The state X holds joint angles and, where there are any, EMG envelopes (Eq. 4.1); each model sees X, its "
         "first derivative and percent stride φ, and predicts second derivatives of the outputs.",
         f"The Nominal model f is fitted to the walk without the device effect ({run.nominal}; Eq. 4.2), the Exo model "
@@ -26,6 +27,18 @@ def method_sentences(run: ResponseRun) -> list[str]:
         f"variance, 0 no better than the mean, and a negative number worse.",
         f"{_filter_sentence(run)} A filter alone makes part of a second derivative predictable "
         f"from the signal itself; the null says how much: R² of band-limited noise that was filtered in the same way.",
+    ]
+
+
+def _markers_sentence(run: ResponseRun) -> list[str]:
+    computed = sum(any(finding.kind == "marker set" for finding in walk.findings) for walk in run.walks)
+    if not computed:
+        return []
+    walks = "the one walk" if len(run.walks) == 1 else f"{computed} of {len(run.walks)} walks"
+    return [
+        f"Joint angles of {walks} are computed from markers, calibrated by the person's static trial, before they are "
+        "filtered; which marker set, how far the markers lie from where the static trial has them and what was bridged "
+        "stands under “Findings”."
     ]
 
 

@@ -3,7 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-from manufactured_body import PLUG_IN_GAIT, RAJAGOPAL, Laboratory, known_angles, markers_of, static_of, without
+from manufactured_body import (
+    PLUG_IN_GAIT,
+    RAJAGOPAL,
+    Laboratory,
+    body_frames,
+    known_angles,
+    markers_of,
+    static_of,
+    without,
+)
 
 from gaitdisc.commands.exit_codes import REFUSED
 from gaitdisc.ingest.reading import read_trial
@@ -75,3 +84,32 @@ def test_what_the_reader_found_is_said(tmp_path, called, gait_data):
     assert done.returncode == 0, done.stderr
     of_reader = [finding.line() for finding in (*read_trial(static).findings, *read_trial(walk).findings)]
     assert of_reader and set(of_reader) < set(done.stdout.splitlines())
+
+
+def test_segments_need_no_static_trial_and_markers_do(tmp_path, called):
+    import ezc3d
+
+    known = known_angles(120)
+    file, rotations = ezc3d.c3d(), np.zeros((4, 4, 7, 120))
+    labels = []
+    for place, (name, (origin, rotation)) in enumerate(body_frames(known).items()):
+        part, _, side = name.partition("_")
+        labels.append(f"{side}_{part}_4X4" if side else f"{part}_4X4")
+        rotations[:3, :3, place] = rotation[:, :, [2, 0, 1]].transpose(1, 2, 0)  # right, forward, up
+        rotations[:3, 3, place] = 1000 * origin.T
+    file["parameters"]["POINT"]["RATE"]["value"] = [100.0]
+    file["parameters"]["POINT"]["UNITS"]["value"] = ["mm"]
+    file["data"]["points"] = np.zeros((4, 0, 120))
+    file.add_parameter("ROTATION", "RATE", [100.0])
+    file.add_parameter("ROTATION", "LABELS", labels)
+    file["data"]["rotations"] = rotations
+    file.write(str(tmp_path / "walk.c3d"))
+    done = called("angles", tmp_path / "walk.c3d", "--out", tmp_path / "a.mot")
+    assert done.returncode == 0, done.stderr
+    found = read_trial(tmp_path / "a.mot").stream("kinematics")
+    for name in ("hip_adduction_l", "knee_rotation_r", "ankle_inversion_l"):
+        np.testing.assert_allclose(found[name], known[name], atol=1e-3)
+    write_trc(markers_of(known, RAJAGOPAL), tmp_path / "walk.trc")
+    refused = called("angles", tmp_path / "walk.trc", "--out", tmp_path / "b.mot")
+    assert refused.returncode == REFUSED
+    assert "angles from markers need a static trial of the person" in refused.stderr

@@ -38,7 +38,7 @@ def test_the_words_name_channel_and_number():
         UnitError, match=r"inDegrees=no\), so no joint angle may exceed 6\.28; knee_angle_r reaches 60,"
     ):
         judged_unit(TIME, _walk_deg(), NAMES, "rad", "a.mot")
-    with pytest.raises(UnitError, match=r"a\.mot states degrees, .* range over more than 2\.5; .* is 1\.05 and"):
+    with pytest.raises(UnitError, match=r"a\.mot states degrees, .* range over more than 2\.5; .* is 1\.04 and"):
         judged_unit(TIME, np.radians(_walk_deg()), NAMES, "deg", "a.mot")
 
 
@@ -57,6 +57,18 @@ def test_standing_in_degrees_and_a_turning_pelvis_are_not_accused():
     turning = np.radians(_walk_deg())
     assert turning[:, 0].max() > 7
     assert judged_unit(TIME, turning, NAMES, "rad", "a.mot") == ("rad", None)
+
+
+@pytest.mark.parametrize("unit", ["deg", "rad"])
+def test_an_arm_that_winds_on_and_a_fit_that_lost_its_markers_hide_no_unit(unit):
+    degrees = np.column_stack([_walk_deg(), 300 * TIME])
+    degrees[-8:, 1] += 170  # the hip of the last frames, as a fit without markers has it
+    names = [*NAMES, "arm_rot_r"]
+    values = degrees if unit == "deg" else np.radians(degrees)
+    assert np.abs(np.radians(degrees[:, -1])).max() > 2 * np.pi
+    assert judged_unit(TIME, values, names, unit, "a.mot") == (unit, None)
+    with pytest.raises(UnitError):
+        judged_unit(TIME, values, names, "rad" if unit == "deg" else "deg", "a.mot")
 
 
 def test_ankles_alone_leave_a_doubt_not_a_refusal():

@@ -6,6 +6,8 @@ import pytest
 
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import (
+    functional_trial,
+    is_functional,
     is_static,
     is_walk,
     not_compared,
@@ -56,6 +58,15 @@ def test_the_static_trial_is_that_of_the_session_else_the_only_one():
     only = _person("P02", _trial("static", "before"), _trial("walk", "after"))
     assert static_trial(study, only, "after") == only.trials[0]
     assert static_trial(study, own, "") is None and static_trial(study, _person("P03"), "") is None
+
+
+def test_circled_legs_are_no_walk_but_for_a_study_that_walks_by_that_word():
+    person = _person("P01", _trial("walk", "before"), _trial("functional", "before", "1.c3d"))
+    study = _study(person, nominal="walk")
+    assert is_functional(study, person.trials[1]) and not is_walk(study, person.trials[1])
+    assert functional_trial(study, person, "before") == person.trials[1]
+    assert functional_trial(study, _person("P02", _trial("walk")), "") is None
+    assert is_walk(_study(person, nominal="functional", others=("walk",)), person.trials[1])
 
 
 @pytest.mark.parametrize(

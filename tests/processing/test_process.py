@@ -24,6 +24,17 @@ def test_a_walk_is_filtered_cut_and_differentiated(trial, study):
     assert np.nanmax(walk.trajectory.phi) < 100
 
 
+def test_plates_under_a_light_body_count_as_loaded_earlier(trial, study):
+    forces = trial.stream("forces")
+    light = with_values(trial, "forces", forces.values * 25.0 / (np.nanmax(forces.values) / 9.81))
+    by_force = study.model_copy(update={"strides": study.strides.model_copy(update={"detector": "force"})})
+    usual, own = processed(light, by_force), processed(light, by_force, body_weight_n=25.0 * 9.81)
+    earlier = usual.strides["r"].start - own.strides["r"].start
+    assert (earlier > 0).all() and earlier.max() < 0.02
+    said = [next(one.what for one in walk.findings if one.kind == "detector") for walk in (usual, own)]
+    assert "above 50 N" in said[0] and "above 25 N" in said[1]
+
+
 def test_emg_comes_along_on_the_time_base_of_the_angles(trial, study):
     models = Models(emg=("emg_sol_r",), outputs=("ankle_angle_r", "emg_sol_r"))
     walk = processed(trial, study.model_copy(update={"models": models}))

@@ -33,6 +33,14 @@ def test_what_was_put_away_comes_back_to_the_last_bit_and_is_not_in_memory():
     assert not folder.exists()
 
 
+def test_what_lies_in_the_folder_is_not_counted_at_each_new_one():
+    with shelf() as shelved:
+        first, second = shelved.put([EMG]), shelved.put([EMG.with_values(2 * EMG.values)])
+        first.files[0].unlink()  # a count of the folder would give its place, and that of the second, away
+        shelved.put([EMG])
+        np.testing.assert_array_equal(next(second.recordings()).values, 2 * EMG.values)
+
+
 def test_a_full_disk_leaves_them_in_memory(monkeypatch):
     def full(*_, **__):
         raise OSError(28, "No space left on device")

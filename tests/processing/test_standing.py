@@ -145,3 +145,23 @@ def test_without_a_static_trial_the_file_s_own_angles_are_not_taken_for_those_of
     assert all(len(one.kept) and "knee_angle_r" not in names(one) for one in found)
     said = {(one.severity, one.what, one.spoils) for one in findings if one.kind == "static trial"}
     assert said == {("warning", "there is no static trial", "angles from markers")}
+
+
+def test_emg_in_another_unit_than_that_of_the_static_trial_is_named(files, trials):
+    emg = trials["straight"].stream("emg")
+    wrong = replace(
+        trials["straight"], streams={**trials["straight"].streams, "emg": emg.with_values(emg.values / 1e3)}
+    )
+    file = Kinematics(angles="file")
+    for walks, expected in ((trials, 0), ({**trials, "straight": wrong}, 1)):
+        said = [one for one in pooled(files, walks, file)[1] if one.kind == "EMG unit"]
+        assert [one.file for one in said] == ["P01 straight"] * expected
+        assert all("times weaker than in the static trial" in one.what for one in said)
+
+
+def test_without_emg_in_the_static_trial_walks_are_held_against_the_first(files, trials):
+    emg = trials["turn"].stream("emg")
+    wrong = replace(trials["turn"], streams={**trials["turn"].streams, "emg": emg.with_values(emg.values * 1e3)})
+    walks = {**trials, "turn": wrong, "static": bare(trials["static"], "emg")}
+    (said,) = [one for one in pooled(files, walks, Kinematics(angles="file"))[1] if one.kind == "EMG unit"]
+    assert said.file == "P01 turn" and "times stronger than in P01 straight" in said.what

@@ -1,5 +1,6 @@
 from dataclasses import replace
 
+from gaitdisc.recording import Finding
 from gaitdisc.report.method import method_sentences
 
 
@@ -11,6 +12,15 @@ def test_five_sentences_name_the_equations(run):
     assert "last 7.5 s of each walk" in text
     assert "natural" in text
     assert "spring" in text
+
+
+def test_walks_whose_angles_are_of_markers_are_counted(run):
+    first, *others = run.walks
+    said = Finding("note", "marker set", "P01 natural, file 1", "plug_in_gait: ...", "")
+    some = replace(run, walks=(replace(first, findings=(*first.findings, said)), *others))
+    sentences = method_sentences(some)
+    assert len(sentences) == 6
+    assert sentences[0].startswith(f"Joint angles of 1 of {len(run.walks)} walks are computed from markers")
 
 
 def test_the_filter_is_said_in_words(run, run_maker):

@@ -1,0 +1,151 @@
+"""Hip joint centres from a trial in which the thighs are moved about them."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.kinematics.calibration import Calibration
+from gaitdisc.kinematics.pose import Pose
+from gaitdisc.kinematics.rigid_fit import fitted_pose
+from gaitdisc.kinematics.segment_poses import placed_markers
+from gaitdisc.recording import Finding, Recording
+
+LEAST_SWING_DEG = 5.0  # root mean square to each side; a circle of 20 deg has 14, walking has 3 out of its plane
+LARGEST_RESIDUAL_M = 0.015  # skin of the thigh slides by as much
+FARTHEST_M = 0.05  # from the hip after the landmarks, which is right to some 2 cm
+FEWEST_FRAMES = 50
+ROUNDS = 50
+SETTLED_M = 1e-7
+SPOILS = "this hip by 1 to 2 cm; circle the leg by 20 deg or more, front to back and side to side"
+
+
+class Pivot(NamedTuple):
+    """The centre about which a segment turns, in the frame of the one above, and how far it leaves it (rms)."""
+
+    centre: NDArray[np.float64]
+    residual_m: float
+
+
+def functional_hips(
+    markers: Recording, calibration: Calibration
+) -> tuple[dict[str, NDArray[np.float64]], tuple[Finding, ...]]:
+    """Hip centres in the pelvis' frame [m] by side, of a trial of hip movements, and what was found.
+
+    With three markers on the thigh the centre is the point that is fixed in both segments, with fewer that of the
+    spheres on which they move. A side whose thigh hardly moves, or in one plane, or not about a point, keeps the hip
+    that the calibration has.
+
+    Parameters
+    ----------
+    calibration : Calibration
+        Of the same person's static trial, with the hips of a regression.
+    """
+    file = markers.source.file or "the functional trial"
+    placed = placed_markers(markers, calibration)
+    pelvis = fitted_pose(*placed["pelvis"]).pose
+    hips, findings = {}, []
+    for side in "lr":
+        usual = calibration.points["pelvis"][f"hip_{side}"]
+        found, refused = _found(pelvis, placed[f"thigh_{side}"], usual)
+        if found is None:
+            what = f"hip_{side} not by function but after the landmarks: {refused}"
+            findings.append(Finding("warning", "functional hip", file, what, SPOILS))
+            continue
+        hips[f"hip_{side}"] = found.centre
+        what = f"hip_{side} by function, {_mm(_apart(found, usual))} from the hip after the landmarks; the thigh keeps "
+        findings.append(Finding("note", "functional hip", file, f"{what}to it by {_mm(found.residual_m)} (rms)", ""))
+    return hips, tuple(findings)
+
+
+def _found(
+    pelvis: Pose, thigh: tuple[NDArray[np.float64], NDArray[np.float64]], usual: NDArray[np.float64]
+) -> tuple[Pivot | None, str]:
+    """Centre of one hip, or None and why."""
+    body, seen = thigh
+    whole = pelvis.known & np.isfinite(seen).all(axis=(1, 2))
+    if whole.sum() < FEWEST_FRAMES:
+        return None, f"pelvis and thigh are seen whole in {int(whole.sum())} frames, {FEWEST_FRAMES} are needed"
+    above, markers = Pose(pelvis.origin[whole], pelvis.rotation[whole]), seen[whole]
+    below, places = fitted_pose(body, markers).pose, above.to_segment(markers)
+    found = fixed_point(above, below) if below.known.all() else sphere_centre(places, usual)
+    swing_deg = _swing_deg(places, found.centre)
+    if swing_deg < LEAST_SWING_DEG:
+        words = f"the thigh turns by {swing_deg:.1f} deg (rms) at right angles to its largest swing"
+        return None, f"{words}, {LEAST_SWING_DEG:g} are needed"
+    if found.residual_m > LARGEST_RESIDUAL_M:
+        return None, f"the thigh leaves the centre by {_mm(found.residual_m)} (rms)"
+    if _apart(found, usual) > FARTHEST_M:
+        return None, f"the centre found lies {_mm(_apart(found, usual))} from there"
+    return found, ""
+
+
+def fixed_point(above: Pose, below: Pose) -> Pivot:
+    """Point that stays nearest to one place in both segments, in the frame of the one above [m].
+
+    References
+    ----------
+    Ehrig 2006, J Biomech 39:2798 (symmetrical centre of rotation estimation).
+    """
+    both = np.concatenate([above.rotation, -below.rotation], axis=2)
+    apart = below.origin - above.origin
+    point = np.asarray(np.linalg.lstsq(both.reshape(-1, 6), apart.ravel(), rcond=1e-6)[0], np.float64)
+    left = both @ point - apart
+    return Pivot(point[:3], float(np.sqrt((left**2).sum(axis=1).mean())))
+
+
+def sphere_centre(places: NDArray[np.float64], start: NDArray[np.float64]) -> Pivot:
+    """Centre that all markers keep their distances from, without the bias that noise gives it.
+
+    Parameters
+    ----------
+    places : ndarray (frame, marker, 3) [m]
+        In the frame of the segment above.
+    start : ndarray (3,) [m]
+        Where the search for the bias begins.
+
+    References
+    ----------
+    Gamage & Lasenby 2002, J Biomech 35:87; Halvorsen 2003, J Biomech 36:999 (the bias).
+
+    Examples
+    --------
+    >>> turn = np.linspace(0, 6, 90)
+    >>> way = np.stack([np.sin(turn), -2 + np.cos(3 * turn) / 2, np.cos(turn)], axis=1)
+    >>> way = 0.4 * way / np.linalg.norm(way, axis=1, keepdims=True) + [0.1, 0.2, 0.3]
+    >>> sphere_centre(way[:, None], np.zeros(3)).centre.round(6).tolist()
+    [0.1, 0.2, 0.3]
+    """
+    mean = places.mean(axis=0)
+    out = places - mean
+    matrix = 2 * np.einsum("fmi,fmj->ij", out, out) / len(places)
+    square = (places**2).sum(axis=2)
+    right = np.einsum("fmi,fm->i", out, square - square.mean(axis=0)) / len(places)
+    centre = np.array(start, float)
+    for _ in range(ROUNDS):
+        far = ((places - centre) ** 2).sum(axis=2)
+        noise2 = ((far - far.mean(axis=0)) ** 2).mean(axis=0) / (4 * far.mean(axis=0))
+        bias = 2 * np.einsum("m,mi->i", noise2, mean - centre)
+        before, centre = centre, np.linalg.lstsq(matrix, right - bias, rcond=1e-6)[0]
+        if float(np.linalg.norm(centre - before)) < SETTLED_M:
+            break
+    distance = np.linalg.norm(places - centre, axis=2)
+    return Pivot(centre, float(np.sqrt(((distance - distance.mean(axis=0)) ** 2).mean())))
+
+
+def _swing_deg(places: NDArray[np.float64], centre: NDArray[np.float64]) -> float:
+    """Root mean square by which the thigh turns to each side in the direction in which it turns less."""
+    way = (places - centre).mean(axis=1)
+    way = way / np.linalg.norm(way, axis=1, keepdims=True)
+    spread = np.linalg.eigvalsh(np.cov(way.T))
+    return float(np.degrees(np.sqrt(max(spread[1], 0.0))))
+
+
+def _apart(found: Pivot, usual: NDArray[np.float64]) -> float:
+    return float(np.linalg.norm(found.centre - usual))
+
+
+def _mm(metres: float) -> str:
+    return f"{1e3 * metres:.0f} mm" if metres >= 0.01 else f"{1e3 * metres:.1f} mm"
