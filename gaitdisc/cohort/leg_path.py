@@ -70,6 +70,8 @@ def habit_angles(person: Person, side: int, phase: NDArray[np.float64], drifted:
         waves = waves + person.learnt.stiffness / STIFFNESS * person.adaptation.habit_deg[side]
     turn = 2 * np.pi * np.outer(phase, np.arange(1, HARMONICS + 1))
     own = np.cos(turn) @ waves[:, :, 0].T + np.sin(turn) @ waves[:, :, 1].T
+    for bump in (one for one in style.bumps if one.side == side):
+        own[:, bump.joint] += bump.at(phase)
     return mean + (curves - mean) * style.size + own
 
 

@@ -26,6 +26,33 @@ STANCE, STANCE_SPREAD = 0.607, 0.012  # of adults 60 to 62 % (Perry); of the chi
 CADENCE, CADENCE_SPEED = 0.565, 0.429  # steps and speed, dimensionless, of Schwartz et al. (2008), Free
 
 
+@dataclass(frozen=True)
+class Bump:
+    """A change of one joint's habit over part of the stride, as a raised cosine.
+
+    Parameters
+    ----------
+    side, joint : int
+        Leg (0 right), column of `JOINTS`.
+    centre, half_width : float
+        Shares of the stride; wider than a stride is a constant.
+    degrees : float
+        At the centre.
+    """
+
+    side: int
+    joint: int
+    centre: float
+    half_width: float
+    degrees: float
+
+    def at(self, phase: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Change at phases of the stride [deg]."""
+        apart = np.abs(np.mod(phase - self.centre + 0.5, 1.0) - 0.5) / self.half_width
+        shape = np.cos(0.5 * np.pi * np.minimum(apart, 1.0)) ** 2
+        return self.degrees * (np.ones_like(shape) if self.half_width > 1.0 else shape)
+
+
 @dataclass(frozen=True, eq=False)
 class Style:
     """How a person's habit differs from the average one.
@@ -42,6 +69,8 @@ class Style:
         How strong each muscle group is, against others of that body mass.
     recruitment : Recruitment
         How the muscles are habitually used.
+    bumps : tuple of Bump
+        Changes of the habit that make a gait pattern of the clinic.
     """
 
     size: NDArray[np.float64]
@@ -49,6 +78,7 @@ class Style:
     wave_deg: NDArray[np.float64]
     strength: NDArray[np.float64]
     recruitment: Recruitment
+    bumps: tuple[Bump, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
