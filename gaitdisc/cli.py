@@ -24,6 +24,7 @@ from gaitdisc.commands.modalities import modalities
 from gaitdisc.commands.moments import moments
 from gaitdisc.commands.new import new
 from gaitdisc.commands.reconstruct import reconstruct
+from gaitdisc.commands.reference import reference
 from gaitdisc.commands.report import report
 from gaitdisc.commands.run import run
 from gaitdisc.commands.sensitivity import sensitivity
@@ -42,6 +43,7 @@ COMMANDS = (
     ablate,
     modalities,
     sensitivity,
+    reference,
     report,
     export,
     demo,

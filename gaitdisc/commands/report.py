@@ -8,8 +8,18 @@ from typing import Annotated
 import typer
 
 
-def report(run_folder: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a run.")]) -> None:
+def report(
+    run_folder: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a run.")],
+    person: Annotated[str, typer.Option(help="Only the page of this person.")] = "",
+    before: Annotated[str, typer.Option(help="With --after: a session or condition of the person.")] = "",
+    after: Annotated[str, typer.Option(help="What is drawn over it.")] = "",
+    reference: Annotated[Path | None, typer.Option(help="Folder of `gaitdisc reference`: bands, scores.")] = None,
+) -> None:
     """Draw the report of a run again, and those of modalities and sensitivity where it has them, without fitting."""
+    from gaitdisc.commands.clinic_report import clinic_report
+
+    if clinic_report(run_folder, person, (before, after), reference):
+        return
     from gaitdisc.report.response_page import write_report
     from gaitdisc.report.variants_page import write_variants
     from gaitdisc.results.run_store import load_run

@@ -7,6 +7,7 @@ import numpy as np
 from gaitdisc.channel import vocabulary
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.study import Filters
+from gaitdisc.processing.pelvis_and_foot import with_pelvis_and_foot
 from gaitdisc.processing.process import is_raw
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.signals.butterworth import lowpassed
@@ -66,6 +67,8 @@ def _known(trial: Trial, key: str, quantities: tuple[str, ...]) -> Recording | N
         return None
     words = {channel.name for channel in vocabulary().channels}
     recording = trial.stream(key)
+    if key == "kinematics":
+        recording = with_pelvis_and_foot(recording)
     names = [
         channel.name
         for channel, column in zip(recording.channels, recording.values.T, strict=True)
