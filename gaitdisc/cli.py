@@ -18,6 +18,7 @@ from gaitdisc.commands.check import check
 from gaitdisc.commands.compare import compare
 from gaitdisc.commands.demo import demo
 from gaitdisc.commands.discover import discover
+from gaitdisc.commands.doctor import doctor
 from gaitdisc.commands.exit_codes import REFUSED
 from gaitdisc.commands.export import export
 from gaitdisc.commands.modalities import modalities
@@ -47,6 +48,7 @@ COMMANDS = (
     report,
     export,
     demo,
+    doctor,
 )
 
 app = typer.Typer(add_completion=False, no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False)

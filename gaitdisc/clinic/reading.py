@@ -16,6 +16,7 @@ from gaitdisc.results.leg_curves import FEET, LegCurves, legs_of
 
 FEW = 3  # cycles of a leg below which a mean is that of single steps
 NO_REFERENCE = "there is no reference: gaitdisc reference makes one of the laboratory's own controls"
+NO_CYCLE = "no cycle is kept"
 SIDES = {"l": "left", "r": "right"}
 
 
@@ -24,9 +25,10 @@ def read_beside(pooled: PooledCycles, reference: ClinicalReference | None) -> Cl
     legs = legs_of(pooled)
     controls = reference.of(pooled.condition) if reference else ()
     why = "" if controls else NO_REFERENCE if reference is None else _not_so(reference, pooled.condition)
-    noted, checked, silent = outstanding(legs, controls) if controls else ((), 0, why)
-    profile, no_profile = profile_of(legs, controls) if controls else (None, why)
-    index, no_index = deviation_index(legs, controls) if controls else ({}, why)
+    why = why if legs else NO_CYCLE
+    noted, checked, silent = ((), 0, why) if why else outstanding(legs, controls)
+    profile, no_profile = (None, why) if why else profile_of(legs, controls)
+    index, no_index = ({}, why) if why else deviation_index(legs, controls)
     light, reasons = light_of(pooled, legs)
     return ClinicalReading(
         pooled,
@@ -56,7 +58,7 @@ def consistency_of(legs: dict[str, LegCurves]) -> dict[tuple[str, str], float]:
 def light_of(pooled: PooledCycles, legs: dict[str, LegCurves]) -> tuple[str, tuple[str, ...]]:
     """Red where nothing is reported, amber where it rests on little or something is spoiled, else green."""
     if not legs:
-        return "red", tuple(refusal.reason for refusal in pooled.refusals) or ("no cycle is kept",)
+        return "red", tuple(refusal.reason for refusal in pooled.refusals) or (NO_CYCLE,)
     reasons = []
     few = [f"{pooled.counted(side)} {SIDES[side]}" for side in FEET if pooled.counted(side) < FEW]
     if few:

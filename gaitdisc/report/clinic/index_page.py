@@ -48,9 +48,10 @@ def write_index(
         "created": run.provenance.created[:10],
         "rows": rows,
         "headings": HEADINGS,
+        "whole": (folder / "report.html").is_file(),
         "lights": lights,
         "reference": _reference_words(reference),
-        "people": counted(len({row["person"] for row in rows}), "person").replace("persons", "people"),
+        "people": counted(len({row["subject"] for row in rows}), "person").replace("persons", "people"),
     }
     return write_whole(folder / "index.html", page_text("people", shown))
 
@@ -62,6 +63,7 @@ def _row(reading: ClinicalReading, person: PersonSession, name: str) -> dict[str
     first = f"{len(reading.noted)}: {sentences[0].partition(';')[0]}" if sentences else NONE
     return {
         "light": reading.light,
+        "subject": pooled.subject,
         "person": person.title,
         "condition": pooled.condition,
         "cycles": f"{pooled.counted('l')}, {pooled.counted('r')}",
@@ -75,6 +77,7 @@ def _row(reading: ClinicalReading, person: PersonSession, name: str) -> dict[str
 def _refused(refusal: Refusal) -> dict[str, str]:
     return {
         "light": "red",
+        "subject": refusal.participant,
         "person": refusal.participant,
         "condition": refusal.condition or NONE,
         "cycles": NONE,

@@ -37,6 +37,7 @@ from gaitdisc.results.clinical_reference import ClinicalReference
 from gaitdisc.results.clinical_variables import KINEMATICS, MOMENTS, POWERS
 from gaitdisc.whole_file import write_whole
 
+FEWEST_COLUMNS = 4  # so that few panels are no larger than many
 SCRIPT = Path(__file__).parents[1] / "templates" / "cursor.js"
 MOMENT_SIGNS = (
     "Moments are internal, of the muscles, named after the movement they produce, per kg of body mass; powers are "
@@ -62,8 +63,8 @@ def write_person_page(
         "conditions": "; ".join(dict.fromkeys(one.pooled.condition for one in person.readings)),
         "reference": _reference(reference, main.pooled.condition),
         "created": provenance.created[:10],
-        "main": _condition(main, beside, "", 5),
-        "others": [_condition(one, beside, f"{one.pooled.condition}-", 5) for one in others],
+        "main": _condition(main, beside, ""),
+        "others": [_condition(one, beside, f"{one.pooled.condition}-") for one in others],
         "contrasts": [_contrast(one, beside) for one in person.contrasts],
         "method": _method(person, provenance),
         "files": _saved(files_table(list(person.readings)), beside, ""),
@@ -74,9 +75,8 @@ def write_person_page(
     return write_whole(folder / "people" / f"{name}.html", page_text("person", shown))
 
 
-def _condition(reading: ClinicalReading, beside: Path, prefix: str, columns: int) -> dict[str, Any]:
+def _condition(reading: ClinicalReading, beside: Path, prefix: str) -> dict[str, Any]:
     stem = next(iter(file_names([prefix]).values())) if prefix else ""
-    kinds = {5: "five", 4: "four", 3: "three"}
     words = {
         "where": reading.pooled.where,
         "light": reading.light,
@@ -89,13 +89,13 @@ def _condition(reading: ClinicalReading, beside: Path, prefix: str, columns: int
     if not reading.legs:
         return words
     profile = profile_table(reading)
-    kinematics = _sheet(sheet(reading, KINEMATICS), kinds[columns], _band_words(reading), (beside, f"{stem}kinematics"))
+    kinematics = _sheet(sheet(reading, KINEMATICS), _band_words(reading), (beside, f"{stem}kinematics"))
     return {
         **words,
         "kinematics": {**kinematics, "profile": Markup(profile_svg(reading.profile)) if reading.profile else ""},
-        "kinetics": _sheet(sheet(reading, MOMENTS, POWERS), "four", MOMENT_SIGNS, (beside, f"{stem}kinetics")),
-        "emg": _sheet(emg_sheet(reading.pooled), "four", EMG, (beside, f"{stem}emg")),
-        "consistency": _sheet(consistency_sheet(reading), "five", CONSISTENCY, (beside, f"{stem}cycles")),
+        "kinetics": _sheet(sheet(reading, MOMENTS, POWERS), MOMENT_SIGNS, (beside, f"{stem}kinetics")),
+        "emg": _sheet(emg_sheet(reading.pooled), EMG, (beside, f"{stem}emg")),
+        "consistency": _sheet(consistency_sheet(reading), CONSISTENCY, (beside, f"{stem}cycles")),
         "distances": _saved(values_table(reading), beside, stem),
         "noted": _saved(noted_table(reading), beside, stem),
         "profile": _saved(profile, beside, stem) if profile else None,
@@ -112,12 +112,22 @@ CONSISTENCY = (
 )
 
 
-def _sheet(panels: list[Panel], columns: str, caption: str, place: tuple[Path, str]) -> dict[str, Any]:
+def _sheet(panels: list[Panel], caption: str, place: tuple[Path, str]) -> dict[str, Any]:
     beside, name = place
     if panels:
         save_table(panel_numbers(panels), beside / f"{name}.csv")
-    drawn = [{"panel": panel, "svg": Markup(svg(panel))} for panel in panels]
-    return {"panels": drawn, "columns": columns, "caption": caption, "file": f"{beside.name}/{name}.csv", "profile": ""}
+    used = sorted({panel.column for panel in panels})  # a column that nothing stands in is closed
+    drawn = [
+        {"panel": one, "svg": Markup(svg(one)), "row": one.row + 1, "column": used.index(one.column) + 1}
+        for one in panels
+    ]
+    return {
+        "panels": drawn,
+        "columns": max(FEWEST_COLUMNS, len(used)),
+        "caption": caption,
+        "file": f"{beside.name}/{name}.csv",
+        "profile": "",
+    }
 
 
 def _saved(table: Table, beside: Path, stem: str) -> Table:
@@ -136,7 +146,7 @@ def _contrast(contrast: Contrast, beside: Path) -> dict[str, Any]:
                 f"Dotted: {first}; unbroken or dashed: {second}. Bars above: where they differ by a permutation test "
                 f"of the cycles, corrected for the whole cycle, all curves and both legs; black where by 5 deg or more."
             )
-            one = _sheet(panels, "five", caption, (beside, f"{stem}-{SIDE_WORDS[side]}"))
+            one = _sheet(panels, caption, (beside, f"{stem}-{SIDE_WORDS[side]}"))
             sheets.append({**one, "heading": SIDE_WORDS[side].capitalize()})
     return {"heading": f"{first} and {second}", "sentences": contrast_sentences(contrast), "sheets": sheets}
 
