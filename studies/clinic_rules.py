@@ -1,5 +1,7 @@
 """What the rules of a person's page find: gait planted into made walks, healthy made people, and real ones left out.
 
+    python studies/clinic_rules.py [--controls N] [--people N] [--run FOLDER] [--quick]
+
 Made people walk 16 s on a treadmill; cycles are cut of them as of any recording. Controls make the reference. A stiff
 knee bends 20 deg less in swing, a dropped foot hangs by 15 deg (gaitdisc/batch/planted_gait.py).
 """

@@ -68,8 +68,8 @@ def write_before_after(run: ResponseRun, run_folder: Path, person: str, words: t
     return write_person_page(page, name, reference, run.provenance, run_folder / "report")
 
 
-def write_person(run: ResponseRun, run_folder: Path, person: str) -> list[Path]:
-    """Write the pages of one person, a page a session."""
+def write_person(run: ResponseRun, run_folder: Path, person: str, pdf: bool = False) -> list[Path]:
+    """Write the pages of one person, a page a session, as HTML and where wanted as PDF."""
     from gaitdisc.batch.read_people import people_of, sessions_of
     from gaitdisc.report.clinic.person_page import page_names, write_person_page
 
@@ -82,7 +82,12 @@ def write_person(run: ResponseRun, run_folder: Path, person: str) -> list[Path]:
     for title, one in sessions_of(own, reference):
         if isinstance(one, GaitdiscError):
             raise one
-        found.append(write_person_page(one, names[title], reference, run.provenance, run_folder / "report"))
+        page = write_person_page(one, names[title], reference, run.provenance, run_folder / "report")
+        found.append(page)
+        if pdf:
+            from gaitdisc.report.clinic.person_pdf import write_person_pdf
+
+            found.append(write_person_pdf(one, run.provenance, page.with_suffix(".pdf")))
     return found
 
 

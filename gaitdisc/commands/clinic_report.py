@@ -10,7 +10,7 @@ from gaitdisc.commands.clinic_pages import keep_reference, write_before_after, w
 from gaitdisc.errors import SchemaError
 
 
-def clinic_report(folder: Path, person: str, pair: tuple[str, str], reference: Path | None) -> bool:
+def clinic_report(folder: Path, person: str, pair: tuple[str, str], reference: Path | None, pdf: bool) -> bool:
     """Draw pages of people where a person or a reference is named; False where neither is.
 
     Parameters
@@ -20,7 +20,7 @@ def clinic_report(folder: Path, person: str, pair: tuple[str, str], reference: P
     pair : tuple of str
         Two sessions or conditions, or two empty words.
     """
-    if not (person or any(pair) or reference):
+    if not (person or any(pair) or reference or pdf):
         return False
     from gaitdisc.results.run_store import load_run
 
@@ -36,7 +36,7 @@ def clinic_report(folder: Path, person: str, pair: tuple[str, str], reference: P
             )
         typer.echo(f"page: {write_before_after(run, run_folder, person, pair)}")
     elif person:
-        for page in write_person(run, run_folder, person):
+        for page in write_person(run, run_folder, person, pdf):
             typer.echo(f"page: {page}")
     else:
         index = write_people(run, run_folder)
@@ -45,4 +45,7 @@ def clinic_report(folder: Path, person: str, pair: tuple[str, str], reference: P
                 "pages of people need a run of pooled cycles", f"{run_folder} has none", "Run a study of short trials."
             )
         typer.echo(f"people: {index}")
+        for one in dict.fromkeys(cycles.subject for cycles in run.cycles) if pdf else ():
+            for page in write_person(run, run_folder, one, pdf):
+                typer.echo(f"page: {page}")
     return True

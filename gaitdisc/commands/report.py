@@ -13,12 +13,13 @@ def report(
     person: Annotated[str, typer.Option(help="Only the page of this person.")] = "",
     before: Annotated[str, typer.Option(help="With --after: a session or condition of the person.")] = "",
     after: Annotated[str, typer.Option(help="What is drawn over it.")] = "",
+    pdf: Annotated[bool, typer.Option("--pdf", help="Pages of people as PDF too.")] = False,
     reference: Annotated[Path | None, typer.Option(help="Folder of `gaitdisc reference`: bands, scores.")] = None,
 ) -> None:
     """Draw the report of a run again, and those of modalities and sensitivity where it has them, without fitting."""
     from gaitdisc.commands.clinic_report import clinic_report
 
-    if clinic_report(run_folder, person, (before, after), reference):
+    if clinic_report(run_folder, person, (before, after), reference, pdf):
         return
     from gaitdisc.report.response_page import write_report
     from gaitdisc.report.variants_page import write_variants

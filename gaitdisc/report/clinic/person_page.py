@@ -89,7 +89,7 @@ def _condition(reading: ClinicalReading, beside: Path, prefix: str) -> dict[str,
     if not reading.legs:
         return words
     profile = profile_table(reading)
-    kinematics = _sheet(sheet(reading, KINEMATICS), _band_words(reading), (beside, f"{stem}kinematics"))
+    kinematics = _sheet(sheet(reading, KINEMATICS), band_words(reading), (beside, f"{stem}kinematics"))
     return {
         **words,
         "kinematics": {**kinematics, "profile": Markup(profile_svg(reading.profile)) if reading.profile else ""},
@@ -159,7 +159,8 @@ def _reference(reference: ClinicalReference | None, condition: str) -> str:
     return f"Reference: {people}, saved {reference.created[:10]}."
 
 
-def _band_words(reading: ClinicalReading) -> str:
+def band_words(reading: ClinicalReading) -> str:
+    """What the band is of, or why there is none."""
     people = sorted({band.people for band in reading.bands.values()})
     if not people:
         return "No band: there is no reference for this condition."
