@@ -72,7 +72,7 @@ def left_out(run_folder: Path) -> list[dict[str, object]]:
     for one in run.cycles:
         reading = read_beside(one, reference.without(numbers[one.subject]))
         score = reading.profile.both.value if reading.profile and reading.profile.both else None
-        rows.append({"person": one.subject, "condition": one.condition, "values": reading.checked,
+        rows.append({"person": one.subject, "condition": one.condition, "values": len(reading.numbers),
                      "noted": len(reading.noted), "profile score [deg]": score})  # fmt: skip
     return rows
 

@@ -15,8 +15,8 @@ from gaitdisc.results.leg_curves import LegCurves
 
 def outstanding(
     legs: Mapping[str, LegCurves], reference: Sequence[ReferenceLeg], table: Sequence[Rule] | None = None
-) -> tuple[tuple[Noted, ...], int, str]:
-    """What stands out of a person's legs, of how many numbers, and why nothing can be said where it cannot.
+) -> tuple[tuple[Noted, ...], str]:
+    """Every number that a rule takes of a person's legs, those that stand out first; and why there is none.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ def outstanding(
     people = len({leg.person for leg in reference})
     if people < FEWEST:
         count = f"{people} people" if people != 1 else "1 person"
-        return (), 0, f"limits need a reference of {FEWEST} people or more; it has {count} who walked so"
+        return (), f"limits need a reference of {FEWEST} people or more; it has {count} who walked so"
     known = [(rule, values) for rule in table or rules() if (values := _of_reference(rule, reference)) is not None]
     numbers = [
         (rule, values, leg, number)
@@ -34,13 +34,13 @@ def outstanding(
         for leg in legs.values()
         if (number := _of_leg(rule, leg)) is not None
     ]
-    noted = []
+    found = []
     for rule, values, leg, number in numbers:
         limits = limits_of(*values, tests=len(numbers))
-        words = rule.less if number < limits.low else rule.more if number > limits.high else ""
-        if words and abs(number - limits.mean) >= rule.least:
-            noted.append(_noted(rule, words, leg, number, limits))
-    return tuple(sorted(noted, key=lambda one: -one.excess)), len(numbers), ""
+        beyond = rule.less if number < limits.low else rule.more if number > limits.high else ""
+        words = beyond if abs(number - limits.mean) >= rule.least else ""
+        found.append(_noted(rule, words, leg, number, limits))
+    return tuple(sorted(found, key=lambda one: (not one.words, -one.excess))), ""
 
 
 def _of_leg(rule: Rule, leg: LegCurves) -> float | None:

@@ -26,7 +26,7 @@ def read_beside(pooled: PooledCycles, reference: ClinicalReference | None) -> Cl
     controls = reference.of(pooled.condition) if reference else ()
     why = "" if controls else NO_REFERENCE if reference is None else _not_so(reference, pooled.condition)
     why = why if legs else NO_CYCLE
-    noted, checked, silent = ((), 0, why) if why else outstanding(legs, controls)
+    numbers, silent = ((), why) if why else outstanding(legs, controls)
     profile, no_profile = (None, why) if why else profile_of(legs, controls)
     index, no_index = ({}, why) if why else deviation_index(legs, controls)
     light, reasons = light_of(pooled, legs)
@@ -35,9 +35,8 @@ def read_beside(pooled: PooledCycles, reference: ClinicalReference | None) -> Cl
         legs,
         light,
         reasons,
-        noted,
+        numbers,
         silent,
-        checked,
         profile,
         no_profile,
         index,

@@ -33,14 +33,14 @@ class Limits:
 
 @dataclass(frozen=True)
 class Noted:
-    """A value of one leg that stands out.
+    """A value of one leg that a rule looks at.
 
     Parameters
     ----------
     rule, words : str
-        Name of the rule, and what it calls the finding.
+        Name of the rule, and what it calls a value that stands out; no words for one that does not.
     excess : float
-        Distance from the reference's mean over that of the limit; beyond 1.
+        Distance from the reference's mean over that of the limit; beyond 1 outside.
     """
 
     rule: str
@@ -113,12 +113,10 @@ class ClinicalReading:
         `green`, `amber` or `red`.
     reasons : tuple of str
         Why it is amber or red.
-    noted : tuple of Noted
-        What stands out, the farthest first.
+    numbers : tuple of Noted
+        Every value that a rule looks at, those that stand out first.
     silent : str
         Why nothing can be said to stand out; empty where the rules were applied.
-    checked : int
-        Values that the rules were applied to.
     deviation_index : mapping of str to float
         Side -> GDI; empty with the reason in `no_index`.
     consistency : mapping of (str, str) to float
@@ -131,9 +129,8 @@ class ClinicalReading:
     legs: Mapping[str, LegCurves]
     light: str
     reasons: tuple[str, ...]
-    noted: tuple[Noted, ...]
+    numbers: tuple[Noted, ...]
     silent: str
-    checked: int
     profile: Profile | None
     no_profile: str
     deviation_index: Mapping[str, float]
@@ -141,6 +138,11 @@ class ClinicalReading:
     consistency: Mapping[tuple[str, str], float]
     bands: Mapping[str, Band]
     spatiotemporal: Mapping[str, Limits]
+
+    @property
+    def noted(self) -> tuple[Noted, ...]:
+        """What stands out, the farthest first."""
+        return tuple(one for one in self.numbers if one.words)
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from gaitdisc.report.clinic.person_panels import (
     panel_numbers,
     sheet,
 )
-from gaitdisc.report.clinic.person_tables import files_table, noted_table, profile_table, values_table
+from gaitdisc.report.clinic.person_tables import files_table, numbers_table, profile_table, values_table
 from gaitdisc.report.clinic.person_words import (
     contrast_sentences,
     outstanding_sentences,
@@ -97,7 +97,7 @@ def _condition(reading: ClinicalReading, beside: Path, prefix: str) -> dict[str,
         "emg": _sheet(emg_sheet(reading.pooled), EMG, (beside, f"{stem}emg")),
         "consistency": _sheet(consistency_sheet(reading), CONSISTENCY, (beside, f"{stem}cycles")),
         "distances": _saved(values_table(reading), beside, stem),
-        "noted": _saved(noted_table(reading), beside, stem),
+        "numbers": _saved(numbers_table(reading), beside, stem),
         "profile": _saved(profile, beside, stem) if profile else None,
     }
 

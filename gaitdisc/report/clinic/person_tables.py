@@ -40,16 +40,16 @@ def values_table(reading: ClinicalReading) -> Table:
     return Table("spatiotemporal", caption, columns, tuple(rows), pd.DataFrame(records))
 
 
-def noted_table(reading: ClinicalReading) -> Table:
-    """Everything that stands out, the farthest first."""
+def numbers_table(reading: ClinicalReading) -> Table:
+    """Every value that a rule looks at beside its limits, those that stand out first."""
     rows, records = [], []
-    for one in reading.noted:
+    for one in reading.numbers:
         unit, limits = unit_text(one.unit), one.limits
         rows.append((
-            one.words, SIDE_WORDS[one.side], f"{number(one.value, one.digits)} {unit}",
+            one.rule, SIDE_WORDS[one.side], f"{number(one.value, one.digits)} {unit}",
             f"{number(limits.low, one.digits)} to {number(limits.high, one.digits)}",
             f"{number(limits.mean, one.digits)} ± {number(limits.sd, max(one.digits, 1))}", str(limits.people),
-            str(one.cycles),
+            str(one.cycles), one.words or NONE,
         ))  # fmt: skip
         records.append({
             "rule": one.rule, "words": one.words, "side": one.side, "value": one.value, "unit": one.unit,
@@ -57,10 +57,10 @@ def noted_table(reading: ClinicalReading) -> Table:
             "people": limits.people, "cycles": one.cycles,
         })  # fmt: skip
     caption = (
-        f"All that lies beyond the limits, n = {len(rows)} of {reading.checked} values. Limits: within them all values "
-        f"of one more healthy person lie, with probability .95."
+        f"All values that the rules look at, n = {len(rows)}; {len(reading.noted)} stand out. Limits: within them all "
+        f"values of one more healthy person lie, with probability .95."
     )
-    columns = ("what", "side", "value", "limits", "reference", "people", "cycles")
+    columns = ("value of", "side", "value", "limits", "reference", "people", "cycles", "stands out")
     return Table("outstanding", caption, columns, tuple(rows), pd.DataFrame(records))
 
 

@@ -50,7 +50,7 @@ def outstanding_sentences(reading: ClinicalReading) -> list[str]:
         return found
     people = max((band.people for band in reading.bands.values()), default=0)
     few = "" if people >= 20 else f" With {people} controls the limits are wide: smaller differences may be there."
-    return [f"None of {reading.checked} values lies beyond the limits of the reference.{few}"]
+    return [f"None of {len(reading.numbers)} values lies beyond the limits of the reference.{few}"]
 
 
 def quality_sentence(reading: ClinicalReading) -> str:
