@@ -19,6 +19,7 @@ SEEN = command_line(
     QUICK,
 )
 
+from collections.abc import Iterator
 from pathlib import Path
 
 from gaitdisc.batch.clinic_demonstration import CONDITION, Visit, made_walk
@@ -77,13 +78,14 @@ def left_out(run_folder: Path) -> list[dict[str, object]]:
     return rows
 
 
-def run(controls: int = 20, people: int = 40, quick: bool = False) -> list[dict[str, object]]:
-    """Rows of the table of made people."""
+def run(controls: int = 20, people: int = 40, quick: bool = False) -> Iterator[dict[str, object]]:
+    """Rows of the table of made people, as they are known."""
     controls, people = (8, 2) if quick else (controls, people)
     reference = made_reference(controls)
-    return [{"controls": controls, **row_of(kind, reference, people)} for kind in KINDS]
+    for kind in KINDS:
+        yield {"controls": controls, **row_of(kind, reference, people)}
 
 
 if __name__ == "__main__":
     for row in left_out(Path(SEEN.run)) if SEEN.run else run(SEEN.controls, SEEN.people, SEEN.quick):
-        print(" | ".join(f"{name}: {value}" for name, value in row.items()))
+        print(" | ".join(f"{name}: {value}" for name, value in row.items()), flush=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-KINEMATICS, MOMENTS, POWERS = "kinematics", "moments", "powers"
+KINEMATICS, MOMENTS, POWERS, FORCES = "kinematics", "moments", "powers", "forces"
 
 
 @dataclass(frozen=True)
@@ -62,6 +62,10 @@ def _power(joint: str, column: int) -> ClinicalVariable:
     return ClinicalVariable(f"{joint}_power", f"{joint} power", POWERS, stem, (1.0, 1.0), "W/kg", up, down, 2, column)
 
 
+def _force(name: str, words: str, axis: str, up: str, down: str, row: int) -> ClinicalVariable:
+    return ClinicalVariable(name, words, FORCES, f"ground_force_{{side}}_{axis}", (1.0, 1.0), "%", up, down, row, 3)
+
+
 VARIABLES = (
     _pelvis("pelvis_tilt", "pelvic tilt", (-1.0, -1.0), "forwards", "backwards", 0),
     _pelvis("pelvis_obliquity", "pelvic obliquity", (1.0, -1.0), "own side up", "own side down", 1),
@@ -85,6 +89,8 @@ VARIABLES = (
     _power("hip", 0),
     _power("knee", 1),
     _power("ankle", 2),
+    _force("vertical_force", "vertical force, of body weight", "vy", "upwards", "", 0),
+    _force("fore_aft_force", "fore-aft force, of body weight", "vx", "forwards", "backwards", 1),
 )
 BY_NAME = {one.name: one for one in VARIABLES}
 # The nine curves of the movement analysis profile (Baker et al. 2009), those of the pelvis first.

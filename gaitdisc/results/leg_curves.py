@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.results.clinical_variables import VARIABLES
+from gaitdisc.results.clinical_variables import FORCES, VARIABLES
 from gaitdisc.results.pooled_cycles import SPATIOTEMPORAL, PooledCycles
 
 FEET = ("l", "r")
 TURNED_DEG = 20.0  # by which the pelvis turns in the laboratory from contact to contact where somebody walks a curve
+LIGHTEST_N = 50.0  # mean force of both feet; below it nobody stands on the belts
 ALONG_THE_PATH = ("pelvis_rotation", "foot_progression")  # angles about a straight line of walking
 
 
@@ -49,6 +50,7 @@ def legs_of(pooled: PooledCycles) -> dict[str, LegCurves]:
     places = {channel.name: column for column, channel in enumerate(pooled.channels)}
     units = {channel.name: channel.unit for channel in pooled.channels}
     kept, curves = pooled.kept, pooled.curves
+    weight = _percent_per_newton(pooled)
     found = {}
     for side in FEET:
         own = (kept["side"] == side).to_numpy()
@@ -57,8 +59,10 @@ def legs_of(pooled: PooledCycles) -> dict[str, LegCurves]:
         cycles = {}
         for variable in VARIABLES:
             channel = variable.channel(side)
-            if units.get(channel) == variable.unit:
-                each = curves[own, :, places[channel]]
+            newtons = variable.kind == FORCES and units.get(channel) == "N"
+            factor = weight if newtons else 1.0
+            if units.get(channel) == variable.unit or (newtons and weight is not None):
+                each = curves[own, :, places[channel]] * factor
                 whole = each[np.isfinite(each).all(axis=1)]
                 if len(whole):
                     cycles[variable.name] = variable.sign(side) * whole
@@ -74,3 +78,15 @@ def legs_of(pooled: PooledCycles) -> dict[str, LegCurves]:
         stance = float(known["stance_percent"].mean()) if "stance_percent" in known else float("nan")
         found[side] = LegCurves(side, int(own.sum()), stance, cycles, known, turned)
     return found
+
+
+def _percent_per_newton(pooled: PooledCycles) -> float | None:
+    """Percent of body weight a newton is, of belts under each foot: over whole strides both carry the weight."""
+    feet, names = pooled.kept["side"].to_numpy(), [channel.name for channel in pooled.channels]
+    carried = 0.0
+    for side in FEET:
+        name = f"ground_force_{side}_vy"
+        if name not in names or pooled.channels[names.index(name)].unit != "N" or not (feet == side).any():
+            return None
+        carried += float(np.nanmean(pooled.curves[feet == side, :, names.index(name)]))
+    return 100.0 / carried if carried > LIGHTEST_N else None

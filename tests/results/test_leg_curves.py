@@ -35,3 +35,18 @@ def test_a_cycle_with_a_gap_is_no_curve_and_another_unit_no_variable():
 
     watts = tuple(replace(c, unit="W") if c.quantity == "power" else c for c in person.channels)
     assert "ankle_power" not in legs_of(made_person(channels=watts))["l"].cycles
+
+
+def test_forces_of_belts_are_weighed_by_what_both_feet_carry_over_strides():
+    """Left 420 N and right 280 N on the mean over strides: 700 N are the weight."""
+    from gaitdisc.channel import Channel
+
+    person = made_person()
+    added = tuple(Channel(f"ground_force_{side}_vy", "vertical_force", "N", side) for side in "lr")
+    forces = np.full((len(person.curves), 101, 2), np.nan)
+    forces[:4, :, 0], forces[4:, :, 1] = 420.0, 280.0
+    curves = np.concatenate([person.curves, forces], axis=2)
+    legs = legs_of(made_person(channels=(*person.channels, *added), curves=curves))
+    np.testing.assert_allclose(legs["l"].mean("vertical_force"), 60.0)
+    np.testing.assert_allclose(legs["r"].mean("vertical_force"), 40.0)
+    assert "vertical_force" not in legs_of(person)["l"].cycles

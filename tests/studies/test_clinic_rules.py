@@ -11,7 +11,7 @@ def test_what_is_planted_is_found_on_pages_of_few_people():
     spec = importlib.util.spec_from_file_location("clinic_rules", STUDIES / "clinic_rules.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    rows = module.run(quick=True)
+    rows = list(module.run(quick=True))
     assert [row["planted"] for row in rows] == ["nothing", "stiff knee", "drop foot"]
     assert rows[0]["said elsewhere"] == 0
     assert all(row["found"] <= row["pages"] == 2 for row in rows)

@@ -34,14 +34,15 @@ from gaitdisc.report.wording import SIDE_WORDS
 from gaitdisc.results import Provenance
 from gaitdisc.results.clinical_reading import ClinicalReading, Contrast, PersonSession
 from gaitdisc.results.clinical_reference import ClinicalReference
-from gaitdisc.results.clinical_variables import KINEMATICS, MOMENTS, POWERS
+from gaitdisc.results.clinical_variables import FORCES, KINEMATICS, MOMENTS, POWERS
 from gaitdisc.whole_file import write_whole
 
 FEWEST_COLUMNS = 4  # so that few panels are no larger than many
 SCRIPT = Path(__file__).parents[1] / "templates" / "cursor.js"
 MOMENT_SIGNS = (
     "Moments are internal, of the muscles, named after the movement they produce, per kg of body mass; powers are "
-    "positive where generated. Only cycles whose whole stance lay on one plate, with this foot alone on it."
+    "positive where generated; forces are of the ground on the foot. Only cycles whose whole stance lay on one plate, "
+    "with this foot alone on it."
 )
 
 
@@ -93,7 +94,7 @@ def _condition(reading: ClinicalReading, beside: Path, prefix: str) -> dict[str,
     return {
         **words,
         "kinematics": {**kinematics, "profile": Markup(profile_svg(reading.profile)) if reading.profile else ""},
-        "kinetics": _sheet(sheet(reading, MOMENTS, POWERS), MOMENT_SIGNS, (beside, f"{stem}kinetics")),
+        "kinetics": _sheet(sheet(reading, MOMENTS, POWERS, FORCES), MOMENT_SIGNS, (beside, f"{stem}kinetics")),
         "emg": _sheet(emg_sheet(reading.pooled), EMG, (beside, f"{stem}emg")),
         "consistency": _sheet(consistency_sheet(reading), CONSISTENCY, (beside, f"{stem}cycles")),
         "distances": _saved(values_table(reading), beside, stem),

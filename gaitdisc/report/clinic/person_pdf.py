@@ -17,7 +17,7 @@ from gaitdisc.report.palette import SIDES
 from gaitdisc.report.panels import in_style
 from gaitdisc.results import Provenance
 from gaitdisc.results.clinical_reading import ClinicalReading, PersonSession
-from gaitdisc.results.clinical_variables import KINEMATICS, MOMENTS, POWERS
+from gaitdisc.results.clinical_variables import FORCES, KINEMATICS, MOMENTS, POWERS
 from gaitdisc.whole_file import whole_file
 
 if TYPE_CHECKING:
@@ -73,9 +73,9 @@ def _first(person: PersonSession, main: ClinicalReading, provenance: Provenance)
 
 def _others(main: ClinicalReading) -> list[matplotlib.figure.Figure]:
     second = _Page()
-    kinetics, muscles = sheet(main, MOMENTS, POWERS), emg_sheet(main.pooled)
+    kinetics, muscles = sheet(main, MOMENTS, POWERS, FORCES), emg_sheet(main.pooled)
     if kinetics:
-        second.text("Moments and powers", size=9.5, bold=True)
+        second.text("Moments, powers and forces", size=9.5, bold=True)
         second.panels(kinetics, 4)
         second.text(MOMENT_SIGNS, size=6.8)
     if muscles:

@@ -45,7 +45,7 @@ def test_its_parts_stand_in_the_order_of_a_clinic(page):
     text = page.read_text(encoding="utf-8")
     headings = re.findall(r"<h2[^>]*>([^<]*)</h2>", text)
     wanted = ["What stands out", "Time and distance", "Scores", "Reading the curves", "Kinematics, walk",
-              "Moments and powers, walk", "EMG, walk", "Appendix: every cycle, walk"]  # fmt: skip
+              "Moments, powers and forces, walk", "EMG, walk", "Appendix: every cycle, walk"]  # fmt: skip
     assert headings[: len(wanted)] == wanted
     assert headings[-3:] == ["Turn", "walk and turn", "How it was made"]
     assert text.count('role="img"') == text.count('aria-label="') - text.count('role="region"')
