@@ -20,12 +20,14 @@ from gaitdisc.commands.cite import cite
 from gaitdisc.commands.compare import compare
 from gaitdisc.commands.demo import demo
 from gaitdisc.commands.discover import discover
+from gaitdisc.commands.doctor import doctor
 from gaitdisc.commands.exit_codes import REFUSED
 from gaitdisc.commands.export import export
 from gaitdisc.commands.modalities import modalities
 from gaitdisc.commands.moments import moments
 from gaitdisc.commands.new import new
 from gaitdisc.commands.reconstruct import reconstruct
+from gaitdisc.commands.reference import reference
 from gaitdisc.commands.report import report
 from gaitdisc.commands.run import run
 from gaitdisc.commands.sensitivity import sensitivity
@@ -44,11 +46,13 @@ COMMANDS = (
     ablate,
     modalities,
     sensitivity,
+    reference,
     report,
     export,
     cite,
     demo,
     chapter,
+    doctor,
 )
 
 app = typer.Typer(add_completion=False, no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False)

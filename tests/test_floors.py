@@ -25,7 +25,7 @@ FLOORS = (
         "turbulence",
     ),
     ("kinetics",),
-    ("processing", "discrepancy", "discovery", "comparison", "sensing", "response"),
+    ("processing", "discrepancy", "discovery", "comparison", "sensing", "response", "clinic"),
     ("batch", "report"),
     ("library", "commands"),
     ("cli", "__main__"),

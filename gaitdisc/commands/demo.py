@@ -19,10 +19,15 @@ def demo(
     hide: Annotated[
         str, typer.Option(help="What differs between the walks: spring, weak plantarflexor, stiff knee, drop foot, ...")
     ] = "spring",
+    clinic: Annotated[bool, typer.Option("--clinic", help="A week of a clinic instead: people, pages, index.")] = False,
     jobs: Jobs = 2,
     quiet: Quiet = False,
 ) -> None:
     """Let the embedded cohort walk without and with an ankle spring, and do the whole job on its recordings."""
+    if clinic:
+        from gaitdisc.commands.clinic_demo import clinic_demo
+
+        return clinic_demo(folder, jobs, quiet)
     from gaitdisc.batch.demonstration import write_demonstration
     from gaitdisc.batch.run_study import run_study
     from gaitdisc.batch.workers import Workers

@@ -12,11 +12,19 @@ def report(
     folder: Annotated[
         Path, typer.Argument(help="Folder that run, modalities, sensitivity, discover, compare or reconstruct wrote.")
     ],
+    person: Annotated[str, typer.Option(help="Of a clinic's run: only the page of this person.")] = "",
+    before: Annotated[str, typer.Option(help="With --after: a session or condition of the person.")] = "",
+    after: Annotated[str, typer.Option(help="What is drawn over it.")] = "",
+    pdf: Annotated[bool, typer.Option("--pdf", help="Pages of people as PDF too.")] = False,
+    reference: Annotated[Path | None, typer.Option(help="Folder of `gaitdisc reference`: bands, scores.")] = None,
 ) -> None:
     """Draw the page of a saved result again, without fitting; of a run also those of modalities and sensitivity."""
+    from gaitdisc.commands.clinic_report import clinic_report
     from gaitdisc.errors import SchemaError
     from gaitdisc.report.saved_page import draw_saved
 
+    if clinic_report(folder, person, (before, after), reference, pdf):
+        return
     if (folder / "model.json").is_file():
         raise SchemaError(
             "a page is drawn of a result",

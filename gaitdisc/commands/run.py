@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from gaitdisc.commands.clinic_pages import keep_reference
 from gaitdisc.commands.options import Cluster, Jobs, Quiet, RunPlace, StudyPlace
 from gaitdisc.commands.run_report import report_on
 
@@ -16,6 +18,7 @@ def run(
     participant: Annotated[list[str] | None, typer.Option(help="Only this participant; may be repeated.")] = None,
     jobs: Jobs = 1,
     cluster: Cluster = "",
+    reference: Annotated[Path | None, typer.Option(help="Folder of `gaitdisc reference`: bands, scores.")] = None,
     quiet: Quiet = False,
 ) -> None:
     """Process, fit, test and report; what an earlier run has finished is kept."""
@@ -28,4 +31,5 @@ def run(
         chosen = tuple(loaded.participant(name) for name in participant)
         loaded = loaded.model_copy(update={"participants": chosen})
     folder = out or loaded.folder / "run"
+    keep_reference(reference, folder)
     report_on(lambda told: run_study(loaded, folder, Workers(jobs, cluster), told), loaded, folder, quiet)

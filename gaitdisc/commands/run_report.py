@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import typer
 
+from gaitdisc.commands.clinic_pages import write_people
 from gaitdisc.commands.exit_codes import REFUSED, SOME_REFUSED, STOPPED
 
 if TYPE_CHECKING:
@@ -53,13 +54,17 @@ def report_on(work: Callable[[Told], ResponseRun], study: Study, folder: Path, q
     for quantity in done.quantities:
         for length_s, reason in quantity.left_away.items():
             typer.echo(f"left out: {quantity.participant}, training length {length_s:g} s: {reason}", err=True)
+    if done.cycles:
+        typer.echo(f"people: {folder / 'report' / 'index.html'}")
     end(done.refusals, len(done.reported), page, time.perf_counter() - started)
 
 
 def _drawn(done: ResponseRun, folder: Path) -> Path:
     from gaitdisc.report.response_page import write_report  # brings matplotlib, which a second run does not need
 
-    return write_report(done, folder)
+    page = write_report(done, folder)
+    write_people(done, folder.parent)
+    return page
 
 
 def say_renewed(renewed: Sequence[str]) -> None:

@@ -7,6 +7,8 @@ import numpy as np
 from gaitdisc.channel import vocabulary
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.study import Filters
+from gaitdisc.processing.ground_forces import weighed_forces
+from gaitdisc.processing.pelvis_and_foot import with_pelvis_and_foot
 from gaitdisc.processing.process import is_raw
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.signals.butterworth import lowpassed
@@ -57,6 +59,9 @@ def cycle_channels(
             own = [channel.name for channel in recording.channels if channel.name.startswith(LEGS)]
             legs = filled(without_spikes(recording.selected(own)), None, filters.gap_s) if own else None
         states += [state] if state is not None else []
+    weighed = weighed_forces(trial)
+    if weighed is not None and not any(set(weighed.names) & set(one.names) for one in states):
+        states.append(lowpassed(weighed, FORCE_HZ, filters.order, filters.gap_s))
     return legs, tuple(states), tuple(findings)
 
 
@@ -66,6 +71,8 @@ def _known(trial: Trial, key: str, quantities: tuple[str, ...]) -> Recording | N
         return None
     words = {channel.name for channel in vocabulary().channels}
     recording = trial.stream(key)
+    if key == "kinematics":
+        recording = with_pelvis_and_foot(recording)
     names = [
         channel.name
         for channel, column in zip(recording.channels, recording.values.T, strict=True)

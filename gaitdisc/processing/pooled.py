@@ -42,7 +42,7 @@ from gaitdisc.signals.sides import verify_sides
 from gaitdisc.signals.strides import duration_reasons
 from gaitdisc.signals.walking import LEAST_COVERAGE, verify_walking
 
-KINETIC = ("moment", "power")  # quantities that need a plate under the foot
+KINETIC = ("moment", "power", "force", "vertical_force")  # quantities that need a plate under the foot
 
 
 @dataclass(frozen=True, eq=False)

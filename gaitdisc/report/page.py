@@ -22,8 +22,12 @@ def write_page(template: str, shown: Mapping[str, Any], folder: Path) -> Path:
     shown : mapping
         What the template names, but for the version of this package.
     """
-    text = _templates().get_template(f"{template}.html.j2").render(version=gaitdisc.__version__, **shown)
-    return write_whole(folder / "report.html", text)
+    return write_whole(folder / "report.html", page_text(template, shown))
+
+
+def page_text(template: str, shown: Mapping[str, Any]) -> str:
+    """Page of a template and what it shows."""
+    return _templates().get_template(f"{template}.html.j2").render(version=gaitdisc.__version__, **shown)
 
 
 def _templates() -> jinja2.Environment:

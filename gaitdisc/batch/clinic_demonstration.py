@@ -1,0 +1,112 @@
+"""A week of a clinic, made: controls, healthy people, and some with gait planted that their pages must find."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from gaitdisc.batch.demonstration import FORCES, write_trial
+from gaitdisc.batch.planted_gait import planted
+from gaitdisc.cohort.measurement import measured
+from gaitdisc.cohort.person import drawn
+from gaitdisc.cohort.walk import walked
+from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
+from gaitdisc.ingest.study_file import write_study
+from gaitdisc.recording import Trial
+from gaitdisc.whole_file import write_whole
+
+WALK_S = 16.0
+CONTROLS_SEED, WEEK_SEED = 50_000, 60_000
+CONDITION = "walking"
+
+
+@dataclass(frozen=True)
+class Visit:
+    """One walk of a made person.
+
+    Parameters
+    ----------
+    number : int
+        Of the person, who is drawn by it.
+    what, side : str
+        What is planted, and where; empty for a healthy walk, `bad file` for a recording that cannot be read.
+    """
+
+    name: str
+    number: int
+    session: str = ""
+    what: str = ""
+    side: str = "r"
+
+
+WEEK = (
+    Visit("P01", 0),
+    Visit("P02", 1, what="stiff knee", side="l"),
+    Visit("P03", 2),
+    Visit("P04", 3, what="drop foot", side="r"),
+    Visit("P05", 4, "before", "stiff knee", "r"),
+    Visit("P05", 4, "after"),
+    Visit("P06", 5, what="bad file"),
+    Visit("P07", 6),
+)
+
+
+def made_walk(visit: Visit, seed: int) -> Trial:
+    """Walk of a visit on a treadmill, measured, with what is planted."""
+    person = drawn(visit.name, seed + visit.number, "fm"[visit.number % 2])
+    walk = walked(person, None, WALK_S, seed=seed + 7 * visit.number + len(visit.session))
+    what = "" if visit.what == "bad file" else visit.what
+    return planted(measured(walk, f"{visit.name}_{CONDITION}", CONDITION), what, visit.side)
+
+
+def write_week(
+    folder: Path, controls: int = 20, told: Callable[[str], None] = lambda _: None
+) -> tuple[Study, Study, dict[str, str]]:
+    """Write two studies, `controls/` and `week/`, and apart from them what was planted.
+
+    Returns
+    -------
+    controls, week : Study
+        As written; they pass through the same reading as a laboratory's.
+    planted : dict of str to str
+        Person and session -> what was planted, empty for the healthy.
+    """
+    visits = [Visit(f"C{k + 1:02d}", k) for k in range(controls)]
+    own = _written(folder / "controls", visits, "Controls, made", CONTROLS_SEED, told)
+    truth = {f"{one.name} {one.session}".strip(): _words(one) for one in WEEK}
+    said = "; ".join(f"{who} {what}" for who, what in truth.items() if what)
+    week = _written(folder / "week", WEEK, f"A week, made (simulated, no people). Planted: {said}", WEEK_SEED, told)
+    write_whole(folder / "planted.json", json.dumps(truth, indent=1))
+    return own, week, truth
+
+
+def _words(visit: Visit) -> str:
+    if visit.what in ("", "bad file"):
+        return visit.what
+    return f"{visit.what} {'left' if visit.side == 'l' else 'right'}"
+
+
+def _written(folder: Path, visits: Sequence[Visit], title: str, seed: int, told: Callable[[str], None]) -> Study:
+    trials: dict[str, list[PlannedTrial]] = {}
+    sessions = tuple(word for word in ("before", "after") if any(one.session == word for one in visits))
+    for visit in visits:
+        stem = f"raw/{visit.name}/{visit.session or 'only'}/{CONDITION}"
+        files = write_trial(made_walk(visit, seed), folder, stem)
+        if visit.what == "bad file":
+            for file in files:
+                whole = (folder / file).read_bytes()
+                (folder / file).write_bytes(whole[: len(whole) // 3])
+        planned = PlannedTrial(condition=CONDITION, session=visit.session or None, files=files)
+        trials.setdefault(visit.name, []).append(planned)
+        told(visit.name)
+    study = Study(
+        title=title,
+        sessions=sessions,
+        conditions=Conditions(nominal=CONDITION),
+        channels={name: f"{name} [N]" for name in FORCES},
+        participants=tuple(Participant(id=name, trials=tuple(own)) for name, own in trials.items()),
+    ).placed(folder)
+    write_study(study, folder / "study.toml")
+    return study

@@ -1,0 +1,89 @@
+"""Everybody of a run read beside a reference: a page for each person and session."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from gaitdisc.clinic.contrast import contrast_of
+from gaitdisc.clinic.reading import read_beside
+from gaitdisc.errors import GaitdiscError, SchemaError
+from gaitdisc.results import PooledCycles, ResponseRun
+from gaitdisc.results.clinical_reading import ClinicalReading, Contrast, PersonSession
+from gaitdisc.results.clinical_reference import ClinicalReference
+
+Sessions = dict[tuple[str, str], tuple[ClinicalReading, ...]]
+
+
+def readings_of(run: ResponseRun, reference: ClinicalReference | None) -> Sessions:
+    """Readings by person and session, the study's first condition before the others."""
+    return {key: _readings(own, run, reference) for key, own in _by_session(run).items()}
+
+
+def people_of(run: ResponseRun) -> list[str]:
+    """Title of every person and session, in the order of the study."""
+    return [_title(*key) for key in _by_session(run)]
+
+
+def sessions_of(
+    run: ResponseRun, reference: ClinicalReference | None
+) -> Iterator[tuple[str, PersonSession | GaitdiscError]]:
+    """Each person and session read, one after the other, or why it could not be; with its title."""
+    for key, own in _by_session(run).items():
+        try:
+            readings = _readings(own, run, reference)
+            yield _title(*key), PersonSession(_title(*key), readings, contrasts_of(readings))
+        except GaitdiscError as error:
+            yield _title(*key), error
+
+
+def _title(subject: str, session: str) -> str:
+    return " ".join(part for part in (subject, session) if part)
+
+
+def _by_session(run: ResponseRun) -> dict[tuple[str, str], list[PooledCycles]]:
+    found: dict[tuple[str, str], list[PooledCycles]] = {}
+    for pooled in run.cycles:
+        found.setdefault((pooled.subject, pooled.session), []).append(pooled)
+    return found
+
+
+def _readings(
+    own: Sequence[PooledCycles], run: ResponseRun, reference: ClinicalReference | None
+) -> tuple[ClinicalReading, ...]:
+    return tuple(read_beside(one, reference) for one in sorted(own, key=lambda one: _place(one, run)))
+
+
+def _place(pooled: PooledCycles, run: ResponseRun) -> tuple[bool, bool]:
+    """Kept before refused, and then the study's first condition before all others."""
+    return not len(pooled.kept), pooled.condition != run.nominal
+
+
+def before_and_after(readings: Sessions, person: str, words: Sequence[str]) -> tuple[ClinicalReading, ClinicalReading]:
+    """Two readings of a person by the words of their sessions or conditions, of one condition or of one session."""
+    own = [one for (subject, _), each in readings.items() if subject == person for one in each if one.legs]
+    if not own:
+        people = ", ".join(dict.fromkeys(subject for subject, _ in readings))
+        raise SchemaError(
+            "a person of the run with kept cycles is needed", f"{person!r}; there are {people}", "Name one."
+        )
+    first, second = ([one for one in own if word in (one.pooled.session, one.pooled.condition)] for word in words)
+    pairs = [(a, b) for a in first for b in second if _comparable(a.pooled, b.pooled)]
+    if not pairs:
+        there = ", ".join(one.pooled.where for one in own)
+        raise SchemaError(
+            f"{person} needs kept cycles of {words[0]!r} and of {words[1]!r}, of one condition or of one session",
+            f"found {there}",
+            "Name two sessions, or two conditions, of these.",
+        )
+    return pairs[0]
+
+
+def _comparable(first: PooledCycles, second: PooledCycles) -> bool:
+    same = (first.condition == second.condition, first.session == second.session)
+    return sum(same) == 1
+
+
+def contrasts_of(readings: Sequence[ClinicalReading]) -> tuple[Contrast, ...]:
+    """First condition of a session against each other one that has cycles."""
+    main, *others = readings
+    return tuple(contrast_of(main, other) for other in others if main.legs and other.legs)

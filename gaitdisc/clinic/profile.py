@@ -1,0 +1,119 @@
+"""Movement analysis profile and gait profile score (Baker et al. 2009)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.clinic.reference import bands
+from gaitdisc.results.clinical_reading import Profile, Score
+from gaitdisc.results.clinical_reference import ReferenceLeg
+from gaitdisc.results.clinical_variables import PELVIS, PROFILE
+from gaitdisc.results.leg_curves import FEET, TURNED_DEG, LegCurves
+
+FEWEST = 2  # people without whom the reference has no spread of its own
+Means = Mapping[str, NDArray[np.float64]]
+
+
+def variable_score(curves: NDArray[np.float64], mean: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Root mean square difference of curves (..., phase) to the reference's mean.
+
+    Examples
+    --------
+    >>> float(variable_score(np.array([3.0, -3.0, 3.0]), np.zeros(3)))
+    3.0
+    """
+    return np.sqrt(np.mean((curves - mean) ** 2, axis=-1))
+
+
+def profile_score(scores: Sequence[float]) -> float:
+    """Root mean square of variable scores.
+
+    Examples
+    --------
+    >>> round(profile_score([3.0, 4.0]), 3)
+    3.536
+    """
+    return float(np.sqrt(np.mean(np.square(scores))))
+
+
+def profile_of(legs: Mapping[str, LegCurves], reference: Sequence[ReferenceLeg]) -> tuple[Profile | None, str]:
+    """Profile of a person beside a reference, or why there is none.
+
+    The score of a leg is over nine curves; the one of both is over fifteen: nine of the left leg, six of the right,
+    those of the pelvis once, as in the paper.
+
+    References
+    ----------
+    Baker R, McGinley JL, Schwartz MH et al. 2009, The Gait Profile Score and Movement Analysis Profile.
+    """
+    turned = max((leg.turned_deg for leg in legs.values()), default=0.0)
+    if turned > TURNED_DEG:
+        return None, (
+            f"the pelvis turns by {turned:.0f} deg in a cycle: its rotation and the foot's progression, two of the "
+            f"nine curves, are about a straight line of walking"
+        )
+    known = bands(reference)
+    lacking = [name for name in PROFILE if name not in known]
+    if lacking:
+        return None, f"the reference lacks {', '.join(lacking).replace('_', ' ')} of two people or more"
+    absent = {side: [name for name in PROFILE if name not in leg.cycles] for side, leg in legs.items()}
+    if all(absent.values()) or not legs:
+        names = ", ".join(next(iter(absent.values()), PROFILE)).replace("_", " ")
+        return None, f"the recording lacks {names}; the score is over nine curves"
+    means = {name: known[name].mean for name in PROFILE}
+    spread = _own_spread(reference)
+    people = len({leg.person for leg in reference})
+    variables, whole = {}, {}
+    for side, leg in legs.items():
+        if absent[side]:
+            continue
+        each = {name: variable_score(leg.cycles[name], means[name]) for name in PROFILE}
+        for name in PROFILE:
+            value = float(variable_score(leg.mean(name), means[name]))
+            variables[name, side] = _score(value, each[name], spread.get(name), people)
+        single = _of_cycles(each)
+        whole[side] = _score(
+            profile_score([variables[n, side].value for n in PROFILE]), single, spread.get("leg"), people
+        )
+    both = None
+    if set(whole) == set(FEET):
+        fifteen = [variables[n, "l"].value for n in PROFILE]
+        fifteen += [variables[n, "r"].value for n in PROFILE if n not in PELVIS]
+        both = _score(profile_score(fifteen), np.array([]), spread.get("both"), people)
+    return Profile(variables, whole, both), ""
+
+
+def _of_cycles(each: Means) -> NDArray[np.float64]:
+    """Score of each cycle; none where a variable is missing in some, for cycles would not be the same."""
+    if len({len(scores) for scores in each.values()}) > 1:
+        return np.array([])
+    return np.sqrt(np.mean(np.array(list(each.values())) ** 2, axis=0))
+
+
+def _score(value: float, cycles: NDArray[np.float64], spread: tuple[float, float] | None, people: int) -> Score:
+    low, high = (float(cycles.min()), float(cycles.max())) if len(cycles) else (float("nan"), float("nan"))
+    return Score(value, low, high, len(cycles), *(spread or (float("nan"), float("nan"))), people)
+
+
+def _own_spread(reference: Sequence[ReferenceLeg]) -> dict[str, tuple[float, float]]:
+    """Mean and standard deviation of the scores of controls, each against all the others."""
+    found: dict[str, list[float]] = {}
+    whole = [leg for leg in reference if all(name in leg.curves for name in PROFILE)]
+    people = list(dict.fromkeys(leg.person for leg in whole))
+    if len(people) <= FEWEST:
+        return {}
+    for person in people:
+        others = bands([leg for leg in whole if leg.person != person])
+        own: dict[tuple[str, str], float] = {}
+        for leg in (one for one in whole if one.person == person):
+            for name in PROFILE:
+                own[name, leg.side] = float(variable_score(leg.curves[name], others[name].mean))
+                found.setdefault(name, []).append(own[name, leg.side])
+            found.setdefault("leg", []).append(profile_score([own[name, leg.side] for name in PROFILE]))
+        if len(own) == 2 * len(PROFILE):
+            pelvis_once = [value for (name, side), value in own.items() if side == "l" or name not in PELVIS]
+            found.setdefault("both", []).append(profile_score(pelvis_once))
+    return {name: (float(np.mean(each)), float(np.std(each, ddof=1))) for name, each in found.items() if len(each) > 1}

@@ -1,0 +1,141 @@
+"""The rules of what stands out, read from `rules.toml`, and the number that each takes from a leg."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.errors import SchemaError
+from gaitdisc.results.clinical_variables import BY_NAME
+from gaitdisc.results.pooled_cycles import SPATIOTEMPORAL
+
+PARTS = ("contact", "loading", "stance", "late stance", "push-off", "swing", "mid swing", "cycle")
+TAKES = {"min": np.min, "max": np.max, "mean": np.mean, "range": np.ptp}
+LOADING, LATE, PUSH_OFF = (0, 20), 30, (50, 75)  # % of the cycle
+SPATIOTEMPORAL_UNITS = {
+    "m_per_s": ("m/s", 2),
+    "percent": ("%", 1),
+    "per_min": ("steps/min", 0),
+    "s": ("s", 2),
+    "m": ("m", 2),
+}
+
+
+@dataclass(frozen=True)
+class Rule:
+    """One number of a leg that may stand out.
+
+    Parameters
+    ----------
+    variable, value : str
+        Clinical variable or spatiotemporal value; the other is empty.
+    least : float
+        Smallest distance to the reference's mean that is spoken of.
+    less, more : str
+        What too small and too large a number is called; empty where it is nothing.
+    """
+
+    name: str
+    variable: str
+    value: str
+    part: str
+    take: str
+    least: float
+    less: str
+    more: str
+
+    @property
+    def unit(self) -> str:
+        """Unit of the number."""
+        return BY_NAME[self.variable].unit if self.variable else _of_value(self.value)[0]
+
+    @property
+    def digits(self) -> int:
+        """Digits behind the point that the number is printed with."""
+        return {"deg": 0}.get(self.unit, 1) if self.variable else _of_value(self.value)[1]
+
+    def number(
+        self, curves: Mapping[str, NDArray[np.float64]], values: Mapping[str, float], stance_percent: float
+    ) -> float | None:
+        """Number of a leg by its mean curves and spatiotemporal values; None where it cannot be taken."""
+        if self.value:
+            return values.get(self.value)
+        if self.variable not in curves:
+            return None
+        part = part_of(self.part, stance_percent)
+        return float(TAKES[self.take](curves[self.variable][part])) if part is not None else None
+
+
+def part_of(part: str, stance_percent: float) -> slice | None:
+    """Points of a part of the cycle on 101 points; None where it hangs on a foot off that is not known.
+
+    Examples
+    --------
+    >>> part_of("swing", 60.0), part_of("mid swing", 61.0), part_of("stance", float("nan"))
+    (slice(60, 101, None), slice(74, 88, None), None)
+    """
+    fixed = {"contact": (0, 0), "loading": LOADING, "push-off": PUSH_OFF, "cycle": (0, 100)}
+    if part in fixed:
+        first, last = fixed[part]
+    elif not 30 < stance_percent < 90:
+        return None
+    else:
+        off, swing = stance_percent, 100 - stance_percent
+        first, last = {
+            "stance": (0, round(off)),
+            "late stance": (LATE, round(off)),
+            "swing": (round(off), 100),
+            "mid swing": (round(off + swing / 3), round(off + 2 * swing / 3)),
+        }[part]
+    return slice(first, last + 1)
+
+
+@cache
+def rules() -> tuple[Rule, ...]:
+    """Every rule of `rules.toml`.
+
+    Examples
+    --------
+    >>> rules()[0].name
+    'pelvic tilt'
+    """
+    path = Path(__file__).with_name("rules.toml")
+    return rules_in(tomllib.loads(path.read_text(encoding="utf-8")))
+
+
+def rules_in(data: Mapping[str, list[dict[str, object]]]) -> tuple[Rule, ...]:
+    """Rules of a table, each checked."""
+    found = tuple(_rule(entry) for entry in data["rules"])
+    names = [rule.name for rule in found]
+    if len(set(names)) < len(names):
+        raise SchemaError("each rule needs a name of its own", f"found {names}", "Rename one of them.")
+    return found
+
+
+def _rule(entry: Mapping[str, object]) -> Rule:
+    words = {key: str(entry.get(key, "")) for key in ("name", "variable", "value", "part", "take", "less", "more")}
+    least = entry.get("least")
+    known = words["variable"] in BY_NAME and words["part"] in PARTS and words["take"] in TAKES
+    if not (
+        words["name"]
+        and (words["less"] or words["more"])
+        and isinstance(least, float)
+        and least > 0
+        and (known != (words["value"] in SPATIOTEMPORAL))
+    ):
+        raise SchemaError(
+            "a rule needs name, least > 0, less or more, and either variable, part and take or a spatiotemporal value",
+            f"found {dict(entry)}",
+            "Correct rules.toml.",
+        )
+    return Rule(least=least, **words)
+
+
+def _of_value(value: str) -> tuple[str, int]:
+    return next(found for ending, found in SPATIOTEMPORAL_UNITS.items() if value.endswith(f"_{ending}"))

@@ -1,0 +1,97 @@
+"""Pages of everybody in a run, and the index: each person apart, so that one who fails costs nobody else."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gaitdisc.errors import GaitdiscError, SchemaError
+
+if TYPE_CHECKING:
+    from gaitdisc.results import ResponseRun
+    from gaitdisc.results.clinical_reference import ClinicalReference
+
+REFERENCE = "reference"  # folder of a run, beside its cycles
+
+
+def keep_reference(place: Path | None, run_folder: Path) -> None:
+    """Copy a reference into a run, so that its pages are drawn again without it."""
+    from gaitdisc.results.clinical_reference import load_reference, save_reference
+
+    if place is not None:
+        save_reference(load_reference(place), run_folder / REFERENCE)
+
+
+def kept_reference(run_folder: Path) -> ClinicalReference | None:
+    """Reference that was copied into a run; None where none was."""
+    from gaitdisc.results.clinical_reference import FILE, load_reference
+
+    folder = run_folder / REFERENCE
+    return load_reference(folder) if (folder / FILE).is_file() else None
+
+
+def write_people(run: ResponseRun, run_folder: Path) -> Path | None:
+    """Write a page of each person and session, and `index.html`; None for a run without cycles."""
+    if not run.cycles:
+        return None
+    from gaitdisc.batch.read_people import people_of, sessions_of
+    from gaitdisc.report.clinic.index_page import write_index
+    from gaitdisc.report.clinic.person_page import page_names, write_person_page
+
+    report, reference = run_folder / "report", kept_reference(run_folder)
+    names = dict(zip(people_of(run), page_names(people_of(run)), strict=True))
+    written, failed = [], []
+    for title, person in sessions_of(run, reference):
+        if isinstance(person, GaitdiscError):
+            failed.append((title, str(person)))
+            continue
+        try:
+            write_person_page(person, names[title], reference, run.provenance, report)
+            written.append((person, names[title]))
+        except (GaitdiscError, ArithmeticError, LookupError, ValueError, TypeError) as error:
+            failed.append((title, f"the page could not be written: {error}"))
+    return write_index(_with_failed(run, failed), written, reference, report)
+
+
+def write_before_after(run: ResponseRun, run_folder: Path, person: str, words: tuple[str, str]) -> Path:
+    """Write the page of a person before and after."""
+    from gaitdisc.batch.read_people import before_and_after, readings_of
+    from gaitdisc.clinic.contrast import contrast_of
+    from gaitdisc.report.clinic.person_page import PersonSession, page_names, write_person_page
+
+    reference = kept_reference(run_folder)
+    before, after = before_and_after(readings_of(run, reference), person, words)
+    title = f"{person} {words[0]} {words[1]}"
+    page = PersonSession(title, (after, before), (contrast_of(before, after),))
+    name = page_names([title])[0]
+    return write_person_page(page, name, reference, run.provenance, run_folder / "report")
+
+
+def write_person(run: ResponseRun, run_folder: Path, person: str, pdf: bool = False) -> list[Path]:
+    """Write the pages of one person, a page a session, as HTML and where wanted as PDF."""
+    from gaitdisc.batch.read_people import people_of, sessions_of
+    from gaitdisc.report.clinic.person_page import page_names, write_person_page
+
+    own = replace(run, cycles=tuple(one for one in run.cycles if one.subject == person))
+    if not own.cycles:
+        people = ", ".join(dict.fromkeys(one.subject for one in run.cycles)) or "nobody"
+        raise SchemaError("a page needs a person of the run", f"{person!r}; there are {people}", "Name one of them.")
+    names = dict(zip(people_of(run), page_names(people_of(run)), strict=True))
+    reference, found = kept_reference(run_folder), []
+    for title, one in sessions_of(own, reference):
+        if isinstance(one, GaitdiscError):
+            raise one
+        page = write_person_page(one, names[title], reference, run.provenance, run_folder / "report")
+        found.append(page)
+        if pdf:
+            from gaitdisc.report.clinic.person_pdf import write_person_pdf
+
+            found.append(write_person_pdf(one, run.provenance, page.with_suffix(".pdf")))
+    return found
+
+
+def _with_failed(run: ResponseRun, failed: list[tuple[str, str]]) -> ResponseRun:
+    from gaitdisc.results import Refusal
+
+    return replace(run, refusals=(*run.refusals, *(Refusal(title, "", reason) for title, reason in failed)))

@@ -1,0 +1,58 @@
+"""`gaitdisc reference`: the laboratory's own controls, processed as everybody else and kept in one file."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from gaitdisc.commands.options import Jobs
+from gaitdisc.errors import SchemaError
+
+if TYPE_CHECKING:
+    from gaitdisc.results import ResponseRun
+
+
+def reference(
+    controls: Annotated[Path, typer.Argument(help="Study of the controls, or a folder of a run of it.")],
+    out: Annotated[Path, typer.Option("--out", help="Folder that reference.json is written to.")],
+    group: Annotated[str, typer.Option(help="Only this group of the study, such as control.")] = "",
+    jobs: Jobs = 1,
+) -> None:
+    """Process controls as a study is processed, and save mean cycles of their legs for `--reference`."""
+    from gaitdisc.clinic.reference import FEWEST, reference_of
+    from gaitdisc.results.clinical_reference import save_reference
+
+    run = _run_of(controls, jobs)
+    cycles = tuple(one for one in run.cycles if not group or one.group == group)
+    if not cycles:
+        groups = ", ".join(sorted({one.group or "no group" for one in run.cycles})) or "no cycles"
+        raise SchemaError(
+            f"a reference needs controls{f' of group {group!r}' if group else ''} with pooled cycles",
+            f"{controls} has {groups}",
+            "Name a group of the study, or record walks of several trials.",
+        )
+    run = replace(run, cycles=cycles)
+    found = reference_of(run.cycles, run.title, run.provenance)
+    path = save_reference(found, out)
+    for word in found.legs:
+        count = found.people(word)
+        few = f"; fewer than {FEWEST}: bands are drawn, nothing is said to stand out" if count < FEWEST else ""
+        typer.echo(f"  {word}: {count} people, {len(found.of(word))} legs{few}")
+    typer.echo(f"reference: {path}")
+
+
+def _run_of(controls: Path, jobs: int) -> ResponseRun:
+    """Run of a folder, or of a study, which is computed as far as it is not."""
+    from gaitdisc.results.run_store import load_run
+
+    if (controls / "run.json").is_file():
+        return load_run(controls)
+    from gaitdisc.batch.run_study import run_study
+    from gaitdisc.batch.workers import Workers
+    from gaitdisc.ingest.study_file import load_study
+
+    study = load_study(controls)
+    return run_study(study, study.folder / "run", Workers(jobs))

@@ -1,0 +1,95 @@
+"""Index of a week: who is there, refused first, what is amber and why, scores, and a link to each page."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from gaitdisc.report.clinic.person_words import noted_sentences
+from gaitdisc.report.page import page_text
+from gaitdisc.report.table import save_tables, words_table
+from gaitdisc.report.wording import NONE, counted, number
+from gaitdisc.results import Refusal, ResponseRun
+from gaitdisc.results.clinical_reading import ClinicalReading, PersonSession
+from gaitdisc.results.clinical_reference import ClinicalReference
+from gaitdisc.whole_file import write_whole
+
+RANKS = {"red": 0, "amber": 1, "green": 2}
+HEADINGS = ("state", "person", "condition", "cycles L, R", "profile score [deg]", "stands out", "why")
+
+
+def write_index(
+    run: ResponseRun,
+    sessions: Sequence[tuple[PersonSession, str]],
+    reference: ClinicalReference | None,
+    folder: Path,
+) -> Path:
+    """Write `index.html`: one row a person, session and condition, those without a result first.
+
+    Parameters
+    ----------
+    sessions : sequence of (PersonSession, str)
+        With the name of each one's page, empty where none could be written.
+    """
+    rows = [_row(reading, one, name) for one, name in sessions for reading in one.readings]
+    known = {reading.pooled.subject for one, _ in sessions for reading in one.readings}
+    whole = [refusal for refusal in run.refusals if refusal.participant not in known]
+    rows += [_refused(refusal) for refusal in whole]
+    rows.sort(key=lambda row: RANKS[row["light"]])
+    cells = [
+        (row["light"], row["person"], row["condition"], row["cycles"], row["score"], row["noted"], row["why"])
+        for row in rows
+    ]
+    table = words_table("people", "People of the run.", HEADINGS, cells)
+    save_tables([table], folder)
+    lights = {light: sum(row["light"] == light for row in rows) for light in RANKS}
+    shown = {
+        "title": run.title,
+        "created": run.provenance.created[:10],
+        "rows": rows,
+        "headings": HEADINGS,
+        "whole": (folder / "report.html").is_file(),
+        "lights": lights,
+        "reference": _reference_words(reference),
+        "people": counted(len({row["subject"] for row in rows}), "person").replace("persons", "people"),
+    }
+    return write_whole(folder / "index.html", page_text("people", shown))
+
+
+def _row(reading: ClinicalReading, person: PersonSession, name: str) -> dict[str, str]:
+    pooled = reading.pooled
+    score = reading.profile.both if reading.profile else None
+    sentences = noted_sentences(reading.noted)
+    first = f"{len(reading.noted)}: {sentences[0].partition(';')[0]}" if sentences else NONE
+    return {
+        "light": reading.light,
+        "subject": pooled.subject,
+        "person": person.title,
+        "condition": pooled.condition,
+        "cycles": f"{pooled.counted('l')}, {pooled.counted('r')}",
+        "score": number(score.value, 1) if score else NONE,
+        "noted": first if not reading.silent else "not said",
+        "why": "; ".join(reading.reasons) or NONE,
+        "page": f"people/{name}.html" if name else "",
+    }
+
+
+def _refused(refusal: Refusal) -> dict[str, str]:
+    return {
+        "light": "red",
+        "subject": refusal.participant,
+        "person": refusal.participant,
+        "condition": refusal.condition or NONE,
+        "cycles": NONE,
+        "score": NONE,
+        "noted": NONE,
+        "why": refusal.reason,
+        "page": "",
+    }
+
+
+def _reference_words(reference: ClinicalReference | None) -> str:
+    if reference is None:
+        return "No reference: no bands, no scores, and nothing is said to stand out."
+    counts = ", ".join(f"{word} {reference.people(word)}" for word in reference.legs)
+    return f"Reference of the laboratory's own controls: {counts}; saved {reference.created[:10]}."

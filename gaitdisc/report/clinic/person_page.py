@@ -1,0 +1,194 @@
+"""Page of a person and session: one file that is mailed, with the numbers of its sheets and tables beside."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from markupsafe import Markup
+
+from gaitdisc.report.clinic.panel import Panel, svg
+from gaitdisc.report.clinic.person_panels import (
+    MOST_SINGLE,
+    consistency_sheet,
+    contrast_sheet,
+    emg_sheet,
+    panel_numbers,
+    sheet,
+)
+from gaitdisc.report.clinic.person_tables import files_table, numbers_table, profile_table, values_table
+from gaitdisc.report.clinic.person_words import (
+    contrast_sentences,
+    outstanding_sentences,
+    quality_sentence,
+    score_sentences,
+)
+from gaitdisc.report.clinic.profile_chart import profile_svg
+from gaitdisc.report.figure import file_names
+from gaitdisc.report.page import page_text
+from gaitdisc.report.table import Table, save_table, words_table
+from gaitdisc.report.wording import SIDE_WORDS
+from gaitdisc.results import Provenance
+from gaitdisc.results.clinical_reading import ClinicalReading, Contrast, PersonSession
+from gaitdisc.results.clinical_reference import ClinicalReference
+from gaitdisc.results.clinical_variables import FORCES, KINEMATICS, MOMENTS, POWERS
+from gaitdisc.whole_file import write_whole
+
+FEWEST_COLUMNS = 4  # so that few panels are no larger than many
+SCRIPT = Path(__file__).parents[1] / "templates" / "cursor.js"
+MOMENT_SIGNS = (
+    "Moments are internal, of the muscles, named after the movement they produce, per kg of body mass; powers are "
+    "positive where generated; forces are of the ground on the foot. Only cycles whose whole stance lay on one plate, "
+    "with this foot alone on it."
+)
+
+
+def page_names(titles: Sequence[str]) -> list[str]:
+    """Name of the page of each, without ending; no two alike."""
+    named = file_names(titles)
+    return [named[title] for title in titles]
+
+
+def write_person_page(
+    person: PersonSession, name: str, reference: ClinicalReference | None, provenance: Provenance, folder: Path
+) -> Path:
+    """Write `people/<name>.html` and the folder of its numbers; the same bytes for the same numbers."""
+    beside = folder / "people" / name
+    main, *others = person.readings
+    script = SCRIPT.read_text(encoding="utf-8")
+    shown = {
+        "title": person.title,
+        "conditions": "; ".join(dict.fromkeys(one.pooled.condition for one in person.readings)),
+        "reference": _reference(reference, main.pooled.condition),
+        "created": provenance.created[:10],
+        "main": _condition(main, beside, ""),
+        "others": [_condition(one, beside, f"{one.pooled.condition}-") for one in others],
+        "contrasts": [_contrast(one, beside) for one in person.contrasts],
+        "method": _method(person, provenance),
+        "files": _saved(files_table(list(person.readings)), beside, ""),
+        "versions": words_table("versions", "Versions.", ("what", "version"), provenance.versions.items()),
+        "script": Markup(script),
+        "script_hash": f"sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}",
+    }
+    return write_whole(folder / "people" / f"{name}.html", page_text("person", shown))
+
+
+def _condition(reading: ClinicalReading, beside: Path, prefix: str) -> dict[str, Any]:
+    stem = next(iter(file_names([prefix]).values())) if prefix else ""
+    words = {
+        "where": reading.pooled.where,
+        "light": reading.light,
+        "red": not reading.legs,
+        "reasons": reading.reasons,
+        "quality": quality_sentence(reading),
+        "outstanding": outstanding_sentences(reading),
+        "scores": score_sentences(reading),
+    }
+    if not reading.legs:
+        return words
+    profile = profile_table(reading)
+    kinematics = _sheet(sheet(reading, KINEMATICS), band_words(reading), (beside, f"{stem}kinematics"))
+    return {
+        **words,
+        "kinematics": {**kinematics, "profile": Markup(profile_svg(reading.profile)) if reading.profile else ""},
+        "kinetics": _sheet(sheet(reading, MOMENTS, POWERS, FORCES), MOMENT_SIGNS, (beside, f"{stem}kinetics")),
+        "emg": _sheet(emg_sheet(reading.pooled), EMG, (beside, f"{stem}emg")),
+        "consistency": _sheet(consistency_sheet(reading), CONSISTENCY, (beside, f"{stem}cycles")),
+        "distances": _saved(values_table(reading), beside, stem),
+        "numbers": _saved(numbers_table(reading), beside, stem),
+        "profile": _saved(profile, beside, stem) if profile else None,
+    }
+
+
+EMG = (
+    "Envelopes in percent of the largest of the leg's own mean. Dark bars: when the muscle is active in the walking of "
+    "healthy adults, about (Perry and Burnfield 2010); a muscle without a bar has none there."
+)
+CONSISTENCY = (
+    f"Single cycles thin (the first {MOST_SINGLE}), mean thick. CMC: coefficient of multiple correlation of a leg's "
+    f"cycles (Kadaba 1989), 1 where all are alike; – where there is one cycle or it is not defined."
+)
+
+
+def _sheet(panels: list[Panel], caption: str, place: tuple[Path, str]) -> dict[str, Any]:
+    beside, name = place
+    if panels:
+        save_table(panel_numbers(panels), beside / f"{name}.csv")
+    used = sorted({panel.column for panel in panels})  # a column that nothing stands in is closed
+    drawn = [
+        {"panel": one, "svg": Markup(svg(one)), "row": one.row + 1, "column": used.index(one.column) + 1}
+        for one in panels
+    ]
+    return {
+        "panels": drawn,
+        "columns": max(FEWEST_COLUMNS, len(used)),
+        "caption": caption,
+        "file": f"{beside.name}/{name}.csv",
+        "profile": "",
+    }
+
+
+def _saved(table: Table, beside: Path, stem: str) -> Table:
+    save_table(table.numbers, beside / f"{stem}{table.name}.csv")
+    return table
+
+
+def _contrast(contrast: Contrast, beside: Path) -> dict[str, Any]:
+    first, second = contrast.first.pooled.where, contrast.second.pooled.where
+    stem = next(iter(file_names([f"{first}-{second}"]).values()))
+    sheets = []
+    for side in contrast.second.legs:
+        panels = contrast_sheet(contrast, side)
+        if panels:
+            caption = (
+                f"Dotted: {first}; unbroken or dashed: {second}. Bars above: where they differ by a permutation test "
+                f"of the cycles, corrected for the whole cycle, all curves and both legs; black where by 5 deg or more."
+            )
+            one = _sheet(panels, caption, (beside, f"{stem}-{SIDE_WORDS[side]}"))
+            sheets.append({**one, "heading": SIDE_WORDS[side].capitalize()})
+    return {"heading": f"{first} and {second}", "sentences": contrast_sentences(contrast), "sheets": sheets}
+
+
+def _reference(reference: ClinicalReference | None, condition: str) -> str:
+    if reference is None:
+        return "No reference."
+    count = reference.people(condition)
+    people = f"{count} controls of the laboratory's own" if count else "nobody who walked so"
+    return f"Reference: {people}, saved {reference.created[:10]}."
+
+
+def band_words(reading: ClinicalReading) -> str:
+    """What the band is of, or why there is none."""
+    people = sorted({band.people for band in reading.bands.values()})
+    if not people:
+        return "No band: there is no reference for this condition."
+    count = str(people[0]) if people[0] == people[-1] else f"{people[0]} to {people[-1]}"
+    return f"Band: mean ± standard deviation over the legs of {count} controls."
+
+
+def _method(person: PersonSession, provenance: Provenance) -> list[str]:
+    found = []
+    for reading in person.readings:
+        pooled = reading.pooled
+        by = ", ".join(f"{name} ({count} trials)" for name, count in pooled.detectors.items())
+        moved = pooled.contact_offset_s
+        words = f", moved by {1000 * moved:+.0f} ms after {pooled.offset_steps} steps that a plate saw" if moved else ""
+        found.append(f"{pooled.where}: contacts by {by or 'nothing'}{words}.")
+    filters = provenance.settings.get("filters")
+    if isinstance(filters, dict):
+        shown = {
+            "kinematics_hz": "angles {:g} Hz",
+            "emg_highpass_hz": "EMG {:g} Hz high-pass",
+            "emg_lowpass_hz": "then {:g} Hz",
+        }
+        parts = [words.format(filters[key]) for key, words in shown.items() if key in filters]
+        found.append(f"Butterworth low-pass, forwards and backwards: {', '.join(parts)}.")
+    found.append("Pelvic angles are shown for the side of the leg: obliquity up and rotation forwards of that side.")
+    found.append(
+        "What stands out: rules that take one number of a leg's mean cycle; limits within which all numbers of one "
+        "more healthy person lie with probability .95, by the reference's spread and its number of people."
+    )
+    return found

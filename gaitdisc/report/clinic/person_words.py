@@ -1,0 +1,131 @@
+"""Sentences of a person's page: what stands out, each with number, limits, side and cycles; and how good it is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from gaitdisc.report.wording import SIDE_WORDS, counted, number, unit_text
+from gaitdisc.results.clinical_reading import ClinicalReading, Contrast, DifferingSpan, Noted, Score
+from gaitdisc.results.clinical_variables import BY_NAME
+from gaitdisc.results.leg_curves import FEET
+
+MOST = 6  # sentences of what stands out
+MOST_SPANS = 6
+
+
+def noted_sentences(noted: Sequence[Noted]) -> list[str]:
+    """One sentence a rule and direction, the farthest first, both legs in one; at most six.
+
+    Examples
+    --------
+    >>> noted_sentences([])
+    []
+    """
+    together: dict[tuple[str, str], list[Noted]] = {}
+    for one in noted:
+        together.setdefault((one.rule, one.words), []).append(one)
+    return [_noted(sorted(own, key=lambda one: one.side)) for own in together.values()][:MOST]
+
+
+def _noted(own: Sequence[Noted]) -> str:
+    first = own[0]
+    unit, limits = unit_text(first.unit), first.limits
+    low, high, mean = (number(value, first.digits) for value in (limits.low, limits.high, limits.mean))
+    sd = number(limits.sd, max(first.digits, 1))
+    each = ", ".join(
+        f"{SIDE_WORDS[one.side]} {number(one.value, one.digits)} {unit} ({counted(one.cycles, 'cycle')})" for one in own
+    )
+    words = first.words[0].upper() + first.words[1:]
+    return f"{words}: {each}; limits {low} to {high} {unit}, reference {mean} ± {sd} {unit}, {limits.people} people."
+
+
+def outstanding_sentences(reading: ClinicalReading) -> list[str]:
+    """What stands out, or why nothing does."""
+    if reading.silent:
+        return [f"Nothing is said to stand out: {reading.silent}."]
+    found = noted_sentences(reading.noted)
+    if found:
+        return found
+    people = max((band.people for band in reading.bands.values()), default=0)
+    few = "" if people >= 20 else f" With {people} controls the limits are wide: smaller differences may be there."
+    return [f"None of {len(reading.numbers)} values lies beyond the limits of the reference.{few}"]
+
+
+def quality_sentence(reading: ClinicalReading) -> str:
+    """What was recorded, and how good it is, in one line."""
+    pooled = reading.pooled
+    counts = " and ".join(f"{pooled.counted(side)} {SIDE_WORDS[side]}" for side in FEET)
+    kinetic = int(pooled.kept["kinetic"].astype(bool).sum())
+    plates = f", {kinetic} on a plate" if kinetic else ""
+    out = f", {len(pooled.left_out)} left out" if len(pooled.left_out) else ""
+    ground = "over ground" if pooled.over_ground else "on a treadmill"
+    why = f": {'; '.join(reading.reasons)}" if reading.reasons else ""
+    return f"{counts} cycles of {counted(pooled.trials, 'trial')} {ground}{plates}{out}. {reading.light}{why}."
+
+
+def score_words(score: Score, unit: str = "deg") -> str:
+    """Score with the range of single cycles and the reference's own.
+
+    Examples
+    --------
+    >>> score_words(Score(7.2, 6.5, 8.1, 4, 5.1, 1.0, 20))
+    '7.2 deg (4 cycles 6.5 to 8.1; reference 5.1 ± 1.0, 20 people)'
+    """
+    parts = []
+    if score.cycles > 1 and np.isfinite(score.low):
+        parts.append(f"{score.cycles} cycles {number(score.low, 1)} to {number(score.high, 1)}")
+    if np.isfinite(score.reference_mean):
+        own = f"{number(score.reference_mean, 1)} ± {number(score.reference_sd, 1)}"
+        parts.append(f"reference {own}, {score.people} people")
+    return f"{number(score.value, 1)} {unit}" + (f" ({'; '.join(parts)})" if parts else "")
+
+
+def score_sentences(reading: ClinicalReading) -> list[str]:
+    """Gait profile score and gait deviation index, or why there is none."""
+    found = []
+    if reading.profile is None:
+        found.append(f"No gait profile score: {reading.no_profile}.")
+    else:
+        each = [f"{SIDE_WORDS[side]} {score_words(score)}" for side, score in reading.profile.legs.items()]
+        both = [f"both {score_words(reading.profile.both)}"] if reading.profile.both else []
+        found.append(f"Gait profile score: {'; '.join([*both, *each])}.")
+    if reading.deviation_index:
+        each = [f"{SIDE_WORDS[side]} {number(value, 0)}" for side, value in reading.deviation_index.items()]
+        found.append(f"Gait deviation index: {', '.join(each)} (controls 100 ± 10).")
+    else:
+        found.append(f"No gait deviation index: {reading.no_index}.")
+    return found
+
+
+def contrast_sentences(contrast: Contrast) -> list[str]:
+    """Where two sets of cycles differ and by how much; the largest first, and what was not tested."""
+    first, second = contrast.first.pooled.where, contrast.second.pooled.where
+    found = []
+    for side, why in contrast.untested.items():
+        found.append(f"{SIDE_WORDS[side].capitalize()}: not tested. {why}")
+    spans = sorted((one for one in contrast.spans if one.matters), key=lambda one: -abs(one.difference))
+    found += [_span(one, contrast) for one in spans[:MOST_SPANS]]
+    small = len(contrast.spans) - len(spans)
+    if contrast.tested and not spans:
+        sides = " and ".join(SIDE_WORDS[side] for side in contrast.tested)
+        found.append(
+            f"{sides.capitalize()}: no stretch differs by as much as matters (5 deg) between {first} and {second}."
+        )
+    if small:
+        found.append(f"{counted(small, 'stretch').replace('stretchs', 'stretches')} differ by less than 5 deg.")
+    return found
+
+
+def _span(one: DifferingSpan, contrast: Contrast) -> str:
+    variable = BY_NAME[one.variable]
+    counts = [reading.legs[one.side].count for reading in (contrast.first, contrast.second)]
+    more = "more" if one.difference > 0 else "less"
+    amount = f"{number(abs(one.difference), 0)} {variable.unit} {more} ({variable.up})"
+    p = "p < .001" if one.p < 0.001 else f"p = {one.p:.3f}"
+    return (
+        f"{variable.words.capitalize()}, {SIDE_WORDS[one.side]}: {amount} in"
+        f" {contrast.second.pooled.where} than in {contrast.first.pooled.where}, at {one.first} to "
+        f"{one.last} % of the cycle; {p}, {counts[0]} and {counts[1]} cycles."
+    )

@@ -1,0 +1,23 @@
+from __future__ import annotations
+
+import pytest
+
+
+@pytest.mark.slow
+def test_a_made_week_becomes_pages_that_find_what_was_planted(called, tmp_path):
+    done = called("demo", tmp_path, "--clinic", "--jobs", "1", "--quiet")
+    assert done.returncode == 0, done.stderr
+    people = tmp_path / "week" / "run" / "report" / "people"
+    pages = {path.stem: path.read_text(encoding="utf-8") for path in people.glob("*.html")}
+    assert "Reduced knee flexion in swing: left" in pages["P02"]
+    assert "Reduced dorsiflexion in swing: right" in pages["P04"]
+    assert "Reduced knee flexion in swing: right" in pages["P05_before"]
+    for healthy in ("P01", "P03", "P05_after", "P07"):
+        assert "None of" in pages[healthy]
+    assert "no cycle is kept" in pages["P06"]
+    index = (people.parent / "index.html").read_text(encoding="utf-8")
+    assert index.index("P06") < index.index("P01<") and "Planted: P02 stiff knee left" in index
+
+
+def test_the_option_stands_in_the_help(called):
+    assert "--clinic" in called("demo", "--help").stdout

@@ -1,0 +1,34 @@
+from __future__ import annotations
+
+import pytest
+from made_clinic import made_controls, made_person, made_run
+
+from gaitdisc.results.clinical_reference import save_reference
+
+
+@pytest.fixture(scope="module")
+def run_folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("week") / "run"
+    made_run(made_person("P07", session="s1"), made_person("P07", session="s2", seed=1), made_person("P08")).save(
+        folder
+    )
+    return folder
+
+
+def test_one_person_before_and_after_beside_a_reference(called, run_folder, tmp_path):
+    save_reference(made_controls(6), tmp_path)
+    one = called("report", run_folder.parent, "--person", "P07", "--reference", tmp_path)
+    assert one.returncode == 0 and "P07_s1.html" in one.stdout and "P07_s2.html" in one.stdout
+    assert "6 controls of the laboratory" in (run_folder / "report" / "people" / "P07_s1.html").read_text()
+    both = called("report", run_folder, "--person", "P07", "--before", "s1", "--after", "s2")
+    assert both.returncode == 0 and "P07_s1_s2.html" in both.stdout
+    assert "s1 walk and s2 walk" in (run_folder / "report" / "people" / "P07_s1_s2.html").read_text()
+
+
+def test_what_is_not_there_is_refused_in_words(called, run_folder, tmp_path):
+    nobody = called("report", run_folder, "--person", "P99")
+    assert nobody.returncode == 1 and "'P99'; there are P07, P08" in nobody.stderr
+    half = called("report", run_folder, "--before", "s1")
+    assert "a comparison needs --person, --before and --after" in half.stderr
+    none = called("report", run_folder, "--reference", tmp_path / "none")
+    assert "gaitdisc reference CONTROLS --out FOLDER" in none.stderr

@@ -1,0 +1,62 @@
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+
+from gaitdisc.report.clinic.panel import BOTTOM, LEFT, RIGHT, TOP, Line, Panel, svg, ticks
+from gaitdisc.results.clinical_reading import Band
+
+
+def _panel(**fields):
+    curve = np.linspace(0.0, 60.0, 101)
+    given = {
+        "name": "knee_flexion", "title": "knee flexion", "unit": "deg", "up": "flexion", "down": "extension",
+        "note": "L 2, R 2", "lines": (Line("l", curve), Line("r", curve[::-1])),
+        "band": Band(curve, np.full(101, 5.0), 6), "foot_off": (("l", 60.0),),
+    }  # fmt: skip
+    return Panel(**{**given, **fields})
+
+
+def test_curves_lie_where_their_numbers_say():
+    panel = _panel()
+    drawing = svg(panel)
+    root = ET.fromstring(drawing)
+    low, high = (float(root.attrib[key]) for key in ("data-low", "data-high"))
+    path = next(one.attrib["d"] for one in root.iter() if one.attrib.get("class") == "mean")
+    places = np.array(re.findall(r"[\d.]+", path), float).reshape(-1, 2)
+    assert len(places) == 101 and (places[0, 0], places[-1, 0]) == (LEFT, RIGHT)
+    values = low + (BOTTOM - places[:, 1]) / (BOTTOM - TOP) * (high - low)
+    np.testing.assert_allclose(values, panel.lines[0].values, atol=(high - low) / (BOTTOM - TOP))
+
+
+def test_left_and_right_differ_in_grey_print_too():
+    root = ET.fromstring(svg(_panel()))
+    means = [one.attrib for one in root.iter() if one.attrib.get("class") == "mean"]
+    assert [one["data-side"] for one in means] == ["l", "r"]
+    assert "stroke-dasharray" not in means[0] and means[1]["stroke-dasharray"]
+
+
+def test_words_are_escaped_and_the_drawing_is_described():
+    hostile = '<script>alert("x")</script>'
+    drawing = svg(_panel(title=hostile, up=hostile))
+    root = ET.fromstring(drawing)
+    assert "<script" not in drawing
+    assert hostile in root.attrib["aria-label"]
+    alt = _panel().alt
+    assert "knee flexion [deg] over the cycle: left 0.0 to 60.0, peak at 100 %" in alt and "6 people" in alt
+
+
+@pytest.mark.parametrize(("low", "high"), [(-4.2, 61.0), (0.0, 0.0031), (-1.3, 0.2), (1e3, 9e3)])
+def test_ticks_are_few_and_inside(low, high):
+    found = ticks(low, high)
+    assert 2 <= len(found) <= 5
+    assert all(low <= value <= high for value in found)
+
+
+def test_bars_of_a_muscle_and_of_a_difference():
+    root = ET.fromstring(svg(_panel(normal=((0, 12), (56, 100)), differs=((10, 20, True), (40, 50, False)))))
+    kinds = [one.attrib.get("class") for one in root.iter() if one.tag == "rect"]
+    assert kinds == ["normal", "normal", "matters", "small"]
