@@ -73,7 +73,7 @@ def legs_of(pooled: PooledCycles) -> dict[str, LegCurves]:
             channel = variable.channel(side)
             newtons = variable.kind == FORCES and units.get(channel) == "N"
             factor = weight if newtons else 1.0
-            if units.get(channel) == variable.unit or (newtons and weight is not None):
+            if factor is not None and (newtons or units.get(channel) == variable.unit):
                 each = curves[own, :, places[channel]] * factor
                 must = KNOWN_UNTIL if variable.kind in (MOMENTS, POWERS) else len(PERCENT)
                 whole = each[np.isfinite(each[:, :must]).all(axis=1)]
