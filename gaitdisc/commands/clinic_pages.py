@@ -95,7 +95,7 @@ def _with_failed(run: ResponseRun, failed: list[tuple[str, str]], run_folder: Pa
     """Run with those refused whose pages failed; where the folder lies may name somebody, so that is taken out."""
     from gaitdisc.results import Refusal
 
-    places = [str(run_folder.absolute()), str(run_folder)]
+    places = [str(run_folder.absolute()), *([str(run_folder)] if len(run_folder.parts) > 1 else [])]
     refusals = []
     for title, reason in failed:
         for place in places:
