@@ -64,7 +64,7 @@ def _knee() -> Recording:
     time = np.arange(200) / 100
     channel = vocabulary().named("knee_angle_r")
     assert channel is not None
-    return Recording(time, np.round(30 + 30 * np.sin(6 * time))[:, None], (channel,))
+    return Recording(time, np.asarray(np.round(30 + 30 * np.sin(6 * time)), float)[:, None], (channel,))
 
 
 def _read_back(what: str, written: Callable[[Path], tuple[Recording, str]]) -> Check:

@@ -11,7 +11,7 @@ from scipy.stats import t as student
 from gaitdisc.errors import SchemaError
 from gaitdisc.results.clinical_reading import Band, Limits
 from gaitdisc.results.clinical_reference import ClinicalReference, ReferenceLeg
-from gaitdisc.results.leg_curves import LegCurves, legs_of
+from gaitdisc.results.leg_curves import LegCurves, legs_of, mean_where_known
 from gaitdisc.results.pooled_cycles import PooledCycles
 from gaitdisc.results.provenance import Provenance
 
@@ -57,7 +57,9 @@ def bands(legs: Sequence[ReferenceLeg]) -> dict[str, Band]:
         people = len({leg.person for leg in own})
         if people >= 2:
             each = np.array([leg.curves[name] for leg in own])
-            found[name] = Band(each.mean(axis=0), each.std(axis=0, ddof=1), people)
+            mean, counts = mean_where_known(each), np.isfinite(each).sum(axis=0)
+            spread = np.sqrt(mean_where_known((each - mean) ** 2) * counts / np.maximum(counts - 1, 1))
+            found[name] = Band(mean, np.where(counts > 1, spread, np.nan), people)
     return found
 
 

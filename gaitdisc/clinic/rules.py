@@ -69,7 +69,9 @@ class Rule:
         if self.variable not in curves:
             return None
         part = part_of(self.part, stance_percent)
-        return float(TAKES[self.take](curves[self.variable][part])) if part is not None else None
+        if part is None or not np.isfinite(curves[self.variable][part]).all():
+            return None
+        return float(TAKES[self.take](curves[self.variable][part]))
 
 
 def part_of(part: str, stance_percent: float) -> slice | None:

@@ -51,7 +51,7 @@ def write_people(run: ResponseRun, run_folder: Path) -> Path | None:
             written.append((person, names[title]))
         except (GaitdiscError, ArithmeticError, LookupError, ValueError, TypeError) as error:
             failed.append((title, f"the page could not be written: {error}"))
-    return write_index(_with_failed(run, failed), written, reference, report)
+    return write_index(_with_failed(run, failed, run_folder), written, reference, report)
 
 
 def write_before_after(run: ResponseRun, run_folder: Path, person: str, words: tuple[str, str]) -> Path:
@@ -91,7 +91,14 @@ def write_person(run: ResponseRun, run_folder: Path, person: str, pdf: bool = Fa
     return found
 
 
-def _with_failed(run: ResponseRun, failed: list[tuple[str, str]]) -> ResponseRun:
+def _with_failed(run: ResponseRun, failed: list[tuple[str, str]], run_folder: Path) -> ResponseRun:
+    """Run with those refused whose pages failed; where the folder lies may name somebody, so that is taken out."""
     from gaitdisc.results import Refusal
 
-    return replace(run, refusals=(*run.refusals, *(Refusal(title, "", reason) for title, reason in failed)))
+    places = [str(run_folder.absolute()), *([str(run_folder)] if len(run_folder.parts) > 1 else [])]
+    refusals = []
+    for title, reason in failed:
+        for place in places:
+            reason = reason.replace(place, "run")  # noqa: PLW2901
+        refusals.append(Refusal(title, "", reason))
+    return replace(run, refusals=(*run.refusals, *refusals))

@@ -113,9 +113,14 @@ def _leg_data(leg: ReferenceLeg) -> dict[str, object]:
         "side": leg.side,
         "cycles": leg.cycles,
         "stance_percent": None if np.isnan(leg.stance_percent) else round(leg.stance_percent, DIGITS),
-        "curves": {name: np.round(curve, DIGITS).tolist() for name, curve in leg.curves.items()},
+        "curves": {name: _plain(curve) for name, curve in leg.curves.items()},
         "values": {name: round(value, DIGITS) for name, value in leg.values.items()},
     }
+
+
+def _plain(curve: NDArray[np.float64]) -> list[float | None]:
+    """Numbers as JSON has them, nothing where none is known."""
+    return [round(float(value), DIGITS) if np.isfinite(value) else None for value in curve]
 
 
 def _leg(data: Mapping[str, object]) -> ReferenceLeg:

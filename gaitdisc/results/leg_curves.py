@@ -8,12 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.results.clinical_variables import FORCES, VARIABLES
+from gaitdisc.recording import PERCENT
+from gaitdisc.results.clinical_variables import FORCES, MOMENTS, POWERS, VARIABLES
 from gaitdisc.results.pooled_cycles import SPATIOTEMPORAL, PooledCycles
 
 FEET = ("l", "r")
 TURNED_DEG = 20.0  # by which the pelvis turns in the laboratory from contact to contact where somebody walks a curve
 LIGHTEST_N = 50.0  # mean force of both feet; below it nobody stands on the belts
+KNOWN_UNTIL = (
+    91  # points of a moment or power; after the next foot meets a plate that is not known its end may be empty
+)
 ALONG_THE_PATH = ("pelvis_rotation", "foot_progression")  # angles about a straight line of walking
 
 
@@ -26,7 +30,8 @@ class LegCurves:
     stance_percent : float
         Mean foot off [% of the cycle]; NaN where none is known.
     cycles : mapping of str to ndarray (cycle, phase)
-        Clinical variable -> complete curves on 101 points, in the variable's unit and sign.
+        Clinical variable -> curves on 101 points, in the variable's unit and sign; complete, but for the end of a
+        moment or power.
     values : mapping of str to ndarray (cycle,)
         Spatiotemporal value -> of the cycles in which it is known.
     turned_deg : float
@@ -41,8 +46,15 @@ class LegCurves:
     turned_deg: float = 0.0
 
     def mean(self, name: str) -> NDArray[np.float64]:
-        """Mean curve of a variable."""
-        return self.cycles[name].mean(axis=0)
+        """Mean curve of a variable; NaN where no cycle has a value."""
+        return mean_where_known(self.cycles[name])
+
+
+def mean_where_known(curves: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Mean over the cycles that have a value at a point; NaN where none has."""
+    known = np.isfinite(curves)
+    counts = known.sum(axis=0)
+    return np.where(counts > 0, np.where(known, curves, 0.0).sum(axis=0) / np.maximum(counts, 1), np.nan)
 
 
 def legs_of(pooled: PooledCycles) -> dict[str, LegCurves]:
@@ -61,9 +73,10 @@ def legs_of(pooled: PooledCycles) -> dict[str, LegCurves]:
             channel = variable.channel(side)
             newtons = variable.kind == FORCES and units.get(channel) == "N"
             factor = weight if newtons else 1.0
-            if units.get(channel) == variable.unit or (newtons and weight is not None):
+            if factor is not None and (newtons or units.get(channel) == variable.unit):
                 each = curves[own, :, places[channel]] * factor
-                whole = each[np.isfinite(each).all(axis=1)]
+                must = KNOWN_UNTIL if variable.kind in (MOMENTS, POWERS) else len(PERCENT)
+                whole = each[np.isfinite(each[:, :must]).all(axis=1)]
                 if len(whole):
                     cycles[variable.name] = variable.sign(side) * whole
         turned = (

@@ -16,7 +16,7 @@ def test_a_person_whose_page_fails_costs_nobody_else(tmp_path):
 
     def failing(person, *others):
         if person.title == "P02":
-            raise ValueError("a curve of P02 is broken")
+            raise ValueError(f"a curve of P02 is broken in {tmp_path}/cycles/P02")
         return real(person, *others)
 
     run = made_run(made_person("P01"), made_person("P02"), refusals=(Refusal("P03", "", "unread"),))
@@ -24,7 +24,8 @@ def test_a_person_whose_page_fails_costs_nobody_else(tmp_path):
         index = write_people(run, tmp_path)
     text = index.read_text(encoding="utf-8")
     assert index == tmp_path / "report" / "index.html"
-    assert "a curve of P02 is broken" in text and "unread" in text
+    assert str(tmp_path) not in text
+    assert "a curve of P02 is broken in run/cycles/P02" in text and "unread" in text
     assert [path.name for path in sorted((tmp_path / "report" / "people").glob("*.html"))] == ["P01.html"]
 
 

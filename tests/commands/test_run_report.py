@@ -1,9 +1,12 @@
 import pytest
 import typer
+from made_clinic import made_controls, made_person, made_run
 
+from gaitdisc.commands.clinic_pages import keep_reference
 from gaitdisc.commands.exit_codes import STOPPED
 from gaitdisc.commands.run_report import report_on
 from gaitdisc.ingest.study_file import load_study
+from gaitdisc.results.clinical_reference import save_reference
 
 
 def test_whoever_stops_it_is_told_that_nothing_is_lost(study, tmp_path, capsys):
@@ -14,3 +17,21 @@ def test_whoever_stops_it_is_told_that_nothing_is_lost(study, tmp_path, capsys):
         report_on(stopped, load_study(study), tmp_path, quiet=True)
     assert ended.value.exit_code == STOPPED
     assert "goes on from there" in capsys.readouterr().err
+
+
+def test_a_run_of_cycles_has_pages_of_people_drawn_again_only_beside_another_reference(study, tmp_path, capsys):
+    run = made_run(made_person())
+    run.save(tmp_path)
+
+    def page():
+        report_on(lambda _: run, load_study(study), tmp_path, quiet=True)
+        drawn = tmp_path / "report" / "people" / "P01.html"
+        return drawn.stat().st_mtime_ns, drawn.read_text(encoding="utf-8")
+
+    first = page()
+    assert f"people: {tmp_path / 'report' / 'index.html'}" in capsys.readouterr().out
+    assert (tmp_path / "report" / "index.html").is_file() and "No reference." in first[1]
+    assert page() == first
+    save_reference(made_controls(6), tmp_path / "elsewhere")
+    keep_reference(tmp_path / "elsewhere", tmp_path)
+    assert "6 controls of the laboratory" in page()[1]

@@ -44,3 +44,11 @@ def test_what_was_changed_or_is_no_reference_is_refused(tmp_path):
     path.write_text(sealed_text({**data, "format": 9}))
     with pytest.raises(SchemaError, match="a reference of format 1 is needed"):
         load_reference(tmp_path)
+
+
+def test_a_curve_whose_end_is_not_known_is_saved_so(tmp_path):
+    made = made_controls(2)
+    made.of("walk")[0].curves["ankle_power"][95:] = np.nan
+    text = save_reference(made, tmp_path).read_text()
+    assert "NaN" not in text
+    assert np.isnan(load_reference(tmp_path).of("walk")[0].curves["ankle_power"][95:]).all()

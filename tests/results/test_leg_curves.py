@@ -50,3 +50,17 @@ def test_forces_of_belts_are_weighed_by_what_both_feet_carry_over_strides():
     np.testing.assert_allclose(legs["l"].mean("vertical_force"), 60.0)
     np.testing.assert_allclose(legs["r"].mean("vertical_force"), 40.0)
     assert "vertical_force" not in legs_of(person)["l"].cycles
+
+
+def test_a_moment_whose_end_is_not_known_is_kept_and_one_with_an_earlier_gap_is_not():
+    person = made_person()
+    column = [channel.name for channel in person.channels].index("ankle_power_l")
+    curves = np.array(person.curves)
+    curves[0, 95:, column] = np.nan  # the first left cycle
+    curves[1, 50, column] = np.nan
+    leg = legs_of(made_person(curves=curves))["l"]
+    assert len(leg.cycles["ankle_power"]) == 3
+    assert np.isfinite(leg.mean("ankle_power")).all()  # of the two others there
+    curves[:4, 95:, column] = np.nan
+    alone = legs_of(made_person(curves=curves))["l"].mean("ankle_power")
+    assert np.isfinite(alone[:95]).all() and np.isnan(alone[95:]).all()

@@ -74,11 +74,11 @@ class Panel:
             if line.look == "single":
                 continue
             word = f"{SIDE_WORDS[line.side]}{', first' if line.look == 'before' else ''}".strip()
-            low, high = float(np.min(line.values)), float(np.max(line.values))
-            at = int(np.argmax(line.values))
+            low, high = float(np.nanmin(line.values)), float(np.nanmax(line.values))
+            at = int(np.nanargmax(line.values))
             parts.append(f"{word} {number(low, 1)} to {number(high, 1)}, peak at {at} %")
         if self.band is not None:
-            low, high = float(self.band.mean.min()), float(self.band.mean.max())
+            low, high = float(np.nanmin(self.band.mean)), float(np.nanmax(self.band.mean))
             parts.append(f"reference {number(low, 1)} to {number(high, 1)}, {self.band.people} people")
         return f"{self.title} [{self.unit}] over the cycle: {'; '.join(parts)}"
 
@@ -87,7 +87,7 @@ class Panel:
         parts = [line.values for line in self.lines]
         if self.band is not None:
             parts += [self.band.mean - self.band.sd, self.band.mean + self.band.sd]
-        low, high = min(float(np.min(p)) for p in parts), max(float(np.max(p)) for p in parts)
+        low, high = min(float(np.nanmin(p)) for p in parts), max(float(np.nanmax(p)) for p in parts)
         pad = 0.06 * max(high - low, 1e-6)
         low, high = low - pad, high + pad
         return (min(low, 0.0), high) if self.normal else (low, high)
@@ -148,7 +148,7 @@ def _wide(first: float, last: float) -> str:
 
 def _points(values: Sequence[float] | NDArray[np.float64]) -> str:
     step = 100 / (len(values) - 1)
-    return " ".join(f"{_x(k * step):.1f} {value:.1f}" for k, value in enumerate(values))
+    return " ".join(f"{_x(k * step):.1f} {value:.1f}" for k, value in enumerate(values) if np.isfinite(value))
 
 
 def _path(line: Line, y) -> str:

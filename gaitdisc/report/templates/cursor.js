@@ -16,6 +16,7 @@ function show(percent) {
     one.cursor.setAttribute("d", "M" + x.toFixed(1) + " " + TOP + "V" + BOTTOM);
     one.cursor.style.visibility = "visible";
     one.output.textContent = " " + percent + " %: " + one.curves.map(curve => {
+      if (curve.y[percent] === undefined) return curve.side.toUpperCase() + " –";
       const value = one.low + (BOTTOM - curve.y[percent]) / (BOTTOM - TOP) * (one.high - one.low);
       return curve.side.toUpperCase() + " " + value.toFixed(one.high - one.low < 10 ? 2 : 0);
     }).join(", ");

@@ -60,3 +60,13 @@ def test_bars_of_a_muscle_and_of_a_difference():
     root = ET.fromstring(svg(_panel(normal=((0, 12), (56, 100)), differs=((10, 20, True), (40, 50, False)))))
     kinds = [one.attrib.get("class") for one in root.iter() if one.tag == "rect"]
     assert kinds == ["normal", "normal", "matters", "small"]
+
+
+def test_a_curve_whose_end_is_not_known_ends_there():
+    curve = np.linspace(0.0, 60.0, 101)
+    curve[95:] = np.nan
+    panel = _panel(lines=(Line("l", curve),), band=Band(curve, np.where(np.isfinite(curve), 5.0, np.nan), 6))
+    root = ET.fromstring(svg(panel))
+    path = next(one.attrib["d"] for one in root.iter() if one.attrib.get("class") == "mean")
+    assert len(re.findall(r"[\d.]+", path)) == 2 * 95 and "nan" not in svg(panel)
+    assert "peak at 94 %" in panel.alt
