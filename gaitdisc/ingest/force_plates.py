@@ -226,12 +226,18 @@ def _exchanged(measured: Sequence[Measured], file: str) -> list[Finding]:
         astray = min(_beside(one, own, units), _beside(other, others, their_units))
         if one.kind != other.kind or astray < STRAY:
             continue
-        if max(_beside(one, others, their_units), _beside(other, own, units)) < STRAY:
+        if max(_beside_either(one, others, their_units), _beside_either(other, own, units)) < STRAY:
             what = f"force plates {one.number} and {other.number} are swapped: the centre of pressure lies beside each "
             what += f"in {astray:.0%} of the loaded samples, and on each with their channels exchanged"
             spoils = "which foot is on which plate, moments and powers; correct FORCE_PLATFORM:CHANNEL"
             findings.append(Finding("warning", "swapped plates", file, what, spoils))
     return findings
+
+
+def _beside_either(plate: ForcePlate, values: NDArray[np.float64], units: tuple[str, ...]) -> float:
+    """As `_beside`, whichever way the origin points."""
+    turned = replace(plate, origin=-plate.origin)
+    return min(_beside(one, values, units) for one in (plate, turned))
 
 
 def _beside(plate: ForcePlate, values: NDArray[np.float64], units: tuple[str, ...]) -> float:

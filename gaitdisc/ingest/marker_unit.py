@@ -36,9 +36,9 @@ def refuse_other_unit(unit: str, far: float, file: str, where: str) -> None:
     --------
     >>> refuse_other_unit("mm", 1500.0, "walk.trc", "Units in line 3")
     """
-    if (unit == "m" and far >= MILLIMETRES_AT_LEAST) or (unit == "mm" and 0 < far <= METRES_AT_MOST / 5):
+    if (unit == "m" and far >= MILLIMETRES_AT_LEAST) or (unit == "mm" and 0 < far <= METRES_AT_MOST):
         raise UnitError(
-            f"markers in {unit} are {'less than 15' if unit == 'm' else 'more than 3'} {unit} from the origin",
+            f"markers in {unit} are {'less' if unit == 'm' else 'more'} than {METRES_AT_MOST:g} {unit} from the origin",
             f"those of {file} are {far:.4g} away, which looks like {'mm' if unit == 'm' else 'm'}",
             f"Correct {where} of the file.",
         )

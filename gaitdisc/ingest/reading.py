@@ -11,6 +11,7 @@ import numpy as np
 
 from gaitdisc.channel import nearest_word
 from gaitdisc.errors import ChannelError, ReadError, SamplingError
+from gaitdisc.ingest.angle_unit import judged_unit
 from gaitdisc.ingest.array_trial import ENDINGS as ARRAYS
 from gaitdisc.ingest.array_trial import read_arrays
 from gaitdisc.ingest.columns import split_unit
@@ -214,4 +215,13 @@ def _cropped(trial: Trial, start_s: float, end_s: float) -> Trial:
                 "Correct crop_s in the study.",
             )
     events = tuple(event for event in trial.events if start_s <= event.time < end_s)
+    if "kinematics" in streams:
+        _judge_unit(streams["kinematics"])
     return replace(trial, streams=streams, events=events)
+
+
+def _judge_unit(kinematics: Recording) -> None:
+    """Refuse angles stated in degrees that look like radians in what a crop leaves of them."""
+    angles = kinematics.selected_by(lambda channel: channel.quantity == "angle" and channel.unit == "deg")
+    if angles.names:
+        judged_unit(angles.time, angles.values, angles.names, "deg", kinematics.source.file)

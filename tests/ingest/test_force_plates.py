@@ -103,7 +103,7 @@ def test_a_plate_far_from_its_foot_is_told():
     assert "in 100% of the loaded samples the centre of pressure lies beside it" in findings[0].what
 
 
-def _two_belts(channels):
+def _two_belts(channels, sense=1):
     """Two belts side by side whose sensors are at one place between them, with a foot on each."""
     beside = 1000 * np.array([0, 0.5, 0])
     more = {
@@ -111,16 +111,17 @@ def _two_belts(channels):
         "TYPE": np.array([2, 2]),
         "CHANNEL": np.array(channels).T,
         "CORNERS": np.stack([CORNERS.T, (CORNERS + beside).T], axis=-1),
-        "ORIGIN": np.array([[300, 250, -40], [300, -250, -40]], float).T,
+        "ORIGIN": sense * np.array([[300, 250, 0], [300, -250, 0]], float).T,
     }
-    rows = np.hstack([_rows((0.3, 0.25, -0.04)), _rows((0.3, -0.25, -0.04))])
+    rows = np.hstack([_rows((0.3, 0.25, 0)), _rows((0.3, -0.25, 0))])
     return _read(rows, _file(units=("N", "N", "N", "Nmm", "Nmm", "Nmm") * 2, **more))[2]
 
 
-def test_plates_with_each_others_channels_are_told():
+@pytest.mark.parametrize("sense", [1, -1])
+def test_plates_with_each_others_channels_are_told(sense):
     first, second = list(range(1, 7)), list(range(7, 13))
-    assert not [one for one in _two_belts([first, second]) if one.severity == "warning"]
-    (told,) = [one for one in _two_belts([second, first]) if one.kind == "swapped plates"]
+    assert not [one for one in _two_belts([first, second], sense) if one.severity == "warning"]
+    (told,) = [one for one in _two_belts([second, first], sense) if one.kind == "swapped plates"]
     assert told.what.startswith("force plates 1 and 2 are swapped: the centre of pressure lies beside each in 100%")
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from gaitdisc.errors import ChannelError, ReadError, SamplingError
+from gaitdisc.errors import ChannelError, ReadError, SamplingError, UnitError
 from gaitdisc.ingest.reading import read_planned_trial, read_trial
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 
@@ -80,6 +80,18 @@ def test_the_crop_keeps_its_part_and_must_lie_inside(tmp_path):
     np.testing.assert_allclose(walk.time, np.arange(10, 20) / 100)
     with pytest.raises(SamplingError, match=r"crop from 5 to 6 s must lie inside .*; they last from 0 to 0\.49 s"):
         read_trial(path, crop_s=(5, 6))
+
+
+def test_the_unit_of_angles_is_judged_in_what_the_crop_leaves(tmp_path):
+    time = np.arange(400) / 100
+    hip, knee = 0.4 * np.cos(2 * np.pi * time), 0.5 - 0.5 * np.cos(4 * np.pi * time)
+    hip[200:], knee[200:] = 9 * np.sin(time[200:]), 8 * np.cos(time[200:])  # a fit that lost its markers
+    rows = "\n".join(f"{t:.2f}\t{a:.6f}\t{b:.6f}" for t, a, b in zip(time, hip, knee, strict=True))
+    head = "ik\nversion=1\nnRows=400\nnColumns=3\ninDegrees=yes\nendheader\ntime\thip_flexion_r\tknee_angle_r\n"
+    (tmp_path / "ik.mot").write_text(f"{head}{rows}\n")
+    assert "kinematics" in read_trial(tmp_path / "ik.mot").streams  # nothing shows it in the whole
+    with pytest.raises(UnitError, match=r"ik\.mot states degrees, .* looks like radians"):
+        read_trial(tmp_path / "ik.mot", crop_s=(0.0, 1.99))
 
 
 def test_labels_of_the_study_that_no_file_has_are_told(tmp_path):
