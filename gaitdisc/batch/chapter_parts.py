@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple
 
-from gaitdisc.channel import nearest_word
 from gaitdisc.errors import SchemaError
 
 OUT = "OUT"  # stands for the folder of the part
@@ -70,6 +69,8 @@ def parts_of(chapter: int, name: str = "") -> tuple[Part, ...]:
     parts = tuple(part for part in PARTS if part.chapter == chapter)
     names = [part.name for part in parts]
     if name and name not in names:
+        from gaitdisc.channel import nearest_word  # brings numpy, and the help of every command lists the parts
+
         nearest = nearest_word(name, names)
         raise SchemaError(
             f"the parts of chapter {chapter} are {', '.join(names)}",
