@@ -24,3 +24,8 @@ def test_version():
 
 def test_each_command_is_the_file_of_its_name():
     assert all(command.__module__ == f"gaitdisc.commands.{command.__name__}" for command in COMMANDS)
+
+
+def test_the_help_loads_no_library_that_computes():
+    code = "import sys, gaitdisc.cli; print([name for name in ('numpy', 'pandas', 'torch') if name in sys.modules])"
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "[]\n"

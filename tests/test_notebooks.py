@@ -50,7 +50,7 @@ def test_chapter_3_names_the_hidden_spring_and_forecasts_better_with_it(screen):
     [effect] = names["found"].effects
     assert effect.name == "cubic_stiffness"
     assert effect.estimates["stiffness"].value == pytest.approx(names["CUBIC"], rel=0.1)
-    assert names["errors"]["with what was found"] < 0.2 * names["errors"]["known"]
+    assert names["errors"]["model with what was found"] < 0.2 * names["errors"]["known model"]
     assert names["found"] in shown and "<table" in names["found"]._repr_html_()
 
 

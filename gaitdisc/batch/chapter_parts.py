@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple
 
-from gaitdisc.channel import nearest_word
 from gaitdisc.errors import SchemaError
 
 OUT = "OUT"  # stands for the folder of the part
@@ -38,11 +37,11 @@ class Part(NamedTuple):
 PARTS = (
     Part(3, "tables", "ch3_tables", "every table of 3.4, printed from the cells that come along", 0.1, 0.1,
          ("all",), ("all",)),
-    Part(3, "van_der_pol", "ch3_van_der_pol", "3.4.1, Figs. 3.2-3.5, 3.11", 12, 1, libraries=METHODS),
-    Part(3, "lorenz", "ch3_lorenz", "3.4.2, Figs. 3.6-3.11", 12, 1, libraries=METHODS),
-    Part(3, "burgers", "ch3_burgers", "3.4.3, Fig. 3.12", 15, 1, libraries=METHODS),
-    Part(3, "measurement_bias", "ch3_measurement_bias", "3.4.4, Fig. 3.13", 5, 1, libraries=METHODS),
-    Part(3, "who_names", "ch3_who_names", "who names the hidden effect, 3.4 and 3.5", 20, 3, libraries=METHODS),
+    Part(3, "van_der_pol", "ch3_van_der_pol", "3.4.1, Figs. 3.2-3.5, 3.11", 20, 1, libraries=METHODS),
+    Part(3, "lorenz", "ch3_lorenz", "3.4.2, Figs. 3.6-3.11", 25, 1.5, libraries=METHODS),
+    Part(3, "burgers", "ch3_burgers", "3.4.3, Fig. 3.12", 60, 1.3, libraries=METHODS),
+    Part(3, "measurement_bias", "ch3_measurement_bias", "3.4.4, Fig. 3.13", 8, 0.6, libraries=METHODS),
+    Part(3, "who_names", "ch3_who_names", "who names the hidden effect, 3.4 and 3.5", 30, 3, libraries=METHODS),
     Part(3, "seeds", "ch3_seeds", "the cells of `tables` computed anew, twelve seeds", 35, 1,
          (OUT, "--sets", "van_der_pol_text", "van_der_pol_code", "lorenz", "van_der_pol_text_short", "lorenz_short",
           "lorenz_fine"), libraries=METHODS),
@@ -70,6 +69,8 @@ def parts_of(chapter: int, name: str = "") -> tuple[Part, ...]:
     parts = tuple(part for part in PARTS if part.chapter == chapter)
     names = [part.name for part in parts]
     if name and name not in names:
+        from gaitdisc.channel import nearest_word  # brings numpy, and the help of every command lists the parts
+
         nearest = nearest_word(name, names)
         raise SchemaError(
             f"the parts of chapter {chapter} are {', '.join(names)}",

@@ -129,7 +129,7 @@ def _of_part(folder: Path) -> tuple[str, ...]:
         raise SchemaError(
             f"a part of a chapter is one of {', '.join(OF_PARTS)}",
             f"{folder.name}/{CHAPTER} names {str(part)[:40]!r}",
-            "Another version of gaitdisc wrote it: ask that one.",
+            "Another version of gaitdisc wrote it; cite with that one.",
         )
     return OF_PARTS[part]
 

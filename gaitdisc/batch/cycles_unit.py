@@ -46,7 +46,7 @@ def computed_cycles(study: Study, participant: Participant, folder: Path) -> tup
         key = ""
     for pooled, place in zip(found, places, strict=True):
         save_cycles(pooled, place, key)
-    return tuple(load_cycles(place)[0] for place in places)
+    return tuple(load_cycles(place).result for place in places)
 
 
 def cycles_key(study: Study, participant: Participant) -> str:

@@ -170,7 +170,7 @@ def _with_keys(
 
 
 def _loaded(walks: Mapping[str, Walk], participant: Participant, folder: Path) -> tuple[WalkSummary, ...]:
-    return tuple(load_walk(_walk_folder(folder, participant, word))[0] for word in walks)
+    return tuple(load_walk(_walk_folder(folder, participant, word)).result for word in walks)
 
 
 def _walk_folder(folder: Path, participant: Participant, word: str) -> Path:

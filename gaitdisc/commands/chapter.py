@@ -53,7 +53,7 @@ def chapter(
 chapter.__doc__ = f"""Compute the tables and figures of chapter 3, 4 or 5 anew, by the studies behind the pages.
 
 What is finished is kept; the same command goes on from where it was stopped. Each part writes its page or tables, and
-`printed.md` with what it prints. Minutes are of one core, about; in brackets with --quick.
+`printed.md` with what it prints. Minutes are of one core, roughly; in brackets with --quick.
 
 \b
 {costs()}

@@ -21,24 +21,7 @@ Result = TypeVar("Result")
 
 
 def report_on(work: Callable[[Told], ResponseRun], study: Study, folder: Path, quiet: bool) -> None:
-    """Do the work with its progress shown, draw the report, and say who was refused.
-
-    Parameters
-    ----------
-    work : callable
-        Gives the run; called with what it shall tell its progress to.
-    study : Study
-        Whose participants the progress counts.
-    folder : Path
-        Folder of the run.
-    quiet : bool
-        No progress.
-
-    Raises
-    ------
-    typer.Exit
-        With the exit code, if some or all participants were refused or the person at the keyboard stopped it.
-    """
+    """Do the work with its progress shown, draw the report, and say who was refused."""
     from gaitdisc.report.kept_page import page_of
 
     started = time.perf_counter()
@@ -68,34 +51,13 @@ def _drawn(done: ResponseRun, folder: Path) -> Path:
 
 
 def say_renewed(renewed: Sequence[str]) -> None:
-    """Say which files of an earlier run were not used.
-
-    Parameters
-    ----------
-    renewed : sequence of str
-        Of the run.
-    """
+    """Say which files of an earlier run were not used."""
     for line in renewed:
         typer.echo(f"not used, computed again: {line}", err=True)
 
 
 def worked(work: Callable[[Told], Result], people: list[str], quiet: bool) -> Result:
-    """Do the work, with a bar that counts participants unless it shall be quiet.
-
-    Parameters
-    ----------
-    work : callable
-        Called with what it shall tell its progress to.
-    people : list of str
-        Pseudonyms.
-    quiet : bool
-        No progress.
-
-    Raises
-    ------
-    typer.Exit
-        With the exit code, if the person at the keyboard stopped it.
-    """
+    """Do the work, with a bar that counts participants unless it shall be quiet."""
     try:
         return work(lambda *_: None) if quiet else with_progress(work, people)
     except KeyboardInterrupt:
@@ -108,19 +70,8 @@ def end(refusals: Sequence[Refusal], count: int, page: Path, seconds: float) -> 
 
     Parameters
     ----------
-    refusals : sequence of Refusal
-        Everybody left out.
-    count : int
-        Participants that were done.
-    page : Path
-        The report.
     seconds : float
         That it took [s].
-
-    Raises
-    ------
-    typer.Exit
-        With the exit code, if some or all participants were refused.
     """
     from gaitdisc.report.wording import counted
 
@@ -133,15 +84,7 @@ def end(refusals: Sequence[Refusal], count: int, page: Path, seconds: float) -> 
 
 
 def with_progress(work: Callable[[Told], Result], people: list[str]) -> Result:
-    """Do the work with a bar that counts participants.
-
-    Parameters
-    ----------
-    work : callable
-        Called with what it shall tell its progress to.
-    people : list of str
-        Pseudonyms.
-    """
+    """Do the work with a bar that counts participants."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 

@@ -11,26 +11,7 @@ from gaitdisc.commands.run_report import end, say_renewed, worked
 
 
 def vary(place: Path, out: Path | None, question: str, workers: tuple[int, str], quiet: bool) -> None:
-    """Answer a question of a study and write its page.
-
-    Parameters
-    ----------
-    place : Path
-        The study file or its folder.
-    out : Path, optional
-        Folder of the run.
-    question : str
-        `modalities` or `sensitivity`.
-    workers : (int, str)
-        Participants side by side, and the address of a Dask scheduler or nothing.
-    quiet : bool
-        No progress.
-
-    Raises
-    ------
-    typer.Exit
-        With the exit code, if some or all participants were refused or the person at the keyboard stopped it.
-    """
+    """Answer a question of a study and write its page."""
     from gaitdisc.batch.vary_study import vary_study
     from gaitdisc.batch.workers import Workers
     from gaitdisc.ingest.study_file import load_study

@@ -12,7 +12,7 @@ from gaitdisc.channel import Channel
 from gaitdisc.results.on_disk import Arrays
 from gaitdisc.results.pooled_cycles import CYCLE_COLUMNS, PooledCycles
 from gaitdisc.results.refusal import Refusal
-from gaitdisc.results.unit_folder import NO_KEY, load_unit, save_unit, stored_finding, with_words
+from gaitdisc.results.unit_folder import NO_KEY, Keyed, load_unit, save_unit, stored_finding, with_words
 from gaitdisc.results.walk_store import unit_name
 
 WORDS = ("reason", "foot_off_by")
@@ -51,7 +51,7 @@ def save_cycles(pooled: PooledCycles, folder: Path, key: str) -> None:
     )
 
 
-def load_cycles(folder: Path) -> tuple[PooledCycles, str]:
+def load_cycles(folder: Path) -> Keyed[PooledCycles]:
     """Load pooled cycles, and the key they were computed from."""
     data, tables, arrays = load_unit(folder, "cycles.json", {"cycles.csv": CYCLE_COLUMNS})
     cycles = tables["cycles.csv"]
@@ -77,7 +77,7 @@ def load_cycles(folder: Path) -> tuple[PooledCycles, str]:
         tuple(Refusal(**refusal) for refusal in data["refusals"]),
         data["files"],
     )
-    return pooled, data["key"]
+    return Keyed(pooled, data["key"])
 
 
 def save_pooled_cycles(pooled: PooledCycles, folder: Path) -> None:
@@ -87,7 +87,7 @@ def save_pooled_cycles(pooled: PooledCycles, folder: Path) -> None:
 
 def load_pooled_cycles(folder: Path) -> PooledCycles:
     """Load pooled cycles, of a run or alone."""
-    return load_cycles(folder)[0]
+    return load_cycles(folder).result
 
 
 def cycles_name(subject: str, session: str, condition: str) -> str:

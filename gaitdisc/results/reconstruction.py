@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -123,7 +124,15 @@ class Reconstruction(Saved, by="gaitdisc.results.reconstruction:save_reconstruct
         return html_of(self.title or "Reconstruction", rows)
 
 
-def mean_over_people(values: NDArray[np.float64]) -> tuple[float, float, float]:
+class OverPeople(NamedTuple):
+    """Mean over people, its standard deviation, and half of its 95 % interval (Student's t), NaN below three people."""
+
+    mean: float
+    sd: float
+    half_width: float
+
+
+def mean_over_people(values: NDArray[np.float64]) -> OverPeople:
     """Mean, standard deviation, and half of the mean's 95 % interval (Student's t); the latter two from three people.
 
     Parameters
@@ -140,9 +149,9 @@ def mean_over_people(values: NDArray[np.float64]) -> tuple[float, float, float]:
 
     n, mean = len(values), float(values.mean())
     if n < 3:
-        return mean, float("nan"), float("nan")
+        return OverPeople(mean, float("nan"), float("nan"))
     sd = float(values.std(ddof=1))
-    return mean, sd, float(t.ppf(0.975, n - 1)) * sd / float(np.sqrt(n))
+    return OverPeople(mean, sd, float(t.ppf(0.975, n - 1)) * sd / float(np.sqrt(n)))
 
 
 def enough_sensors(found: pd.DataFrame) -> int:

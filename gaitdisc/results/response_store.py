@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,7 @@ from gaitdisc.results.data_quantity import QUANTITY_COLUMNS, DataQuantity
 from gaitdisc.results.on_disk import Arrays
 from gaitdisc.results.participant_response import FIT_COLUMNS, R2_COLUMNS, HeldOut, ParticipantResponse
 from gaitdisc.results.refusal import Refusal
-from gaitdisc.results.unit_folder import load_unit, save_unit
+from gaitdisc.results.unit_folder import Keyed, load_unit, save_unit
 
 
 def save_response(response: ParticipantResponse, folder: Path, key: str) -> None:
@@ -46,7 +47,7 @@ def save_response(response: ParticipantResponse, folder: Path, key: str) -> None
     )
 
 
-def load_response(folder: Path) -> tuple[ParticipantResponse, str]:
+def load_response(folder: Path) -> Keyed[ParticipantResponse]:
     """Load the response of one participant, and the key it was computed from."""
     data, tables, arrays = load_unit(folder, "response.json", {"r2.csv": R2_COLUMNS, "fits.csv": FIT_COLUMNS})
     response = ParticipantResponse(
@@ -60,7 +61,7 @@ def load_response(folder: Path) -> tuple[ParticipantResponse, str]:
         arrays.later(_residuals),
         data["held_out_s"],
     )
-    return response, data["key"]
+    return Keyed(response, data["key"])
 
 
 def save_quantity(quantity: DataQuantity, folder: Path, key: str) -> None:
@@ -76,11 +77,12 @@ def save_quantity(quantity: DataQuantity, folder: Path, key: str) -> None:
     save_unit(folder, "quantity.json", data, {"quantity.csv": quantity.table}, {})
 
 
-def load_quantity(folder: Path) -> tuple[DataQuantity, str]:
+def load_quantity(folder: Path) -> Keyed[DataQuantity]:
     """Load what less data would have given, and the key it was computed from."""
     data, tables, _ = load_unit(folder, "quantity.json", {"quantity.csv": QUANTITY_COLUMNS})
     left_away = {float(row["length_s"]): str(row["reason"]) for row in data["left_away"]}
-    return DataQuantity(data["participant"], data["part"], tables["quantity.csv"], left_away), data["key"]
+    quantity = DataQuantity(data["participant"], data["part"], tables["quantity.csv"], left_away)
+    return Keyed(quantity, data["key"])
 
 
 def save_refused(refusals: tuple[Refusal, ...], walks: tuple[str, ...], folder: Path, key: str) -> None:
@@ -95,10 +97,18 @@ def save_refused(refusals: tuple[Refusal, ...], walks: tuple[str, ...], folder: 
     save_unit(folder, "refused.json", data, {}, {})
 
 
-def load_refused(folder: Path) -> tuple[tuple[Refusal, ...], tuple[str, ...], str]:
-    """Load why a participant was refused, the conditions whose walk was processed, and the key."""
+class Refused(NamedTuple):
+    """Why a participant was refused, the conditions whose walk was processed, and the key of what this rests on."""
+
+    refusals: tuple[Refusal, ...]
+    walks: tuple[str, ...]
+    key: str
+
+
+def load_refused(folder: Path) -> Refused:
+    """Load why a participant was refused."""
     data, _, _ = load_unit(folder, "refused.json")
-    return tuple(Refusal(**refusal) for refusal in data["refusals"]), tuple(data["walks"]), data["key"]
+    return Refused(tuple(Refusal(**refusal) for refusal in data["refusals"]), tuple(data["walks"]), data["key"])
 
 
 def _held_out(arrays: Arrays) -> HeldOut:

@@ -11,7 +11,7 @@ import json
 from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 import pandas as pd
@@ -28,7 +28,22 @@ from gaitdisc.whole_file import whole_file, write_whole
 FORMAT = 1
 NO_KEY = "saved by itself"  # of no files and settings: what was not computed by a run in its folder
 SHOWN = 4  # files of one line
-Unit = tuple[dict[str, Any], dict[str, pd.DataFrame], StoredArrays]
+T = TypeVar("T")
+
+
+class Unit(NamedTuple):
+    """What a unit holds: what its JSON file says, its tables by file name, and its arrays, read when asked for."""
+
+    data: dict[str, Any]
+    tables: dict[str, pd.DataFrame]
+    arrays: StoredArrays
+
+
+class Keyed(NamedTuple, Generic[T]):
+    """A result as it was stored, and the key of what it was computed from."""
+
+    result: T
+    key: str
 
 
 def save_unit(
@@ -86,7 +101,7 @@ def load_unit(
         absent = [column for column in wanted if column not in tables[file]]
         if absent:
             raise damaged(folder / file, f"without the columns {', '.join(absent)}")
-    return data, tables, StoredArrays(folder / "arrays.npz", data["sha256"].get("arrays.npz", ""))
+    return Unit(data, tables, StoredArrays(folder / "arrays.npz", data["sha256"].get("arrays.npz", "")))
 
 
 def damaged_units(folder: Path) -> tuple[str, ...]:

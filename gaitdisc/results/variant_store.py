@@ -6,7 +6,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from gaitdisc.results.refusal import Refusal
-from gaitdisc.results.unit_folder import NO_KEY, load_unit, save_unit, with_words
+from gaitdisc.results.unit_folder import NO_KEY, Keyed, load_unit, save_unit, with_words
 from gaitdisc.results.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, VariantRun, Variants
 
 
@@ -27,11 +27,12 @@ def save_variants(variants: Variants, folder: Path, key: str) -> None:
     save_unit(folder, "variants.json", data, {"variants.csv": variants.table}, {})
 
 
-def load_variants(folder: Path) -> tuple[Variants, str]:
+def load_variants(folder: Path) -> Keyed[Variants]:
     """Load the variants of one participant, and the key they were computed from."""
     data, tables, _ = load_unit(folder, "variants.json", {"variants.csv": VARIANT_COLUMNS})
     left_away = {str(row["variant"]): str(row["reason"]) for row in data["left_away"]}
-    return Variants(data["participant"], data["question"], tables["variants.csv"], left_away), data["key"]
+    found = Variants(data["participant"], data["question"], tables["variants.csv"], left_away)
+    return Keyed(found, data["key"])
 
 
 def save_variant_run(run: VariantRun, folder: Path) -> None:
@@ -61,7 +62,7 @@ def load_variant_run(folder: Path) -> VariantRun:
         data["title"],
         data["exo"],
         data["question"],
-        tuple(load_variants(folder / "people" / name)[0] for name in data["people"]),
+        tuple(load_variants(folder / "people" / name).result for name in data["people"]),
         with_words(tables["tests.csv"], "left_out"),
         tuple(Refusal(**refusal) for refusal in data["refusals"]),
         (data["held_out_s"][0], data["held_out_s"][1]),

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.results.on_disk import Arrays
-from gaitdisc.results.unit_folder import load_unit, save_unit, stored_finding, with_words
+from gaitdisc.results.unit_folder import Keyed, load_unit, save_unit, stored_finding, with_words
 from gaitdisc.results.walk_summary import STRIDE_COLUMNS, WalkSummary
 
 
@@ -42,7 +42,7 @@ def save_walk(walk: WalkSummary, folder: Path, key: str) -> None:
     )
 
 
-def load_walk(folder: Path) -> tuple[WalkSummary, str]:
+def load_walk(folder: Path) -> Keyed[WalkSummary]:
     """Load one walk, and the key it was computed from."""
     data, tables, arrays = load_unit(folder, "walk.json", {"strides.csv": STRIDE_COLUMNS})
     strides = with_words(tables["strides.csv"], "reason")
@@ -58,7 +58,7 @@ def load_walk(folder: Path) -> tuple[WalkSummary, str]:
         tuple(map(stored_finding, data["findings"])),
         data["files"],
     )
-    return walk, data["key"]
+    return Keyed(walk, data["key"])
 
 
 def unit_name(subject: str, condition: str) -> str:
