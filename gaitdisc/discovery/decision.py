@@ -39,7 +39,7 @@ def judge(inquiry: Inquiry, as_read: Judged) -> Verdict:
     exact = leaves_noise(inquiry, named)
     plain = None if exact else plainest(inquiry, scale, named)
     if plain:
-        return plain
+        return shape_that_leaves_noise(inquiry, as_read, scale, plain) or plain
     wanted = len(named.account.parts) > 1 or named.noise.remembers
     shape = fitted_shape(as_read, inquiry.search, scale) if wanted else None
     remembered = weighed_with_memory(inquiry, as_read, named, shape, rivals) if named.noise.remembers else None
@@ -63,6 +63,17 @@ def judge(inquiry: Inquiry, as_read: Judged) -> Verdict:
     if not proof.bears_out or (not exact and names > MOST_NAMES and proof.closed < HALF):
         return Verdict("no_gap", as_read, (longer, *rivals), proof=proof)
     return Verdict(longer.account.parts[0].candidate.verdict, longer, tuple(rivals), proof=proof)
+
+
+def shape_that_leaves_noise(inquiry: Inquiry, as_read: Judged, scale: GapScale, names: Verdict) -> Verdict | None:
+    """Return the verdict on one shape without a name that leaves mere noise where several names together do not."""
+    if len(names.account.account.parts) < 2:
+        return None
+    shape = fitted_shape(as_read, inquiry.search, scale)
+    if shape is None or not leaves_noise(inquiry, shape):
+        return None
+    proof = borne_out(inquiry, as_read, shape)
+    return Verdict("unnamed", shape, (names.account, *names.rivals), proof=proof) if proof.bears_out else None
 
 
 def strongest(search: Search, named: Judged) -> Judged:

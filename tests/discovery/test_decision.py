@@ -1,9 +1,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
+from gaitdisc.discovery import decision
 from gaitdisc.discovery.account import Part, account_for
 from gaitdisc.discovery.decision import judge, lasting, needed, strongest
 from gaitdisc.discovery.evidence import Judged, judged
@@ -86,3 +88,18 @@ def test_of_more_names_than_are_named_two_have_to_take_half_of_the_error(
     assert verdict.word == word
     assert verdict.proof.test.p < 0.05
     assert 0.5 < verdict.proof.closed <= 1.0
+
+
+def test_one_shape_that_leaves_mere_noise_stands_before_names_that_do_not(inquiry, as_read, monkeypatch):
+    names = SimpleNamespace(account=SimpleNamespace(account=SimpleNamespace(parts=(1, 2))), rivals=("rival",))
+    alone = SimpleNamespace(account=SimpleNamespace(account=SimpleNamespace(parts=(1,))), rivals=())
+    proofs = iter([True, False])
+    monkeypatch.setattr(decision, "fitted_shape", lambda *_: "shape")
+    monkeypatch.setattr(decision, "leaves_noise", lambda _, one: one == "shape")
+    monkeypatch.setattr(decision, "borne_out", lambda *_: SimpleNamespace(bears_out=next(proofs)))
+    found = decision.shape_that_leaves_noise(inquiry, as_read, None, names)
+    assert (found.word, found.account, found.rivals) == ("unnamed", "shape", (names.account, "rival"))
+    assert decision.shape_that_leaves_noise(inquiry, as_read, None, names) is None  # not borne out
+    assert decision.shape_that_leaves_noise(inquiry, as_read, None, alone) is None
+    monkeypatch.setattr(decision, "leaves_noise", lambda *_: False)
+    assert decision.shape_that_leaves_noise(inquiry, as_read, None, names) is None

@@ -8,8 +8,9 @@ from hidden_in_a_mass import RATE, Experiment, mass, record, with_load
 from scipy.signal import butter, sosfiltfilt
 
 from gaitdisc.discovery.inquiry import begin_inquiry
-from gaitdisc.simulation.drive import Drive
+from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.parts import Sensor
+from gaitdisc.simulation.running import compile_simulation
 
 LONG = Experiment(seconds=30.0, lowpass_hz=3.0)
 
@@ -38,6 +39,25 @@ def test_a_raw_record_went_through_none(noise):
     inquiry = begin_inquiry(mass(), record(with_load("-14*x**3"), 3, Experiment(seconds=30.0, noise=noise)))
     assert inquiry.record_filter.cutoffs_hz == (None,)
     assert not inquiry.measured.findings
+
+
+def test_harmonics_of_a_stride_are_not_taken_for_the_fall_of_a_filter():
+    # the power of a pulse once a stride falls like that of filtered noise, but lower down
+    model, rng = mass(), np.random.default_rng(4)
+    raw = record(model, 3, Experiment(seconds=40.0, noise=0.0))
+    pushes = []
+    for _ in raw.trials:
+        strides = np.cumsum(1.07 + 0.02 * rng.standard_normal(60))
+        t = np.arange(raw.drive.inputs.shape[1])[:, None] / RATE
+        pushes.append(8 * np.exp(-(((t - strides) / 0.06) ** 2) / 2).sum(axis=1, keepdims=True))
+    drive = Drive.of(pushes, RATE)
+    machine = compile_simulation(model)
+    rows = Rows(np.arange(len(pushes)), np.zeros(len(pushes), int), np.zeros((len(pushes), 2)))
+    seen = machine.observe(drive, rows, machine.run(drive, rows, raw.observed.shape[1] - 1)[0])
+    noisy = seen + 0.002 * rng.standard_normal(seen.shape)
+    passed = sosfiltfilt(butter(2, 3.0, fs=RATE, output="sos"), noisy, axis=1)
+    found = begin_inquiry(model, replace(raw, drive=drive, observed=passed)).record_filter.cutoffs_hz[0]
+    assert found == pytest.approx(3.0, rel=0.1)
 
 
 def test_of_a_linear_system_whose_inputs_were_filtered_alike_nothing_is_filtered_again():
