@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -18,7 +18,8 @@ MOST_EXACT = 1500  # samples: memory grows with their square, time with their cu
 MOST_FOR_LENGTHS = 300  # samples, evenly in time, that the length scales are found on
 INDUCING = 300
 LEAST_SAMPLES = 20
-NOTHING_KNOWN = np.empty((0, 0))
+NOTHING_KNOWN = np.empty((0, 0, 0))
+FORGOTTEN = 0.05  # correlation that counts as none
 JITTER = 1e-9  # of the signal's variance, so that a matrix stays positive
 
 
@@ -111,7 +112,8 @@ def fit_gaussian_process(
     Parameters
     ----------
     variance : bool
-        Keep what the standard deviation is computed from: the square of the centres for each output.
+        Keep what the standard deviation is computed from: the square of the centres for each output. Noise that
+        remembers its past, as that of filtered samples does, counts for as many samples less (`memory_of`).
 
     References
     ----------
@@ -133,19 +135,47 @@ def fit_gaussian_process(
     exact = len(x) <= most_exact
     centres = x if exact else x[far_apart(x, inducing)]
     found = [_likeliest(x[some], y[some, k], kind) for k in range(y.shape[1])]
-    solved = [
-        _conditioned(x, y[:, k], each, variance) if exact else _projected(x, y[:, k], centres, each, variance)
-        for k, each in enumerate(found)
-    ]
-    weights = np.column_stack([each for each, _ in solved]) * size
-    known = np.array([each for _, each in solved if each.size])
+    solve = _exact_weights if exact else _projected_weights
+    weights = np.column_stack([solve(x, y[:, k], centres, each) for k, each in enumerate(found)]) * size
     lengths, noise, own = (
         np.array(column) for column in zip(*((f.lengths, f.noise, f.size) for f in found), strict=True)
     )
-    return GaussianProcess(
+    process = GaussianProcess(
         samples.inputs, samples.outputs, scale, centres, lengths, weights, offset, np.sqrt(noise) * size, exact,
-        np.sqrt(own) * size, known, kind,
+        np.sqrt(own) * size, NOTHING_KNOWN, kind,
     )  # fmt: skip
+    if not variance:
+        return process
+    left = samples.y - process(samples.x)
+    slow = [each._replace(noise=each.noise * memory_of(left[:, k])) for k, each in enumerate(found)]
+    return replace(process, known=np.array([_known(x, centres, each) for each in slow]))
+
+
+def memory_of(left: NDArray[np.float64]) -> float:
+    """How many samples what is left of an output remembers: its correlations, summed until they first vanish.
+
+    So many samples of a filtered record say no more together than one of white noise.
+
+    Parameters
+    ----------
+    left : ndarray (sample,)
+        In time.
+
+    References
+    ----------
+    Bayley and Hammersley 1946, J. R. Stat. Soc. Suppl. 8:184 (the effective number of observations).
+
+    Examples
+    --------
+    >>> noise = np.random.default_rng(0).standard_normal(100_000)
+    >>> float(round(memory_of(noise), 1)), float(round(memory_of(np.convolve(noise, np.ones(5), "valid"))))
+    (1.0, 5.0)
+    """
+    spectrum = np.abs(np.fft.rfft(left - left.mean(), 2 * len(left))) ** 2
+    correlation = np.fft.irfft(spectrum)[: len(left)]
+    correlation /= correlation[0]
+    vanished = int(np.argmax(correlation < FORGOTTEN)) or len(left)
+    return float(1 + 2 * correlation[1:vanished].sum())
 
 
 def far_apart(x: NDArray[np.float64], count: int) -> NDArray[np.int64]:
@@ -177,9 +207,6 @@ class Likeliest(NamedTuple):
     kind: KernelKind
 
 
-Conditioned = tuple[NDArray[np.float64], NDArray[np.float64]]  # weights (centre,), known variance (centre, centre)
-
-
 def _likeliest(x: NDArray[np.float64], y: NDArray[np.float64], kind: KernelKind) -> Likeliest:
     from sklearn.gaussian_process import GaussianProcessRegressor
     from sklearn.gaussian_process.kernels import RBF, ConstantKernel, Matern, WhiteKernel
@@ -198,31 +225,44 @@ def _likeliest(x: NDArray[np.float64], y: NDArray[np.float64], kind: KernelKind)
     return Likeliest(float(size), np.array(lengths), float(noise), kind)
 
 
-def _conditioned(x: NDArray[np.float64], y: NDArray[np.float64], found: Likeliest, variance: bool) -> Conditioned:
-    """Weights and the share of the variance that all samples take away, each sample a centre."""
+def _exact_weights(
+    x: NDArray[np.float64], y: NDArray[np.float64], centres: NDArray[np.float64], found: Likeliest
+) -> NDArray[np.float64]:
     from scipy.linalg import cho_factor, cho_solve
 
-    covariance = found.size * kernel(found.kind, x, x, found.lengths)
+    covariance = found.size * kernel(found.kind, x, centres, found.lengths)
     covariance[np.diag_indices_from(covariance)] += found.noise + JITTER * found.size
-    factor = cho_factor(covariance, lower=True, overwrite_a=True)
-    known = found.size * cho_solve(factor, np.eye(len(x))) if variance else NOTHING_KNOWN
-    return found.size * cho_solve(factor, y), known
+    return found.size * cho_solve(cho_factor(covariance, lower=True, overwrite_a=True), y)
 
 
-def _projected(
-    x: NDArray[np.float64], y: NDArray[np.float64], centres: NDArray[np.float64], found: Likeliest, variance: bool
-) -> Conditioned:
-    """The same on fewer centres, by least squares, which loses half as many digits as normal equations (Eq. 8.26)."""
+def _projected_weights(
+    x: NDArray[np.float64], y: NDArray[np.float64], centres: NDArray[np.float64], found: Likeliest
+) -> NDArray[np.float64]:
+    """Solved by least squares, which loses half as many digits as the normal equations of Eq. 8.26."""
+    across, root = _factors(x, centres, found)
+    q, r = np.linalg.qr(np.vstack([across, root]))
+    return np.sqrt(found.size) * np.linalg.lstsq(r, q[: len(x)].T @ y, rcond=None)[0]
+
+
+def _factors(
+    x: NDArray[np.float64], centres: NDArray[np.float64], found: Likeliest
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Kernels between samples and centres, and a root of those among the centres, times the noise."""
     across = np.sqrt(found.size) * kernel(found.kind, x, centres, found.lengths)
     among = kernel(found.kind, centres, centres, found.lengths)
     among[np.diag_indices_from(among)] += JITTER
     values, vectors = np.linalg.eigh(among)
     root = (np.sqrt(np.maximum(values, 0.0)) * vectors).T
+    return across, np.sqrt(found.noise + JITTER * found.size) * root
+
+
+def _known(x: NDArray[np.float64], centres: NDArray[np.float64], found: Likeliest) -> NDArray[np.float64]:
+    """Share of the variance that the samples take away, a form of kernels (centre, centre).
+
+    Eq. 8.27 without the noise of what is measured next; where every sample is a centre, Eq. 2.26.
+    """
+    across, root = _factors(x, centres, found)
+    r = np.linalg.qr(np.vstack([across, root]), mode="r")
     noise = found.noise + JITTER * found.size
-    stacked = np.vstack([across, np.sqrt(noise) * root])
-    q, r = np.linalg.qr(stacked)
-    weights = np.sqrt(found.size) * np.linalg.lstsq(r, q[: len(y)].T @ y, rcond=None)[0]
-    if not variance:
-        return weights, NOTHING_KNOWN
-    upright, left = np.linalg.pinv(root), np.sqrt(noise) * np.linalg.pinv(r)
-    return weights, upright @ upright.T - left @ left.T  # Eq. 8.27 without the noise of what is measured next
+    upright, left = np.sqrt(noise) * np.linalg.pinv(root), np.sqrt(noise) * np.linalg.pinv(r)
+    return upright @ upright.T - left @ left.T

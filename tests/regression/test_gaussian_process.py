@@ -3,7 +3,7 @@ import pytest
 
 from gaitdisc.errors import TrainingError
 from gaitdisc.recording import Samples
-from gaitdisc.regression.gaussian_process import far_apart, fit_gaussian_process
+from gaitdisc.regression.gaussian_process import far_apart, fit_gaussian_process, memory_of
 from gaitdisc.regression.kernels import KERNELS, kernel
 
 RNG = np.random.default_rng(0)
@@ -49,11 +49,12 @@ def test_the_standard_deviation_is_that_of_the_textbook(kind):
     )
     new = np.linspace(-4, 4, 9)[:, None]
     size, noise, lengths = found.size[0] ** 2, found.noise[0] ** 2, found.lengths[0]
+    noise *= memory_of(y - found(line[:, None])[:, 0])
     scaled, there = found.scale.scaled(new), found.centres
     among = size * kernel(kind, there, there, lengths) + noise * np.eye(60)
     across = size * kernel(kind, scaled, there, lengths)
     wanted = size - np.sum(across * np.linalg.solve(among, across.T).T, axis=1)  # Eq. 2.26
-    assert found.sd(new)[:, 0] == pytest.approx(np.sqrt(wanted), rel=1e-4)
+    assert found.sd(new)[:, 0] == pytest.approx(np.sqrt(wanted), rel=1e-3)
 
 
 def test_inducing_points_tell_nearly_the_standard_deviation_of_all_samples():
@@ -82,3 +83,16 @@ def test_ninety_five_of_a_hundred_values_lie_within_two_standard_deviations():
 def test_a_variance_that_was_not_kept_is_refused():
     with pytest.raises(TrainingError, match="kept when it is fitted; this one was fitted without"):
         fit_gaussian_process(samples(Y)).sd(X)
+
+
+def test_an_interval_of_noise_that_remembers_is_as_wide_as_of_so_many_samples_fewer():
+    t = np.arange(2000) / 100
+    slow = np.convolve(np.random.default_rng(3).standard_normal(2009), np.ones(10) / np.sqrt(10), "valid")
+    few, all_ = (
+        fit_gaussian_process(
+            Samples(at[:, None], y[:, None], ("t",), ("b",), at, np.full(len(at), np.nan)), variance=True
+        )
+        for at, y in ((t[::10], (np.sin(t) + 0.2 * slow)[::10]), (t, np.sin(t) + 0.2 * slow))
+    )
+    new = np.linspace(2, 18, 30)[:, None]
+    assert np.median(all_.sd(new)) == pytest.approx(np.median(few.sd(new)), rel=0.35)
