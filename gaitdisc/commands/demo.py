@@ -19,6 +19,9 @@ def demo(
     hide: Annotated[
         str, typer.Option(help="What differs between the walks: spring, weak plantarflexor, stiff knee, drop foot, ...")
     ] = "spring",
+    markers: Annotated[
+        bool, typer.Option("--markers", help="Markers, belts and a static trial in place of joint angles.")
+    ] = False,
     jobs: Jobs = 2,
     quiet: Quiet = False,
 ) -> None:
@@ -29,7 +32,9 @@ def demo(
     from gaitdisc.ingest.study_file import load_study
 
     typer.echo(f"{people} of the embedded cohort walk {seconds:g} s in each condition: simulated, no people.")
-    write_demonstration(folder, seconds, people, hide, lambda who, _: typer.echo(f"  {who}", err=True, nl=not quiet))
+    write_demonstration(
+        folder, seconds, people, hide, lambda who, _: typer.echo(f"  {who}", err=True, nl=not quiet), markers
+    )
     study = load_study(folder)
     try:
         report_on(lambda told: run_study(study, folder / "run", Workers(jobs), told), study, folder / "run", quiet)
