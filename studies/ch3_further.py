@@ -1,13 +1,14 @@
 """Chapter 3 beyond its figures, over twelve noise seeds: methods, noise, starts and trajectories that the text names.
 
-    python studies/ch3_further.py [FOLDER] [--seeds 12] [--tables methods noise filters trajectories variance]
+    python studies/ch3_further.py [FOLDER] [--seeds 6] [--tables methods noise filters trajectories variance] [--keep]
     python studies/ch3_further.py --print TABLE
 
 Exact DMD, SINDy in weak form and as an ensemble, a Gaussian process with a Matern kernel (`methods`); noise that is not
 normal (`noise`); the start of a forecast by unscented and ensemble Kalman filters (`filters`); several trajectories,
 and a forecast whose beginning is learned from (`trajectories`); what of the missing rate lies within two standard
 deviations of the Gaussian process (`variance`). Each number is a file of its own in FOLDER, written whole: a run that
-was stopped goes on. At its end FOLDER becomes `studies/ch3_further.csv`, which `--print` prints from.
+was stopped goes on. Its tables are printed at the end; with `--keep` FOLDER becomes `studies/ch3_further.csv`, which
+`--print` prints from.
 """
 
 from __future__ import annotations
@@ -23,8 +24,9 @@ GIVEN = command_line(
     __name__,
     __doc__,
     argument("folder", "a file for each number that was computed", Path("ch3_further")),
-    argument("--seeds", "noise seeds 0 to one less than this", 12),
+    argument("--seeds", "noise seeds 0 to one less than this", 6),
     argument("--tables", "which of them are computed", list(TABLES)),
+    argument("--keep", "write studies/ch3_further.csv as well", False),
     argument("--print", "compute nothing; print this table", "", metavar="TABLE"),
 )  # before the slow imports
 
@@ -222,4 +224,7 @@ if __name__ == "__main__":
         print(printed(pd.read_csv(CELLS), GIVEN.print))
     else:
         compute(GIVEN.folder, GIVEN.tables, GIVEN.seeds)
-        save_table(gathered(GIVEN.folder), CELLS)
+        found = gathered(GIVEN.folder)
+        print("\n\n".join(printed(found, name) for name in TABLES if name in set(found["table"])))
+        if GIVEN.keep:
+            save_table(found, CELLS)

@@ -22,13 +22,13 @@ SEEN = command_line(
 from collections.abc import Iterator
 from pathlib import Path
 
+from gaitdisc import PooledCycles
 from gaitdisc.batch.clinic_demonstration import CONDITION, Visit, made_walk
 from gaitdisc.batch.planted_gait import FOUND_AS
 from gaitdisc.clinic.reading import read_beside
 from gaitdisc.clinic.reference import reference_of
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.processing.pooled import pooled_cycles
-from gaitdisc.results import PooledCycles
 from gaitdisc.results.clinical_reference import ClinicalReference
 from gaitdisc.results.provenance import made_now
 from gaitdisc.results.run_store import load_run

@@ -14,12 +14,12 @@ GIVEN = command_line(__name__, __doc__, QUICK)  # before the slow imports
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc import envelope
 from gaitdisc.cohort.cohort import the_twelve
 from gaitdisc.cohort.device import Spring
 from gaitdisc.cohort.measurement import measured
 from gaitdisc.cohort.person import MUSCLES, Person
 from gaitdisc.cohort.walk import TrueWalk, walked
-from gaitdisc.signals.envelope import enveloped
 
 WALK_S = 60.0
 SEED = 700
@@ -36,7 +36,7 @@ def envelopes(walk: TrueWalk) -> NDArray[np.float64]:
     walk : TrueWalk
         Of one person.
     """
-    return enveloped(measured(walk, "walk", "nominal").stream("emg")).values[:, : len(MUSCLES)]
+    return envelope(measured(walk, "walk", "nominal").stream("emg")).values[:, : len(MUSCLES)]
 
 
 def alike(curves: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -45,6 +45,8 @@ PARTS = (
     Part(3, "seeds", "ch3_seeds", "the cells of `tables` computed anew, twelve seeds", 35, 1,
          (OUT, "--sets", "van_der_pol_text", "van_der_pol_code", "lorenz", "van_der_pol_text_short", "lorenz_short",
           "lorenz_fine"), libraries=METHODS),
+    Part(3, "further", "ch3_further", "methods, noise, starts and trajectories that 3.4 and 3.5 name besides", 40, 2,
+         quick_words=(OUT, "--seeds", "1", "--tables", "variance", "filters"), libraries=METHODS),
     Part(4, "ankle_exo", "ch4_ankle_exo", "the whole chapter, Figs. 4.2-4.4", 15, 1),
     Part(5, "gait_individual", "ch5_gait_individual", "5.3.3, Table 5.2 above, Fig. 5.4", 60, 1),
     Part(5, "gait_population", "ch5_gait_population", "5.3.3, Table 5.2 below, Fig. 5.5", 90, 1),

@@ -13,23 +13,25 @@ MOST_LINES = 120
 # Of the package they import the door alone. A study that joins them is added here.
 DOOR_ALONE = {"command_line", "compare_halves", "curves_over_each_other", "fault_cases", "faults_of_meaning",
               "library_pictures", "printed_numbers"}  # fmt: skip
-INSIDE = 40  # at most so many import from deeper: of rooms that the door does not open, or tests of what lies inside
+INSIDE = 43  # at most so many import from deeper: of rooms that the door does not open, or tests of what lies inside
 LONG = {
     "ankle_exo_emg": 201,
+    "ch3_further": 230,
     "ch3_seeds": 176,
     "ch3_tables": 198,
     "ch4_ours": 131,
     "ch5_gait_individual": 129,
+    "cohort_muscles": 137,
     "cohort_norms": 160,
     "contact_bias": 126,
-    "fault_cases": 206,
+    "fault_cases": 230,
     "faults_of_meaning": 145,
     "gait10dof_segments": 164,
     "hidden_effects_in_gait": 126,
     "joints_and_chains": 151,
     "marker_noise": 189,
     "markers_to_angles": 213,
-    "planted_faults": 146,
+    "planted_faults": 147,
     "printed_numbers": 193,
     "real_files": 143,
     "real_strides": 130,
