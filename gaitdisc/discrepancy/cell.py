@@ -87,7 +87,7 @@ def learned_model(record: Record, method: Method, approach: Approach, settings: 
     if len(records) > 1 and method in (*OF_TIME, "wsindy"):
         raise TrainingError(
             "several records are learned from by methods that take samples in any order",
-            f"{method} was asked for with {len(records)}",
+            f"{method} was given {len(records)}",
             "Take sindy, gp or nn, or one record.",
         )
     if method == "wsindy":

@@ -110,7 +110,7 @@ class Record:
         last = self.split - 1 + count
         if count < LEAST_SAMPLES or last >= len(self.time):
             raise SamplingError(
-                f"what is sacrificed of a forecast has {LEAST_SAMPLES} samples at least, and leaves some to be judged",
+                f"what is sacrificed of a forecast has {LEAST_SAMPLES} samples at least, and leaves some to test on",
                 f"{made.sacrificed_s:g} s have {count} of the forecast's {len(self.time) - self.split + 1}",
                 "Change sacrificed_s.",
             )

@@ -59,5 +59,5 @@ def test_more_starts_make_a_residual_that_carries_over_to_a_new_one(van_der_pol)
 
 def test_methods_of_time_refuse_several_records(van_der_pol):
     found = cell(van_der_pol, "dmd", "dynamics", Conditions(duration_s=10.0, trajectories=2))
-    assert "dmd was asked for with 2" in found.refused
+    assert "dmd was given 2" in found.refused
     assert "learns rates" in cell(van_der_pol, "wsindy", "state", Conditions(duration_s=10.0)).refused
