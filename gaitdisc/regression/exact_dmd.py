@@ -40,12 +40,12 @@ def fit_exact_dmd(samples: Samples, delays: int = DELAYS, rank: int = RANK) -> D
     before, after = hankel.columns[:, :-1], hankel.columns[:, 1:]
     small = hankel.axes.T @ before
     turn = np.linalg.lstsq(small.T, (hankel.axes.T @ after).T, rcond=None)[0].T
-    values, vectors = np.linalg.eig(turn)
+    values, vectors = (np.asarray(each, np.complex128) for each in np.linalg.eig(turn))
     kept = np.abs(values) > SMALLEST
     values, vectors = values[kept], vectors[:, kept]
     exact = after @ np.linalg.pinv(small) @ vectors / values
-    continuous = np.log(values.astype(complex)) / dt
-    continuous = np.minimum(continuous.real, 0.0) + 1j * continuous.imag
+    found = np.log(values) / dt
+    continuous = np.asarray(np.minimum(found.real, 0.0) + 1j * found.imag, np.complex128)
     amplitudes = _amplitudes(hankel.axes.T @ hankel.columns, vectors, continuous, dt)
     modes = (exact[:outputs] * hankel.size[:, None] * amplitudes).T
     return Dmd((TIME,), samples.outputs, modes, continuous, float(samples.time[0]), np.zeros(len(values)))
@@ -58,4 +58,4 @@ def _amplitudes(
     turns = np.exp(np.outer(eigenvalues, dt * np.arange(columns.shape[1])))
     normal = (vectors.conj().T @ vectors) * (turns @ turns.conj().T).conj()
     aim = np.diag(turns @ columns.conj().T @ vectors).conj()
-    return np.linalg.lstsq(normal, aim, rcond=None)[0]
+    return np.asarray(np.linalg.lstsq(normal, aim, rcond=None)[0], np.complex128)
