@@ -148,7 +148,8 @@ def fit_gaussian_process(
         return process
     left = samples.y - process(samples.x)
     slow = [each._replace(noise=each.noise * memory_of(left[:, k])) for k, each in enumerate(found)]
-    return replace(process, known=np.array([_known(x, centres, each) for each in slow]))
+    known = [_exactly_known(x, each) if exact else _known(x, centres, each) for each in slow]
+    return replace(process, known=np.array(known))
 
 
 def memory_of(left: NDArray[np.float64]) -> float:
@@ -226,13 +227,20 @@ def _likeliest(x: NDArray[np.float64], y: NDArray[np.float64], kind: KernelKind)
 
 
 def _exact_weights(
-    x: NDArray[np.float64], y: NDArray[np.float64], centres: NDArray[np.float64], found: Likeliest
+    x: NDArray[np.float64], y: NDArray[np.float64], _: NDArray[np.float64], found: Likeliest
 ) -> NDArray[np.float64]:
-    from scipy.linalg import cho_factor, cho_solve
+    from scipy.linalg import cho_solve
 
-    covariance = found.size * kernel(found.kind, x, centres, found.lengths)
+    return found.size * cho_solve(_noisy_factor(x, found), y)
+
+
+def _noisy_factor(x: NDArray[np.float64], found: Likeliest) -> tuple[NDArray[np.float64], bool]:
+    """Cholesky factor of the covariance of samples with their noise (sample, sample)."""
+    from scipy.linalg import cho_factor
+
+    covariance = found.size * kernel(found.kind, x, x, found.lengths)
     covariance[np.diag_indices_from(covariance)] += found.noise + JITTER * found.size
-    return found.size * cho_solve(cho_factor(covariance, lower=True, overwrite_a=True), y)
+    return cho_factor(covariance, lower=True, overwrite_a=True)
 
 
 def _projected_weights(
@@ -256,11 +264,15 @@ def _factors(
     return across, np.sqrt(found.noise + JITTER * found.size) * root
 
 
-def _known(x: NDArray[np.float64], centres: NDArray[np.float64], found: Likeliest) -> NDArray[np.float64]:
-    """Share of the variance that the samples take away, a form of kernels (centre, centre).
+def _exactly_known(x: NDArray[np.float64], found: Likeliest) -> NDArray[np.float64]:
+    """Share of the variance that the samples take away, each sample a centre: Eq. 2.26 (centre, centre)."""
+    from scipy.linalg import cho_solve
 
-    Eq. 8.27 without the noise of what is measured next; where every sample is a centre, Eq. 2.26.
-    """
+    return found.size * cho_solve(_noisy_factor(x, found), np.eye(len(x)))
+
+
+def _known(x: NDArray[np.float64], centres: NDArray[np.float64], found: Likeliest) -> NDArray[np.float64]:
+    """The same on fewer centres: Eq. 8.27 without the noise of what is measured next (centre, centre)."""
     across, root = _factors(x, centres, found)
     r = np.linalg.qr(np.vstack([across, root]), mode="r")
     noise = found.noise + JITTER * found.size
