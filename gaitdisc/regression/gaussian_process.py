@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from gaitdisc.errors import TrainingError
 from gaitdisc.recording import Samples, Scale, scale_of
 from gaitdisc.recording.arrays import read_only
+from gaitdisc.recording.autocorrelation import autocorrelation_time
 from gaitdisc.regression.kernels import KernelKind, kernel
 
 MOST_EXACT = 1500  # samples: memory grows with their square, time with their cube
@@ -113,7 +114,7 @@ def fit_gaussian_process(
     ----------
     variance : bool
         Keep what the standard deviation is computed from: the square of the centres for each output. Noise that
-        remembers its past, as that of filtered samples does, counts for as many samples less (`memory_of`).
+        remembers its past, as that of filtered samples does, counts for as many samples less (`autocorrelation_time`).
 
     References
     ----------
@@ -146,37 +147,10 @@ def fit_gaussian_process(
     )  # fmt: skip
     if not variance:
         return process
-    left = samples.y - process(samples.x)
-    slow = [each._replace(noise=each.noise * memory_of(left[:, k])) for k, each in enumerate(found)]
+    memory = autocorrelation_time(samples.y - process(samples.x), FORGOTTEN)
+    slow = [each._replace(noise=each.noise * float(memory[k])) for k, each in enumerate(found)]
     known = [_exactly_known(x, each) if exact else _known(x, centres, each) for each in slow]
     return replace(process, known=np.array(known))
-
-
-def memory_of(left: NDArray[np.float64]) -> float:
-    """How many samples what is left of an output remembers: its correlations, summed until they first vanish.
-
-    So many samples of a filtered record say no more together than one of white noise.
-
-    Parameters
-    ----------
-    left : ndarray (sample,)
-        In time.
-
-    References
-    ----------
-    Bayley and Hammersley 1946, J. R. Stat. Soc. Suppl. 8:184 (the effective number of observations).
-
-    Examples
-    --------
-    >>> noise = np.random.default_rng(0).standard_normal(100_000)
-    >>> float(round(memory_of(noise), 1)), float(round(memory_of(np.convolve(noise, np.ones(5), "valid"))))
-    (1.0, 5.0)
-    """
-    spectrum = np.abs(np.fft.rfft(left - left.mean(), 2 * len(left))) ** 2
-    correlation = np.fft.irfft(spectrum)[: len(left)]
-    correlation /= correlation[0]
-    vanished = int(np.argmax(correlation < FORGOTTEN)) or len(left)
-    return float(1 + 2 * correlation[1:vanished].sum())
 
 
 def far_apart(x: NDArray[np.float64], count: int) -> NDArray[np.int64]:

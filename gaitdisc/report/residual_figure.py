@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import side_of
 from gaitdisc.recording import PERCENT
+from gaitdisc.recording.arrays import mean_where_known
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import MODELS, SIDES
 from gaitdisc.report.panels import Room, in_style, panels, sheets
@@ -88,9 +89,7 @@ def mean_interval(residuals: NDArray[np.float64]) -> StrideMean:
     """
     if len(residuals) >= LEAST_STRIDES:
         return mean_over_strides(residuals, CONFIDENCE)
-    there = np.isfinite(residuals)
-    count = there.sum(axis=0)
-    mean = np.where(count > 0, np.where(there, residuals, 0.0).sum(axis=0) / np.maximum(count, 1), np.nan)
+    mean, count = mean_where_known(residuals), np.isfinite(residuals).sum(axis=0)
     none = np.full_like(mean, np.nan)
     return StrideMean(mean, none, none, count, np.full(mean.shape[1], float(len(residuals))), CONFIDENCE)
 

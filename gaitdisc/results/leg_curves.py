@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.recording import PERCENT
+from gaitdisc.recording.arrays import mean_where_known
 from gaitdisc.results.clinical_variables import FORCES, MOMENTS, POWERS, VARIABLES
 from gaitdisc.results.pooled_cycles import SPATIOTEMPORAL, PooledCycles
 
@@ -48,13 +49,6 @@ class LegCurves:
     def mean(self, name: str) -> NDArray[np.float64]:
         """Mean curve of a variable; NaN where no cycle has a value."""
         return mean_where_known(self.cycles[name])
-
-
-def mean_where_known(curves: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Mean over the cycles that have a value at a point; NaN where none has."""
-    known = np.isfinite(curves)
-    counts = known.sum(axis=0)
-    return np.where(counts > 0, np.where(known, curves, 0.0).sum(axis=0) / np.maximum(counts, 1), np.nan)
 
 
 def legs_of(pooled: PooledCycles) -> dict[str, LegCurves]:

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import SamplingError
+from gaitdisc.recording.autocorrelation import autocorrelation_time
 
 LEVEL = 0.9
 
@@ -58,10 +59,6 @@ def effective_number(errors: NDArray[np.float64]) -> NDArray[np.float64]:
     errors : ndarray (window, state) [each state's unit]
         In order of time.
 
-    References
-    ----------
-    Sokal 1997, Monte Carlo methods in statistical mechanics (integrated autocorrelation time).
-
     Examples
     --------
     >>> errors = np.random.default_rng(0).normal(size=(400, 1))
@@ -69,12 +66,7 @@ def effective_number(errors: NDArray[np.float64]) -> NDArray[np.float64]:
     True
     """
     n = len(errors)
-    sizes = np.abs(errors) - np.abs(errors).mean(axis=0)
-    spectrum = np.abs(np.fft.rfft(sizes, 2 * n, axis=0)) ** 2
-    products = np.fft.irfft(spectrum, axis=0)[:n]
-    rho = products / np.where(products[0] > 0, products[0], 1.0)
-    before_zero = np.logical_and.accumulate(rho[1:] > 0, axis=0)
-    return np.clip(n / (1 + 2 * (rho[1:] * before_zero).sum(axis=0)), 1.0, n)
+    return np.clip(n / autocorrelation_time(np.abs(errors)), 1.0, n)
 
 
 def coverage(errors: NDArray[np.float64], half: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -10,6 +10,7 @@ from scipy.stats import t as student
 
 from gaitdisc.errors import StrideError
 from gaitdisc.recording import PERCENT, Strides
+from gaitdisc.recording.arrays import mean_where_known
 from gaitdisc.recording.strides import interpolated
 
 LEAST_STRIDES = 5
@@ -93,7 +94,7 @@ class StrideMean:
     @property
     def rms(self) -> NDArray[np.float64]:
         """Root mean square over the stride of the mean curve, (column,) [each column's unit]."""
-        return np.sqrt(_over_stride(self.mean**2))
+        return np.sqrt(mean_where_known(self.mean**2))
 
     @property
     def peak_to_peak(self) -> NDArray[np.float64]:
@@ -107,7 +108,7 @@ class StrideMean:
     def share_beyond_zero(self) -> NDArray[np.float64]:
         """Share of the stride in which the interval excludes zero, (column,); 1 - level of it by chance alone."""
         beyond = np.where((self.low > 0) | (self.high < 0), 1.0, 0.0)
-        return _over_stride(np.where(np.isfinite(self.mean), beyond, np.nan))
+        return mean_where_known(np.where(np.isfinite(self.mean), beyond, np.nan))
 
 
 def mean_over_strides(curves: NDArray[np.float64], level: float = 0.95) -> StrideMean:
@@ -172,10 +173,3 @@ def effective_strides(curves: NDArray[np.float64]) -> NDArray[np.float64]:
     raw = (apart[1:] * apart[:-1]).sum(axis=(0, 1)) / np.where(power > 0, power, 1.0)
     rho = np.clip((n * raw + 1.0) / (n - 4.0) if n > LEAST_STRIDES else raw, 0.0, 0.99)
     return np.maximum(n * (1 - rho) / (1 + rho), 1.0)
-
-
-def _over_stride(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    there = np.isfinite(values)
-    count = there.sum(axis=0)
-    total = np.where(there, values, 0.0).sum(axis=0)
-    return np.where(count > 0, total / np.maximum(count, 1), np.nan)

@@ -3,7 +3,8 @@ import pytest
 
 from gaitdisc.errors import TrainingError
 from gaitdisc.recording import Samples
-from gaitdisc.regression.gaussian_process import far_apart, fit_gaussian_process, memory_of
+from gaitdisc.recording.autocorrelation import autocorrelation_time
+from gaitdisc.regression.gaussian_process import FORGOTTEN, far_apart, fit_gaussian_process
 from gaitdisc.regression.kernels import KERNELS, kernel
 
 RNG = np.random.default_rng(0)
@@ -49,7 +50,7 @@ def test_the_standard_deviation_is_that_of_the_textbook(kind):
     )
     new = np.linspace(-4, 4, 9)[:, None]
     size, noise, lengths = found.size[0] ** 2, found.noise[0] ** 2, found.lengths[0]
-    noise *= memory_of(y - found(line[:, None])[:, 0])
+    noise *= autocorrelation_time(y[:, None] - found(line[:, None]), FORGOTTEN)[0]
     scaled, there = found.scale.scaled(new), found.centres
     among = size * kernel(kind, there, there, lengths) + noise * np.eye(60)
     across = size * kernel(kind, scaled, there, lengths)
