@@ -47,9 +47,9 @@ def judge(inquiry: Inquiry, as_read: Judged) -> Verdict:
         return remembered
     names = len(named.account.parts)
     if shape and not exact and (names > MOST_NAMES or (names > 1 and says_more(inquiry, shape, named))):
-        proof = borne_out(inquiry, as_read, shape)
-        if proof.bears_out:
-            return Verdict("unnamed", shape, (named, *rivals), proof=proof)
+        unnamed = proven_shape(inquiry, as_read, shape, (named, *rivals))
+        if unnamed:
+            return unnamed
     if not names:
         wrong = wrong_starts(inquiry.search.base, as_read)
         return Verdict("wrong_initial_condition" if wrong else "no_gap", as_read, tuple(rivals), starts=wrong)
@@ -72,8 +72,13 @@ def shape_that_leaves_noise(inquiry: Inquiry, as_read: Judged, scale: GapScale, 
     shape = fitted_shape(as_read, inquiry.search, scale)
     if shape is None or not leaves_noise(inquiry, shape):
         return None
+    return proven_shape(inquiry, as_read, shape, (names.account, *names.rivals))
+
+
+def proven_shape(inquiry: Inquiry, as_read: Judged, shape: Judged, others: tuple[Judged, ...]) -> Verdict | None:
+    """Return the verdict on a shape without a name that the held-out data bear out; None where they do not."""
     proof = borne_out(inquiry, as_read, shape)
-    return Verdict("unnamed", shape, (names.account, *names.rivals), proof=proof) if proof.bears_out else None
+    return Verdict("unnamed", shape, others, proof=proof) if proof.bears_out else None
 
 
 def strongest(search: Search, named: Judged) -> Judged:

@@ -119,19 +119,19 @@ def flow_error(known: Callable, y: NDArray[np.float64], dt_s: float) -> NDArray[
     dt_s : float
         Between samples [s].
     """
-    ahead = y[2:] - _flow(known, y[1:-1], dt_s)
-    behind = y[:-2] - _flow(known, y[1:-1], -dt_s)
+    ahead = y[2:] - flow(known, y[1:-1], dt_s)
+    behind = y[:-2] - flow(known, y[1:-1], -dt_s)
     return (ahead - behind) / (2 * dt_s)
 
 
-def _flow(known: Callable, x: NDArray[np.float64], dt_s: float) -> NDArray[np.float64]:
-    """Run all states one sample on, or back, by Runge-Kutta of order 4."""
-    h = dt_s / FLOW_STEPS
-    for _ in range(FLOW_STEPS):
-        one = known(x)
-        two = known(x + 0.5 * h * one)
-        three = known(x + 0.5 * h * two)
-        x = x + h / 6 * (one + 2 * two + 2 * three + known(x + h * three))
+def flow(rates: Callable, x: NDArray[np.float64], dt_s: float, steps: int = FLOW_STEPS) -> NDArray[np.float64]:
+    """Run all states (point, state) one sample on, or back, by Runge-Kutta of order 4."""
+    h = dt_s / steps
+    for _ in range(steps):
+        one = rates(x)
+        two = rates(x + 0.5 * h * one)
+        three = rates(x + 0.5 * h * two)
+        x = x + h / 6 * (one + 2 * two + 2 * three + rates(x + h * three))
     return x
 
 

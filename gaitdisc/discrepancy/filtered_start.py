@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.discrepancy.error_signal import flow
 from gaitdisc.discrepancy.kalman import Filtered, Uncertainty, ensemble_kalman, unscented_kalman
 from gaitdisc.discrepancy.record import Record
 from gaitdisc.errors import ShapeError
@@ -61,23 +62,12 @@ def _filtered(record: Record, learned: Model, by: Filter, share: float) -> Filte
     dt = record.conditions.dt_s
     noise = Uncertainty(FIRST * size, share * y.std(axis=0) * np.sqrt(dt), size)
 
+    def rates(states: NDArray[np.float64]) -> NDArray[np.float64]:
+        return record.system.known(states) + learned(states)
+
     def turn(states: NDArray[np.float64]) -> NDArray[np.float64]:
-        return _ahead(record, learned, states, dt / STEPS)
+        return flow(rates, states, dt, STEPS)
 
     run = unscented_kalman if by == "unscented" else ensemble_kalman
     with np.errstate(all="ignore"):
         return run(turn, lambda states: states, y, smooth[0], noise)
-
-
-def _ahead(record: Record, learned: Model, x: NDArray[np.float64], h: float) -> NDArray[np.float64]:
-    """States a sample later, by Runge-Kutta of order 4, (point, state)."""
-
-    def rates(states: NDArray[np.float64]) -> NDArray[np.float64]:
-        return record.system.known(states) + learned(states)
-
-    for _ in range(STEPS):
-        one = rates(x)
-        two = rates(x + 0.5 * h * one)
-        three = rates(x + 0.5 * h * two)
-        x = x + h / 6 * (one + 2 * two + 2 * three + rates(x + h * three))
-    return x

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Recording, Trial
+from gaitdisc.recording.runs import runs
 
 LOADED_PERCENT = 10.0  # of body weight: the foot is on the plate
 
@@ -36,7 +37,5 @@ def weighed_forces(trial: Trial) -> Recording | None:
 
 def _forwards(along: NDArray[np.float64], upwards: NDArray[np.float64]) -> NDArray[np.float64]:
     """Fore-aft force, negative in the first half of each step on the plate."""
-    loaded = np.concatenate([[0], (upwards > LOADED_PERCENT).astype(int), [0]])
-    starts, ends = np.flatnonzero(np.diff(loaded) == 1), np.flatnonzero(np.diff(loaded) == -1)
-    braking = sum(float(along[a : (a + b) // 2].sum()) for a, b in zip(starts, ends, strict=True))
+    braking = sum(float(along[a : (a + b) // 2].sum()) for a, b in runs(upwards > LOADED_PERCENT))
     return -along if braking > 0 else along
