@@ -30,15 +30,12 @@ from itertools import pairwise
 from multiprocessing import get_context
 
 import numpy as np
+from driven_trials import Driven, Sensed, recorded
 
 from gaitdisc.discovery.discover import discover
-from gaitdisc.simulation.drive import Drive, Rows
-from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import Input, Parameter, Port, State, Term
-from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
 
-RATE_HZ, TRIALS, WAVES = 100.0, 4, 5
 STIFFENING = 300.0  # N/m^3
 
 
@@ -61,27 +58,13 @@ def chain(masses: int) -> Simulation:
     )
 
 
-def recorded(truth: Simulation, seconds: float, noise: float, seed: int) -> Measured:
-    """Trials of the true chain, driven by sums of sines, with white noise."""
-    rng, t = np.random.default_rng(seed), np.arange(int(seconds * RATE_HZ)) / RATE_HZ
-    drives = []
-    for _ in range(TRIALS):
-        frequencies, phases = rng.uniform(0.2, 2.0, WAVES), rng.uniform(0, 2 * np.pi, WAVES)
-        waves = np.sin(2 * np.pi * np.outer(t, frequencies) + phases)
-        drives.append((12.0 * rng.uniform(0.3, 1.0, WAVES) * waves).sum(axis=1)[:, None])
-    drive, machine = Drive.of(drives, RATE_HZ), compile_simulation(truth)
-    rows = Rows(np.arange(TRIALS), np.zeros(TRIALS, int), np.zeros((TRIALS, len(machine.states))))
-    states, _ = machine.run(drive, rows, len(t) - 1)
-    seen = machine.observe(drive, rows, states)
-    seen = seen + noise * seen.std(axis=(0, 1)) * rng.normal(size=seen.shape)
-    return Measured(drive, seen, tuple(str(trial + 1) for trial in range(TRIALS)), machine.observed)
-
-
 def answered(masses: int, seconds: float, hidden: bool, noise: float, seed: int) -> str:
     """What is said of one record, with its cost."""
     model, place = chain(masses), min(3, masses)
     term = Term(f"load_{place}", "port", "cubic_stiffness", f"-{STIFFENING}*x{place}**3")
-    measured = recorded(model.with_effect(term) if hidden else model, seconds, noise, seed)
+    driven = Driven((12.0,), 0.2, 2.0, seconds=seconds)
+    truth = model.with_effect(term) if hidden else model
+    measured = recorded(truth, driven, Sensed(noise), np.random.default_rng(seed))
     wall, processor = time.perf_counter(), time.process_time()
     found, _ = discover(model, measured)
     wall, processor = time.perf_counter() - wall, time.process_time() - processor

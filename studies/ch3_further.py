@@ -38,6 +38,7 @@ import ch3_lorenz
 import ch3_van_der_pol
 import numpy as np
 import pandas as pd
+from ch3_tables import LYAPUNOV_PER_S, said_of
 
 from gaitdisc.discrepancy.augmented_run import with_learned_rates
 from gaitdisc.discrepancy.cell import cell_of, learned_model
@@ -50,12 +51,10 @@ from gaitdisc.discrepancy.record_noise import NOISE_KINDS
 from gaitdisc.discrepancy.system import System
 from gaitdisc.regression.gaussian_process import fit_gaussian_process
 from gaitdisc.report.discrepancy_figure import METHOD_WORDS
-from gaitdisc.report.discrepancy_tables import spread_words
 from gaitdisc.report.table import as_markdown, save_table, words_table
 from gaitdisc.results.discrepancy_cell import FORECAST, PartAccuracy
 
 CELLS = Path(__file__).with_name("ch3_further.csv")
-LYAPUNOV_PER_S = 0.906  # of the Lorenz system: Sprott 2003
 NOISES = (0.01, 0.1)
 SACRIFICED_S = 5.0
 SIDES = 1.96  # standard deviations of a normal law's 95 %
@@ -211,9 +210,8 @@ def printed(table: pd.DataFrame, name: str) -> str:
     for row in dict.fromkeys(some["row"]):
         said = []
         for system, noise in columns:
-            values = some[(some["row"] == row) & (some["system"] == system) & (some["noise"] == noise)]["value"]
-            lost = int(values.isna().sum())
-            said.append(f"diverged in {lost} of {len(values)}" if lost else spread_words(values.to_numpy(float)))
+            here = (some["row"] == row) & (some["system"] == system) & (some["noise"] == noise)
+            said.append(said_of(some[here], "value"))
         rows.append((row, str(some[some["row"] == row].groupby(["system", "noise"]).size().max()), *said))
     headings = (HEADINGS[name], "n", *(f"{system}, {100 * noise:g} % noise" for system, noise in columns))
     return as_markdown(words_table(name, "", headings, rows))

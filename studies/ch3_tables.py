@@ -67,19 +67,19 @@ def set_table(table: pd.DataFrame, name: str, number: str) -> str:
             found = of_set[(of_set["method"] == method) & (of_set["part"] == part)]
             counts = found[found["noise"] > 0].groupby("noise")["seed"].nunique()
             n = ", ".join(map(str, counts if len(set(counts)) > 1 else counts[:1])) or "1"
-            said = [_said(found[found["noise"] == noise], column, factor) for noise in noises]
+            said = [said_of(found[found["noise"] == noise], column, factor) for noise in noises]
             rows.append((METHOD_WORDS[method], START_WORDS[part], n, *said))
     headings = ("method", "start", "n", *(f"{noise:.1%} noise" for noise in noises))
     return as_markdown(words_table(name, "", headings, rows))
 
 
-def _said(found: pd.DataFrame, column: str, factor: float) -> str:
+def said_of(found: pd.DataFrame, column: str, factor: float = 1.0) -> str:
+    """Median and range of a number over the seeds, or in how many of them the run diverged."""
     if not len(found):
         return ""
     lost = int(found[column].isna().sum())  # it left every bound before the end of what is judged
-    if lost:
-        return "diverged" + (f" in {lost} of {len(found)}" * (len(found) > 1))
-    return spread_words(factor * found[column].to_numpy(float))
+    among = f" in {lost} of {len(found)}" * (len(found) > 1)
+    return f"diverged{among}" if lost else spread_words(factor * found[column].to_numpy(float))
 
 
 def readme_table(table: pd.DataFrame) -> str:

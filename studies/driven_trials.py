@@ -1,4 +1,4 @@
-"""Trials of a system driven by sums of sines, observed with noise: what two studies let `discover` work on."""
+"""Trials of a system driven by sums of sines, observed with noise: what studies let `discover` work on."""
 
 from __future__ import annotations
 
@@ -19,12 +19,13 @@ WAVES = 5  # sines in what drives a system
 
 
 class Driven(NamedTuple):
-    """What drives a system: an amplitude for each input, the sines' slowest and fastest frequency [Hz], its starts."""
+    """What drives a system for how long: an amplitude for each input, frequencies of the sines, its starts."""
 
     sizes: tuple[float, ...]
     slowest_hz: float
     fastest_hz: float
     starts: tuple[float, int] = (0.0, 0)  # half width from which the first so many states are drawn
+    seconds: float = SECONDS
 
 
 class Sensed(NamedTuple):
@@ -37,7 +38,7 @@ class Sensed(NamedTuple):
 
 def recorded(truth: gd.Simulation, driven: Driven, sensed: Sensed, rng: np.random.Generator) -> Measured:
     """Trials of the true system as they come from a laboratory; all channels where none is named."""
-    t, machine = np.arange(int(SECONDS * RATE_HZ)) / RATE_HZ, compile_simulation(truth)
+    t, machine = np.arange(int(driven.seconds * RATE_HZ)) / RATE_HZ, compile_simulation(truth)
     drive = Drive.of(
         [np.column_stack([_sines(rng, t, size, driven) for size in driven.sizes]) for _ in range(TRIALS)], RATE_HZ
     )

@@ -49,8 +49,8 @@ def angles(
             knees, ankles = (dict(zip("lr", pair, strict=True)) for pair in (widths[:2], widths[2:]))
             measures = replace(measures, knee_width_m=knees, ankle_width_m=ankles)
         standing = stood.stream("markers") if stood is not None else None
-        asked = (marker_set or None, measures, forward, joints or None)
-        moved = moved_body(walk.stream("markers"), standing, *asked).motion
+        markers = walk.stream("markers")
+        moved = moved_body(markers, standing, marker_set or None, measures, forward, joints or None).motion
         found, made = moved.angles, moved.findings
         seen = [*(stood.findings if stood is not None else ()), *seen]
     write = write_storage if out.suffix.lower() in (".mot", ".sto") else write_table

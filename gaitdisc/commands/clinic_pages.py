@@ -9,7 +9,10 @@ from typing import TYPE_CHECKING
 from gaitdisc.errors import GaitdiscError, SchemaError
 
 if TYPE_CHECKING:
-    from gaitdisc.results import ResponseRun
+    from collections.abc import Callable
+
+    from gaitdisc.results import Provenance, ResponseRun
+    from gaitdisc.results.clinical_reading import PersonSession
     from gaitdisc.results.clinical_reference import ClinicalReference
 
 REFERENCE = "reference"  # folder of a run, beside its cycles
@@ -31,23 +34,26 @@ def kept_reference(run_folder: Path) -> ClinicalReference | None:
     return load_reference(folder) if (folder / FILE).is_file() else None
 
 
-def write_people(run: ResponseRun, run_folder: Path) -> Path | None:
-    """Write a page of each person and session, and `index.html`; None for a run without cycles."""
+def write_people(
+    run: ResponseRun, run_folder: Path, pdf: bool = False, told: Callable[[Path], None] = lambda _: None
+) -> Path | None:
+    """Write pages of each person and session, and `index.html`; None for a run without cycles."""
     if not run.cycles:
         return None
     from gaitdisc.batch.read_people import people_of, sessions_of
     from gaitdisc.report.clinic.index_page import write_index
-    from gaitdisc.report.clinic.person_page import page_names, write_person_page
+    from gaitdisc.report.clinic.person_page import page_names
 
-    report, reference = run_folder / "report", kept_reference(run_folder)
-    names = dict(zip(people_of(run), page_names(people_of(run)), strict=True))
+    report, reference, people = run_folder / "report", kept_reference(run_folder), people_of(run)
+    names = dict(zip(people, page_names(people), strict=True))
     written, failed = [], []
     for title, person in sessions_of(run, reference):
         if isinstance(person, GaitdiscError):
             failed.append((title, str(person)))
             continue
         try:
-            write_person_page(person, names[title], reference, run.provenance, report)
+            for page in _pages(person, names[title], reference, run.provenance, report, pdf):
+                told(page)
             written.append((person, names[title]))
         except (GaitdiscError, ArithmeticError, LookupError, ValueError, TypeError) as error:
             failed.append((title, f"the page could not be written: {error}"))
@@ -71,24 +77,39 @@ def write_before_after(run: ResponseRun, run_folder: Path, person: str, words: t
 def write_person(run: ResponseRun, run_folder: Path, person: str, pdf: bool = False) -> list[Path]:
     """Write the pages of one person, a page a session, as HTML and where wanted as PDF."""
     from gaitdisc.batch.read_people import people_of, sessions_of
-    from gaitdisc.report.clinic.person_page import page_names, write_person_page
+    from gaitdisc.report.clinic.person_page import page_names
 
     own = replace(run, cycles=tuple(one for one in run.cycles if one.subject == person))
     if not own.cycles:
         people = ", ".join(dict.fromkeys(one.subject for one in run.cycles)) or "nobody"
         raise SchemaError("a page needs a person of the run", f"{person!r}; there are {people}", "Name one of them.")
-    names = dict(zip(people_of(run), page_names(people_of(run)), strict=True))
+    everybody = people_of(run)
+    names = dict(zip(everybody, page_names(everybody), strict=True))
     reference, found = kept_reference(run_folder), []
     for title, one in sessions_of(own, reference):
         if isinstance(one, GaitdiscError):
             raise one
-        page = write_person_page(one, names[title], reference, run.provenance, run_folder / "report")
-        found.append(page)
-        if pdf:
-            from gaitdisc.report.clinic.person_pdf import write_person_pdf
-
-            found.append(write_person_pdf(one, run.provenance, page.with_suffix(".pdf")))
+        found += _pages(one, names[title], reference, run.provenance, run_folder / "report", pdf)
     return found
+
+
+def _pages(
+    person: PersonSession,
+    name: str,
+    reference: ClinicalReference | None,
+    provenance: Provenance,
+    report: Path,
+    pdf: bool,
+) -> list[Path]:
+    """Write the page of a person and session as HTML and where wanted as PDF."""
+    from gaitdisc.report.clinic.person_page import write_person_page
+
+    page = write_person_page(person, name, reference, provenance, report)
+    if not pdf:
+        return [page]
+    from gaitdisc.report.clinic.person_pdf import write_person_pdf
+
+    return [page, write_person_pdf(person, provenance, page.with_suffix(".pdf"))]
 
 
 def _with_failed(run: ResponseRun, failed: list[tuple[str, str]], run_folder: Path) -> ResponseRun:

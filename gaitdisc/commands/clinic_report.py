@@ -34,18 +34,19 @@ def clinic_report(folder: Path, person: str, pair: tuple[str, str], reference: P
                 f"found person {person!r}, before {pair[0]!r}, after {pair[1]!r}",
                 "Name all three.",
             )
-        typer.echo(f"page: {write_before_after(run, run_folder, person, pair)}")
+        _said(write_before_after(run, run_folder, person, pair))
     elif person:
         for page in write_person(run, run_folder, person, pdf):
-            typer.echo(f"page: {page}")
+            _said(page)
     else:
-        index = write_people(run, run_folder)
+        index = write_people(run, run_folder, pdf, _said if pdf else lambda _: None)
         if index is None:
             raise SchemaError(
                 "pages of people need a run of pooled cycles", f"{run_folder} has none", "Run a study of short trials."
             )
         typer.echo(f"people: {index}")
-        for one in dict.fromkeys(cycles.subject for cycles in run.cycles) if pdf else ():
-            for page in write_person(run, run_folder, one, pdf):
-                typer.echo(f"page: {page}")
     return True
+
+
+def _said(page: Path) -> None:
+    typer.echo(f"page: {page}")

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from gaitdisc.report.gap_wording import p_words
 from gaitdisc.report.wording import SIDE_WORDS, counted, number, unit_text
 from gaitdisc.results.clinical_reading import ClinicalReading, Contrast, DifferingSpan, Noted, Score
 from gaitdisc.results.clinical_variables import BY_NAME
@@ -123,9 +124,8 @@ def _span(one: DifferingSpan, contrast: Contrast) -> str:
     counts = [reading.legs[one.side].count for reading in (contrast.first, contrast.second)]
     more = "more" if one.difference > 0 else "less"
     amount = f"{number(abs(one.difference), 0)} {variable.unit} {more} ({variable.up})"
-    p = "p < .001" if one.p < 0.001 else f"p = {one.p:.3f}"
     return (
         f"{variable.words.capitalize()}, {SIDE_WORDS[one.side]}: {amount} in"
         f" {contrast.second.pooled.where} than in {contrast.first.pooled.where}, at {one.first} to "
-        f"{one.last} % of the cycle; {p}, {counts[0]} and {counts[1]} cycles."
+        f"{one.last} % of the cycle; {p_words(one.p)}, {counts[0]} and {counts[1]} cycles."
     )
