@@ -180,7 +180,7 @@ def _unused(study: Study, participant: Participant, reader: C3DReader) -> dict[i
             continue
         standing = Inspection(name, trial.subject, trial.condition, _streams(trial), {}, _sorted(trial.findings))
         looked_at = not is_static(study, planned) and not is_functional(study, planned)
-        found[place] = _looked_at(trial, name) if looked_at else standing
+        found[place] = inspected_trial(trial, name) if looked_at else standing
     return found
 
 
@@ -194,7 +194,7 @@ def inspected_file(path: Path, reader: C3DReader | None = None) -> Inspection:
         trial = read_trial(path, reader=reader)
     except GaitdiscError as error:
         return Inspection(path.name, refusal=str(error))
-    return _looked_at(trial, path.name)
+    return inspected_trial(trial, path.name)
 
 
 def _of_study(read: ReadWalk, study: Study, name: str) -> Inspection:
@@ -202,14 +202,15 @@ def _of_study(read: ReadWalk, study: Study, name: str) -> Inspection:
     try:
         walk = read.processed(study)
     except GaitdiscError as error:
-        seen = _looked_at(trial, name)
+        seen = inspected_trial(trial, name)
         return Inspection(name, trial.subject, trial.condition, seen.streams, seen.strides, seen.findings, str(error))
     return Inspection(
         name, trial.subject, trial.condition, _streams(trial), _counted(walk.strides), _sorted(walk.findings)
     )
 
 
-def _looked_at(trial: Trial, name: str) -> Inspection:
+def inspected_trial(trial: Trial, name: str) -> Inspection:
+    """Say what a walk holds and what is wrong with it."""
     trial = with_segment_angles(trial)
     findings = [*trial.findings, *quality_findings(trial)]
     strides: dict[str, Strides] = {}
