@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from gaitdisc.channel import Channel
-from gaitdisc.errors import SamplingError
-from gaitdisc.recording import Recording
+from gaitdisc.errors import ChannelError, SamplingError, ShapeError
+from gaitdisc.library.walks import PLAIN, Kind, recording_of
+from gaitdisc.recording import Recording, Trial
 from gaitdisc.signals.butterworth import KINEMATICS_HZ, highpassed, lowpassed
 from gaitdisc.signals.derivatives import differentiated_recording
 from gaitdisc.signals.envelope import ENVELOPE_HZ, HIGHPASS_HZ, enveloped
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from numpy.typing import NDArray
 
-PLAIN, EMG = ("signal", "1"), ("emg", "V")  # quantity and unit of the columns of tables and arrays
+EMG = ("emg", "V")  # quantity and unit
 Signal = TypeVar("Signal", Recording, "pd.DataFrame", "NDArray[np.float64]")
 
 
@@ -204,17 +205,27 @@ def differentiate(signal: Signal, order: int = 1, rate_hz: float | None = None) 
 
 
 def _in_its_form(
-    signal: Any, rate_hz: float | None, done: Callable[[Recording], Recording], kind: tuple[str, str] = PLAIN
+    signal: Any, rate_hz: float | None, done: Callable[[Recording], Recording], kind: Kind | None = None
 ) -> Any:
     if isinstance(signal, Recording):
         return done(signal)
     if hasattr(signal, "columns"):
-        from gaitdisc.ingest.table import frame_columns
-
-        columns = frame_columns(signal)
-        made = done(Recording(columns.time, columns.values, _channels(columns.labels, kind)))
-        return signal.assign(**dict(zip(columns.labels, np.array(made.values).T, strict=True)))
-    values = np.asarray(signal, float)
+        made = done(recording_of(signal, kind))
+        return signal.assign(**dict(zip(made.names, np.array(made.values).T, strict=True)))
+    if isinstance(signal, Trial):
+        raise ChannelError(
+            "a filter takes one stream of a trial",
+            f"{signal.name} has {', '.join(signal.streams) or 'none'}",
+            'Give one of them: trial.stream("kinematics"), for instance.',
+        )
+    try:
+        values = np.asarray(signal, float)
+    except (TypeError, ValueError):
+        raise ShapeError(
+            "a filter takes a Recording, a DataFrame or an array of numbers",
+            f"found {type(signal).__name__}",
+            "Read a file with gaitdisc.read first.",
+        ) from None
     if rate_hz is None or not rate_hz > 0:
         raise SamplingError(
             "an array is filtered at its rate",
@@ -223,9 +234,6 @@ def _in_its_form(
         )
     columns = values.reshape(len(values), -1)
     labels = [f"column {number + 1}" for number in range(columns.shape[1])]
-    made = done(Recording(np.arange(len(values)) / rate_hz, columns, _channels(labels, kind)))
+    channels = tuple(Channel(label, *(kind or PLAIN)) for label in labels)
+    made = done(Recording(np.arange(len(values)) / rate_hz, columns, channels))
     return np.array(made.values).reshape(values.shape)
-
-
-def _channels(labels: list[str], kind: tuple[str, str]) -> tuple[Channel, ...]:
-    return tuple(Channel(label, *kind) for label in labels)

@@ -6,14 +6,31 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias, Union
 
+from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.streams import stream_of
+from gaitdisc.ingest.table import frame_columns
 from gaitdisc.recording import Recording, Trial
 
 if TYPE_CHECKING:
     import pandas as pd
 
 Walk: TypeAlias = Union[Trial, Recording, Path, str, "pd.DataFrame", Sequence["Path | str | pd.DataFrame"]]
+PLAIN = ("signal", "1")
+Kind = tuple[str, str]  # quantity and unit
+
+
+def recording_of(signal: Recording | pd.DataFrame, kind: Kind | None = None) -> Recording:
+    """Recording of every column of a table beside its times, under the table's own names; a recording as it is.
+
+    Names of the vocabulary have their unit, all others none, where no kind is given.
+    """
+    if isinstance(signal, Recording):
+        return signal
+    columns = frame_columns(signal)
+    known = {} if kind else {channel.name: channel for channel in vocabulary().channels}
+    channels = tuple(known.get(label) or Channel(label, *(kind or PLAIN)) for label in columns.labels)
+    return Recording(columns.time, columns.values, channels)
 
 
 def trial_of(walk: Walk) -> Trial:

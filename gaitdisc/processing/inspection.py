@@ -11,6 +11,7 @@ from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial, read_trial
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import is_functional, is_static, is_walk, not_compared, refused_participant, trial_sets
+from gaitdisc.notebook import html_of
 from gaitdisc.processing.angles_of_segments import with_segment_angles
 from gaitdisc.processing.contact_choice import chosen_contacts
 from gaitdisc.processing.pooled import pooled_cycles, pooled_instead
@@ -54,6 +55,16 @@ class Inspection:
     strides: Mapping[str, tuple[int, int]] = field(default_factory=dict)
     findings: tuple[Finding, ...] = ()
     refusal: str = ""
+
+    def __repr__(self) -> str:
+        kept = "".join(f", {count} strides {side}" for side, (count, _) in self.strides.items())
+        return f"Inspection({self.name!r}: {self.light}{kept}, {len(self.findings)} findings)"
+
+    def _repr_html_(self) -> str:
+        rows = [("light", self.light), ("refused", self.refusal), *self.streams.items()]
+        rows += [(f"strides {side}", f"{kept}, {dropped} dropped") for side, (kept, dropped) in self.strides.items()]
+        rows += [(one.severity, one.line()) for one in self.findings]
+        return html_of(f"Inspection of {self.name}", [row for row in rows if row[1]])
 
     @property
     def light(self) -> str:
