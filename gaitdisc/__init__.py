@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from gaitdisc.library.joints import angles as angles
     from gaitdisc.library.joints import moments as moments
     from gaitdisc.library.loading import load as load
+    from gaitdisc.library.pairs import paired_tests as paired_tests
     from gaitdisc.library.reconstructor import Reconstructor as Reconstructor
     from gaitdisc.library.response import fit_response as fit_response
     from gaitdisc.library.simulating import simulate as simulate
@@ -96,6 +97,7 @@ _HOME = {
     "Reconstructor": ("library.reconstructor", "Reconstructor"),
     "Reconstruction": ("results.reconstruction", "Reconstruction"),
     "signed_rank": ("statistics.signed_rank", "signed_rank"),
+    "paired_tests": ("library.pairs", "paired_tests"),
     "holm_sidak": ("statistics.holm_sidak", "holm_sidak"),
     "permutation_clusters": ("library.clusters", "permutation_clusters"),
     "r2": ("statistics.r2", "r2"),
@@ -139,6 +141,7 @@ __all__ = [
     "load",
     "lowpass",
     "moments",
+    "paired_tests",
     "permutation_clusters",
     "plot",
     "r2",
