@@ -44,7 +44,7 @@ def paired_tests(first: pd.DataFrame, second: pd.DataFrame, alpha: float = 0.05)
     >>> import gaitdisc as gd, numpy as np, pandas as pd
     >>> people = [f"P{k:02}" for k in range(1, 9)]
     >>> before = pd.DataFrame({"knee": np.arange(8.0), "ankle": np.arange(8.0)}, index=people)
-    >>> after = before + pd.DataFrame({"knee": np.arange(1.0, 9.0), "ankle": [1, -2, 3, -4, 5, -6, 7, -8]}, index=people)
+    >>> after = before + np.column_stack([np.arange(1.0, 9.0), [1, -2, 3, -4, 5, -6, 7, -8]])
     >>> found = gd.paired_tests(before, after).set_index("variable")
     >>> found["p"].round(3).tolist(), found["different"].tolist()
     ([0.008, 0.844], [True, False])
