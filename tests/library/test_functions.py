@@ -2,11 +2,13 @@
 
 import functools
 import math
+import re
 
 import numpy as np
 import pandas as pd
 import pytest
 
+from gaitdisc.discovery import search
 from gaitdisc.library.discovering import discover
 from gaitdisc.library.functions import simulation_from_function
 from gaitdisc.library.simulating import simulate
@@ -161,19 +163,19 @@ def test_a_function_with_equations_is_not_called_to_run_it(form):
     assert len(calls) == called
 
 
-def test_a_discovery_calls_a_function_as_often_of_a_short_record_as_of_a_long_one():
+def test_a_discovery_calls_a_function_to_write_it_down_and_tells_how_long_it_will_take(monkeypatch):
     def cooling(temperature, rate=0.5):
         return [-rate * temperature if temperature > -100 else 0.0]
 
-    called = []
-    for samples in (40, 120):
-        time = np.arange(samples) / 10
-        runs = [(2 - k) * np.exp(-0.5 * time) + 0.01 * np.cos(7 * time + k) for k in range(2)]
-        frames = [pd.DataFrame({"time": time, "temperature": run, "trial": k}) for k, run in enumerate(runs)]
-        watched, calls = counted(cooling)
-        discover(watched, pd.concat(frames))
-        called.append(len(calls))
-    assert 0 < called[0] == called[1] < 100
+    monkeypatch.setattr(search, "EVERY", 0.0)
+    time, said = np.arange(90) / 10, []
+    runs = [(2 - k) * np.exp(-0.7 * time) + 0.002 * np.cos(7 * time + k) for k in range(2)]
+    frames = [pd.DataFrame({"time": time, "temperature": run, "trial": k}) for k, run in enumerate(runs)]
+    watched, calls = counted(cooling)
+    found, augmented = discover(watched, pd.concat(frames), progress=said.append)
+    assert 0 < len(calls) < len(time)
+    assert isinstance(augmented, Simulation) and found.verdict == "wrong_parameter"
+    assert any(re.fullmatch(r"1 of \d+ explanations fitted, \d+ s left of this round", line) for line in said)
 
 
 def test_how_a_function_without_equations_is_called_is_said():
