@@ -174,7 +174,8 @@ class _Taken:
     def at(self, point: Mapping[str, Any]) -> list[float]:
         """Derivatives at one point."""
         plain, named = self.arguments(point.__getitem__)
-        return [float(one) for one in flat(self.function(*plain, **named))]
+        found = self.function(*plain, **named)
+        return [*found] if _are_floats(found) else [float(one) for one in flat(found)]
 
     def gives(self, found: NDArray[np.float64]) -> bool:
         """Whether derivatives (point, state) are what it returns, wherever that is a number."""
@@ -222,7 +223,10 @@ class _Called:
         found = self.taken.function(*plain, **named)
         if not isinstance(found, tuple | list):
             found = np.reshape(np.asarray(found, float), (self.states, -1))
-        return np.column_stack([np.broadcast_to(np.ravel(np.asarray(one, float)), len(x)) for one in found])
+        rates = np.empty(x.shape)
+        for state, one in enumerate(found):
+            rates[:, state] = one
+        return rates
 
     def _one(self, point: Mapping[str, float]) -> list[float]:
         try:
@@ -267,17 +271,18 @@ def _by_name(function: Callable[..., Any]) -> _Taken:
     plain = [one.name for one in arguments.values() if one.default is one.empty and one.kind is not one.KEYWORD_ONLY]
     ports = tuple(one.name for one in arguments.values() if one.kind is one.KEYWORD_ONLY)
     given = {name: arguments[name].default for name in arguments if name not in (*plain, *ports)}
+    dicts = {name: [str(key) for key in default] for name, default in given.items() if isinstance(default, Mapping)}
     numbers: dict[str, float] = {}
     for name, default in given.items():
-        several = default if isinstance(default, Mapping) else {name: default}
+        several = default if name in dicts else {name: default}
         numbers |= {str(key): _number(function, name, value) for key, value in several.items()}
+    single = [name for name in (*plain, *given, *ports) if name not in dicts]
 
     def from_values(value: Callable[[str], Any]) -> tuple[tuple, dict]:
-        dicts = {
-            name: {key: value(key) for key in default} if isinstance(default, Mapping) else value(name)
-            for name, default in given.items()
-        }
-        return (), {name: value(name) for name in (*plain, *ports)} | dicts
+        named = {name: value(name) for name in single}
+        for name, keys in dicts.items():
+            named[name] = {key: value(key) for key in keys}
+        return (), named
 
     return _Taken(function, tuple(name for name in plain if name != TIME), numbers, ports, from_values)
 
@@ -303,6 +308,10 @@ def _as_vectors(
         return (*([value(TIME)] if len(taken) > wanted else []), *vectors, *dicts), {}
 
     return _Taken(function, (*states, *inputs), numbers, (), from_values)
+
+
+def _are_floats(found: Any) -> bool:
+    return isinstance(found, tuple | list) and all(type(one) is float for one in found)
 
 
 def _title(function: Callable[..., Any]) -> str:
