@@ -79,13 +79,13 @@ def number(value: float, digits: int = 2) -> str:
 
     Examples
     --------
-    >>> number(0.8712), number(-0.004), number(0.9987), number(float("nan"))
-    ('0.87', '0.00', '>0.99', 'not computed')
+    >>> number(0.8712), number(-0.004), number(0.9987), number(0.99, 0), number(float("nan"))
+    ('0.87', '0.00', '>0.99', '1', 'not computed')
     """
     if not math.isfinite(value):
         return "not computed"
     text = f"{value:.{digits}f}"
-    if value < 1 and float(text) == 1:
+    if digits and value < 1 and float(text) == 1:
         return f">{1 - 10**-digits:.{digits}f}"  # what falls short of all is not printed as all
     return text.lstrip("-") if float(text) == 0 else text.replace("-", "−")
 
