@@ -34,6 +34,21 @@ def kept_reference(run_folder: Path) -> ClinicalReference | None:
     return load_reference(folder) if (folder / FILE).is_file() else None
 
 
+def page_of_run(run: ResponseRun, run_folder: Path) -> Path:
+    """Page of a run with pages of its people and their index, drawn where they are not those of this very run."""
+    from gaitdisc.report.kept_page import page_of
+
+    return page_of(run_folder, lambda: _drawn(run, run_folder))
+
+
+def _drawn(run: ResponseRun, run_folder: Path) -> Path:
+    from gaitdisc.report.response_page import write_report  # brings matplotlib, which a second run does not need
+
+    page = write_report(run, run_folder / "report")
+    write_people(run, run_folder)
+    return page
+
+
 def write_people(
     run: ResponseRun, run_folder: Path, pdf: bool = False, told: Callable[[Path], None] = lambda _: None
 ) -> Path | None:

@@ -19,7 +19,7 @@ def page_of(run_folder: Path, draw: Callable[[], Path]) -> Path:
     """Page of a run that is saved: the one that stands there, or one that is drawn now.
 
     The page stands for as long as the run's files, this package's code and the report's own files are what they were;
-    the time at which a run was looked at again is no part of that.
+    the time at which a run was looked at again is no part of that, nor are files that came beside, such as PDF.
 
     Examples
     --------
@@ -29,7 +29,7 @@ def page_of(run_folder: Path, draw: Callable[[], Path]) -> Path:
     rests_on = _rests_on(run_folder)
     try:
         drawn = read_sealed(report / DRAWN)
-        if drawn["rests_on"] == rests_on and drawn["sha256"] == _hashes(report):
+        if drawn["rests_on"] == rests_on and drawn["sha256"].items() <= _hashes(report).items():
             return report / drawn["page"]
     except (SchemaError, OSError, KeyError):
         pass  # none stands there, or not as it was drawn
