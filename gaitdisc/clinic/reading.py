@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from gaitdisc.clinic.consistency import multiple_correlation
 from gaitdisc.clinic.deviation_index import deviation_index
+from gaitdisc.clinic.like_controls import like_controls
 from gaitdisc.clinic.outstanding import outstanding
 from gaitdisc.clinic.profile import profile_of
 from gaitdisc.clinic.reference import bands, spatiotemporal_limits
@@ -26,8 +27,9 @@ def read_beside(pooled: PooledCycles, reference: ClinicalReference | None) -> Cl
     controls = reference.of(pooled.condition) if reference else ()
     why = "" if controls else NO_REFERENCE if reference is None else _not_so(reference, pooled.condition)
     why = why if legs else NO_CYCLE
-    numbers, silent = ((), why) if why else outstanding(legs, controls)
-    profile, no_profile = (None, why) if why else profile_of(legs, controls)
+    like = like_controls(controls, tuple(legs.values()), pooled.leg_m, pooled.age_years)
+    numbers, silent = ((), why) if why else outstanding(legs, like.curves, of_values=like.values)
+    profile, no_profile = (None, why) if why else profile_of(legs, like.curves)
     index, no_index = ({}, why) if why else deviation_index(legs, controls)
     light, reasons = light_of(pooled, legs)
     return ClinicalReading(
@@ -42,8 +44,9 @@ def read_beside(pooled: PooledCycles, reference: ClinicalReference | None) -> Cl
         index,
         no_index,
         consistency_of(legs),
-        bands(controls),
-        spatiotemporal_limits(controls),
+        bands(like.curves),
+        spatiotemporal_limits(like.values),
+        () if why else like.words,
     )
 
 

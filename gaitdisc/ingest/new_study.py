@@ -136,6 +136,7 @@ def found_study(folder: Path | str, home: Path | str | None = None) -> tuple[Stu
             mass_kg=bodies[person].mass_kg,
             height_m=bodies[person].height_m,
             sex=bodies[person].sex,
+            age_years=bodies[person].age_years,
             trials=tuple(_planned(t, called, sessions, way) for t in found if t.person == person),
         )
         for person, pseudonym in people.items()
@@ -162,7 +163,7 @@ def _recording_files(folder: Path) -> list[Path]:
 def _bodies(
     people: Mapping[str, str], measured: Mapping[str, Measured], tables: Sequence[Path], notes: list[str]
 ) -> dict[str, Measured]:
-    """Mass, sex and stature of each person's word, and what no table has or has too many of."""
+    """Mass, sex, stature and age of each person's word, and what no table has or has too many of."""
     found = {person: measured.get(person_key(person), Measured()) for person in people}
     absent = [people[person] for person in people if measured and person_key(person) not in measured]
     if absent:

@@ -29,6 +29,8 @@ class ReferenceLeg:
         Clinical variable -> mean over the leg's cycles on 101 points.
     values : mapping of str to float
         Spatiotemporal value -> mean over the leg's cycles.
+    leg_m, age_years : float and int, optional
+        Leg length [m] and age in whole years; None where they are not known.
     """
 
     person: int
@@ -37,6 +39,8 @@ class ReferenceLeg:
     stance_percent: float
     curves: Mapping[str, NDArray[np.float64]]
     values: Mapping[str, float]
+    leg_m: float | None = None
+    age_years: int | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,6 +119,8 @@ def _leg_data(leg: ReferenceLeg) -> dict[str, object]:
         "stance_percent": None if np.isnan(leg.stance_percent) else round(leg.stance_percent, DIGITS),
         "curves": {name: _plain(curve) for name, curve in leg.curves.items()},
         "values": {name: round(value, DIGITS) for name, value in leg.values.items()},
+        "leg_m": None if leg.leg_m is None else round(leg.leg_m, DIGITS),
+        "age_years": leg.age_years,
     }
 
 
@@ -129,4 +135,8 @@ def _leg(data: Mapping[str, object]) -> ReferenceLeg:
         raise ValueError("a curve has not 101 points")
     stance = float("nan") if data["stance_percent"] is None else float(data["stance_percent"])  # type: ignore[arg-type]
     values = {str(name): float(value) for name, value in dict(data["values"]).items()}  # type: ignore[call-overload]
-    return ReferenceLeg(int(data["person"]), str(data["side"]), int(data["cycles"]), stance, curves, values)  # type: ignore[call-overload]
+    leg_m, age = data.get("leg_m"), data.get("age_years")  # absent in older references
+    if not (leg_m is None or isinstance(leg_m, float)) or not (age is None or isinstance(age, int)):
+        raise ValueError(f"leg length {leg_m!r} and age {age!r} are no numbers")
+    own = (str(data["side"]), int(data["cycles"]), stance, curves, values, leg_m, age)  # type: ignore[call-overload]
+    return ReferenceLeg(int(data["person"]), *own)  # type: ignore[call-overload]

@@ -62,7 +62,7 @@ def write_person_page(
     shown = {
         "title": person.title,
         "conditions": "; ".join(dict.fromkeys(one.pooled.condition for one in person.readings)),
-        "reference": _reference(reference, main.pooled.condition),
+        "reference": " ".join((_reference(reference, main.pooled.condition), *main.beside)),
         "created": provenance.created[:10],
         "main": _condition(main, beside, ""),
         "others": [_condition(one, beside, f"{one.pooled.condition}-") for one in others],
@@ -84,6 +84,7 @@ def _condition(reading: ClinicalReading, beside: Path, prefix: str) -> dict[str,
         "red": not reading.legs,
         "reasons": reading.reasons,
         "quality": quality_sentence(reading),
+        "beside": " ".join(reading.beside),
         "outstanding": outstanding_sentences(reading),
         "scores": score_sentences(reading),
     }
