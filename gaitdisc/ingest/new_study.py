@@ -16,6 +16,7 @@ from gaitdisc.errors import GaitdiscError, ReadError
 from gaitdisc.ingest.file_names import (
     PLAIN,
     PSEUDONYM,
+    WALK_WORDS,
     condition_word,
     group_word,
     kind_of_trial,
@@ -289,6 +290,12 @@ def named_conditions(found: Sequence[FoundTrial], notes: list[str]) -> tuple[Con
         others = [PLAIN]
         notes.append(f"no file or folder name shows a condition: every walk is taken as {PLAIN!r}")
     words = list(dict.fromkeys([*told.values(), *others]))
+    folders = [word for word in others if word not in (*WALK_WORDS, PLAIN)]
+    if folders:
+        notes.append(
+            f"conditions called after folders: {', '.join(folders)}; they stand on every page: change any that shows "
+            f"who a person is"
+        )
     device = told.get("device") if len(words) > 1 else None
     reference = next(word for word in words if word != device)
     rest = tuple(word for word in words if word not in (reference, device))
