@@ -80,5 +80,5 @@ def main() -> None:
     try:
         app()
     except GaitdiscError as error:
-        typer.echo(f"{type(error).__name__}: {error}", err=True)
+        typer.echo(f"{type(error).__name__}: {error} [{error.code}]", err=True)
         sys.exit(REFUSED)
