@@ -31,6 +31,7 @@ from gaitdisc.commands.reference import reference
 from gaitdisc.commands.report import report
 from gaitdisc.commands.run import run
 from gaitdisc.commands.sensitivity import sensitivity
+from gaitdisc.commands.watch import watch
 from gaitdisc.errors import GaitdiscError
 
 COMMANDS = (
@@ -43,6 +44,7 @@ COMMANDS = (
     reconstruct,
     apply,
     run,
+    watch,
     ablate,
     modalities,
     sensitivity,

@@ -51,7 +51,7 @@ WEEK = (
     Visit("P05", 4, "after"),
     Visit("P06", 5, what="bad file"),
     Visit("P07", 6),
-    Visit("P08", 7, what="child"),
+    Visit("P08", 8, what="child"),
 )
 CHILD = {"age_years": 8.0, "height_m": 1.26, "mass_kg": 26.0}
 NO_GAIT = ("bad file", "child")  # planted, but not into the way of walking
@@ -123,13 +123,14 @@ def _written(folder: Path, visits: Sequence[Visit], title: str, seed: int, told:
         sessions=sessions,
         conditions=Conditions(nominal=CONDITION),
         channels={name: f"{name} [N]" for name in FORCES},
-        participants=tuple(_participant(people[name], tuple(own)) for name, own in trials.items()),
+        participants=tuple(participant_of(people[name], tuple(own)) for name, own in trials.items()),
     ).placed(folder)
     write_study(study, folder / "study.toml")
     return study
 
 
-def _participant(person: Person, trials: tuple[PlannedTrial, ...]) -> Participant:
+def participant_of(person: Person, trials: tuple[PlannedTrial, ...]) -> Participant:
+    """What a study says of a made person."""
     return Participant(
         id=person.name, height_m=round(person.height_m, 3), age_years=int(person.age_years), trials=trials
     )
