@@ -11,6 +11,7 @@ import numpy as np
 from gaitdisc.results.clinical_reference import ReferenceLeg
 from gaitdisc.results.clinical_variables import BY_NAME, MOMENTS, POWERS
 from gaitdisc.results.leg_curves import LegCurves
+from gaitdisc.results.published_reference import PublishedGroup
 
 GRAVITY = 9.81
 FEWEST = 10  # people of a group
@@ -67,6 +68,21 @@ def like_controls(legs: Legs, own: Sequence[LegCurves], leg_m: float | None, age
     said.append("Their times, distances, moments and powers are taken to this person's leg length (Hof 1996).")
     curves, values = (tuple(at_leg_length(leg, leg_m) for leg in one) for one in (of_both, of_age))
     return LikeControls(curves, values, tuple(said))
+
+
+def like_published(
+    groups: Sequence[PublishedGroup], own: Sequence[LegCurves], leg_m: float | None
+) -> tuple[PublishedGroup, str]:
+    """Group of a published reference nearest in speed, the largest where the speed is not known; and which it is."""
+    speed = _speed([one.values[SPEED].mean() for one in own if SPEED in one.values], leg_m)
+    known = [one for one in groups if np.isfinite(one.speeds).all()] if speed is not None else []
+    if speed is None or not known:
+        found = max(groups, key=lambda one: one.people)
+        return found, f"Compared with its group “{found.name}”, {found.people} people; no group goes by the speed."
+    found = min(known, key=lambda one: max(one.speeds[0] - speed, speed - one.speeds[1], 0.0))
+    low, high = found.speeds
+    whose = f"{found.people} people, dimensionless speed {low:.2f} to {high:.2f}; this person's is {speed:.2f}"
+    return found, f"Compared with its group “{found.name}”, the nearest in speed: {whose}."
 
 
 def groups_of(legs: Legs) -> list[Legs]:

@@ -46,7 +46,8 @@ def _rests_on(run_folder: Path) -> str:
     run.pop(OWN, None)
     run.get("provenance", {}).pop("created", None)
     parts.append(json.dumps(run, sort_keys=True))
-    for path in sorted(run_folder.glob("*/**/*.json")):
+    beside = (*run_folder.glob("*/**/*.json"), *run_folder.glob("reference/*.csv"), *run_folder.glob("words.csv"))
+    for path in sorted(beside):
         if path.parent.name != "report" and "report" not in path.relative_to(run_folder).parts:
             parts += [path.relative_to(run_folder).as_posix(), file_sha256(path)]
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()

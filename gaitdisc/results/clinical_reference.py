@@ -10,10 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import SchemaError
+from gaitdisc.results.published_reference import PublishedGroup, read_published
 from gaitdisc.results.sealed_json import read_sealed, sealed_text
 from gaitdisc.whole_file import write_whole
 
 FILE, FORMAT = "reference.json", 1
+PUBLISHED = "published.csv"
 DIGITS = 4
 
 
@@ -53,6 +55,8 @@ class ClinicalReference:
         Condition -> legs.
     settings, versions : mapping
         Filters and rules for strides they were processed with; what processed them.
+    published : tuple of PublishedGroup
+        Where it is no laboratory's own: groups of speed, of which there are no legs.
     """
 
     title: str
@@ -60,6 +64,7 @@ class ClinicalReference:
     settings: Mapping[str, object]
     versions: Mapping[str, str]
     created: str
+    published: tuple[PublishedGroup, ...] = ()
 
     def of(self, condition: str) -> tuple[ReferenceLeg, ...]:
         """Legs of a condition; none where the controls did not walk so."""
@@ -77,6 +82,8 @@ class ClinicalReference:
 
 def save_reference(reference: ClinicalReference, folder: Path) -> Path:
     """Save a reference as `reference.json`, whole, with a hash of its own."""
+    if reference.published:
+        raise SchemaError("a reference of legs is saved", f"{reference.title} is a published one", "Keep its table.")
     data = {
         "format": FORMAT,
         "title": reference.title,
@@ -89,7 +96,11 @@ def save_reference(reference: ClinicalReference, folder: Path) -> Path:
 
 
 def load_reference(place: Path) -> ClinicalReference:
-    """Load a reference from its folder or file."""
+    """Load a reference from its folder or file, or a published one from its table."""
+    table = place / PUBLISHED if place.is_dir() else place
+    if table.suffix == ".csv" and table.is_file():
+        source, groups = read_published(table)
+        return ClinicalReference(source, {}, {}, {}, "", groups)
     path = place / FILE if place.is_dir() else place
     if not path.is_file():
         raise SchemaError(
