@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaitdisc.errors import GaitdiscError, SchemaError
+from gaitdisc.whole_file import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -20,18 +21,41 @@ REFERENCE = "reference"  # folder of a run, beside its cycles
 
 def keep_reference(place: Path | None, run_folder: Path) -> None:
     """Copy a reference into a run, so that its pages are drawn again without it."""
-    from gaitdisc.results.clinical_reference import load_reference, save_reference
+    from gaitdisc.results.clinical_reference import FILE, PUBLISHED, load_reference, save_reference
 
-    if place is not None:
-        save_reference(load_reference(place), run_folder / REFERENCE)
+    if place is None:
+        return
+    found, own = load_reference(place), run_folder / REFERENCE
+    if found.published:
+        write_whole(own / PUBLISHED, (place / PUBLISHED if place.is_dir() else place).read_text(encoding="utf-8"))
+        (own / FILE).unlink(missing_ok=True)
+    else:
+        save_reference(found, own)
+        (own / PUBLISHED).unlink(missing_ok=True)
 
 
 def kept_reference(run_folder: Path) -> ClinicalReference | None:
     """Reference that was copied into a run; None where none was."""
-    from gaitdisc.results.clinical_reference import FILE, load_reference
+    from gaitdisc.results.clinical_reference import FILE, PUBLISHED, load_reference
 
     folder = run_folder / REFERENCE
-    return load_reference(folder) if (folder / FILE).is_file() else None
+    there = (folder / FILE).is_file() or (folder / PUBLISHED).is_file()
+    return load_reference(folder) if there else None
+
+
+def page_of_run(run: ResponseRun, run_folder: Path) -> Path:
+    """Page of a run with pages of its people and their index, drawn where they are not those of this very run."""
+    from gaitdisc.report.kept_page import page_of
+
+    return page_of(run_folder, lambda: _drawn(run, run_folder))
+
+
+def _drawn(run: ResponseRun, run_folder: Path) -> Path:
+    from gaitdisc.report.response_page import write_report  # brings matplotlib, which a second run does not need
+
+    page = write_report(run, run_folder / "report")
+    write_people(run, run_folder)
+    return page
 
 
 def write_people(

@@ -19,7 +19,7 @@ def report(
     reference: Annotated[Path | None, typer.Option(help="Folder of `gaitdisc reference`: bands, scores.")] = None,
 ) -> None:
     """Draw the page of a saved result again, without fitting; of a run also those of modalities and sensitivity."""
-    from gaitdisc.commands.clinic_report import clinic_report
+    from gaitdisc.commands.clinic_report import clinic_report, run_folder_of
     from gaitdisc.errors import SchemaError
     from gaitdisc.report.saved_page import draw_saved
 
@@ -31,5 +31,5 @@ def report(
             f"{folder.name} holds a saved model, which has none",
             "Name the folder above its `models`, or use the model: gaitdisc apply MODEL RECORDING.",
         )
-    for word, page in draw_saved(folder).items():
+    for word, page in draw_saved(run_folder_of(folder)).items():
         typer.echo(f"{word}: {page}")

@@ -32,3 +32,21 @@ def test_what_is_not_there_is_refused_in_words(called, run_folder, tmp_path):
     assert "a comparison needs --person, --before and --after" in half.stderr
     none = called("report", run_folder, "--reference", tmp_path / "none")
     assert "gaitdisc reference CONTROLS --out FOLDER" in none.stderr
+
+
+def test_the_report_of_a_clinic_has_everybodys_pages_and_leaves_those_that_stand(called, run_folder, tmp_path):
+    report = run_folder / "report"
+    first = called("report", run_folder.parent)
+    assert first.returncode == 0, first.stderr
+    assert f"people: {report / 'index.html'}" in first.stdout and f"report: {report / 'report.html'}" in first.stdout
+    page = report / "people" / "P08.html"
+    drawn, written = page.read_bytes(), page.stat().st_mtime_ns
+    called("report", run_folder.parent, "--person", "P07", "--pdf")  # a page more is no page less
+    assert called("report", run_folder.parent).stdout == first.stdout
+    assert page.stat().st_mtime_ns == written
+    page.write_text("edited")
+    assert called("report", run_folder).returncode == 0 and page.read_bytes() == drawn
+    save_reference(made_controls(6), tmp_path)
+    called("report", run_folder, "--reference", tmp_path)
+    assert "6 controls of the laboratory" in page.read_text()
+    assert called("report", run_folder).returncode == 0 and "6 controls of the laboratory" in page.read_text()

@@ -91,5 +91,7 @@ def _refused(refusal: Refusal) -> dict[str, str]:
 def _reference_words(reference: ClinicalReference | None) -> str:
     if reference is None:
         return "No reference: no bands, no scores, and nothing is said to stand out."
+    if reference.published:
+        return f"Published reference: {reference.title}."
     counts = ", ".join(f"{word} {reference.people(word)}" for word in reference.legs)
     return f"Reference of the laboratory's own controls: {counts}; saved {reference.created[:10]}."

@@ -62,7 +62,7 @@ def write_person_page(
     shown = {
         "title": person.title,
         "conditions": "; ".join(dict.fromkeys(one.pooled.condition for one in person.readings)),
-        "reference": _reference(reference, main.pooled.condition),
+        "reference": " ".join((_reference(reference, main.pooled.condition), *main.beside)).strip(),
         "created": provenance.created[:10],
         "main": _condition(main, beside, ""),
         "others": [_condition(one, beside, f"{one.pooled.condition}-") for one in others],
@@ -84,6 +84,7 @@ def _condition(reading: ClinicalReading, beside: Path, prefix: str) -> dict[str,
         "red": not reading.legs,
         "reasons": reading.reasons,
         "quality": quality_sentence(reading),
+        "beside": " ".join(reading.beside),
         "outstanding": outstanding_sentences(reading),
         "scores": score_sentences(reading),
     }
@@ -155,6 +156,8 @@ def _contrast(contrast: Contrast, beside: Path) -> dict[str, Any]:
 def _reference(reference: ClinicalReference | None, condition: str) -> str:
     if reference is None:
         return "No reference."
+    if reference.published:
+        return ""  # its source stands among what the person is read beside
     count = reference.people(condition)
     people = f"{count} controls of the laboratory's own" if count else "nobody who walked so"
     return f"Reference: {people}, saved {reference.created[:10]}."

@@ -52,6 +52,8 @@ def _first(person: PersonSession, main: ClinicalReading, provenance: Provenance)
     page.text(USE, size=7, bold=True)
     page.text(f"{person.title}, {main.pooled.where}", size=13, bold=True)
     page.text(f"Computed {provenance.created[:10]}. {quality_sentence(main)}")
+    if main.beside:
+        page.text(" ".join(main.beside))
     page.text("What stands out", size=9.5, bold=True)
     for sentence in outstanding_sentences(main):
         page.text(f"•  {sentence}")
