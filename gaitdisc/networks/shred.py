@@ -25,6 +25,8 @@ class Shred(nn.Module):
         Sensors; `inputs` is a multiple of it.
     layers : int
         Recurrent layers; the dissertation's code has two of 64.
+    decoder : (int, int)
+        Nodes of the decoder's hidden layers.
     masked : bool
         Whether readings may be missing (NaN): the network then reads 0, the mean, in their place, and beside every
         reading whether it is missing.
@@ -40,7 +42,7 @@ class Shred(nn.Module):
     torch.Size([2, 18])
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913, PLR0917 a layer has as many sizes
         self,
         inputs: int,
         outputs: int,
@@ -49,6 +51,7 @@ class Shred(nn.Module):
         layers: int = 1,
         cell: str = "gru",
         masked: bool = False,
+        decoder: tuple[int, int] = (128, 128),
     ) -> None:
         super().__init__()
         if inputs % sensors:
@@ -59,7 +62,7 @@ class Shred(nn.Module):
             )
         self.sensors, self.cell, self.masked = sensors, cell, masked
         self.recurrent = CELLS[cell](2 * sensors if masked else sensors, nodes, layers, batch_first=True)
-        self.decoder = ShallowDecoder(nodes, outputs)
+        self.decoder = ShallowDecoder(nodes, outputs, *decoder)
 
     @property
     def readout(self) -> nn.Linear:

@@ -34,7 +34,7 @@ class Training:
     Parameters
     ----------
     decay, penalty : float
-        Weight decay and readout penalty that did best on the inner block.
+        Weight decay and readout penalty that did best on the inner block; no penalty where nothing is solved.
     epochs, best_epoch : int
         Epochs of the descent with that decay, and the one whose weights were kept.
     losses : tuple of float
@@ -101,7 +101,8 @@ def train(
     part, judged, whole = (_tensors(s, x_scale, y_scale, device) for s in (before, inner, samples))
     with pinned_threads(settings.threads), torch.random.fork_rng():
         best = _best_candidate(build, part, judged, settings, progress)
-        solve_readout(best.network, whole, best.penalty)
+        if settings.solved:
+            solve_readout(best.network, whole, best.penalty)
     progress(1.0)
     return Training(
         TrainedNetwork(samples.inputs, samples.outputs, x_scale, y_scale, best.network.cpu()),
@@ -143,7 +144,8 @@ def _best_candidate(
         shared = partial(_share, progress, number, count)
         steps = schedule if number == 0 else schedule.continued(decay)
         descent = descend(network, part, check, steps, settings, shared)
-        candidate = _Candidate(network, descent, decay, *choose_penalty(network, part, check))
+        judged = choose_penalty(network, part, check) if settings.solved else (0.0, min(descent.losses))
+        candidate = _Candidate(network, descent, decay, *judged)
         if best is not None and candidate.loss >= best.loss:
             break
         best, network = candidate, copy.deepcopy(network)
