@@ -69,8 +69,8 @@ class Shred(nn.Module):
         """Last layer, which is linear."""
         return cast(nn.Linear, self.decoder.readout)
 
-    def features(self, x: Tensor) -> Tensor:
-        """Return what the linear layer reads, (window, node).
+    def latent(self, x: Tensor) -> Tensor:
+        """Last hidden state of the recurrent layers (Eq. 5.3), (window, node).
 
         Parameters
         ----------
@@ -82,7 +82,17 @@ class Shred(nn.Module):
             missing = history.isnan()
             history = torch.cat([history.masked_fill(missing, 0.0), missing.to(history.dtype)], dim=2)
         latest = [self.recurrent(part)[0][:, -1] for part in history.split(AT_ONCE)]
-        return self.decoder.features(torch.cat(latest))
+        return torch.cat(latest)
+
+    def features(self, x: Tensor) -> Tensor:
+        """Return what the linear layer reads, (window, node).
+
+        Parameters
+        ----------
+        x : Tensor (window, reading * sensor)
+            Scaled windows.
+        """
+        return self.decoder.features(self.latent(x))
 
     def forward(self, x: Tensor) -> Tensor:
         """Scaled states, (window, state).

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,8 +19,6 @@ from gaitdisc.sensing.missing import hidden
 from gaitdisc.sensing.windows import Lags, present, thinned, windows_of
 
 if TYPE_CHECKING:
-    from torch import nn
-
     from gaitdisc.networks.training_settings import TrainingSettings
 
 FEATURES = 1000
@@ -224,7 +222,7 @@ def _fit_of(kind: str, sensors: int, seed: int, device: str) -> Callable[[Sample
     return lambda training, check: train(training, build, settings, check=check).network
 
 
-def network_of(kind: str, sensors: int) -> Callable[[int, int], nn.Module]:
+def network_of(kind: str, sensors: int) -> Callable[[int, int], Any]:
     """Return what makes the network of a kind, from its numbers of inputs and outputs."""
     from gaitdisc.networks.shallow_decoder import ShallowDecoder
     from gaitdisc.networks.shred import Shred
