@@ -30,9 +30,9 @@ class Reconstructor(Saved, by="gaitdisc.library.reconstructor:save_reconstructor
     Parameters
     ----------
     kind : str
-        A kind of `gaitdisc reconstruct --kinds`: `linear` (ridge regression on the present readings), `delay ridge` (on readings and their history), `fourier
-        ridge` (on random Fourier features of these), `shallow decoder` (SDN, present readings) or `shred` (recurrent
-        network on readings and history, shallow decoder).
+        A kind of `gaitdisc reconstruct --kinds`: `linear` (ridge regression on the present readings), `delay ridge` (on
+        readings and their history), `fourier ridge` (on random Fourier features of these), `shallow decoder` (SDN,
+        present readings), `shred` (recurrent network on readings and history, shallow decoder), or one on request.
     rate_hz : float
         Samples a second of all arrays [Hz].
     history_s : float
