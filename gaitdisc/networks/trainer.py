@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -116,6 +116,17 @@ def train(
         time.perf_counter() - begun,
         best.descent.arithmetic,
     )
+
+
+def resolved(model: TrainedNetwork, samples: Samples, inner_share: float = 0.15) -> TrainedNetwork:
+    """Return a network with the same hidden layers and its last layer solved for other samples."""
+    before, inner = samples.last_block(inner_share, SEAM_S)
+    scales = model.x_scale, model.y_scale
+    part, judged, whole = (_tensors(each, *scales, torch.device("cpu")) for each in (before, inner, samples))
+    network = copy.deepcopy(model.network)
+    with pinned_threads(1):
+        solve_readout(network, whole, choose_penalty(network, part, judged)[0])
+    return replace(model, network=network)
 
 
 @dataclass(frozen=True, eq=False)
