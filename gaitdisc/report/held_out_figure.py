@@ -97,7 +97,7 @@ def _draw(axes: Axes, rows: pd.DataFrame) -> None:
     time, measured = rows["time_s"], rows["measured"]
     low, high = (f"{_BANDED}_{word}" for word in _BOUNDS)
     if low in rows:
-        axes.fill_between(time, rows[low], rows[high], color=MODELS[_BANDED].colour, alpha=0.14, linewidth=0)
+        axes.fill_between(time, rows[low], rows[high], color=MODELS[_BANDED].colour, alpha=0.25, linewidth=0)
     axes.plot(time, measured, color=MEASURED.colour, linewidth=1.4, label="measured")
     for model in _DRAWN:
         if model not in rows:
@@ -118,7 +118,7 @@ def _broken(rows: pd.DataFrame) -> pd.DataFrame:
         return rows
     holes = rows.iloc[after].copy()
     holes["time_s"] += float(np.median(step))
-    holes[[name for name in rows if name not in ("variable", "unit", "time_s", "percent")]] = np.nan
+    holes[[str(name) for name in rows if name not in ("variable", "unit", "time_s", "percent")]] = np.nan
     return pd.concat([rows, holes]).sort_values("time_s", kind="stable")
 
 
@@ -136,8 +136,7 @@ def _caption(response: ParticipantResponse, rows: pd.DataFrame) -> str:
         f"{counted(len(rows), 'sample')} drawn of {len(response.held_out.time)}; split: {held}. "
         f"Black: measured second derivative; {models}; shaded: the gap that each leaves to "
         f"the measurement. {_band_words(response)}R² (Nominal → Augmented) is over all held-out samples. Each panel "
-        f"has its unit; titles in "
-        f"red: left; in blue: right."
+        f"has its unit; titles in red: left; in blue: right."
     )
 
 

@@ -18,7 +18,7 @@ FEWEST_ERRORS, MOST_ERRORS = 20, 400  # of a part; with fewer, those of the whol
 SEAM_S = 0.3  # zero-lag filters look ahead over the seam
 
 Refit = Callable[[Model, Samples], Model]
-Member = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
+Member = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int_]]
 
 
 def response_bands(
@@ -81,7 +81,7 @@ def _bounds(members: list[Member], parts: NDArray[np.int_]) -> NDArray[np.float6
     """CV+ in each part of the stride."""
     predicted = np.array([member[0] for member in members])
     whose = np.concatenate([np.full(len(missed), k) for k, (_, missed, _) in enumerate(members)])
-    missed, where = (np.concatenate([member[k] for member in members]) for k in (1, 2))
+    missed, where = np.concatenate([m[1] for m in members]), np.concatenate([m[2] for m in members])
     bounds = np.empty((2, *predicted.shape[1:]))
     for part in np.unique(parts):
         at, errors = parts == part, where == part
