@@ -33,7 +33,6 @@ import os
 import re
 import subprocess
 import time
-from functools import partial
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
@@ -145,24 +144,9 @@ def peak_mb() -> float:
 
 def built(network: str, inputs: int, outputs: int):
     """Network by its name."""
-    from torch import nn
+    from gaitdisc.sensing.reconstructor import OF_TEXT, network_of
 
-    from gaitdisc.networks.shallow_decoder import ShallowDecoder
-    from gaitdisc.networks.shred import Shred
-
-    if network == "ours":
-        return partial(Shred, sensors=1)(inputs, outputs)
-
-    class AsInTheText(nn.Module):
-        def __init__(self) -> None:
-            super().__init__()
-            self.recurrent = nn.LSTM(1, 64, 2, batch_first=True)
-            self.decoder = ShallowDecoder(64, outputs, 350, 400)
-
-        def forward(self, x):
-            return self.decoder(self.recurrent(x[:, :, None])[0][:, -1])
-
-    return AsInTheText()
+    return network_of("shred" if network == "ours" else OF_TEXT, 1)(inputs, outputs)
 
 
 if __name__ == "__main__":

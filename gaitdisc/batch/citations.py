@@ -69,6 +69,7 @@ OF_MODELS = {
     "shred": ("SHRED", "networks, fitted by AdamW"),
     "masked shred": ("SHRED", "networks, fitted by AdamW"),
     "shred ensemble": ("SHRED", "an ensemble of networks", "networks, fitted by AdamW"),
+    "shred-text": ("SHRED", "networks, fitted by AdamW"),
 }
 DISCREPANCIES = (
     "discrepancies of dynamics and of state",

@@ -32,6 +32,9 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     ] = "",
     targets: Annotated[str, typer.Option(help="What is reconstructed: states, emg, forces or moments.")] = "states",
     ahead: Annotated[float, typer.Option(min=0.0, help="Forecast the states so many seconds ahead.")] = 0.0,
+    spacing: Annotated[
+        float, typer.Option(min=0.001, help="Time between two readings of a window, which reaches back one second [s].")
+    ] = 0.04,
     kinds: Annotated[str, typer.Option(help='As in "delay ridge,masked shred"; by default five kinds of model.')] = "",
     device: Annotated[
         str, typer.Option(help="That networks are fitted on: cpu, cuda, or auto, the GPU where there is one.")
@@ -59,6 +62,7 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
         split=split,
         condition=condition,
         targets=targets,
+        spacing_s=spacing,
         ahead_s=ahead,
         kinds=chosen,
         seed=loaded.models.seed,

@@ -19,7 +19,9 @@ from gaitdisc.report.own_axes import axes_or_new
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
+    from numpy.typing import ArrayLike
 
+    from gaitdisc.library.reconstructor import Reconstructor
     from gaitdisc.results import ResponseRun
     from gaitdisc.results.discovery import Discovery
     from gaitdisc.results.mismatch import Mismatch
@@ -318,6 +320,49 @@ def reconstruction(done: Reconstruction, state: str, participant: str | None = N
     axes.legend(handles=states_key(list(dict.fromkeys(numbers["model"]))), frameon=False)
     unit = next(channel.unit for channel in done.states if channel.name == state)
     _stride_axis(axes, label(state), unit_text(unit))
+    return axes
+
+
+def latent(model: Reconstructor, x: ArrayLike, percent: ArrayLike, ax: Axes | None = None) -> Axes:
+    """Draw the course of SHRED's latent state over the stride: its first three principal components.
+
+    Parameters
+    ----------
+    model : Reconstructor
+        Fitted, of the kind `shred` or `shred-text`.
+    x : array_like (time, sensor)
+        Readings of one trial at the model's rate.
+    percent : array_like (time,) [% stride]
+        Percent stride of these times; NaN where there is none.
+    ax : matplotlib.axes.Axes, optional
+        To draw in.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    TrainingError
+        If the model has no latent state.
+
+    References
+    ----------
+    Ebers 2023, Fig. 5.1.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> gd.plot.latent(gd.load("model"), readings, percent)  # doctest: +SKIP
+    """
+    from gaitdisc.report.latent_course_figure import LATENT, course_numbers, draw_course
+    from gaitdisc.sensing.latent_size import latent_states, leading
+
+    windows = model.windows(x, percent)
+    axes = axes_or_new(ax)
+    draw_course(axes, course_numbers(windows.phi, leading(latent_states(model.model.reconstructor, windows))))
+    axes.set_title(LATENT)
+    axes.legend(frameon=False)
     return axes
 
 

@@ -30,9 +30,9 @@ class Reconstructor(Saved, by="gaitdisc.library.reconstructor:save_reconstructor
     Parameters
     ----------
     kind : str
-        `linear` (ridge regression on the present readings), `delay ridge` (on readings and their history), `fourier
-        ridge` (on random Fourier features of these), `shallow decoder` (SDN, present readings) or `shred` (recurrent
-        network on readings and history, shallow decoder).
+        A kind of `gaitdisc reconstruct --kinds`: `linear` (ridge regression on the present readings), `delay ridge` (on
+        readings and their history), `fourier ridge` (on random Fourier features of these), `shallow decoder` (SDN,
+        present readings), `shred` (recurrent network on readings and history, shallow decoder), or one on request.
     rate_hz : float
         Samples a second of all arrays [Hz].
     history_s : float
@@ -170,6 +170,25 @@ class Reconstructor(Saved, by="gaitdisc.library.reconstructor:save_reconstructor
         estimated, measured = self.predict(x), _array(y, "states")
         known = np.isfinite(estimated).all(axis=1) & np.isfinite(measured).all(axis=1)
         return float(np.mean(r2(measured[known], estimated[known])))
+
+    def windows(self, x: ArrayLike, percent: ArrayLike) -> Samples:
+        """Windows of readings, as the fitted model takes them.
+
+        Parameters
+        ----------
+        x : array_like (time, sensor)
+            Readings at `rate_hz`.
+        percent : array_like (time,) [% stride]
+            Percent stride of these times.
+
+        Returns
+        -------
+        Samples
+            Without states; percent stride at the last reading of each window.
+        """
+        what = self.model.reconstructor.sensing
+        read = self._recording(x, what.sensors)
+        return windows_of(read, what.sensors, (), what.lags, np.asarray(percent, float))
 
     @property
     def model(self) -> SensingModel:

@@ -104,6 +104,8 @@ def descend(
         if losses[-1] <= min(losses):
             best = steps.weights()
         progress(epoch / epochs)
+        if settings.patience and epoch - losses.index(min(losses)) > settings.patience:
+            break
     steps.restore(best)
     network.eval()
     return Descent(tuple(losses), losses.index(min(losses)) + 1, steps.arithmetic)

@@ -20,7 +20,7 @@ class Schedule:
     Parameters
     ----------
     rates : ndarray (epoch, step of the epoch)
-        Learning rate, from the first one to 0 along a cosine.
+        Learning rate, from the first one to 0 along a cosine, or the same in all.
     decay : float
         Decoupled decay of weight matrices, times the learning rate each step.
     """
@@ -54,7 +54,9 @@ def schedule_of(samples: int, decay: float, settings: TrainingSettings) -> Sched
     [0.01, 0.005, 2e-08]
     """
     epochs, steps = epochs_of(samples, settings), math.ceil(samples / settings.batch)
-    return Schedule(_cosine(settings.learning_rate, epochs, steps), decay, settings.batch)
+    constant = np.full((epochs, steps), settings.learning_rate)
+    rates = _cosine(settings.learning_rate, epochs, steps) if settings.falling else constant
+    return Schedule(rates, decay, settings.batch)
 
 
 def epochs_of(samples: int, settings: TrainingSettings) -> int:

@@ -25,6 +25,8 @@ class Shred(nn.Module):
         Sensors; `inputs` is a multiple of it.
     layers : int
         Recurrent layers; the dissertation's code has two of 64.
+    decoder : (int, int)
+        Nodes of the decoder's hidden layers.
     masked : bool
         Whether readings may be missing (NaN): the network then reads 0, the mean, in their place, and beside every
         reading whether it is missing.
@@ -40,7 +42,7 @@ class Shred(nn.Module):
     torch.Size([2, 18])
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913, PLR0917 a layer has as many sizes
         self,
         inputs: int,
         outputs: int,
@@ -49,6 +51,7 @@ class Shred(nn.Module):
         layers: int = 1,
         cell: str = "gru",
         masked: bool = False,
+        decoder: tuple[int, int] = (128, 128),
     ) -> None:
         super().__init__()
         if inputs % sensors:
@@ -59,15 +62,15 @@ class Shred(nn.Module):
             )
         self.sensors, self.cell, self.masked = sensors, cell, masked
         self.recurrent = CELLS[cell](2 * sensors if masked else sensors, nodes, layers, batch_first=True)
-        self.decoder = ShallowDecoder(nodes, outputs)
+        self.decoder = ShallowDecoder(nodes, outputs, *decoder)
 
     @property
     def readout(self) -> nn.Linear:
         """Last layer, which is linear."""
         return cast(nn.Linear, self.decoder.readout)
 
-    def features(self, x: Tensor) -> Tensor:
-        """Return what the linear layer reads, (window, node).
+    def latent(self, x: Tensor) -> Tensor:
+        """Last hidden state of the recurrent layers (Eq. 5.3), (window, node).
 
         Parameters
         ----------
@@ -79,7 +82,17 @@ class Shred(nn.Module):
             missing = history.isnan()
             history = torch.cat([history.masked_fill(missing, 0.0), missing.to(history.dtype)], dim=2)
         latest = [self.recurrent(part)[0][:, -1] for part in history.split(AT_ONCE)]
-        return self.decoder.features(torch.cat(latest))
+        return torch.cat(latest)
+
+    def features(self, x: Tensor) -> Tensor:
+        """Return what the linear layer reads, (window, node).
+
+        Parameters
+        ----------
+        x : Tensor (window, reading * sensor)
+            Scaled windows.
+        """
+        return self.decoder.features(self.latent(x))
 
     def forward(self, x: Tensor) -> Tensor:
         """Scaled states, (window, state).

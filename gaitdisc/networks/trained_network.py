@@ -50,11 +50,20 @@ class TrainedNetwork:
 
     def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """Outputs (sample, output) for inputs (sample, input); NaN where an input is NaN."""
-        scaled = torch.from_numpy(self.x_scale.scaled(np.asarray(x, float)).astype(np.float32))
+        return self.y_scale.unscaled(self._run(self.network, self.x_scale.scaled(np.asarray(x, float))))
+
+    def latent(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Latent state (sample, node) of a recurrent network for inputs (sample, input)."""
+        return self._run(getattr(self.network, "latent"), self.x_scale.scaled(np.asarray(x, float)))  # noqa: B009
+
+    def decoded(self, latent: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Outputs (sample, output) that a recurrent network decodes from latent states (sample, node)."""
+        return self.y_scale.unscaled(self._run(getattr(self.network, "decoder"), latent))  # noqa: B009
+
+    def _run(self, part: Callable[[torch.Tensor], torch.Tensor], values: NDArray[np.float64]) -> NDArray[np.float64]:
         self.network.eval()
         with torch.no_grad(), torch_threads(1):
-            y = self.network(scaled)
-        return self.y_scale.unscaled(y.double().numpy())
+            return part(torch.from_numpy(values.astype(np.float32))).double().numpy()
 
 
 def save_network(network: TrainedNetwork, path: Path) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -34,7 +34,7 @@ class Training:
     Parameters
     ----------
     decay, penalty : float
-        Weight decay and readout penalty that did best on the inner block.
+        Weight decay and readout penalty that did best on the inner block; no penalty where nothing is solved.
     epochs, best_epoch : int
         Epochs of the descent with that decay, and the one whose weights were kept.
     losses : tuple of float
@@ -101,7 +101,8 @@ def train(
     part, judged, whole = (_tensors(s, x_scale, y_scale, device) for s in (before, inner, samples))
     with pinned_threads(settings.threads), torch.random.fork_rng():
         best = _best_candidate(build, part, judged, settings, progress)
-        solve_readout(best.network, whole, best.penalty)
+        if settings.solved:
+            solve_readout(best.network, whole, best.penalty)
     progress(1.0)
     return Training(
         TrainedNetwork(samples.inputs, samples.outputs, x_scale, y_scale, best.network.cpu()),
@@ -115,6 +116,17 @@ def train(
         time.perf_counter() - begun,
         best.descent.arithmetic,
     )
+
+
+def resolved(model: TrainedNetwork, samples: Samples, inner_share: float = 0.15) -> TrainedNetwork:
+    """Return a network with the same hidden layers and its last layer solved for other samples."""
+    before, inner = samples.last_block(inner_share, SEAM_S)
+    scales = model.x_scale, model.y_scale
+    part, judged, whole = (_tensors(each, *scales, torch.device("cpu")) for each in (before, inner, samples))
+    network = copy.deepcopy(model.network)
+    with pinned_threads(1):
+        solve_readout(network, whole, choose_penalty(network, part, judged)[0])
+    return replace(model, network=network)
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +155,8 @@ def _best_candidate(
         shared = partial(_share, progress, number, count)
         steps = schedule if number == 0 else schedule.continued(decay)
         descent = descend(network, part, check, steps, settings, shared)
-        candidate = _Candidate(network, descent, decay, *choose_penalty(network, part, check))
+        judged = choose_penalty(network, part, check) if settings.solved else (0.0, min(descent.losses))
+        candidate = _Candidate(network, descent, decay, *judged)
         if best is not None and candidate.loss >= best.loss:
             break
         best, network = candidate, copy.deepcopy(network)

@@ -18,7 +18,11 @@ class TrainingSettings:
     epochs : int
         Passes over the training part; more where 1,000 steps need more.
     learning_rate : float
-        Of the first step; it falls to 0 along a cosine.
+        Of the first step; it falls to 0 along a cosine, or stays where `falling` is False.
+    patience : int
+        Epochs without gain on the inner block after which a descent ends; 0 goes through all of them.
+    solved : bool
+        Whether the last layer is solved by least squares after the descent, or stays as it was descended.
     decays : tuple of float
         Candidates of the decoupled weight decay, weak to strong; they are tried in this order until the inner block
         does worse, each from the weights of the one before, and the best is used.
@@ -50,6 +54,9 @@ class TrainingSettings:
     epochs: int = 20
     batch: int = 256
     learning_rate: float = 1e-2
+    falling: bool = True
+    patience: int = 0
+    solved: bool = True
     decays: tuple[float, ...] = (0.1, 0.3, 1.0)
     inner_share: float = 0.15
     seed: int = 0

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 WINDOW_S = 4.0
 _DRAWN = ("nominal", "augmented")
+_BANDED, _BOUNDS = "augmented", ("low", "high")
 
 
 @in_style
@@ -45,7 +46,8 @@ def held_out_numbers(response: ParticipantResponse) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        variable, unit, time_s, percent, measured, nominal, augmented.
+        variable, unit, time_s, percent, measured, nominal, augmented; augmented_low, augmented_high where there is a
+        band.
     """
     held = response.held_out
     shown = held.time >= (held.time[-1] - WINDOW_S if len(held.time) else 0.0)
@@ -58,6 +60,11 @@ def held_out_numbers(response: ParticipantResponse) -> pd.DataFrame:
                 "percent": held.phi[shown],
                 "measured": held.measured[shown, column],
                 **{m: held.predicted[m][shown, column] for m in _DRAWN if m in held.predicted},
+                **{
+                    f"{_BANDED}_{word}": held.bands[_BANDED][bound][shown, column]
+                    for bound, word in enumerate(_BOUNDS)
+                    if _BANDED in held.bands
+                },
             }
         )
         for column, variable in enumerate(response.outputs)
@@ -88,6 +95,9 @@ def _figure(response: ParticipantResponse, numbers: pd.DataFrame, name: str) -> 
 def _draw(axes: Axes, rows: pd.DataFrame) -> None:
     rows = _broken(rows)
     time, measured = rows["time_s"], rows["measured"]
+    low, high = (f"{_BANDED}_{word}" for word in _BOUNDS)
+    if low in rows:
+        axes.fill_between(time, rows[low], rows[high], color=MODELS[_BANDED].colour, alpha=0.25, linewidth=0)
     axes.plot(time, measured, color=MEASURED.colour, linewidth=1.4, label="measured")
     for model in _DRAWN:
         if model not in rows:
@@ -108,7 +118,7 @@ def _broken(rows: pd.DataFrame) -> pd.DataFrame:
         return rows
     holes = rows.iloc[after].copy()
     holes["time_s"] += float(np.median(step))
-    holes[["measured", *(m for m in _DRAWN if m in rows)]] = np.nan
+    holes[[str(name) for name in rows if name not in ("variable", "unit", "time_s", "percent")]] = np.nan
     return pd.concat([rows, holes]).sort_values("time_s", kind="stable")
 
 
@@ -125,9 +135,19 @@ def _caption(response: ParticipantResponse, rows: pd.DataFrame) -> str:
         f"{response.participant}: the last {WINDOW_S:g} s of the held-out device walk, n = "
         f"{counted(len(rows), 'sample')} drawn of {len(response.held_out.time)}; split: {held}. "
         f"Black: measured second derivative; {models}; shaded: the gap that each leaves to "
-        f"the measurement. R² (Nominal → Augmented) is over all held-out samples. Each panel has its unit; titles in "
-        f"red: left; in blue: right."
+        f"the measurement. {_band_words(response)}R² (Nominal → Augmented) is over all held-out samples. Each panel "
+        f"has its unit; titles in red: left; in blue: right."
     )
+
+
+def _band_words(response: ParticipantResponse) -> str:
+    """What the bands hold of all held-out samples, in the mean over variables."""
+    held = response.held_out
+    if _BANDED not in held.bands:
+        return ""
+    inside = {m: 100 * np.mean((b[0] <= held.measured) & (held.measured <= b[1])) for m, b in held.bands.items()}
+    said = ", ".join(f"{value:.0f} % for {MODEL_WORDS[model]}" for model, value in inside.items())
+    return f"Pale green: 90 % band of Augmented, from refits on blocks; measured inside such a band: {said}. "
 
 
 def listed_models(rows: pd.DataFrame) -> str:

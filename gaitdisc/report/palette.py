@@ -38,6 +38,7 @@ RECONSTRUCTED = {
     "fourier ridge": Look("#a8326e", (0, (1.4, 1.0)), "D"),
     "masked shred": Look("#1f4fc8", ":", "*"),
     "shred ensemble": Look("#1f4fc8", "-.", "P"),
+    "shred-text": Look("#7a3fb0", "-.", "X"),
 }
 SIDES = {
     "l": Look("#c8102e", "-", "v"),

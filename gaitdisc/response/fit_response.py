@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from gaitdisc.errors import ChannelError, TrainingError
 from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.recording import Samples, Trajectory
-from gaitdisc.response.models import ResponseModels, fit_linear, fit_models, fit_network
+from gaitdisc.response.band import response_bands
+from gaitdisc.response.models import ResponseModels, fit_linear, fit_models, fit_network, refitted_network
 from gaitdisc.response.samples import gait_samples
 from gaitdisc.results import HeldOut, ParticipantResponse
 from gaitdisc.results.participant_response import FIT_COLUMNS, R2_COLUMNS
@@ -89,10 +90,12 @@ def fit_response(
     _check_pair(nominal, exo)
     held_nominal, held_exo = (held_out_part(walk, settings)[1] for walk in (nominal, exo))
     on_nominal, on_exo = (held_out_samples(held, settings) for held in (held_nominal, held_exo))
-    fitted = fit_both(nominal, exo, settings, progress)
+    parts = training_samples(nominal, exo, settings)
+    fitted = fit_both(*parts, settings, progress)
     kinds = {"network": fitted.network, "ridge": fitted.ridge, "linear": fitted.linear}
     judged = [_judged(kind, models, on_nominal, on_exo, settings) for kind, models in kinds.items()]
     predicted = {name: model(on_exo.x) for name, model in fitted.network.on_exo().items()}
+    bands = response_bands(fitted.network, refitted_network, *parts, on_exo)
     return ParticipantResponse(
         participant=exo.subject or nominal.subject,
         inputs=on_exo.inputs,
@@ -100,24 +103,29 @@ def fit_response(
         units=tuple(rate_unit(exo.channels[column].unit, 2) for column in exo.columns(settings.outputs)),
         r2=pd.concat([*judged, _null_rows(null_r2 or {}, settings, len(on_exo))], ignore_index=True),
         fits=pd.concat([_fit_rows(kind, models) for kind, models in kinds.items()], ignore_index=True),
-        held_out=HeldOut(on_exo.time, on_exo.phi, on_exo.y, predicted),
+        held_out=HeldOut(on_exo.time, on_exo.phi, on_exo.y, predicted, bands),
         residuals={name: residual_strides(held_exo, on_exo, values) for name, values in predicted.items()},
         held_out_s=len(held_exo.time) / held_exo.rate_hz,
     )
 
 
+def training_samples(nominal: Trajectory, exo: Trajectory, settings: ResponseSettings) -> tuple[Samples, Samples]:
+    """Samples of the training parts of both walks; the held-out parts are not looked at."""
+    first, second = (gait_samples(held_out_part(walk, settings)[0], settings.outputs)[0] for walk in (nominal, exo))
+    return first, second
+
+
 def fit_both(
-    nominal: Trajectory,
-    exo: Trajectory,
+    nominal: Samples,
+    exo: Samples,
     settings: ResponseSettings,
     progress: Callable[[float], None] | None = None,
 ) -> FittedResponse:
-    """Fit networks and ridge regressions to the training parts; the held-out parts are not looked at."""
-    samples = [gait_samples(held_out_part(walk, settings)[0], settings.outputs)[0] for walk in (nominal, exo)]
-    ridge = fit_models(*samples, fit=lambda part, _: fit_linear(part, settings.harmonics))
-    linear = fit_models(*samples, fit=lambda part, _: fit_linear(part, harmonics=0))
+    """Fit networks and ridge regressions to the samples of the training parts."""
+    ridge = fit_models(nominal, exo, fit=lambda part, _: fit_linear(part, settings.harmonics))
+    linear = fit_models(nominal, exo, fit=lambda part, _: fit_linear(part, harmonics=0))
     networks = fit_models(
-        *samples, fit=lambda part, told: fit_network(part, settings.training, told), progress=progress
+        nominal, exo, fit=lambda part, told: fit_network(part, settings.training, told), progress=progress
     )
     return FittedResponse(networks, ridge, linear)
 

@@ -115,6 +115,15 @@ def fit_network(
     return Fit(done.network, done.decay, len(done.losses), done.n_training, done.n_inner, done.seconds)
 
 
+def refitted_network(model: Model, samples: Samples) -> Model:
+    """Return a network whose last layer is solved for other samples."""
+    from gaitdisc.networks.trained_network import TrainedNetwork
+    from gaitdisc.networks.trainer import resolved
+
+    assert isinstance(model, TrainedNetwork)  # fit_network makes nothing else
+    return resolved(model, samples)
+
+
 def fit_linear(samples: Samples, harmonics: int = 8) -> Fit:
     """Fit the ridge regression that stands beside the network."""
     begun = time.perf_counter()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -35,12 +35,15 @@ class HeldOut:
         Second derivatives of the measured variables.
     predicted : mapping of str to ndarray (sample, output) [unit/s2]
         Keys among `MODELS`: the networks' predictions.
+    bands : mapping of str to ndarray (bound, sample, output) [unit/s2]
+        Keys among `MODELS`: lower and upper bound of 90 % around what the networks predict; empty in older results.
     """
 
     time: NDArray[np.float64]
     phi: NDArray[np.float64]
     measured: NDArray[np.float64]
     predicted: Mapping[str, NDArray[np.float64]]
+    bands: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
 
 
 @may_lie_on_disk("held_out", "residuals")
@@ -88,6 +91,7 @@ class ParticipantResponse:
             "units": len(self.units),
             "held_out.measured": self.held_out.measured.shape[1],
             **{f"held_out.predicted[{k}]": v.shape[1] for k, v in self.held_out.predicted.items()},
+            **{f"held_out.bands[{k}]": v.shape[2] for k, v in self.held_out.bands.items()},
             **{f"residuals[{k}]": v.shape[2] for k, v in self.residuals.items()},
         }
         for name, found in columns.items():

@@ -29,7 +29,10 @@ WORDS = ("participant", "model", "state", "unit")
 NEAR = 1.02  # of the least error on the check part: a cheaper model that is within this is recommended instead
 WORTH = 0.1  # of the root mean squared error, which one more sensor must take off
 CALIBRATED = "{}, calibrated"  # name of a model that is corrected for the person who is judged
-CHEAP_FIRST = ("linear", "delay ridge", "shallow decoder", "fourier ridge", "shred", "masked shred", "shred ensemble")
+CHEAP_FIRST = (
+    "linear", "delay ridge", "shallow decoder", "fourier ridge", "shred",
+    "masked shred", "shred ensemble", "shred-text",
+)  # fmt: skip
 FLOORS = ("persistence", "phase average")  # what a forecast has to beat; no models
 MEASURES = ("rmse_deg", "relative_l2", "r2", "relative_l2_whole", "check_loss", "coverage", "seconds")
 

@@ -42,6 +42,7 @@ def save_response(response: ParticipantResponse, folder: Path, key: str) -> None
             "phi": held.phi,
             "measured": held.measured,
             **{f"predicted_{model}": values for model, values in held.predicted.items()},
+            **{f"band_{model}": values for model, values in held.bands.items()},
             **{f"residual_{model}": values for model, values in response.residuals.items()},
         },
     )
@@ -112,7 +113,9 @@ def load_refused(folder: Path) -> Refused:
 
 
 def _held_out(arrays: Arrays) -> HeldOut:
-    return HeldOut(arrays["time"], arrays["phi"], arrays["measured"], _keyed(arrays, "predicted_"))
+    return HeldOut(
+        arrays["time"], arrays["phi"], arrays["measured"], _keyed(arrays, "predicted_"), _keyed(arrays, "band_")
+    )
 
 
 def _residuals(arrays: Arrays) -> dict[str, NDArray[np.float64]]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -26,6 +25,7 @@ from gaitdisc.sensing.reconstructor import (
     Reconstructor,
     ScaledModel,
     Sensing,
+    network_of,
 )
 from gaitdisc.sensing.windows import Lags, windows_of
 from gaitdisc.whole_file import write_whole
@@ -172,12 +172,9 @@ def _weights(kind: str, what: Sensing, folder: Path) -> ScaledModel:
 
         return load_ridge(folder / WEIGHTS)
     from gaitdisc.networks.ensemble import Ensemble, member_path
-    from gaitdisc.networks.shallow_decoder import ShallowDecoder
-    from gaitdisc.networks.shred import Shred
     from gaitdisc.networks.trained_network import load_network
 
-    shred = partial(Shred, sensors=len(what.sensors), masked=kind == MASKED)
-    build = ShallowDecoder if kind == "shallow decoder" else shred
+    build = network_of(kind, len(what.sensors))
     if kind == ENSEMBLE:
         paths = [member_path(folder / WEIGHTS, number) for number in range(1, MEMBERS + 1)]
         return Ensemble(tuple(load_network(path, build) for path in paths))

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,9 @@ from gaitdisc.model import Model
 from gaitdisc.recording import Recording, Samples, Scale
 from gaitdisc.sensing.missing import hidden
 from gaitdisc.sensing.windows import Lags, present, thinned, windows_of
+
+if TYPE_CHECKING:
+    from gaitdisc.networks.training_settings import TrainingSettings
 
 FEATURES = 1000
 MOST_FITTED = 20_000  # windows; beyond it every k-th is fitted
@@ -28,9 +32,11 @@ KINDS = {
 }
 MASKED = "masked shred"
 ENSEMBLE, MEMBERS = "shred ensemble", 5
+OF_TEXT, TEXT_STEPS, TEXT_PATIENCE = "shred-text", 4000, 1600  # steps of 64 windows; patience is 100 epochs of 1,000
 ON_REQUEST = {
     MASKED: "SHRED that is given which readings are missing, fitted with a part of them hidden",
     ENSEMBLE: f"mean of SHRED from {MEMBERS} seeds",
+    OF_TEXT: "SHRED as the dissertation's code has it: two LSTM layers of 64, decoder 350-400, Adam at a rate of 0.001",
 }
 STATIC = ("linear", "shallow decoder")
 WITHOUT_NETWORK = ("linear", "delay ridge", "fourier ridge")  # cheap: fitted many times where that is asked for
@@ -200,15 +206,35 @@ def _fit_of(kind: str, sensors: int, seed: int, device: str) -> Callable[[Sample
     if kind == "fourier ridge":
         return partial(fit_fourier_ridge, features=FEATURES, seed=seed)
     from gaitdisc.networks.ensemble import Ensemble
-    from gaitdisc.networks.shallow_decoder import ShallowDecoder
-    from gaitdisc.networks.shred import Shred
     from gaitdisc.networks.trainer import train
     from gaitdisc.networks.training_settings import TrainingSettings
 
-    masked = kind == MASKED
-    build = ShallowDecoder if kind == "shallow decoder" else partial(Shred, sensors=sensors, masked=masked)
-    settings = TrainingSettings(epochs=20, batch=128, decays=(0.01,), seed=seed, device=device, missing_inputs=masked)
+    build, missing = network_of(kind, sensors), kind == MASKED
+    settings = TrainingSettings(epochs=20, batch=128, decays=(0.01,), seed=seed, device=device, missing_inputs=missing)
+    if kind == OF_TEXT:
+        text = TrainingSettings(
+            batch=64, learning_rate=1e-3, falling=False, decays=(0.0,), solved=False, seed=seed, device=device
+        )
+        return lambda training, check: train(training, build, _as_long(text, len(training)), check=check).network
     if kind == ENSEMBLE:
         each = [replace(settings, seed=seed + k) for k in range(MEMBERS)]
         return lambda training, check: Ensemble(tuple(train(training, build, s, check=check).network for s in each))
     return lambda training, check: train(training, build, settings, check=check).network
+
+
+def network_of(kind: str, sensors: int) -> Callable[[int, int], Any]:
+    """Return what makes the network of a kind, from its numbers of inputs and outputs."""
+    from gaitdisc.networks.shallow_decoder import ShallowDecoder
+    from gaitdisc.networks.shred import Shred
+
+    if kind == "shallow decoder":
+        return ShallowDecoder
+    if kind == OF_TEXT:
+        return partial(Shred, sensors=sensors, layers=2, cell="lstm", decoder=(350, 400))
+    return partial(Shred, sensors=sensors, masked=kind == MASKED)
+
+
+def _as_long(settings: TrainingSettings, windows: int) -> TrainingSettings:
+    """As many epochs as the steps of the dissertation's code make of so many windows."""
+    each = math.ceil(windows / settings.batch)
+    return replace(settings, epochs=math.ceil(TEXT_STEPS / each), patience=math.ceil(TEXT_PATIENCE / each))

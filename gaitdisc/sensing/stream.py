@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.errors import ShapeError
 from gaitdisc.sensing.missing import refuse_unknown_way
-from gaitdisc.sensing.reconstructor import ENSEMBLE, MASKED, STATIC, Reconstructor
+from gaitdisc.sensing.reconstructor import ENSEMBLE, MASKED, OF_TEXT, STATIC, Reconstructor
 
 if TYPE_CHECKING:
     from gaitdisc.networks.carried_windows import CarriedWindows
@@ -94,7 +94,7 @@ class _Mean:
 
 
 def _told_by(reconstructor: Reconstructor) -> _LastReadings | _Mean | CarriedWindows:
-    if reconstructor.kind not in ("shred", MASKED, ENSEMBLE):
+    if reconstructor.kind not in ("shred", MASKED, ENSEMBLE, OF_TEXT):
         return _LastReadings(reconstructor)
     from gaitdisc.networks.carried_windows import CarriedWindows
     from gaitdisc.networks.ensemble import Ensemble

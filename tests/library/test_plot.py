@@ -29,6 +29,15 @@ def sine():
     return gd.Recording(time, knee, channels, suspect=suspect)
 
 
+def test_the_latent_state_is_drawn_over_the_stride(ax, trained_briefly):
+    phase = np.arange(600) / 100
+    x, y = np.sin(6.28 * phase)[:, None], np.cos(6.28 * phase)[:, None]
+    model = gd.Reconstructor("shred", history_s=0.2, spacing_s=0.1).fit(x, y)
+    assert gd.plot.latent(model, x, 100 * (phase % 1), ax=ax) is ax
+    assert len(ax.lines) == 3
+    assert ax.get_xlabel() == "stride [%]"
+
+
 def test_a_recording_is_drawn_over_time_with_what_is_suspect(ax):
     assert gd.plot.recording(sine(), "knee_angle_r", ax=ax) is ax
     line, doubtful = ax.lines

@@ -48,6 +48,15 @@ def test_best_weights_are_restored_where_the_schedule_goes_on_and_worsens():
     assert loss_on(slope, walked(1.0)) == min(found.losses) == found.losses[found.best_epoch - 1]
 
 
+def test_a_descent_without_gain_ends_after_its_patience_and_a_rate_may_stay():
+    slope = Slope()
+    settings = TrainingSettings(epochs=50, batch=4, learning_rate=0.005, falling=False, patience=5)
+    assert set(schedule_of(200, 0.0, settings).rates.ravel()) == {0.005}
+    found = descended(slope, walked(3.0), walked(1.0), 0.0, settings)
+    assert len(found.losses) == found.best_epoch + 5 < 50
+    assert loss_on(slope, walked(1.0)) == min(found.losses)
+
+
 def test_decay_pulls_matrices_to_zero_and_spares_offsets():
     weights = {}
     for decay in (0.0, 3.0):

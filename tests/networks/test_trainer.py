@@ -54,6 +54,12 @@ def test_the_scale_never_sees_the_inner_block(swing, quick):
         np.testing.assert_array_equal(found.sd, wanted.sd)
 
 
+def test_the_last_layer_stays_as_it_was_descended_where_that_is_wanted(swing, quick):
+    done = train(swing, FeedForward, replace(quick, solved=False))
+    assert done.penalty == 0.0
+    assert not same_weights(done, train(swing, FeedForward, quick))
+
+
 def test_numbers_of_the_training_are_told(swing, quick):
     told = []
     done = train(swing, FeedForward, replace(quick, decays=(0.1, 30.0)), told.append)

@@ -35,6 +35,20 @@ def test_words(response):
     assert first.get_title(loc="left") == f"hip flexion, right: R² {r2[0]:.2f} → {r2[1]:.2f}"
 
 
+def test_the_band_of_augmented_is_drawn_and_the_caption_says_what_each_band_holds(response):
+    held = response.held_out
+    bands = {
+        "nominal": np.stack([held.measured + 1, held.measured + 2]),
+        "augmented": np.stack([held.measured - 1, held.measured + 1]),
+    }
+    [figure] = held_out_figures(replace(response, held_out=replace(held, bands=bands)), "P01")
+    assert "measured inside such a band: 0 % for Nominal, 100 % for Augmented" in figure.caption
+    rows = figure.numbers[figure.numbers["variable"] == OUTPUTS[0]]
+    np.testing.assert_allclose(rows["augmented_high"] - rows["augmented_low"], 2.0)
+    [without] = held_out_figures(response, "P01")
+    assert "band" not in without.caption
+
+
 def test_no_line_bridges_samples_that_were_left_away(response):
     held = response.held_out
     keep = np.ones(len(held.time), bool)

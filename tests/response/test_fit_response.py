@@ -8,7 +8,14 @@ import pytest
 from gaitdisc.errors import ChannelError, SamplingError, TrainingError
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.recording import PERCENT
-from gaitdisc.response.fit_response import ResponseSettings, fit_both, fit_response, held_out_part, residual_strides
+from gaitdisc.response.fit_response import (
+    ResponseSettings,
+    fit_both,
+    fit_response,
+    held_out_part,
+    residual_strides,
+    training_samples,
+)
 from gaitdisc.response.models import fit_linear, fit_models
 from gaitdisc.response.samples import gait_samples
 from gaitdisc.signals.butterworth import lowpassed
@@ -24,7 +31,7 @@ SPRING = 40.0
 
 @pytest.fixture(scope="module")
 def fitted(nominal, exo, settings):
-    return fit_both(nominal, exo, settings)
+    return fit_both(*training_samples(nominal, exo, settings), settings)
 
 
 @pytest.fixture
@@ -73,7 +80,7 @@ def test_the_held_out_part_is_never_seen(nominal, exo, settings, fitted):
         replace(walk, x=walk.x + 50.0 * ~seen[:, None], xddot=np.where(seen[:, None], walk.xddot, -7e3))
         for walk in (nominal, exo)
     ]
-    again = fit_both(*changed, settings)
+    again = fit_both(*training_samples(*changed, settings), settings)
     for name in ("nominal", "exo", "discrepancy"):
         one, other = (getattr(found.network, name).model for found in (fitted, again))
         for key, weights in one.weights().items():

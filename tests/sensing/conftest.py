@@ -11,10 +11,9 @@ from scipy.ndimage import gaussian_filter1d
 
 from gaitdisc.channel import Channel
 from gaitdisc.networks.ensemble import Ensemble
-from gaitdisc.networks.shred import Shred
 from gaitdisc.networks.trained_network import TrainedNetwork
 from gaitdisc.recording import Recording, scale_of
-from gaitdisc.sensing.reconstructor import ENSEMBLE, MASKED, MEMBERS, Reconstructor, sensing
+from gaitdisc.sensing.reconstructor import ENSEMBLE, MEMBERS, Reconstructor, network_of, sensing
 from gaitdisc.sensing.splits import split_within
 from gaitdisc.sensing.windows import Lags
 
@@ -42,8 +41,7 @@ def untrained(pair):
         torch.manual_seed(0)
         seen = pair.parts.fitted()
         networks = [
-            Shred(len(seen.inputs), len(seen.outputs), 1, masked=kind == MASKED)
-            for _ in range(MEMBERS if kind == ENSEMBLE else 1)
+            network_of(kind, 1)(len(seen.inputs), len(seen.outputs)) for _ in range(MEMBERS if kind == ENSEMBLE else 1)
         ]
         scales = scale_of(seen.x), scale_of(seen.y)
         members = tuple(TrainedNetwork(seen.inputs, seen.outputs, *scales, network) for network in networks)

@@ -54,3 +54,12 @@ def test_without_strides():
     none = Samples(still.x, still.y, still.inputs, still.outputs, still.time, np.full(300, np.nan))
     with pytest.raises(StrideError, match="needs strides in the fitted part; it has 0 and 100 of 100 percents without"):
         phase_average([none])
+
+
+def test_strides_of_71_samples_each_leave_percents_empty_that_lie_between_their_neighbours():
+    time = np.arange(710) / 100
+    phi = 100 * (np.arange(710) % 71) / 71
+    y = np.sin(2 * np.pi * phi / 100)[:, None]
+    average = phase_average([Samples(y, y, ("a",), ("a",), time, phi)])
+    assert average.stride_s == pytest.approx(0.71)
+    np.testing.assert_allclose(average.curve[:, 0], np.sin(2 * np.pi * np.arange(100) / 100), atol=0.07)

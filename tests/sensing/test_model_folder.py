@@ -60,7 +60,7 @@ def test_refusals(pair, saved, tmp_path):
         load_model(tmp_path)
 
 
-@pytest.mark.parametrize("kind", ["shred", "masked shred", "shred ensemble"])
+@pytest.mark.parametrize("kind", ["shred", "masked shred", "shred ensemble", "shred-text"])
 def test_every_recurrent_network_is_loaded_as_it_was(pair, untrained, tmp_path, kind):
     done = untrained(kind)
     save_model(SensingModel(done, pair.channels, np.ones(1)), tmp_path)

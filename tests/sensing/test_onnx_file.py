@@ -38,7 +38,7 @@ def test_ridge_regression_by_another_program(pair, tmp_path, kind):
     np.testing.assert_allclose(run(tmp_path / "model.onnx", x), done.model(rounded), atol=1e-5)
 
 
-@pytest.mark.parametrize("kind", ["shred", "masked shred", "shred ensemble"])
+@pytest.mark.parametrize("kind", ["shred", "masked shred", "shred ensemble", "shred-text"])
 def test_networks_by_another_program(pair, untrained, tmp_path, kind):
     pytest.importorskip("onnx")
     done = untrained(kind)

@@ -2,7 +2,9 @@ import numpy as np
 import pytest
 
 from gaitdisc.errors import ChannelError, SchemaError, TrainingError
-from gaitdisc.sensing.reconstructor import KINDS, fit_reconstructor, fitting_device, sensing
+from gaitdisc.networks.descent import descend
+from gaitdisc.sensing import reconstructor
+from gaitdisc.sensing.reconstructor import KINDS, fit_reconstructor, fitting_device, network_of, sensing
 from gaitdisc.sensing.windows import Lags, present
 
 
@@ -39,6 +41,23 @@ def test_history_tells_a_state_that_lags_behind(pair):
     assert errors["delay ridge"] < 0.01
     assert errors["linear"] > 0.5
     assert errors["fourier ridge"] < 0.02
+
+
+def test_the_networks_of_the_dissertations_code_have_its_weights():
+    network = network_of("shred-text", 3)(300, 18)  # 100 readings of 3 sensors
+    lstm = 4 * 64 * (3 + 64 + 2) + 4 * 64 * (64 + 64 + 2)
+    assert sum(w.numel() for w in network.parameters()) == lstm + 65 * 350 + 351 * 400 + 401 * 18
+
+
+def test_a_network_is_fitted_for_as_many_steps_as_the_dissertations_code_makes(pair, monkeypatch):
+    monkeypatch.setattr(reconstructor, "TEXT_STEPS", 40)
+    seen = {}
+    monkeypatch.setattr("gaitdisc.networks.schedule.LEAST_STEPS", 1)
+    monkeypatch.setattr("gaitdisc.networks.trainer.descend", lambda *a: seen.update(settings=a[4]) or descend(*a))
+    done = fit_reconstructor("shred-text", pair.what, pair.parts.fitted().rows(slice(0, 640)), pair.parts.checked())
+    kept = seen["settings"]
+    assert (done.n_fitted, kept.epochs, kept.patience, kept.batch, kept.learning_rate) == (640, 4, 160, 64, 1e-3)
+    assert done(pair.parts.judged()).shape == pair.parts.judged().y.shape
 
 
 @pytest.mark.parametrize("wanted", ["auto", "cpu", "cuda"])

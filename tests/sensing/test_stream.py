@@ -16,7 +16,7 @@ def fitted(pair):
     return {kind: fit_reconstructor(kind, pair.what, pair.parts.fitted(), pair.parts.checked()) for kind in RIDGES}
 
 
-@pytest.mark.parametrize("kind", [*RIDGES, "shred", "shred ensemble"])
+@pytest.mark.parametrize("kind", [*RIDGES, "shred", "shred ensemble", "shred-text"])
 def test_a_stream_tells_what_the_recording_tells(pair, fitted, untrained, kind):
     done = fitted[kind] if kind in RIDGES else untrained(kind)
     stream = Stream(done)

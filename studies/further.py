@@ -1,0 +1,79 @@
+"""What `ch4_further.py` and `ch5_further.py` have in common: tables computed one by one, kept, and printed."""
+
+from __future__ import annotations
+
+import sys
+import time
+import warnings
+from argparse import Namespace
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from gaitdisc.report.table import as_markdown, save_table, words_table
+
+
+class Number(NamedTuple):
+    """One number of a table; those of one row and column differ in `who`: a person, a walk, a seed, a fold."""
+
+    row: str
+    column: str
+    who: str
+    value: float
+
+
+class Made(NamedTuple):
+    """A table: how it is computed, quickly or whole; its heading says unit and split."""
+
+    computed: Callable[[bool], Iterator[Number]]
+    heading: str
+
+
+def main(given: Namespace, tables: Mapping[str, Made], kept: Path) -> None:
+    """Compute the tables that are not in the folder, print all of them, and keep them where that is wanted."""
+    if given.print:
+        print(printed(pd.read_csv(kept), given.print, tables[given.print]))
+        return
+    given.folder.mkdir(parents=True, exist_ok=True)
+    for name in given.tables:
+        place = given.folder / f"{name}.csv"
+        if not place.exists():
+            begun = time.process_time()
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                found = pd.DataFrame(tables[name].computed(given.quick)).assign(table=name)
+            save_table(found[["table", *Number._fields]], place)
+            print(f"{name}: {time.process_time() - begun:.0f} s of processor time", file=sys.stderr, flush=True)
+    every = {
+        name: pd.read_csv(given.folder / f"{name}.csv") for name in tables if (given.folder / f"{name}.csv").exists()
+    }
+    print("\n\n".join(printed(found, name, tables[name]) for name, found in every.items()))
+    if given.keep:
+        save_table(pd.concat(every.values(), ignore_index=True), kept)
+
+
+def printed(found: pd.DataFrame, name: str, made: Made) -> str:
+    """One table: median [least, greatest], and how many numbers that is of where it is not one."""
+    some = found[found["table"] == name]
+    columns, rows = dict.fromkeys(some["column"]), []
+    for row in dict.fromkeys(some["row"]):
+        own = some[some["row"] == row]
+        rows.append(
+            (str(row), *(_said(own.loc[own["column"] == column, "value"].to_numpy(float)) for column in columns))
+        )
+    return as_markdown(words_table(name, "", (made.heading, *map(str, columns)), rows))
+
+
+def _said(values: np.ndarray) -> str:
+    known = values[np.isfinite(values)]
+    if not len(values):
+        return ""
+    if not len(known):
+        return "diverged"
+    lost = f", {len(values) - len(known)} diverged" * (len(known) < len(values))
+    if len(known) == 1:
+        return f"{known[0]:.3g}{lost}"
+    return f"{np.median(known):.3g} [{known.min():.3g}, {known.max():.3g}], n = {len(known)}{lost}"
