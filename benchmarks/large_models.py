@@ -32,7 +32,7 @@ from multiprocessing import get_context
 import numpy as np
 from driven_trials import Driven, Sensed, recorded
 
-from gaitdisc.discovery.discover import discover
+import gaitdisc as gd
 from gaitdisc.simulation.parts import Input, Parameter, Port, State, Term
 from gaitdisc.simulation.simulation import Simulation
 
@@ -66,7 +66,7 @@ def answered(masses: int, seconds: float, hidden: bool, noise: float, seed: int)
     truth = model.with_effect(term) if hidden else model
     measured = recorded(truth, driven, Sensed(noise), np.random.default_rng(seed))
     wall, processor = time.perf_counter(), time.process_time()
-    found, _ = discover(model, measured)
+    found, _ = gd.discover(model, measured)
     wall, processor = time.perf_counter() - wall, time.process_time() - processor
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     said = ", ".join(f"{one.name} at {one.place}" for one in found.effects) or found.verdict

@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from gaitdisc.results.response_run import ResponseRun as ResponseRun
     from gaitdisc.signals.contacts import Contacts as Contacts
     from gaitdisc.simulation.bundled import bundled as bundled_simulation
+    from gaitdisc.simulation.parts import Term as Term
     from gaitdisc.simulation.simulation import Simulation as Simulation
     from gaitdisc.simulation.simulation_file import read_simulation as read_simulation
     from gaitdisc.simulation.writing import write_simulation as write_simulation
@@ -84,6 +85,7 @@ _HOME = {
     "compare": ("library.comparing", "compare"),
     "Mismatch": ("results.mismatch", "Mismatch"),
     "Simulation": ("simulation.simulation", "Simulation"),
+    "Term": ("simulation.parts", "Term"),
     "read_simulation": ("simulation.simulation_file", "read_simulation"),
     "write_simulation": ("simulation.writing", "write_simulation"),
     "bundled_simulation": ("simulation.bundled", "bundled"),
@@ -123,6 +125,7 @@ __all__ = [
     "Samples",
     "Simulation",
     "Strides",
+    "Term",
     "Trial",
     "angles",
     "bundled_simulation",

@@ -28,7 +28,6 @@ from gaitdisc.discrepancy.system import System, system_of
 from gaitdisc.report.block import Block
 from gaitdisc.report.table import Table
 from gaitdisc.results.discrepancy_cell import FORECAST, ORACLE, PART_WORDS
-from gaitdisc.simulation.parts import Term
 
 SEEDS = (0, 1, 2)
 LYAPUNOV_PER_S = 0.906  # largest exponent: Sprott 2003, Chaos and Time-Series Analysis
@@ -52,7 +51,7 @@ STATED = (
 
 def system() -> System:
     """Text and code agree."""
-    return system_of(gd.bundled_simulation("lorenz"), Term("x", "equation", "cubic", "0.01*x**3"))
+    return system_of(gd.bundled_simulation("lorenz"), gd.Term("x", "equation", "cubic", "0.01*x**3"))
 
 
 def run(quick: bool = False, folder: Path = Path("ch3_lorenz")) -> Result:

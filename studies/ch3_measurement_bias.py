@@ -29,7 +29,6 @@ from gaitdisc.discrepancy.record import Conditions, Record, recorded
 from gaitdisc.discrepancy.system import System, system_of
 from gaitdisc.report.block import Block
 from gaitdisc.report.discrepancy_tables import statements_table
-from gaitdisc.simulation.parts import Term
 
 SEEDS = (0, 1, 2)
 FIGURES = {"state": "Fig. 3.13", "noise": "Fig. 3.13"}
@@ -42,7 +41,7 @@ STATED = tuple(
 def systems() -> dict[str, System]:
     """Text and code."""
     free = gd.bundled_simulation("mass_spring_damper")
-    text, code = (Term("force", "port", "cubic", "x**3"), Term("v", "equation", "cubic", "x**3"))
+    text, code = (gd.Term("force", "port", "cubic", "x**3"), gd.Term("v", "equation", "cubic", "x**3"))
     return {
         "text": system_of(free.with_effect(text), gain=(1.01,)),
         "code": system_of(free.with_effect(code), gain=(1.1,)),

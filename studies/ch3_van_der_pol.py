@@ -26,7 +26,6 @@ from gaitdisc.discrepancy.grid import ALL_METHODS, NOISES, grid
 from gaitdisc.discrepancy.record import Conditions
 from gaitdisc.discrepancy.system import System, system_of
 from gaitdisc.results.discrepancy_cell import DiscrepancyCell
-from gaitdisc.simulation.parts import Term
 
 SEEDS = (0, 1, 2)
 SHORT_S = 10.0  # of which 601 samples are learned from
@@ -44,7 +43,7 @@ def systems() -> dict[str, System]:
     """Text and code, each with its start and sign."""
     sides = {"text": ("van_der_pol", "-0.01*x**3"), "code": ("van_der_pol_published", "0.01*x**3")}
     return {
-        word: system_of(gd.bundled_simulation(name), Term("y", "equation", "cubic_stiffness", term))
+        word: system_of(gd.bundled_simulation(name), gd.Term("y", "equation", "cubic_stiffness", term))
         for word, (name, term) in sides.items()
     }
 

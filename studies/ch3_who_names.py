@@ -35,7 +35,6 @@ from gaitdisc.report.block import Block
 from gaitdisc.report.naming_figure import naming_figure
 from gaitdisc.report.naming_table import naming_table
 from gaitdisc.results.naming import Naming
-from gaitdisc.simulation.parts import Term
 
 SEEDS = (0, 1, 2)
 NAMING: tuple[Method, ...] = ("sindy",)
@@ -49,16 +48,16 @@ def cases(seed: int = 0) -> tuple[HiddenEffect, ...]:
     """Every case."""
     names = ("van_der_pol", "van_der_pol_published", "lorenz", "mass_spring_damper")
     text, code, lorenz, free = map(gd.bundled_simulation, names)
-    minus, plus = (Term("y", "equation", "cubic_stiffness", f"{eps}*x**3") for eps in (-0.01, 0.01))
-    by_text = system_of(free.with_effect(Term("force", "port", "cubic", "x**3")), gain=(1.01,))
-    by_code = system_of(free.with_effect(Term("v", "equation", "cubic", "x**3")), gain=(1.1,))
+    minus, plus = (gd.Term("y", "equation", "cubic_stiffness", f"{eps}*x**3") for eps in (-0.01, 0.01))
+    by_text = system_of(free.with_effect(gd.Term("force", "port", "cubic", "x**3")), gain=(1.01,))
+    by_code = system_of(free.with_effect(gd.Term("v", "equation", "cubic", "x**3")), gain=(1.1,))
     hidden, alike = system_of(text, minus), system_of(text)
     begun = replace(system_of(text, start=START), assumed=alike.start)
     shaken, both = (replace(s, true=ShakenRates(s.true, (0.0, PUSH), seed)) for s in (alike, hidden))
     cubic, gain = {"y": {"x**3": -0.01}}, ("x", "sensor_gain")
     damping = {"y": {"y": MU - 0.5, "x**2*y": 0.5 - MU}}
     mu = replace(alike, true=KnownRates(text.with_values({"mu": MU})))
-    fast, slow = system_of(lorenz, Term("x", "equation", "cubic", "0.01*x**3")), system_of(lorenz)
+    fast, slow = system_of(lorenz, gd.Term("x", "equation", "cubic", "0.01*x**3")), system_of(lorenz)
     only = replace(hidden, observation=np.eye(2)[:1])
     return (
         HiddenEffect("Van der Pol, text", "−0.01 x³", hidden, CUBIC, 0.01, cubic),

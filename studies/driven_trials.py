@@ -6,13 +6,11 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 from scipy.signal import butter, sosfiltfilt
 
 import gaitdisc as gd
-from gaitdisc.simulation.drive import Drive, Rows
-from gaitdisc.simulation.measured import Measured
-from gaitdisc.simulation.running import compile_simulation
 
 RATE_HZ, SECONDS, TRIALS = 100.0, 8.0, 4
 WAVES = 5  # sines in what drives a system
@@ -36,25 +34,26 @@ class Sensed(NamedTuple):
     channels: Sequence[str] = ()
 
 
-def recorded(truth: gd.Simulation, driven: Driven, sensed: Sensed, rng: np.random.Generator) -> Measured:
-    """Trials of the true system as they come from a laboratory; all channels where none is named."""
-    t, machine = np.arange(int(driven.seconds * RATE_HZ)) / RATE_HZ, compile_simulation(truth)
-    drive = Drive.of(
-        [np.column_stack([_sines(rng, t, size, driven) for size in driven.sizes]) for _ in range(TRIALS)], RATE_HZ
-    )
-    half, states = driven.starts
-    starts = np.zeros((TRIALS, len(machine.states)))
-    if states:
-        starts[:, :states] = rng.uniform(-half, half, (TRIALS, states))
-    rows = Rows(np.arange(TRIALS), np.zeros(TRIALS, int), starts)
-    seen, channels = machine.observe(drive, rows, machine.run(drive, rows, len(t) - 1)[0]), tuple(machine.observed)
-    if sensed.channels:
-        channels = tuple(sensed.channels)
-        seen = seen[..., [machine.observed.index(name) for name in channels]]
+def recorded(truth: gd.Simulation, driven: Driven, sensed: Sensed, rng: np.random.Generator) -> pd.DataFrame:
+    """Trials of the true system as they come from a laboratory, a table; all channels where none is named."""
+    time, names = np.arange(int(driven.seconds * RATE_HZ)) / RATE_HZ, [each.name for each in truth.inputs]
+    sizes = list(zip(names, driven.sizes, strict=True))
+    drives = [{name: _sines(rng, time, size, driven) for name, size in sizes} for _ in range(TRIALS)]
+    half, some = driven.starts
+    starts = np.zeros((TRIALS, len(truth.states)))
+    if some:
+        starts[:, :some] = rng.uniform(-half, half, (TRIALS, some))
+    channels = list(sensed.channels) or [name for name, _ in truth.observations]
+    runs = [gd.simulate(truth, time, *each).selected(channels) for each in zip(drives, starts.tolist(), strict=True)]
+    seen = np.stack([run.values for run in runs])
     seen = seen + sensed.noise * seen.std(axis=(0, 1)) * rng.normal(size=seen.shape)
     if sensed.lowpass_hz:
         seen = sosfiltfilt(butter(2, sensed.lowpass_hz, fs=RATE_HZ, output="sos"), seen, axis=1)
-    return Measured(drive, seen, tuple(str(trial + 1) for trial in range(TRIALS)), channels)
+    tables = [
+        pd.DataFrame({"trial": trial, "time": time, **drive} | dict(zip(channels, values.T, strict=True)))
+        for trial, (drive, values) in enumerate(zip(drives, seen, strict=True), 1)
+    ]
+    return pd.concat(tables, ignore_index=True)
 
 
 def _sines(rng: np.random.Generator, t: NDArray[np.float64], size: float, driven: Driven) -> NDArray[np.float64]:

@@ -31,13 +31,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+import pandas as pd
 from driven_trials import Driven, Sensed
 from driven_trials import recorded as trials_of
 
 import gaitdisc as gd
-from gaitdisc.discovery.discover import discover
-from gaitdisc.simulation.measured import Measured
-from gaitdisc.simulation.parts import Term
 
 SYSTEMS = Path(__file__).parent / "systems"
 
@@ -96,7 +94,7 @@ def model_of(hidden: Hidden) -> gd.Simulation:
 def complete(model: gd.Simulation, hidden: Hidden, rng: np.random.Generator) -> gd.Simulation:
     """The model with what is hidden in it."""
     a, b = (f"{rng.uniform(*limits):.4g}" for limits in (hidden.a, hidden.b))
-    return model.with_effect(Term(hidden.port, "port", hidden.effect, hidden.term.format(a=a, b=b)))
+    return model.with_effect(gd.Term(hidden.port, "port", hidden.effect, hidden.term.format(a=a, b=b)))
 
 
 def put_off(model: gd.Simulation, share: float, rng: np.random.Generator) -> gd.Simulation:
@@ -111,7 +109,7 @@ def put_off(model: gd.Simulation, share: float, rng: np.random.Generator) -> gd.
     return replace(model, parameters=tuple(wrong))
 
 
-def recorded(truth: gd.Simulation, hidden: Hidden, record: Record, rng: np.random.Generator) -> Measured:
+def recorded(truth: gd.Simulation, hidden: Hidden, record: Record, rng: np.random.Generator) -> pd.DataFrame:
     """Trials of the true system, driven by sums of sines, as they come from a laboratory."""
     driven = Driven(hidden.driven_by, 0.2, hidden.fastest_hz)
     return trials_of(truth, driven, Sensed(record.noise, record.lowpass_hz), rng)
@@ -124,7 +122,7 @@ def answer(name: str, seed: int, record: Record, nothing: bool) -> tuple[str, fl
     truth = model if nothing else complete(model, hidden, rng)
     measured = recorded(truth, hidden, record, rng)
     started = time.process_time()
-    found, _ = discover(put_off(model, record.off, rng), measured)
+    found, _ = gd.discover(put_off(model, record.off, rng), measured)
     names = " and ".join(one.name for one in found.effects)
     return names or found.verdict.replace("no_gap", "nothing"), time.process_time() - started
 

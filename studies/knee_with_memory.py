@@ -19,14 +19,14 @@ GIVEN = command_line(
     QUICK,
 )  # before the slow imports
 
+from dataclasses import replace
+
 import numpy as np
+import pandas as pd
 from driven_trials import Driven, Sensed
 from driven_trials import recorded as trials_of
 
 import gaitdisc as gd
-from gaitdisc.discovery.discover import discover
-from gaitdisc.simulation.measured import Measured
-from gaitdisc.simulation.parts import State, Term
 
 DRIVEN = Driven((9.0, 5.0), 0.3, 2.0, starts=(0.3, 2))
 BENT = "(knee_rate - hip_rate)"
@@ -38,16 +38,18 @@ def hidden(kind: str, rng: np.random.Generator) -> tuple[gd.Simulation, float]:
     leg, stiffness = gd.bundled_simulation("swing_leg"), rng.uniform(15.0, 40.0)
     memory = float(rng.uniform(0.08, 0.25))
     rates = {"hysteresis": f"{BENT} - abs({BENT})*z/{memory}", "series_elasticity": f"{BENT} - z/{memory}"}
+    z = replace(leg.states[0], name="z", meaning="", initial=0.0)
     if kind in rates:
-        remembering = leg.with_state(State("z", "rad", initial=0.0), rates[kind])
-        return remembering.with_effect(Term("knee_moment", "port", kind, f"-{stiffness}*z")), memory
+        return leg.with_state(z, rates[kind]).with_effect(
+            gd.Term("knee_moment", "port", kind, f"-{stiffness}*z")
+        ), memory
     if kind == "input_lag":
-        late = leg.with_state(State("z", "N m", initial=0.0), "0").with_input("tau_knee", "z")
+        late = leg.with_state(replace(z, unit="N m"), "0").with_input("tau_knee", "z")
         return late.with_equation("z", f"(tau_knee - z)/{memory}"), memory
     return leg, float("nan")
 
 
-def recorded(truth: gd.Simulation, rng: np.random.Generator, noise: float) -> Measured:
+def recorded(truth: gd.Simulation, rng: np.random.Generator, noise: float) -> pd.DataFrame:
     """Trials of the leg, driven at hip and knee."""
     return trials_of(truth, DRIVEN, Sensed(noise, channels=("hip", "knee")), rng)
 
@@ -60,7 +62,7 @@ def run(seeds: int, noise: float) -> list[str]:
         for seed in range(seeds):
             rng = np.random.default_rng([seed, KINDS.index(kind)])
             truth, memory = hidden(kind, rng)
-            found, _ = discover(nominal, recorded(truth, rng, noise))
+            found, _ = gd.discover(nominal, recorded(truth, rng, noise))
             names = [one.name for one in found.effects]
             if names == ([] if kind == "nothing" else [kind]):
                 right += 1

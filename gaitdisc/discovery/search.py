@@ -33,6 +33,10 @@ CERTAIN = 2.5  # standard errors
 EVERY = 5.0  # seconds between two lines about a round that lasts
 
 
+def _unheard(line: str) -> None:
+    """Where nobody wants to know how far it is."""
+
+
 @dataclass(frozen=True)
 class Search:
     """What is searched, and in what."""
@@ -41,7 +45,7 @@ class Search:
     places: tuple[Place, ...]
     candidates: tuple[Candidate, ...]
     rhythm: Rhythm
-    told: Callable[[str], None] = field(default=lambda _: None, compare=False)
+    told: Callable[[str], None] = field(default_factory=lambda: _unheard, compare=False)
 
     def extended(self, now: Judged, judge: int = JUDGED) -> list[Judged]:
         """Return the account and, after it, others with one explanation more, all under the noise that the best leaves.

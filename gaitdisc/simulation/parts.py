@@ -78,6 +78,19 @@ class Term:
     ----------
     place : str
         Port, or state whose derivative it adds to.
+    kind : str
+        Which of these the place is: `port` or `equation`.
+    name : str
+        What the effect is called, `coulomb_friction`.
+    term : str
+        What it adds, an expression of states, inputs and parameters [the place's unit].
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> pendulum = gd.bundled_simulation("pendulum")
+    >>> pendulum.with_effect(gd.Term("omega", "equation", "coulomb_friction", "-0.3*sign(omega)")).effects[0].place
+    'omega'
     """
 
     place: str
