@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gaitdisc.errors import GaitdiscError, SchemaError
+from gaitdisc.errors import GaitdiscError, SchemaError, WriteError
 from gaitdisc.whole_file import write_whole
 
 if TYPE_CHECKING:
@@ -101,6 +101,8 @@ def write_people(
             for page in _pages(person, names[title], reference, run.provenance, (report, say, pdf)):
                 told(page)
             written.append((person, names[title]))
+        except WriteError:  # of the disk, not of the person: the page would stand as one that cannot be written
+            raise
         except (GaitdiscError, ArithmeticError, LookupError, ValueError, TypeError) as error:
             failed.append((title, f"the page could not be written: {error}"))
     return write_index(_with_failed(run, failed, run_folder), written, reference, report, say)
