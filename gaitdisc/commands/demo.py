@@ -17,7 +17,7 @@ def demo(
     seconds: Annotated[float, typer.Option(min=30.0, help="Length of each walk; the dissertation's is 240.")] = 60.0,
     people: Annotated[int, typer.Option(min=1, max=12, help="How many of the twelve.")] = 12,
     hide: Annotated[
-        str, typer.Option(help="What differs between the walks: spring, weak plantarflexor, ...")
+        str, typer.Option(help="What differs between the walks: spring, weak plantarflexor, stiff knee, drop foot, ...")
     ] = "spring",
     clinic: Annotated[bool, typer.Option("--clinic", help="A week of a clinic instead: people, pages, index.")] = False,
     jobs: Jobs = 2,

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from gaitdisc.cohort.emg import RANGE_V
 from gaitdisc.cohort.habit import habitual
-from gaitdisc.cohort.measurement import RANGE_V, measured
+from gaitdisc.cohort.measurement import measured
 from gaitdisc.cohort.person import JOINTS, MUSCLES
 from gaitdisc.signals.channel_quality import channel_findings
 from gaitdisc.signals.contact_force import force_contacts
