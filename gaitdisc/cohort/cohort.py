@@ -58,7 +58,7 @@ def the_twelve(calibration: bool = False) -> tuple[Person, ...]:
     return tuple(people)
 
 
-def walks_of(person: Person, duration_s: float = WALK_S, hidden: str = "spring") -> Walks:
+def walks_of(person: Person, duration_s: float = WALK_S, hidden: str = "spring", markers: bool = False) -> Walks:
     """Walk a person in both conditions and measure it.
 
     Parameters
@@ -70,7 +70,10 @@ def walks_of(person: Person, duration_s: float = WALK_S, hidden: str = "spring")
         (soleus and gastrocnemius give 75 % of their moment), `late EMG` (40 ms), `foot mass` (0.8 kg on each foot),
         `scaled moment` (the spring's moment is 0.6 of what 5 N m/deg would give), `none`, or a pattern in which
         the second walk goes (`stiff knee`, `drop foot`, `crouch`, `asymmetric`).
+    markers : bool
+        Whether the trials hold markers and belts with their point and sideways force in place of angles and forces.
     """
+    from gaitdisc.cohort.marker_trial import marker_trial
     from gaitdisc.cohort.measurement import measured
     from gaitdisc.cohort.walk import walked
 
@@ -83,6 +86,11 @@ def walks_of(person: Person, duration_s: float = WALK_S, hidden: str = "spring")
         "nominal": measured(nominal, f"{person.name}_nominal", "nominal"),
         "exo": measured(exo, f"{person.name}_exo", "exo", late_s),
     }
+    if markers:
+        for word, walk in (("nominal", nominal), ("exo", exo)):
+            seen = marker_trial(walk, trials[word].name, word)
+            streams = {**seen.streams, "emg": trials[word].stream("emg")}
+            trials[word] = replace(seen, streams=streams)
     truth = {
         "person": person.name,
         "sex": person.sex,

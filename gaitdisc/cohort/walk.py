@@ -64,6 +64,8 @@ class TrueWalk:
         Speed forwards of the foot's point under the pressure; minus the belt's speed where the foot stands.
     acceleration : ndarray (slow, 2, 3) [deg/s2]
         Side; hip, knee, ankle.
+    pelvis : ndarray (slow, 2) [m]
+        Forwards, upwards: how far the pelvis is from its habitual path.
 
     Examples
     --------
@@ -86,6 +88,7 @@ class TrueWalk:
     spring: NDArray[np.float64] = field(repr=False)
     sole: NDArray[np.float64] = field(repr=False)
     acceleration: NDArray[np.float64] = field(repr=False)
+    pelvis: NDArray[np.float64] = field(repr=False)
 
     def contacts(self, side: int = 0) -> NDArray[np.float64]:
         """Times at which a foot meets the belt, from the phase itself [s]."""
@@ -233,4 +236,5 @@ def _kept(person: Person, device: Spring, seed: int, quick: NDArray[np.float64],
         slow[:, 17:19],
         slow[:, 19:21],
         np.degrees(np.stack(joints, axis=2)),
+        slow[:, 21:23],
     )
