@@ -16,8 +16,8 @@ from scipy.signal import butter, sosfiltfilt
 from gaitdisc.cohort.body import bias, inertia, leg_of
 from gaitdisc.cohort.device import FOOT_KG
 from gaitdisc.cohort.measurement import measured
-from gaitdisc.cohort.muscles import LENGTHENING, activated, strength_of
-from gaitdisc.cohort.person import MUSCLES, Person
+from gaitdisc.cohort.muscles import activated, capacities, strength_of
+from gaitdisc.cohort.person import GROUPS, Person
 from gaitdisc.cohort.walk import QUICK_HZ, SLOW_HZ, TrueWalk
 from gaitdisc.simulation.measured import Measured, TrialColumns, measured_of_trials
 
@@ -27,6 +27,7 @@ PRESSURE_M, EMG_ERROR, OTHERS_NM = 0.003, 0.05, 1.5
 ERROR_HZ = 6.0
 TRACKED = (800.0, 57.0, 1.0)  # angle, rate and acceleration in the reference, as in tracked_ankle.toml
 ANKLE, SIDE = 2, 0
+FLEXIONS = [0, 3, 4]  # hip, knee and ankle among the walk's angles
 Values = NDArray[np.float64]
 
 
@@ -63,19 +64,19 @@ def ankle_trials(walk: TrueWalk, emg_late_s: float) -> Measured:
 
 def plantarflexor_moment(walk: TrueWalk) -> Values:
     """Moment of gastrocnemius and soleus at the strength of the Nominal walk, towards dorsiflexion (time,) [N m]."""
-    reach = strength_of(walk.person.mass_kg).reach
-    rate = np.radians(np.gradient(walk.angles[:, SIDE, 3:], 1 / SLOW_HZ, axis=0))
+    person = walk.person
+    joint = np.radians(walk.angles[:, SIDE][:, FLEXIONS])
+    rate = np.gradient(joint, 1 / SLOW_HZ, axis=0)
+    reach = capacities(strength_of(person.mass_kg, person.style.strength[SIDE]), joint, rate)[:, :, ANKLE]
     total = np.zeros(len(walk.slow_s))
     for name in ("emg_gas", "emg_sol"):
-        muscle = MUSCLES.index(name)
+        muscle = GROUPS.index(name)
         excitation = walk.excitation[:, SIDE, muscle]
         active, level = np.empty(len(excitation)), excitation[0]
         for sample, drive in enumerate(excitation):
             active[sample] = level
             level = activated(drive, level, 1 / QUICK_HZ)
-        pull = -rate @ np.sign(reach[muscle, 1:])
-        gain = np.clip(1 + LENGTHENING * pull, 0.7, 1.3)
-        total += reach[muscle, ANKLE] * active[:: round(QUICK_HZ / SLOW_HZ)] * gain
+        total += reach[:, muscle] * active[:: round(QUICK_HZ / SLOW_HZ)]
     return total
 
 
