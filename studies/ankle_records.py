@@ -3,7 +3,7 @@
 The motion is the cohort's recorded angle. Moments are the walk's own with errors of the usual size: a centre of
 pressure that is off by 3 mm moves the moment of inverse dynamics, muscle moments waver by 5 % (plantarflexors, from
 EMG) and by 1.5 N m (all others). They are moments of muscles that no device can enter, as a musculoskeletal estimate
-gives them; EMG envelopes alone would not do, since in the cohort much comes from actuators that no electrode sees.
+gives them.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from gaitdisc.cohort.person import GROUPS, Person
 from gaitdisc.cohort.walk import QUICK_HZ, SLOW_HZ, TrueWalk
 from gaitdisc.simulation.measured import Measured, TrialColumns, measured_of_trials
 
-INPUTS = ("reference", "net", "per_kg", "plantarflexors", "others", "phase")
+INPUTS = ("recorded", "per_kg", "plantarflexors", "others", "phase")
 LOWPASS_HZ, EDGE_S, TRIALS = 10.0, 2.0, 8
 PRESSURE_M, EMG_ERROR, OTHERS_NM = 0.003, 0.05, 1.5
 ERROR_HZ = 6.0
-TRACKED = (800.0, 57.0, 1.0)  # angle, rate and acceleration in the reference, as in tracked_ankle.toml
+TRACKED = (800.0, 57.0, 1.0)  # of angle, rate and acceleration, as in tracked_ankle.toml
 ANKLE, SIDE = 2, 0
 FLEXIONS = [0, 3, 4]  # hip, knee and ankle among the walk's angles
 Values = NDArray[np.float64]
@@ -49,10 +49,9 @@ def ankle_trials(walk: TrueWalk, emg_late_s: float) -> Measured:
     net = net + PRESSURE_M * _wander(rng, len(net)) * np.interp(walk.slow_s, walk.quick_s, walk.force[:, SIDE, 1])
     others = others + OTHERS_NM * _wander(rng, len(net))
     late = np.interp(walk.slow_s - emg_late_s, walk.slow_s, by_emg * (1 + EMG_ERROR * _wander(rng, len(net))))
-    columns = [sum(factor * path(walk.slow_s, order) for order, factor in enumerate(TRACKED))]
-    columns += [_low(one) for one in (net, per_kg, late, others)] + [
-        np.mod(walk.phase[:: round(QUICK_HZ / SLOW_HZ)], 1)
-    ]
+    recorded = sum(factor * path(walk.slow_s, order) for order, factor in enumerate(TRACKED)) - _low(net)
+    columns = [recorded, *(_low(one) for one in (per_kg, late, others))]
+    columns.append(np.mod(walk.phase[:: round(QUICK_HZ / SLOW_HZ)], 1))
     inner = slice(round(EDGE_S * SLOW_HZ), -round(EDGE_S * SLOW_HZ))
     inputs, seen = np.column_stack(columns)[inner], angle[inner, None]
     length = len(inputs) // TRIALS
