@@ -35,6 +35,7 @@ from gaitdisc.cohort.static_optimisation import shared
 LAG_S = 0.030  # of what the muscles leave of the moments
 SMOOTH = 40  # scale of the harmonics of what the muscles leave
 TAPER = 28  # and of the activations
+AT_REST = 1e-6  # excitation that is at rest but for rounding
 GMED = GROUPS.index("emg_gmed")
 
 
@@ -161,7 +162,7 @@ def _commanded(
     """Excitation and activation (phase, group); where a muscle cannot let go in time, others act in the second pass."""
     rest = np.broadcast_to(recruitment.rest, habit.shape)
     excitation, activation = _nearest(shared(wanted, capacity, habit, rest, recruitment.dear), recruitment, step_s)
-    least = np.where(excitation > rest, rest, activation)
+    least = np.where(excitation > rest + AT_REST, rest, activation)
     return _nearest(shared(wanted, capacity, habit, least, recruitment.dear), recruitment, step_s)
 
 

@@ -142,7 +142,7 @@ def belt_held(person: Person, leg: Leg, psi: NDArray[np.float64], hip_rate: NDAr
     slopes = 2 * np.pi * np.hstack([-order * np.sin(turn), order * np.cos(turn)])
     stage = staged(person, phase)
     weight = _held_window(stage) / (person.speed_m_per_s * person.stride_s)
-    reluctance = np.diag(np.tile(np.r_[order, order] ** RELUCTANCE, 3)) * np.sqrt(len(psi) / 2)
+    reluctance = np.tile(np.r_[order, order] ** (2 * RELUCTANCE), 3) * len(psi) / 2
     pressure = pressure_centre(stage, leg.sole_m)
     wanted = -person.stride_s * (hip_rate + np.array([person.speed_m_per_s, 0.0]))
     moved, found = np.zeros(6 * CORRECTED), psi
@@ -156,13 +156,13 @@ def belt_held(person: Person, leg: Leg, psi: NDArray[np.float64], hip_rate: NDAr
         l1, l2 = leg.thigh_m, leg.shank_m
         along = [l1 * c[:, 0], l2 * c[:, 1], -lever[:, 1]], [l1 * s[:, 0], l2 * s[:, 1], lever[:, 0]]
         bend = [-l1 * s[:, 0], -l2 * s[:, 1], -lever[:, 0]], [l1 * c[:, 0], l2 * c[:, 1], -lever[:, 1]]
-        left, right = [reluctance], [-reluctance @ moved]
+        left, right = np.diag(reluctance), -reluctance * moved
         for axis, firm in enumerate(FIRM):
             pairs = zip(along[axis], (b * rate[:, j] for j, b in enumerate(bend[axis])), strict=True)
-            gain = np.hstack([a[:, None] * slopes + b[:, None] * waves for a, b in pairs])
-            left.append(firm * weight[:, None] * gain)
-            right.append(-firm * weight * slip[:, axis])
-        moved = moved + np.linalg.lstsq(np.vstack(left), np.concatenate(right), rcond=None)[0]
+            gain = np.hstack([a[:, None] * slopes + b[:, None] * waves for a, b in pairs]) * (firm * weight)[:, None]
+            left += gain.T @ gain
+            right -= gain.T @ (firm * weight * slip[:, axis])
+        moved = moved + np.linalg.solve(left, right)  # normal equations: the reluctance keeps them well conditioned
         found = psi + waves @ moved.reshape(3, -1).T
     return found
 
