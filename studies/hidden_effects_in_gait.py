@@ -1,6 +1,6 @@
 """Effects hidden in the walks of the embedded cohort: which are named, and how near to the truth.
 
-    python studies/hidden_effects_in_gait.py [OUT.csv] [--quick]
+    python studies/hidden_effects_in_gait.py [OUT.csv] [--people N] [--quick]
 
 Each of the twelve walks with one thing hidden that the simulation (tracked_ankle.toml) does not know: the spring of the
 exoskeleton, weak plantarflexors, EMG that is 40 ms late, 0.8 kg on the foot, a spring of 0.6 of its moment; and the
@@ -14,7 +14,11 @@ from pathlib import Path
 from command_line import QUICK, argument, command_line
 
 GIVEN = command_line(
-    __name__, __doc__, argument("out", "CSV that gets the table (default: none)", nargs="?", type=Path), QUICK
+    __name__,
+    __doc__,
+    argument("out", "CSV that gets the table (default: none)", nargs="?", type=Path),
+    argument("--people", "how many of the twelve", 12),
+    QUICK,
 )  # before the slow imports
 
 from dataclasses import dataclass, replace
@@ -73,9 +77,9 @@ class Result:
         )
 
 
-def run(quick: bool) -> Result:
+def run(quick: bool, people_count: int = 12) -> Result:
     """Hide each effect in each person's walk, and search for what is missing."""
-    people = the_twelve()[:1] if quick else the_twelve()
+    people = the_twelve()[: 1 if quick else people_count]
     hidden = tuple(RIGHT)[1:2] if quick else tuple(RIGHT)
     return Result(pd.DataFrame([found_in(person, effect) for person in people for effect in hidden]))
 
@@ -119,7 +123,7 @@ def found_in(person: Person, hidden: str) -> dict[str, object]:
 
 
 if __name__ == "__main__":
-    result = run(GIVEN.quick)
+    result = run(GIVEN.quick, GIVEN.people)
     print(result.table.round(4).to_string())
     print(result.summary().round(3).to_string())
     if GIVEN.out:
