@@ -114,12 +114,8 @@ def found_in(person: Person, hidden: str) -> dict[str, object]:
             row["engaged_rad"] = effect.estimates["engagement"].value
             row["engaged_truth_rad"] = np.radians(person.engaged_deg + person.style.offset_deg[0, 4])
         row["phase"] = next((each.phase for each in found.where if each.place == effect.place), ())
-    sizes = np.degrees(found.held_out.channels["theta"])
-    return (
-        {"value": np.nan, "low": np.nan, "high": np.nan}
-        | row
-        | dict(zip(("before", "after", "floor"), sizes, strict=True))
-    )
+    sizes = zip(("before", "after", "floor"), np.degrees(found.held_out.channels["theta"]), strict=True)
+    return dict.fromkeys(("value", "low", "high"), np.nan) | row | dict(sizes)
 
 
 if __name__ == "__main__":
