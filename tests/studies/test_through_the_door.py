@@ -21,6 +21,7 @@ LONG = {
     "ch3_tables": 198,
     "ch4_ours": 131,
     "ch5_gait_individual": 129,
+    "cohort_muscles": 137,
     "cohort_norms": 160,
     "contact_bias": 126,
     "fault_cases": 230,
