@@ -68,8 +68,9 @@ def fit_dmd(samples: Samples, delays: int = DELAYS, rank: int = RANK, bags: int 
 
     Notes
     -----
-    Modes that die out by twelve orders within one sample are left out, as in exact DMD. The Hankel matrix is projected on its first `rank` left singular vectors, and at most 600 of its columns, evenly in
-    time, go into the variable projection: it takes seconds instead of minutes on 3,000 samples.
+    The Hankel matrix is projected on its first `rank` left singular vectors, and at most 600 of its columns, evenly in
+    time, go into the variable projection: it takes seconds instead of minutes on 3,000 samples. Modes that die out by
+    twelve orders within one sample are left out, as in exact DMD.
 
     References
     ----------
