@@ -38,12 +38,12 @@ from numpy.typing import NDArray
 from real_people import ANGLES, CUTOFF_HZ
 
 import gaitdisc as gd
+from gaitdisc.regression.fourier_ridge import fit_fourier_ridge
 from gaitdisc.sensing.windows import stacked
 
 MOMENTS = ("ankle_angle_{}_moment", "knee_angle_{}_moment", "hip_flexion_{}_moment")
 JOINTS = ("ankle", "knee", "hip")
 LOADED, LEAST_S = 0.2, 0.2  # of body weight under the foot; a shorter contact is none of a step
-PENALTIES = 10.0 ** np.arange(-4.0, 5.0)
 Values = NDArray[np.float64]
 
 
@@ -70,17 +70,6 @@ def steps(path: Path) -> gd.Samples:
     return stacked(found)
 
 
-def ridge(fitted: list[gd.Samples], to_choose: gd.Samples):
-    """Ridge regression on many people's samples; the penalty is the one that does best on another person."""
-    whole = stacked(fitted)
-    centre, spread, offset = whole.x.mean(axis=0), whole.x.std(axis=0) + 1e-9, whole.y.mean(axis=0)
-    x, eye = (whole.x - centre) / spread, np.eye(whole.x.shape[1])
-    found = [np.linalg.solve(x.T @ x / len(x) + p * eye, x.T @ (whole.y - offset) / len(x)) for p in PENALTIES]
-    told = [(to_choose.x - centre) / spread @ weights + offset for weights in found]
-    best = found[int(np.argmin([np.mean((each - to_choose.y) ** 2) for each in told]))]
-    return lambda at: (at - centre) / spread @ best + offset
-
-
 def moments(quick: bool) -> Iterator[Number]:
     """Nominal, Augmented and Exo of moments on the turn of each child, by the other children."""
     people = sorted(path for path in (DATA / "young_straight_and_turn").iterdir() if path.is_dir())
@@ -89,10 +78,10 @@ def moments(quick: bool) -> Iterator[Number]:
         chosen = (place + 1) % len(people)
         others = [k for k in range(len(people)) if k not in (place, chosen)]
         straight, turn = ([walks[way][k] for k in others] for way in ("straight", "turn"))
-        f = ridge(straight, walks["straight"][chosen])
-        exo = ridge(turn, walks["turn"][chosen])
+        f = fit_fourier_ridge(stacked(straight), walks["straight"][chosen])
+        exo = fit_fourier_ridge(stacked(turn), walks["turn"][chosen])
         missed = [replace(each, y=each.y - f(each.x)) for each in (*turn, walks["turn"][chosen])]
-        g = ridge(missed[:-1], missed[-1])
+        g = fit_fourier_ridge(stacked(missed[:-1]), missed[-1])
         for word, judged in (("turn", walks["turn"][place]), ("straight", walks["straight"][place])):
             told = {"mean of the others' turns (null)": np.tile(stacked(turn).y.mean(axis=0), (len(judged), 1)),
                     "Nominal": f(judged.x), "Augmented": f(judged.x) + g(judged.x), "Exo": exo(judged.x)}  # fmt: skip
@@ -128,7 +117,8 @@ def energy(quick: bool) -> Iterator[Number]:
         told = []
         for place in range(len(PEOPLE)):
             chosen = (place + 1) % len(PEOPLE)
-            model = ridge([parts[k] for k in range(len(PEOPLE)) if k not in (place, chosen)], parts[chosen])
+            fitted = [parts[k] for k in range(len(PEOPLE)) if k not in (place, chosen)]
+            model = fit_fourier_ridge(stacked(fitted), parts[chosen])
             told.append(model(own[place])[:, 0])
         told = np.array(told)
         explained = 1 - np.mean((told - change) ** 2) / np.mean(change**2)
