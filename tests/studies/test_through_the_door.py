@@ -13,13 +13,17 @@ MOST_LINES = 120
 # Of the package they import the door alone. A study that joins them is added here.
 DOOR_ALONE = {"ankle_exo_emg", "command_line", "compare_halves", "curves_over_each_other", "family_wise_error",
               "fault_cases", "faults_of_meaning", "library_pictures", "printed_numbers"}  # fmt: skip
-INSIDE = 40  # at most so many import from deeper: of rooms that the door does not open, or tests of what lies inside
+INSIDE = 47  # at most so many import from deeper: of rooms that the door does not open, or tests of what lies inside
 LONG = {
     "ankle_exo_emg": 200,
     "ch3_further": 228,
     "ch3_seeds": 176,
     "ch3_tables": 198,
+    "ch4_further": 249,
     "ch4_ours": 131,
+    "ch4_outcomes": 161,
+    "ch5_beyond": 194,
+    "ch5_further": 209,
     "ch5_gait_individual": 129,
     "cohort_muscles": 137,
     "cohort_norms": 160,
