@@ -8,6 +8,7 @@ import typer
 
 from gaitdisc.commands.clinic_pages import (
     keep_reference,
+    keep_words,
     page_of_run,
     write_before_after,
     write_people,
@@ -59,6 +60,20 @@ def clinic_report(folder: Path, person: str, pair: tuple[str, str], reference: P
         if run.cycles:
             typer.echo(f"people: {run_folder / 'report' / 'index.html'}")
     return True
+
+
+def language_of(folder: Path, language: str) -> bool:
+    """Keep the words of another language with a run; True where only the table to be filled in was written."""
+    if language != "en" and not Path(language).exists():
+        from gaitdisc.report.clinic.page_words import write_words
+
+        written = write_words(Path(language))
+        typer.echo(f"words: {written}. Fill in the second column, then give the same command again.")
+        return True
+    lacking = keep_words(language, run_folder_of(folder))
+    if lacking:
+        typer.echo(f"English stays, {len(lacking)} words: {'; '.join(lacking)}")
+    return False
 
 
 def run_folder_of(folder: Path) -> Path:

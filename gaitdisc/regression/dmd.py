@@ -69,7 +69,8 @@ def fit_dmd(samples: Samples, delays: int = DELAYS, rank: int = RANK, bags: int 
     Notes
     -----
     The Hankel matrix is projected on its first `rank` left singular vectors, and at most 600 of its columns, evenly in
-    time, go into the variable projection: it takes seconds instead of minutes on 3,000 samples.
+    time, go into the variable projection: it takes seconds instead of minutes on 3,000 samples. Modes that die out by
+    twelve orders within one sample are left out, as in exact DMD.
 
     References
     ----------
@@ -89,8 +90,11 @@ def fit_dmd(samples: Samples, delays: int = DELAYS, rank: int = RANK, bags: int 
     times = samples.time[some] - samples.time[0]
     found = _modes(axes.T @ hankel.columns[:, some], times, (axes.shape[1], bags, seed))
     modes = (axes[: len(size)] @ found.modes * size[:, None] * found.amplitudes).T
-    spread = np.asarray(found.eigenvalues_std if bags else np.zeros(axes.shape[1]), float)
-    return Dmd((TIME,), samples.outputs, modes, np.asarray(found.eigs), float(samples.time[0]), spread)
+    values = np.asarray(found.eigs, np.complex128)
+    spread = np.asarray(found.eigenvalues_std if bags else np.zeros(len(values)), float)
+    # what has died out before the next sample says nothing of the record: its eigenvalue is rounding
+    kept = np.exp(values.real * float(np.mean(np.diff(samples.time)))) > SMALLEST
+    return Dmd((TIME,), samples.outputs, modes[kept], values[kept], float(samples.time[0]), spread[kept])
 
 
 class Hankel(NamedTuple):

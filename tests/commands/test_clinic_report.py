@@ -50,3 +50,17 @@ def test_the_report_of_a_clinic_has_everybodys_pages_and_leaves_those_that_stand
     called("report", run_folder, "--reference", tmp_path)
     assert "6 controls of the laboratory" in page.read_text()
     assert called("report", run_folder).returncode == 0 and "6 controls of the laboratory" in page.read_text()
+
+
+def test_a_language_is_written_filled_in_kept_and_taken_away(called, run_folder, tmp_path):
+    table, page = tmp_path / "de.csv", run_folder / "report" / "people" / "P08.html"
+    empty = called("report", run_folder, "--language", table)
+    assert empty.returncode == 0 and "Fill in the second column" in empty.stdout
+    table.write_text("English,other\nWhat stands out,Auffälliges <i>\nknee flexion,Kniebeugung\n", encoding="utf-8")
+    done = called("report", run_folder, "--language", table)
+    assert done.returncode == 0 and "English stays, " in done.stdout and "hip flexion; " in done.stdout
+    assert "Auffälliges &lt;i&gt;" in page.read_text() and "Kniebeugung" in page.read_text()
+    called("report", run_folder, "--person", "P08", "--pdf")
+    assert "Kniebeugung" in page.read_text()
+    called("report", run_folder, "--language", "en")
+    assert "What stands out" in page.read_text() and "Kniebeugung" not in page.read_text()

@@ -30,12 +30,14 @@ def test_a_sensor_that_is_not_there_is_one_sentence(study, called):
 
 
 def test_the_saved_model_is_of_the_kind_that_the_page_recommends(study, tmp_path):
-    words = ["reconstruct", str(study), "-s", "hip_flexion_r", "--out", str(tmp_path), "-q", *FAST]
+    words = ["reconstruct", str(study), "-s", "hip_flexion_r", "--out", str(tmp_path), "-q", "--spacing", "0.02", *FAST]
     done = CliRunner().invoke(app, words)
     assert done.exit_code == 0, done.output
     recommended = json.loads((tmp_path / "reconstruction.json").read_text())["recommended"]
     [model] = (tmp_path / "models").iterdir()
-    assert json.loads((model / "model.json").read_text())["kind"] == recommended
+    saved = json.loads((model / "model.json").read_text())
+    assert saved["kind"] == recommended
+    assert saved["sensing"]["lags"] == {"count": 50, "spacing": 2, "ahead": 0}  # one second back
     assert f"models: {tmp_path / 'models'}, {recommended} for each participant" in done.stdout
 
 

@@ -3,7 +3,7 @@ import pytest
 
 from gaitdisc.errors import SamplingError
 from gaitdisc.recording import Samples
-from gaitdisc.regression.dmd import fit_dmd
+from gaitdisc.regression.dmd import _modes, fit_dmd
 
 
 def samples(y, dt=0.01):
@@ -25,6 +25,22 @@ def test_bags_tell_the_spread_of_the_eigenvalues():
     model = fit_dmd(samples(y), delays=20, rank=2, bags=5)
     assert np.abs(np.sort(model.eigenvalues.imag) - [-6, 6]).max() < 0.1
     assert 0 < model.spread.max() < 1
+
+
+def test_what_dies_out_within_a_sample_is_rounding_and_left_out(monkeypatch):
+    monkeypatch.setattr("gaitdisc.regression.dmd._modes", lambda *given: _WithOneDead(_modes(*given)))
+    y = np.sin(6 * np.arange(300) / 100)[:, None]
+    model = fit_dmd(samples(y), delays=20, rank=3, bags=3)
+    assert model.eigenvalues.real.min() > -100  # what is left lives for a sample of 0.01 s at least
+    assert len(model.eigenvalues) == len(model.modes) == len(model.spread) > 0
+
+
+class _WithOneDead:
+    """A decomposition whose first eigenvalue is exp(-30) within a sample."""
+
+    def __init__(self, found):
+        self.modes, self.amplitudes, self.eigenvalues_std = found.modes, found.amplitudes, found.eigenvalues_std
+        self.eigs = np.concatenate([[-3000.0 + 0j], found.eigs[1:]])
 
 
 def test_a_record_too_short_for_the_delays_says_by_how_much():

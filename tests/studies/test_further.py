@@ -1,0 +1,56 @@
+"""Tables of chapters 4 and 5 beyond their figures: what is printed is what was kept, and a table is computed once."""
+
+import importlib
+from argparse import Namespace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+STUDIES = Path(__file__).parents[2] / "studies"
+
+
+@pytest.fixture
+def further(monkeypatch):
+    monkeypatch.syspath_prepend(STUDIES)
+    return importlib.import_module("further")
+
+
+def given(folder, **other):
+    return Namespace(**{"folder": folder, "tables": ["one"], "quick": True, "keep": True, "print": "", **other})
+
+
+def test_a_table_is_computed_once_kept_and_printed_again(further, tmp_path, capsys):
+    calls = []
+
+    def computed(quick):
+        calls.append(quick)
+        for who, value in (("a", 1.0), ("b", 3.0), ("c", np.nan)):
+            yield further.Number("ridge", "RMSE [deg]", who, value)
+        yield further.Number("null", "RMSE [deg]", "", 4.0)
+
+    tables = {"one": further.Made(computed, "running")}
+    further.main(given(tmp_path / "out"), tables, tmp_path / "kept.csv")
+    first = capsys.readouterr().out
+    further.main(given(tmp_path / "out"), tables, tmp_path / "kept.csv")
+    further.main(given(tmp_path / "elsewhere", print="one"), tables, tmp_path / "kept.csv")
+    assert capsys.readouterr().out == first * 2
+    assert calls == [True]
+    assert "| ridge | 2 [1, 3], n = 2, 1 diverged |" in first
+    assert "| null | 4 |" in first
+
+
+@pytest.mark.parametrize("name", ["ch4_further", "ch4_outcomes", "ch5_further"])
+def test_every_table_of_a_study_is_kept(further, name):
+    tables = importlib.import_module(name).TABLES
+    kept = pd.read_csv(STUDIES / f"{name}.csv")
+    assert set(kept["table"]) == set(tables)
+    assert list(kept) == ["table", *further.Number._fields]
+
+
+def test_power_is_told_within_people_better_than_by_shuffled_settings(further, gait_data):
+    rows = pd.DataFrame(importlib.import_module("ch4_outcomes").energy(True)).set_index(["row", "column"])["value"]
+    found = rows["both, means"]
+    assert found["within persons: R2 [1]"] > found["95 % of shuffled settings below [1]"]
+    assert found["within persons: R2 [1]"] < rows["setting known, mean of the others", "within persons: R2 [1]"]
