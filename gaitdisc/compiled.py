@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 from numba import njit
@@ -13,6 +14,10 @@ from numba.core.caching import FunctionCache
 
 class _LenientCache(FunctionCache):
     """Compiled code is kept to save time: where it cannot be kept or is damaged, it is compiled again."""
+
+    def _index_key(self, sig: Any, codegen: Any) -> Any:
+        """Numba looks at the function's own file alone; what it calls may lie in another, and is compiled into it."""
+        return (*super()._index_key(sig, codegen), tuple(sorted(map(_stamp, _with_called(self._py_func, {})))))
 
     def save_overload(self, sig: Any, data: Any) -> None:
         try:
@@ -27,6 +32,22 @@ class _LenientCache(FunctionCache):
             with suppress(OSError):
                 self.flush()
             return None
+
+
+def _with_called(function: Any, found: dict[Any, None]) -> dict[Any, None]:
+    """A function and all compiled functions that it calls, each once."""
+    if function is not None and function not in found:
+        found[function] = None
+        for name in function.__code__.co_names:
+            _with_called(getattr(function.__globals__.get(name), "py_func", None), found)
+    return found
+
+
+def _stamp(function: Any) -> tuple[str, int, int]:
+    """File of a function, and the time and size by which a changed one is known."""
+    file = Path(function.__code__.co_filename)
+    known = file.stat() if file.is_file() else None
+    return str(file), known.st_mtime_ns if known else 0, known.st_size if known else 0
 
 
 def compiled(function: Callable[..., Any] | None = None, **options: Any) -> Any:

@@ -1,4 +1,5 @@
 import errno
+import importlib
 import os
 import shutil
 import subprocess
@@ -34,6 +35,21 @@ def test_a_full_disk_costs_time_and_nothing_else(monkeypatch):
 
     with pytest.warns(UserWarning, match="compiled code is not kept: the system says: No space left on device"):
         assert tripled(2.0) == 6.0
+
+
+def test_a_changed_function_that_is_called_from_another_file_is_compiled_anew(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    head = "from gaitdisc.compiled import compiled\n"
+    outer = "from inner_of_test import inner\n\n\n@compiled\ndef outer(x):\n    return inner(x) + 1\n"
+    (tmp_path / "outer_of_test.py").write_text(head + outer)
+    found = []
+    for factor in (2, 30):
+        (tmp_path / "inner_of_test.py").write_text(f"{head}\n\n@compiled\ndef inner(x):\n    return {factor} * x\n")
+        for name in ("inner_of_test", "outer_of_test"):
+            sys.modules.pop(name, None)
+        importlib.invalidate_caches()
+        found.append(importlib.import_module("outer_of_test").outer(1.0))
+    assert found == [3.0, 31.0]
 
 
 @pytest.fixture

@@ -20,7 +20,7 @@ LONGEST, DEEPEST, LARGEST = 20_000, 250, 4_000  # characters, nesting, nodes
 FUNCTIONS = {  # name: fewest and most arguments
     **dict.fromkeys(("sin", "cos", "tan", "tanh", "exp", "log", "sqrt", "abs", "sign", "step"), (1, 1)),
     **dict.fromkeys(("max", "min"), (2, 16)),
-    "delay": (2, 2),
+    **dict.fromkeys(("where", "delay"), (2, 2)),
 }
 RESERVED = frozenset({*FUNCTIONS, "t"})
 _ALLOWED = f"numbers, names, + - * / ** ( ) and {' '.join(FUNCTIONS)}"
@@ -29,7 +29,10 @@ _BINARY = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**
 _WORDS = {
     ast.Attribute: ("a dot after a name", "Names have no dots; write a number's point after a digit."),
     ast.Lambda: ("a lambda", "Write the arithmetic itself."),
-    ast.IfExp: ("if and else", "Use step(a), which is 1 where a > 0 and 0 elsewhere."),
+    ast.IfExp: (
+        "if and else",
+        "Use step(a), which is 1 where a > 0 and 0 elsewhere, or where(a, b), which is b there.",
+    ),
     ast.BoolOp: ("'and' or 'or'", "Use products, max and min of step(...)."),
     ast.Compare: ("a comparison", "Use step(a - b) for a > b."),
     ast.FloorDiv: ("//", "Divide with /."),

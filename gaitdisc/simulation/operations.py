@@ -210,7 +210,11 @@ def _chosen(op, registers, places, width):
         for r in range(width):
             x, y = registers[a + r], registers[b + r]
             registers[z + r] = x if x < y or np.isnan(x) else y
-    else:
+    elif op == 17:
         for r in range(width):
             x = registers[a + r]
             registers[z + r] = x if np.isnan(x) else (1.0 if x > 0.0 else 0.0)
+    else:
+        for r in range(width):
+            x, y = registers[a + r], registers[b + r]
+            registers[z + r] = x if np.isnan(x) else (y if x > 0.0 else 0.0)

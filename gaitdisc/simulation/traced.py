@@ -7,10 +7,11 @@ number the function is called once for each way it can go, and the two answers a
 from __future__ import annotations
 
 import builtins
+import functools
 import math
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from types import CellType, CodeType, FunctionType, SimpleNamespace
+from types import CellType, CodeType, FunctionType, MethodType, SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ import numpy as np
 from gaitdisc.simulation.expression import DEEPEST, LARGEST, Name, Number, Operation, Tree
 
 MOST_WAYS = 64  # in which the function's branches can be taken
+INSIDE = ("__wrapped__", "py_func")  # of what remembers its answers (functools), of what is compiled (numba)
 _ZERO, _ONE = Number(0.0), Number(1.0)
 
 
@@ -149,7 +151,8 @@ def traced_equations(function: Callable[..., Any], arguments: Callable[[Callable
     NotTraced
         If the function does something that is no arithmetic, or is too long.
     """
-    on_quantities = _Surroundings().replaced(function)
+    own = function if isinstance(function, FunctionType | MethodType | functools.partial) else function.__call__
+    on_quantities = _Surroundings().replaced(own if isinstance(own, MethodType) else function)
     called = 0
 
     def ways(decided: dict[Tree, bool]) -> list[Tree]:
@@ -162,17 +165,31 @@ def traced_equations(function: Callable[..., Any], arguments: Callable[[Callable
             return [_tree(one) for one in flat(on_quantities(*plain, **named))]
         except _Undecided as branch:
             condition = branch.condition
-        yes, no = ways({**decided, condition: True}), ways({**decided, condition: False})
+        yes, no = gone({**decided, condition: True}), gone({**decided, condition: False})
+        if isinstance(yes, Exception) or isinstance(no, Exception):
+            never, there = (Operation("-", (_ONE, condition)), no) if isinstance(yes, Exception) else (condition, yes)
+            if isinstance(there, Exception):
+                raise there
+            return [Operation("+", (one, Operation("log", (never,)))) for one in there]
         if len(yes) != len(no):
             raise NotTraced("it returns now more, now fewer derivatives")
         return [_either(condition, one, other) for one, other in zip(yes, no, strict=True)]
+
+    def gone(decided: dict[Tree, bool]) -> list[Tree] | Exception:
+        try:
+            return ways(decided)
+        except NotTraced:
+            raise
+        except Exception as error:  # whatever the function raises there: a run that goes there ends
+            return error
 
     try:
         return ways({})
     except NotTraced:
         raise
     except Exception as error:  # whatever the function raises when it is given no numbers
-        raise NotTraced(f"{type(error).__name__}: {str(error)[:100]}") from error
+        said = (str(error).splitlines() or [""])[0][:100]
+        raise NotTraced(f"{type(error).__name__}: {said}") from error
 
 
 def flat(returned: Any) -> list[Any]:
@@ -236,17 +253,29 @@ def _either(condition: Tree, one: Tree, other: Tree) -> Tree:
     """One tree where a condition holds, another where it does not."""
     if one == other:
         return one
-    parts = [(condition, one), (Operation("-", (_ONE, condition)), other)]
-    products = [where if each == _ONE else Operation("*", (where, each)) for where, each in parts if each != _ZERO]
-    return products[0] if len(products) == 1 else Operation("+", tuple(products))
+    bare = condition.arguments[0] if isinstance(condition, Operation) and condition.symbol == "step" else condition
+    parts = [(condition, bare, one), (*[Operation("-", (_ONE, condition))] * 2, other)]
+    there = [
+        where if each == _ONE else Operation("where", (above, each)) for where, above, each in parts if each != _ZERO
+    ]
+    return there[0] if len(there) == 1 else Operation("+", tuple(there))
 
 
 def _chosen(condition: Any, one: Any, other: Any) -> Any:
     """`np.where` of single numbers."""
     if not isinstance(condition, Quantity):
         return one if condition else other
-    condition = condition if isinstance(condition, Condition) else condition != 0
-    return _sum(condition * one, ~condition * other)
+    held = condition if isinstance(condition, Condition) else condition != 0
+    own = [each for each in (held, one, other) if isinstance(each, Quantity)]
+    size, depth = 3 + sum(each.size for each in own) + held.size, 3 + max(each.depth for each in own)
+    return Quantity(_either(held.tree, _tree(one), _tree(other)), held.ways, size, depth)
+
+
+def _selected(conditions: Sequence[Any], values: Sequence[Any], otherwise: Any = 0.0) -> Any:
+    """`np.select` of single numbers."""
+    for condition, value in reversed(list(zip(conditions, values, strict=True))):
+        otherwise = _chosen(condition, value, otherwise)
+    return otherwise
 
 
 def _called(symbol: str) -> Callable[..., Quantity]:
@@ -283,6 +312,9 @@ _ARITHMETIC: dict[str, Callable[..., Any]] = {
     "copysign": lambda a, x: abs(a) * (1 - 2 * (x < 0)),
     "clip": _clipped,
     "where": _chosen,
+    "select": _selected,
+    "isnan": lambda _: False,
+    "isfinite": lambda _: True,
     "interp": _interpolated,
 }
 
@@ -314,7 +346,7 @@ class _Surroundings:
                     self._replaced[id(original)] = _number_by_number(arithmetic, original)
         for original in (np.zeros, np.ones, np.empty, np.array, np.asarray):
             self._replaced[id(original)] = _of_objects(original)
-        self._replaced[id(float)] = _Real
+        self._replaced |= {id(float): _Real, id(np.float64): _Real}
         for original in (np.linalg.solve, np.linalg.inv):
             self._replaced[id(original)] = _of_equations(original)
         for room in (math, np.linalg, np):
@@ -325,8 +357,17 @@ class _Surroundings:
 
     def replaced(self, one: Any) -> Any:
         """What stands in the place of a value; the value itself where it needs no other form."""
-        if id(one) in self._replaced or not isinstance(one, FunctionType) or _of_a_library(one):
-            return self._replaced.get(id(one), one)
+        if id(one) in self._replaced:
+            return self._replaced[id(one)]
+        if isinstance(one, MethodType):
+            return MethodType(self.replaced(one.__func__), one.__self__)
+        if isinstance(one, functools.partial):
+            return functools.partial(self.replaced(one.func), *one.args, **one.keywords)
+        if not isinstance(one, FunctionType):
+            inside = [getattr(one, name) for name in INSIDE if isinstance(getattr(one, name, None), FunctionType)]
+            return self.replaced(inside[0]) if inside else one
+        if _of_a_library(one):
+            return one
         around: dict[str, Any] = {"__builtins__": self._builtins, "__name__": one.__module__}
         cells = tuple(CellType() for _ in one.__closure__ or ())
         copy = FunctionType(one.__code__, around, one.__name__, one.__defaults__, cells)

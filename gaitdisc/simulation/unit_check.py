@@ -89,6 +89,8 @@ class _Check:
             if tree.symbol in _OF_PURE and parts[0] is not None and any(parts[0]):
                 self._tell(f"{where}: {_short(tree)} takes a pure number or an angle")
             return dimension_of("1")
+        if tree.symbol == "where":
+            return parts[1]
         return parts[0] if tree.symbol in ("neg", "abs", "delay") else self._product(tree, parts)
 
     def _product(self, tree: Operation, parts: list[Dimension | None]) -> Dimension | None:

@@ -96,6 +96,12 @@ def branches(angle, rate, torque, length=0.8, friction=0.4):
     return [rate, torque - 9.81 / length * math.sin(angle) + size]
 
 
+def guarded(angle, rate, torque, length=0.8, friction=0.4):
+    """No division by zero at rest."""
+    toward = rate / abs(rate) if rate != 0 else 0.0
+    return [rate, torque - 9.81 / length * math.sin(angle) - friction * toward * math.tanh(abs(rate))]
+
+
 def one_at_a_time(angle, rate, torque, length=0.8, friction=0.4):
     slowed = math.erf(rate) * 0 + math.tanh(rate)  # what no expression has
     return [rate, torque - 9.81 / length * math.sin(angle) - friction * slowed]
@@ -127,6 +133,7 @@ FORMS = {  # how it is written, how it becomes a simulation, of which kind
     "vectors and a dict, NumPy": (vectors, as_vectors, Simulation),
     "an array that is filled": (filling, as_vectors, Simulation),
     "a dict of parameters": (dictionary, simulation_from_function, Simulation),
+    "a guard against zero": (guarded, simulation_from_function, Simulation),
     "if and else": (branches, simulation_from_function, Simulation),
     "what no expression has, of arrays": (many_at_once, simulation_from_function, PythonSimulation),
     "what no expression has, of numbers": (one_at_a_time, simulation_from_function, PythonSimulation),

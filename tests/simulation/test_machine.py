@@ -47,6 +47,11 @@ def test_sign_is_rounded_and_step_is_not():
     assert _values("step(x)", [-1.0, 0.0, 1e-300]).tolist() == [0.0, 0.0, 1.0]
 
 
+def test_where_takes_nothing_of_what_is_not_chosen():
+    assert _values("where(x, 1/x)", [-1.0, 0.0, 2.0]).tolist() == [0.0, 0.0, 0.5]
+    assert np.isnan(_values("where(x, 1)", [np.nan])[0])
+
+
 @pytest.mark.parametrize("text", ["max(x, 1)", "min(1, x)", "step(x)", "abs(x)", "sin(x)", "exp(x)", "tanh(x)", "x**3"])
 def test_not_a_number_stays_one(text):
     assert np.isnan(_values(text, [np.nan])[0])

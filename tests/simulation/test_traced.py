@@ -1,5 +1,6 @@
 """The equations of a Python function, written down while it is called."""
 
+import functools
 import math
 from math import sin as sine
 
@@ -19,7 +20,14 @@ def equations(function, *names):
 
 def value_at(text, **names):
     """Value of an expression by Python's own arithmetic."""
-    return eval(text, {"step": lambda a: float(a > 0), "max": max, "min": min, "abs": abs, **vars(math), **names})
+    return eval(
+        text,
+        {"step": lambda a: float(a > 0), "max": max, "min": min, "abs": abs, "where": where, **vars(math), **names},
+    )
+
+
+def where(a, b):
+    return b if a > 0 else 0.0
 
 
 def by_branches(v):
@@ -52,6 +60,41 @@ def looped(x):
     return sum(k * x**k for k in range(1, 4))
 
 
+def guarded(v):
+    return 0.0 if abs(v) < 1e-6 else v / abs(v)
+
+
+@functools.lru_cache
+def twice(x):
+    return 2 * x
+
+
+def remembered(x):
+    return twice(x)
+
+
+def refusing(x):
+    if x > 0:
+        return np.sqrt(x)
+    raise ValueError("no root")
+
+
+class Motor:
+    """A model that is an object."""
+
+    gain = 3.0
+
+    def rates(self, x):
+        return self.gain * math.cos(x)
+
+    __call__ = rates
+
+
+@pytest.mark.parametrize("motor", [Motor().rates, Motor(), functools.partial(lambda gain, x: gain * math.cos(x), 3.0)])
+def test_methods_objects_and_partial_functions_are_written_down_too(motor):
+    assert equations(motor, "x") == ["3*cos(x)"]
+
+
 @pytest.mark.parametrize(
     ("function", "texts"),
     [
@@ -59,12 +102,15 @@ def looped(x):
         (lambda x: 3 - 0.5 * x / 2, ["3 - 0.5*x/2"]),
         (lambda x: math.sin(x) + np.tanh(x) + sine(x), ["sin(x) + tanh(x) + sin(x)"]),
         (lambda x: [max(x, 0), min(1, x, 2), abs(x)], ["max(x, 0)", "min(1, x, 2)", "abs(x)"]),
-        (lambda x: np.where(x > 0, 3 * x, 0.0), ["step(x)*(3*x)"]),
+        (lambda x: np.where(x > 0, 3 * x, 0.0), ["where(x, 3*x)"]),
         (lambda x: (x > 1) * (x - 1), ["step(x - 1)*(x - 1)"]),
         (lambda x: np.clip(x, -1, 1) + 0 * x, ["min(max(x, -1), 1)"]),
         (swings, ["9.81*sin(angle) + angle*0.5"]),
         (filled_in, ["v", "-x"]),
         (looped, ["x**1 + 2*x**2 + 3*x**3"]),
+        (guarded, ["where(1 - step(1e-06 - abs(v)), v/abs(v))"]),
+        (refusing, ["sqrt(x) + log(step(x))"]),
+        (remembered, ["2*x"]),
     ],
 )
 def test_what_a_function_does_is_written_down(function, texts):
