@@ -16,10 +16,15 @@ if TYPE_CHECKING:
     from gaitdisc.library.discovering import discover as discover
     from gaitdisc.library.examples import example_files as example_files
     from gaitdisc.library.examples import example_walks as example_walks
+    from gaitdisc.library.filters import differentiate as differentiate
+    from gaitdisc.library.filters import envelope as envelope
+    from gaitdisc.library.filters import highpass as highpass
+    from gaitdisc.library.filters import lowpass as lowpass
     from gaitdisc.library.functions import simulation_from_function as simulation_from_function
     from gaitdisc.library.joints import angles as angles
     from gaitdisc.library.joints import moments as moments
     from gaitdisc.library.loading import load as load
+    from gaitdisc.library.pairs import paired_tests as paired_tests
     from gaitdisc.library.reconstructor import Reconstructor as Reconstructor
     from gaitdisc.library.response import fit_response as fit_response
     from gaitdisc.library.simulating import simulate as simulate
@@ -39,11 +44,7 @@ if TYPE_CHECKING:
     from gaitdisc.results.pooled_cycles import PooledCycles as PooledCycles
     from gaitdisc.results.reconstruction import Reconstruction as Reconstruction
     from gaitdisc.results.response_run import ResponseRun as ResponseRun
-    from gaitdisc.signals.butterworth import highpassed as highpass
-    from gaitdisc.signals.butterworth import lowpassed as lowpass
     from gaitdisc.signals.contacts import Contacts as Contacts
-    from gaitdisc.signals.derivatives import differentiated_recording as differentiate
-    from gaitdisc.signals.envelope import enveloped as envelope
     from gaitdisc.simulation.bundled import bundled as bundled_simulation
     from gaitdisc.simulation.simulation import Simulation as Simulation
     from gaitdisc.simulation.simulation_file import read_simulation as read_simulation
@@ -71,10 +72,10 @@ _HOME = {
     "Finding": ("recording.finding", "Finding"),
     "Inspection": ("processing.inspection", "Inspection"),
     "GaitdiscError": ("errors", "GaitdiscError"),
-    "lowpass": ("signals.butterworth", "lowpassed"),
-    "highpass": ("signals.butterworth", "highpassed"),
-    "envelope": ("signals.envelope", "enveloped"),
-    "differentiate": ("signals.derivatives", "differentiated_recording"),
+    "lowpass": ("library.filters", "lowpass"),
+    "highpass": ("library.filters", "highpass"),
+    "envelope": ("library.filters", "envelope"),
+    "differentiate": ("library.filters", "differentiate"),
     "contacts": ("library.steps", "contacts"),
     "Contacts": ("signals.contacts", "Contacts"),
     "cycles": ("library.steps", "cycles"),
@@ -96,6 +97,7 @@ _HOME = {
     "Reconstructor": ("library.reconstructor", "Reconstructor"),
     "Reconstruction": ("results.reconstruction", "Reconstruction"),
     "signed_rank": ("statistics.signed_rank", "signed_rank"),
+    "paired_tests": ("library.pairs", "paired_tests"),
     "holm_sidak": ("statistics.holm_sidak", "holm_sidak"),
     "permutation_clusters": ("library.clusters", "permutation_clusters"),
     "r2": ("statistics.r2", "r2"),
@@ -139,6 +141,7 @@ __all__ = [
     "load",
     "lowpass",
     "moments",
+    "paired_tests",
     "permutation_clusters",
     "plot",
     "r2",

@@ -31,6 +31,7 @@ from gaitdisc.commands.reference import reference
 from gaitdisc.commands.report import report
 from gaitdisc.commands.run import run
 from gaitdisc.commands.sensitivity import sensitivity
+from gaitdisc.commands.watch import watch
 from gaitdisc.errors import GaitdiscError
 
 COMMANDS = (
@@ -43,6 +44,7 @@ COMMANDS = (
     reconstruct,
     apply,
     run,
+    watch,
     ablate,
     modalities,
     sensitivity,
@@ -80,5 +82,5 @@ def main() -> None:
     try:
         app()
     except GaitdiscError as error:
-        typer.echo(f"{type(error).__name__}: {error}", err=True)
+        typer.echo(f"{type(error).__name__}: {error} [{error.code}]", err=True)
         sys.exit(REFUSED)

@@ -1,7 +1,7 @@
 """The error tree: every refusal says what was needed, what was found and what to do.
 
 An error is raised where data enter (constructors, ingest, `train`) and never re-checked below. The command line prints
-the sentence and no traceback; anything that is not a `GaitdiscError` is a defect of this package.
+the sentence with its code and no traceback; anything that is not a `GaitdiscError` is a defect of this package.
 """
 
 from __future__ import annotations
@@ -34,6 +34,11 @@ class GaitdiscError(ValueError):
     def __str__(self) -> str:
         return f"{self.needed}; {self.found}. {self.remedy}"
 
+    @property
+    def code(self) -> str:
+        """Short name of this kind of refusal, under which `docs/errors.md` explains it."""
+        return f"gd-{type(self).__name__.removesuffix('Error').lower()}"
+
 
 class ReadError(GaitdiscError):
     """A file cannot be read as the recording that it claims to be."""
@@ -60,7 +65,7 @@ class ShapeError(GaitdiscError):
 
 
 class SamplingError(GaitdiscError):
-    """Time does not advance evenly, or a recording is too short for what is asked."""
+    """Time does not advance evenly, or a recording is too short for what is computed of it."""
 
 
 class StrideError(GaitdiscError):

@@ -67,18 +67,21 @@ def write_csv(table: pd.DataFrame, path: Path, float_format: str | None = None) 
         safe.to_csv(part, index=False, lineterminator="\n", float_format=float_format, quoting=quoting)
 
 
-def read_csv(path: Path, words: Sequence[str] = ()) -> pd.DataFrame:
+def read_csv(path: Path, words: Sequence[str] = (), skiprows: int = 0) -> pd.DataFrame:
     """Read a table that `write_csv` wrote; an empty cell is a missing number.
 
     Parameters
     ----------
     words : sequence of str
         Columns whose cells are words, also where they look like numbers: a participant called 007.
+    skiprows : int
+        Lines before the header.
     """
     import pandas as pd
 
     kinds = dict.fromkeys(words, str)
-    table = pd.read_csv(path, engine="python", keep_default_na=False, na_values=[""], dtype=kinds)
+    read = {"engine": "python", "keep_default_na": False, "na_values": [""], "skiprows": skiprows}
+    table = pd.read_csv(path, dtype=kinds, **read)
     for place in range(len(table.columns)):
         if table.dtypes.iloc[place].kind not in _NUMBERS:
             table.isetitem(place, table.iloc[:, place].map(_plain).to_numpy())

@@ -25,9 +25,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from gaitdisc.response.comparison import compare_columns
-from gaitdisc.statistics.holm_sidak import largest_family
-from gaitdisc.statistics.signed_rank import smallest_p
+import gaitdisc as gd
 
 PEOPLE = tuple(f"S{number:02d}" for number in range(1, 9))
 SETTINGS = tuple(f"C{number}" for number in range(1, 10))
@@ -130,12 +128,12 @@ def contrast(walks: Walks, setting: str, faulty: Mapping[tuple[str, str], str]) 
     Returns
     -------
     DataFrame
-        As `compare_columns` gives it, with part and setting; shift, low and high as change in %.
+        As `gd.paired_tests` gives it, with part and setting; shift, low and high as change in %.
     """
     tables = []
     for part in PARTS:
         ratios = log_ratios(walks, setting, part, faulty)
-        tables.append(compare_columns(ratios * 0, ratios).assign(part=part, setting=setting))
+        tables.append(gd.paired_tests(ratios * 0, ratios).assign(part=part, setting=setting))
     table = pd.concat(tables, ignore_index=True)
     table[["shift", "low", "high"]] = 100 * np.expm1(table[["shift", "low", "high"]])
     return table
@@ -185,9 +183,10 @@ def _every_table(tests: pd.DataFrame) -> list[str]:
 def main() -> None:
     """Print the tables."""
     walks, faulty, tests = run(GIVEN.data)
-    least = smallest_p(len(PEOPLE))
+    least = gd.signed_rank(np.zeros(len(PEOPLE)), np.arange(1.0, len(PEOPLE) + 1)).p
+    largest = max(count for count in range(1, 100) if gd.holm_sidak([least] + [1.0] * (count - 1)).rejected[0])
     print(f"{walks.strides} strides; energy [W]: {walks.energy_w.mean().round(0).astype(int).to_dict()}")
-    print(f"n = {len(PEOPLE)}: smallest p {least:.4f}, largest family {largest_family(least)} tests")
+    print(f"n = {len(PEOPLE)}: smallest p {least:.4f}, largest family {largest} tests")
     print(f"left out, {len(faulty)} of {len(PEOPLE) * len(_electrodes())} electrodes:")
     print("; ".join(f"{person} {name}: {reason}" for (person, name), reason in faulty.items()))
     print(f"\n{HARDEST} against {EASIEST}:\n\n" + "\n".join(_hardest_table(tests)))

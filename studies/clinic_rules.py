@@ -3,7 +3,8 @@
     python studies/clinic_rules.py [--controls N] [--people N] [--run FOLDER] [--quick]
 
 Made people walk 16 s on a treadmill; cycles are cut of them as of any recording. Controls make the reference. A stiff
-knee bends 20 deg less in swing, a dropped foot hangs by 15 deg (gaitdisc/batch/planted_gait.py).
+knee bends 20 deg less in swing, a dropped foot hangs by 15 deg (gaitdisc/batch/planted_gait.py); children of eight
+walk as adults of their size would, and nothing is to be said of them.
 """
 
 from __future__ import annotations
@@ -23,24 +24,25 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from gaitdisc import PooledCycles
-from gaitdisc.batch.clinic_demonstration import CONDITION, Visit, made_walk
+from gaitdisc.batch.clinic_demonstration import CONDITION, Visit, made_walk, participant_of, person_of
 from gaitdisc.batch.planted_gait import FOUND_AS
 from gaitdisc.clinic.reading import read_beside
 from gaitdisc.clinic.reference import reference_of
-from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
+from gaitdisc.ingest.study import Conditions, PlannedTrial, Study
 from gaitdisc.processing.pooled import pooled_cycles
 from gaitdisc.results.clinical_reference import ClinicalReference
 from gaitdisc.results.provenance import made_now
 from gaitdisc.results.run_store import load_run
 
 CONTROLS_SEED, PEOPLE_SEED = 50_000, 70_000
-KINDS = ("", *FOUND_AS)
+KINDS = ("", *FOUND_AS, "child")
 
 
 def cycles_of(visit: Visit, seed: int) -> PooledCycles:
     """Cycles of one made person."""
-    trials = (PlannedTrial(condition=CONDITION, files=("made",)),)
-    person = Participant(id=visit.name, trials=trials)
+    made = person_of(visit, seed)
+    planned = PlannedTrial(condition=CONDITION, files=("made",), speed_m_per_s=made.speed_m_per_s)
+    person = participant_of(made, (planned,))
     study = Study(title="made", conditions=Conditions(nominal=CONDITION), participants=(person,))
     return pooled_cycles(study, person, lambda _: made_walk(visit, seed))[0]
 
@@ -60,7 +62,7 @@ def row_of(kind: str, reference: ClinicalReference, people: int) -> dict[str, ob
         reading = read_beside(cycles_of(Visit(f"P{k}", number, "", kind, side), PEOPLE_SEED), reference)
         right = [one for one in reading.noted if one.side == side and one.rule == FOUND_AS.get(kind)]
         found += bool(right)
-        other += any(one.side != side or not kind for one in reading.noted)
+        other += any(one.side != side or kind not in FOUND_AS for one in reading.noted)
     return {"planted": kind or "nothing", "pages": people, "found": found, "said elsewhere": other}
 
 

@@ -22,10 +22,14 @@ PICTURES = ("cycles", "discovery", "response", "reconstruction")
 MOST_LINES = 10
 
 
-def scripts(page: Path = DOCS / "library.md") -> dict[str, str]:
-    """Scripts of the page, by the picture that each writes."""
-    blocks = re.findall(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
-    return dict(zip(PICTURES, blocks, strict=True))
+def blocks(page: Path = DOCS / "library.md") -> list[str]:
+    """All code of the page."""
+    return re.findall(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
+
+
+def scripts() -> dict[str, str]:
+    """Scripts of the page that draw, by the picture that each writes."""
+    return {name: block for name in PICTURES for block in blocks() if f'savefig("{name}.png")' in block}
 
 
 def run_script(text: str, folder: Path) -> None:

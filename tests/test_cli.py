@@ -29,3 +29,9 @@ def test_each_command_is_the_file_of_its_name():
 def test_the_help_loads_no_library_that_computes():
     code = "import sys, gaitdisc.cli; print([name for name in ('numpy', 'pandas', 'torch') if name in sys.modules])"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "[]\n"
+
+
+def test_a_refusal_ends_with_its_code(tmp_path):
+    done = called("check", tmp_path / "none")
+    assert done.returncode == 1
+    assert done.stderr.startswith("SchemaError: a study, ") and done.stderr.endswith(". [gd-schema]\n")

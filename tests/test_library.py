@@ -12,6 +12,7 @@ import pytest
 from numpydoc.docscrape import FunctionDoc
 
 import gaitdisc as gd
+from gaitdisc.simulation.parts import Term
 
 SOURCE = Path(gd.__file__)
 MOST_NAMES = 60
@@ -75,3 +76,22 @@ def test_the_reference_shows_every_name_first():
     page = (SOURCE.parents[1] / "docs" / "reference.md").read_text(encoding="utf-8")
     shown = [line.removeprefix("::: gaitdisc.") for line in page.splitlines() if line.startswith("::: gaitdisc.")]
     assert shown[: len(gd.__all__)] == list(gd._HOME)
+
+
+def test_what_a_notebook_shows_is_short_and_names_what_it_is():
+    walk = gd.example_walks(10.0)["nominal"]
+    pendulum = gd.bundled_simulation("pendulum")
+    shown = {
+        "Trial": walk,
+        "Recording": walk.stream("emg"),
+        "Contacts": gd.contacts(walk)["r"],
+        "Strides": gd.cycles(walk),
+        "Inspection": gd.check(walk),
+        "Simulation": pendulum.with_effect(Term("omega", "equation", "viscous_damping", "-0.4*omega")),
+    }
+    for name, thing in shown.items():
+        assert repr(thing).startswith(name) and len(repr(thing)) <= 160 and "\n" not in repr(thing)
+        if name != "Contacts":
+            assert thing._repr_html_().startswith("<table><caption>")
+    assert "viscous_damping at omega" in repr(shown["Simulation"]) and "-0.4*omega" in shown["Simulation"]._repr_html_()
+    assert "green" in repr(shown["Inspection"]) and "<th>emg</th>" in walk._repr_html_()

@@ -2,7 +2,7 @@
 
 import matplotlib.pyplot as plt
 import pytest
-from library_pictures import DOCS, MOST_LINES, PICTURES, run_script, scripts
+from library_pictures import DOCS, MOST_LINES, PICTURES, blocks, run_script, scripts
 
 import gaitdisc as gd
 
@@ -11,6 +11,7 @@ QUICK = ("cycles", "reconstruction")
 
 def test_there_is_a_picture_of_each_and_none_is_long():
     page = (DOCS / "library.md").read_text(encoding="utf-8")
+    assert list(scripts()) == list(PICTURES)
     for name, text in scripts().items():
         assert f"](pictures/{name}.png)" in page and (DOCS / "pictures" / f"{name}.png").is_file()
         assert len([line for line in text.splitlines() if line.strip()]) <= MOST_LINES, name
@@ -27,3 +28,9 @@ def test_a_script_runs_as_it_stands(tmp_path, name, trained_briefly):
     results = [path.parent for path in tmp_path.glob("*/*.json")]
     assert len(results) == (name in ("discovery", "response"))
     assert all(gd.load(folder) for folder in results)
+
+
+def test_a_script_without_a_picture_runs_as_it_stands(tmp_path, capsys):
+    [script] = [block for block in blocks() if block not in scripts().values()]
+    run_script(script, tmp_path)
+    assert "Trial('the table': kinematics 1 at 100 Hz" in capsys.readouterr().out

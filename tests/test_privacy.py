@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import re
 import zipfile
+import zlib
 
 import ezc3d
 import numpy as np
@@ -21,9 +22,27 @@ from gaitdisc.ingest.table import write_table
 pytestmark = pytest.mark.usefixtures("trained_briefly")
 # each is planted in one kind of place, and told from the others if it is found
 TOKENS = (
-    "Zqfolder", "Zqperson", "Zqfile", "Zqheader", "Zqcolumn", "Zqsubject", "Zqmaker", "Zqdescribed", "Zqanalog",
-    "Zqpoint", "Zqevent", "Zqgroup", "Zqtrc", "Zqmarker", "Zqcomment", "Zqcsv", "Zqmeta", "Zqbroken", "Zqhome",
-)  # fmt: skip
+    "Zqfolder",
+    "Zqperson",
+    "Zqfile",
+    "Zqheader",
+    "Zqcolumn",
+    "Zqsubject",
+    "Zqmaker",
+    "Zqdescribed",
+    "Zqanalog",
+    "Zqpoint",
+    "Zqevent",
+    "Zqgroup",
+    "Zqtrc",
+    "Zqmarker",
+    "Zqcomment",
+    "Zqcsv",
+    "Zqmeta",
+    "Zqbroken",
+    "Zqhome",
+)
+OF_A_CLINIC = ("Zqward", "Zqname", "1987-06-05", "19870605", "Zqcontrols")  # fmt: skip
 ANGLES = [f"{joint}_{side}" for side in "rl" for joint in ("hip_flexion", "knee_angle", "ankle_angle")]
 
 
@@ -166,11 +185,18 @@ def found_in(folder):
             with zipfile.ZipFile(path) as packed:
                 content = b"".join([name.encode() + packed.read(name) for name in packed.namelist()])
         pictures = re.findall(rb"base64,([A-Za-z0-9+/=]+)", content)
-        content += b"".join(map(base64.b64decode, pictures))
-        there = planted(str(path.relative_to(folder)) + content.decode("utf-8", "replace"))
+        content += b"".join(map(base64.b64decode, pictures)) + printed(content)
+        there = planted(str(path.relative_to(folder)) + content.decode("utf-8", "replace"), *OF_A_CLINIC)
         if there:
             hits[str(path.relative_to(folder))] = there
     return hits
+
+
+def printed(content):
+    """Text of a PDF, whose strings are broken between letters."""
+    packed = re.findall(rb"stream\r?\n(x.*?)\r?\nendstream", content, re.DOTALL)
+    pages = [zlib.decompressobj().decompress(part) for part in packed]
+    return b"".join(b"".join(re.findall(rb"\(((?:[^()\\]|\\.)*)\)", page)) + b"\n" for page in pages)
 
 
 def test_the_tokens_are_planted(recordings, study):
@@ -254,3 +280,49 @@ def test_an_export_numbers_labels_of_no_vocabulary_unless_it_shall_keep_them(rec
     assert found_in(tmp_path) == {}
     called("export", *files, "--out", tmp_path / f"kept.{ending}", "--labels")
     assert {"Zqcolumn", "Zqmarker"} <= set(found_in(tmp_path)[f"kept.{ending}"])
+
+
+@pytest.fixture(scope="module")
+def clinic(tmp_path_factory):
+    """A week and its controls as a laboratory stores them: names and dates of birth in folders, files and tables."""
+    home = tmp_path_factory.mktemp("clinic")
+    week, controls = home / "Zqfolder_Mustermann" / "Zqward 7", home / "Zqcontrols"
+    people = {week: ("Zqperson Erika_19870605", "Zqperson O'Neil <b>"), controls: ("Zqperson c",)}
+    for seed, (folder, names) in enumerate(people.items(), 1):
+        rows = []
+        for number, name in enumerate(names, 1):
+            rows.append(f"{name}\tZqname, Erika\t1987-06-05\t{30 + number}\tf\t1.70")
+            for session in ("before", "after") if folder == week else ("before",):
+                place = folder / name / session
+                place.mkdir(parents=True)
+                trial = DrivenWalker("A", seed=10 * seed + number).walked(16.0, session)
+                write_mot(trial, place / "Zqfile_natural_ik.mot")
+                write_c3d(trial, place / "Zqfile_natural_emg.c3d")
+        if folder == week:
+            (place / "Zqfile_natural_emg.c3d").write_bytes(b"Zqbroken")
+        head = "participant_id\tname\tbirth_date\tage\tsex\theight"
+        (folder / "participants.tsv").write_text("\n".join([head, *rows]) + "\n")
+    for word, folder in (("week", week), ("controls", controls)):
+        done = called("new", home / "Zqhome" / word, "--from", folder)
+        assert done.exit_code == 0, done.output
+    return home / "Zqhome"
+
+
+def test_pages_of_a_clinic_hold_none_of_them(clinic):
+    text = (clinic / "week" / "study.toml").read_text()
+    assert "age_years = 32" in text and 'id = "P01"' in text and "Zqward" in text
+    reference, run = clinic / "reference", clinic / "week" / "run"
+    for words in (
+        ("reference", clinic / "controls", "--out", reference),
+        ("run", clinic / "week", "--quiet", "--reference", reference),
+        ("report", clinic / "week", "--pdf"),
+        ("report", clinic / "week", "--person", "P01", "--before", "before", "--after", "after"),
+    ):
+        done = called(*words)
+        assert done.exit_code in (0, 3), done.output
+        assert planted(done.output.replace(str(clinic), ""), *OF_A_CLINIC) == [], words
+    pages = {path.name for path in (run / "report").rglob("*") if path.suffix in (".html", ".pdf")}
+    assert {"index.html", "report.html", "P01_before.html", "P01_before.pdf", "P01_before_after.html"} <= pages
+    assert b"controls of the laboratory" in (run / "report" / "people" / "P01_before.html").read_bytes()
+    assert b"What stands out" in printed((run / "report" / "people" / "P01_before.pdf").read_bytes())
+    assert found_in(clinic) == {}

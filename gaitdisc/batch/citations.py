@@ -50,9 +50,16 @@ MENTIONED = {  # a method in words -> the keys of data_schema/methods.bib
     "information criterion": ("schwarz1978",),
     "a term read by regression on a library": ("brunton2016",),
     "spiked samples": ("hampel1974",),
-    "SINDy": ("brunton2016", "fasel2022"),
-    "optimised and bagged dynamic mode decomposition": ("askham2018", "sashidhar2022"),
+    "SINDy": ("brunton2016",),
+    "an ensemble of SINDy": ("fasel2022",),
+    "SINDy in weak form": ("messenger2021",),
+    "exact dynamic mode decomposition": ("tu2014",),
+    "optimised dynamic mode decomposition": ("askham2018",),
+    "optimised dynamic mode decomposition in bags": ("sashidhar2022",),
     "Gaussian processes": ("rasmussen2006",),
+    "a Kalman filter": ("kalman1960",),
+    "an unscented Kalman filter": ("julier2004",),
+    "an ensemble Kalman filter": ("evensen1994", "burgers1998"),
 }
 OF_MODELS = {
     "linear": ("ridge regression",),
@@ -67,7 +74,7 @@ OF_MODELS = {
 DISCREPANCIES = (
     "discrepancies of dynamics and of state",
     "SINDy",
-    "optimised and bagged dynamic mode decomposition",
+    "optimised dynamic mode decomposition",
     "Gaussian processes",
     "networks, fitted with Bayesian regularisation",
 )
@@ -79,7 +86,21 @@ SENSED = (
 TESTED = ("Wilcoxon's signed-rank test", "Holm-Sidak corrections")
 SEARCHED = ("multiple shooting", "information criterion")
 OF_CHAPTERS = {3: DISCREPANCIES, 4: (*RESPONSES, *TESTED), 5: SENSED}
-MORE = {"tables": TESTED, "who_names": SEARCHED}  # of these parts, beside what their chapter cites
+BAGS = ("optimised dynamic mode decomposition in bags",)
+MORE = {  # of these parts, beside what their chapter cites
+    "tables": TESTED,
+    "van_der_pol": BAGS,
+    "lorenz": BAGS,
+    "measurement_bias": (*BAGS, "a Kalman filter", "an unscented Kalman filter"),
+    "who_names": SEARCHED,
+    "further": (
+        "an ensemble of SINDy",
+        "SINDy in weak form",
+        "exact dynamic mode decomposition",
+        "an unscented Kalman filter",
+        "an ensemble Kalman filter",
+    ),
+}
 OF_PARTS = {part.name: (*OF_CHAPTERS[part.chapter], *MORE.get(part.name, ())) for part in PARTS}
 
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from gaitdisc.batch.demonstration import FORCES, write_trial
 from gaitdisc.batch.planted_gait import planted
 from gaitdisc.cohort.measurement import measured
-from gaitdisc.cohort.person import drawn
+from gaitdisc.cohort.person import Person, drawn
 from gaitdisc.cohort.walk import walked
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import write_study
@@ -31,7 +31,8 @@ class Visit:
     number : int
         Of the person, who is drawn by it.
     what, side : str
-        What is planted, and where; empty for a healthy walk, `bad file` for a recording that cannot be read.
+        What is planted, and where; empty for a healthy walk, `bad file` for a recording that cannot be read, `child`
+        for somebody of eight years and that size.
     """
 
     name: str
@@ -50,14 +51,26 @@ WEEK = (
     Visit("P05", 4, "after"),
     Visit("P06", 5, what="bad file"),
     Visit("P07", 6),
+    Visit("P08", 8, what="child"),
 )
+CHILD = {"age_years": 8.0, "height_m": 1.26, "mass_kg": 26.0}
+NO_GAIT = ("bad file", "child")  # planted, but not into the way of walking
+
+
+def person_of(visit: Visit, seed: int) -> Person:
+    """Somebody drawn; a child walks as fast as the grown person of the same draw, for its size (Hof 1996)."""
+    person = drawn(visit.name, seed + visit.number, "fm"[visit.number % 2])
+    if visit.what != "child":
+        return person
+    smaller = (CHILD["height_m"] / person.height_m) ** 0.5
+    return replace(person, **CHILD, speed_m_per_s=smaller * person.speed_m_per_s, stride_s=smaller * person.stride_s)
 
 
 def made_walk(visit: Visit, seed: int) -> Trial:
     """Walk of a visit on a treadmill, measured, with what is planted."""
-    person = drawn(visit.name, seed + visit.number, "fm"[visit.number % 2])
+    person = person_of(visit, seed)
     walk = walked(person, None, WALK_S, seed=seed + 7 * visit.number + len(visit.session))
-    what = "" if visit.what == "bad file" else visit.what
+    what = "" if visit.what in NO_GAIT else visit.what
     return planted(measured(walk, f"{visit.name}_{CONDITION}", CONDITION), what, visit.side)
 
 
@@ -83,13 +96,14 @@ def write_week(
 
 
 def _words(visit: Visit) -> str:
-    if visit.what in ("", "bad file"):
+    if visit.what in ("", *NO_GAIT):
         return visit.what
     return f"{visit.what} {'left' if visit.side == 'l' else 'right'}"
 
 
 def _written(folder: Path, visits: Sequence[Visit], title: str, seed: int, told: Callable[[str], None]) -> Study:
     trials: dict[str, list[PlannedTrial]] = {}
+    people: dict[str, Person] = {}
     sessions = tuple(word for word in ("before", "after") if any(one.session == word for one in visits))
     for visit in visits:
         stem = f"raw/{visit.name}/{visit.session or 'only'}/{CONDITION}"
@@ -98,7 +112,10 @@ def _written(folder: Path, visits: Sequence[Visit], title: str, seed: int, told:
             for file in files:
                 whole = (folder / file).read_bytes()
                 (folder / file).write_bytes(whole[: len(whole) // 3])
-        planned = PlannedTrial(condition=CONDITION, session=visit.session or None, files=files)
+        people[visit.name] = person = person_of(visit, seed)
+        planned = PlannedTrial(
+            condition=CONDITION, session=visit.session or None, files=files, speed_m_per_s=person.speed_m_per_s
+        )
         trials.setdefault(visit.name, []).append(planned)
         told(visit.name)
     study = Study(
@@ -106,7 +123,14 @@ def _written(folder: Path, visits: Sequence[Visit], title: str, seed: int, told:
         sessions=sessions,
         conditions=Conditions(nominal=CONDITION),
         channels={name: f"{name} [N]" for name in FORCES},
-        participants=tuple(Participant(id=name, trials=tuple(own)) for name, own in trials.items()),
+        participants=tuple(participant_of(people[name], tuple(own)) for name, own in trials.items()),
     ).placed(folder)
     write_study(study, folder / "study.toml")
     return study
+
+
+def participant_of(person: Person, trials: tuple[PlannedTrial, ...]) -> Participant:
+    """What a study says of a made person."""
+    return Participant(
+        id=person.name, height_m=round(person.height_m, 3), age_years=int(person.age_years), trials=trials
+    )

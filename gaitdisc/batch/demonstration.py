@@ -7,9 +7,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 from gaitdisc.cohort.cohort import the_twelve, walks_of
+from gaitdisc.cohort.marker_trial import standing
 from gaitdisc.ingest.c3d_writing import write_c3d
 from gaitdisc.ingest.storage import write_storage
-from gaitdisc.ingest.study import Conditions, Models, Participant, PlannedTrial, Study
+from gaitdisc.ingest.study import STATIC, Conditions, Models, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import write_study
 from gaitdisc.recording import Trial
 from gaitdisc.whole_file import write_whole
@@ -26,6 +27,7 @@ def write_demonstration(
     people: int = 12,
     hidden: str = "spring",
     told: Callable[[str, float], None] = lambda *_: None,
+    markers: bool = False,
 ) -> Study:
     """Let the cohort walk and write the recordings, the study file, and apart from them the truth.
 
@@ -35,6 +37,8 @@ def write_demonstration(
         Length of each walk [s]; the dissertation's is 240.
     told : callable
         Called with a pseudonym and 1.0 when that person has walked.
+    markers : bool
+        Whether the laboratory gives markers, belts and a static trial in place of joint angles.
 
     Returns
     -------
@@ -43,22 +47,28 @@ def write_demonstration(
     """
     participants = []
     for person in the_twelve()[:people]:
-        walks = walks_of(person, duration_s, hidden)
+        walks = walks_of(person, duration_s, hidden, markers)
+        write = write_marker_trial if markers else write_trial
         planned = tuple(
             PlannedTrial(
                 condition=word,
-                files=write_trial(trial, folder, f"raw/{person.name}/{word}"),
+                files=write(trial, folder, f"raw/{person.name}/{word}"),
                 speed_m_per_s=person.speed_m_per_s,
             )
             for word, trial in walks.trials.items()
         )
-        participants.append(Participant(id=person.name, trials=planned))
+        if markers:
+            files = write_marker_trial(standing(person), folder, f"raw/{person.name}/static")
+            planned = (PlannedTrial(condition=STATIC, files=files), *planned)
+        participants.append(
+            Participant(id=person.name, mass_kg=round(person.mass_kg, 1) if markers else None, trials=planned)
+        )
         write_whole(folder / "truth" / f"{person.name}.json", json.dumps(walks.truth, indent=1))
         told(person.name, 1.0)
     study = Study(
         title=f"Demonstration: {people} of the embedded cohort, hidden effect: {hidden}",
         conditions=Conditions(nominal="nominal", device="exo"),
-        channels={name: f"{name} [N]" for name in FORCES},
+        channels={} if markers else {name: f"{name} [N]" for name in FORCES},
         models=Models(emg=tuple(f"emg_{muscle}_{side}" for side in "rl" for muscle in MUSCLES), outputs=OUTPUTS),
         participants=tuple(participants),
     ).placed(folder)
@@ -73,3 +83,11 @@ def write_trial(trial: Trial, folder: Path, stem: str) -> tuple[str, ...]:
     write_storage(trial.stream("kinematics"), folder / angles)
     write_c3d((trial.stream("emg"), trial.stream("forces")), folder / analog)
     return names
+
+
+def write_marker_trial(trial: Trial, folder: Path, stem: str) -> tuple[str, ...]:
+    """Write markers, EMG and belts as one C3D file."""
+    name = f"{stem}.c3d"
+    (folder / name).parent.mkdir(parents=True, exist_ok=True)
+    write_c3d([stream for key, stream in trial.streams.items() if key != "kinematics"], folder / name, trial.surfaces)
+    return (name,)

@@ -180,7 +180,7 @@ def public_settings(study: Study, include: set[str] | None = None) -> dict[str, 
     elif settings.get("kinematics", {}).get("marker_set", "").endswith(".toml"):
         settings["kinematics"]["marker_set"] = "a file of the laboratory"
     for participant in settings.get("participants", ()):
-        for measured in ("mass_kg", "sex"):  # of the person, and in no result
+        for measured in ("mass_kg", "height_m", "sex", "age_years"):  # of the person, and no setting
             del participant[measured]
         for trial in participant["trials"]:
             trial["files"] = len(trial["files"])

@@ -26,7 +26,7 @@ def unit_keys(study: Study, participant: Participant) -> dict[str, str]:
 
 def person_key(study: Study, participant: Participant) -> str:
     """What the study says of a person's body, and the bytes of its marker-set file."""
-    said = f"{participant.mass_kg} {participant.height_m} {participant.sex}"
+    said = f"{participant.mass_kg} {participant.height_m} {participant.sex} {participant.age_years}"
     named = study.kinematics.marker_set if study.kinematics else ""
     own = named.endswith(".toml") and study.path_of(named).is_file()
     return f"{said} {file_sha256(study.path_of(named))}" if own else said

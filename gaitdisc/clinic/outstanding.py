@@ -14,7 +14,10 @@ from gaitdisc.results.leg_curves import LegCurves
 
 
 def outstanding(
-    legs: Mapping[str, LegCurves], reference: Sequence[ReferenceLeg], table: Sequence[Rule] | None = None
+    legs: Mapping[str, LegCurves],
+    reference: Sequence[ReferenceLeg],
+    table: Sequence[Rule] | None = None,
+    of_values: Sequence[ReferenceLeg] = (),
 ) -> tuple[tuple[Noted, ...], str]:
     """Every number that a rule takes of a person's legs, those that stand out first; and why there is none.
 
@@ -22,12 +25,15 @@ def outstanding(
     ----------
     table : sequence of Rule, optional
         Those of `rules.toml` where none are given.
+    of_values : sequence of ReferenceLeg
+        Controls for spatiotemporal values, where they are others than those for curves.
     """
     people = len({leg.person for leg in reference})
     if people < FEWEST:
         count = f"{people} people" if people != 1 else "1 person"
         return (), f"limits need a reference of {FEWEST} people or more; it has {count} who walked so"
-    known = [(rule, values) for rule in table or rules() if (values := _of_reference(rule, reference)) is not None]
+    sets = [(rule, of_values or reference if rule.value else reference) for rule in table or rules()]
+    known = [(rule, values) for rule, own in sets if (values := _of_reference(rule, own)) is not None]
     numbers = [
         (rule, values, leg, number)
         for rule, values in known

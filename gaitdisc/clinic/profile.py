@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.clinic.reference import bands
-from gaitdisc.results.clinical_reading import Profile, Score
+from gaitdisc.results.clinical_reading import Band, Profile, Score
 from gaitdisc.results.clinical_reference import ReferenceLeg
 from gaitdisc.results.clinical_variables import PELVIS, PROFILE
 from gaitdisc.results.leg_curves import FEET, TURNED_DEG, LegCurves
@@ -39,7 +39,9 @@ def profile_score(scores: Sequence[float]) -> float:
     return float(np.sqrt(np.mean(np.square(scores))))
 
 
-def profile_of(legs: Mapping[str, LegCurves], reference: Sequence[ReferenceLeg]) -> tuple[Profile | None, str]:
+def profile_of(
+    legs: Mapping[str, LegCurves], reference: Sequence[ReferenceLeg], published: Mapping[str, Band] | None = None
+) -> tuple[Profile | None, str]:
     """Profile of a person beside a reference, or why there is none.
 
     The score of a leg is over nine curves; the one of both is over fifteen: nine of the left leg, six of the right,
@@ -55,7 +57,7 @@ def profile_of(legs: Mapping[str, LegCurves], reference: Sequence[ReferenceLeg])
             f"the pelvis turns by {turned:.0f} deg in a cycle: its rotation and the foot's progression, two of the "
             f"nine curves, are about a straight line of walking"
         )
-    known = bands(reference)
+    known = published or bands(reference)
     lacking = [name for name in PROFILE if name not in known]
     if lacking:
         return None, f"the reference lacks {', '.join(lacking).replace('_', ' ')} of two people or more"
@@ -65,7 +67,7 @@ def profile_of(legs: Mapping[str, LegCurves], reference: Sequence[ReferenceLeg])
         return None, f"the recording lacks {names}; the score is over nine curves"
     means = {name: known[name].mean for name in PROFILE}
     spread = _own_spread(reference)
-    people = len({leg.person for leg in reference})
+    people = max(known[name].people for name in PROFILE)
     variables, whole = {}, {}
     for side, leg in legs.items():
         if absent[side]:

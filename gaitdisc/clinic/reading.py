@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from gaitdisc.clinic.consistency import multiple_correlation
 from gaitdisc.clinic.deviation_index import deviation_index
+from gaitdisc.clinic.like_controls import like_controls, like_published
 from gaitdisc.clinic.outstanding import outstanding
 from gaitdisc.clinic.profile import profile_of
 from gaitdisc.clinic.reference import bands, spatiotemporal_limits
@@ -17,17 +18,21 @@ from gaitdisc.results.leg_curves import FEET, LegCurves, legs_of
 FEW = 3  # cycles of a leg below which a mean is that of single steps
 NO_REFERENCE = "there is no reference: gaitdisc reference makes one of the laboratory's own controls"
 NO_CYCLE = "no cycle is kept"
+NO_LEGS = "a published reference has means and spreads, no single legs to take limits from"
 SIDES = {"l": "left", "r": "right"}
 
 
 def read_beside(pooled: PooledCycles, reference: ClinicalReference | None) -> ClinicalReading:
     """Read the cycles of one person, session and condition beside the controls who walked so."""
     legs = legs_of(pooled)
+    if reference is not None and reference.published and legs:
+        return _beside_published(pooled, legs, reference)
     controls = reference.of(pooled.condition) if reference else ()
     why = "" if controls else NO_REFERENCE if reference is None else _not_so(reference, pooled.condition)
     why = why if legs else NO_CYCLE
-    numbers, silent = ((), why) if why else outstanding(legs, controls)
-    profile, no_profile = (None, why) if why else profile_of(legs, controls)
+    like = like_controls(controls, tuple(legs.values()), pooled.leg_m, pooled.age_years)
+    numbers, silent = ((), why) if why else outstanding(legs, like.curves, of_values=like.values)
+    profile, no_profile = (None, why) if why else profile_of(legs, like.curves)
     index, no_index = ({}, why) if why else deviation_index(legs, controls)
     light, reasons = light_of(pooled, legs)
     return ClinicalReading(
@@ -42,9 +47,21 @@ def read_beside(pooled: PooledCycles, reference: ClinicalReference | None) -> Cl
         index,
         no_index,
         consistency_of(legs),
-        bands(controls),
-        spatiotemporal_limits(controls),
+        bands(like.curves),
+        spatiotemporal_limits(like.values),
+        () if why else like.words,
     )
+
+
+def _beside_published(
+    pooled: PooledCycles, legs: dict[str, LegCurves], reference: ClinicalReference
+) -> ClinicalReading:
+    """Reading beside means and spreads alone: bands and scores, no limits."""
+    group, words = like_published(reference.published, tuple(legs.values()), pooled.leg_m)
+    profile, no_profile = profile_of(legs, (), group.bands)
+    known, lights = (profile, no_profile, {}, NO_LEGS), light_of(pooled, legs)
+    shown = (consistency_of(legs), group.bands, {}, (f"Published: {reference.title}.", words))
+    return ClinicalReading(pooled, legs, *lights, (), NO_LEGS, *known, *shown)
 
 
 def consistency_of(legs: dict[str, LegCurves]) -> dict[tuple[str, str], float]:

@@ -32,7 +32,7 @@ def reference_of(cycles: Sequence[PooledCycles], title: str, provenance: Provena
             continue
         seen.add((pooled.subject, pooled.condition))
         number = numbers.setdefault(pooled.subject, len(numbers) + 1)
-        legs.setdefault(pooled.condition, []).extend(_reference_leg(number, leg) for leg in found.values())
+        legs.setdefault(pooled.condition, []).extend(_reference_leg(number, pooled, leg) for leg in found.values())
     if not legs:
         raise SchemaError(
             "a reference needs kept cycles of controls",
@@ -44,10 +44,11 @@ def reference_of(cycles: Sequence[PooledCycles], title: str, provenance: Provena
     return ClinicalReference(title, kept, settings, provenance.versions, provenance.created)
 
 
-def _reference_leg(number: int, leg: LegCurves) -> ReferenceLeg:
+def _reference_leg(number: int, pooled: PooledCycles, leg: LegCurves) -> ReferenceLeg:
     curves = {name: leg.mean(name) for name in leg.cycles}
     values = {name: float(each.mean()) for name, each in leg.values.items()}
-    return ReferenceLeg(number, leg.side, leg.count, leg.stance_percent, curves, values)
+    own = (leg.side, leg.count, leg.stance_percent, curves, values, pooled.leg_m, pooled.age_years)
+    return ReferenceLeg(number, *own)
 
 
 def bands(legs: Sequence[ReferenceLeg]) -> dict[str, Band]:

@@ -176,16 +176,22 @@ def joint_moments(
     ndarray (phase, 3) [N m]
         Hip and knee towards flexion, ankle towards dorsiflexion.
     """
-    rate, speedup = cycle_rate(psi, step_s), cycle_rate(psi, step_s, 2)
-    m, b, q = np.empty((3, 3)), np.empty(3), np.zeros(3)
-    found = np.empty((len(psi), 3))
+    return _needed(leg, psi, cycle_rate(psi, step_s), cycle_rate(psi, step_s, 2), hip, ground)
+
+
+@compiled
+def _needed(leg, psi, rate, speedup, hip, ground):
+    m, b, q, found = np.empty((3, 3)), np.empty(3), np.empty(3), np.empty((len(psi), 3))
     for sample in range(len(psi)):
         inertia(leg, psi[sample], m)
         bias(leg, psi[sample], rate[sample], hip[sample, 0], hip[sample, 1], b)
         q[:] = 0.0
         moved_by_ground(leg, psi[sample], ground[sample, :2], ground[sample, 2:], q)
-        need = m @ speedup[sample] + b - q
-        found[sample] = need[0] + need[1] + need[2], -need[1] - need[2], need[2]
+        for link in range(3):
+            b[link] -= q[link]
+            for other in range(3):
+                b[link] += m[link, other] * speedup[sample, other]
+        found[sample, 0], found[sample, 1], found[sample, 2] = b[0] + b[1] + b[2], -b[1] - b[2], b[2]
     return found
 
 

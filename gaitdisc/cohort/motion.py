@@ -1,9 +1,10 @@
 """Step by step through time: both legs on the belt, the phase, the pelvis. Compiled, and kept compiled.
 
-Semi-implicit Euler at 0.5 ms. Per leg: three links with their equations of motion; seven muscles with activation
-dynamics; other actuators behind a lag; impedance about the habit, firmer under load; a reflex through a lag; the
-ground; the spring. The pelvis moves as a mass on soft springs under what the ground gives beyond the habit, and so
-couples the legs. The phase runs at the habitual pace, unsteadily, and a leg that is ahead of its habit hurries it.
+Semi-implicit Euler at 0.5 ms. Per leg: three links with their equations of motion; nine muscle groups with activation
+dynamics, force-velocity and arms; what they leave of the moments, behind a lag; impedance about the habit, firmer under
+load; a reflex through a lag, on the muscles; the ground; the spring. The pelvis moves as a mass on soft springs under
+what the ground gives beyond the habit, and so couples the legs. The phase runs at the habitual pace, unsteadily, and a
+leg that is ahead of its habit hurries it.
 """
 
 from __future__ import annotations
@@ -25,12 +26,14 @@ HIP_LEVER_M = 0.09  # of the vertical force about the hip, in the frontal plane
 KNEE_TURNS_HIP = 0.4  # N m s/rad
 NOISE_STEPS = 10  # noise is drawn at 200 Hz and interpolated
 EVERY_MS, EVERY_TEN_MS = 2, 20
-PER_LEG_NOISE = 19  # three moments, two angles of the hip, seven muscles fast, seven slow
+MUSCLES_A_LEG = 9
+SLOW_MUSCLES = 5 + MUSCLES_A_LEG
+PER_LEG_NOISE = SLOW_MUSCLES + MUSCLES_A_LEG  # three moments, two angles of the hip, muscles fast, muscles slow
 PACE_NOISE = 2 * PER_LEG_NOISE  # two more channels: the pace, fast and slow
 WANDER = PACE_NOISE + 2
 NOISE = WANDER + 1
-# quick: phase, force right x y, left x y, excitation right 7, left 7
-QUICK = 1 + 4 + 14
+# quick: phase, force right x y, left x y, excitation right 9, left 9
+QUICK = 1 + 4 + 2 * MUSCLES_A_LEG
 # slow: phase, psi (2, 3), adduction and rotation (2, 2), moments (2, 3), spring (2), slip (2), pelvis x y,
 # second derivative of psi (2, 3)
 SLOW = 1 + 6 + 4 + 6 + 2 + 2 + 2 + 6
@@ -109,14 +112,14 @@ def moved(leg, strength, belt, loop, worn, tables, noise):  # noqa: PLR0912, PLR
     phases = tables.shape[2] - 1
     quick, slow = np.zeros((steps // EVERY_MS, QUICK)), np.zeros((steps // EVERY_TEN_MS, SLOW))
     psi, rate, speedup = np.empty((2, 3)), np.empty((2, 3)), np.zeros((2, 3))
-    activation, excitation = np.empty((2, 7)), np.empty((2, 7))
+    activation, excitation = np.empty((2, MUSCLES_A_LEG)), np.empty((2, MUSCLES_A_LEG))
     others, reflex = np.empty((2, 3)), np.zeros((2, 3))
     side, side_rate = np.empty((2, 2)), np.empty((2, 2))
     carried, slip, spring = np.zeros(2), np.zeros(2), np.zeros(2)
     standing = np.zeros(2, np.bool_)
     pelvis, pelvis_rate, pelvis_speedup, pelvis_push = np.zeros(2), np.zeros(2), np.zeros(2), np.zeros(2)
     row, rattle = np.empty((2, COLUMNS.width)), np.empty(NOISE)
-    joint_rate, moments, kept = np.empty(3), np.empty(3), np.empty((2, 3))
+    joint, joint_rate, moments, kept = np.empty(3), np.empty(3), np.empty(3), np.empty((2, 3))
     m, b, q, force, arm = np.empty((3, 3)), np.empty(3), np.empty(3), np.empty((2, 2)), np.empty(2)
     phase, pace = 0.0, 1.0 / worn.stride_s
     for step in range(steps):
@@ -136,7 +139,7 @@ def moved(leg, strength, belt, loop, worn, tables, noise):  # noqa: PLR0912, PLR
                     psi[s, j] = row[s, COLUMNS.psi + j]
                     rate[s, j] = row[s, COLUMNS.turning + j] * pace
                     others[s, j] = row[s, COLUMNS.others + j]
-                for muscle in range(7):
+                for muscle in range(MUSCLES_A_LEG):
                     activation[s, muscle] = row[s, COLUMNS.excitation + muscle]
                 for j in range(2):
                     side[s, j] = row[s, COLUMNS.side + j]
@@ -172,26 +175,27 @@ def moved(leg, strength, belt, loop, worn, tables, noise):  # noqa: PLR0912, PLR
                 moments[j] += (1.0 + 0.5 * firm) * loop.damping[j] * slow_by
                 moments[j] += loop.moment_noise[j] * rattle[base + j]
                 reflex[s, j] += (loop.reflex * behind - reflex[s, j]) * STEP_S / loop.reflex_lag_s
-            # muscles, and the actuators that no electrode sees
-            for muscle in range(7):
+            # muscles, and what they leave of the moments
+            for muscle in range(MUSCLES_A_LEG):
                 u = row[s, COLUMNS.excitation + muscle]
                 u *= (
                     1.0
                     + loop.muscle_noise[0] * rattle[base + 5 + muscle]
-                    + loop.muscle_noise[1] * rattle[base + 12 + muscle]
+                    + loop.muscle_noise[1] * rattle[base + SLOW_MUSCLES + muscle]
                 )
                 for j in range(3):
-                    take = strength.take_up[muscle, j] if reflex[s, j] > 0 else strength.take_down[muscle, j]
+                    take = strength[s].take_up[muscle, j] if reflex[s, j] > 0 else strength[s].take_down[muscle, j]
                     u += take * reflex[s, j]
                 u = min(MOST, max(LEAST, u))
                 excitation[s, muscle] = u
                 activation[s, muscle] = activated(u, activation[s, muscle], STEP_S)
-            muscle_moments(strength, activation[s], joint_rate, moments)
+            joint[0], joint[1], joint[2] = psi[s, 0], psi[s, 0] - psi[s, 1], psi[s, 2] - psi[s, 1]
+            muscle_moments(strength[s], activation[s], joint, joint_rate, moments)
             for j in range(3):
                 taken = 0.0
-                for muscle in range(7):
-                    take = strength.take_up[muscle, j] if reflex[s, j] > 0 else strength.take_down[muscle, j]
-                    taken += take * strength.reach[muscle, j]
+                for muscle in range(MUSCLES_A_LEG):
+                    take = strength[s].take_up[muscle, j] if reflex[s, j] > 0 else strength[s].take_down[muscle, j]
+                    taken += take * strength[s].reach[muscle, j]
                 want = row[s, COLUMNS.others + j] + (1.0 - taken) * reflex[s, j]
                 others[s, j] += (want - others[s, j]) * STEP_S / LAG_S
                 moments[j] += others[s, j]
@@ -248,7 +252,7 @@ def moved(leg, strength, belt, loop, worn, tables, noise):  # noqa: PLR0912, PLR
                 )
                 effort += loop.moment_noise[3 + j] * rattle[base + 3 + j]
                 if j == 0:
-                    effort -= strength.abduction * (activation[s, 6] - row[s, COLUMNS.gmed])
+                    effort -= strength[s].abduction * (activation[s, 6] - row[s, COLUMNS.gmed])
                     effort += HIP_LEVER_M * (force[s, 1] - row[s, COLUMNS.force + 1])
                 else:
                     knee = (row[s, COLUMNS.turning] - row[s, COLUMNS.turning + 1]) * pace
@@ -261,8 +265,8 @@ def moved(leg, strength, belt, loop, worn, tables, noise):  # noqa: PLR0912, PLR
             quick[n, 0] = phase
             for s in range(2):
                 quick[n, 1 + 2 * s], quick[n, 2 + 2 * s] = force[s, 0], force[s, 1]
-                for muscle in range(7):
-                    quick[n, 5 + 7 * s + muscle] = excitation[s, muscle]
+                for muscle in range(MUSCLES_A_LEG):
+                    quick[n, 5 + MUSCLES_A_LEG * s + muscle] = excitation[s, muscle]
         if step % EVERY_TEN_MS == 0:
             n = step // EVERY_TEN_MS
             slow[n, 0] = phase

@@ -11,10 +11,46 @@ from gaitdisc.cohort.device import Spring
 
 JOINTS = ("hip_flexion", "hip_adduction", "hip_rotation", "knee_angle", "ankle_angle")
 MUSCLES = ("emg_ham", "emg_rf", "emg_vas", "emg_gas", "emg_sol", "emg_ta", "emg_gmed")
+GROUPS = (*MUSCLES, "iliopsoas", "gluteus_maximus")  # the last two carry no electrode
+SYNERGIES = 5  # loading, mid-stance, push-off, early swing, late swing (Ivanenko et al. 2004)
+# how differently people use a muscle, logarithmic standard deviation: least in distal muscles of one joint, most in
+# proximal ones and those of two joints (Winter and Yack 1987)
+APART = (0.45, 0.35, 0.25, 0.22, 0.10, 0.15, 0.30, 0.30, 0.40)
+PEAK = np.array([0.45, 0.22, 0.22, 0.45, 0.5, 0.45, 0.45, 0.5, 0.35])  # of activation in walking, for what rests
+# effort that a muscle costs: more in those of two joints, which do at one of them what others have to undo
+DEAR = np.array([2.0, 4.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0])
+DEAR_APART = np.array([0.9, 0.4, 0.3, 0.15, 0.1, 0.1, 0.1, 0.3, 0.9])  # logarithmic standard deviation between people
 HARMONICS = 4
 LEG_OF_HEIGHT = 0.530
 STANCE, STANCE_SPREAD = 0.607, 0.012  # of adults 60 to 62 % (Perry); of the children 59 (Schwartz et al. 2008)
 CADENCE, CADENCE_SPEED = 0.565, 0.429  # steps and speed, dimensionless, of Schwartz et al. (2008), Free
+
+
+@dataclass(frozen=True)
+class Bump:
+    """A change of one joint's habit over part of the stride, as a raised cosine.
+
+    Parameters
+    ----------
+    side, joint : int
+        Leg (0 right), column of `JOINTS`.
+    centre, half_width : float
+        Shares of the stride; wider than a stride is a constant.
+    degrees : float
+        At the centre.
+    """
+
+    side: int
+    joint: int
+    centre: float
+    half_width: float
+    degrees: float
+
+    def at(self, phase: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Change at phases of the stride [deg]."""
+        apart = np.abs(np.mod(phase - self.centre + 0.5, 1.0) - 0.5) / self.half_width
+        shape = np.cos(0.5 * np.pi * np.minimum(apart, 1.0)) ** 2
+        return self.degrees * (np.ones_like(shape) if self.half_width > 1.0 else shape)
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,14 +65,48 @@ class Style:
         Constant shift of what is measured: where the markers sit.
     wave_deg : ndarray (side, joint, harmonic, 2) [deg]
         Cosine and sine of the first harmonics on top.
-    strength : ndarray (side, muscle)
-        Factor on each muscle's excitation.
+    strength : ndarray (side, group)
+        How strong each muscle group is, against others of that body mass.
+    recruitment : Recruitment
+        How the muscles are habitually used.
+    bumps : tuple of Bump
+        Changes of the habit that make a gait pattern of the clinic.
     """
 
     size: NDArray[np.float64]
     offset_deg: NDArray[np.float64]
     wave_deg: NDArray[np.float64]
     strength: NDArray[np.float64]
+    recruitment: Recruitment
+    bumps: tuple[Bump, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Recruitment:
+    """How a person habitually uses the muscles, before what the moments demand.
+
+    Parameters
+    ----------
+    delay : ndarray (side, synergy) [share of a stride]
+        By which each synergy is late.
+    weight : ndarray (side, group, synergy)
+        Factor on each muscle's part in each synergy.
+    width : ndarray (group,)
+        Factor on how long the bursts last.
+    rest : ndarray (group,)
+        Excitation between bursts, of 1 at the largest effort.
+    dear : ndarray (group,)
+        Effort that each muscle costs in static optimisation, against others: what people share out differently.
+    cocontraction : float
+        Factor on all habitual activity: what exceeds the demand is co-contraction.
+    """
+
+    delay: NDArray[np.float64]
+    weight: NDArray[np.float64]
+    width: NDArray[np.float64]
+    rest: NDArray[np.float64]
+    dear: NDArray[np.float64]
+    cocontraction: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,8 +119,8 @@ class Adaptation:
         Share of the spring's moment that the commands allow for.
     habit_deg : ndarray (side, joint, harmonic, 2) [deg]
         Change of the habit, cosine and sine of the first harmonics.
-    effort : ndarray (muscle,)
-        Relative change of each muscle's excitation.
+    effort : ndarray (group,)
+        Relative change of each muscle's habitual excitation.
     """
 
     relief: float
@@ -157,11 +227,11 @@ def drawn(name: str, seed: int, sex: str) -> Person:
         float(speed),
         float(2 / cadence * np.sqrt(leg / 9.81)),
         float(-1.0 + 1.5 * _held(rng)),
-        _style(rng),
+        _style(rng, np.random.default_rng([seed, 15])),
         Adaptation(
-            float(np.clip(0.55 + 0.2 * _held(rng), 0.1, 0.95)),
+            float(np.clip(0.40 + 0.15 * _held(rng), 0.05, 0.95)),
             _waves(rng, 0.9, 0.3),
-            np.clip(0.10 * rng.normal(size=len(MUSCLES)), -0.25, 0.25),
+            np.clip(0.10 * rng.normal(size=len(GROUPS)), -0.25, 0.25),
         ),
         _waves(rng, 0.15, 0.06),
         float(np.clip(1 + 0.15 * _held(rng), 0.7, 1.3)),
@@ -174,12 +244,25 @@ def _held(rng: np.random.Generator) -> float:
     return float(np.clip(rng.normal(), -2.0, 2.0))
 
 
-def _style(rng: np.random.Generator) -> Style:
+def _style(rng: np.random.Generator, muscles: np.random.Generator) -> Style:
     common = rng.normal(size=len(JOINTS)) * (3.0, 1.2, 3.0, 2.0, 1.8)
     sides = rng.normal(size=(2, len(JOINTS))) * (0.8, 0.6, 1.2, 0.8, 0.8)
-    strength = np.exp(0.12 * rng.normal(size=len(MUSCLES)) + 0.08 * rng.normal(size=(2, len(MUSCLES))))
+    groups = len(GROUPS)
+    strength = np.exp(0.12 * muscles.normal(size=groups) + 0.04 * muscles.normal(size=(2, groups)))
     size = np.clip(1 + rng.normal(size=len(JOINTS)) * (0.03, 0.15, 0.15, 0.05, 0.08), 0.7, 1.3)
-    return Style(size, common + sides, _waves(rng, 0.6, 0.3), strength)
+    return Style(size, common + sides, _waves(rng, 0.6, 0.3), strength, _recruitment(muscles))
+
+
+def _recruitment(rng: np.random.Generator) -> Recruitment:
+    apart = np.array(APART)[:, None]
+    shape = (len(GROUPS), SYNERGIES)
+    delay = np.clip(0.020 * rng.normal(size=SYNERGIES) + 0.006 * rng.normal(size=(2, SYNERGIES)), -0.05, 0.05)
+    weight = np.exp(apart * (0.9 * rng.normal(size=shape) + 0.3 * rng.normal(size=(2, *shape))))
+    width = np.clip(1 + 0.10 * rng.normal(size=len(GROUPS)), 0.75, 1.25)
+    rest = PEAK * rng.uniform(0.02, 0.05, len(GROUPS))
+    cocontraction = float(np.exp(0.25 * _held(rng)))
+    dear = DEAR * np.exp(DEAR_APART * rng.normal(size=len(GROUPS)))
+    return Recruitment(delay, weight, width, rest, dear, cocontraction)
 
 
 def _waves(rng: np.random.Generator, both: float, side: float) -> NDArray[np.float64]:

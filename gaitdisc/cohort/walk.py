@@ -11,9 +11,20 @@ from gaitdisc.cohort.body import LEG_OF_HEIGHT, leg_of
 from gaitdisc.cohort.controller import learnt_table
 from gaitdisc.cohort.device import FOOT_KG, SHANK_KG, Spring
 from gaitdisc.cohort.ground import Belt
-from gaitdisc.cohort.motion import NOISE, NOISE_STEPS, PACE_NOISE, PER_LEG_NOISE, STEP_S, WANDER, Loop, Worn, moved
+from gaitdisc.cohort.motion import (
+    NOISE,
+    NOISE_STEPS,
+    PACE_NOISE,
+    PER_LEG_NOISE,
+    SLOW_MUSCLES,
+    STEP_S,
+    WANDER,
+    Loop,
+    Worn,
+    moved,
+)
 from gaitdisc.cohort.muscles import strength_of
-from gaitdisc.cohort.person import MUSCLES, Person
+from gaitdisc.cohort.person import GROUPS, MUSCLES, Person
 from gaitdisc.errors import StrideError
 
 WARM_UP_S = 8.0  # walked before the recording begins
@@ -41,8 +52,8 @@ class TrueWalk:
         Of the right foot, counted on; a whole number is a contact. The left foot is half a stride off.
     force : ndarray (quick, 2, 2) [N]
         Side; forwards, upwards.
-    excitation : ndarray (quick, 2, 7) [1]
-        Side; muscle in the order of `MUSCLES`.
+    excitation : ndarray (quick, 2, 9) [1]
+        Side; muscle group in the order of `GROUPS`, those with electrodes first.
     angles : ndarray (slow, 2, 5) [deg]
         Side; joint in the order of `JOINTS`.
     moments : ndarray (slow, 2, 3) [N m]
@@ -53,13 +64,15 @@ class TrueWalk:
         Speed forwards of the foot's point under the pressure; minus the belt's speed where the foot stands.
     acceleration : ndarray (slow, 2, 3) [deg/s2]
         Side; hip, knee, ankle.
+    pelvis : ndarray (slow, 2) [m]
+        Forwards, upwards: how far the pelvis is from its habitual path.
 
     Examples
     --------
     >>> from gaitdisc.cohort.person import drawn
     >>> walk = walked(drawn("W01", 1, "f"), None, 5.0, seed=3)
     >>> walk.angles.shape, walk.excitation.shape
-    ((500, 2, 5), (5000, 2, 7))
+    ((500, 2, 5), (5000, 2, 9))
     """
 
     person: Person
@@ -75,6 +88,7 @@ class TrueWalk:
     spring: NDArray[np.float64] = field(repr=False)
     sole: NDArray[np.float64] = field(repr=False)
     acceleration: NDArray[np.float64] = field(repr=False)
+    pelvis: NDArray[np.float64] = field(repr=False)
 
     def contacts(self, side: int = 0) -> NDArray[np.float64]:
         """Times at which a foot meets the belt, from the phase itself [s]."""
@@ -133,16 +147,16 @@ def walked(person: Person, device: Spring | None, duration_s: float, seed: int) 
     """
     device = device or Spring(0.0)
     leg = leg_of(person.height_m, person.mass_kg, person.foot_kg)
-    strength = strength_of(person.mass_kg)
-    weak = strength.reach.copy()
-    weak[[MUSCLES.index("emg_gas"), MUSCLES.index("emg_sol")], 2] *= person.plantarflexors
+    strengths = [strength_of(person.mass_kg, person.style.strength[side]) for side in (0, 1)]
+    for strength in strengths:
+        strength.reach[[MUSCLES.index("emg_gas"), MUSCLES.index("emg_sol")], 2] *= person.plantarflexors
     engaged = np.radians(person.engaged_deg + device.slack_deg)
     worn = Worn(float(np.degrees(device.stiffness)), float(engaged), person.speed_m_per_s, person.stride_s)
     tables = np.stack(
         [np.stack([learnt_table(person, side, drifted) for side in (0, 1)]) for drifted in (0.0, CHANGE_SIZE)]
     )
     noise = _noise(person, device, duration_s + WARM_UP_S, seed)
-    quick, slow, upright = moved(leg, strength._replace(reach=weak), Belt(), _loop(person), worn, tables, noise)
+    quick, slow, upright = moved(leg, tuple(strengths), Belt(), _loop(person), worn, tables, noise)
     if not upright:
         raise StrideError(
             "a walk needs legs that stay under the body",
@@ -184,7 +198,7 @@ def _noise(person: Person, device: Spring, duration_s: float, seed: int) -> NDAr
     for side in range(2):
         own = colours[side * PER_LEG_NOISE : (side + 1) * PER_LEG_NOISE]
         own[:5] = MOMENT_NOISE_S
-        own[5:12], own[12:] = MUSCLE_NOISE_S
+        own[5:SLOW_MUSCLES], own[SLOW_MUSCLES:] = MUSCLE_NOISE_S
     colours[PACE_NOISE : PACE_NOISE + 2] = PACE_NOISE_S
     colours[WANDER] = DRIFT_S
     found = np.empty((count, NOISE))
@@ -216,10 +230,11 @@ def _kept(person: Person, device: Spring, seed: int, quick: NDArray[np.float64],
         np.arange(len(slow)) / SLOW_HZ,
         quick[:, 0],
         quick[:, 1:5].reshape(-1, 2, 2),
-        quick[:, 5:19].reshape(-1, 2, 7),
+        quick[:, 5:].reshape(-1, 2, len(GROUPS)),
         np.degrees(np.stack(flexion, axis=2)),
         slow[:, 11:17].reshape(-1, 2, 3),
         slow[:, 17:19],
         slow[:, 19:21],
         np.degrees(np.stack(joints, axis=2)),
+        slow[:, 21:23],
     )

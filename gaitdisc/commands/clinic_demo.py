@@ -16,7 +16,7 @@ def clinic_demo(folder: Path, jobs: int, quiet: bool) -> None:
     from gaitdisc.commands.clinic_pages import keep_reference, write_people
     from gaitdisc.results.clinical_reference import save_reference
 
-    typer.echo("20 controls and a week of 7 people walk 16 s each: simulated, no people.")
+    typer.echo("20 controls and a week of 8 people, one of them a child, walk 16 s each: simulated, no people.")
     controls, week, planted = write_week(folder, told=lambda who: typer.echo(f"  {who}", err=True, nl=not quiet))
     workers = Workers(jobs)
     own = run_study(controls, controls.folder / "run", workers)

@@ -6,32 +6,77 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gaitdisc.errors import GaitdiscError, SchemaError
+from gaitdisc.errors import GaitdiscError, SchemaError, WriteError
+from gaitdisc.whole_file import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from gaitdisc.report.clinic.page_words import PageWords
     from gaitdisc.results import Provenance, ResponseRun
     from gaitdisc.results.clinical_reading import PersonSession
     from gaitdisc.results.clinical_reference import ClinicalReference
 
 REFERENCE = "reference"  # folder of a run, beside its cycles
+WORDS = "words.csv"  # of another language, beside them
 
 
 def keep_reference(place: Path | None, run_folder: Path) -> None:
     """Copy a reference into a run, so that its pages are drawn again without it."""
-    from gaitdisc.results.clinical_reference import load_reference, save_reference
+    from gaitdisc.results.clinical_reference import FILE, PUBLISHED, load_reference, save_reference
 
-    if place is not None:
-        save_reference(load_reference(place), run_folder / REFERENCE)
+    if place is None:
+        return
+    found, own = load_reference(place), run_folder / REFERENCE
+    if found.published:
+        write_whole(own / PUBLISHED, (place / PUBLISHED if place.is_dir() else place).read_text(encoding="utf-8"))
+        (own / FILE).unlink(missing_ok=True)
+    else:
+        save_reference(found, own)
+        (own / PUBLISHED).unlink(missing_ok=True)
 
 
 def kept_reference(run_folder: Path) -> ClinicalReference | None:
     """Reference that was copied into a run; None where none was."""
-    from gaitdisc.results.clinical_reference import FILE, load_reference
+    from gaitdisc.results.clinical_reference import FILE, PUBLISHED, load_reference
 
     folder = run_folder / REFERENCE
-    return load_reference(folder) if (folder / FILE).is_file() else None
+    there = (folder / FILE).is_file() or (folder / PUBLISHED).is_file()
+    return load_reference(folder) if there else None
+
+
+def keep_words(language: str, run_folder: Path) -> list[str]:
+    """Copy a table of words into a run, or take it away for `en`; gives the words that it lacks."""
+    from gaitdisc.report.clinic.page_words import read_words, write_words
+
+    if language == "en":
+        (run_folder / WORDS).unlink(missing_ok=True)
+        return []
+    words = read_words(Path(language))
+    write_words(run_folder / WORDS, words)
+    return words.lacking()
+
+
+def kept_words(run_folder: Path) -> PageWords:
+    """Words of the pages of a run: English where no others were kept."""
+    from gaitdisc.report.clinic.page_words import ENGLISH, read_words
+
+    return read_words(run_folder / WORDS) if (run_folder / WORDS).is_file() else ENGLISH
+
+
+def page_of_run(run: ResponseRun, run_folder: Path) -> Path:
+    """Page of a run with pages of its people and their index, drawn where they are not those of this very run."""
+    from gaitdisc.report.kept_page import page_of
+
+    return page_of(run_folder, lambda: _drawn(run, run_folder))
+
+
+def _drawn(run: ResponseRun, run_folder: Path) -> Path:
+    from gaitdisc.report.response_page import write_report  # brings matplotlib, which a second run does not need
+
+    page = write_report(run, run_folder / "report")
+    write_people(run, run_folder)
+    return page
 
 
 def write_people(
@@ -45,6 +90,7 @@ def write_people(
     from gaitdisc.report.clinic.person_page import page_names
 
     report, reference, people = run_folder / "report", kept_reference(run_folder), people_of(run)
+    say = kept_words(run_folder)
     names = dict(zip(people, page_names(people), strict=True))
     written, failed = [], []
     for title, person in sessions_of(run, reference):
@@ -52,12 +98,14 @@ def write_people(
             failed.append((title, str(person)))
             continue
         try:
-            for page in _pages(person, names[title], reference, run.provenance, report, pdf):
+            for page in _pages(person, names[title], reference, run.provenance, (report, say, pdf)):
                 told(page)
             written.append((person, names[title]))
+        except WriteError:  # of the disk, not of the person: the page would stand as one that cannot be written
+            raise
         except (GaitdiscError, ArithmeticError, LookupError, ValueError, TypeError) as error:
             failed.append((title, f"the page could not be written: {error}"))
-    return write_index(_with_failed(run, failed, run_folder), written, reference, report)
+    return write_index(_with_failed(run, failed, run_folder), written, reference, report, say)
 
 
 def write_before_after(run: ResponseRun, run_folder: Path, person: str, words: tuple[str, str]) -> Path:
@@ -71,7 +119,7 @@ def write_before_after(run: ResponseRun, run_folder: Path, person: str, words: t
     title = f"{person} {words[0]} {words[1]}"
     page = PersonSession(title, (after, before), (contrast_of(before, after),))
     name = page_names([title])[0]
-    return write_person_page(page, name, reference, run.provenance, run_folder / "report")
+    return write_person_page(page, name, reference, run.provenance, run_folder / "report", kept_words(run_folder))
 
 
 def write_person(run: ResponseRun, run_folder: Path, person: str, pdf: bool = False) -> list[Path]:
@@ -89,7 +137,9 @@ def write_person(run: ResponseRun, run_folder: Path, person: str, pdf: bool = Fa
     for title, one in sessions_of(own, reference):
         if isinstance(one, GaitdiscError):
             raise one
-        found += _pages(one, names[title], reference, run.provenance, run_folder / "report", pdf)
+        found += _pages(
+            one, names[title], reference, run.provenance, (run_folder / "report", kept_words(run_folder), pdf)
+        )
     return found
 
 
@@ -98,18 +148,18 @@ def _pages(
     name: str,
     reference: ClinicalReference | None,
     provenance: Provenance,
-    report: Path,
-    pdf: bool,
+    how: tuple[Path, PageWords, bool],
 ) -> list[Path]:
-    """Write the page of a person and session as HTML and where wanted as PDF."""
+    """Write the page of a person and session into a report, in these words, as HTML and where wanted as PDF."""
     from gaitdisc.report.clinic.person_page import write_person_page
 
-    page = write_person_page(person, name, reference, provenance, report)
+    report, say, pdf = how
+    page = write_person_page(person, name, reference, provenance, report, say)
     if not pdf:
         return [page]
     from gaitdisc.report.clinic.person_pdf import write_person_pdf
 
-    return [page, write_person_pdf(person, provenance, page.with_suffix(".pdf"))]
+    return [page, write_person_pdf(person, provenance, page.with_suffix(".pdf"), say)]
 
 
 def _with_failed(run: ResponseRun, failed: list[tuple[str, str]], run_folder: Path) -> ResponseRun:

@@ -6,12 +6,19 @@ from pathlib import Path
 
 import typer
 
-from gaitdisc.commands.clinic_pages import keep_reference, write_before_after, write_people, write_person
+from gaitdisc.commands.clinic_pages import (
+    keep_reference,
+    keep_words,
+    page_of_run,
+    write_before_after,
+    write_people,
+    write_person,
+)
 from gaitdisc.errors import SchemaError
 
 
 def clinic_report(folder: Path, person: str, pair: tuple[str, str], reference: Path | None, pdf: bool) -> bool:
-    """Draw pages of people where a person or a reference is named; False where neither is.
+    """Draw pages of people; False where the folder is no run of pooled cycles and nothing of one was named.
 
     Parameters
     ----------
@@ -20,12 +27,18 @@ def clinic_report(folder: Path, person: str, pair: tuple[str, str], reference: P
     pair : tuple of str
         Two sessions or conditions, or two empty words.
     """
-    if not (person or any(pair) or reference or pdf):
+    named = bool(person or any(pair) or reference or pdf)
+    run_folder = run_folder_of(folder)
+    if not named and not (run_folder / "cycles").is_dir():
         return False
+    from gaitdisc.report.saved_page import draw_questions
     from gaitdisc.results.run_store import load_run
 
-    run_folder = folder / "run" if (folder / "run" / "run.json").is_file() else folder
     run = load_run(run_folder)
+    if named and not run.cycles:
+        raise SchemaError(
+            "pages of people need a run of pooled cycles", f"{run_folder} has none", "Run a study of short trials."
+        )
     keep_reference(reference, run_folder)
     if any(pair):
         if not (person and all(pair)):
@@ -38,14 +51,34 @@ def clinic_report(folder: Path, person: str, pair: tuple[str, str], reference: P
     elif person:
         for page in write_person(run, run_folder, person, pdf):
             _said(page)
+    elif pdf:
+        typer.echo(f"people: {write_people(run, run_folder, pdf, _said)}")
     else:
-        index = write_people(run, run_folder, pdf, _said if pdf else lambda _: None)
-        if index is None:
-            raise SchemaError(
-                "pages of people need a run of pooled cycles", f"{run_folder} has none", "Run a study of short trials."
-            )
-        typer.echo(f"people: {index}")
+        typer.echo(f"report: {page_of_run(run, run_folder)}")
+        for word, page in draw_questions(run_folder).items():
+            typer.echo(f"{word}: {page}")
+        if run.cycles:
+            typer.echo(f"people: {run_folder / 'report' / 'index.html'}")
     return True
+
+
+def language_of(folder: Path, language: str) -> bool:
+    """Keep the words of another language with a run; True where only the table to be filled in was written."""
+    if language != "en" and not Path(language).exists():
+        from gaitdisc.report.clinic.page_words import write_words
+
+        written = write_words(Path(language))
+        typer.echo(f"words: {written}. Fill in the second column, then give the same command again.")
+        return True
+    lacking = keep_words(language, run_folder_of(folder))
+    if lacking:
+        typer.echo(f"English stays, {len(lacking)} words: {'; '.join(lacking)}")
+    return False
+
+
+def run_folder_of(folder: Path) -> Path:
+    """Folder of a run: the one that is named, or `run` in the folder of a study."""
+    return folder / "run" if (folder / "run" / "run.json").is_file() else folder
 
 
 def _said(page: Path) -> None:

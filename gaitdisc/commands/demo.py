@@ -12,14 +12,17 @@ from gaitdisc.commands.options import Jobs, Quiet
 from gaitdisc.commands.run_report import report_on
 
 
-def demo(
+def demo(  # noqa: PLR0913, PLR0917 these are the options of a command
     folder: Annotated[Path, typer.Argument(help="Folder to make.")] = Path("demo"),
     seconds: Annotated[float, typer.Option(min=30.0, help="Length of each walk; the dissertation's is 240.")] = 60.0,
     people: Annotated[int, typer.Option(min=1, max=12, help="How many of the twelve.")] = 12,
     hide: Annotated[
-        str, typer.Option(help="What differs between the walks: spring, weak plantarflexor, ...")
+        str, typer.Option(help="What differs between the walks: spring, weak plantarflexor, stiff knee, drop foot, ...")
     ] = "spring",
     clinic: Annotated[bool, typer.Option("--clinic", help="A week of a clinic instead: people, pages, index.")] = False,
+    markers: Annotated[
+        bool, typer.Option("--markers", help="Markers, belts and a static trial in place of joint angles.")
+    ] = False,
     jobs: Jobs = 2,
     quiet: Quiet = False,
 ) -> None:
@@ -34,7 +37,9 @@ def demo(
     from gaitdisc.ingest.study_file import load_study
 
     typer.echo(f"{people} of the embedded cohort walk {seconds:g} s in each condition: simulated, no people.")
-    write_demonstration(folder, seconds, people, hide, lambda who, _: typer.echo(f"  {who}", err=True, nl=not quiet))
+    write_demonstration(
+        folder, seconds, people, hide, lambda who, _: typer.echo(f"  {who}", err=True, nl=not quiet), markers
+    )
     study = load_study(folder)
     try:
         report_on(lambda told: run_study(study, folder / "run", Workers(jobs), told), study, folder / "run", quiet)

@@ -22,6 +22,7 @@ def reference(
     jobs: Jobs = 1,
 ) -> None:
     """Process controls as a study is processed, and save mean cycles of their legs for `--reference`."""
+    from gaitdisc.clinic.like_controls import described, groups_of
     from gaitdisc.clinic.reference import FEWEST, reference_of
     from gaitdisc.results.clinical_reference import save_reference
 
@@ -41,6 +42,8 @@ def reference(
         count = found.people(word)
         few = f"; fewer than {FEWEST}: bands are drawn, nothing is said to stand out" if count < FEWEST else ""
         typer.echo(f"  {word}: {count} people, {len(found.of(word))} legs{few}")
+        for own in groups_of(found.of(word)):
+            typer.echo(f"    group: {described(own)}")
     typer.echo(f"reference: {path}")
 
 

@@ -17,12 +17,17 @@ def report(
     after: Annotated[str, typer.Option(help="What is drawn over it.")] = "",
     pdf: Annotated[bool, typer.Option("--pdf", help="Pages of people as PDF too.")] = False,
     reference: Annotated[Path | None, typer.Option(help="Folder of `gaitdisc reference`: bands, scores.")] = None,
+    language: Annotated[
+        str, typer.Option(help="CSV of words, kept by the run; one that is not there is written; `en` for English.")
+    ] = "",
 ) -> None:
     """Draw the page of a saved result again, without fitting; of a run also those of modalities and sensitivity."""
-    from gaitdisc.commands.clinic_report import clinic_report
+    from gaitdisc.commands.clinic_report import clinic_report, language_of, run_folder_of
     from gaitdisc.errors import SchemaError
     from gaitdisc.report.saved_page import draw_saved
 
+    if language and language_of(folder, language):
+        return
     if clinic_report(folder, person, (before, after), reference, pdf):
         return
     if (folder / "model.json").is_file():
@@ -31,5 +36,5 @@ def report(
             f"{folder.name} holds a saved model, which has none",
             "Name the folder above its `models`, or use the model: gaitdisc apply MODEL RECORDING.",
         )
-    for word, page in draw_saved(folder).items():
+    for word, page in draw_saved(run_folder_of(folder)).items():
         typer.echo(f"{word}: {page}")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import typer
 
-from gaitdisc.commands.clinic_pages import write_people
+from gaitdisc.commands.clinic_pages import page_of_run
 from gaitdisc.commands.exit_codes import REFUSED, SOME_REFUSED, STOPPED
 
 if TYPE_CHECKING:
@@ -22,12 +22,10 @@ Result = TypeVar("Result")
 
 def report_on(work: Callable[[Told], ResponseRun], study: Study, folder: Path, quiet: bool) -> None:
     """Do the work with its progress shown, draw the report, and say who was refused."""
-    from gaitdisc.report.kept_page import page_of
-
     started = time.perf_counter()
     done = worked(work, [person.id for person in study.participants], quiet)
     say_renewed(done.renewed)
-    page = page_of(folder, lambda: _drawn(done, folder / "report"))
+    page = page_of_run(done, folder)
     if done.responses:
         from rich.console import Console
 
@@ -40,14 +38,6 @@ def report_on(work: Callable[[Told], ResponseRun], study: Study, folder: Path, q
     if done.cycles:
         typer.echo(f"people: {folder / 'report' / 'index.html'}")
     end(done.refusals, len(done.reported), page, time.perf_counter() - started)
-
-
-def _drawn(done: ResponseRun, folder: Path) -> Path:
-    from gaitdisc.report.response_page import write_report  # brings matplotlib, which a second run does not need
-
-    page = write_report(done, folder)
-    write_people(done, folder.parent)
-    return page
 
 
 def say_renewed(renewed: Sequence[str]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 from gaitdisc.discovery.answer import answer
 from gaitdisc.discovery.by_share import leaves_noise
@@ -27,10 +28,11 @@ def discover(
 ) -> tuple[Discovery, Simulation]:
     """Find where a simulation and measured trials disagree, name what is missing, add it, show the gap shrink."""
     measured = without_spikes(measured)
-    inquiry = begin_inquiry(simulation, measured, shapes)
+    begun = partial(begin_inquiry, simulation, shapes=shapes, told=told)
+    inquiry = begun(measured)
     agreeing = agreeing_trials(inquiry, measured)
     if agreeing is not measured:
-        measured, inquiry = agreeing, begin_inquiry(simulation, agreeing, shapes)
+        measured, inquiry = agreeing, begun(agreeing)
     told("fitting the simulation as it was read")
     as_read = inquiry.as_read()
     told(f"weighing {len(inquiry.search.candidates)} explanations")
@@ -39,13 +41,13 @@ def discover(
         kept = without_trial_apart(inquiry)
         if kept is not inquiry.measured:
             told("one trial goes with no explanation of the others: it is left out")
-            measured, inquiry = kept, begin_inquiry(simulation, kept, shapes)
+            measured, inquiry = kept, begun(kept)
             as_read = inquiry.as_read()
             verdict = judge(inquiry, as_read)
     unproven = verdict.rivals[:1] if verdict.word == "no_gap" else ()
     if unproven and tells_nothing(inquiry, as_read, *unproven):
         if len(measured.trials) == 1:
-            other = begin_inquiry(simulation, split_in_time(measured, last=False), shapes)
+            other = begun(split_in_time(measured, last=False))
         else:
             other = holding_out_others(inquiry, as_read, *unproven)
         told("what is held out never goes where it would act: other data are held out")

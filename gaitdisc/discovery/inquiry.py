@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -173,7 +174,12 @@ class Inquiry:
         return now
 
 
-def begin_inquiry(simulation: Simulation, measured: Measured, shapes: tuple[Shape, ...] = ()) -> Inquiry:
+def begin_inquiry(
+    simulation: Simulation,
+    measured: Measured,
+    shapes: tuple[Shape, ...] = (),
+    told: Callable[[str], None] = lambda _: None,
+) -> Inquiry:
     """Prepare an inquiry: split the trials, list places and explanations, guess the states.
 
     Parameters
@@ -187,7 +193,7 @@ def begin_inquiry(simulation: Simulation, measured: Measured, shapes: tuple[Shap
     machine = compile_simulation(simulation)
     rate_of, places = kinematic_rates(simulation, machine), places_of(simulation, machine)
     rhythm = rhythm_of(measured.observed, measured.drive.rate)
-    search = Search(simulation, places, candidates_of(simulation, places, (*known_shapes(), *shapes)), rhythm)
+    search = Search(simulation, places, candidates_of(simulation, places, (*known_shapes(), *shapes)), rhythm, told)
     trials = len(measured.drive.samples)
     held = max(round(trials / 4), 1)
     guess = guess_states(simulation, measured, rhythm.period, rate_of)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.evidence import Judged, compared
 from gaitdisc.discovery.grids import Rhythm
 from gaitdisc.discovery.places import Place
-from gaitdisc.discovery.score import Scorer
+from gaitdisc.discovery.score import Score, Scorer
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.simulation import Simulation
@@ -29,6 +30,7 @@ WIDEST = 2.0  # times how far a state goes, beyond which no half width shows
 TURNS = 15
 NEARLY = 0.5  # off the misfit: too little to tell explanations apart by
 CERTAIN = 2.5  # standard errors
+EVERY = 5.0  # seconds between two lines about a round that lasts
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,7 @@ class Search:
     places: tuple[Place, ...]
     candidates: tuple[Candidate, ...]
     rhythm: Rhythm
+    told: Callable[[str], None] = field(default=lambda _: None, compare=False)
 
     def extended(self, now: Judged, judge: int = JUDGED) -> list[Judged]:
         """Return the account and, after it, others with one explanation more, all under the noise that the best leaves.
@@ -69,7 +72,7 @@ class Search:
                 NEARLY,
                 account,
             )
-            for one in worth
+            for one in self._reported(worth)
         ]
         tried = sorted(
             (one for one in tried if self.sensible(one) and is_certain(one, -1)), key=lambda one: one.criterion
@@ -78,6 +81,17 @@ class Search:
             return []
         before, *more = compared([now, *(Judged(one, shooting) for one in tried)], self.base)
         return [before, *(replace(one, gained=before.evidence - one.evidence) for one in more)]
+
+    def _reported(self, worth: list[Score]) -> Iterator[Score]:
+        """Yield each in turn, and say now and then how many are fitted and how long the others will take."""
+        began = last = time.perf_counter()
+        for done, one in enumerate(worth):
+            now = time.perf_counter()
+            if done and now - last >= EVERY:
+                left = (now - began) / done * (len(worth) - done)
+                self.told(f"{done} of {len(worth)} explanations fitted, {left:.0f} s left of this round")
+                last = now
+            yield one
 
     def scorer(self, shooting: Shooting, account: Account) -> Scorer:
         """Return what scores further explanations beside an account, to first order."""

@@ -157,6 +157,8 @@ def group_word(path: Path) -> str:
 def session_word(path: Path) -> tuple[str, str]:
     """Word of a path that tells the session, and what it is put in order by; the word of a date is empty.
 
+    A word counts before any date, and the date of an inner folder before that of an outer one, which may be of birth.
+
     Returns
     -------
     word : str
@@ -170,9 +172,6 @@ def session_word(path: Path) -> tuple[str, str]:
     (('post', 'a04'), ('', 'd20240301'))
     """
     for name in (*path.parent.parts, path.stem):
-        date = _DATE.search(name)
-        if date:
-            return "", "d" + "".join(date.groups())
         for word in (name.lower(), *words_in(name)):
             if word in SESSION_WORDS:
                 return word, f"a{SESSION_WORDS.index(word):02d}"
@@ -180,7 +179,8 @@ def session_word(path: Path) -> tuple[str, str]:
             numbered = _NUMBERED_SESSION.fullmatch(part)
             if numbered:
                 return f"{numbered[1].lower()} {int(numbered[2])}", f"b{numbered[1].lower()}{int(numbered[2]):03d}"
-    return "", ""
+    dates = (_DATE.search(name) for name in (*reversed(path.parent.parts), path.stem))
+    return "", next(("d" + "".join(date.groups()) for date in dates if date), "")
 
 
 def kind_of_trial(path: Path) -> str:

@@ -16,6 +16,7 @@ from gaitdisc.errors import GaitdiscError, ReadError
 from gaitdisc.ingest.file_names import (
     PLAIN,
     PSEUDONYM,
+    WALK_WORDS,
     condition_word,
     group_word,
     kind_of_trial,
@@ -82,7 +83,16 @@ class FoundTrial:
         return self.which not in (STATIC, FUNCTIONAL, "other")
 
 
-def found_study(folder: Path | str, home: Path | str | None = None) -> tuple[Study, list[str]]:
+Stamp = tuple[tuple[str, int, int], ...]  # name, size and time of the files of one walk
+Looked = dict[Stamp, tuple["FoundTrial | None", list[str]]]  # what was read of it, and what was said
+
+
+def found_study(
+    folder: Path | str,
+    home: Path | str | None = None,
+    files: Sequence[Path] | None = None,
+    looked: Looked | None = None,
+) -> tuple[Study, list[str]]:
     """Draft of a study from a folder of recordings.
 
     Participants are told by sub-folders or by parts of names such as `S01`, sessions by words such as `pre` and `post`
@@ -94,6 +104,10 @@ def found_study(folder: Path | str, home: Path | str | None = None) -> tuple[Stu
     ----------
     home : Path or str, optional
         Folder in which the study file will lie; its paths are relative to it. The same folder by default.
+    files : sequence of Path, optional
+        Only these, relative to the folder.
+    looked : dict, optional
+        What was read before of files that are as they were; is added to.
 
     Returns
     -------
@@ -112,10 +126,12 @@ def found_study(folder: Path | str, home: Path | str | None = None) -> tuple[Stu
             f"a folder of recordings is needed, {folder.name} is none", "it is absent or a file", "Name it."
         )
     notes: list[str] = []
-    files = _recording_files(folder)
+    files = recording_files(folder) if files is None else files
     tables = [path for path in files if is_people_table(path)]
     measured = measured_people(folder, tables, notes)
-    found = _found_trials(folder, [path for path in files if path not in tables], notes)
+    found = _found_trials(
+        folder, [path for path in files if path not in tables], notes, {} if looked is None else looked
+    )
     if not found:
         unread = f"; {notes[0]}" if notes else ""
         raise ReadError(
@@ -136,6 +152,7 @@ def found_study(folder: Path | str, home: Path | str | None = None) -> tuple[Stu
             mass_kg=bodies[person].mass_kg,
             height_m=bodies[person].height_m,
             sex=bodies[person].sex,
+            age_years=bodies[person].age_years,
             trials=tuple(_planned(t, called, sessions, way) for t in found if t.person == person),
         )
         for person, pseudonym in people.items()
@@ -152,7 +169,8 @@ def found_study(folder: Path | str, home: Path | str | None = None) -> tuple[Stu
     return study, notes
 
 
-def _recording_files(folder: Path) -> list[Path]:
+def recording_files(folder: Path) -> list[Path]:
+    """Files of a folder that a recording may be, relative to it."""
     inside = (path.relative_to(folder) for path in folder.rglob("*") if path.is_file())
     return sorted(
         path for path in inside if path.suffix.lower() in ENDINGS and not any(p.startswith(".") for p in path.parts)
@@ -162,7 +180,7 @@ def _recording_files(folder: Path) -> list[Path]:
 def _bodies(
     people: Mapping[str, str], measured: Mapping[str, Measured], tables: Sequence[Path], notes: list[str]
 ) -> dict[str, Measured]:
-    """Mass, sex and stature of each person's word, and what no table has or has too many of."""
+    """Mass, sex, stature and age of each person's word, and what no table has or has too many of."""
     found = {person: measured.get(person_key(person), Measured()) for person in people}
     absent = [people[person] for person in people if measured and person_key(person) not in measured]
     if absent:
@@ -173,16 +191,21 @@ def _bodies(
     return found
 
 
-def _found_trials(folder: Path, files: Sequence[Path], notes: list[str]) -> list[FoundTrial]:
+def _found_trials(folder: Path, files: Sequence[Path], notes: list[str], looked: Looked) -> list[FoundTrial]:
     """Every walk, read one after the other; what a draft needs of it is kept, its samples are not."""
     from gaitdisc.ingest.c3d import C3DReader
 
     found = []
     with C3DReader() as reader:
         for group in _walks(files):
-            read, trial = _readable(folder, group, reader, notes)
-            if trial is not None:
-                found.append(_found(tuple(read), trial))
+            stamp = tuple((file.as_posix(), *stamp_of(folder / file)) for file in group)
+            if stamp not in looked:
+                said: list[str] = []
+                read, trial = _readable(folder, group, reader, said)
+                looked[stamp] = (_found(tuple(read), trial) if trial is not None else None, said)
+            one, said = looked[stamp]
+            found += [one] if one is not None else []
+            notes += said
     standing = [each.files[0].as_posix() for each in found if each.which == STATIC]
     if standing:
         notes.append(f"standing, so {STATIC!r}: {', '.join(standing)}")
@@ -191,6 +214,15 @@ def _found_trials(folder: Path, files: Sequence[Path], notes: list[str]) -> list
         notes.append(f"legs circled about the hips by their names, so {FUNCTIONAL!r}: {', '.join(circled)}")
     order = ("nominal", "device", "", STATIC, FUNCTIONAL, "other")
     return sorted(found, key=lambda each: order.index(each.which))
+
+
+def stamp_of(path: Path) -> tuple[int, int]:
+    """Size and time of a file; zero of one that is not there."""
+    try:
+        said = path.stat()
+    except OSError:
+        return 0, 0
+    return said.st_size, said.st_mtime_ns
 
 
 def _found(files: tuple[Path, ...], trial: Trial) -> FoundTrial:
@@ -288,6 +320,12 @@ def named_conditions(found: Sequence[FoundTrial], notes: list[str]) -> tuple[Con
         others = [PLAIN]
         notes.append(f"no file or folder name shows a condition: every walk is taken as {PLAIN!r}")
     words = list(dict.fromkeys([*told.values(), *others]))
+    folders = [word for word in others if word not in (*WALK_WORDS, PLAIN)]
+    if folders:
+        notes.append(
+            f"conditions called after folders: {', '.join(folders)}; they stand on every page: change any that shows "
+            f"who a person is"
+        )
     device = told.get("device") if len(words) > 1 else None
     reference = next(word for word in words if word != device)
     rest = tuple(word for word in words if word not in (reference, device))

@@ -1,4 +1,4 @@
-"""Who was measured: a table beside the recordings with mass, sex and stature of each person, BIDS's among them."""
+"""Who was measured: a table beside the recordings with mass, sex, stature and age of each person, BIDS's among them."""
 
 from __future__ import annotations
 
@@ -23,6 +23,8 @@ _IDS = ("participantid", "subjectid", "patientid", "personid", "id", "participan
 _MASSES = ("masskg", "mass", "bodymass", "bodymasskg", "weight", "weightkg", "bodyweight", "bodyweightkg")
 _SEXES = ("sex", "gender")
 _STATURES = ("heightm", "height", "heightcm", "heightmm", "stature", "staturem", "staturecm", "staturemm", "bodyheight")
+_AGES = ("age", "ageyears", "ageyear", "ageyr", "ageyrs", "agey", "age in years", "age in y", "age in yr")
+OLDEST_YEARS = 120
 Sex = Literal["", "f", "m"]
 _MISSING = ("", "n/a", "na", "nan", "none", "null", "-", "unknown")
 _SEX: dict[str, Sex] = {
@@ -47,11 +49,14 @@ class Measured:
     ----------
     mass_kg, height_m : float, optional
         Body mass [kg] and stature [m].
+    age_years : int, optional
+        Whole years; a date of birth is never read.
     """
 
     mass_kg: float | None = None
     height_m: float | None = None
     sex: Sex = ""
+    age_years: int | None = None
 
 
 def is_people_table(path: Path) -> bool:
@@ -66,7 +71,7 @@ def is_people_table(path: Path) -> bool:
 
 
 def measured_people(folder: Path, files: Iterable[Path], notes: list[str]) -> dict[str, Measured]:
-    """Mass, sex and stature by the folded word that tells the person, from the tables of people among some files.
+    """Mass, sex, stature and age by the folded word that tells the person, from the tables of people among some files.
 
     Parameters
     ----------
@@ -108,12 +113,12 @@ def _read(lines: Sequence[str], file: str, notes: list[str]) -> dict[str, Measur
     labels = [unquoted(label.strip()) for label in rows[0]]
     at = {
         key: next((i for word in words for i, label in enumerate(labels) if _folded(label) == word), None)
-        for key, words in (("id", _IDS), ("mass", _MASSES), ("sex", _SEXES), ("height", _STATURES))
+        for key, words in (("id", _IDS), ("mass", _MASSES), ("sex", _SEXES), ("height", _STATURES), ("age", _AGES))
     }
-    if at["id"] is None or all(at[key] is None for key in ("mass", "sex", "height")):
+    if at["id"] is None or all(at[key] is None for key in ("mass", "sex", "height", "age")):
         notes.append(
-            f"{file} holds no column for who (such as participant_id) beside one of mass_kg, sex, height_m: its "
-            f"columns are {', '.join(labels[:8])}"
+            f"{file} holds no column for who (such as participant_id) beside one of mass_kg, sex, height_m, age: "
+            f"its columns are {', '.join(labels[:8])}"
         )
         return {}
     found: dict[str, list[Measured]] = {}
@@ -125,6 +130,7 @@ def _read(lines: Sequence[str], file: str, notes: list[str]) -> dict[str, Measur
                 _mass(cells["mass"], where, notes),
                 _height(cells["height"], labels[at["height"]] if at["height"] is not None else "", where, notes),
                 _sex(cells["sex"], where, notes),
+                _age(cells["age"], where, notes),
             )
             found.setdefault(person_key(unquoted(cells["id"])), []).append(one)
     return {word: _agreed(rows, word, file, notes) for word, rows in found.items()}
@@ -133,7 +139,7 @@ def _read(lines: Sequence[str], file: str, notes: list[str]) -> dict[str, Measur
 def _agreed(rows: Sequence[Measured], word: str, file: str, notes: list[str]) -> Measured:
     """What all rows of a person say; where two differ nothing is taken."""
     values: dict[str, float | str | None] = {}
-    for name, empty in (("mass_kg", None), ("height_m", None), ("sex", "")):
+    for name, empty in (("mass_kg", None), ("height_m", None), ("sex", ""), ("age_years", None)):
         said = list(dict.fromkeys(getattr(one, name) for one in rows if getattr(one, name) != empty))
         values[name] = said[0] if len(said) == 1 else empty
         if len(said) > 1:
@@ -188,6 +194,14 @@ def _height(text: str, label: str, where: str, notes: list[str]) -> float | None
     return None
 
 
+def _age(text: str, where: str, notes: list[str]) -> int | None:
+    value = _number(text, where, "age", notes)
+    if value is None or 1 <= value <= OLDEST_YEARS:
+        return None if value is None else int(value)
+    notes.append(f"{where}: an age of {value:g} is none of 1 to {OLDEST_YEARS} years; not used")
+    return None
+
+
 def _sex(text: str, where: str, notes: list[str]) -> Sex:
     found = _SEX.get(text.lower(), "")
     if not found and text.lower() not in _MISSING:
@@ -196,10 +210,10 @@ def _sex(text: str, where: str, notes: list[str]) -> Sex:
 
 
 def said_of(people: Mapping[str, Measured], files: Iterable[Path]) -> str:
-    """One note that says how many people got their mass, sex and stature from which tables."""
+    """One note that says how many people got their mass, sex, stature and age from which tables."""
     counts = [
         f"{what} {sum(bool(getattr(one, name)) for one in people.values())} of {len(people)}"
-        for name, what in (("mass_kg", "body mass"), ("sex", "sex"), ("height_m", "stature"))
+        for name, what in (("mass_kg", "body mass"), ("sex", "sex"), ("height_m", "stature"), ("age_years", "age"))
         if any(getattr(one, name) for one in people.values())
     ]
     return f"{', '.join(counts)} people from {', '.join(file.as_posix() for file in files)}" if counts else ""

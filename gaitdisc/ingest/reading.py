@@ -19,11 +19,13 @@ from gaitdisc.ingest.knee_sign import with_flexion_positive
 from gaitdisc.ingest.per_body_mass import per_kg_findings
 from gaitdisc.ingest.plausible import without_impossible
 from gaitdisc.ingest.storage import read_storage
-from gaitdisc.ingest.table import read_table
+from gaitdisc.ingest.table import read_frame, read_table
 from gaitdisc.ingest.trc import read_trc
 from gaitdisc.recording import Finding, Recording, Source, Trial
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from gaitdisc.ingest.c3d import C3DReader
     from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 
@@ -39,7 +41,7 @@ ENDINGS = (".c3d", *READERS, *ARRAYS)
 
 
 def read_trial(
-    paths: Path | str | Sequence[Path | str],
+    paths: Path | str | pd.DataFrame | Sequence[Path | str | pd.DataFrame],
     channels: Mapping[str, str] | None = None,
     subject: str = "",
     condition: str = "",
@@ -51,8 +53,10 @@ def read_trial(
 
     Parameters
     ----------
-    paths : path, or sequence of paths
-        Files of the walk: its inverse kinematics, ground forces and EMG, say. Clocks are taken as they are.
+    paths : path, DataFrame, or sequence of these
+        Files of the walk: its inverse kinematics, ground forces and EMG, say. Clocks are taken as they are. A DataFrame
+        has times in a column `time` [s] or in an index of that name, and a channel a column: a name of the vocabulary
+        (`knee_angle_r` in deg), or `name [unit]`.
     channels : mapping of str to str, optional
         The study's `[channels]`: label -> `name` or `name [unit]`.
     subject, condition : str
@@ -84,11 +88,14 @@ def read_trial(
     --------
     >>> read_trial(["ik.mot", "grf.mot", "emg.sto"], subject="P01", condition="natural")  # doctest: +SKIP
     Trial(...)
+    >>> import pandas as pd
+    >>> read_trial(pd.DataFrame({"time": [0.0, 0.01, 0.02], "knee_angle_r": [5.0, 6.0, 7.0]}))
+    Trial('the table': kinematics 1 at 100 Hz; 0 events, 0 findings)
     """
-    files = [paths] if isinstance(paths, str | Path) else list(paths)
+    files = list(paths) if isinstance(paths, list | tuple) else [paths]
     if not files:
         raise ReadError("a trial needs a file", "none is named", "Name its files in the study.")
-    parts = [_read(Path(file), channels, reader, part) for file in files]
+    parts = [_read(file, channels, reader, part) for file in files]
     streams: dict[str, Recording] = {}
     findings = [finding for one in parts for finding in one.findings]
     for one in parts:
@@ -102,7 +109,7 @@ def read_trial(
                 streams[key] = _joined(streams[key], recording, key)
     named = {key: replace(r, subject=subject, condition=condition) for key, r in streams.items()}
     events = tuple(sorted((event for one in parts for event in one.events), key=lambda event: event.time))
-    if not any(Path(file).suffix.lower() == ".c3d" for file in files):  # that reader tells unused labels itself
+    if not any(str(file).lower().endswith(".c3d") for file in files):  # that reader tells unused labels itself
         findings += _unused(channels, named, parts[0].name)
     surfaces = tuple(surface for one in parts for surface in one.surfaces)
     trial = Trial(parts[0].name, named, events, tuple(findings), subject, condition, surfaces)
@@ -130,7 +137,10 @@ def read_planned_trial(
     return replace(trial, name=participant.trial_name(planned))
 
 
-def _read(path: Path, channels: Mapping[str, str] | None, reader: C3DReader | None, part: str) -> Trial:
+def _read(given: object, channels: Mapping[str, str] | None, reader: C3DReader | None, part: str) -> Trial:
+    if not isinstance(given, Path | str):
+        return read_frame(_frame(given), channels)
+    path = Path(given)
     ending = path.suffix.lower()
     if ending in ARRAYS:
         return read_arrays(path, channels, part)
@@ -146,6 +156,18 @@ def _read(path: Path, channels: Mapping[str, str] | None, reader: C3DReader | No
             "Export it as one of these.",
         )
     return READERS[ending](path, channels)
+
+
+def _frame(given: object) -> pd.DataFrame:
+    import pandas as pd
+
+    if isinstance(given, pd.DataFrame):
+        return given
+    raise ReadError(
+        "a walk is read from files or DataFrames",
+        f"found {type(given).__name__}",
+        "Give a path, or a DataFrame with a column 'time' [s] and one column a channel.",
+    )
 
 
 def _one_base(one: Recording, other: Recording) -> bool:

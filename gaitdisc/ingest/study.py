@@ -114,6 +114,9 @@ class Participant(_Part):
     sex: Literal["", "f", "m"] = Field(
         default="", description="f or m, for the inertia of the segments; empty takes the mean of both"
     )
+    age_years: Annotated[int, Field(ge=1, le=120)] | None = Field(
+        default=None, description="age in whole years, for controls of the like age; never a date of birth"
+    )
     trials: tuple[PlannedTrial, ...] = Field(default=(), description="the walks of this person")
 
     def trials_of(self, condition: str) -> tuple[PlannedTrial, ...]:

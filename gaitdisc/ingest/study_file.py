@@ -120,7 +120,7 @@ def study_text(study: Study, folder: Path | None = None) -> str:
             parts.append(f"# {about}\n[{key}]\n{pairs}")
     told = False  # each key is explained where it stands first
     for participant in study.participants:
-        measured = tuple(name for name in ("mass_kg", "height_m", "sex") if getattr(participant, name))
+        measured = tuple(name for name in ("mass_kg", "height_m", "sex", "age_years") if getattr(participant, name))
         text = f"[[participants]]\n{_pairs(participant, ('id', 'group', 'excluded', *measured), told)}"
         for trial in participant.trials:
             files = tuple(_moved(file, study.folder, folder) for file in trial.files)

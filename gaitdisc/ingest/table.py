@@ -8,6 +8,7 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,11 +26,15 @@ from gaitdisc.ingest.columns import (
 )
 from gaitdisc.ingest.raw_file import RawFile, read_raw
 from gaitdisc.ingest.streams import sorted_trial
-from gaitdisc.recording import Finding, Recording, Trial
+from gaitdisc.recording import Finding, Recording, Source, Trial
 from gaitdisc.spreadsheet import quoted, unquoted
 from gaitdisc.units import convert, parsed_unit
 from gaitdisc.whole_file import write_whole
 
+if TYPE_CHECKING:
+    import pandas as pd
+
+FRAME = "the table"  # a DataFrame has no name
 LEADING = 50  # lines above the header: who, when, which software
 _TIME_UNIT = {"time": "s", "time_s": "s", "time_ms": "ms"}
 
@@ -53,18 +58,69 @@ def read_table(path: Path | str, channels: Mapping[str, str] | None = None) -> T
     array([...])
     """
     raw = read_raw(path)
-    of_parquet = raw.name.lower().endswith(".parquet")
-    labels, values, digit, lines = _parquet(raw, channels) if of_parquet else _text(raw, channels)
-    at = next(i for i, label in enumerate(labels) if _time_unit(label, channels))
+    if raw.name.lower().endswith(".parquet"):
+        labels, values = _parquet(raw, channels)
+        return _trial(raw.source("parquet"), _timed(labels, values, channels, raw.name), channels)
+    labels, values, digit, lines = _text(raw, channels)
+    return _trial(raw.source("csv"), _timed(labels, values, channels, raw.name, digit, lines), channels)
+
+
+def read_frame(frame: pd.DataFrame, channels: Mapping[str, str] | None = None) -> Trial:
+    """Trial of a DataFrame with the columns of a plain table; times may stand in its index.
+
+    Parameters
+    ----------
+    channels : mapping of str to str, optional
+        As `read_table` takes it.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> table = pd.DataFrame({"time": [0.0, 0.01, 0.02], "knee_angle_r": [5.0, 6.0, 7.0]})
+    >>> read_frame(table).streams["kinematics"]["knee_angle_r"].tolist()
+    [5.0, 6.0, 7.0]
+    """
+    return _trial(Source(FRAME, reader="DataFrame"), frame_columns(frame, channels), channels)
+
+
+class TimedColumns(NamedTuple):
+    """Columns of a table (time, column) in their own units, and its even times [s]."""
+
+    time: NDArray[np.float64]
+    labels: list[str]
+    values: NDArray[np.float64]
+
+
+def frame_columns(frame: pd.DataFrame, channels: Mapping[str, str] | None = None) -> TimedColumns:
+    """Columns of a DataFrame whose times stand in a column, or in its index."""
+    if _time_unit(str(frame.index.name), channels):
+        frame = frame.reset_index()
+    labels, values = _of_frame(frame, FRAME, channels)
+    digit = printed_digit(map(repr, values[:, _time_column(labels, channels)].tolist()))
+    return _timed(labels, values, channels, FRAME, digit)
+
+
+def _timed(
+    labels: list[str],
+    values: NDArray[np.float64],
+    channels: Mapping[str, str] | None,
+    file: str,
+    digit: float = 0.0,
+    lines: NDArray[np.intp] | None = None,
+) -> TimedColumns:
+    """Times, printed to `digit` in the unit of their column, apart from the other columns."""
+    at = _time_column(labels, channels)
     unit = _time_unit(labels[at], channels) or "s"
     clock, digit = np.asarray(convert(values[:, at], unit, "s"), float), digit * (1e-3 if unit == "ms" else 1.0)
-    time = even_time(clock, digit, raw.name, lines)
-    others = [i for i in range(len(labels)) if i != at]
-    columns = [column_of(labels[i], raw.name, channels) for i in others]
-    findings = checked_angles(columns, time, values[:, others], raw.name)
-    inside = np.column_stack([column.converted(values[:, i]) for i, column in zip(others, columns, strict=True)])
-    reader = "parquet" if of_parquet else "csv"
-    return sorted_trial(raw.source(reader), time, inside, [column.channel for column in columns], findings)
+    others = [label for i, label in enumerate(labels) if i != at]
+    return TimedColumns(even_time(clock, digit, file, lines), others, np.delete(values, at, axis=1))
+
+
+def _trial(source: Source, table: TimedColumns, channels: Mapping[str, str] | None) -> Trial:
+    columns = [column_of(label, source.file, channels) for label in table.labels]
+    findings = checked_angles(columns, table.time, table.values, source.file)
+    inside = np.column_stack([c.converted(values) for c, values in zip(columns, table.values.T, strict=True)])
+    return sorted_trial(source, table.time, inside, [column.channel for column in columns], findings)
 
 
 def write_table(recording: Recording, path: Path | str) -> Path:
@@ -98,6 +154,10 @@ def write_table(recording: Recording, path: Path | str) -> Path:
     return write_whole(path, text.getvalue())
 
 
+def _time_column(labels: Sequence[str], channels: Mapping[str, str] | None) -> int:
+    return next(i for i, label in enumerate(labels) if _time_unit(label, channels))
+
+
 def _time_unit(label: str, channels: Mapping[str, str] | None = None) -> str | None:
     plain, unit = split_unit(label)
     said = mapped_label(label, channels) or mapped_label(plain, channels)
@@ -125,7 +185,7 @@ def _text(
     labels, top = (units, top + 1) if units else (labels, top)
     comma = separator != "," and any("," in line for line in lines[top + 1 : top + 50])
     cells = parsed_cells(lines[top + 1 :], labels, top + 2, Form(raw.name, separator, "," if comma else "."))
-    at = next(i for i, label in enumerate(labels) if _time_unit(label, channels))
+    at = _time_column(labels, channels)
     digit = printed_digit(lines[number - 1].split(separator)[at] for number in cells.lines.tolist())
     return labels, cells.values, digit, cells.lines
 
@@ -172,38 +232,41 @@ def _no_time(file: str, found: str) -> ReadError:
     )
 
 
-def _parquet(
-    raw: RawFile, channels: Mapping[str, str] | None
-) -> tuple[list[str], NDArray[np.float64], float, NDArray[np.intp] | None]:
+def _parquet(raw: RawFile, channels: Mapping[str, str] | None) -> tuple[list[str], NDArray[np.float64]]:
     import pyarrow as pa
     import pyarrow.parquet as pq
 
     try:
-        table = pq.read_table(io.BytesIO(raw.content))
-        names = [str(name) for name in table.column_names]
-        columns = [(name, table.column(i)) for i, name in enumerate(names)]
-        words = next(
-            (name for name, c in columns if not (pa.types.is_integer(c.type) or pa.types.is_floating(c.type))), None
-        )
-        arrays = [] if words else [np.asarray(c.to_numpy(zero_copy_only=False), float) for _, c in columns]
+        frame = pq.read_table(io.BytesIO(raw.content)).to_pandas(ignore_metadata=True)
     except (pa.ArrowException, OSError, ValueError, TypeError, KeyError) as error:
         raise ReadError(
             f"{raw.name} should be a Parquet table",
             f"it cannot be read as one: {str(error).splitlines()[0][:120] if str(error) else type(error).__name__}",
             "Write it again, or give it its true ending.",
         ) from error
-    if words is not None:
-        raise ReadError(f"{raw.name}: columns need numbers", f"column {words!r} holds others", "Leave that column out.")
-    if not any(_time_unit(name, channels) for name in names):
-        raise _no_time(raw.name, f"its columns are {', '.join(names[:6])}")
-    _check_labels(names, raw.name)
-    values = np.column_stack(arrays)
+    return _of_frame(frame, raw.name, channels)
+
+
+def _of_frame(
+    frame: pd.DataFrame, name: str, channels: Mapping[str, str] | None
+) -> tuple[list[str], NDArray[np.float64]]:
+    """Labels and numbers (row, column) of a table in memory."""
+    from pandas.api.types import is_bool_dtype, is_numeric_dtype
+
+    labels = [str(label) for label in frame.columns]
+    for label, dtype in zip(labels, frame.dtypes, strict=True):
+        if not is_numeric_dtype(dtype) or is_bool_dtype(dtype):
+            raise ReadError(f"{name}: columns need numbers", f"column {label!r} holds others", "Leave that column out.")
+    if not any(_time_unit(label, channels) for label in labels):
+        raise _no_time(name, f"its columns are {', '.join(labels[:6])}")
+    _check_labels(labels, name)
+    values = frame.to_numpy(float, na_value=np.nan)
     if not len(values) or np.isinf(values).any():
-        where = (
-            f"column {names[int(np.argmax(np.isinf(values).any(axis=0)))]!r} is infinite" if len(values) else "no row"
-        )
-        raise ReadError(f"{raw.name} needs rows of finite numbers", f"found {where}", "Write it again.")
-    return names, values, 0.0, None
+        where = "no row"
+        if len(values):
+            where = f"column {labels[int(np.argmax(np.isinf(values).any(axis=0)))]!r} is infinite"
+        raise ReadError(f"{name} needs rows of finite numbers", f"found {where}", "Write it again.")
+    return labels, values
 
 
 def checked_angles(

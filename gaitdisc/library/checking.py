@@ -5,19 +5,20 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gaitdisc.processing.inspection import inspected_file
+from gaitdisc.library.walks import Walk, trial_of
+from gaitdisc.processing.inspection import inspected_file, inspected_trial
 
 if TYPE_CHECKING:
     from gaitdisc.processing.inspection import Inspection
 
 
-def check(path: Path | str) -> Inspection:
+def check(walk: Walk) -> Inspection:
     """Look at a recording without changing or writing anything.
 
     Parameters
     ----------
-    path : path
-        A file of a walk.
+    walk : path, Trial, DataFrame or Recording
+        A file of a walk, or what was read of it.
 
     Returns
     -------
@@ -31,4 +32,7 @@ def check(path: Path | str) -> Inspection:
     >>> gd.check("walk.c3d").light  # doctest: +SKIP
     'green'
     """
-    return inspected_file(Path(path))
+    if isinstance(walk, Path | str):
+        return inspected_file(Path(walk))
+    trial = trial_of(walk)
+    return inspected_trial(trial, trial.name)

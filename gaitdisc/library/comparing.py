@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 
 from gaitdisc.batch.compare_recordings import compare_files
 from gaitdisc.comparison.compare import compare_walks
-from gaitdisc.ingest.reading import read_trial
+from gaitdisc.library.walks import Walk, trial_of
 from gaitdisc.processing.walk_pair import walk_pair
-from gaitdisc.recording import Trial
 from gaitdisc.results.mismatch import Smallest
 
 if TYPE_CHECKING:
@@ -18,8 +17,8 @@ if TYPE_CHECKING:
 
 
 def compare(
-    first: Path | str | Trial,
-    second: Path | str | Trial,
+    first: Walk,
+    second: Walk,
     channels: Sequence[str] = (),
     cutoff_hz: float = 6.0,
     detector: str = "auto",
@@ -33,7 +32,7 @@ def compare(
 
     Parameters
     ----------
-    first, second : path or Trial
+    first, second : path, Trial, DataFrame or Recording
         A simulated and a measured walk, or two conditions; the gap is first minus second.
     channels : sequence of str
         Only these; by default all that both have.
@@ -69,8 +68,7 @@ def compare(
     ('ankle_angle_r',)
     """
     smallest = Smallest(smallest_deg, smallest_n_m_per_kg)
-    if not isinstance(first, Trial) and not isinstance(second, Trial):
+    if isinstance(first, Path | str) and isinstance(second, Path | str):
         return compare_files(Path(first), Path(second), tuple(channels), cutoff_hz, detector, smallest)
-    trials = [one if isinstance(one, Trial) else read_trial(one) for one in (first, second)]
-    walks = walk_pair(trials[0], trials[1], cutoff_hz, detector)
+    walks = walk_pair(trial_of(first), trial_of(second), cutoff_hz, detector)
     return compare_walks(walks[0], walks[1], tuple(channels), smallest=smallest)

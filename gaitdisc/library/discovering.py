@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,6 +12,7 @@ from gaitdisc.library.models import ModelLike, model_of
 from gaitdisc.recording import Recording
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.measured_table import measured_of_recordings, measured_of_table, read_measured
+from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
 
@@ -42,7 +44,8 @@ def discover(
     catalogue : path, optional
         A file of effects of your own, considered beside those that come along.
     progress : callable, optional
-        Called with one line about each step; `print`, say.
+        Called with one line about each step; `print`, say. Of a function whose equations could not be written down,
+        which takes minutes, the lines go to the standard error stream by default.
 
     Returns
     -------
@@ -72,7 +75,15 @@ def discover(
     if isinstance(model, Path | str):
         files[Path(model)] = "simulation"
     chosen = None if catalogue is None else Path(catalogue)
-    return discovered(simulation, measured, chosen, files, progress or (lambda _: None))
+    slow = simulation.manner if isinstance(simulation, PythonSimulation) else ""
+    told = progress or (_to_the_terminal if slow else lambda _: None)
+    if slow:
+        told(slow)
+    return discovered(simulation, measured, chosen, files, told)
+
+
+def _to_the_terminal(step: str) -> None:
+    print(step, file=sys.stderr, flush=True)
 
 
 def _measured(data: object, simulation: Simulation) -> tuple[Measured, dict[Path, str]]:

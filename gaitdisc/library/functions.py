@@ -3,154 +3,337 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.simulation.parts import Input, Parameter, Port, State
+from gaitdisc.simulation.expression import LONGEST
+from gaitdisc.simulation.parts import Input, Parameter, Port, State, Term
 from gaitdisc.simulation.python_simulation import PythonSimulation, python_simulation
 from gaitdisc.simulation.refusal import SimulationError
+from gaitdisc.simulation.rewriting import written
+from gaitdisc.simulation.running import compile_simulation
+from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.simulation.traced import NotTraced, flat, traced_equations
 
 TIME = "t"
+TRIED = 48  # points at which the equations have to give what the function gives
+FEWEST = 3  # of them with a number
+NEAR = 1e-9  # relative: rounding
+PUSH = 0.3  # at the ports there
 
 
 def simulation_from_function(
     function: Callable[..., Any],
     units: Mapping[str, str] | None = None,
     observations: Mapping[str, str] | None = None,
-) -> PythonSimulation:
+    states: Sequence[str] = (),
+    inputs: Sequence[str] = (),
+    parameters: Mapping[str, float] | None = None,
+) -> Simulation | PythonSimulation:
     """Simulation of a Python function that gives the time derivative of each state.
 
     The arguments say what is what. The first ones are the states, as many as the function returns derivatives.
     Arguments after them without a default are inputs, columns of the data; those with a default are parameters, and
-    the default is their value. Arguments after a `*` are ports: places where a missing effect may enter, zero in the
-    model as it is. An argument called `t` is the time [s].
+    the default is their value (or a dict of several). Arguments after a `*` are ports: places where a missing effect
+    may enter, zero in the model as it is. An argument called `t` is the time [s]. Or, with `states`, it is a function
+    of the time, the vector of the states, the vector of the inputs (where there are any) and the dict of the parameters
+    (likewise), as solvers take it: `rates(t, x, u, p)`.
+
+    The function is called once with names in place of numbers, and what it does with them is written down: arithmetic,
+    NumPy or `math`, `if`, loops, other functions of yours. The simulation has these equations then, and runs as fast as
+    one from a file. Of a function that does something else (solves for a mass matrix, calls a program) the simulation
+    calls the function itself, with arrays of points where it can, else point by point: ten to a thousand times slower.
 
     Parameters
     ----------
     function : callable
-        Returns a derivative for each state, in their order: one array, or a tuple of arrays. It is called with arrays
-        of many points at once, so it computes with NumPy (`np.sin`, `np.where`) and not with `if`.
+        Returns a derivative for each state, in their order: a tuple, a list or an array.
     units : mapping of str to str, optional
         Unit of each argument, `{"angle": "rad", "torque": "N m"}`; what is not named has the unit 1.
     observations : mapping of str to str, optional
         Measured column and what it measures, in states, inputs and parameters: `{"height": "level + offset"}`. By
         default each state is measured under its own name, as far as the data have such a column.
+    states, inputs : sequence of str, optional
+        Names of the elements of both vectors, where the function takes vectors.
+    parameters : mapping of str to float, optional
+        Parameters that such a function takes as a dict, and their values.
 
     Returns
     -------
-    PythonSimulation
+    Simulation or PythonSimulation
         Goes wherever a simulation goes: `gaitdisc.simulate`, `gaitdisc.discover`.
 
     Raises
     ------
     SimulationError
-        If the function has too few arguments, a default that is no number, or does not compute with arrays.
+        If the function has too few arguments, a default that is no number, or raises whatever it is given.
 
     Examples
     --------
     >>> import gaitdisc as gd
     >>> def tank(level, pump, area=0.8, drain=1.1, *, leak=0.0):
     ...     return (pump + leak - drain * level) / area
-    >>> model = gd.simulation_from_function(tank, units={"level": "m", "pump": "m^3/s"})
-    >>> [part.name for part in (*model.states, *model.inputs, *model.parameters, *model.ports)]
-    ['level', 'pump', 'area', 'drain', 'leak']
+    >>> gd.simulation_from_function(tank, units={"level": "m", "pump": "m^3/s"}).equations
+    (('level', '(pump + leak - drain*level)/area'),)
+    >>> def swing(t, x, u, p):
+    ...     return [x[1], u[0] - p["k"] * x[0]]
+    >>> gd.simulation_from_function(swing, states=["angle", "rate"], inputs=["moment"], parameters={"k": 2.0}).equations
+    (('angle', 'rate'), ('rate', 'moment - k*angle'))
     """
-    named = inspect.signature(function).parameters.values()
-    _refuse_unnamed(function, named)
-    plain = [one.name for one in named if one.kind is one.POSITIONAL_OR_KEYWORD and one.default is one.empty]
-    numbers = {one.name: _number(function, one) for one in named if one.default is not one.empty and not _port(one)}
-    ports = [one.name for one in named if _port(one)]
-    signals = [name for name in plain if name != TIME]
-    count = _states_of(function, plain, numbers, ports)
-    if count > len(signals):
+    taken = _by_name(function) if not states else _as_vectors(function, states, inputs, dict(parameters or {}))
+    count = taken.derivatives
+    if count > len(taken.signals) or (states and count != len(states)):
+        given = f"{len(states)} states" if states else f"{len(taken.signals)} arguments without a default"
         raise SimulationError(
             "the first arguments of a simulation's function are its states, one for each derivative",
-            f"{_title(function)} returns {count} derivatives and has {len(signals)} arguments without a default",
+            f"{taken.title} returns {count} derivatives and has {given}",
             "Give every state an argument of its own, before the inputs.",
         )
     unit = dict(units or {})
-    _refuse_unknown_units(function, unit, [*signals, *numbers, *ports])
-    return python_simulation(
-        _title(function),
-        _rates(function, plain, list(numbers), ports, count),
-        [State(name, unit.get(name, "1")) for name in signals[:count]],
-        [Input(name, unit.get(name, "1")) for name in signals[count:]],
-        [Parameter(name, value, unit.get(name, "1")) for name, value in numbers.items()],
-        [Port(name, unit.get(name, "1")) for name in ports],
-        tuple((observations or {}).items()),
+    _refuse_unknown_units(taken, unit)
+    parts = (
+        tuple(State(name, unit.get(name, "1")) for name in taken.signals[:count]),
+        tuple(Input(name, unit.get(name, "1")) for name in taken.signals[count:]),
+        tuple(Parameter(name, value, unit.get(name, "1")) for name, value in taken.numbers.items()),
+        tuple(Port(name, unit.get(name, "1")) for name in taken.ports),
     )
+    seen = tuple((observations or {}).items())
+    try:
+        equations = _equations(taken, count)
+        simulation = Simulation(taken.title, *parts, equations=equations, observations=seen)
+        return _refuse_other_numbers(simulation, taken)
+    except NotTraced as reason:
+        rates = _Called(taken, count, by_points=False)
+        rates = rates if rates.agrees else _Called(taken, count, by_points=True)
+        model = python_simulation(taken.title, rates, *parts, seen)
+        return replace(model, manner=f"{rates.manner}, since its equations could not be written down: {reason}")
+
+
+@dataclass(frozen=True, eq=False)
+class _Taken:
+    """A function, and what its arguments mean."""
+
+    function: Callable[..., Any]
+    signals: tuple[str, ...]
+    numbers: dict[str, float]
+    ports: tuple[str, ...]
+    arguments: Callable[[Callable[[str], Any]], tuple[tuple, dict]]  # from what gives the value of a name
+
+    @property
+    def title(self) -> str:
+        """What it is called."""
+        return _title(self.function)
+
+    @cached_property
+    def derivatives(self) -> int:
+        """How many it returns."""
+        found = [len(one) for one in self.returned if one]
+        if not found:
+            raised = self.raised[0]
+            raise SimulationError(
+                "a simulation's function takes a number for each argument and returns a derivative for each state",
+                f"{self.title} raised {type(raised).__name__}: {str(raised)[:200]}",
+                "Call it yourself with numbers, and correct it.",
+            ) from raised
+        return found[0]
+
+    @cached_property
+    def points(self) -> list[dict[str, float]]:
+        """Where it is tried, value by name: near, far, at rest; parameters near their own values."""
+        rng = np.random.default_rng(0)
+        found = []
+        for number in range(TRIED):
+            low, high = ((-0.5, 0.5), (-2.0, 2.0), (0.1, 1.0), (0.0, 0.0))[number % 4]
+            signals = {name: float(rng.uniform(low, high)) for name in self.signals}
+            numbers = {name: value * float(rng.uniform(0.8, 1.2)) for name, value in self.numbers.items()}
+            found.append({TIME: float(rng.uniform(0, 5)), **signals, **numbers, **dict.fromkeys(self.ports, PUSH)})
+        return found
+
+    @cached_property
+    def returned(self) -> list[list[float]]:
+        """Derivatives at each point; none where it raises."""
+        return [self._tried(point) for point in self.points]
+
+    @cached_property
+    def raised(self) -> list[Exception]:
+        """What it raised at the points where it did."""
+        return []
+
+    def _tried(self, point: Mapping[str, float]) -> list[float]:
+        try:
+            return self.at(point)
+        except Exception as error:  # whatever a user's function raises
+            self.raised.append(error)
+            return []
+
+    def at(self, point: Mapping[str, Any]) -> list[float]:
+        """Derivatives at one point."""
+        plain, named = self.arguments(point.__getitem__)
+        found = self.function(*plain, **named)
+        return [*found] if _are_floats(found) else [float(one) for one in flat(found)]
+
+    def gives(self, found: NDArray[np.float64]) -> bool:
+        """Whether derivatives (point, state) are what it returns, wherever that is a number."""
+        there = [number for number, one in enumerate(self.returned) if one and np.all(np.isfinite(one))]
+        own = np.array([self.returned[number] for number in there]).reshape(len(there), -1)
+        return len(there) >= FEWEST and bool(np.all(np.abs(found[there] - own) <= NEAR * np.abs(own).max(axis=0)))
+
+
+@dataclass(frozen=True)
+class _Called:
+    """The right-hand side of a `PythonSimulation`: rows in, derivatives out, by calls of the function."""
+
+    taken: _Taken
+    states: int
+    by_points: bool
+
+    @property
+    def manner(self) -> str:
+        """How it is called, for a person."""
+        how = "one point at a time, which takes minutes" if self.by_points else "with arrays of points"
+        return f"{self.taken.title} is called {how}"
+
+    @property
+    def agrees(self) -> bool:
+        """Whether many points at once give what each gives by itself."""
+        points, taken = self.taken.points, self.taken
+        x, u, values, pushes = (
+            np.array([[point[name] for name in names] for point in points]).reshape(len(points), -1)
+            for names in (taken.signals[: self.states], taken.signals[self.states :], taken.numbers, taken.ports)
+        )
+        try:
+            with np.errstate(all="ignore"):
+                return taken.gives(self(np.array([point[TIME] for point in points]), x, u, values, pushes))
+        except Exception:  # whatever a user's function raises of arrays
+            return False
+
+    def __call__(self, t: Any, x: Any, u: Any, values: Any, pushes: Any) -> NDArray[np.float64]:
+        names = (TIME, *self.taken.signals, *self.taken.numbers, *self.taken.ports)
+        own = values[:, : len(self.taken.numbers)]  # parameters of effects come after the function's own
+        columns = [t, *x.T, *u.T, *own.T, *pushes.T]
+        if self.by_points:
+            rows = zip(*(column.tolist() for column in columns), strict=True)
+            return np.array([self._one(dict(zip(names, row, strict=True))) for row in rows]).reshape(x.shape)
+        plain, named = self.taken.arguments(dict(zip(names, columns, strict=True)).__getitem__)
+        found = self.taken.function(*plain, **named)
+        if not isinstance(found, tuple | list):
+            found = np.reshape(np.asarray(found, float), (self.states, -1))
+        rates = np.empty(x.shape)
+        for state, one in enumerate(found):
+            rates[:, state] = one
+        return rates
+
+    def _one(self, point: Mapping[str, float]) -> list[float]:
+        try:
+            return self.taken.at(point)
+        except (ValueError, ArithmeticError):  # `math` raises where NumPy gives what is no number
+            return [np.nan] * self.states
+
+
+def _equations(taken: _Taken, count: int) -> tuple[tuple[str, str], ...]:
+    texts = [written(tree) for tree in traced_equations(taken.function, taken.arguments)]
+    if len(texts) != count or max(map(len, texts)) > LONGEST:
+        raise NotTraced("its expressions are too long")
+    return tuple(zip(taken.signals[:count], texts, strict=True))
+
+
+def _refuse_other_numbers(simulation: Simulation, taken: _Taken) -> Simulation:
+    """The simulation itself, where it gives what the function gives."""
+    pushed = simulation
+    for name in taken.ports:
+        pushed = pushed.with_effect(Term(name, "port", "push", repr(PUSH)))
+    machine = compile_simulation(pushed)
+    t, x, u, values = (
+        np.array([[point[name] for name in names] for point in taken.points]).reshape(TRIED, -1)
+        for names in ((TIME,), machine.states, machine.inputs, machine.parameters)
+    )
+    if not taken.gives(machine.rates(t[:, 0], x, u, values)):
+        raise NotTraced("they give other numbers than the function")
+    return simulation
+
+
+def _by_name(function: Callable[..., Any]) -> _Taken:
+    """A function that has an argument for each state, input, parameter and port."""
+    arguments = inspect.signature(function).parameters
+    for one in arguments.values():
+        if one.kind in (one.VAR_POSITIONAL, one.VAR_KEYWORD, one.POSITIONAL_ONLY):
+            raise SimulationError(
+                "a simulation's function names each of its states, inputs and parameters as an argument",
+                f"{_title(function)} has {str(one)!r}",
+                "Write one argument for each; or, where it takes vectors, name their elements: "
+                "simulation_from_function(function, states=[...], inputs=[...], parameters={...}).",
+            )
+    plain = [one.name for one in arguments.values() if one.default is one.empty and one.kind is not one.KEYWORD_ONLY]
+    ports = tuple(one.name for one in arguments.values() if one.kind is one.KEYWORD_ONLY)
+    given = {name: arguments[name].default for name in arguments if name not in (*plain, *ports)}
+    dicts = {name: [str(key) for key in default] for name, default in given.items() if isinstance(default, Mapping)}
+    numbers: dict[str, float] = {}
+    for name, default in given.items():
+        several = default if name in dicts else {name: default}
+        numbers |= {str(key): _number(function, name, value) for key, value in several.items()}
+    single = [name for name in (*plain, *given, *ports) if name not in dicts]
+
+    def from_values(value: Callable[[str], Any]) -> tuple[tuple, dict]:
+        named = {name: value(name) for name in single}
+        for name, keys in dicts.items():
+            named[name] = {key: value(key) for key in keys}
+        return (), named
+
+    return _Taken(function, tuple(name for name in plain if name != TIME), numbers, ports, from_values)
+
+
+def _as_vectors(
+    function: Callable[..., Any], states: Sequence[str], inputs: Sequence[str], parameters: Mapping[str, float]
+) -> _Taken:
+    """A function of the time, the vector of the states and, where there are any, of the inputs and the parameters."""
+    numbers = {name: _number(function, name, value) for name, value in parameters.items()}
+    taken = [one for one in inspect.signature(function).parameters.values() if one.default is one.empty]
+    wanted = 1 + bool(inputs) + bool(numbers)
+    if len(taken) not in (wanted, wanted + 1):
+        named = ["t", "x", *(["u"] if inputs else []), *(["p"] if numbers else [])]
+        raise SimulationError(
+            f"with these states, inputs and parameters a function takes ({', '.join(named)})",
+            f"{_title(function)} takes ({', '.join(one.name for one in taken)})",
+            "Name the elements of each vector, or give the function these arguments.",
+        )
+
+    def from_values(value: Callable[[str], Any]) -> tuple[tuple, dict]:
+        vectors = [np.array([value(name) for name in names]) for names in (states, inputs) if names]
+        dicts = [{name: value(name) for name in numbers}] if numbers else []
+        return (*([value(TIME)] if len(taken) > wanted else []), *vectors, *dicts), {}
+
+    return _Taken(function, (*states, *inputs), numbers, (), from_values)
+
+
+def _are_floats(found: Any) -> bool:
+    return isinstance(found, tuple | list) and all(type(one) is float for one in found)
 
 
 def _title(function: Callable[..., Any]) -> str:
     return getattr(function, "__name__", type(function).__name__)
 
 
-def _port(one: inspect.Parameter) -> bool:
-    return one.kind is one.KEYWORD_ONLY
-
-
-def _refuse_unnamed(function: Callable[..., Any], named: Any) -> None:
-    for one in named:
-        if one.kind in (one.VAR_POSITIONAL, one.VAR_KEYWORD, one.POSITIONAL_ONLY):
-            raise SimulationError(
-                "a simulation's function names each of its states, inputs and parameters as an argument",
-                f"{_title(function)} has {str(one)!r}",
-                "Write one argument for each.",
-            )
-
-
-def _number(function: Callable[..., Any], one: inspect.Parameter) -> float:
-    if isinstance(one.default, bool) or not isinstance(one.default, int | float | np.number):
+def _number(function: Callable[..., Any], name: str, value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float | np.number):
         raise SimulationError(
-            "an argument with a default is a parameter of the simulation, a number",
-            f"{_title(function)} has {one.name}={one.default!r}",
+            "an argument with a default is a parameter of the simulation, a number or a dict of numbers",
+            f"{_title(function)} has {name}={value!r}",
             "Give it a number, or take the default away.",
         )
-    return float(one.default)
+    return float(value)
 
 
-def _refuse_unknown_units(function: Callable[..., Any], units: Mapping[str, str], known: list[str]) -> None:
+def _refuse_unknown_units(taken: _Taken, units: Mapping[str, str]) -> None:
+    known = (*taken.signals, *taken.numbers, *taken.ports)
     unknown = next((name for name in units if name not in known), None)
     if unknown is not None:
         raise SimulationError(
             "a unit belongs to an argument of the function",
-            f"{_title(function)} has none called {unknown!r}",
+            f"{taken.title} has none called {unknown!r}",
             f"Known: {', '.join(known)}.",
         )
-
-
-def _states_of(function: Callable[..., Any], plain: list[str], numbers: Mapping[str, float], ports: list[str]) -> int:
-    """How many derivatives the function returns for two points."""
-    given = {name: np.full(2, 0.5) for name in plain} | {name: np.full(2, value) for name, value in numbers.items()}
-    given |= {name: np.zeros(2) for name in ports}
-    try:
-        with np.errstate(all="ignore"):
-            found = function(**given)
-        return len(found) if isinstance(found, tuple | list) else len(np.atleast_2d(np.asarray(found, float)))
-    except Exception as error:  # whatever a user's function raises
-        raise SimulationError(
-            "a simulation's function takes arrays, one number a point, and returns a derivative for each state",
-            f"{_title(function)} raised {type(error).__name__}: {str(error)[:200]}",
-            "Compute with NumPy (np.sin, np.where in place of if), and return a tuple of arrays.",
-        ) from error
-
-
-def _rates(
-    function: Callable[..., Any], plain: list[str], numbers: list[str], ports: list[str], states: int
-) -> Callable[..., NDArray[np.float64]]:
-    signals = [name for name in plain if name != TIME]
-
-    def rates(t: Any, x: Any, u: Any, values: Any, pushes: Any) -> NDArray[np.float64]:
-        given = dict(zip(signals, (*x.T, *u.T), strict=True))
-        given |= dict(zip(numbers, values.T, strict=False))  # parameters of effects come after the function's own
-        given |= dict(zip(ports, pushes.T, strict=True))
-        if TIME in plain:
-            given[TIME] = t
-        found = function(**given)
-        columns = found if states > 1 or isinstance(found, tuple | list) else (found,)
-        return np.column_stack([np.broadcast_to(np.asarray(one, float), len(x)) for one in columns])
-
-    return rates

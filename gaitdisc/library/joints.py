@@ -12,11 +12,10 @@ from gaitdisc.kinematics.motion import joint_angles, moved_body
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
 from gaitdisc.kinetics.trial_kinetics import trial_kinetics
+from gaitdisc.library.walks import Walk, trial_of
 from gaitdisc.processing.markers_to_moments import foot_paths_of
 from gaitdisc.recording import Recording, Trial
 from gaitdisc.recording.body_measures import BodyMeasures
-
-Walk = Trial | Path | str | Sequence[Path | str]
 
 
 def angles(
@@ -30,7 +29,7 @@ def angles(
 
     Parameters
     ----------
-    walk : Trial, path or sequence of paths
+    walk : Trial, path, DataFrame, Recording or sequence of paths
         With markers.
     static : Trial or path
         The same person standing, with the same markers; widths of joints are read from its C3D file.
@@ -59,7 +58,7 @@ def angles(
     >>> import gaitdisc as gd
     >>> gd.angles("walk.c3d", "static.c3d")["knee_angle_r"]  # doctest: +SKIP
     """
-    trial = _trial(walk)
+    trial = trial_of(walk)
     standing, measures = _standing(static)
     found = joint_angles(trial.stream("markers"), standing, marker_set, measures, forward, joints)
     return replace(found, subject=trial.subject, condition=trial.condition)
@@ -77,7 +76,7 @@ def moments(
 
     Parameters
     ----------
-    walk : Trial, path or sequence of paths
+    walk : Trial, path, DataFrame, Recording or sequence of paths
         With markers and ground forces.
     static : Trial or path
         The same person standing, with the same markers.
@@ -109,16 +108,12 @@ def moments(
     >>> import gaitdisc as gd
     >>> gd.moments("walk.c3d", "static.c3d", mass_kg=70.0)["knee_moment_r"]  # doctest: +SKIP
     """
-    trial = _trial(walk)
+    trial = trial_of(walk)
     standing, measures = _standing(static)
     body, moved = moved_body(trial.stream("markers"), standing, marker_set, measures)
     person = Person(measures.mass_kg if mass_kg is None else mass_kg, sex, measures.height_m)
     settings = KineticsSettings(force_cutoff_hz=force_cutoff_hz)
     return trial_kinetics(trial, moved.poses, foot_paths_of(moved, body), person, settings).moments
-
-
-def _trial(walk: Walk) -> Trial:
-    return walk if isinstance(walk, Trial) else read_trial(walk)
 
 
 def _standing(static: Trial | Path | str) -> tuple[Recording, BodyMeasures]:

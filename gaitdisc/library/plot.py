@@ -12,10 +12,12 @@ import numpy as np
 
 from gaitdisc.channel import nearest_word, side_of
 from gaitdisc.errors import ChannelError
+from gaitdisc.library.walks import recording_of
 from gaitdisc.recording import Recording, Strides
 from gaitdisc.report.own_axes import axes_or_new
 
 if TYPE_CHECKING:
+    import pandas as pd
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike
 
@@ -28,13 +30,15 @@ if TYPE_CHECKING:
 STRIDE = "stride [%]"
 
 
-def recording(recording: Recording, channels: Sequence[str] | str | None = None, ax: Axes | None = None) -> Axes:
+def recording(
+    recording: Recording | pd.DataFrame, channels: Sequence[str] | str | None = None, ax: Axes | None = None
+) -> Axes:
     """Draw channels of a recording over time; samples marked as suspect are drawn over in grey.
 
     Parameters
     ----------
-    recording : Recording
-        Measured or simulated.
+    recording : Recording or DataFrame
+        Measured or simulated; a DataFrame has its times in a column `time` [s].
     channels : str or sequence of str, optional
         Names; the first four where none is given.
     ax : matplotlib.axes.Axes, optional
@@ -58,18 +62,19 @@ def recording(recording: Recording, channels: Sequence[str] | str | None = None,
     """
     from gaitdisc.report.recording_figure import draw_recording
 
+    recording = recording_of(recording)
     names = [channels] if isinstance(channels, str) else list(channels or recording.names[:4])
     axes = axes_or_new(ax)
     draw_recording(axes, recording, names)
     return axes
 
 
-def cycles(recording: Recording, strides: Strides, channel: str, ax: Axes | None = None) -> Axes:
+def cycles(recording: Recording | pd.DataFrame, strides: Strides, channel: str, ax: Axes | None = None) -> Axes:
     """Draw every cycle of a channel faint, their mean, and from three cycles on the standard deviation.
 
     Parameters
     ----------
-    recording : Recording
+    recording : Recording or DataFrame
         Filtered, on the clock of the strides.
     strides : Strides
         What `gaitdisc.cycles` gave.
@@ -97,7 +102,7 @@ def cycles(recording: Recording, strides: Strides, channel: str, ax: Axes | None
     from gaitdisc.report.cycles_figure import draw_cycles
     from gaitdisc.report.wording import label, unit_text
 
-    one = recording.selected([channel])
+    one = recording_of(recording).selected([channel])
     every = strides.normalised(one)[:, :, 0]
     every = every[np.isfinite(every).all(axis=1)]
     axes = axes_or_new(ax)

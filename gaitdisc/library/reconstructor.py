@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.channel import Channel
-from gaitdisc.errors import ShapeError, TrainingError
+from gaitdisc.errors import SamplingError, ShapeError, TrainingError
 from gaitdisc.recording import Recording, Samples
 from gaitdisc.results.saved import Saved
 from gaitdisc.sensing.intervals import half_widths
@@ -84,8 +84,8 @@ class Reconstructor(Saved, by="gaitdisc.library.reconstructor:save_reconstructor
 
         Parameters
         ----------
-        x : array_like (time, sensor), or a sequence of them
-            Readings; a DataFrame names its columns.
+        x : array_like (time, sensor), DataFrame, Recording, or a sequence of them
+            Readings; a DataFrame or a Recording names them, and `predict` then finds them by name.
         y : array_like (time, state), or a sequence of them
             States at the same times.
 
@@ -111,14 +111,21 @@ class Reconstructor(Saved, by="gaitdisc.library.reconstructor:save_reconstructor
                 f"found {len(readings)} of readings, {len(states)} of states",
                 "Give one array of states for each array of readings.",
             )
-        sensors, told = _names(readings[0], "sensor"), _names(states[0], "state")
+        sensors, targets = _names(readings[0], "sensor"), _names(states[0], "state")
+        both = [name for name in targets if name in sensors]
+        if both:
+            raise ShapeError(
+                "a state is none of the sensors",
+                f"{both[0]!r} is in both",
+                "Leave it out of the states: it is measured.",
+            )
         lags = Lags(
             max(1, round(self.history_s / self.spacing_s) + 1) if self.history_s else 1,
             max(1, round(self.spacing_s * self.rate_hz)),
             round(self.ahead_s * self.rate_hz),
         )
-        what = Sensing(sensors, told, lags, self.rate_hz)
-        channels = tuple(Channel(name, "signal", "1") for name in (*sensors, *told))
+        what = Sensing(sensors, targets, lags, self.rate_hz)
+        channels = tuple(Channel(name, "signal", "1") for name in (*sensors, *targets))
         windows = [self._windows(one, other, what) for one, other in zip(readings, states, strict=True)]
         parts = [each.last_block(CHECKED, what.reach_s + SEAM_S) for each in windows]
         training, check = (stacked([part[k] for part in parts]) for k in (0, 1))
@@ -155,7 +162,7 @@ class Reconstructor(Saved, by="gaitdisc.library.reconstructor:save_reconstructor
 
         Parameters
         ----------
-        x : array_like (time, sensor)
+        x : array_like (time, sensor), DataFrame or Recording
             Readings.
         y : array_like (time, state)
             Measured states at the same times.
@@ -204,7 +211,13 @@ class Reconstructor(Saved, by="gaitdisc.library.reconstructor:save_reconstructor
         return f"Reconstructor({self.kind!r}, {self.rate_hz:g} Hz, {self.history_s:g} s of history: {fitted})"
 
     def _recording(self, x: Any, sensors: tuple[str, ...]) -> Recording:
-        values = _array(x, "readings")
+        if isinstance(x, Recording) and abs(x.rate_hz - self.rate_hz) > 1e-3 * self.rate_hz:
+            raise SamplingError(
+                f"the model reads {self.rate_hz:g} samples a second",
+                f"the recording has {x.rate_hz:g}",
+                "Resample it, or give its rate: Reconstructor(rate_hz=...).",
+            )
+        values = _array(_in_order(x, sensors), "readings")
         if values.shape[1] != len(sensors):
             raise ShapeError(
                 f"the model reads {len(sensors)} sensors",
@@ -215,16 +228,16 @@ class Reconstructor(Saved, by="gaitdisc.library.reconstructor:save_reconstructor
         return Recording(time, values, tuple(Channel(name, "signal", "1") for name in sensors))
 
     def _windows(self, x: Any, y: Any, what: Sensing) -> Samples:
-        read, told = self._recording(x, what.sensors), _array(y, "states")
-        if told.shape != (len(read.time), len(what.states)):
+        read, states = self._recording(x, what.sensors), _array(y, "states")
+        if states.shape != (len(read.time), len(what.states)):
             raise ShapeError(
-                f"states stand at the times of the readings, {len(what.states)} of them in every trial",
-                f"found readings {read.values.shape} and states {told.shape}, (time, column)",
+                f"every reading has its row of {len(what.states)} states",
+                f"found readings {read.values.shape} and states {states.shape}, (time, column)",
                 "Give one row a time in both.",
             )
         both = Recording(
             read.time,
-            np.hstack([read.values, told]),
+            np.hstack([read.values, states]),
             (*read.channels, *(Channel(name, "signal", "1") for name in what.states)),
         )
         return windows_of(both, what.sensors, what.states, what.lags, np.zeros(len(read.time)))
@@ -257,7 +270,7 @@ def load_reconstructor(folder: Path) -> Reconstructor:
 
 
 def _array(given: Any, words: str) -> NDArray[np.float64]:
-    values = np.asarray(given, float)
+    values = np.asarray(given.values if isinstance(given, Recording) else given, float)
     if values.ndim != 2:
         raise ShapeError(
             f"{words} are an array (time, column)",
@@ -267,8 +280,27 @@ def _array(given: Any, words: str) -> NDArray[np.float64]:
     return values
 
 
+def _named(given: Any) -> tuple[str, ...]:
+    """Names of the columns of a table or a recording; none of an array."""
+    if isinstance(given, Recording):
+        return given.names
+    return tuple(str(name) for name in getattr(given, "columns", ()))
+
+
 def _names(given: Any, word: str) -> tuple[str, ...]:
-    columns = getattr(given, "columns", None)
-    if columns is not None:
-        return tuple(str(name) for name in columns)
-    return tuple(f"{word}_{number}" for number in range(1, _array(given, f"{word}s").shape[1] + 1))
+    return _named(given) or tuple(f"{word}_{n}" for n in range(1, _array(given, f"{word}s").shape[1] + 1))
+
+
+def _in_order(given: Any, sensors: tuple[str, ...]) -> Any:
+    """Columns of the sensors by name, where both have names; else as given."""
+    names = _named(given)
+    if not names or all(name == f"sensor_{n}" for n, name in enumerate(sensors, 1)):
+        return given
+    absent = [name for name in sensors if name not in names]
+    if absent:
+        raise ShapeError(
+            f"the model reads {', '.join(sensors)}",
+            f"{absent[0]!r} is not among {', '.join(names[:8])}",
+            "Name the columns as in fit, or give an array in the order of fit.",
+        )
+    return _array(given, "readings")[:, [names.index(name) for name in sensors]]

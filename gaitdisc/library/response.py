@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
-from pathlib import Path
 
 from gaitdisc.batch.participant_unit import response_settings
 from gaitdisc.batch.public_words import public_settings
 from gaitdisc.errors import ChannelError
-from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.study import ANGLES, OUTPUTS, Conditions, HeldOut, Models, Participant, Study
+from gaitdisc.library.walks import Walk, trial_of
 from gaitdisc.processing.filter_null import filter_null_of
 from gaitdisc.processing.process import processed
 from gaitdisc.recording import Trial
@@ -22,8 +21,8 @@ WITHOUT, WITH = "nominal", "exo"
 
 
 def fit_response(
-    nominal: Trial | Path | str,
-    exo: Trial | Path | str,
+    nominal: Walk,
+    exo: Walk,
     outputs: Sequence[str] = OUTPUTS,
     angles: Sequence[str] | None = None,
     emg: Sequence[str] = (),
@@ -37,7 +36,7 @@ def fit_response(
 
     Parameters
     ----------
-    nominal, exo : Trial or path
+    nominal, exo : Trial, path, DataFrame or Recording
         The walk without and the walk with the device, with joint angles; a minute or more each.
     outputs : sequence of str
         Angles whose second derivative is predicted.
@@ -75,10 +74,7 @@ def fit_response(
     >>> run = gd.fit_response("nominal.c3d", "exo.c3d", emg=["emg_sol_r"])  # doctest: +SKIP
     >>> run.to_frame()  # doctest: +SKIP
     """
-    trials = {
-        word: replace(one if isinstance(one, Trial) else read_trial(one), condition=word)
-        for word, one in ((WITHOUT, nominal), (WITH, exo))
-    }
+    trials = {word: replace(trial_of(one), condition=word) for word, one in ((WITHOUT, nominal), (WITH, exo))}
     inputs = _angles(trials, outputs, angles)
     models = Models(angles=inputs, emg=tuple(emg), outputs=tuple(outputs), seed=seed)
     study = _study(trials, models, HeldOut(share=held_out_share))

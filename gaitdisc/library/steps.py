@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaitdisc.errors import StrideError
-from gaitdisc.ingest.reading import read_trial
+from gaitdisc.library.walks import Walk, trial_of
 from gaitdisc.processing.contact_choice import chosen_contacts
-from gaitdisc.recording import Recording, Strides, Trial
+from gaitdisc.recording import Recording, Strides
 from gaitdisc.signals.strides import cut_strides
 
 if TYPE_CHECKING:
     from gaitdisc.signals.contacts import Contacts
 
 
-def contacts(trial: Trial | Path | str, detector: str = "auto") -> dict[str, Contacts]:
+def contacts(trial: Walk, detector: str = "auto") -> dict[str, Contacts]:
     """Initial contacts of both feet.
 
     `auto` takes ground force before the file's own events before heel markers before joint angles, but none that sees
@@ -23,8 +22,8 @@ def contacts(trial: Trial | Path | str, detector: str = "auto") -> dict[str, Con
 
     Parameters
     ----------
-    trial : Trial or path
-        A walk: what `read` gave, or its file.
+    trial : Trial, path, DataFrame or Recording
+        A walk: what `read` gave or takes, or a recording.
     detector : str
         `auto`, `force`, `events`, `markers` or `angles`.
 
@@ -45,11 +44,11 @@ def contacts(trial: Trial | Path | str, detector: str = "auto") -> dict[str, Con
     >>> {side: one.detector for side, one in sorted(gd.contacts(walk).items())}
     {'l': 'force', 'r': 'force'}
     """
-    return dict(chosen_contacts(_trial(trial), detector).contacts)
+    return dict(chosen_contacts(trial_of(trial), detector).contacts)
 
 
 def cycles(
-    trial: Trial | Path | str,
+    trial: Walk,
     side: str = "r",
     detector: str = "auto",
     recording: Recording | None = None,
@@ -60,8 +59,8 @@ def cycles(
 
     Parameters
     ----------
-    trial : Trial or path
-        A walk: what `read` gave, or its file.
+    trial : Trial, path, DataFrame or Recording
+        A walk: what `read` gave or takes, or a recording.
     side : str
         The foot whose contacts begin the cycles, `r` or `l`.
     detector : str
@@ -98,7 +97,3 @@ def cycles(
             "Take the other side ('r' or 'l'), or another detector.",
         )
     return cut_strides(found[side], recording, min_s, max_s)
-
-
-def _trial(trial: Trial | Path | str) -> Trial:
-    return trial if isinstance(trial, Trial) else read_trial(trial)

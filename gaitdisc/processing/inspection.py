@@ -11,6 +11,7 @@ from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.reading import read_planned_trial, read_trial
 from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import is_functional, is_static, is_walk, not_compared, refused_participant, trial_sets
+from gaitdisc.notebook import html_of
 from gaitdisc.processing.angles_of_segments import with_segment_angles
 from gaitdisc.processing.contact_choice import chosen_contacts
 from gaitdisc.processing.pooled import pooled_cycles, pooled_instead
@@ -54,6 +55,16 @@ class Inspection:
     strides: Mapping[str, tuple[int, int]] = field(default_factory=dict)
     findings: tuple[Finding, ...] = ()
     refusal: str = ""
+
+    def __repr__(self) -> str:
+        kept = "".join(f", {count} strides {side}" for side, (count, _) in self.strides.items())
+        return f"Inspection({self.name!r}: {self.light}{kept}, {len(self.findings)} findings)"
+
+    def _repr_html_(self) -> str:
+        rows = [("light", self.light), ("refused", self.refusal), *self.streams.items()]
+        rows += [(f"strides {side}", f"{kept}, {dropped} dropped") for side, (kept, dropped) in self.strides.items()]
+        rows += [(one.severity, one.line()) for one in self.findings]
+        return html_of(f"Inspection of {self.name}", [row for row in rows if row[1]])
 
     @property
     def light(self) -> str:
@@ -180,7 +191,7 @@ def _unused(study: Study, participant: Participant, reader: C3DReader) -> dict[i
             continue
         standing = Inspection(name, trial.subject, trial.condition, _streams(trial), {}, _sorted(trial.findings))
         looked_at = not is_static(study, planned) and not is_functional(study, planned)
-        found[place] = _looked_at(trial, name) if looked_at else standing
+        found[place] = inspected_trial(trial, name) if looked_at else standing
     return found
 
 
@@ -194,7 +205,7 @@ def inspected_file(path: Path, reader: C3DReader | None = None) -> Inspection:
         trial = read_trial(path, reader=reader)
     except GaitdiscError as error:
         return Inspection(path.name, refusal=str(error))
-    return _looked_at(trial, path.name)
+    return inspected_trial(trial, path.name)
 
 
 def _of_study(read: ReadWalk, study: Study, name: str) -> Inspection:
@@ -202,14 +213,15 @@ def _of_study(read: ReadWalk, study: Study, name: str) -> Inspection:
     try:
         walk = read.processed(study)
     except GaitdiscError as error:
-        seen = _looked_at(trial, name)
+        seen = inspected_trial(trial, name)
         return Inspection(name, trial.subject, trial.condition, seen.streams, seen.strides, seen.findings, str(error))
     return Inspection(
         name, trial.subject, trial.condition, _streams(trial), _counted(walk.strides), _sorted(walk.findings)
     )
 
 
-def _looked_at(trial: Trial, name: str) -> Inspection:
+def inspected_trial(trial: Trial, name: str) -> Inspection:
+    """Say what a walk holds and what is wrong with it."""
     trial = with_segment_angles(trial)
     findings = [*trial.findings, *quality_findings(trial)]
     strides: dict[str, Strides] = {}

@@ -104,7 +104,7 @@ def pooled_cycles(study: Study, participant: Participant, read: Read) -> tuple[P
                 seen[one.condition], lost[one.condition] = _seen_trials(standing, one, read, shelved)
             offsets = _offsets([trial for trials in seen.values() for trial in trials])
             found += [
-                _pooled(study, participant, one, seen[one.condition], lost[one.condition], offsets)
+                _pooled(standing, one, seen[one.condition], lost[one.condition], offsets)
                 for one in sets
                 if one.session == session
             ]
@@ -193,13 +193,9 @@ def _offsets(seen: Sequence[_Seen]) -> _Offsets:
 
 
 def _pooled(
-    study: Study,
-    participant: Participant,
-    one: TrialSet,
-    seen: Sequence[_Seen],
-    lost: Sequence[Refusal],
-    offsets: _Offsets,
+    standing: Standing, one: TrialSet, seen: Sequence[_Seen], lost: Sequence[Refusal], offsets: _Offsets
 ) -> PooledCycles:
+    study, participant = standing.study, standing.participant
     cut = [_cut(study, trial, offsets) for trial in seen]
     judged = _judged([cycles for cycles, _ in cut], study)
     outside = bool(seen) and all(trial.over_ground for trial in seen)
@@ -232,6 +228,8 @@ def _pooled(
         (*(finding for trial in seen for finding in trial.findings), *_offset_findings(where, late, offsets)),
         tuple(refusals),
         {file: sha for trial in seen for file, sha in trial.files.items()},
+        next((leg_m for trial in seen if (leg_m := standing.leg_m(trial.planned)) is not None), None),
+        participant.age_years,
     )
 
 

@@ -107,6 +107,15 @@ class Standing:
             return None
         return mass * GRAVITY if mass else None
 
+    def leg_m(self, planned: PlannedTrial) -> float | None:
+        """Leg length of the person [m]: as the static file or the walk's has it, else by the study's stature."""
+        try:
+            found = (self._measures(self.planned), self._measures(planned))
+        except GaitdiscError:
+            found = ()
+        measured = next((one for one in found if one.leg_length_m), BodyMeasures(height_m=self.participant.height_m))
+        return measured.leg_m or next((one.leg_m for one in found if one.leg_m), None)
+
     def _without_angles(self, trial: Trial, whose: str, error: GaitdiscError) -> Trial:
         said = Finding("warning", "no angles", whose, str(error).rstrip("."), "angles from markers")
         return replace(trial, findings=(*trial.findings, *self._new((said,))))

@@ -168,12 +168,13 @@ def feet_in(cycles: list[Cycle], feet: HeelPaths | None, belt_m_per_s: float = 0
     Parameters
     ----------
     feet : HeelPaths, optional
-        Of the trial; without them only the step's time is known.
+        Of the trial; without them only the step's time is known, and on a belt how far it ran in a stride.
     belt_m_per_s : float
         Speed of a belt, whose length is added to each stride [m/s].
     """
     if feet is None:
-        return [Places(one.end - one.opposite_contact) for one in cycles]
+        ran = belt_m_per_s or NAN
+        return [Places(one.end - one.opposite_contact, ran * one.duration_s) for one in cycles]
     paths, way = feet.heels, feet.way
     found = []
     for one in cycles:

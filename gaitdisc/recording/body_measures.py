@@ -17,6 +17,7 @@ LENGTHS_M = {
     "ankle_width_m": (0.02, 0.15),
 }
 MASS_KG = (5.0, 300.0)
+LEG_OF_STATURE = 0.530  # greater trochanter over ground, Winter (2009), figure 4.1
 
 
 @dataclass(frozen=True)
@@ -53,6 +54,20 @@ class BodyMeasures:
     knee_width_m: Mapping[str, float] = field(default_factory=dict)
     ankle_width_m: Mapping[str, float] = field(default_factory=dict)
     source: str = "given"
+
+    @property
+    def leg_m(self) -> float | None:
+        """Mean leg length [m], by stature where nobody measured a leg; None without either.
+
+        Examples
+        --------
+        >>> round(BodyMeasures(height_m=1.7).leg_m, 3), BodyMeasures().leg_m
+        (0.901, None)
+        """
+        lengths = list(self.leg_length_m.values())
+        if lengths:
+            return sum(lengths) / len(lengths)
+        return None if self.height_m is None else LEG_OF_STATURE * self.height_m
 
     def __post_init__(self) -> None:
         """Refuse what no person measures, once."""

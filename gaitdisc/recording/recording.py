@@ -141,10 +141,11 @@ class Recording:
         """
         if name not in self.names:
             nearest = vocabulary().nearest(name, among=self.names)
-            hint = f", the nearest is {nearest!r}" if nearest else ""
+            there = f"{', '.join(self.names[:SHOWN])}{', ...' * (len(self.names) > SHOWN)}" or "none"
+            hint = f"the nearest is {nearest!r}" if nearest else there
             raise ChannelError(
                 f"channel {name!r} is needed",
-                f"{self.source.file or 'the recording'} has {len(self.names)} channels{hint}",
+                f"{self.source.file or 'the recording'} has {len(self.names)} channels: {hint}",
                 "Map it in the study's [channels], or add an alias to channels.csv.",
             )
         return self.names.index(name)

@@ -10,12 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, SamplingError
+from gaitdisc.notebook import html_of
 from gaitdisc.recording.finding import Finding
 from gaitdisc.recording.recording import Recording
 from gaitdisc.recording.strides import interpolated
 from gaitdisc.recording.surface import Surface
 from gaitdisc.recording.wrapping import unwrapped, wrapped
 
+SHOWN = 6  # findings of a notebook's table
 STREAMS = ("kinematics", "markers", "segments", "emg", "forces", "moments", "signals")
 
 
@@ -94,6 +96,14 @@ class Trial:
         return (
             f"Trial({self.name!r}: {streams or 'no stream'}; {len(self.events)} events, {len(self.findings)} findings)"
         )
+
+    def _repr_html_(self) -> str:
+        rows = [
+            (key, f"{len(one.names)} channels, {one.rate_hz:g} Hz, {one.duration_s:.2f} s")
+            for key, one in self.streams.items()
+        ]
+        rows += [("events", str(len(self.events)))] if self.events else []
+        return html_of(f"Trial {self.name}", [*rows, *((one.kind, one.what) for one in self.findings[:SHOWN])])
 
     def stream(self, key: str) -> Recording:
         """Return one stream.

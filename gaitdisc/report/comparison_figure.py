@@ -39,16 +39,8 @@ def comparison_figures(run: ResponseRun) -> list[Figure]:
         return []
     numbers = r2_numbers(run)
     numbers = numbers[numbers["kind"] == "network"].drop(columns="kind").reset_index(drop=True)
-    parts = sheets(variables(run), MOST)
-    return [
-        _figure(
-            run,
-            run.tests,
-            numbers[numbers["variable"].isin(part)],
-            f"comparison-{i + 1}" if len(parts) > 1 else "comparison",
-        )
-        for i, part in enumerate(parts)
-    ]
+    parts = sheets(variables(run), MOST, "comparison")
+    return [_figure(run, run.tests, numbers[numbers["variable"].isin(part)], name) for name, part in parts.items()]
 
 
 def _figure(run: ResponseRun, tests: PairTests, numbers: pd.DataFrame, name: str) -> Figure:

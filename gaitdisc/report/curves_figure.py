@@ -11,7 +11,7 @@ from gaitdisc.channel import side_of
 from gaitdisc.recording import PERCENT
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import SIDES, WITHOUT_DEVICE
-from gaitdisc.report.panels import Room, in_style, legend, panels, sheets
+from gaitdisc.report.panels import Room, in_style, legend, panels_for, sheets
 from gaitdisc.report.wording import counted, label, sideless, unit_text, upwards
 from gaitdisc.results import ResponseRun, WalkSummary
 
@@ -28,12 +28,9 @@ def curves_figures(run: ResponseRun, participant: str, name: str) -> list[Figure
     numbers = curve_numbers(run, participant)
     if not len(numbers):
         return []
-    parts = sheets(sides_together(list(dict.fromkeys(numbers["channel"]))), 16)
-    return [
-        _figure(run, participant, numbers[numbers["channel"].isin(part)].set_index("channel").loc[part].reset_index(),
-                f"curves-{name}-{i + 1}" if len(parts) > 1 else f"curves-{name}")
-        for i, part in enumerate(parts)
-    ]  # fmt: skip
+    parts = sheets(sides_together(list(dict.fromkeys(numbers["channel"]))), 16, f"curves-{name}")
+    by_channel = numbers.set_index("channel")
+    return [_figure(run, participant, by_channel.loc[part].reset_index(), sheet) for sheet, part in parts.items()]
 
 
 def curve_numbers(run: ResponseRun, participant: str) -> pd.DataFrame:
@@ -115,11 +112,9 @@ def draw_walks(axes: Axes, curves: pd.DataFrame, colour: str) -> None:
 
 def _figure(run: ResponseRun, participant: str, numbers: pd.DataFrame, name: str) -> Figure:
     groups = list(numbers.groupby("channel", sort=False))
-    columns = min(4, len(groups))
-    drawn, grid = panels(-(-len(groups) // columns), columns, 1.15, Room(left=0.6, across=0.64, down=0.46))
-    cells = [axes for row in grid for axes in row]
+    drawn, cells = panels_for(len(groups), 4, 1.15, Room(left=0.6, across=0.64, down=0.46))
     ranges = _ranges(numbers)
-    for axes, (channel, curves) in zip(cells, groups, strict=False):
+    for axes, (channel, curves) in zip(cells, groups, strict=True):
         draw_walks(axes, curves, SIDES[side_of(str(channel))].colour)
         axes.set_title(_title(str(channel)), color=SIDES[side_of(str(channel))].colour, fontsize=7.4)
         up = upwards(str(channel))
@@ -128,9 +123,7 @@ def _figure(run: ResponseRun, participant: str, numbers: pd.DataFrame, name: str
         axes.set_ylim(*ranges[sideless(str(channel))])
         axes.set_xlim(0, 100)
         axes.set_xticks([0, 50, 100])
-    for axes in cells[len(groups) :]:
-        axes.set_visible(False)
-    for axes in cells[max(0, len(groups) - columns) : len(groups)]:
+    for axes in cells[-4:]:
         axes.set_xlabel("stride [%]", labelpad=1)
     legend(drawn, walks_key(run))
     return Figure(name, _caption(run, participant, numbers), _alt(run, participant, numbers), numbers, drawn)

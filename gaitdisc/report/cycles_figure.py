@@ -12,7 +12,7 @@ from gaitdisc.recording import PERCENT
 from gaitdisc.report.curves_figure import sides_together
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import SIDES
-from gaitdisc.report.panels import Room, in_style, legend, panels, sheets
+from gaitdisc.report.panels import Room, in_style, legend, panels_for, sheets
 from gaitdisc.report.wording import SIDE_WORDS, counted, label, sideless, unit_text, upwards
 from gaitdisc.results import PooledCycles
 
@@ -37,19 +37,14 @@ def cycles_figures(pooled: PooledCycles, name: str) -> list[Figure]:
     order = {kind: place for place, kind in enumerate(("angle", "translation", "moment", "power"))}
     kinds = {sideless(channel.name): order.get(channel.quantity, len(order)) for channel in pooled.channels}
     joints.sort(key=lambda joint: kinds[joint])
-    parts = sheets(joints, MOST_PANELS)
-    return [
-        _figure(pooled, numbers, part, f"cycles-{name}-{i + 1}" if len(parts) > 1 else f"cycles-{name}")
-        for i, part in enumerate(parts)
-    ]
+    parts = sheets(joints, MOST_PANELS, f"cycles-{name}")
+    return [_figure(pooled, numbers, part, sheet) for sheet, part in parts.items()]
 
 
 def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name: str) -> Figure:
-    columns = min(COLUMNS, len(joints))
-    drawn, grid = panels(-(-len(joints) // columns), columns, 1.15, Room(left=0.6, across=0.64, down=0.46))
-    cells = [axes for row in grid for axes in row]
+    drawn, cells = panels_for(len(joints), COLUMNS, 1.15, Room(left=0.6, across=0.64, down=0.46))
     shown = numbers[numbers["channel"].map(sideless).isin(joints)].reset_index(drop=True)
-    for axes, joint in zip(cells, joints, strict=False):
+    for axes, joint in zip(cells, joints, strict=True):
         own = shown[shown["channel"].map(sideless) == joint]
         for channel, side in own[["channel", "side"]].drop_duplicates().itertuples(index=False):
             curve = own[(own["channel"] == channel) & (own["side"] == side)]
@@ -60,9 +55,7 @@ def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name
         axes.set_ylabel(f"[{unit}]" + (f" ↑ {up}" if up and len(up) < 18 else ""), fontsize=6.8, labelpad=1)
         axes.set_xlim(0, 100)
         axes.set_xticks([0, 50, 100])
-    for axes in cells[len(joints) :]:
-        axes.set_visible(False)
-    for axes in cells[max(0, len(joints) - columns) : len(joints)]:
+    for axes in cells[-COLUMNS:]:
         axes.set_xlabel("cycle [%]", labelpad=1)
     legend(drawn, _key())
     return Figure(name, _caption(pooled), _alt(pooled, shown), shown, drawn)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import MEASURED, MODELS
-from gaitdisc.report.panels import Room, in_style, legend, lines_of, panels
+from gaitdisc.report.panels import Room, in_style, legend, lines_of, panels, panels_for
 from gaitdisc.results.amounts import shown_unit
 from gaitdisc.results.discovery import Discovery
 
@@ -212,12 +212,9 @@ def _over_stride(discovery: Discovery, table: pd.DataFrame) -> Figure:
 
 def _against_state(discovery: Discovery, table: pd.DataFrame) -> Figure:
     channels = _drawn_channels(discovery)
-    columns = min(len(channels), 3)
-    drawn, grid = panels(-(-len(channels) // columns), columns, 1.75, Room(left=0.6, across=0.62, down=0.62))
-    cells, kept = [axes for row in grid for axes in row], []
-    for axes in cells[len(channels) :]:
-        axes.set_visible(False)
-    for axes, (channel, unit, _) in zip(cells, channels, strict=False):
+    drawn, cells = panels_for(len(channels), 3, 1.75, Room(left=0.6, across=0.62, down=0.62))
+    kept = []
+    for axes, (channel, unit, _) in zip(cells, channels, strict=True):
         seen = table[f"{channel}_measured"].to_numpy()
         edges = np.linspace(np.quantile(seen, 0.005), np.quantile(seen, 0.995), STATE_BINS + 1)
         gaps = [binned(seen, seen - table[f"{channel}_{word}"].to_numpy(), edges) for word in WORDS[1:]]

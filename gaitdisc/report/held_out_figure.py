@@ -10,7 +10,7 @@ import pandas as pd
 from gaitdisc.channel import side_of
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import MEASURED, MODELS, SIDES
-from gaitdisc.report.panels import Room, in_style, legend, panels, sheets
+from gaitdisc.report.panels import Room, in_style, legend, panels_for, sheets
 from gaitdisc.report.r2_summary import r2_by_variable
 from gaitdisc.report.wording import MODEL_WORDS, counted, label, number, unit_text, upwards
 from gaitdisc.results import ParticipantResponse
@@ -29,15 +29,8 @@ def held_out_figures(response: ParticipantResponse, name: str) -> list[Figure]:
     numbers = held_out_numbers(response)
     if not len(numbers):
         return []
-    parts = sheets(response.outputs, 12)
-    return [
-        _figure(
-            response,
-            numbers[numbers["variable"].isin(part)],
-            f"held-out-{name}-{i + 1}" if len(parts) > 1 else f"held-out-{name}",
-        )
-        for i, part in enumerate(parts)
-    ]
+    parts = sheets(response.outputs, 12, f"held-out-{name}")
+    return [_figure(response, numbers[numbers["variable"].isin(part)], sheet) for sheet, part in parts.items()]
 
 
 def held_out_numbers(response: ParticipantResponse) -> pd.DataFrame:
@@ -74,19 +67,15 @@ def held_out_numbers(response: ParticipantResponse) -> pd.DataFrame:
 
 def _figure(response: ParticipantResponse, numbers: pd.DataFrame, name: str) -> Figure:
     groups = list(numbers.groupby("variable", sort=False))
-    columns = 1 if len(groups) == 1 else 2
-    drawn, grid = panels(-(-len(groups) // columns), columns, 1.05, Room(left=0.82, across=0.82, top=0.5))
-    cells = [axes for row in grid for axes in row]
+    drawn, cells = panels_for(len(groups), 2, 1.05, Room(left=0.82, across=0.82, top=0.5))
     r2 = r2_by_variable(response)
-    for axes, (variable, rows) in zip(cells, groups, strict=False):
+    for axes, (variable, rows) in zip(cells, groups, strict=True):
         _draw(axes, rows)
         axes.set_title(_title(str(variable), r2), loc="left", color=SIDES[side_of(str(variable))].colour)
         up = upwards(str(variable))
         axes.set_ylabel(f"[{unit_text(str(rows['unit'].iloc[0]))}]" + (f"\n↑ {up}" if up else ""))
         axes.set_xlim(rows["time_s"].iloc[0], rows["time_s"].iloc[-1])
-    for axes in cells[len(groups) :]:
-        axes.set_visible(False)
-    for axes in cells[len(groups) - columns : len(groups)]:
+    for axes in cells[-2:]:
         axes.set_xlabel("time in the trial [s]")
     legend(drawn, cells[0].get_lines())
     return Figure(name, _caption(response, groups[0][1]), _alt(response, len(groups), r2), numbers, drawn)

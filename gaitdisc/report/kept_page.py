@@ -19,7 +19,7 @@ def page_of(run_folder: Path, draw: Callable[[], Path]) -> Path:
     """Page of a run that is saved: the one that stands there, or one that is drawn now.
 
     The page stands for as long as the run's files, this package's code and the report's own files are what they were;
-    the time at which a run was looked at again is no part of that.
+    the time at which a run was looked at again is no part of that, nor are files that came beside, such as PDF.
 
     Examples
     --------
@@ -29,7 +29,7 @@ def page_of(run_folder: Path, draw: Callable[[], Path]) -> Path:
     rests_on = _rests_on(run_folder)
     try:
         drawn = read_sealed(report / DRAWN)
-        if drawn["rests_on"] == rests_on and drawn["sha256"] == _hashes(report):
+        if drawn["rests_on"] == rests_on and drawn["sha256"].items() <= _hashes(report).items():
             return report / drawn["page"]
     except (SchemaError, OSError, KeyError):
         pass  # none stands there, or not as it was drawn
@@ -46,7 +46,8 @@ def _rests_on(run_folder: Path) -> str:
     run.pop(OWN, None)
     run.get("provenance", {}).pop("created", None)
     parts.append(json.dumps(run, sort_keys=True))
-    for path in sorted(run_folder.glob("*/**/*.json")):
+    beside = (*run_folder.glob("*/**/*.json"), *run_folder.glob("reference/*.csv"), *run_folder.glob("words.csv"))
+    for path in sorted(beside):
         if path.parent.name != "report" and "report" not in path.relative_to(run_folder).parts:
             parts += [path.relative_to(run_folder).as_posix(), file_sha256(path)]
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()

@@ -13,7 +13,7 @@ from gaitdisc.report.curves_figure import sides_together
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.gap_wording import spoken
 from gaitdisc.report.palette import SIDES, WITHOUT_DEVICE
-from gaitdisc.report.panels import Room, in_style, legend, panels, sheets
+from gaitdisc.report.panels import Room, in_style, legend, panels_for, sheets
 from gaitdisc.report.wording import counted, label, unit_text, upwards
 from gaitdisc.results.mismatch import Mismatch
 
@@ -29,13 +29,12 @@ SHADE = "#f2b632"  # a gap; no side and no model has this colour
 @in_style
 def mismatch_figures(mismatch: Mismatch) -> list[Figure]:
     """Curves of both walks, then the gap with its band; some dozen channels a figure."""
-    parts = sheets(sides_together(list(mismatch.names)), COLUMNS * MOST_ROWS)
-    figures = []
-    for kind, draw in (("curves", draw_both), ("gap", draw_gap)):
-        for number, names in enumerate(parts):
-            name = f"mismatch-{kind}-{number + 1}" if len(parts) > 1 else f"mismatch-{kind}"
-            figures.append(_figure(mismatch, names, name, kind, draw))
-    return figures
+    channels = sides_together(list(mismatch.names))
+    return [
+        _figure(mismatch, names, sheet, kind, draw)
+        for kind, draw in (("curves", draw_both), ("gap", draw_gap))
+        for sheet, names in sheets(channels, COLUMNS * MOST_ROWS, f"mismatch-{kind}").items()
+    ]
 
 
 def mismatch_numbers(mismatch: Mismatch, names: list[str]) -> pd.DataFrame:
@@ -50,11 +49,9 @@ def mismatch_numbers(mismatch: Mismatch, names: list[str]) -> pd.DataFrame:
 
 
 def _figure(mismatch: Mismatch, names: list[str], name: str, kind: str, draw: Draw) -> Figure:
-    columns = min(COLUMNS, len(names))
-    drawn, grid = panels(-(-len(names) // columns), columns, 1.3, Room(left=0.6, across=0.62, down=0.46))
-    cells = [axes for row in grid for axes in row]
+    drawn, cells = panels_for(len(names), COLUMNS, 1.3, Room(left=0.6, across=0.62, down=0.46))
     numbers = mismatch_numbers(mismatch, names)
-    for axes, channel in zip(cells, names, strict=False):
+    for axes, channel in zip(cells, names, strict=True):
         curves = numbers[numbers["channel"] == channel]
         draw(axes, curves, mismatch.regions_of(channel), SIDES[side_of(channel)].colour)
         axes.set_title(label(channel), color=SIDES[side_of(channel)].colour, fontsize=7.6)
@@ -63,9 +60,7 @@ def _figure(mismatch: Mismatch, names: list[str], name: str, kind: str, draw: Dr
         axes.set_ylabel(f"[{unit}]" + (f" ↑ {up}" if up and len(up) < 22 else ""), fontsize=6.8, labelpad=1)
         axes.set_xlim(0, 100)
         axes.set_xticks([0, 25, 50, 75, 100])
-    for axes in cells[len(names) :]:
-        axes.set_visible(False)
-    for axes in cells[max(0, len(names) - columns) : len(names)]:
+    for axes in cells[-COLUMNS:]:
         axes.set_xlabel("stride [%]", labelpad=1)
     legend(drawn, mismatch_key(mismatch, kind))
     return Figure(name, _caption(mismatch, kind, len(names)), _alt(mismatch, names), numbers, drawn)
@@ -85,16 +80,7 @@ def draw_both(axes: Axes, curves: pd.DataFrame, regions: list[dict[str, Any]], c
     axes.fill_between(
         percent, curves["second"] - sd, curves["second"] + sd, color=look.colour, alpha=0.2, linewidth=0, zorder=1
     )
-    axes.fill_between(
-        percent,
-        curves["first"],
-        curves["second"],
-        where=curves["differs"].to_numpy(bool),
-        color=SHADE,
-        alpha=0.55,
-        linewidth=0,
-        zorder=2,
-    )
+    _shade(axes, curves, curves["first"], curves["second"])
     axes.plot(percent, curves["second"], color=look.colour, linestyle=look.line, linewidth=1.2, zorder=3)
     axes.plot(percent, curves["first"], color=colour, linewidth=1.3, zorder=4)
     _bars(axes, regions)
@@ -111,18 +97,15 @@ def draw_gap(axes: Axes, curves: pd.DataFrame, regions: list[dict[str, Any]], co
     percent = curves["percent"].to_numpy()
     axes.axhline(0.0, color="#888888", linewidth=0.6, zorder=0)
     axes.fill_between(percent, curves["low"], curves["high"], color=colour, alpha=0.22, linewidth=0, zorder=1)
-    axes.fill_between(
-        percent,
-        curves["gap"],
-        0.0,
-        where=curves["differs"].to_numpy(bool),
-        color=SHADE,
-        alpha=0.55,
-        linewidth=0,
-        zorder=2,
-    )
+    _shade(axes, curves, curves["gap"], 0.0)
     axes.plot(percent, curves["gap"], color=colour, linewidth=1.3, zorder=3)
     _bars(axes, regions)
+
+
+def _shade(axes: Axes, curves: pd.DataFrame, one: pd.Series, other: pd.Series | float) -> None:
+    """Shade what lies between two curves where the walks differ by more than chance."""
+    where = curves["differs"].to_numpy(bool)
+    axes.fill_between(curves["percent"], one, other, where=where, color=SHADE, alpha=0.55, linewidth=0, zorder=2)
 
 
 def _bars(axes: Axes, regions: list[dict[str, Any]]) -> None:

@@ -95,6 +95,22 @@ def panels(rows: int, columns: int, height: float, room: Room) -> tuple[matplotl
     return drawn, grid
 
 
+def panels_for(count: int, columns: int, height: float, room: Room) -> tuple[matplotlib.figure.Figure, list[Axes]]:
+    """Panels for so many things, row by row, in so many columns at most.
+
+    Parameters
+    ----------
+    height : float
+        Of one panel [inch].
+    """
+    columns = min(columns, count)
+    drawn, grid = panels(-(-count // columns), columns, height, room)
+    found = [axes for row in grid for axes in row]
+    for axes in found[count:]:
+        axes.set_visible(False)
+    return drawn, found[:count]
+
+
 def legend(drawn: matplotlib.figure.Figure, handles: Sequence[Artist], down: float = 0.0) -> None:
     """Write one row of a legend above all panels.
 
@@ -139,15 +155,18 @@ def in_style(draw: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
     return styled
 
 
-def sheets(items: Sequence[Item], most: int) -> list[list[Item]]:
-    """Split what would make too long a figure into parts of nearly equal length.
+def sheets(items: Sequence[Item], most: int, name: str) -> dict[str, list[Item]]:
+    """Split what would make too long a figure into parts of nearly equal length, numbered where there are several.
 
     Examples
     --------
-    >>> sheets("abcdefghij", 8)
-    [['a', 'b', 'c', 'd', 'e'], ['f', 'g', 'h', 'i', 'j']]
+    >>> sheets("abcdef", 4, "r2")
+    {'r2-1': ['a', 'b', 'c'], 'r2-2': ['d', 'e', 'f']}
+    >>> sheets("abc", 4, "r2")
+    {'r2': ['a', 'b', 'c']}
     """
     if not items:
-        return []
+        return {}
     count = -(-len(items) // most)
-    return [[items[i] for i in part] for part in np.array_split(np.arange(len(items)), count)]
+    parts = [[items[i] for i in part] for part in np.array_split(np.arange(len(items)), count)]
+    return {f"{name}-{i}": part for i, part in enumerate(parts, 1)} if count > 1 else {name: parts[0]}

@@ -30,11 +30,8 @@ _OFFSETS = {"nominal": -0.24, "augmented": 0.0, "exo": 0.24}
 def r2_figures(run: ResponseRun) -> list[Figure]:
     """R2 on the held-out device walk, one row a variable; points for one participant, boxes for several."""
     numbers = r2_numbers(run)
-    parts = sheets(variables(run), 12)
-    return [
-        _figure(run, numbers[numbers["variable"].isin(part)], f"r2-{i + 1}" if len(parts) > 1 else "r2")
-        for i, part in enumerate(parts)
-    ]
+    parts = sheets(variables(run), 12, "r2")
+    return [_figure(run, numbers[numbers["variable"].isin(part)], name) for name, part in parts.items()]
 
 
 def r2_numbers(run: ResponseRun) -> pd.DataFrame:

@@ -8,7 +8,7 @@ import pandas as pd
 
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import MEASURED, RECONSTRUCTED
-from gaitdisc.report.panels import Room, in_style, legend, lines_of, panels, sheets
+from gaitdisc.report.panels import Room, in_style, legend, lines_of, panels_for, sheets
 from gaitdisc.report.wording import counted, label, unit_text
 from gaitdisc.results.reconstruction import Reconstruction
 
@@ -25,7 +25,7 @@ def reconstruction_figures(done: Reconstruction, participant: str, name: str) ->
     curves = shown_curves(done, participant)
     return [
         _figure(done, participant, curves[curves["state"].isin([channel.name for channel in part])], f"{name}-{k + 1}")
-        for k, part in enumerate(sheets(list(done.states), MOST_PANELS))
+        for k, part in enumerate(sheets(list(done.states), MOST_PANELS, name).values())
     ]
 
 
@@ -47,18 +47,14 @@ def states_key(models: list[str]) -> list[Artist]:
 def _figure(done: Reconstruction, participant: str, numbers: pd.DataFrame, name: str) -> Figure:
     units = {channel.name: channel.unit for channel in done.states}
     states, models = list(dict.fromkeys(numbers["state"])), list(dict.fromkeys(numbers["model"]))
-    columns = min(4, len(states))
-    drawn, grid = panels(-(-len(states) // columns), columns, 1.1, Room(left=0.6, across=0.6, down=0.46))
-    cells = [axes for row in grid for axes in row]
-    for axes, state in zip(cells, states, strict=False):
+    drawn, cells = panels_for(len(states), 4, 1.1, Room(left=0.6, across=0.6, down=0.46))
+    for axes, state in zip(cells, states, strict=True):
         draw_state(axes, numbers[numbers["state"] == state])
         axes.set_title(label(state), fontsize=7.4)
         axes.set_ylabel(f"[{unit_text(units[state])}]", fontsize=6.8, labelpad=1)
         axes.set_xlim(0, 100)
         axes.set_xticks([0, 50, 100])
-    for axes in cells[len(states) :]:
-        axes.set_visible(False)
-    for axes in cells[max(0, len(states) - columns) : len(states)]:
+    for axes in cells[-4:]:
         axes.set_xlabel("stride [%]", labelpad=1)
     legend(drawn, states_key(models))
     strides = int(done.summary.loc[done.summary["participant"] == participant, "strides"].iloc[0])

@@ -32,15 +32,8 @@ def residual_figures(response: ParticipantResponse, name: str) -> list[Figure]:
     if not models or not len(response.residuals[models[0]]):
         return []
     numbers = residual_numbers(response)
-    parts = sheets(response.outputs, 6)
-    return [
-        _figure(
-            response,
-            numbers[numbers["variable"].isin(part)],
-            f"residual-{name}-{i + 1}" if len(parts) > 1 else f"residual-{name}",
-        )
-        for i, part in enumerate(parts)
-    ]
+    parts = sheets(response.outputs, 6, f"residual-{name}")
+    return [_figure(response, numbers[numbers["variable"].isin(part)], sheet) for sheet, part in parts.items()]
 
 
 def residual_numbers(response: ParticipantResponse) -> pd.DataFrame:

@@ -24,12 +24,14 @@ PAGES = {  # what a result is, what draws its page, and the folder of the page i
 def draw_saved(folder: Path) -> dict[str, Path]:
     """Draw the page of the result that a folder holds, and those of the questions beside a run; nothing is fitted."""
     result = load_saved(folder)
-    beside = {question: folder / question for question in QUESTIONS if isinstance(result, ResponseRun)}
-    pages = {"report": _drawn(result, folder)}
-    for question, place in beside.items():
-        if (place / "variant_run.json").is_file():
-            pages[question] = _drawn(load_saved(place), place)
-    return pages
+    return {"report": _drawn(result, folder), **(draw_questions(folder) if isinstance(result, ResponseRun) else {})}
+
+
+def draw_questions(run_folder: Path) -> dict[str, Path]:
+    """Draw the pages of modalities and sensitivity of a run, those that are there."""
+    places = {question: run_folder / question for question in QUESTIONS}
+    there = {question: place for question, place in places.items() if (place / "variant_run.json").is_file()}
+    return {question: _drawn(load_saved(place), place) for question, place in there.items()}
 
 
 def write_lone_cycles(one: PooledCycles, folder: Path) -> Path:

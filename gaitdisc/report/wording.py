@@ -77,16 +77,18 @@ def unit_text(unit: str) -> str:
 def number(value: float, digits: int = 2) -> str:
     """Write a number with a proper minus sign, or `not computed`.
 
+    A share (R², to two digits or more) that falls short of all is not printed as all; an amount is rounded.
+
     Examples
     --------
-    >>> number(0.8712), number(-0.004), number(0.9987), number(float("nan"))
-    ('0.87', '0.00', '>0.99', 'not computed')
+    >>> number(0.8712), number(-0.004), number(0.9987), number(0.97, 1), number(float("nan"))
+    ('0.87', '0.00', '>0.99', '1.0', 'not computed')
     """
     if not math.isfinite(value):
         return "not computed"
     text = f"{value:.{digits}f}"
-    if value < 1 and float(text) == 1:
-        return f">{1 - 10**-digits:.{digits}f}"  # what falls short of all is not printed as all
+    if digits > 1 and value < 1 and float(text) == 1:
+        return f">{1 - 10**-digits:.{digits}f}"
     return text.lstrip("-") if float(text) == 0 else text.replace("-", "−")
 
 

@@ -123,6 +123,8 @@ class ClinicalReading:
         Variable and side -> coefficient of multiple correlation of its cycles, NaN where it is not defined.
     spatiotemporal : mapping of str to Limits
         Spatiotemporal value -> mean and spread of the reference.
+    beside : tuple of str
+        Which controls of the reference the person is read beside, and what could not be allowed for.
     """
 
     pooled: PooledCycles
@@ -138,6 +140,7 @@ class ClinicalReading:
     consistency: Mapping[tuple[str, str], float]
     bands: Mapping[str, Band]
     spatiotemporal: Mapping[str, Limits]
+    beside: tuple[str, ...] = ()
 
     @property
     def noted(self) -> tuple[Noted, ...]:

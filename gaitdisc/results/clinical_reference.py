@@ -10,10 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import SchemaError
+from gaitdisc.results.published_reference import PublishedGroup, read_published
 from gaitdisc.results.sealed_json import read_sealed, sealed_text
 from gaitdisc.whole_file import write_whole
 
 FILE, FORMAT = "reference.json", 1
+PUBLISHED = "published.csv"
 DIGITS = 4
 
 
@@ -29,6 +31,8 @@ class ReferenceLeg:
         Clinical variable -> mean over the leg's cycles on 101 points.
     values : mapping of str to float
         Spatiotemporal value -> mean over the leg's cycles.
+    leg_m, age_years : float and int, optional
+        Leg length [m] and age in whole years; None where they are not known.
     """
 
     person: int
@@ -37,6 +41,8 @@ class ReferenceLeg:
     stance_percent: float
     curves: Mapping[str, NDArray[np.float64]]
     values: Mapping[str, float]
+    leg_m: float | None = None
+    age_years: int | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +55,8 @@ class ClinicalReference:
         Condition -> legs.
     settings, versions : mapping
         Filters and rules for strides they were processed with; what processed them.
+    published : tuple of PublishedGroup
+        Where it is no laboratory's own: groups of speed, of which there are no legs.
     """
 
     title: str
@@ -56,6 +64,7 @@ class ClinicalReference:
     settings: Mapping[str, object]
     versions: Mapping[str, str]
     created: str
+    published: tuple[PublishedGroup, ...] = ()
 
     def of(self, condition: str) -> tuple[ReferenceLeg, ...]:
         """Legs of a condition; none where the controls did not walk so."""
@@ -73,6 +82,8 @@ class ClinicalReference:
 
 def save_reference(reference: ClinicalReference, folder: Path) -> Path:
     """Save a reference as `reference.json`, whole, with a hash of its own."""
+    if reference.published:
+        raise SchemaError("a reference of legs is saved", f"{reference.title} is a published one", "Keep its table.")
     data = {
         "format": FORMAT,
         "title": reference.title,
@@ -85,7 +96,11 @@ def save_reference(reference: ClinicalReference, folder: Path) -> Path:
 
 
 def load_reference(place: Path) -> ClinicalReference:
-    """Load a reference from its folder or file."""
+    """Load a reference from its folder or file, or a published one from its table."""
+    table = place / PUBLISHED if place.is_dir() else place
+    if table.suffix == ".csv" and table.is_file():
+        source, groups = read_published(table)
+        return ClinicalReference(source, {}, {}, {}, "", groups)
     path = place / FILE if place.is_dir() else place
     if not path.is_file():
         raise SchemaError(
@@ -115,6 +130,8 @@ def _leg_data(leg: ReferenceLeg) -> dict[str, object]:
         "stance_percent": None if np.isnan(leg.stance_percent) else round(leg.stance_percent, DIGITS),
         "curves": {name: _plain(curve) for name, curve in leg.curves.items()},
         "values": {name: round(value, DIGITS) for name, value in leg.values.items()},
+        "leg_m": None if leg.leg_m is None else round(leg.leg_m, DIGITS),
+        "age_years": leg.age_years,
     }
 
 
@@ -129,4 +146,8 @@ def _leg(data: Mapping[str, object]) -> ReferenceLeg:
         raise ValueError("a curve has not 101 points")
     stance = float("nan") if data["stance_percent"] is None else float(data["stance_percent"])  # type: ignore[arg-type]
     values = {str(name): float(value) for name, value in dict(data["values"]).items()}  # type: ignore[call-overload]
-    return ReferenceLeg(int(data["person"]), str(data["side"]), int(data["cycles"]), stance, curves, values)  # type: ignore[call-overload]
+    leg_m, age = data.get("leg_m"), data.get("age_years")  # absent in older references
+    if not (leg_m is None or isinstance(leg_m, float)) or not (age is None or isinstance(age, int)):
+        raise ValueError(f"leg length {leg_m!r} and age {age!r} are no numbers")
+    own = (str(data["side"]), int(data["cycles"]), stance, curves, values, leg_m, age)  # type: ignore[call-overload]
+    return ReferenceLeg(int(data["person"]), *own)  # type: ignore[call-overload]

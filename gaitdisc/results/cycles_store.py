@@ -45,6 +45,8 @@ def save_cycles(pooled: PooledCycles, folder: Path, key: str) -> None:
             "findings": [asdict(finding) for finding in pooled.findings],
             "refusals": [asdict(refusal) for refusal in pooled.refusals],
             "files": dict(pooled.files),
+            "leg_m": pooled.leg_m,
+            "age_years": pooled.age_years,
         },
         {"cycles.csv": pooled.cycles},
         {"curves": pooled.curves},
@@ -76,6 +78,8 @@ def load_cycles(folder: Path) -> Keyed[PooledCycles]:
         tuple(map(stored_finding, data["findings"])),
         tuple(Refusal(**refusal) for refusal in data["refusals"]),
         data["files"],
+        data.get("leg_m"),
+        data.get("age_years"),
     )
     return Keyed(pooled, data["key"])
 

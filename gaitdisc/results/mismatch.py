@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SchemaError, ShapeError
+from gaitdisc.notebook import html_of
 from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.recording.arrays import read_only
 from gaitdisc.results.provenance import Provenance
@@ -196,6 +197,13 @@ class Mismatch(Saved, by="gaitdisc.results.mismatch_folder:save_mismatch"):
         """Curves and gap of every channel, one row a channel and percent of the stride."""
         tables = [self.curve_table(name).assign(channel=name) for name in self.names]
         return pd.concat(tables, ignore_index=True)
+
+    def _repr_html_(self) -> str:
+        rows = [("first minus second", f"{self.first} minus {self.second}"), ("channels", str(len(self.names)))]
+        rows += [
+            (f"RMS gap of {channel.name}", f"{self.rmse[channel.name]:.3g} {channel.unit}") for channel in self.channels
+        ]
+        return html_of("Mismatch", [*rows, ("regions beyond chance", str(len(self.regions)))])
 
     def __repr__(self) -> str:
         return f"Mismatch({self.first} minus {self.second}: {len(self.names)} channels, {len(self.regions)} regions)"

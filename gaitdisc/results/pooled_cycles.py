@@ -79,6 +79,10 @@ class PooledCycles(Saved, by="gaitdisc.results.cycles_store:save_pooled_cycles")
         Trials that are left out as a whole, or all of them.
     files : mapping of str to str
         File name -> SHA-256.
+    leg_m : float, optional
+        Leg length, or what goes with the stature [m]; None where nobody measured either.
+    age_years : int, optional
+        Whole years.
 
     Raises
     ------
@@ -102,6 +106,8 @@ class PooledCycles(Saved, by="gaitdisc.results.cycles_store:save_pooled_cycles")
     findings: tuple[Finding, ...]
     refusals: tuple[Refusal, ...]
     files: Mapping[str, str]
+    leg_m: float | None = None
+    age_years: int | None = None
 
     def __post_init__(self) -> None:
         """Check shapes once, before they are saved."""

@@ -50,40 +50,6 @@ def lowpassed(
     Gaps up to `max_gap_s` are bridged by a cubic spline and marked suspect; longer ones stay NaN, and what lies between
     them is filtered run by run. 1.8 periods of the cut-off at both ends of each run are marked suspect. A heading that
     passes 180 deg is filtered as it goes on, and comes round again afterwards.
-
-    Parameters
-    ----------
-    recording : Recording
-        Any channels.
-    cutoff_hz : float
-        -3 dB frequency of one pass [Hz].
-    order : int
-        Order of one pass.
-    max_gap_s : float
-        Longest gap that is bridged [s].
-
-    Returns
-    -------
-    Recording
-        Runs too short to filter are NaN; `short_run_findings` names them.
-
-    Raises
-    ------
-    SamplingError
-        If the cut-off is not between 0 and half the rate, or the recording is too short for it.
-
-    References
-    ----------
-    Ebers (2023), section 4.2.1. Differs: the two passes, the cut-off's meaning and the edges are stated.
-
-    Examples
-    --------
-    >>> import gaitdisc as gd
-    >>> t = np.arange(500) / 100
-    >>> slow, fast = np.sin(2 * np.pi * t), np.sin(2 * np.pi * 30 * t)
-    >>> both = gd.Recording(t, (slow + fast)[:, None], (gd.Channel("knee_angle_r", "angle", "deg", "r"),))
-    >>> bool(np.abs(gd.lowpass(both, cutoff_hz=6.0)["knee_angle_r"] - slow)[100:400].max() < 0.01)
-    True
     """
     return _filtered(recording, cutoff_hz, order, "lowpass", max_gap_s)
 
@@ -91,38 +57,7 @@ def lowpassed(
 def highpassed(
     recording: Recording, cutoff_hz: float = 40.0, order: int = 4, max_gap_s: float = MAX_SPLINE_S
 ) -> Recording:
-    """Recording without what is slower than the cut-off; zero lag; otherwise as `lowpassed`.
-
-    Parameters
-    ----------
-    recording : Recording
-        Any channels.
-    cutoff_hz : float
-        -3 dB frequency of one pass [Hz].
-    order : int
-        Order of one pass.
-    max_gap_s : float
-        Longest gap that is bridged [s].
-
-    Returns
-    -------
-    Recording
-        Runs too short to filter are NaN.
-
-    Raises
-    ------
-    SamplingError
-        If the cut-off is not between 0 and half the rate, or the recording is too short for it.
-
-    Examples
-    --------
-    >>> import gaitdisc as gd
-    >>> t = np.arange(2000) / 1000
-    >>> slow, fast = np.sin(2 * np.pi * t), np.sin(2 * np.pi * 120 * t)
-    >>> both = gd.Recording(t, (slow + fast)[:, None], (gd.Channel("emg_sol_r", "emg", "V", "r"),))
-    >>> bool(np.abs(gd.highpass(both, cutoff_hz=40.0)["emg_sol_r"] - fast)[100:1900].max() < 0.01)
-    True
-    """
+    """Recording without what is slower than the cut-off; zero lag; otherwise as `lowpassed`."""
     return _filtered(recording, cutoff_hz, order, "highpass", max_gap_s)
 
 

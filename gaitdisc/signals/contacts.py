@@ -70,6 +70,10 @@ class Contacts:
     def __len__(self) -> int:
         return len(self.time)
 
+    def __repr__(self) -> str:
+        span = f", {self.time[0]:.2f} to {self.time[-1]:.2f} s" if len(self) else ""
+        return f"Contacts({len(self)} of side {self.side!r} by {self.detector}{span})"
+
 
 @dataclass(frozen=True, eq=False)
 class Agreement:

@@ -47,6 +47,8 @@ def differentiated(values: NDArray[np.float64], rate_hz: float, order: int = 1) 
     >>> differentiated(t[:, None] ** 2, 10.0, order=2).round(6).ravel()
     array([nan, nan,  2.,  2.,  2., nan, nan])
     """
+    if order not in (1, 2):
+        raise SamplingError("a derivative is the first or the second", f"order is {order}", "Give order=1 or order=2.")
     if len(values) < len(FIRST):
         raise SamplingError(
             f"a derivative needs {len(FIRST)} samples", f"found {len(values)}", "Record longer, or select more time."
@@ -61,34 +63,7 @@ def differentiated(values: NDArray[np.float64], rate_hz: float, order: int = 1) 
 
 
 def differentiated_recording(recording: Recording, order: int = 1) -> Recording:
-    """Recording of the time derivative of every channel, in the unit per second.
-
-    Parameters
-    ----------
-    recording : Recording
-        Filtered.
-    order : int
-        1 or 2.
-
-    Returns
-    -------
-    Recording
-        Same names, unit `deg/s` or `deg/s2`; NaN at two samples of each end, suspect where one of the five samples is.
-
-    Raises
-    ------
-    SamplingError
-        If the recording is too short, or the order is neither 1 nor 2.
-
-    Examples
-    --------
-    >>> import gaitdisc as gd
-    >>> t = np.arange(500) / 100
-    >>> knee = gd.Recording(t, np.sin(t)[:, None], (gd.Channel("knee_angle_r", "angle", "deg", "r"),))
-    >>> rate = gd.differentiate(knee)
-    >>> rate.channels[0].unit, bool(np.nanmax(np.abs(rate["knee_angle_r"] - np.cos(t))) < 1e-6)
-    ('deg/s', True)
-    """
+    """Recording of the time derivative of every channel, per second; suspect where one of the five samples is."""
     channels = tuple(replace(c, unit=rate_unit(c.unit, order)) for c in recording.channels)
     values = differentiated(unwrapped(recording).values, recording.rate_hz, order)
     return replace(recording, values=values, channels=channels, suspect=_widened(np.asarray(recording.suspect)))

@@ -15,42 +15,7 @@ ENVELOPE_HZ = 10.0
 def enveloped(
     emg: Recording, highpass_hz: float = HIGHPASS_HZ, lowpass_hz: float = ENVELOPE_HZ, order: int = 4
 ) -> Recording:
-    """EMG envelope of every channel, at the rate of the recording.
-
-    Parameters
-    ----------
-    emg : Recording
-        Raw EMG, as digitised, not rectified; EMG channels only [V].
-    highpass_hz, lowpass_hz : float
-        -3 dB frequencies of one pass [Hz] (`gaitdisc.signals.butterworth`).
-    order : int
-        Order of one pass, of both filters.
-
-    Returns
-    -------
-    Recording
-        Same unit. Small negative values can follow a burst: the low-pass rings; they are kept, not clipped.
-
-    Raises
-    ------
-    SamplingError
-        If the rate is not above twice the high-pass frequency, or the signal is an envelope already.
-    ChannelError
-        If a channel is not EMG.
-
-    References
-    ----------
-    Ebers (2023), section 4.2.1: high-passed at 40 Hz, rectified, low-passed at 10 Hz, "fourth-order Butterworth
-    filters". Differs: order 4 in each of two passes, no lag; the text says neither.
-
-    Examples
-    --------
-    >>> from gaitdisc.channel import Channel
-    >>> t = np.arange(2000) / 1000
-    >>> emg = Recording(t, np.sin(2 * np.pi * 120 * t)[:, None], (Channel("emg_sol_r", "emg", "V", "r"),))
-    >>> round(float(enveloped(emg)["emg_sol_r"][1000]), 2)  # mean of a rectified sine: 2 / pi
-    0.64
-    """
+    """EMG envelope of every channel, at the rate of the recording; raw EMG only, as digitised [V]."""
     file = emg.source.file or "the recording"
     for channel in emg.channels:
         if channel.quantity != "emg":

@@ -30,6 +30,8 @@ class PythonSimulation:
         derivatives (row, state). Parameters that are added later follow the model's own.
     replaced : tuple of (str, str)
         Inputs that are replaced by an expression of the measured ones.
+    manner : str
+        How the function is called and why so, for a person; nothing where there is nothing to say.
 
     Examples
     --------
@@ -43,6 +45,7 @@ class PythonSimulation:
     rates: RightHandSide = field(hash=False)  # an object that computes may have no hash
     parts: Simulation
     replaced: Lines = field(default=())
+    manner: str = field(default="", compare=False)
 
     @property
     def title(self) -> str:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from gaitdisc.notebook import html_of
 from gaitdisc.simulation.checking import check
 from gaitdisc.simulation.expression import parsed
 from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Term
@@ -82,6 +83,16 @@ class Simulation:
             object.__setattr__(self, "observations", tuple((state.name, state.name) for state in self.states))
         object.__setattr__(self, "sensors", self._known_sensors())
         check(self)
+
+    def __repr__(self) -> str:
+        effects = "".join(f", {each.name} at {each.place}" for each in self.effects)
+        return f"Simulation({self.title!r}: states {', '.join(state.name for state in self.states)}{effects})"
+
+    def _repr_html_(self) -> str:
+        rows = [(f"d{state}/dt", term) for state, term in self.equations]
+        rows += [(each.name, f"{each.value:g} {each.unit}") for each in self.parameters]
+        rows += [(f"at {each.place}", each.term) for each in self.effects]
+        return html_of(self.title, [*rows, *((f"observed {name}", term) for name, term in self.observations)])
 
     def _known_sensors(self) -> tuple[Sensor, ...]:
         """Those of which something is said, in the order of the observations; what belongs to none stands last."""

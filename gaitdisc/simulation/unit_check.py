@@ -16,7 +16,8 @@ _PURE = _OF_PURE | {"sign", "step"}
 def unit_findings(simulation: Simulation) -> tuple[Finding, ...]:
     r"""Warnings where unlike units are added, a port's unit does not fit its place, or a unit is unknown.
 
-    A number without a name may carry any unit, and so does what it multiplies; an angle counts as a pure number.
+    A number without a name may carry any unit, and so does what it multiplies; an angle counts as a pure number. Of a
+    simulation in which nothing but 1 is given as a unit (a plain function, say) there is nothing to tell.
 
     Examples
     --------
@@ -25,6 +26,9 @@ def unit_findings(simulation: Simulation) -> tuple[Finding, ...]:
     >>> print(unit_findings(simulation_of(text))[0].what)
     [equations] x: 'f' is not of the unit m/s
     """
+    parts = (*simulation.states, *simulation.inputs, *simulation.parameters, *simulation.ports)
+    if all(part.unit == "1" for part in parts):
+        return ()
     check = _Check(simulation)
     for name, text in simulation.definitions:
         check.known[name] = check.unit(parsed(text), f"[definitions] {name}")

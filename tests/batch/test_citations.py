@@ -79,6 +79,12 @@ def test_a_mismatch_cites_its_permutation_test(tmp_path):
 def test_a_part_of_a_chapter_cites_its_methods(tmp_path):
     (tmp_path / "chapter.json").write_text(sealed_text({"part": "who_names"}))
     assert {"ebers2023", "ebers2024discrepancy", "askham2018", "bock1984"} <= keys(tmp_path)
+    assert not {"fasel2022", "sashidhar2022", "tu2014", "julier2004"} & keys(tmp_path)
+    (tmp_path / "chapter.json").write_text(sealed_text({"part": "further"}))
+    learned, filtered = {"tu2014", "fasel2022", "messenger2021", "rasmussen2006"}, {"julier2004", "evensen1994"}
+    assert learned | filtered <= keys(tmp_path) and "sashidhar2022" not in keys(tmp_path)
+    (tmp_path / "chapter.json").write_text(sealed_text({"part": "measurement_bias"}))
+    assert {"kalman1960", "julier2004", "sashidhar2022"} <= keys(tmp_path) and "evensen1994" not in keys(tmp_path)
     (tmp_path / "chapter.json").write_text(sealed_text({"part": "no such"}))
     with pytest.raises(SchemaError, match="names 'no such'"):
         citations_of(tmp_path)

@@ -9,6 +9,7 @@ from gaitdisc.cohort.cohort import the_twelve, walks_of
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study_file import load_study
+from gaitdisc.kinematics.motion import moved_body
 
 
 @pytest.fixture(scope="module")
@@ -56,3 +57,20 @@ def test_it_says_what_it_is(folder):
 def test_an_effect_that_is_none(tmp_path):
     with pytest.raises(SchemaError, match="found 'magic'"):
         write_demonstration(tmp_path, 30.0, 1, "magic")
+
+
+def test_markers_in_place_of_angles_go_through_the_same_reading(tmp_path):
+    write_demonstration(tmp_path, 30.0, people=1, markers=True)
+    study = load_study(tmp_path)
+    [person] = study.participants
+    assert [trial.condition for trial in person.trials] == ["static", "nominal", "exo"]
+    walk, standing = (read_planned_trial(study, person, person.trials[n]) for n in (1, 0))
+    assert {"markers", "emg", "forces"} <= set(walk.streams)
+    angles = angled(walk, standing)
+    truth = walks_of(the_twelve()[0], 30.0).trials["nominal"].stream("kinematics")
+    apart = angles["knee_angle_r"][: len(truth.time)] - truth["knee_angle_r"][: len(angles.time)]
+    assert np.std(apart) < 2.0
+
+
+def angled(walk, standing):
+    return moved_body(walk.stream("markers"), standing.stream("markers"))[1].angles

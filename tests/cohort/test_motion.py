@@ -19,8 +19,9 @@ def quiet_walk(person, duration_s, stiffness=0.0, damping=1.0):
     worn = Worn(np.degrees(stiffness), np.radians(person.engaged_deg), person.speed_m_per_s, person.stride_s)
     loop = _loop(person)
     loop = loop._replace(damping=damping * loop.damping)
-    leg, strength = leg_of(person.height_m, person.mass_kg), strength_of(person.mass_kg)
-    return moved(leg, strength, Belt(), loop, worn, np.stack([table, table]), noise)
+    leg = leg_of(person.height_m, person.mass_kg)
+    strengths = tuple(strength_of(person.mass_kg, person.style.strength[side]) for side in (0, 1))
+    return moved(leg, strengths, Belt(), loop, worn, np.stack([table, table]), noise)
 
 
 def test_without_noise_the_legs_follow_their_habit(person):

@@ -3,8 +3,21 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from gaitdisc.cohort.muscles import FALL_S, RISE_S, activated, cycle_activation, muscle_moments, strength_of
-from gaitdisc.cohort.person import MUSCLES
+from gaitdisc.cohort.muscles import (
+    ECCENTRIC,
+    FALL_S,
+    RISE_S,
+    activated,
+    capacities,
+    cycle_activation,
+    cycle_excitation,
+    force_at_speed,
+    muscle_moments,
+    strength_of,
+)
+from gaitdisc.cohort.person import GROUPS
+
+STRENGTH = strength_of(70.0)
 
 
 def stepped(start, excitation, seconds, step_s=1e-5):
@@ -19,30 +32,70 @@ def test_activation_rises_faster_than_it_falls():
     assert stepped(1.0, 0.0, FALL_S) == pytest.approx(np.exp(-1), abs=1e-3)
 
 
-def test_muscles_pull_the_way_they_are_named():
-    strength = strength_of(70.0)
-    for name, joint, sign in [("emg_sol", 2, -1), ("emg_ta", 2, 1), ("emg_vas", 1, -1), ("emg_ham", 0, -1)]:
-        activation, moments = np.zeros(7), np.zeros(3)
-        activation[MUSCLES.index(name)] = 0.5
-        muscle_moments(strength, activation, np.zeros(3), moments)
-        assert np.sign(moments[joint]) == sign
+def moments_of(name, joint=(0.0, 0.0, 0.0), rate=(0.0, 0.0, 0.0)):
+    activation, moments = np.zeros(len(GROUPS)), np.zeros(3)
+    activation[GROUPS.index(name)] = 0.5
+    muscle_moments(STRENGTH, activation, np.array(joint), np.array(rate), moments)
+    return moments
 
 
-def test_a_lengthening_muscle_gives_more():
-    strength, activation = strength_of(70.0), np.zeros(7)
-    activation[MUSCLES.index("emg_sol")] = 0.5
-    still, stretched = np.zeros(3), np.zeros(3)
-    muscle_moments(strength, activation, np.zeros(3), still)
-    muscle_moments(strength, activation, np.array([0.0, 0.0, 2.0]), stretched)
-    assert stretched[2] == pytest.approx(1.12 * still[2])
+@pytest.mark.parametrize(
+    ("name", "signs"),
+    [
+        ("emg_sol", (0, 0, -1)),
+        ("emg_gas", (0, 1, -1)),
+        ("emg_ta", (0, 0, 1)),
+        ("emg_vas", (0, -1, 0)),
+        ("emg_rf", (1, -1, 0)),
+        ("emg_ham", (-1, 1, 0)),
+        ("iliopsoas", (1, 0, 0)),
+        ("gluteus_maximus", (-1, 0, 0)),
+        ("emg_gmed", (0, 0, 0)),
+    ],
+)
+def test_muscles_pull_the_way_they_are_named(name, signs):
+    assert np.sign(moments_of(name)).tolist() == list(signs)
 
 
-def test_a_change_of_command_is_never_shared_out_beyond_itself():
-    strength = strength_of(70.0)
-    for take in (strength.take_up, strength.take_down):
-        for joint in range(3):
-            assert (take[:, joint] * strength.reach[:, joint]).sum() <= 1.4  # antagonists let go at the same time
-            assert np.all(take[:, joint] * strength.reach[:, joint] >= 0)
+def test_a_lengthening_muscle_gives_more_and_a_shortening_one_less():
+    still = moments_of("emg_sol")[2]
+    assert moments_of("emg_sol", rate=(0.0, 0.0, 2.0))[2] < 1.1 * still < 0
+    assert 0.9 * still < moments_of("emg_sol", rate=(0.0, 0.0, -2.0))[2] < 0
+
+
+def test_force_and_speed_are_hills():
+    assert force_at_speed(0.0) == 1.0
+    assert force_at_speed(-1.0) == force_at_speed(-2.0) == 0.0
+    assert force_at_speed(50.0) == pytest.approx(1.0 + ECCENTRIC, abs=0.01)
+    slopes = [(force_at_speed(step) - 1.0) / step for step in (1e-6, -1e-6)]
+    assert slopes[0] == pytest.approx(slopes[1], rel=1e-3)
+
+
+def test_plantarflexors_are_stronger_in_dorsiflexion():
+    assert moments_of("emg_sol", joint=(0.0, 0.0, 0.2))[2] < moments_of("emg_sol")[2]
+
+
+def test_capacity_is_the_moment_of_each_muscle_alone():
+    found = capacities(STRENGTH, np.zeros((2, 3)), np.zeros((2, 3)))
+    assert found.shape == (2, len(GROUPS), 3)
+    assert found[1] == pytest.approx(STRENGTH.reach)
+
+
+def test_a_change_of_command_is_shared_out_whole():
+    for take in (STRENGTH.take_up, STRENGTH.take_down):
+        assert np.all(take * STRENGTH.reach >= 0)
+        assert (take * STRENGTH.reach).sum(axis=0) == pytest.approx(np.ones(3))
+
+
+def test_excitation_gives_back_an_activation_that_is_slow_enough():
+    step = 0.001
+    phase = np.arange(1000) / 1000
+    wanted = 0.3 - 0.2 * np.cos(2 * np.pi * phase)[:, None]
+    rest = np.array([0.01])
+    found = cycle_activation(cycle_excitation(wanted, rest, step), step, 3)
+    assert found == pytest.approx(wanted, abs=0.01)
+    fast = np.where(phase < 0.5, 0.5, 0.02)[:, None]
+    assert cycle_activation(cycle_excitation(fast, rest, step), step, 3)[510] > 0.3  # muscles let go slowly
 
 
 def test_cycle_activation_is_periodic_and_lags():

@@ -12,11 +12,14 @@ def test_a_made_week_becomes_pages_that_find_what_was_planted(called, tmp_path):
     assert "Reduced knee flexion in swing: left" in pages["P02"]
     assert "Reduced dorsiflexion in swing: right" in pages["P04"]
     assert "Reduced knee flexion in swing: right" in pages["P05_before"]
-    for healthy in ("P01", "P03", "P05_after", "P07"):
+    for healthy in ("P01", "P03", "P05_after", "P07", "P08"):
         assert "None of" in pages[healthy]
+    assert "These controls are adults, the person is 8 years old" in pages["P08"]
+    assert "These controls are adults" not in pages["P01"]
     assert "no cycle is kept" in pages["P06"]
     index = (people.parent / "index.html").read_text(encoding="utf-8")
     assert index.index("P06") < index.index("P01<") and "Planted: P02 stiff knee left" in index
+    assert "P08 child" in index
 
 
 def test_the_option_stands_in_the_help(called):

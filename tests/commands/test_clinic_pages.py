@@ -40,3 +40,16 @@ def test_a_reference_stays_with_the_run(tmp_path):
 def test_a_run_without_cycles_has_no_pages_of_people(tmp_path):
     assert write_people(made_run(), tmp_path) is None
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_published_reference_stays_as_its_table_until_another_takes_its_place(tmp_path):
+    from results.test_published_reference import SOURCE, table, written
+
+    run = made_run(made_person("P01"))
+    run.save(tmp_path / "run")
+    keep_reference(written(tmp_path, table()), tmp_path / "run")
+    index = write_people(run, tmp_path / "run")
+    assert SOURCE[2:] in index.read_text() and SOURCE[2:] in (index.parent / "people" / "P01.html").read_text()
+    save_reference(made_controls(3), tmp_path / "ref")
+    keep_reference(tmp_path / "ref", tmp_path / "run")
+    assert kept_reference(tmp_path / "run").published == ()

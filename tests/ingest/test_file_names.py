@@ -81,6 +81,11 @@ def test_a_date_orders_sessions_and_is_no_part_of_a_person():
     assert session_word(first)[0] == "" and session_word(first)[1] < session_word(second)[1]
 
 
+def test_a_word_counts_before_a_date_and_the_inner_date_before_one_of_birth():
+    assert session_word(Path("Erika_1987-06-05/before/walk.c3d")) == ("before", "a01")
+    assert session_word(Path("Erika_1987-06-05/2024-03-01/walk.c3d")) == ("", "d20240301")
+
+
 def test_files_of_one_stem_may_lie_in_folders_of_their_kind():
     assert walk_place(Path("P01/IK/a.mot")) == walk_place(Path("P01/EMG/a.sto")) == ("P01",)
     assert walk_place(Path("P01/turn/a.mot")) != walk_place(Path("P01/straight/a.mot"))

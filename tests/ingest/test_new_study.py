@@ -7,7 +7,7 @@ import pytest
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest.new_study import _found_trials, _recording_files, found_study, stands
+from gaitdisc.ingest.new_study import _found_trials, found_study, recording_files, stands
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import ANGLES
@@ -198,5 +198,5 @@ def test_who_walks_straight_along_an_axis_does_not_stand():
 def test_a_draft_keeps_no_samples(tmp_path):
     _walk(tmp_path / "S1_exo.mot", emg=True)
     _walk(tmp_path / "S1_noexo.mot", emg=True)
-    (one, _) = _found_trials(tmp_path, _recording_files(tmp_path), [])
+    (one, _) = _found_trials(tmp_path, recording_files(tmp_path), [], {})
     assert not [value for value in vars(one).values() if isinstance(value, Trial | Recording)]

@@ -19,8 +19,24 @@ def test_a_table_as_bids_has_it(tmp_path):
     found, notes = _read(
         tmp_path, "participant_id\tage\tsex\tweight\theight\nsub-01\t24\tF\t61.3\t172\nsub-02\t30\tn/a\tn/a\t1.81\n"
     )
-    assert found == {"01": Measured(61.3, 1.72, "f"), "02": Measured(None, 1.81, "")}
+    assert found == {"01": Measured(61.3, 1.72, "f", 24), "02": Measured(None, 1.81, "", 30)}
     assert notes == []
+
+
+@pytest.mark.parametrize(
+    ("label", "text", "age"), [("Age [years]", "8.7", 8), ("age", "n/a", None), ("age (yr)", "41", 41)]
+)
+def test_age_in_whole_years(tmp_path, label, text, age):
+    found, notes = _read(tmp_path, f"id,sex,{label},birth_date\nS1,f,{text},1999-02-03\n")
+    assert found == {"s1": Measured(None, None, "f", age)} and notes == []
+
+
+def test_an_age_in_months_or_of_nobody_is_not_taken_for_years(tmp_path):
+    found, notes = _read(tmp_path, "id,sex,age (months)\nS1,f,96\n")
+    assert found == {"s1": Measured(None, None, "f")} and notes == []
+    found, notes = _read(tmp_path, "id,age\nS1,1999\n")
+    assert found == {"s1": Measured()}
+    assert notes == ["participants.tsv, line 2: an age of 1999 is none of 1 to 120 years; not used"]
 
 
 @pytest.mark.parametrize(

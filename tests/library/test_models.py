@@ -1,5 +1,7 @@
 """A model as a script names it."""
 
+import math
+
 import pytest
 
 from gaitdisc.library.models import model_of
@@ -13,7 +15,8 @@ def test_a_file_an_object_and_a_function_are_models(tmp_path):
     pendulum = bundled("pendulum")
     file = write_simulation(pendulum, tmp_path / "pendulum.toml")
     assert model_of(file) == model_of(str(file)) == model_of(pendulum) == pendulum
-    model = model_of(lambda x: -x)
+    assert model_of(lambda x: -x).equations == (("x", "-x"),)
+    model = model_of(lambda x: math.erf(x))  # noqa: PLW0108 its argument is the state
     assert isinstance(model, PythonSimulation) and model_of(model) is model
 
 

@@ -47,6 +47,12 @@ def test_a_recording_is_drawn_over_time_with_what_is_suspect(ax):
     assert len(gd.plot.recording(sine()).lines) == 4
 
 
+def test_a_table_is_drawn_with_the_units_of_the_names_it_has(ax):
+    gd.plot.recording(sine().to_pandas().reset_index(), "knee_angle_r", ax=ax)
+    np.testing.assert_array_equal(ax.lines[0].get_ydata(), sine()["knee_angle_r"])
+    assert ax.get_ylabel() == "[deg]"
+
+
 def test_cycles_have_their_mean(ax):
     starts = np.arange(1.0, 8.0)
     strides = gd.Strides(starts, starts + 1.0, "r", "force")

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 import gaitdisc as gd
-from gaitdisc.errors import ShapeError, TrainingError
+from gaitdisc.errors import SamplingError, ShapeError, TrainingError
 
 T = np.arange(0.0, 40.0, 0.02)
 X = np.sin(2 * T)[:, None]
@@ -43,6 +43,21 @@ def test_several_trials_and_tables_go_and_their_columns_name_the_channels():
     model = gd.Reconstructor(rate_hz=50.0, history_s=0.4).fit([x[:800], x[800:1600]], [y[:800], y[800:1600]])
     assert [channel.name for channel in model.model.channels] == ["a", "b", "c"]
     assert model.score(x[1600:], y[1600:]) > 0.999
+
+
+def test_named_readings_are_found_by_name_and_recordings_at_their_rate():
+    two = pd.DataFrame({"a": X[:, 0], "still": 0.1 * Y[:, 1]})
+    model = gd.Reconstructor(rate_hz=50.0, history_s=0.4).fit(two, Y)
+    turned = two.assign(more=1.0)[["still", "more", "a"]]
+    np.testing.assert_array_equal(model.predict(turned), model.predict(two))
+    with pytest.raises(ShapeError, match="the model reads a, still; 'still' is not among a, more"):
+        model.predict(turned[["a", "more"]])
+    with pytest.raises(ShapeError, match=r"a state is none of the sensors; 'a' is in both\. Leave it out"):
+        gd.Reconstructor(rate_hz=50.0).fit(two, two[["a"]])
+    channels = tuple(gd.Channel(name, "signal", "1") for name in two)
+    np.testing.assert_array_equal(model.predict(gd.Recording(T, two.to_numpy(), channels)), model.predict(two))
+    with pytest.raises(SamplingError, match=r"the model reads 50 samples a second; the recording has 25"):
+        model.predict(gd.Recording(2 * T, two.to_numpy(), channels))
 
 
 def test_it_is_saved_and_loaded(tmp_path):

@@ -156,7 +156,20 @@ def test_a_belt_s_speed_gives_lengths(pieces):
         treadmill=Treadmill(speed_m_per_s=1.0),
     )
     (found,) = pooled_cycles(study, person, lambda _: pieces[0])
-    assert found.kept["stride_m"].isna().all()  # no markers, so no lengths
+    np.testing.assert_allclose(found.kept["speed_m_per_s"], 1.2)  # the trial's own belt before the study's
+    assert found.kept["step_m"].isna().all()  # no markers, so nobody saw where the feet were
+    without, person = _study(trials[:0] + _planned(1), strides=study.strides, quality=study.quality)
+    (found,) = pooled_cycles(without, person, lambda _: pieces[0])
+    assert found.kept["stride_m"].isna().all()
+
+
+def test_leg_length_goes_with_the_stature_where_no_file_has_it(pieces):
+    study, person = _study(_planned(1), **OVERGROUND)
+    (found,) = pooled_cycles(study, person, lambda _: pieces[0])
+    assert found.leg_m is None and found.age_years is None
+    grown = person.model_copy(update={"height_m": 1.8, "age_years": 41})
+    (found,) = pooled_cycles(study.model_copy(update={"participants": (grown,)}), grown, lambda _: pieces[0])
+    assert found.leg_m == pytest.approx(0.53 * 1.8) and found.age_years == 41
 
 
 @pytest.fixture(scope="module")

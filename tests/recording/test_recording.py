@@ -58,7 +58,7 @@ def test_between_is_half_open():
 
 def test_missing_channel_names_the_nearest():
     with pytest.raises(
-        ChannelError, match=r"'ankle_ang_r' is needed; walk.mot has 2 channels, the nearest is 'ankle_angle_r'"
+        ChannelError, match=r"'ankle_ang_r' is needed; walk.mot has 2 channels: the nearest is 'ankle_angle_r'"
     ):
         walk()["ankle_ang_r"]
 

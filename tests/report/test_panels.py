@@ -24,8 +24,9 @@ def test_a_logarithmic_axis_has_plain_numbers():
 
 
 def test_sheets_are_of_nearly_equal_length():
-    assert [len(part) for part in sheets(range(25), 12)] == [9, 8, 8]
-    assert sheets([], 3) == []
+    assert {name: len(part) for name, part in sheets(range(25), 12, "r2").items()} == {"r2-1": 9, "r2-2": 8, "r2-3": 8}
+    assert sheets([], 3, "r2") == {}
+    assert list(sheets("ab", 3, "r2")) == ["r2"]
 
 
 def test_the_users_own_style_does_not_leak_in_or_out():

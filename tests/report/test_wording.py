@@ -27,6 +27,14 @@ def test_numbers(value, text):
     assert number(value) == text
 
 
+@pytest.mark.parametrize(
+    ("value", "digits", "text"),
+    [(0.99, 0, "1"), (0.97, 1, "1.0"), (-0.6, 0, "−1"), (0.9996, 3, ">0.999"), (0.9994, 3, "0.999"), (1.0, 2, "1.00")],
+)
+def test_a_share_short_of_all_is_not_all_and_an_amount_is_rounded(value, digits, text):
+    assert number(value, digits) == text
+
+
 def test_counts_lists_and_units():
     assert (counted(0, "stride"), counted(1, "stride")) == ("0 strides", "1 stride")
     assert (listed(["a"]), listed(["a", "b"])) == ("a", "a and b")

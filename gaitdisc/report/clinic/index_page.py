@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from gaitdisc.report.clinic.page_words import ENGLISH, PageWords
 from gaitdisc.report.clinic.person_words import noted_sentences
 from gaitdisc.report.page import page_text
 from gaitdisc.report.table import save_tables, words_table
@@ -23,6 +24,7 @@ def write_index(
     sessions: Sequence[tuple[PersonSession, str]],
     reference: ClinicalReference | None,
     folder: Path,
+    say: PageWords = ENGLISH,
 ) -> Path:
     """Write `index.html`: one row a person, session and condition, those without a result first.
 
@@ -31,7 +33,7 @@ def write_index(
     sessions : sequence of (PersonSession, str)
         With the name of each one's page, empty where none could be written.
     """
-    rows = [_row(reading, one, name) for one, name in sessions for reading in one.readings]
+    rows = [_row(reading, one, name, say) for one, name in sessions for reading in one.readings]
     known = {reading.pooled.subject for one, _ in sessions for reading in one.readings}
     whole = [refusal for refusal in run.refusals if refusal.participant not in known]
     rows += [_refused(refusal) for refusal in whole]
@@ -44,6 +46,7 @@ def write_index(
     save_tables([table], folder)
     lights = {light: sum(row["light"] == light for row in rows) for light in RANKS}
     shown = {
+        "say": say,
         "title": run.title,
         "created": run.provenance.created[:10],
         "rows": rows,
@@ -56,10 +59,10 @@ def write_index(
     return write_whole(folder / "index.html", page_text("people", shown))
 
 
-def _row(reading: ClinicalReading, person: PersonSession, name: str) -> dict[str, str]:
+def _row(reading: ClinicalReading, person: PersonSession, name: str, say: PageWords) -> dict[str, str]:
     pooled = reading.pooled
     score = reading.profile.both if reading.profile else None
-    sentences = noted_sentences(reading.noted)
+    sentences = noted_sentences(reading.noted, say)
     first = f"{len(reading.noted)}: {sentences[0].partition(';')[0]}" if sentences else NONE
     return {
         "light": reading.light,
@@ -68,7 +71,7 @@ def _row(reading: ClinicalReading, person: PersonSession, name: str) -> dict[str
         "condition": pooled.condition,
         "cycles": f"{pooled.counted('l')}, {pooled.counted('r')}",
         "score": number(score.value, 1) if score else NONE,
-        "noted": first if not reading.silent else "not said",
+        "noted": first if not reading.silent else say("not said"),
         "why": "; ".join(reading.reasons) or NONE,
         "page": f"people/{name}.html" if name else "",
     }
@@ -91,5 +94,7 @@ def _refused(refusal: Refusal) -> dict[str, str]:
 def _reference_words(reference: ClinicalReference | None) -> str:
     if reference is None:
         return "No reference: no bands, no scores, and nothing is said to stand out."
+    if reference.published:
+        return f"Published reference: {reference.title}."
     counts = ", ".join(f"{word} {reference.people(word)}" for word in reference.legs)
     return f"Reference of the laboratory's own controls: {counts}; saved {reference.created[:10]}."

@@ -10,6 +10,7 @@ from typing import Any
 
 from markupsafe import Markup
 
+from gaitdisc.report.clinic.page_words import ENGLISH, PageWords
 from gaitdisc.report.clinic.panel import Panel, svg
 from gaitdisc.report.clinic.person_panels import (
     MOST_SINGLE,
@@ -53,30 +54,36 @@ def page_names(titles: Sequence[str]) -> list[str]:
 
 
 def write_person_page(
-    person: PersonSession, name: str, reference: ClinicalReference | None, provenance: Provenance, folder: Path
+    person: PersonSession,
+    name: str,
+    reference: ClinicalReference | None,
+    provenance: Provenance,
+    folder: Path,
+    say: PageWords = ENGLISH,
 ) -> Path:
     """Write `people/<name>.html` and the folder of its numbers; the same bytes for the same numbers."""
     beside = folder / "people" / name
     main, *others = person.readings
     script = SCRIPT.read_text(encoding="utf-8")
     shown = {
+        "say": say,
         "title": person.title,
         "conditions": "; ".join(dict.fromkeys(one.pooled.condition for one in person.readings)),
-        "reference": _reference(reference, main.pooled.condition),
+        "reference": " ".join((_reference(reference, main.pooled.condition), *main.beside)).strip(),
         "created": provenance.created[:10],
-        "main": _condition(main, beside, ""),
-        "others": [_condition(one, beside, f"{one.pooled.condition}-") for one in others],
-        "contrasts": [_contrast(one, beside) for one in person.contrasts],
+        "main": _condition(main, beside, "", say),
+        "others": [_condition(one, beside, f"{one.pooled.condition}-", say) for one in others],
+        "contrasts": [_contrast(one, beside, say) for one in person.contrasts],
         "method": _method(person, provenance),
-        "files": _saved(files_table(list(person.readings)), beside, ""),
-        "versions": words_table("versions", "Versions.", ("what", "version"), provenance.versions.items()),
+        "files": _saved(files_table(list(person.readings)), beside, "", say),
+        "versions": say.table(words_table("versions", "Versions.", ("what", "version"), provenance.versions.items())),
         "script": Markup(script),
         "script_hash": f"sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}",
     }
     return write_whole(folder / "people" / f"{name}.html", page_text("person", shown))
 
 
-def _condition(reading: ClinicalReading, beside: Path, prefix: str) -> dict[str, Any]:
+def _condition(reading: ClinicalReading, beside: Path, prefix: str, say: PageWords) -> dict[str, Any]:
     stem = next(iter(file_names([prefix]).values())) if prefix else ""
     words = {
         "where": reading.pooled.where,
@@ -84,22 +91,23 @@ def _condition(reading: ClinicalReading, beside: Path, prefix: str) -> dict[str,
         "red": not reading.legs,
         "reasons": reading.reasons,
         "quality": quality_sentence(reading),
-        "outstanding": outstanding_sentences(reading),
+        "beside": " ".join(reading.beside),
+        "outstanding": outstanding_sentences(reading, say),
         "scores": score_sentences(reading),
     }
     if not reading.legs:
         return words
     profile = profile_table(reading)
-    kinematics = _sheet(sheet(reading, KINEMATICS), band_words(reading), (beside, f"{stem}kinematics"))
+    kinematics = _sheet(sheet(reading, KINEMATICS), band_words(reading), (beside, f"{stem}kinematics"), say)
     return {
         **words,
-        "kinematics": {**kinematics, "profile": Markup(profile_svg(reading.profile)) if reading.profile else ""},
-        "kinetics": _sheet(sheet(reading, MOMENTS, POWERS, FORCES), MOMENT_SIGNS, (beside, f"{stem}kinetics")),
-        "emg": _sheet(emg_sheet(reading.pooled), EMG, (beside, f"{stem}emg")),
-        "consistency": _sheet(consistency_sheet(reading), CONSISTENCY, (beside, f"{stem}cycles")),
-        "distances": _saved(values_table(reading), beside, stem),
-        "numbers": _saved(numbers_table(reading), beside, stem),
-        "profile": _saved(profile, beside, stem) if profile else None,
+        "kinematics": {**kinematics, "profile": Markup(profile_svg(reading.profile, say)) if reading.profile else ""},
+        "kinetics": _sheet(sheet(reading, MOMENTS, POWERS, FORCES), MOMENT_SIGNS, (beside, f"{stem}kinetics"), say),
+        "emg": _sheet(emg_sheet(reading.pooled), EMG, (beside, f"{stem}emg"), say),
+        "consistency": _sheet(consistency_sheet(reading), CONSISTENCY, (beside, f"{stem}cycles"), say),
+        "distances": _saved(values_table(reading), beside, stem, say),
+        "numbers": _saved(numbers_table(reading), beside, stem, say),
+        "profile": _saved(profile, beside, stem, say) if profile else None,
     }
 
 
@@ -113,14 +121,14 @@ CONSISTENCY = (
 )
 
 
-def _sheet(panels: list[Panel], caption: str, place: tuple[Path, str]) -> dict[str, Any]:
+def _sheet(panels: list[Panel], caption: str, place: tuple[Path, str], say: PageWords) -> dict[str, Any]:
     beside, name = place
     if panels:
         save_table(panel_numbers(panels), beside / f"{name}.csv")
     used = sorted({panel.column for panel in panels})  # a column that nothing stands in is closed
     drawn = [
         {"panel": one, "svg": Markup(svg(one)), "row": one.row + 1, "column": used.index(one.column) + 1}
-        for one in panels
+        for one in map(say.panel, panels)
     ]
     return {
         "panels": drawn,
@@ -131,12 +139,12 @@ def _sheet(panels: list[Panel], caption: str, place: tuple[Path, str]) -> dict[s
     }
 
 
-def _saved(table: Table, beside: Path, stem: str) -> Table:
+def _saved(table: Table, beside: Path, stem: str, say: PageWords) -> Table:
     save_table(table.numbers, beside / f"{stem}{table.name}.csv")
-    return table
+    return say.table(table)
 
 
-def _contrast(contrast: Contrast, beside: Path) -> dict[str, Any]:
+def _contrast(contrast: Contrast, beside: Path, say: PageWords) -> dict[str, Any]:
     first, second = contrast.first.pooled.where, contrast.second.pooled.where
     stem = next(iter(file_names([f"{first}-{second}"]).values()))
     sheets = []
@@ -147,14 +155,16 @@ def _contrast(contrast: Contrast, beside: Path) -> dict[str, Any]:
                 f"Dotted: {first}; unbroken or dashed: {second}. Bars above: where they differ by a permutation test "
                 f"of the cycles, corrected for the whole cycle, all curves and both legs; black where by 5 deg or more."
             )
-            one = _sheet(panels, caption, (beside, f"{stem}-{SIDE_WORDS[side]}"))
-            sheets.append({**one, "heading": SIDE_WORDS[side].capitalize()})
+            one = _sheet(panels, caption, (beside, f"{stem}-{SIDE_WORDS[side]}"), say)
+            sheets.append({**one, "heading": say(SIDE_WORDS[side]).capitalize()})
     return {"heading": f"{first} and {second}", "sentences": contrast_sentences(contrast), "sheets": sheets}
 
 
 def _reference(reference: ClinicalReference | None, condition: str) -> str:
     if reference is None:
         return "No reference."
+    if reference.published:
+        return ""  # its source stands among what the person is read beside
     count = reference.people(condition)
     people = f"{count} controls of the laboratory's own" if count else "nobody who walked so"
     return f"Reference: {people}, saved {reference.created[:10]}."

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaitdisc.recording import PERCENT
+from gaitdisc.report.clinic.page_words import ENGLISH, PageWords
 from gaitdisc.report.clinic.panel import Panel
 from gaitdisc.report.clinic.person_page import CONSISTENCY, EMG, MOMENT_SIGNS, band_words
 from gaitdisc.report.clinic.person_panels import consistency_sheet, emg_sheet, sheet
@@ -33,7 +34,7 @@ USE = "Research use, not a medical device. No diagnosis."
 
 
 @in_style
-def write_person_pdf(person: PersonSession, provenance: Provenance, path: Path) -> Path:
+def write_person_pdf(person: PersonSession, provenance: Provenance, path: Path, say: PageWords = ENGLISH) -> Path:
     """Write the main condition of a person's session as PDF; the same bytes for the same numbers."""
     from matplotlib.backends.backend_pdf import PdfPages
 
@@ -41,25 +42,29 @@ def write_person_pdf(person: PersonSession, provenance: Provenance, path: Path) 
     with whole_file(path) as part:
         metadata = {"Creator": None, "Producer": None, "CreationDate": None}
         with PdfPages(part, metadata=metadata) as pages:  # type: ignore[arg-type]
-            for drawn in [_first(person, main, provenance), *(_others(main) if main.legs else [])]:
+            for drawn in [_first(person, main, provenance, say), *(_others(main, say) if main.legs else [])]:
                 pages.savefig(drawn)
     return path
 
 
-def _first(person: PersonSession, main: ClinicalReading, provenance: Provenance) -> matplotlib.figure.Figure:
+def _first(
+    person: PersonSession, main: ClinicalReading, provenance: Provenance, say: PageWords
+) -> matplotlib.figure.Figure:
     """Who, what stands out, time and distance, scores, and kinematics."""
-    page = _Page()
+    page = _Page(say)
     page.text(USE, size=7, bold=True)
     page.text(f"{person.title}, {main.pooled.where}", size=13, bold=True)
     page.text(f"Computed {provenance.created[:10]}. {quality_sentence(main)}")
+    if main.beside:
+        page.text(" ".join(main.beside))
     page.text("What stands out", size=9.5, bold=True)
-    for sentence in outstanding_sentences(main):
+    for sentence in outstanding_sentences(main, say):
         page.text(f"•  {sentence}")
     if not main.legs:
         page.text(f"Left out: {'; '.join(main.reasons)}")
         return page.drawn
     page.text("Time and distance", size=9.5, bold=True)
-    table = values_table(main)
+    table = say.table(values_table(main))
     page.table((table.columns, *table.rows))
     page.text(table.caption, size=6.8)
     page.text("Scores", size=9.5, bold=True)
@@ -71,8 +76,8 @@ def _first(person: PersonSession, main: ClinicalReading, provenance: Provenance)
     return page.drawn
 
 
-def _others(main: ClinicalReading) -> list[matplotlib.figure.Figure]:
-    second = _Page()
+def _others(main: ClinicalReading, say: PageWords) -> list[matplotlib.figure.Figure]:
+    second = _Page(say)
     kinetics, muscles = sheet(main, MOMENTS, POWERS, FORCES), emg_sheet(main.pooled)
     if kinetics:
         second.text("Moments, powers and forces", size=9.5, bold=True)
@@ -82,7 +87,7 @@ def _others(main: ClinicalReading) -> list[matplotlib.figure.Figure]:
         second.text("EMG", size=9.5, bold=True)
         second.panels(muscles, 4)
         second.text(EMG, size=6.8)
-    third = _Page()
+    third = _Page(say)
     third.text("Appendix: every cycle", size=9.5, bold=True)
     third.panels(consistency_sheet(main), 5)
     third.text(CONSISTENCY, size=6.8)
@@ -92,16 +97,16 @@ def _others(main: ClinicalReading) -> list[matplotlib.figure.Figure]:
 class _Page:
     """A sheet of A4 that is filled from the top."""
 
-    def __init__(self) -> None:
+    def __init__(self, say: PageWords) -> None:
         from matplotlib.figure import Figure as Drawing
 
         self.drawn = Drawing(figsize=A4)
-        self._down = MARGIN
+        self._down, self._say = MARGIN, say
 
     def text(self, words: str, size: float = 8.0, bold: bool = False) -> None:
         """Write a paragraph, broken to the width of the page."""
         scale = size / 8.0
-        for line in textwrap.wrap(words, round(124 / scale)) or [""]:
+        for line in textwrap.wrap(self._say(words), round(124 / scale)) or [""]:
             self._down += LINE * scale
             weight = "bold" if bold else "normal"
             self.drawn.text(MARGIN / A4[0], 1 - self._down / A4[1], line, fontsize=size, fontweight=weight)
@@ -128,7 +133,7 @@ class _Page:
             left = MARGIN + used.index(panel.column) * wide + 0.3
             top = self._down + 0.25 + panel.row * height
             size = (left / A4[0], 1 - (top + height - 0.5) / A4[1], (wide - 0.4) / A4[0], (height - 0.5) / A4[1])
-            draw_panel(self.drawn.add_axes(size), panel)
+            draw_panel(self.drawn.add_axes(size), self._say.panel(panel))
         self._down += rows * height + 0.1
 
 

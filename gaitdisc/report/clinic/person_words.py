@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -16,7 +16,7 @@ MOST = 6  # sentences of what stands out
 MOST_SPANS = 6
 
 
-def noted_sentences(noted: Sequence[Noted]) -> list[str]:
+def noted_sentences(noted: Sequence[Noted], say: Callable[[str], str] = str) -> list[str]:
     """One sentence a rule and direction, the farthest first, both legs in one; at most six.
 
     Examples
@@ -27,31 +27,37 @@ def noted_sentences(noted: Sequence[Noted]) -> list[str]:
     together: dict[tuple[str, str], list[Noted]] = {}
     for one in noted:
         together.setdefault((one.rule, one.words), []).append(one)
-    return [_noted(sorted(own, key=lambda one: one.side)) for own in together.values()][:MOST]
+    return [_noted(sorted(own, key=lambda one: one.side), say) for own in together.values()][:MOST]
 
 
-def _noted(own: Sequence[Noted]) -> str:
+def _noted(own: Sequence[Noted], say: Callable[[str], str]) -> str:
     first = own[0]
     unit, limits = unit_text(first.unit), first.limits
     low, high, mean = (number(value, first.digits) for value in (limits.low, limits.high, limits.mean))
     sd = number(limits.sd, max(first.digits, 1))
     each = ", ".join(
-        f"{SIDE_WORDS[one.side]} {number(one.value, one.digits)} {unit} ({counted(one.cycles, 'cycle')})" for one in own
+        f"{say(SIDE_WORDS[one.side])} {number(one.value, one.digits)} {unit} "
+        f"({one.cycles} {say('cycle' if one.cycles == 1 else 'cycles')})"
+        for one in own
     )
-    words = first.words[0].upper() + first.words[1:]
-    return f"{words}: {each}; limits {low} to {high} {unit}, reference {mean} ± {sd} {unit}, {limits.people} people."
+    words = say(first.words)
+    return (
+        f"{words[0].upper()}{words[1:]}: {each}; {say('limits')} {low} {say('to')} {high} {unit}, "
+        f"{say('reference')} {mean} ± {sd} {unit}, {limits.people} {say('people')}."
+    )
 
 
-def outstanding_sentences(reading: ClinicalReading) -> list[str]:
+def outstanding_sentences(reading: ClinicalReading, say: Callable[[str], str] = str) -> list[str]:
     """What stands out, or why nothing does."""
     if reading.silent:
-        return [f"Nothing is said to stand out: {reading.silent}."]
-    found = noted_sentences(reading.noted)
+        return [say("Nothing is said to stand out: {}.").format(reading.silent)]
+    found = noted_sentences(reading.noted, say)
     if found:
         return found
     people = max((band.people for band in reading.bands.values()), default=0)
     few = "" if people >= 20 else f" With {people} controls the limits are wide: smaller differences may be there."
-    return [f"None of {len(reading.numbers)} values lies beyond the limits of the reference.{few}"]
+    silent = say("None of {} values lies beyond the limits of the reference.").format(len(reading.numbers))
+    return [f"{silent}{few}"]
 
 
 def quality_sentence(reading: ClinicalReading) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from html import escape
 
 import numpy as np
@@ -16,7 +17,7 @@ from gaitdisc.results.leg_curves import FEET
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 240, 365, 104, 232, 6, 346
 
 
-def profile_svg(profile: Profile) -> str:
+def profile_svg(profile: Profile, say: Callable[[str], str] = str) -> str:
     """Bars of a profile; left above right, the reference's mean and spread behind."""
     rows: list[tuple[str, dict[str, Score]]] = [
         (BY_NAME[n].words, {s: profile.variables[n, s] for s in FEET if (n, s) in profile.variables}) for n in PROFILE
@@ -29,7 +30,7 @@ def profile_svg(profile: Profile) -> str:
         return LEFT + value / top * (RIGHT - LEFT)
 
     alt = "; ".join(
-        f"{words} {', '.join(f'{SIDE_WORDS[s]} {number(one.value, 1)}' for s, one in scores.items())}"
+        f"{say(words)} {', '.join(f'{say(SIDE_WORDS[s])} {number(one.value, 1)}' for s, one in scores.items())}"
         for words, scores in rows
     )
     parts = [f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="Scores [deg]: {escape(alt, quote=True)}">']
@@ -38,7 +39,9 @@ def profile_svg(profile: Profile) -> str:
         parts.append(f'<text x="{x(place):.1f}" y="{BOTTOM + 12}" text-anchor="middle">{number(place, 0)}</text>')
     for k, (words, scores) in enumerate(rows):
         at = TOP + k * height
-        parts.append(f'<text x="{LEFT - 4}" y="{at + height / 2 + 3:.1f}" text-anchor="end">{escape(words)}</text>')
+        parts.append(
+            f'<text x="{LEFT - 4}" y="{at + height / 2 + 3:.1f}" text-anchor="end">{escape(say(words))}</text>'
+        )
         parts += _bars(scores, at, height, x)
     return "".join([*parts, "</svg>"])
 

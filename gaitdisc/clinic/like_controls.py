@@ -1,0 +1,178 @@
+"""Which controls a person is read beside: of the like age and speed where there are enough, and at this leg length."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gaitdisc.results.clinical_reference import ReferenceLeg
+from gaitdisc.results.clinical_variables import BY_NAME, MOMENTS, POWERS
+from gaitdisc.results.leg_curves import LegCurves
+from gaitdisc.results.published_reference import PublishedGroup
+
+GRAVITY = 9.81
+FEWEST = 10  # people of a group
+AGES = (7, 13, 18, 40, 65)  # first year of each class but the youngest
+SPEEDS = (0.227, 0.363, 0.5, 0.636)  # between very slow, slow, free, fast, very fast (Schwartz et al. 2008)
+# powers of the leg length that a value goes with where two people of different size walk alike (Hof 1996)
+EXPONENTS = {
+    "speed_m_per_s": 0.5, "cadence_per_min": -0.5, "stride_s": 0.5, "step_s": 0.5,
+    "stride_m": 1.0, "step_m": 1.0, "width_m": 1.0,
+}  # fmt: skip
+CURVES = {MOMENTS: 1.0, POWERS: 0.5}  # of what is per kg of body mass
+ADULT = 18  # years
+SPEED = "speed_m_per_s"
+Legs = tuple[ReferenceLeg, ...]
+Number = Callable[[ReferenceLeg], float | None]
+
+
+@dataclass(frozen=True, eq=False)
+class LikeControls:
+    """Controls that a person is read beside, at the person's leg length where it is known.
+
+    Parameters
+    ----------
+    curves, values : tuple of ReferenceLeg
+        Of the like age and speed, for curves; of the like age at any speed, for times and distances.
+    words : tuple of str
+        Who they are, and what could not be allowed for.
+    """
+
+    curves: Legs
+    values: Legs
+    words: tuple[str, ...] = ()
+
+
+def like_controls(legs: Legs, own: Sequence[LegCurves], leg_m: float | None, age_years: int | None) -> LikeControls:
+    """Controls of a condition for one person.
+
+    Parameters
+    ----------
+    leg_m, age_years : float and int, optional
+        Of the person.
+    """
+    speed = _speed([one.values[SPEED].mean() for one in own if SPEED in one.values], leg_m)
+    of_age = _nearest(legs, AGES, age_years, _age)
+    of_both = _nearest(of_age, SPEEDS, speed, dimensionless_speed)
+    said = [f"Compared with {described(of_both)}{_which(of_both, of_age, legs)}."]
+    if of_both != of_age:
+        said.append("Times and distances: with those of any speed.")
+    said += _of_another_age(of_age, age_years)
+    unknown = "the person" if leg_m is None else "some controls" if any(leg.leg_m is None for leg in legs) else ""
+    if leg_m is None or unknown:
+        said.append(f"Not scaled by leg length, which is not known of {unknown}: size shows in speeds and lengths.")
+        return LikeControls(of_both, of_age, tuple(said))
+    said.append("Their times, distances, moments and powers are taken to this person's leg length (Hof 1996).")
+    curves, values = (tuple(at_leg_length(leg, leg_m) for leg in one) for one in (of_both, of_age))
+    return LikeControls(curves, values, tuple(said))
+
+
+def like_published(
+    groups: Sequence[PublishedGroup], own: Sequence[LegCurves], leg_m: float | None
+) -> tuple[PublishedGroup, str]:
+    """Group of a published reference nearest in speed, the largest where the speed is not known; and which it is."""
+    speed = _speed([one.values[SPEED].mean() for one in own if SPEED in one.values], leg_m)
+    known = [one for one in groups if np.isfinite(one.speeds).all()] if speed is not None else []
+    if speed is None or not known:
+        found = max(groups, key=lambda one: one.people)
+        return found, f"Compared with its group “{found.name}”, {found.people} people; no group goes by the speed."
+    found = min(known, key=lambda one: max(one.speeds[0] - speed, speed - one.speeds[1], 0.0))
+    low, high = found.speeds
+    whose = f"{found.people} people, dimensionless speed {low:.2f} to {high:.2f}; this person's is {speed:.2f}"
+    return found, f"Compared with its group “{found.name}”, the nearest in speed: {whose}."
+
+
+def groups_of(legs: Legs) -> list[Legs]:
+    """Groups of ten people or more, by age, and within it by speed; none where there is but one."""
+    ages = list(_classes(legs, AGES, _age).values()) or [legs]
+    found = dict.fromkeys(one for age in ages for one in (*_classes(age, SPEEDS, dimensionless_speed).values(), age))
+    return [one for one in found if one != legs]
+
+
+def dimensionless_speed(leg: ReferenceLeg) -> float | None:
+    """Speed over the square root of gravity times leg length (Hof 1996); None where one of both is not known."""
+    return _speed([leg.values[SPEED]] if SPEED in leg.values else [], leg.leg_m)
+
+
+def at_leg_length(leg: ReferenceLeg, leg_m: float) -> ReferenceLeg:
+    """Control's leg as of somebody of another leg length who walks alike: equal dimensionless numbers (Hof 1996).
+
+    Examples
+    --------
+    >>> at_leg_length(ReferenceLeg(1, "l", 4, 60.0, {}, {"step_m": 0.6, "cadence_per_min": 110.0}, 0.9), 0.4).values
+    {'step_m': 0.26666666666666666, 'cadence_per_min': 165.0}
+    """
+    if leg.leg_m is None:
+        return leg
+    ratio = leg_m / leg.leg_m
+    values = {name: float(value * ratio ** EXPONENTS.get(name, 0.0)) for name, value in leg.values.items()}
+    curves = {name: curve * ratio ** CURVES.get(BY_NAME[name].kind, 0.0) for name, curve in leg.curves.items()}
+    return replace(leg, values=values, curves=curves, leg_m=leg_m)
+
+
+def described(legs: Legs) -> str:
+    """How many controls, of which ages and speeds."""
+    ages = [leg.age_years for leg in legs if leg.age_years is not None]
+    speeds = [speed for leg in legs if (speed := dimensionless_speed(leg)) is not None]
+    parts = [f"{len({leg.person for leg in legs})} controls"]
+    parts += [f"aged {min(ages)} to {max(ages)} years"] if ages else []
+    parts += [f"dimensionless speed {min(speeds):.2f} to {max(speeds):.2f}"] if speeds else []
+    return ", ".join(parts)
+
+
+def _speed(speeds: Sequence[float], leg_m: float | None) -> float | None:
+    return float(np.mean(speeds)) / float(np.sqrt(GRAVITY * leg_m)) if len(speeds) and leg_m else None
+
+
+def _age(leg: ReferenceLeg) -> float | None:
+    return leg.age_years
+
+
+def _classes(legs: Legs, bounds: Sequence[float], number: Number) -> dict[int, Legs]:
+    """Legs of each class that ten people or more are of; a person is of the class of the mean of both legs."""
+    people: dict[int, list[float]] = {}
+    for leg in legs:
+        if (own := number(leg)) is not None:
+            people.setdefault(leg.person, []).append(own)
+    classes: dict[int, set[int]] = {}
+    for person, own in people.items():
+        classes.setdefault(bisect_right(bounds, float(np.mean(own))), set()).add(person)
+    return {
+        place: tuple(leg for leg in legs if leg.person in own)
+        for place, own in sorted(classes.items())
+        if len(own) >= FEWEST
+    }
+
+
+def _nearest(legs: Legs, bounds: Sequence[float], value: float | None, number: Number) -> Legs:
+    """The class of a value, or the nearest; all legs where the value is not known or no class has enough people."""
+    found = _classes(legs, bounds, number) if value is not None else {}
+    if value is None or not found:
+        return legs
+    place = bisect_right(bounds, value)
+
+    def away(other: int) -> tuple[bool, float]:
+        numbers = [one for leg in found[other] if (one := number(leg)) is not None]
+        return other != place, max(min(numbers) - value, value - max(numbers))
+
+    return found[min(found, key=away)]
+
+
+def _which(of_both: Legs, of_age: Legs, legs: Legs) -> str:
+    by = [*(["age"] if of_age != legs else []), *(["speed"] if of_both != of_age else [])]
+    if by:
+        return f", the group nearest in {' and '.join(by)}"
+    why = "the person is of no known age or speed" if groups_of(legs) else f"a group needs {FEWEST} of an age or speed"
+    return f": all there are, for {why}"
+
+
+def _of_another_age(legs: Legs, age_years: int | None) -> list[str]:
+    """Sentence that the controls are older or younger; none where they are of the age or it is not known."""
+    ages = [leg.age_years for leg in legs if leg.age_years is not None]
+    if age_years is None or not ages or min(ages) <= age_years <= max(ages):
+        return []
+    whose = "adults" if min(ages) >= ADULT > age_years else "of another age"
+    return [f"These controls are {whose}, the person is {age_years} years old: what stands out may be the age."]

@@ -1,0 +1,242 @@
+"""A walk as cameras and two belts see it: markers over moving skin, a static trial, forces with their point.
+
+The skeleton of the walk is laid in space: pelvis, thighs, shanks and feet with the true joint angles, hips where the
+habit and the compliant pelvis move them. The pelvis keeps its tilt and neither lists nor turns, so that the angles from
+the markers are to be those of the model. Markers are those of the Rajagopal set, with medial ones at knee and ankle.
+Skin moves over bone by 5 to 15 mm at the thigh, less below, in proportion to hip and knee flexion and in directions of
+each marker's own (range: Leardini et al. 2005, from memory). The sideways force and the place of the hips are general
+knowledge. The laboratory has x forwards, y to the left, z up.
+
+References
+----------
+Rajagopal 2016, IEEE Trans Biomed Eng 63:2068. Leardini 2005, Gait Posture 21:212. Harrington 2007, J Biomech 40:595.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.channel import Channel
+from gaitdisc.cohort.body import Leg, ankle_place, leg_of
+from gaitdisc.cohort.ground import pressure_centre
+from gaitdisc.cohort.habit import habitual
+from gaitdisc.cohort.leg_path import PHASES, hip_motion, pressed_point, staged
+from gaitdisc.cohort.person import Person
+from gaitdisc.cohort.walk import QUICK_HZ, SLOW_HZ, TrueWalk
+from gaitdisc.recording import Recording, Source, Surface, Trial
+
+SIDES = (("r", 1.0), ("l", -1.0))
+ASIS_WIDTH, PELVIS_DEPTH = 0.145, 0.090  # of height
+CAMERA_M = 0.0003  # noise of a coordinate
+SKIN_M = {"pelvis": 0.003, "thigh": 0.006, "shank": 0.004, "foot": 0.001}  # for 60 deg of the joints beside it
+STANDING_S = 1.0
+SWAY_M, SWAY_AT = (
+    0.040,
+    0.30,
+)  # of the pelvis sideways and with it the feet apart, towards the right leg at this share of its stride
+INWARDS = 0.05  # sideways force, of the vertical one
+MOMENT_NM = 0.3  # noise of a belt's moments
+FORCE_N = 2.0
+BELT_M = (2.0, 0.5)  # length, width of a belt
+TO_LABORATORY = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])  # from forwards, up, right
+# (forwards, down, outwards) of the joint above; down in shares of the segment, the rest in shares of height
+PLACES = {
+    "thigh": {
+        "TH1": (0.00, 0.45, 0.055),
+        "TH2": (0.045, 0.40, 0.012),
+        "TH3": (-0.025, 0.60, 0.040),
+        "LFC": (0.0, 1.0, 0.031),
+        "MFC": (0.0, 1.0, -0.031),
+    },
+    "shank": {
+        "TB1": (0.00, 0.45, 0.035),
+        "TB2": (0.030, 0.30, 0.006),
+        "TB3": (-0.020, 0.55, 0.025),
+        "LMAL": (0.0, 1.0, 0.022),
+        "MMAL": (0.0, 1.0, -0.022),
+    },
+    "foot": {"CAL": (-0.035, 0.025, 0.0), "TOE": (0.085, 0.030, -0.005), "MT5": (0.070, 0.034, 0.026)},
+}
+
+
+def belts() -> tuple[Surface, Surface]:
+    """Right and left belt."""
+    along, across = BELT_M
+    corners = np.array([[along / 2, 0, 0], [-along / 2, 0, 0], [-along / 2, across, 0], [along / 2, across, 0]])
+    return Surface("plate_1", corners - np.array([0, across, 0])), Surface("plate_2", corners)
+
+
+def standing(person: Person) -> Trial:
+    """Static trial of a person, all joints straight, at 100 Hz."""
+    count = round(STANDING_S * SLOW_HZ)
+    leg = leg_of(person.height_m, person.mass_kg)
+    angles = np.zeros((count, 2, 5))
+    angles[:, :, 0] = _tilt(person)
+    height = leg.thigh_m + leg.shank_m + leg.ankle_m
+    hips = np.tile([0.0, height, 0.0], (count, 1))
+    rng = np.random.default_rng([round(person.mass_kg * 1e6), 41])
+    markers = _markers(person, leg, angles, hips, rng, angles[0])
+    return Trial(f"{person.name}_static", {"markers": markers}, subject=person.name)
+
+
+def marker_trial(walk: TrueWalk, name: str, condition: str) -> Trial:
+    """Markers at 100 Hz, and both belts' forces and moments at 1000 Hz (`plate_1` is the right one)."""
+    person = walk.person
+    leg = leg_of(person.height_m, person.mass_kg, person.foot_kg)
+    angles = walk.angles.copy()
+    angles[:, :, 0] += _tilt(person)
+    hips = _pelvis(walk, leg)
+    rng = np.random.default_rng([walk.seed, 43])
+    straight = np.zeros((2, 5))
+    straight[:, 0] = _tilt(person)
+    markers = _markers(person, leg, angles, hips, rng, straight, condition)
+    forces = _forces(walk, leg, hips, rng, condition)
+    return Trial(
+        name, {"markers": markers, "forces": forces}, subject=person.name, condition=condition, surfaces=belts()
+    )
+
+
+def _tilt(person: Person) -> float:
+    return habitual("pelvis_tilt", person.dimensionless_speed).mean
+
+
+def _pelvis(walk: TrueWalk, leg: Leg) -> NDArray[np.float64]:
+    """Path of the middle of the hips (time, 3), forwards, up and right, so that standing feet press on the belt [m]."""
+    person = walk.person
+    grid = np.arange(PHASES) / PHASES
+    path = np.cumsum(hip_motion(person, grid), axis=0) * person.stride_s / PHASES
+    path = 0.5 * (path + np.roll(path, -PHASES // 2, axis=0))
+    path -= path.mean(axis=0)
+    phase = walk.phase[:: round(QUICK_HZ / SLOW_HZ)] % 1.0
+    own = [np.interp(phase, grid, column, period=1.0) for column in path.T]
+    sway = SWAY_M * np.cos(2 * np.pi * (phase - SWAY_AT))
+    moved = np.column_stack([own[0] + walk.pelvis[:, 0], own[1] + walk.pelvis[:, 1], sway])
+    stands = (phase > 0.15) & (phase < 0.40)
+    moved[:, 1] -= np.mean(moved[stands, 1] + _pressed(walk, leg, 0)[stands, 1])
+    return moved
+
+
+def _sagittal(walk: TrueWalk, side: int) -> NDArray[np.float64]:
+    thigh = walk.angles[:, side, 0]
+    shank = thigh - walk.angles[:, side, 3]
+    return np.radians(np.column_stack([thigh, shank, shank + walk.angles[:, side, 4]]))
+
+
+def _pressed(walk: TrueWalk, leg: Leg, side: int) -> NDArray[np.float64]:
+    """Point under the pressure from the hip (time, 2), forwards and up [m]."""
+    psi = _sagittal(walk, side)
+    phase = walk.phase[:: round(QUICK_HZ / SLOW_HZ)] + 0.5 * side
+    pressure = pressure_centre(staged(walk.person, phase % 1.0), leg.sole_m)
+    return ankle_place(leg, psi) + pressed_point(leg, psi[:, 2], pressure)
+
+
+def _segments(
+    person: Person, leg: Leg, angles: NDArray[np.float64], hips: NDArray[np.float64]
+) -> dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]:
+    """Origin (time, 3) and rotation (time, 3, 3) of each segment, in forwards, up, right."""
+    pelvis = np.repeat(_turned(np.array([[-_tilt(person), 0.0, 0.0]])), len(angles), axis=0)
+    found = {"pelvis": (hips - pelvis @ _hip(person, 0.0), pelvis)}
+    for column, (side, sign) in enumerate(SIDES):
+        own = angles[:, column]
+        above, place = pelvis, found["pelvis"][0] + pelvis @ _hip(person, sign)
+        flat = np.zeros(len(own))
+        for part, turns, length in (
+            ("thigh", (own[:, 0], sign * own[:, 1], sign * own[:, 2]), leg.thigh_m),
+            ("shank", (-own[:, 3], flat, flat), leg.shank_m),
+            ("foot", (own[:, 4], flat, flat), 0.0),
+        ):
+            above = above @ _turned(np.column_stack(turns))
+            found[f"{part}_{side}"] = (place, above)
+            place = place + above @ np.array([0.0, -length, 0.0])
+    return found
+
+
+def _hip(person: Person, sign: float) -> NDArray[np.float64]:
+    """Hip from the middle of the front spines, by Harrington's regression; sign 0 is the middle of both hips [m]."""
+    width, depth = ASIS_WIDTH * person.height_m, PELVIS_DEPTH * person.height_m
+    return np.array([-0.24 * depth - 0.0099, -0.30 * width - 0.0109, sign * (0.33 * width + 0.0073)])
+
+
+def _turned(angles_deg: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Flexion about the proximal z, adduction about the floating axis, rotation about the distal y."""
+    from scipy.spatial.transform import Rotation
+
+    return Rotation.from_euler("ZXY", angles_deg, degrees=True).as_matrix()
+
+
+def _markers(
+    person: Person,
+    leg: Leg,
+    angles: NDArray[np.float64],
+    hips: NDArray[np.float64],
+    rng: np.random.Generator,
+    straight: NDArray[np.float64],
+    condition: str = "",
+) -> Recording:
+    skin = np.random.default_rng([round(person.mass_kg * 1e6), 37])  # the same in every trial of the person
+    columns, channels = [], []
+    for segment, (origin, rotation) in _segments(person, leg, angles, hips).items():
+        part, _, side = segment.partition("_")
+        column = "rl".find(side) if side else 0
+        flexed = (angles[:, column] - straight[column])[:, [0, 3]] / 60.0
+        for label, place in _places(person, leg, part, side).items():
+            away = flexed @ (SKIN_M[part] * skin.normal(size=(2, 3)))
+            seen = (origin + np.einsum("tij,tj->ti", rotation, place + away)) @ TO_LABORATORY.T
+            columns.append(seen + rng.normal(0.0, CAMERA_M, seen.shape))
+            channels += [Channel(f"{label}.{axis}", "marker", "m") for axis in "xyz"]
+    values = np.hstack(columns)
+    return Recording(
+        np.arange(len(values)) / SLOW_HZ, values, tuple(channels), person.name, condition, Source(reader="cohort")
+    )
+
+
+def _places(person: Person, leg: Leg, part: str, side: str) -> dict[str, NDArray[np.float64]]:
+    """Markers of a segment in its frame [m]."""
+    height = person.height_m
+    if part == "pelvis":
+        width, depth = ASIS_WIDTH * height / 2, PELVIS_DEPTH * height
+        return {
+            "RASI": np.array([0.0, 0.0, width]),
+            "LASI": np.array([0.0, 0.0, -width]),
+            "RPSI": np.array([-depth, 0.0, 0.025 * height]),
+            "LPSI": np.array([-depth, 0.0, -0.025 * height]),
+        }
+    length = {"thigh": leg.thigh_m, "shank": leg.shank_m, "foot": height}[part]
+    sign = 1.0 if side == "r" else -1.0
+    return {
+        f"{side.upper()}{label}": np.array([x * height, -y * length, sign * z * height])
+        for label, (x, y, z) in PLACES[part].items()
+    }
+
+
+def _forces(walk: TrueWalk, leg: Leg, hips: NDArray[np.float64], rng: np.random.Generator, condition: str) -> Recording:
+    """Force and moment about the middle of each belt, in the laboratory's axes."""
+    columns, channels = [], []
+    segments = _segments(walk.person, leg, walk.angles + _only_tilt(walk.person), hips)
+    for column, ((side, sign), belt) in enumerate(zip(SIDES, belts(), strict=True)):
+        at = _pressed(walk, leg, column) + hips[:, :2]
+        foot = segments[f"foot_{side}"][0][:, 2]
+        slow = np.column_stack([at[:, 0], np.zeros(len(at)), foot]) @ TO_LABORATORY.T
+        point = np.column_stack([np.interp(walk.quick_s, walk.slow_s, one) for one in slow.T])
+        force = np.column_stack(
+            [walk.force[:, column, 0], walk.force[:, column, 1], -sign * INWARDS * walk.force[:, column, 1]]
+        )
+        force = force @ TO_LABORATORY.T
+        moment = np.cross(point - belt.corners.mean(axis=0), force)
+        columns += [
+            force + rng.normal(0.0, FORCE_N, force.shape),
+            moment + rng.normal(0.0, MOMENT_NM, moment.shape),
+        ]
+        channels += [
+            Channel(f"{belt.name}_{kind}{axis}", "vertical_force" if kind + axis == "fz" else quantity, unit)
+            for kind, quantity, unit in (("f", "force", "N"), ("m", "moment", "N m"))
+            for axis in "xyz"
+        ]
+    return Recording(
+        walk.quick_s, np.hstack(columns), tuple(channels), walk.person.name, condition, Source(reader="cohort")
+    )
+
+
+def _only_tilt(person: Person) -> NDArray[np.float64]:
+    return np.array([_tilt(person), 0.0, 0.0, 0.0, 0.0])

@@ -1,0 +1,86 @@
+"""`gaitdisc watch`: the study grows by what is saved into a folder of recordings, and is run each time."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from gaitdisc.commands.exit_codes import REFUSED, STOPPED
+from gaitdisc.commands.options import Jobs, Quiet
+from gaitdisc.commands.run import run
+from gaitdisc.errors import GaitdiscError, ReadError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from gaitdisc.ingest.new_study import Looked
+
+
+def watch(
+    study: Annotated[Path, typer.Argument(help="The study file or its folder; drafted where there is none.")],
+    recordings: Annotated[Path, typer.Option("--from", help="Folder of recordings; it is not changed.")],
+    reference: Annotated[Path | None, typer.Option(help="Folder of `gaitdisc reference`: bands, scores.")] = None,
+    still: Annotated[float, typer.Option(min=0.1, help="A file counts after it stood still for so long [s].")] = 5.0,
+    jobs: Jobs = 1,
+    quiet: Quiet = False,
+) -> None:
+    """Take up new trials as they are saved and run the study each time, until Ctrl-C; nothing is computed twice.
+
+    A file counts when its size and time have stood still. What cannot be read then may be half a file: it is named and
+    waited for. Whoever is in the study keeps the pseudonym; trials are only added. The exit code is the last run's.
+    """
+    from gaitdisc.batch.watched_folder import WatchedFolder
+
+    if not recordings.is_dir():
+        raise ReadError("a folder of recordings is needed", f"{recordings} is none", "Make it, or name another.")
+    file = study if study.suffix == ".toml" else study / "study.toml"
+    looked: Looked = {}
+    said: set[str] = set()
+    code = 0
+    typer.echo(f"Watching {recordings}; Ctrl-C ends it.", err=True)
+    try:
+        for files in WatchedFolder(recordings, file.parent / "run", still).changes():
+            if not files:
+                continue
+            try:
+                notes = _grown(file, recordings, files, looked)
+                for note in (one for one in notes if one not in said):
+                    typer.echo(f"  {note}")
+                said.update(notes)
+                code = _code_of(lambda: run(file, None, None, jobs, "", reference, quiet))
+            except GaitdiscError as error:
+                typer.echo(f"{error} [{error.code}]", err=True)
+                code = REFUSED
+    except KeyboardInterrupt:
+        typer.echo("Stopped.", err=True)
+    raise typer.Exit(code)
+
+
+def _code_of(once: Callable[[], None]) -> int:
+    """Exit code of one run; whoever stops it in the middle stops the watch."""
+    try:
+        once()
+    except typer.Exit as ended:
+        if ended.exit_code == STOPPED:
+            raise
+        return ended.exit_code
+    return 0
+
+
+def _grown(file: Path, recordings: Path, files: list[Path], looked: Looked) -> list[str]:
+    """Write the study with what came; what cannot be read yet is not in it, and said in the notes."""
+    from gaitdisc.ingest.grown_study import grown_study
+    from gaitdisc.ingest.new_study import found_study
+    from gaitdisc.ingest.study_file import load_study, write_study
+
+    draft, notes = found_study(recordings, file.parent, files, looked)
+    if not file.is_file():
+        write_study(draft, file)
+        return notes
+    study = load_study(file)
+    grown = grown_study(study, draft)
+    if grown != study:
+        write_study(grown, file)
+    return [note for note in notes if note.startswith("left out")]

@@ -1,0 +1,239 @@
+"""Filters and derivatives of recordings, tables and arrays: what comes in comes back in the same form."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+
+from gaitdisc.channel import Channel
+from gaitdisc.errors import ChannelError, SamplingError, ShapeError
+from gaitdisc.library.walks import PLAIN, Kind, recording_of
+from gaitdisc.recording import Recording, Trial
+from gaitdisc.signals.butterworth import KINEMATICS_HZ, highpassed, lowpassed
+from gaitdisc.signals.derivatives import differentiated_recording
+from gaitdisc.signals.envelope import ENVELOPE_HZ, HIGHPASS_HZ, enveloped
+from gaitdisc.signals.gaps import MAX_SPLINE_S
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from numpy.typing import NDArray
+
+EMG = ("emg", "V")  # quantity and unit
+Signal = TypeVar("Signal", Recording, "pd.DataFrame", "NDArray[np.float64]")
+
+
+def lowpass(
+    signal: Signal,
+    cutoff_hz: float = KINEMATICS_HZ,
+    order: int = 4,
+    max_gap_s: float = MAX_SPLINE_S,
+    rate_hz: float | None = None,
+) -> Signal:
+    """Take away what is faster than the cut-off, without lag.
+
+    A Butterworth filter runs forwards and backwards. Gaps up to `max_gap_s` are bridged by a cubic spline and marked
+    suspect; longer ones stay NaN, and what lies between them is filtered run by run. 1.8 periods of the cut-off at both
+    ends of each run are marked suspect. A heading that passes 180 deg is filtered as it goes on, and comes round again
+    afterwards.
+
+    Parameters
+    ----------
+    signal : Recording, DataFrame or array_like (time,) or (time, channel)
+        A DataFrame has its times [s] in a column `time` or in an index of that name; every other column is filtered.
+    cutoff_hz : float
+        -3 dB frequency of one pass [Hz]; both passes are 3 dB down at 5.39 Hz where this is 6 (order 4, 100 Hz).
+    order : int
+        Order of one pass; the roll-off of both is that of twice the order.
+    max_gap_s : float
+        Longest gap that is bridged [s].
+    rate_hz : float, optional
+        Samples a second of an array; recordings and tables know theirs.
+
+    Returns
+    -------
+    Recording, DataFrame or ndarray
+        In the form of `signal`; runs too short to filter are NaN.
+
+    Raises
+    ------
+    SamplingError
+        If the cut-off is not between 0 and half the rate, the signal is too short for it, or an array comes without
+        its rate.
+
+    References
+    ----------
+    Ebers (2023), section 4.2.1. Differs: the two passes, the cut-off's meaning and the edges are stated.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> t = np.arange(500) / 100
+    >>> slow, fast = np.sin(2 * np.pi * t), np.sin(2 * np.pi * 30 * t)
+    >>> bool(np.abs(gd.lowpass(slow + fast, cutoff_hz=6.0, rate_hz=100.0) - slow)[100:400].max() < 0.01)
+    True
+    """
+    return _in_its_form(signal, rate_hz, lambda recording: lowpassed(recording, cutoff_hz, order, max_gap_s))
+
+
+def highpass(
+    signal: Signal,
+    cutoff_hz: float = HIGHPASS_HZ,
+    order: int = 4,
+    max_gap_s: float = MAX_SPLINE_S,
+    rate_hz: float | None = None,
+) -> Signal:
+    """Take away what is slower than the cut-off, without lag; otherwise as `lowpass`.
+
+    Parameters
+    ----------
+    signal : Recording, DataFrame or array_like (time,) or (time, channel)
+        As `lowpass` takes it.
+    cutoff_hz : float
+        -3 dB frequency of one pass [Hz].
+    order : int
+        Order of one pass.
+    max_gap_s : float
+        Longest gap that is bridged [s].
+    rate_hz : float, optional
+        Samples a second of an array.
+
+    Returns
+    -------
+    Recording, DataFrame or ndarray
+        In the form of `signal`; runs too short to filter are NaN.
+
+    Raises
+    ------
+    SamplingError
+        As `lowpass`.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> t = np.arange(2000) / 1000
+    >>> slow, fast = np.sin(2 * np.pi * t), np.sin(2 * np.pi * 120 * t)
+    >>> bool(np.abs(gd.highpass(slow + fast, cutoff_hz=40.0, rate_hz=1000.0) - fast)[100:1900].max() < 0.01)
+    True
+    """
+    return _in_its_form(signal, rate_hz, lambda recording: highpassed(recording, cutoff_hz, order, max_gap_s))
+
+
+def envelope(
+    emg: Signal,
+    highpass_hz: float = HIGHPASS_HZ,
+    lowpass_hz: float = ENVELOPE_HZ,
+    order: int = 4,
+    rate_hz: float | None = None,
+) -> Signal:
+    """Envelope of raw EMG: high-passed, rectified, low-passed.
+
+    Parameters
+    ----------
+    emg : Recording, DataFrame or array_like (time,) or (time, channel)
+        Raw EMG, as digitised, not rectified; EMG channels only. As `lowpass` takes it.
+    highpass_hz, lowpass_hz : float
+        -3 dB frequencies of one pass [Hz].
+    order : int
+        Order of one pass, of both filters.
+    rate_hz : float, optional
+        Samples a second of an array.
+
+    Returns
+    -------
+    Recording, DataFrame or ndarray
+        In the form and unit of `emg`. Small negative values can follow a burst: the low-pass rings; they are kept.
+
+    Raises
+    ------
+    SamplingError
+        If the rate is not above twice the high-pass frequency, or the signal is an envelope already.
+    ChannelError
+        If a channel of a Recording is not EMG.
+
+    References
+    ----------
+    Ebers (2023), section 4.2.1: high-passed at 40 Hz, rectified, low-passed at 10 Hz, "fourth-order Butterworth
+    filters". Differs: order 4 in each of two passes, no lag; the text says neither.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> emg = np.sin(2 * np.pi * 120 * np.arange(2000) / 1000)
+    >>> round(float(gd.envelope(emg, rate_hz=1000.0)[1000]), 2)  # mean of a rectified sine: 2 / pi
+    0.64
+    """
+    return _in_its_form(emg, rate_hz, lambda recording: enveloped(recording, highpass_hz, lowpass_hz, order), EMG)
+
+
+def differentiate(signal: Signal, order: int = 1, rate_hz: float | None = None) -> Signal:
+    """First or second time derivative of every channel, by five-point central differences.
+
+    Parameters
+    ----------
+    signal : Recording, DataFrame or array_like (time,) or (time, channel)
+        Filtered; the difference quotient passes on what noise is left. As `lowpass` takes it.
+    order : int
+        1 or 2.
+    rate_hz : float, optional
+        Samples a second of an array.
+
+    Returns
+    -------
+    Recording, DataFrame or ndarray
+        In the form of `signal`, per second; a Recording's unit says so (`deg/s`). NaN at two samples of each end and
+        within two samples of a missing one.
+
+    Raises
+    ------
+    SamplingError
+        If the signal is too short, the order is neither 1 nor 2, or an array comes without its rate.
+
+    References
+    ----------
+    Fornberg (1988), Math. Comp. 51, 699-706: weights of fourth order on five points.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> t = np.arange(500) / 100
+    >>> bool(np.nanmax(np.abs(gd.differentiate(np.sin(t), rate_hz=100.0) - np.cos(t))) < 1e-6)
+    True
+    """
+    return _in_its_form(signal, rate_hz, lambda recording: differentiated_recording(recording, order))
+
+
+def _in_its_form(
+    signal: Any, rate_hz: float | None, done: Callable[[Recording], Recording], kind: Kind | None = None
+) -> Any:
+    if isinstance(signal, Recording):
+        return done(signal)
+    if hasattr(signal, "columns"):
+        made = done(recording_of(signal, kind))
+        return signal.assign(**dict(zip(made.names, np.array(made.values).T, strict=True)))
+    if isinstance(signal, Trial):
+        raise ChannelError(
+            "a filter takes one stream of a trial",
+            f"{signal.name} has {', '.join(signal.streams) or 'none'}",
+            'Give one of them: trial.stream("kinematics"), for instance.',
+        )
+    try:
+        values = np.asarray(signal, float)
+    except (TypeError, ValueError):
+        raise ShapeError(
+            "a filter takes a Recording, a DataFrame or an array of numbers",
+            f"found {type(signal).__name__}",
+            "Read a file with gaitdisc.read first.",
+        ) from None
+    if rate_hz is None or not rate_hz > 0:
+        raise SamplingError(
+            "an array is filtered at its rate",
+            "no rate_hz is given" if rate_hz is None else f"rate_hz is {rate_hz:g}",
+            "Say how many samples a second it has: rate_hz=100, for instance.",
+        )
+    columns = values.reshape(len(values), -1)
+    labels = [f"column {number + 1}" for number in range(columns.shape[1])]
+    channels = tuple(Channel(label, *(kind or PLAIN)) for label in labels)
+    made = done(Recording(np.arange(len(values)) / rate_hz, columns, channels))
+    return np.array(made.values).reshape(values.shape)

@@ -1,0 +1,109 @@
+"""Controls of the like age and speed, and at the leg length of the person (Hof 1996)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from made_clinic import made_person
+
+from gaitdisc.clinic.like_controls import at_leg_length, described, dimensionless_speed, groups_of, like_controls
+from gaitdisc.clinic.outstanding import outstanding
+from gaitdisc.clinic.reading import read_beside
+from gaitdisc.clinic.reference import reference_of
+from gaitdisc.results.clinical_reference import ReferenceLeg
+from gaitdisc.results.leg_curves import LegCurves
+from gaitdisc.results.provenance import made_now
+
+ADULT_LEG, CHILD_LEG = 0.9, 0.6
+
+
+def control(person, leg_m=ADULT_LEG, age=30, froude=0.45):
+    """Both legs of a control, who walks at a dimensionless speed; some people a little faster than others."""
+    speed = (froude + 0.002 * (person % 10)) * np.sqrt(9.81 * leg_m)
+    values = {"speed_m_per_s": speed, "step_m": 0.7 * leg_m * (1 + 0.002 * (person % 10)), "stance_percent": 60.0}
+    curves = {"ankle_power": np.full(101, 3.0), "knee_flexion": np.full(101, 20.0), "hip_moment": np.full(101, 0.8)}
+    return tuple(ReferenceLeg(person, side, 4, 60.0, curves, values, leg_m, age) for side in "lr")
+
+
+def controls(count=12, first=0, **of):
+    return tuple(leg for k in range(first, first + count) for leg in control(k, **of))
+
+
+def own_leg(leg_m, froude=0.45, side="l"):
+    """A leg of somebody who walks as the controls do."""
+    values = {"speed_m_per_s": np.full(4, froude * np.sqrt(9.81 * leg_m)), "step_m": np.full(4, 0.7 * leg_m)}
+    return LegCurves(side, 4, 60.0, {}, values)
+
+
+def test_equal_dimensionless_numbers_are_equal_at_any_size():
+    small = at_leg_length(control(1)[0], CHILD_LEG)
+    assert dimensionless_speed(small) == pytest.approx(dimensionless_speed(control(1)[0]))
+    assert small.values["step_m"] == pytest.approx(0.7 * CHILD_LEG * 1.002)
+    assert small.values["stance_percent"] == 60.0
+    assert small.curves["hip_moment"][0] == pytest.approx(0.8 * CHILD_LEG / ADULT_LEG)
+    assert small.curves["ankle_power"][0] == pytest.approx(3.0 * np.sqrt(CHILD_LEG / ADULT_LEG))
+    assert small.curves["knee_flexion"][0] == 20.0
+
+
+def test_a_child_is_not_called_out_for_its_size_but_for_slow_walking():
+    child = {"l": own_leg(CHILD_LEG)}
+    unscaled = like_controls(controls(20), tuple(child.values()), None, 8)
+    noted, _ = outstanding(child, unscaled.curves, of_values=unscaled.values)
+    assert {one.words for one in noted} >= {"reduced walking speed", "short steps"}
+    assert "Not scaled by leg length, which is not known of the person" in " ".join(unscaled.words)
+    scaled = like_controls(controls(20), tuple(child.values()), CHILD_LEG, 8)
+    noted, _ = outstanding(child, scaled.curves, of_values=scaled.values)
+    assert not [one.words for one in noted if one.words]
+    assert "These controls are adults, the person is 8 years old" in " ".join(scaled.words)
+    slow = {"l": own_leg(CHILD_LEG, froude=0.25)}
+    noted, _ = outstanding(slow, scaled.curves, of_values=scaled.values)
+    assert [one.words for one in noted if one.words] == ["reduced walking speed"]
+
+
+def test_groups_of_ten_by_age_and_speed():
+    children, adults = controls(12, age=9, leg_m=0.65), controls(11, first=20)
+    slow = controls(10, first=40, froude=0.25)
+    few = controls(9, first=60, age=70)
+    groups = groups_of(children + adults + slow + few)
+    # the children, all of one speed; the grown at two speeds, and all of them; nobody of nine of 70 years
+    assert [len({leg.person for leg in one}) for one in groups] == [12, 10, 11, 21]
+    assert described(groups[0]) == "12 controls, aged 9 to 9 years, dimensionless speed 0.45 to 0.47"
+    assert groups_of(adults) == []
+
+
+@pytest.mark.parametrize(
+    ("age", "froude", "who", "words"),
+    [
+        (9, 0.45, range(12), "the group nearest in age."),
+        (15, 0.45, range(12), "the group nearest in age."),
+        (30, 0.28, range(40, 50), "the group nearest in age and speed."),
+        (30, 0.60, range(20, 31), "the group nearest in age and speed."),
+    ],
+)
+def test_a_person_is_beside_the_group_that_is_nearest(age, froude, who, words):
+    legs = controls(12, age=9, leg_m=0.65) + controls(11, first=20) + controls(10, first=40, froude=0.25)
+    found = like_controls(legs, (own_leg(0.8, froude),), 0.8, age)
+    assert {leg.person for leg in found.curves} == set(who)
+    assert words in found.words[0]
+    whole = set(range(12)) if age < 18 else {*range(20, 31), *range(40, 50)}
+    assert {leg.person for leg in found.values} == whole  # a slow walker's speed is beside that of all speeds
+
+
+def test_all_of_them_and_why():
+    few = like_controls(controls(8), (own_leg(ADULT_LEG),), ADULT_LEG, 30)
+    assert len(few.curves) == 16 and "all there are, for a group needs 10 of an age or speed" in few.words[0]
+    legs = controls(12, age=9) + controls(12, first=20)
+    unknown = like_controls(legs, (), None, None)
+    assert len(unknown.curves) == 48 and "the person is of no known age or speed" in unknown.words[0]
+
+
+def test_what_a_run_knows_of_size_and_age_reaches_the_reading():
+    own = [made_person(f"C{k:02d}", leg_m=0.9, age_years=25, seed=5) for k in range(12)]
+    reference = reference_of(own, "controls", made_now({}, 0, {}, ""))
+    person = read_beside(replace(made_person(), leg_m=0.6, age_years=25), reference)
+    assert person.beside[0].startswith("Compared with 12 controls, aged 25 to 25 years, dimensionless speed 0.41")
+    assert person.spatiotemporal["speed_m_per_s"].mean == pytest.approx(1.215 * np.sqrt(0.6 / 0.9))
+    assert person.spatiotemporal["step_m"].mean == pytest.approx(0.6 * 0.6 / 0.9)
+    assert read_beside(made_person(), None).beside == ()

@@ -1,0 +1,92 @@
+"""A walk seen by markers and belts gives back, through the package's own files and kinematics, what was walked."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from gaitdisc.cohort import marker_trial as laboratory
+from gaitdisc.cohort.habit import habitual
+from gaitdisc.cohort.marker_trial import belts, marker_trial, standing
+from gaitdisc.cohort.walk import walked
+from gaitdisc.ingest.c3d_writing import write_c3d
+from gaitdisc.ingest.reading import read_trial
+from gaitdisc.kinematics.motion import moved_body
+from gaitdisc.kinetics.body_inertia import Person
+from gaitdisc.kinetics.joint_moments import KineticsSettings
+from gaitdisc.kinetics.trial_kinetics import trial_kinetics
+from gaitdisc.processing.markers_to_moments import foot_paths_of
+
+JOINTS = {"hip_flexion": 0, "hip_adduction": 1, "hip_rotation": 2, "knee_angle": 3, "ankle_angle": 4}
+
+
+@pytest.fixture(scope="module")
+def walk(person):
+    return walked(person, None, 6.0, seed=5)
+
+
+@pytest.fixture(scope="module")
+def files(walk, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("markers")
+    trial, static = marker_trial(walk, "walk", "nominal"), standing(walk.person)
+    write_c3d([trial.stream("markers"), trial.stream("forces")], folder / "walk.c3d", trial.surfaces)
+    write_c3d([static.stream("markers")], folder / "static.c3d")
+    return read_trial([folder / "walk.c3d"]), read_trial([folder / "static.c3d"])
+
+
+def off(moved, walk):
+    """Measured minus true angles of the right leg [deg], mean and standard deviation by joint."""
+    tilt = habitual("pelvis_tilt", walk.person.dimensionless_speed).mean
+    apart = {n: moved.angles[f"{n}_r"] - walk.angles[:, 0, j] - tilt * (j == 0) for n, j in JOINTS.items()}
+    return {name: (float(np.mean(one)), float(np.std(one))) for name, one in apart.items()}
+
+
+def test_without_skin_the_angles_are_those_of_the_bones(walk, monkeypatch):
+    monkeypatch.setattr(laboratory, "SKIN_M", dict.fromkeys(laboratory.SKIN_M, 0.0))
+    trial, static = marker_trial(walk, "walk", "nominal"), standing(walk.person)
+    moved = moved_body(trial.stream("markers"), static.stream("markers"))[1]
+    for name, (mean, spread) in off(moved, walk).items():
+        assert abs(mean) < 0.1, name
+        assert spread < 0.3, name
+
+
+def test_skin_spoils_rotation_more_than_flexion(files, walk):
+    """Skin spoils rotation of the hip by several degrees, flexion of knee and hip by one or two (Leardini 2005)."""
+    moved = moved_body(files[0].stream("markers"), files[1].stream("markers"))[1]
+    found = {name: np.hypot(*one) for name, one in off(moved, walk).items()}
+    assert 0.2 < found["knee_angle"] < 4.0
+    assert found["ankle_angle"] < 2.0
+    assert found["hip_flexion"] < 4.0
+    assert 0.5 < found["hip_rotation"] < 12.0
+
+
+def test_skin_moves_a_thighs_markers_by_5_to_15_mm(walk, monkeypatch):
+    seen = marker_trial(walk, "walk", "nominal").stream("markers").values
+    monkeypatch.setattr(laboratory, "SKIN_M", dict.fromkeys(laboratory.SKIN_M, 0.0))
+    still = marker_trial(walk, "walk", "nominal").stream("markers")
+    thigh = [n for n, name in enumerate(still.names) if "TH" in name]
+    moved = np.linalg.norm((seen - still.values)[:, thigh].reshape(len(seen), -1, 3), axis=2).max(axis=0)
+    assert 0.005 < np.median(moved) < 0.020
+
+
+def test_moments_by_newton_and_euler_are_those_that_walked(files, walk):
+    read, static = files
+    body, moved = moved_body(read.stream("markers"), static.stream("markers"))
+    person = Person(walk.person.mass_kg, "", walk.person.height_m)
+    found = trial_kinetics(read, moved.poses, foot_paths_of(moved, body), person, KineticsSettings())
+    assert sum(step.clean for step in found.steps) >= 8
+    for joint, (column, alike) in {"ankle_angle": (2, 0.97), "knee_angle": (1, 0.8), "hip_flexion": (0, 0.8)}.items():
+        seen = found.moments[f"{joint}_r_moment"]
+        true = walk.moments[:, 0, column] / walk.person.mass_kg
+        known = np.isfinite(seen)
+        assert known.mean() > 0.5
+        assert np.corrcoef(seen[known], true[known])[0, 1] > alike, joint
+
+
+def test_a_force_lies_on_its_belt_and_pushes_inwards(files):
+    forces = files[0].stream("forces")
+    for number, belt in enumerate(belts(), 1):
+        loaded = forces[f"plate_{number}_fz"] > 50.0
+        point = np.column_stack([forces[f"plate_{number}_p{axis}"] for axis in "xyz"])[loaded]
+        assert np.all(belt.outside(point) < 0)
+        assert np.sign(forces[f"plate_{number}_fy"][loaded].mean()) == (1 if number == 1 else -1)

@@ -1,0 +1,89 @@
+"""Words of the pages in another language, from a table that somebody filled in."""
+
+from __future__ import annotations
+
+import csv
+
+import pytest
+from made_clinic import PROVENANCE, made_controls, made_person, made_run
+
+from gaitdisc.clinic.reading import read_beside
+from gaitdisc.clinic.rules import rules
+from gaitdisc.errors import SchemaError
+from gaitdisc.report.clinic.index_page import write_index
+from gaitdisc.report.clinic.page_words import PageWords, english_words, read_words, write_words
+from gaitdisc.report.clinic.person_page import write_person_page
+from gaitdisc.results.clinical_reading import PersonSession
+
+
+def doubled(word):
+    """A language in which each word is told from its English."""
+    return f"§{word}§"
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory):
+    """English, and in a language that has every word."""
+    folder = tmp_path_factory.mktemp("pages")
+    reference = made_controls(6)
+    person = made_person(changed={"knee_angle_l": -60.0})
+    session = PersonSession("P01", (read_beside(person, reference),))
+    found = {}
+    for name, say in (("en", PageWords()), ("other", PageWords({word: doubled(word) for word in english_words()}))):
+        page = write_person_page(session, "P01", reference, PROVENANCE, folder / name, say)
+        index = write_index(made_run(person), [(session, "P01")], reference, folder / name, say)
+        found[name] = page.read_text(encoding="utf-8"), index.read_text(encoding="utf-8")
+    return folder, found
+
+
+@pytest.mark.parametrize(
+    "word",
+    ["en", "What stands out", "Kinematics", "knee flexion", "dorsiflexion", "step length", "asymmetry", "limits",
+     "reduced knee flexion in swing", "left", "gait profile score", "Appendix: every cycle"],
+)  # fmt: skip
+def test_headings_sign_words_and_what_stands_out_are_in_the_other_language(pages, word):
+    _, found = pages
+    (english, _), (other, _) = found["en"], found["other"]
+    assert word in english.replace("Reduced", "reduced") and doubled(word) in other.replace("§Reduced", "§reduced")
+
+
+def test_the_index_has_them_too_and_the_numbers_beside_stay(pages):
+    folder, found = pages
+    _, index = found["other"]
+    assert doubled("state") in index and doubled("green") in index and "§reduced knee flexion" in index.lower()
+    for path in (folder / "en").rglob("*.csv"):
+        if path.name != "people.csv":  # the words that are read
+            assert path.read_bytes() == (folder / "other" / path.relative_to(folder / "en")).read_bytes()
+
+
+def test_every_word_of_rules_is_in_the_table_and_a_filled_one_comes_back(tmp_path):
+    assert {word for rule in rules() for word in (rule.less, rule.more) if word} <= set(english_words())
+    path = write_words(tmp_path / "de.csv")
+    with path.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.reader(file))
+    assert rows[0] == ["English", "other"] and len(rows) == len(english_words()) + 1
+    path.write_text("English;other\nknee flexion;Kniebeugung, <b>\nstep length;\n", encoding="utf-8-sig")
+    words = read_words(path)
+    assert words("knee flexion [deg]") == "Kniebeugung, <b> [deg]" and words("step length") == "step length"
+    assert "step length" in words.lacking() and "knee flexion" not in words.lacking()
+    assert read_words(write_words(path, words)) == words
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("knee,Knie\n", "de.csv begins with knee, Knie"),
+        ("English,other\n\nelbow,Ellbogen\n", "de.csv, line 3: 'elbow' is none"),
+        ("English,other\nNone of {} values lies beyond the limits of the reference.,Nichts.\n", "as often as in"),
+    ],
+)
+def test_another_table_is_refused_with_its_line(tmp_path, text, said):
+    (tmp_path / "de.csv").write_text(text, encoding="utf-8")
+    with pytest.raises(SchemaError, match=said):
+        read_words(tmp_path / "de.csv")
+
+
+def test_a_table_that_is_no_text_is_refused(tmp_path):
+    (tmp_path / "de.csv").write_bytes(b"\xff\xfe\x00E")
+    with pytest.raises(SchemaError, match="Save it as CSV in UTF-8"):
+        read_words(tmp_path / "de.csv")
