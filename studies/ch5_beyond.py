@@ -186,7 +186,7 @@ def aligned(states: Values, real: Values, simulated_states: Values) -> Values:
 MADE = {
     "few": Made(few, "RMSE of 7 angles [deg], welk007, ten strides known, n = 1 person"),
     "speed": Made(speed, "7 angles, treadmill, one walk left out"),
-    "spread": Made(spread, "90 % intervals, runner, split in time, n = 13 angles"),
+    "spread": Made(spread, "90 % intervals, runner, split in time, n = 12 angles"),
     "simulated": Made(simulated, "7 angles, S01's last four walks, fitted to simulated walkers"),
 }
 

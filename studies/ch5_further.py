@@ -201,7 +201,7 @@ MADE = {
     "text": Made(text, "3 sensors; split in time unless said; one fit each"),
     "latent": Made(latent, "SHRED, runner, split in time, n = 1 run"),
     "population": Made(population, "RMSE of 7 angles [deg], one person left out"),
-    "ahead": Made(ahead, "RMSE of 13 angles [deg], runner, split in time, n = 1 run"),
+    "ahead": Made(ahead, "RMSE of 12 angles [deg], runner, split in time, n = 1 run"),
     "turns": Made(turns, "RMSE of 10 angles [deg], one child left out"),
 }
 

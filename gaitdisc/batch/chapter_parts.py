@@ -48,7 +48,7 @@ PARTS = (
     Part(3, "further", "ch3_further", "methods, noise, starts and trajectories that 3.4 and 3.5 name besides", 40, 2,
          quick_words=(OUT, "--seeds", "1", "--tables", "variance", "filters"), libraries=METHODS),
     Part(4, "ankle_exo", "ch4_ankle_exo", "the whole chapter, Figs. 4.2-4.4", 15, 1),
-    Part(4, "further", "ch4_further", "4.4, 6.2.2: bands, sparse terms, a search, a smooth curve, on runners", 4, 1,
+    Part(4, "bands", "ch4_further", "4.4, 6.2.2: bands, sparse terms, a search, a smooth curve, on runners", 4, 1,
          data="gait/exotendon_run"),
     Part(4, "outcomes", "ch4_outcomes", "6.2.2: joint moments and metabolic power as outcomes, real people", 0.1, 0.1,
          data="gait/ankle_exo_emg_grf"),
@@ -56,7 +56,7 @@ PARTS = (
     Part(5, "gait_population", "ch5_gait_population", "5.3.3, Table 5.2 below, Fig. 5.5", 90, 1),
     Part(5, "sea_surface", "ch5_sea_surface", "5.3.2, Table 5.1, Figs. 5.1, 5.3", 5, 0.2, data="fields/sst_pacific"),
     Part(5, "turbulence", "ch5_turbulence", "5.3.1, Fig. 5.2, on a stand-in", 120, 1),
-    Part(5, "further", "ch5_further", "5.2, Fig. 5.1, 5.3.3, 6.2.3: the text's network, real people, forecasts", 12, 2,
+    Part(5, "real_people", "ch5_further", "5.2, Fig. 5.1, 5.3.3, 6.2.3: the text's network, real people, forecasts", 12, 2,
          data="gait/exotendon_run"),
     Part(5, "beyond", "ch5_beyond", "6.2.3 and later work: few strides, speed, spread, simulated walkers", 6, 1,
          data="gait/exotendon_run"),
@@ -70,7 +70,7 @@ def parts_of(chapter: int, name: str = "") -> tuple[Part, ...]:
     Examples
     --------
     >>> [part.name for part in parts_of(4)]
-    ['ankle_exo', 'further', 'outcomes']
+    ['ankle_exo', 'bands', 'outcomes']
     """
     if chapter not in CHAPTERS:
         raise SchemaError(

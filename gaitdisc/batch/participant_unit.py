@@ -133,7 +133,7 @@ def _fitted(
     nominal, exo = (walks[word] for word in study.conditions.both)
     settings = response_settings(study)
     null = filter_null_of(exo, study.filters)
-    response = fit_response(nominal.trajectory, exo.trajectory, settings, null, progress)
+    response = fit_response(nominal.trajectory, exo.trajectory, settings, null, progress, banded=True)
     return replace(response, participant=participant.id)
 
 

@@ -80,7 +80,7 @@ def fit_response(
     study = _study(trials, models, HeldOut(share=held_out_share))
     walks = {word: processed(trial, study) for word, trial in trials.items()}
     settings, null = response_settings(study), filter_null_of(walks[WITH], study.filters)
-    response = fitted(walks[WITHOUT].trajectory, walks[WITH].trajectory, settings, null)
+    response = fitted(walks[WITHOUT].trajectory, walks[WITH].trajectory, settings, null, banded=True)
     person = study.participants[0].id
     summaries = tuple(replace(walk.summary(), subject=person) for walk in walks.values())
     files = {name: sha256 for walk in summaries for name, sha256 in walk.files.items()}

@@ -15,6 +15,7 @@ from gaitdisc.results.participant_response import MODELS
 BLOCKS, LEVEL = 8, 0.9
 PARTS = 20  # of the stride: errors are larger where a foot lands than where it hangs
 FEWEST_ERRORS, MOST_ERRORS = 20, 400  # of a part; with fewer, those of the whole stride count
+SHORTEST_S = 16.0  # of a training part: two seconds a block, a stride or two
 SEAM_S = 0.3  # zero-lag filters look ahead over the seam
 
 Refit = Callable[[Model, Samples], Model]
@@ -28,7 +29,8 @@ def response_bands(
 
     Of eight contiguous blocks of the training part one after the other is left out, the models are fitted to the rest,
     and their errors on the block, at the same part of the stride, stand around their predictions. What a Nominal model
-    misses of device walking was in no block of nominal walking: its band covers less there, which is a finding.
+    misses of device walking was in no block of nominal walking: its band covers less there, which is a finding. None
+    where a training part is shorter than 16 s.
 
     Parameters
     ----------
@@ -44,6 +46,8 @@ def response_bands(
     Barber, Candes, Ramdas and Tibshirani 2021, Predictive inference with the jackknife+ (CV+); by part of the stride is
     our addition.
     """
+    if min(each.time[-1] - each.time[0] for each in (nominal, exo)) < SHORTEST_S:
+        return {}
     members: dict[str, list[Member]] = {name: [] for name in MODELS}
     for number in range(BLOCKS):
         (rest_nominal, left_nominal), (rest, left) = (parted(each, number) for each in (nominal, exo))

@@ -71,6 +71,7 @@ def fit_response(
     settings: ResponseSettings,
     null_r2: Mapping[str, float] | None = None,
     progress: Callable[[float], None] | None = None,
+    banded: bool = False,
 ) -> ParticipantResponse:
     """Fit all models to the first part of both walks and judge them on the held-out last part.
 
@@ -80,6 +81,8 @@ def fit_response(
         Whole walks of one participant without and with the device, with the same channels.
     null_r2 : mapping of str to float, optional
         R2 that noise reaches through the same filters, for each output (`gaitdisc.statistics.band_limit_null`).
+    banded : bool
+        Whether predictions get a band from refits on blocks.
 
     References
     ----------
@@ -95,7 +98,7 @@ def fit_response(
     kinds = {"network": fitted.network, "ridge": fitted.ridge, "linear": fitted.linear}
     judged = [_judged(kind, models, on_nominal, on_exo, settings) for kind, models in kinds.items()]
     predicted = {name: model(on_exo.x) for name, model in fitted.network.on_exo().items()}
-    bands = response_bands(fitted.network, refitted_network, *parts, on_exo)
+    bands = response_bands(fitted.network, refitted_network, *parts, on_exo) if banded else {}
     return ParticipantResponse(
         participant=exo.subject or nominal.subject,
         inputs=on_exo.inputs,

@@ -14,6 +14,11 @@ def test_every_part_has_its_study_and_the_words_that_it_takes():
         assert part.quick_minutes <= part.minutes
 
 
+def test_no_two_parts_share_a_folder():
+    names = [part.name for part in PARTS]
+    assert len(set(names)) == len(names)
+
+
 def test_every_study_of_a_chapter_is_a_part_or_is_used_by_one():
     texts = {path.stem: path.read_text(encoding="utf-8") for path in studies_folder().glob("ch[345]_*.py")}
     named = {part.study for part in PARTS}

@@ -47,3 +47,9 @@ def test_a_block_and_what_lies_within_the_seam_are_left_out():
     assert block.time[[0, -1]].tolist() == [3.0, 3.99]
     assert rest.time[np.searchsorted(rest.time, 3.0) + np.array([-1, 0])].round(2).tolist() == [2.69, 4.3]
     assert sum(len(parted(samples, number)[1]) for number in range(BLOCKS)) == 800
+
+
+def test_a_short_walk_has_no_band():
+    models = fit_models(walk(0, 1.0), walk(1, 2.0), fit=lambda part, _: fit_linear(part, harmonics=2))
+    short = walk(0, 1.0, 1500)
+    assert response_bands(models, lambda model, _: model, short, walk(1, 2.0), walk(2, 2.0)) == {}
