@@ -54,7 +54,8 @@ def simulation_from_function(
     function : callable
         Returns a derivative for each state, in their order: a tuple, a list or an array.
     units : mapping of str to str, optional
-        Unit of each argument, `{"angle": "rad", "torque": "N m"}`; what is not named has the unit 1.
+        Unit of each argument, `{"angle": "rad", "torque": "N m"}`; what is not named has the unit 1. Name all or
+        none: where some have units, a discovery says which terms do not fit.
     observations : mapping of str to str, optional
         Measured column and what it measures, in states, inputs and parameters: `{"height": "level + offset"}`. By
         default each state is measured under its own name, as far as the data have such a column.

@@ -29,7 +29,7 @@ def simulate(
     inputs: Recording | pd.DataFrame | Mapping[str, ArrayLike] | None = None,
     start: Mapping[str, float] | Sequence[float] | None = None,
 ) -> Recording:
-    """Run a simulation (Runge-Kutta of order 4, ten steps a sample) and observe it.
+    """Run a simulation (Runge-Kutta of order 4, five steps a sample) and observe it.
 
     Parameters
     ----------

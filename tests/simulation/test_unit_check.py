@@ -1,9 +1,12 @@
 """Units that do not fit are told; those that do are not."""
 
+from dataclasses import replace
+
 import pytest
 
 from gaitdisc.simulation.bundled import bundled, bundled_names
-from gaitdisc.simulation.parts import Parameter, Term
+from gaitdisc.simulation.parts import Parameter, State, Term
+from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.simulation_file import simulation_of
 from gaitdisc.simulation.unit_check import unit_findings
 
@@ -61,3 +64,18 @@ def test_units_that_do_not_fit_are_told(changed, words):
 @pytest.mark.parametrize("name", bundled_names())
 def test_what_comes_along_fits(name):
     assert unit_findings(bundled(name)) == ()
+
+
+def test_where_nobody_gave_a_unit_there_is_nothing_to_say():
+    oscillator = Simulation("oscillator", (State("x"), State("v")), equations=(("x", "v"), ("v", "-x")))
+    assert unit_findings(oscillator) == ()
+    metres = replace(oscillator, states=(State("x", "m"), State("v")))
+    assert [each.what for each in unit_findings(metres)] == [
+        "[equations] x: 'v' is not of the unit m/s",
+        "[equations] v: '-x' is not of the unit 1/s",
+    ]
+
+
+def test_a_choice_has_the_unit_of_what_is_chosen():
+    held = Simulation("held", (State("x", "m"),), equations=(("x", "where(x, x)"),))
+    assert [each.what for each in unit_findings(held)] == ["[equations] x: 'where(x, x)' is not of the unit m/s"]
