@@ -60,6 +60,9 @@ class PointTable:
     """Values of a program's leaves at a number of points, to be filled in part and evaluated again and again."""
 
     def __init__(self, program: Program, points: int) -> None:
+        from gaitdisc.simulation.machine import BLOCK, evaluate_blocks
+
+        self._code, self._evaluated = program.placed(BLOCK), evaluate_blocks
         self._used = tuple(program.used())
         self._program, self._points = program, points
         self._spread = np.full(program.registers, 2, np.int64)
@@ -80,9 +83,6 @@ class PointTable:
 
     def outputs(self) -> NDArray[np.float64]:
         """Outputs of the program, (output, point)."""
-        from gaitdisc.simulation.machine import BLOCK, evaluate_blocks
-
         into = np.empty((self._program.outputs, self._points))
-        program = self._program
-        evaluate_blocks(program.placed(BLOCK), program.constants, self._table, self._spread, into)
+        self._evaluated(self._code, self._program.constants, self._table, self._spread, into)
         return into
