@@ -11,6 +11,7 @@ from gaitdisc.discovery.effect_units import places_unit, unit_of_channel
 from gaitdisc.discovery.estimates import estimates_of
 from gaitdisc.discovery.evidence import Judged
 from gaitdisc.discovery.held_out import drawn_runs, gap_size, proof_of, runs_of, tested
+from gaitdisc.discovery.influence import nearly_off
 from gaitdisc.discovery.inquiry import Inquiry
 from gaitdisc.discovery.moved import corrected, corrections_of, file_bounds
 from gaitdisc.discovery.odd_trials import KIND as ODD_TRIAL
@@ -45,18 +46,19 @@ def answer(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> tuple[Discove
     held_out = gap_size(held.before, held.after, floor, channels, (proof or held).test)
     gained = evidence_of(inquiry.search, now)
     moved = corrections_of(now.account, base)
+    effects = effects_of(inquiry, verdict, 1 - held_out.unexplained, gained)
     discovery = Discovery(
         verdict.word,
         "",
         whereabouts(inquiry, verdict, train),
-        effects_of(inquiry, verdict, 1 - held_out.unexplained, gained),
+        effects,
         (*told_rivals(inquiry, rivals_of(inquiry.search, now, verdict.rivals, gained)), *small_ones(verdict.small)),
         train,
         held_out,
         channels,
         units_of(inquiry),
         drawn_runs(inquiry, held.before, held.after),
-        inquiry.measured.findings,
+        (*inquiry.measured.findings, *nearly_off(effects, inquiry.measured.source)),
         corrections=moved,
     )
     augmented = begun_at(augmented_of(corrected(base, moved), now.account.parts), verdict.starts)

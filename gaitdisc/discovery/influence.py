@@ -11,11 +11,13 @@ from gaitdisc.discovery.linearised import pushable
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording import Finding
+from gaitdisc.results.discovery import FoundEffect
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
 
 NUDGE = 0.1  # of a state's or a parameter's size
 ROUNDING = 1e-13  # of a channel's size
+NEARLY_OFF = 0.3  # a gain by which little of an input is left
 
 
 @dataclass(frozen=True)
@@ -107,6 +109,20 @@ def refuse_idle(idle: Idle, simulation: Simulation, places: tuple[Place, ...]) -
             "Check what each is multiplied by, or measure a channel that it moves.",
             (kinds, idle.places[0]),
         )
+
+
+def nearly_off(effects: tuple[FoundEffect, ...], source: str) -> tuple[Finding, ...]:
+    """Warn where an answer takes several inputs nearly away: what nothing acts on follows its record by itself."""
+    gains = {
+        one.place: one.estimates["gain"].value
+        for one in effects
+        if one.name == "input_gain" and abs(one.estimates["gain"].value) < NEARLY_OFF
+    }
+    if len(gains) < 2:
+        return ()
+    what = " and ".join(f"{name!r} ({gain:.2g} times)" for name, gain in gains.items()) + " are nearly switched off"
+    spoils = "the answer, if the simulation follows a recorded motion: let signals of one recording enter as one input"
+    return (Finding("warning", "inputs switched off", source, what, spoils),)
 
 
 def _listed(names: tuple[str, ...]) -> str:

@@ -5,9 +5,11 @@ import pytest
 from hidden_in_a_mass import MASS, Experiment, mass, record, with_load
 
 from gaitdisc.discovery.discover import discover
+from gaitdisc.discovery.influence import nearly_off
 from gaitdisc.discovery.inquiry import begin_inquiry
 from gaitdisc.discovery.places import places_of
 from gaitdisc.discovery.shaken import shaken
+from gaitdisc.results.discovery import Estimate, FoundEffect
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import simulation_of
@@ -86,3 +88,18 @@ def test_pushes_that_show_nowhere_explain_nothing(measured):
     best, muted = shaken(now.shooting, now.account, places)
     assert (best.place.name, muted.place.name) == ("load", "wind")
     assert np.isfinite(best.evidence) and np.isinf(muted.evidence)
+
+
+def test_an_answer_that_takes_two_inputs_nearly_away_is_said():
+    """A balance of recorded moments holds best where none is left; one gain near 0 may be a unit."""
+    found = {"net": 0.13, "others": -0.2, "plantarflexors": 0.9}
+    effects = tuple(
+        FoundEffect("input", name, "input_gain", "", {"gain": Estimate(gain, gain - 0.1, gain + 0.1, "1")})
+        for name, gain in found.items()
+    )
+    (said,) = nearly_off(effects, "walk.csv")
+    assert (said.severity, said.kind) == ("warning", "inputs switched off")
+    assert said.line().startswith("warning: walk.csv")
+    assert said.what == "'net' (0.13 times) and 'others' (-0.2 times) are nearly switched off"
+    assert "let signals of one recording enter as one input" in said.spoils
+    assert nearly_off(effects[1:], "walk.csv") == ()
