@@ -48,9 +48,11 @@ def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name
     columns = min(COLUMNS, len(joints))
     drawn, grid = panels(-(-len(joints) // columns), columns, 1.15, Room(left=0.6, across=0.64, down=0.46))
     cells = [axes for row in grid for axes in row]
-    shown = numbers[numbers["channel"].map(sideless).isin(joints)].reset_index(drop=True)
+    stems = {channel: sideless(channel) for channel in numbers["channel"].unique()}
+    shown = numbers[numbers["channel"].map(stems).isin(joints)].reset_index(drop=True)
+    by_joint = dict(list(shown.groupby(shown["channel"].map(stems), sort=False)))
     for axes, joint in zip(cells, joints, strict=False):
-        own = shown[shown["channel"].map(sideless) == joint]
+        own = by_joint[joint]
         for channel, side in own[["channel", "side"]].drop_duplicates().itertuples(index=False):
             curve = own[(own["channel"] == channel) & (own["side"] == side)]
             _draw(axes, pooled, str(channel), str(side), curve)
