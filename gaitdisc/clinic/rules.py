@@ -111,6 +111,11 @@ def rules() -> tuple[Rule, ...]:
     return rules_in(tomllib.loads(path.read_text(encoding="utf-8")))
 
 
+def rule_words() -> list[str]:
+    """Name of every rule, and what it calls too little and too much."""
+    return [word for rule in rules() for word in (rule.name, rule.less, rule.more) if word]
+
+
 def rules_in(data: Mapping[str, list[dict[str, object]]]) -> tuple[Rule, ...]:
     """Rules of a table, each checked."""
     found = tuple(_rule(entry) for entry in data["rules"])

@@ -52,16 +52,31 @@ def keep_words(language: str, run_folder: Path) -> list[str]:
     if language == "en":
         (run_folder / WORDS).unlink(missing_ok=True)
         return []
-    words = read_words(Path(language))
-    write_words(run_folder / WORDS, words)
-    return words.lacking()
+    english = _english()
+    words = read_words(Path(language), english)
+    write_words(run_folder / WORDS, english, words)
+    return [word for word in english if not words.other.get(word)]
+
+
+def write_english(path: Path) -> Path:
+    """Write the table of words that is to be filled in."""
+    from gaitdisc.report.clinic.page_words import write_words
+
+    return write_words(path, _english())
+
+
+def _english() -> list[str]:
+    from gaitdisc.clinic.rules import rule_words
+    from gaitdisc.report.clinic.page_words import english_words
+
+    return english_words(rule_words())
 
 
 def kept_words(run_folder: Path) -> PageWords:
     """Words of the pages of a run: English where no others were kept."""
     from gaitdisc.report.clinic.page_words import ENGLISH, read_words
 
-    return read_words(run_folder / WORDS) if (run_folder / WORDS).is_file() else ENGLISH
+    return read_words(run_folder / WORDS, _english()) if (run_folder / WORDS).is_file() else ENGLISH
 
 
 def page_of_run(run: ResponseRun, run_folder: Path) -> Path:

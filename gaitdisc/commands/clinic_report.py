@@ -11,6 +11,7 @@ from gaitdisc.commands.clinic_pages import (
     keep_words,
     page_of_run,
     write_before_after,
+    write_english,
     write_people,
     write_person,
 )
@@ -65,10 +66,9 @@ def clinic_report(folder: Path, person: str, pair: tuple[str, str], reference: P
 def language_of(folder: Path, language: str) -> bool:
     """Keep the words of another language with a run; True where only the table to be filled in was written."""
     if language != "en" and not Path(language).exists():
-        from gaitdisc.report.clinic.page_words import write_words
-
-        written = write_words(Path(language))
-        typer.echo(f"words: {written}. Fill in the second column, then give the same command again.")
+        typer.echo(
+            f"words: {write_english(Path(language))}. Fill in the second column, then give the same command again."
+        )
         return True
     lacking = keep_words(language, run_folder_of(folder))
     if lacking:

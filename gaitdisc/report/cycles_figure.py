@@ -43,9 +43,11 @@ def cycles_figures(pooled: PooledCycles, name: str) -> list[Figure]:
 
 def _figure(pooled: PooledCycles, numbers: pd.DataFrame, joints: list[str], name: str) -> Figure:
     drawn, cells = panels_for(len(joints), COLUMNS, 1.15, Room(left=0.6, across=0.64, down=0.46))
-    shown = numbers[numbers["channel"].map(sideless).isin(joints)].reset_index(drop=True)
+    stems = {channel: sideless(channel) for channel in numbers["channel"].unique()}
+    shown = numbers[numbers["channel"].map(stems).isin(joints)].reset_index(drop=True)
+    by_joint = dict(list(shown.groupby(shown["channel"].map(stems), sort=False)))
     for axes, joint in zip(cells, joints, strict=True):
-        own = shown[shown["channel"].map(sideless) == joint]
+        own = by_joint[joint]
         for channel, side in own[["channel", "side"]].drop_duplicates().itertuples(index=False):
             curve = own[(own["channel"] == channel) & (own["side"] == side)]
             _draw(axes, pooled, str(channel), str(side), curve)

@@ -5,11 +5,10 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from gaitdisc.clinic.rules import rules
 from gaitdisc.errors import SchemaError
 from gaitdisc.report.clinic.panel import Panel
 from gaitdisc.report.cycles_tables import VALUES
@@ -55,35 +54,28 @@ class PageWords:
         rows = tuple(tuple(map(self, row)) for row in table.rows)
         return replace(table, columns=tuple(map(self, table.columns)), rows=rows)
 
-    def lacking(self) -> list[str]:
-        """English words that have no other."""
-        return [word for word in english_words() if not self.other.get(word)]
-
 
 ENGLISH = PageWords()
 
 
-def english_words() -> list[str]:
-    """Every word that a table may translate, each once."""
+def english_words(of_rules: Sequence[str]) -> list[str]:
+    """Every word that a table may translate, each once: of the pages, and what rules call a value."""
     folder = Path(__file__).parents[1] / "templates"
     texts = [(folder / name).read_text(encoding="utf-8") for name in TEMPLATES]
     found = [word for text in texts for word in re.findall(r'say\("([^"]+)"\)', text)]
     found += [word for one in VARIABLES for word in (one.words, one.up, one.down)]
-    found += [word for rule in rules() for word in (rule.name, rule.less, rule.more)]
     found += [words for words, _, _ in VALUES.values()]
-    return [word for word in dict.fromkeys((*found, *TABLES)) if word]
+    return [word for word in dict.fromkeys((*found, *of_rules, *TABLES)) if word]
 
 
-def write_words(path: Path, words: PageWords = ENGLISH) -> Path:
+def write_words(path: Path, english: Sequence[str], words: PageWords = ENGLISH) -> Path:
     """Write the table that is to be filled in: English, and an empty column beside."""
     text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows(
-        [HEADER, *((word, words.other.get(word, "")) for word in english_words())]
-    )
+    csv.writer(text, lineterminator="\n").writerows([HEADER, *((word, words.other.get(word, "")) for word in english)])
     return write_whole(path, text.getvalue())
 
 
-def read_words(path: Path) -> PageWords:
+def read_words(path: Path, english: Sequence[str]) -> PageWords:
     """Read a table of words; what is no word of the pages is refused with its line."""
     form = "words of a language are a CSV with the columns English and other"
     try:
@@ -96,7 +88,7 @@ def read_words(path: Path) -> PageWords:
         raise SchemaError(
             form, f"{path.name} begins with {first}", "gaitdisc report CLINIC --language NEW.csv writes one."
         )
-    known, other = set(english_words()), {}
+    known, other = set(english), {}
     for number, row in enumerate(rows[1:], 2):
         word, said = (*(cell.strip() for cell in row[:2]), "", "")[:2]
         if word and word not in known:

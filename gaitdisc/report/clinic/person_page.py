@@ -69,7 +69,7 @@ def write_person_page(
         "say": say,
         "title": person.title,
         "conditions": "; ".join(dict.fromkeys(one.pooled.condition for one in person.readings)),
-        "reference": " ".join((_reference(reference, main.pooled.condition), *main.beside)).strip(),
+        "reference": _reference(reference, main.pooled.condition),
         "created": provenance.created[:10],
         "main": _condition(main, beside, "", say),
         "others": [_condition(one, beside, f"{one.pooled.condition}-", say) for one in others],
