@@ -96,8 +96,10 @@ def discrepancy(nominal: gd.Samples, other: gd.Samples) -> gd.Samples:
     names = (*OUTPUTS, *(f"d({name})/dt" for name in OUTPUTS))
     inputs = other.x[:, [other.inputs.index(name) for name in names]]
     turn = 2 * np.pi * other.phi[:, None] / 100
-    x = np.hstack([inputs / inputs.std(axis=0), np.cos(turn), np.sin(turn), np.cos(2 * turn), np.sin(2 * turn)])
-    words = ("hip", "knee", "ankle", "hip'", "knee'", "ankle'", "cos", "sin", "cos2", "sin2")
+    state, harmonics = inputs / inputs.std(axis=0), [np.cos(turn), np.sin(turn), np.cos(2 * turn), np.sin(2 * turn)]
+    x = np.hstack([state, *harmonics, state * harmonics[0], state * harmonics[1]])
+    plain = ("hip", "knee", "ankle", "hip rate", "knee rate", "ankle rate")
+    words = (*plain, "cos", "sin", "cos2", "sin2", *(f"{n} x {turned}" for turned in ("cos", "sin") for n in plain))
     columns = [ANGLES.index(name) for name in OUTPUTS]
     return gd.Samples(x, missed[:, columns], words, OUTPUTS, other.time, other.phi)
 
@@ -112,16 +114,16 @@ def terms(quick: bool) -> Iterator[Number]:
         ("control", first, second, run("welk007", "natural")[1]),
     ):
         samples, judged = discrepancy(before, after), discrepancy(before, later)
-        degree, rng = 1 if quick else 2, np.random.default_rng(0)
+        rng = np.random.default_rng(0)
         counts: dict[tuple[str, str], list[float]] = {}
         blocks = np.array_split(np.arange(len(samples)), BLOCKS)
         for _ in range(5 if quick else REFITS):
             some = np.sort(rng.permutation(BLOCKS)[: BLOCKS // 2])
-            model = fit_sindy(samples.rows(np.concatenate([blocks[k] for k in some])), degree)
+            model = fit_sindy(samples.rows(np.concatenate([blocks[k] for k in some])), 1)
             for name in OUTPUTS:
                 for term, value in model.terms(name).items():
                     counts.setdefault((name, term), []).append(value)
-        whole = fit_sindy(samples, degree)
+        whole = fit_sindy(samples, 1)
         error = 1 - np.mean((whole(judged.x) - judged.y) ** 2, axis=0) / np.mean(judged.y**2, axis=0)
         for name, held_r2 in zip(OUTPUTS, error, strict=True):
             often = [v for (which, _), v in counts.items() if which == name]
@@ -166,7 +168,7 @@ def search(quick: bool) -> Iterator[Number]:
         for nodes in (32, 64, 128)
         for word, activation in (("tanh", nn.Tanh), ("relu", nn.ReLU), ("logistic", nn.Sigmoid))
     }
-    chosen = np.random.default_rng(0).permutation(len(others))[: 1 if quick else 9]
+    chosen = np.random.default_rng(0).permutation(len(others))[: 1 if quick else 5]
     builds = of_text | {name: others[name] for name in (list(others)[k] for k in chosen)}
     settings = TrainingSettings(epochs=1, decays=(0.1,))
     for who, condition in (("welk007", "natural"), ("welk007", "exotendon"), ("welk002", "natural")):

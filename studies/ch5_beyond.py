@@ -48,7 +48,7 @@ from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.sensing.calibration import calibrated, first_strides
 from gaitdisc.sensing.intervals import coverage, half_widths
 from gaitdisc.sensing.latent_size import latent_states
-from gaitdisc.sensing.reconstructor import ENSEMBLE, Sensing, fit_reconstructor
+from gaitdisc.sensing.reconstructor import ENSEMBLE, WITHOUT_NETWORK, Sensing, fit_reconstructor
 from gaitdisc.sensing.splits import split_by_trial
 from gaitdisc.sensing.windows import Lags, stacked
 
@@ -143,7 +143,7 @@ def spread(quick: bool) -> Iterator[Number]:
 
 def simulated(quick: bool) -> Iterator[Number]:
     """A real walker by models of simulated ones, from right hip, knee and ankle."""
-    people = sensed_walks(cohort(GIVEN.folder / "recordings", 4, 30.0), SAGITTAL, "nominal").people
+    people = sensed_walks(cohort(GIVEN.folder / "recordings", 3, 24.0), SAGITTAL, "nominal").people
     what = Sensing(SAGITTAL, TOLD, LAGS, 100.0)
     each = [stacked([what.windows(walk.recording, walk.phi) for walk in walks]) for walks in people.values()]
     fitted, checked = stacked(each[:-1]), each[-1]
@@ -162,7 +162,8 @@ def simulated(quick: bool) -> Iterator[Number]:
                                               latent_states(done, fitted)))  # fmt: skip
             found["latent states aligned"] = told
         found["linear correction by ten strides' states"] = calibrated(done, few_real.rows(slice(1100)))(judged)
-        found["fitted to the person"] = fit_reconstructor(kind, what, parts.fitted(), parts.checked())(judged)
+        if kind in WITHOUT_NETWORK:
+            found["fitted to the person"] = fit_reconstructor(kind, what, parts.fitted(), parts.checked())(judged)
         for name, values in found.items():
             yield Number(f"{kind}: {name}", "RMSE [deg]", "", rmse(values - judged.y))
             yield Number(

@@ -41,7 +41,7 @@ def test_a_table_is_computed_once_kept_and_printed_again(further, tmp_path, caps
     assert "| null | 4 |" in first
 
 
-@pytest.mark.parametrize("name", ["ch4_further", "ch4_outcomes", "ch5_further"])
+@pytest.mark.parametrize("name", ["ch4_further", "ch4_outcomes", "ch5_further", "ch5_beyond"])
 def test_every_table_of_a_study_is_kept(further, name):
     tables = importlib.import_module(name).TABLES
     kept = pd.read_csv(STUDIES / f"{name}.csv")
