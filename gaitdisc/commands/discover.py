@@ -15,10 +15,10 @@ from gaitdisc.errors import SchemaError
 def discover(
     simulation: Annotated[
         Path,
-        typer.Argument(metavar="SIMULATION", help="A simulation file (TOML), or a study folder with --participant."),
+        typer.Argument(metavar="SIMULATION", help="A simulation file (TOML), a model of MuJoCo or OpenSim, or a study folder with --participant."),
     ],
     measured: Annotated[
-        Path | None, typer.Argument(metavar="MEASURED", help="Measured trials (CSV or Parquet).")
+        Path | None, typer.Argument(metavar="MEASURED", help="Measured trials (CSV or Parquet; of a model also .mot or .sto).")
     ] = None,
     out: Annotated[Path, typer.Option(help="Folder of what was found.")] = Path("found"),
     participant: Annotated[
@@ -38,6 +38,7 @@ def discover(
             "Of a study, add --participant.",
         )
     from gaitdisc.batch.discover_files import discover_files, discover_study
+    from gaitdisc.engines.mapping import names_engine
     from gaitdisc.results.discovery_folder import save_discovery
     from gaitdisc.simulation.writing import write_simulation
 
@@ -49,9 +50,16 @@ def discover(
 
     if measured is None:
         found, augmented = discover_study(simulation, participant, catalogue, told)
+        write_simulation(augmented, out / "augmented.toml")
+    elif names_engine(simulation):
+        from gaitdisc.batch.discover_engine import discover_model_file, write_answer
+
+        answer = discover_model_file(simulation, measured, catalogue, told)
+        write_answer(answer, out)
+        found = answer.found
     else:
         found, augmented = discover_files(simulation, measured, catalogue, told)
-    write_simulation(augmented, out / "augmented.toml")
+        write_simulation(augmented, out / "augmented.toml")
     place = save_discovery(found, out)
     if draw:
         from gaitdisc.report.discovery_page import write_discovery_report
