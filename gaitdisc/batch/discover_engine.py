@@ -167,8 +167,14 @@ def _moved(mapping: Simulation, answer: Simulation) -> dict[str, float]:
 
 def _contacts(engine: Engine) -> tuple[Finding, ...]:
     touched = getattr(engine, "contacts", 0)
-    what = f"bodies touch in the record ({touched} contacts at most): forces there are stiff and were expanded as they are"
-    return (Finding("warning", "contact", engine.path.name, what, "what rests on runs through a contact"),) if touched else ()
+    what = (
+        f"bodies touch in the record ({touched} contacts at most): forces there are stiff and were expanded as they are"
+    )
+    return (
+        (Finding("warning", "contact", engine.path.name, what, "what rests on runs through a contact"),)
+        if touched
+        else ()
+    )
 
 
 def _told(engine: Engine, written: WrittenModel, runs: OwnRuns) -> tuple[Finding, ...]:

@@ -139,9 +139,7 @@ def read_model(path: Path | str) -> Engine:
         from gaitdisc.engines.opensim_model import OpensimModel
 
         return OpensimModel(path)
-    raise ReadError(
-        "a model is a file of MuJoCo (.xml) or OpenSim (.osim)", f"found {path.name}", "Name such a file."
-    )
+    raise ReadError("a model is a file of MuJoCo (.xml) or OpenSim (.osim)", f"found {path.name}", "Name such a file.")
 
 
 def refuse_absent(package: str, error: ImportError) -> SchemaError:

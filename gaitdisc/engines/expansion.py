@@ -96,7 +96,10 @@ def _columns(simulation: Simulation, engine: Engine, at: Motion, values: Mapping
         rest -= slope * along[:, None]
     for parameter in simulation.parameters:
         size = NUDGE * max(abs(values[parameter.name]), 1e-2)
-        pair = (engine.accelerations(at, {**values, parameter.name: values[parameter.name] + each}) for each in (size, -size))
+        pair = (
+            engine.accelerations(at, {**values, parameter.name: values[parameter.name] + each})
+            for each in (size, -size)
+        )
         ahead, behind = pair
         table[parameter.name] = (ahead - behind) / (2 * size)
     ports = {port.name for port in simulation.ports}
@@ -120,4 +123,10 @@ def _nudged(engine: Engine, at: Motion) -> Iterator[tuple[str, NDArray[np.float6
             size = NUDGE * max(float(np.abs(whole[:, column]).max()), 1e-2)
             step = np.zeros(whole.shape[1])
             step[column] = size
-            yield name, whole[:, column], replace(at, **{field: whole + step}), replace(at, **{field: whole - step}), size
+            yield (
+                name,
+                whole[:, column],
+                replace(at, **{field: whole + step}),
+                replace(at, **{field: whole - step}),
+                size,
+            )

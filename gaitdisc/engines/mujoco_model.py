@@ -186,9 +186,7 @@ class MujocoModel:
                 'Switch it off (active="false"), or take the dependent joint out of the model.',
             )
         if not model.njnt:
-            raise SchemaError(
-                "a model has one joint or more", f"{self.path.name} has none", "Give a body a joint."
-            )
+            raise SchemaError("a model has one joint or more", f"{self.path.name} has none", "Give a body a joint.")
 
     def _coordinate(self, number: int) -> Coordinate:
         model = self._model

@@ -10,6 +10,7 @@ import numpy as np
 from gaitdisc.engines.engine import ByHand
 
 FAR = 1000.0  # [rad], beyond all that a joint does
+BEYOND = 10.0  # [rad], where a one-sided spring pulls that pulls at all
 _THRESHOLD = re.compile(r"max\(0(?:\.0)?, (.+)\)")
 
 
@@ -81,13 +82,13 @@ def with_effect(text: str, effect: ByHand, joint: str, slides: bool) -> str | No
 
 def _with_tendon(text: str, effect: ByHand, joint: str) -> str | None:
     """A fixed tendon that is slack on one side of a threshold."""
-    above = abs(effect.at(FAR, 0.0)) > 0.0
+    above = abs(effect.at(BEYOND, 0.0)) > 0.0
     side = 1.0 if above else -1.0
-    far, farther = effect.at(side * FAR, 0.0), effect.at(side * 2 * FAR, 0.0)
-    stiffness = -(farther - far) / (side * FAR)
+    far, farther = effect.at(side * BEYOND, 0.0), effect.at(side * 2 * BEYOND, 0.0)
+    stiffness = -(farther - far) / (side * BEYOND)
     if not stiffness > 0:
         return None
-    threshold = side * FAR + far / stiffness
+    threshold = side * BEYOND + far / stiffness
     lengths = f"{-FAR!r} {threshold!r}" if above else f"{threshold!r} {FAR!r}"
     return _before_end(
         text,

@@ -62,12 +62,7 @@ def own_runs(
     stretches = _stretches(measured, runs)
     left = [_left(engine, mapping, measured, stretches, states) for engine in engines]
     units = [mapping.sensor(name).unit for name in measured.channels]
-    return OwnRuns(
-        {
-            name: (float(left[0][k]), float(left[1][k]), units[k])
-            for k, name in enumerate(measured.channels)
-        }
-    )
+    return OwnRuns({name: (float(left[0][k]), float(left[1][k]), units[k]) for k, name in enumerate(measured.channels)})
 
 
 def _stretches(measured: Measured, runs: Runs) -> list[_Stretch]:
@@ -87,7 +82,9 @@ def _left(
     """Root mean square of what is left in each channel, starts found by Gauss-Newton."""
     n = len(engine.coordinates)
     acting = {
-        trial: engine.acting(measured.drive.inputs[trial, : measured.samples[trial]], measured.rate, states[trial, :, :n])
+        trial: engine.acting(
+            measured.drive.inputs[trial, : measured.samples[trial]], measured.rate, states[trial, :, :n]
+        )
         for trial in {one.trial for one in stretches}
     }
     total, count = 0.0, 0

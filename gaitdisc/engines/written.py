@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+import weakref
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -61,17 +62,19 @@ def written_model(engine: Engine, augmented: Simulation) -> WrittenModel:
             notes.append(f"{what} {said}: it stands in augmented.toml alone")
             continue
         text, current, forces, values = tried, read, *wanted[1:]
-        notes.append(f"{what} is written into the model: its accelerations agree with the expression to {deviation:.1g}")
+        notes.append(
+            f"{what} is written into the model; its accelerations agree with the expression to {deviation:.1g}"
+        )
     for name, expression in augmented.definitions:
         control = name.removeprefix("replaced_")
-        notes.append(f"{control}, as {expression}, has no form in the model's own file: it stands in augmented.toml alone")
+        notes.append(f"{control}, as {expression}, has no form in the model's file: it stands in augmented.toml alone")
     return WrittenModel(current, text, tuple(notes))
 
 
 def _said(deviation: float) -> str:
     if np.isfinite(deviation):
         return f"would differ by {deviation:.1g} of the accelerations in the model's own form"
-    return f"is refused by the engine in the model's own form"
+    return "is refused by the engine in the model's own form"
 
 
 def _setting(engine: Engine, name: str, value: float) -> Callable[[str], str | None]:
@@ -128,10 +131,12 @@ def _compared(
 
 def loaded_beside(path: Path, text: str) -> Engine:
     """Model of another text, with the files that lie beside the first."""
-    with tempfile.TemporaryDirectory() as folder:
-        for other in path.resolve().parent.iterdir():
-            if other.name != path.name:
-                (Path(folder) / other.name).symlink_to(other)
-        copy = Path(folder) / path.name
-        copy.write_text(text, encoding="utf-8")
-        return read_model(copy)
+    folder = tempfile.TemporaryDirectory()
+    for other in path.resolve().parent.iterdir():
+        if other.name != path.name:
+            (Path(folder.name) / other.name).symlink_to(other)
+    copy = Path(folder.name) / path.name
+    copy.write_text(text, encoding="utf-8")
+    engine = read_model(copy)
+    weakref.finalize(engine, folder.cleanup)  # an engine may read its file again
+    return engine
