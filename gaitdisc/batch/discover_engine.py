@@ -78,7 +78,7 @@ def discover_engine(
     states = smoothed_states(mapping, engine, data)
     told(f"computing the accelerations of {engine.path.name} along the record by {engine.called}")
     linear, driven = expanded(mapping, engine, data, states)
-    read = {engine.path: "model", **(files or {})}
+    read = {engine.path: "model", **(files or {})}  # what was read of the data is known by now
     found, answer = discovered(linear, driven, catalogue, read, told)
     moved = _moved(mapping, answer)
     if moved:
@@ -98,15 +98,25 @@ def discover_model_file(
     model: Path, measured: Path, catalogue: Path | None = None, told: Callable[[str], None] = lambda _: None
 ) -> EngineAnswer:
     """Find what a model lacks against a file of measured trials."""
+    files = {measured: "measured table"}
+    return discover_engine(model, lambda mapping: measured_of_file(measured, mapping), catalogue, files, told)
 
-    def read(mapping: Simulation) -> Measured:
-        if measured.suffix.lower() not in (".mot", ".sto"):
-            return read_measured(measured, mapping)
-        from gaitdisc.ingest.storage import read_storage
 
-        return measured_of_recordings([read_storage(measured)], mapping)
+def measured_of_file(file: Path, mapping: Simulation) -> Measured:
+    """Trials of a table, or the one trial of a storage file with angles and controls."""
+    if file.suffix.lower() not in (".mot", ".sto"):
+        return read_measured(file, mapping)
+    from gaitdisc.ingest.storage import read_storage
 
-    return discover_engine(model, read, catalogue, {measured: "measured table"}, told)
+    streams = list(read_storage(file).streams.values())
+    channels = tuple(channel for one in streams for channel in one.channels)
+    whole = replace(
+        streams[0],
+        values=np.concatenate([one.values for one in streams], axis=1),
+        channels=channels,
+        suspect=np.concatenate([one.suspect for one in streams], axis=1),
+    )
+    return measured_of_recordings([whole], mapping)
 
 
 def write_answer(answer: EngineAnswer, out: Path) -> None:
@@ -171,7 +181,7 @@ def _contacts(engine: Engine) -> tuple[Finding, ...]:
         f"bodies touch in the record ({touched} contacts at most): forces there are stiff and were expanded as they are"
     )
     return (
-        (Finding("warning", "contact", engine.path.name, what, "what rests on runs through a contact"),)
+        (Finding("warning", "contact", "model", what, "what rests on runs through a contact"),)
         if touched
         else ()
     )
@@ -179,11 +189,10 @@ def _contacts(engine: Engine) -> tuple[Finding, ...]:
 
 def _told(engine: Engine, written: WrittenModel, runs: OwnRuns) -> tuple[Finding, ...]:
     """What the engine itself says of the answer."""
-    file = engine.path.name
-    found = [Finding("note", "written back", file, what, "") for what in written.notes]
+    found = [Finding("note", "written back", "model", what, "") for what in written.notes]
     errors = ", ".join(
         f"{name} {before:.3g} before and {after:.3g} {unit} after"
         for name, (before, after, unit) in runs.errors.items()
     )
     what = f"run by {engine.called} itself over the held-out runs, the model errs by {errors}"
-    return (*found, Finding("note", "own runs", file, what, ""))
+    return (*found, Finding("note", "own runs", "model", what, ""))

@@ -15,10 +15,13 @@ from gaitdisc.errors import SchemaError
 def discover(
     simulation: Annotated[
         Path,
-        typer.Argument(metavar="SIMULATION", help="A simulation file (TOML), a model of MuJoCo or OpenSim, or a study folder with --participant."),
+        typer.Argument(
+            metavar="SIMULATION",
+            help="A simulation file (TOML), a model (MuJoCo .xml, OpenSim .osim), or a study folder with --participant.",
+        ),
     ],
     measured: Annotated[
-        Path | None, typer.Argument(metavar="MEASURED", help="Measured trials (CSV or Parquet; of a model also .mot or .sto).")
+        Path | None, typer.Argument(metavar="MEASURED", help="Measured trials (CSV, Parquet; .mot of a model).")
     ] = None,
     out: Annotated[Path, typer.Option(help="Folder of what was found.")] = Path("found"),
     participant: Annotated[

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -14,6 +15,7 @@ from gaitdisc.simulation.parts import Port, Sensor, State
 from gaitdisc.simulation.python_simulation import any_equations
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.simulation_file import LARGEST, read_simulation
+from gaitdisc.simulation.writing import write_simulation
 
 SAME = 1e-5  # by which a number of the mapping may differ from the model's, as a share: numbers in files are rounded
 
@@ -34,7 +36,7 @@ def drafted(engine: Engine, degrees: bool = False) -> Simulation:
     turned = {one.name for one in found if degrees and one.unit == "rad"}
     scale = repr(float(np.rad2deg(1.0)))
     return Simulation(
-        f"{engine.path.name} ({engine.called})",
+        f"A model of {engine.called}",
         tuple(states),
         engine.controls,
         tuple(parameters),
@@ -45,6 +47,14 @@ def drafted(engine: Engine, degrees: bool = False) -> Simulation:
         sensors=tuple(Sensor(one.name, "deg" if one.name in turned else one.unit) for one in found),
         model=engine.path.name,
     )
+
+
+def write_mapping(engine: Engine, file: Path, degrees: bool = False) -> Simulation:
+    """Write the mapping of a model, for a person to correct."""
+    model = os.path.relpath(engine.path.resolve(), file.resolve().parent)
+    mapping = replace(drafted(engine, degrees), model=Path(model).as_posix())
+    write_simulation(mapping, file)
+    return mapping
 
 
 def read_mapping(path: Path | str) -> tuple[Simulation, Engine]:
