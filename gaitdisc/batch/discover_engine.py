@@ -80,7 +80,7 @@ def discover_engine(
     linear, driven = expanded(mapping, engine, data, states)
     read = {engine.path: "model", **(files or {})}  # what was read of the data is known by now
     found, answer = discovered(linear, driven, catalogue, read, told)
-    moved = _moved(mapping, answer)
+    moved = {name: value for name, value in _moved(mapping, answer).items() if engine.as_force(name) is None}
     if moved:
         told(f"expanding again where {' and '.join(moved)} came to lie")
         linear, driven = expanded(mapping, engine, data, states, moved)

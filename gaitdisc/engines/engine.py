@@ -104,6 +104,10 @@ class Engine(Protocol):
         """Accelerations (point, coordinate) under generalised forces (point, coordinate)."""
         ...
 
+    def as_force(self, parameter: str) -> tuple[int, str] | None:
+        """Coordinate on which a parameter's unit is a force, and that force over its names; None where it is more."""
+        ...
+
     def acting(self, controls: NDArray[np.float64], rate: float, q: NDArray[np.float64]) -> NDArray[np.float64]:
         """What acts through each control along a trial (sample, control): activations computed from excitations."""
         ...

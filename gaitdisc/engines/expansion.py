@@ -1,7 +1,7 @@
 """A model of an engine as a simulation that runs at once: its accelerations expanded along the measured motion.
 
 At every sample of the record the engine gives the accelerations and their slopes by each coordinate, speed, control and
-parameter; what a force on a coordinate changes is exact, as forces enter linearly. Runs that stay near the record then
+parameter; what a force on a coordinate changes is exact, as forces enter linearly, and so is a parameter that is one. Runs that stay near the record then
 need no call of the engine: what is left out is of second order in their distance from the smoothed record.
 """
 
@@ -21,8 +21,6 @@ from gaitdisc.simulation.simulation import Simulation
 
 NUDGE = 1e-4  # of a state's or a parameter's size
 STILL = 1e-9  # of a column's size, below which it is one number
-
-Columns = dict[str, NDArray[np.float64]]  # name of what an acceleration is multiplied by, "" for what is by itself
 
 
 def expanded(
@@ -53,80 +51,111 @@ def expanded(
         u = engine.acting(drive.inputs[trial, :samples], drive.rate, along[:, :count])
         motions.append(Motion(along[:, :count], along[:, count:], u))
     at = Motion(*(np.concatenate([getattr(one, name) for one in motions]) for name in ("q", "v", "u")))
-    table = _columns(simulation, engine, at, own)
-    equations, computed = dict(simulation.equations), {}
-    for number, one in enumerate(engine.coordinates):
-        equations[one.name] = one.speed
-        terms = []
-        for factor, column in table.items():
-            values_here = column[:, number]
-            text = _factor(simulation, factor, own)
-            if np.ptp(values_here) <= STILL * max(float(np.abs(column).max()), 1e-12):
-                mean = float(values_here.mean())
-                terms += [f"{mean!r}*{text}" if text else repr(mean)] if mean else []
-                continue
-            name = f"{one.speed}_by_{factor}" if factor else f"{one.speed}_rate"
-            computed[name] = values_here
-            terms.append(f"{name}*{text}" if text else name)
-        equations[one.speed] = " + ".join(terms) or "0"
+    columns = _Columns(engine)
+    _expand(columns, simulation, at, own)
+    computed = columns.values
     inputs = (*simulation.inputs, *(Input(name, "", "computed along the record", True) for name in computed))
     ends = np.cumsum(drive.samples)[:-1]
     driven = [np.split(column, ends) for column in (*at.u.T, *computed.values())]
-    trials = [np.column_stack([column[trial] for column in driven]) for trial in range(len(drive.samples))]
-    if not driven:
-        trials = [np.empty((int(samples), 0)) for samples in drive.samples]
-    lines = tuple((state.name, equations[state.name]) for state in simulation.states)
+    trials = [
+        np.column_stack([np.empty((int(samples), 0)), *(column[trial] for column in driven)])
+        for trial, samples in enumerate(drive.samples)
+    ]
+    lines = tuple((state.name, columns.equations[state.name]) for state in simulation.states)
     linear = replace(simulation, inputs=inputs, equations=lines, model="", layout="", source=None)
     return linear, replace(measured, drive=Drive.of(trials, drive.rate, drive.time0))
 
 
-def _factor(simulation: Simulation, name: str, values: Mapping[str, float]) -> str:
-    """What a column is multiplied by: a state, a port, or how far a parameter is from where the engine had it."""
-    return f"({name} - {values[name]!r})" if name in simulation.values() else name
+class _Columns:
+    """Equations that are built up, and the columns that stand in them."""
+
+    def __init__(self, engine: Engine) -> None:
+        self.engine = engine
+        self.values: dict[str, NDArray[np.float64]] = {}
+        self._terms: dict[str, list[str]] = {one.speed: [] for one in engine.coordinates}
+
+    @property
+    def equations(self) -> dict[str, str]:
+        """Time derivative of each state."""
+        rates = {speed: " + ".join(terms) or "0" for speed, terms in self._terms.items()}
+        return {one.name: one.speed for one in self.engine.coordinates} | rates
+
+    def add(self, name: str, column: NDArray[np.float64], factor: str = "") -> None:
+        """Add a column (point, coordinate) times a factor to every acceleration; one that rests is a number.
+
+        Parameters
+        ----------
+        name : str
+            What follows the speed's name in that of the column.
+        """
+        size = max(float(np.abs(column).max()), 1e-12)
+        for number, one in enumerate(self.engine.coordinates):
+            own = column[:, number]
+            if np.ptp(own) > STILL * size:
+                self.values[f"{one.speed}_{name}"] = own
+            elif abs(own[0]) <= STILL * size:
+                continue
+            word = f"{one.speed}_{name}" if np.ptp(own) > STILL * size else repr(float(own.mean()))
+            self._terms[one.speed].append(f"{word}*{factor}" if factor else word)
 
 
-def _columns(simulation: Simulation, engine: Engine, at: Motion, values: Mapping[str, float]) -> Columns:
-    """Columns (point, coordinate): slopes by everything that the accelerations depend on, and what is left."""
+def _expand(columns: _Columns, simulation: Simulation, at: Motion, values: Mapping[str, float]) -> None:
+    """Accelerations to first order in states and controls; forces, and parameters that act as such, exactly."""
+    engine = columns.engine
     base = engine.accelerations(at, values)
-    table: Columns = {}
     rest = base.copy()
-    for name, along, ahead, behind, size in _nudged(engine, at):
+    for name, along, ahead, behind, size in _nudged(engine, at, "qvu"):
         slope = (engine.accelerations(ahead, values) - engine.accelerations(behind, values)) / (2 * size)
-        table[name] = slope
+        columns.add(f"by_{name}", slope, name)
         rest -= slope * along[:, None]
-    for parameter in simulation.parameters:
-        size = NUDGE * max(abs(values[parameter.name]), 1e-2)
-        pair = (
-            engine.accelerations(at, {**values, parameter.name: values[parameter.name] + each})
-            for each in (size, -size)
-        )
-        ahead, behind = pair
-        table[parameter.name] = (ahead - behind) / (2 * size)
+    columns.add("rate", rest)
     ports = {port.name for port in simulation.ports}
     for number, one in enumerate(engine.coordinates):
-        if one.port in ports:
-            force = np.zeros_like(base)
-            force[:, number] = 1.0
-            table[one.port] = engine.accelerations(at, values, force) - base
-    return {"": rest, **table}
+        force = np.zeros_like(base)
+        force[:, number] = 1.0
+        acting = [one.port] if one.port in ports else []
+        for name in simulation.values():
+            alike = engine.as_force(name)
+            if alike and alike[0] == number:
+                acting.append(f"({alike[1]})*({name} - {values[name]!r})")
+        if acting:
+            changed = engine.accelerations(at, values, force) - base
+            columns.add(f"by_{one.port}", changed, acting[0] if len(acting) == 1 else f"({' + '.join(acting)})")
+    for name in simulation.values():
+        if engine.as_force(name) is None:
+            _expand_parameter(columns, name, at, values)
 
 
-def _nudged(engine: Engine, at: Motion) -> Iterator[tuple[str, NDArray[np.float64], Motion, Motion, float]]:
+def _expand_parameter(columns: _Columns, name: str, at: Motion, values: Mapping[str, float]) -> None:
+    """What a parameter changes, to first order in it and in the coordinates."""
+    size = NUDGE * max(abs(values[name]), 1e-2)
+    far, near = ({**values, name: values[name] + each} for each in (size, -size))
+
+    def slope(there: Motion) -> NDArray[np.float64]:
+        return (columns.engine.accelerations(there, far) - columns.engine.accelerations(there, near)) / (2 * size)
+
+    away = f"({name} - {values[name]!r})"
+    rest = slope(at)
+    for other, along, ahead, behind, step in _nudged(columns.engine, at, "q"):
+        mixed = (slope(ahead) - slope(behind)) / (2 * step)
+        columns.add(f"by_{name}_and_{other}", mixed, f"{other}*{away}")
+        rest = rest - mixed * along[:, None]
+    columns.add(f"by_{name}", rest, away)
+
+
+def _nudged(
+    engine: Engine, at: Motion, fields: str
+) -> Iterator[tuple[str, NDArray[np.float64], Motion, Motion, float]]:
     """Yield each coordinate, speed and control with the motion a little to either side."""
-    for field, names in (
-        ("q", [one.name for one in engine.coordinates]),
-        ("v", [one.speed for one in engine.coordinates]),
-        ("u", [one.name for one in engine.controls]),
-    ):
+    names = {
+        "q": [one.name for one in engine.coordinates],
+        "v": [one.speed for one in engine.coordinates],
+        "u": [one.name for one in engine.controls],
+    }
+    for field in fields:
         whole = getattr(at, field)
-        for column, name in enumerate(names):
+        for column, name in enumerate(names[field]):
             size = NUDGE * max(float(np.abs(whole[:, column]).max()), 1e-2)
             step = np.zeros(whole.shape[1])
             step[column] = size
-            yield (
-                name,
-                whole[:, column],
-                replace(at, **{field: whole + step}),
-                replace(at, **{field: whole - step}),
-                size,
-            )
+            yield name, whole[:, column], replace(at, **{field: whole + step}), replace(at, **{field: whole - step}), size

@@ -85,6 +85,16 @@ class MujocoModel:
         self._restored(kept)
         return found
 
+    def as_force(self, parameter: str) -> tuple[int, str] | None:
+        """Springs, dampers and friction of joints are forces on their coordinates."""
+        part, _, word = parameter.rpartition("_")
+        number = next((k for k, one in enumerate(self.coordinates) if one.name == part), -1)
+        if number < 0 or word not in JOINT_UNITS:
+            return None
+        one, rest = self.coordinates[number], float(self._model.qpos_spring[number])
+        forms = {"stiffness": f"{rest!r} - {one.name}", "damping": f"-{one.speed}", "frictionloss": f"-sign({one.speed})"}
+        return number, forms[word]
+
     def acting(self, controls: NDArray[np.float64], rate: float, q: NDArray[np.float64]) -> NDArray[np.float64]:
         """What acts through each control along a trial (sample, control).
 
@@ -153,7 +163,7 @@ class MujocoModel:
     def text_with_effect(self, text: str, effect: ByHand) -> str | None:
         """Text of the model with an effect on a joint."""
         one = self.coordinates[effect.coordinate]
-        return with_effect(text, effect, one.called, one.unit == "m")
+        return with_effect(text, effect, one.called)
 
     def _steps(self, rate: float) -> int:
         """Steps of the integrator for a sample, none longer than the model's own."""

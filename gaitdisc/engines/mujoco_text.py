@@ -50,22 +50,20 @@ def with_value(text: str, name: str, value: float, element: tuple[str, str]) -> 
     return _with_attribute(text, tags[0], word, repr(value))
 
 
-def with_effect(text: str, effect: ByHand, joint: str, slides: bool) -> str | None:
+def with_effect(text: str, effect: ByHand, joint: str) -> str | None:
     """Text with an effect on a joint; None where MuJoCo has no form of it.
 
     Parameters
     ----------
     joint : str
         Its name in the file.
-    slides : bool
-        Whether it is a slide: then its reference is a length and no angle.
     """
     tags = [one for one in _tags(text) if _is(text, one, ("joint", joint))]
     if not joint or len(tags) != 1:
         return None
     tag, at = tags[0], effect.at
     if effect.term.name == "linear_stiffness":
-        return _with_spring(text, tag, -at(1.0, 0.0), slides)
+        return _with_spring(text, tag, -at(1.0, 0.0))
     if effect.term.name == "cubic_stiffness" and _attribute(text, tag, "stiffness") is None:
         return _with_attribute(text, tag, "stiffness", f"0 0 {-at(1.0, 0.0)!r}")
     if effect.term.name == "viscous_damping":
@@ -100,7 +98,7 @@ def _with_tendon(text: str, effect: ByHand, joint: str) -> str | None:
     )
 
 
-def _with_spring(text: str, tag: _Tag, stiffness: float, slides: bool) -> str | None:
+def _with_spring(text: str, tag: _Tag, stiffness: float) -> str | None:
     """A linear spring about zero, together with the one that the joint has."""
     own = (_attribute(text, tag, "stiffness") or "0").split()
     rest = float(_attribute(text, tag, "springref") or 0.0)

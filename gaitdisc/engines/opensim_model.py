@@ -59,6 +59,10 @@ class OpensimModel:
         push = np.zeros_like(at.q) if forces is None else forces
         return self._ask("accelerations", at.q, at.v, at.u, changed, push)
 
+    def as_force(self, parameter: str) -> tuple[int, str] | None:
+        """None: masses, gravity and optimal forces are more."""
+        del parameter
+
     def acting(self, controls: NDArray[np.float64], rate: float, q: NDArray[np.float64]) -> NDArray[np.float64]:
         """The controls themselves: these actuators have no state."""
         del rate, q
