@@ -86,25 +86,31 @@ HIDDEN = {
 
 
 class Case(NamedTuple):
-    """A model with something hidden in it, and the hidden number as the answer would have it."""
+    """A model with something hidden in it: text of the truth, and what the answer is to name with which number."""
 
     model: Model
     kind: str
     truth: str
     number: float
+    named: tuple[str, str, str]  # effect, place, estimate
 
 
 def hidden_in(model: Model, kind: str, rng: np.random.Generator) -> Case:
     """Hide an effect in the text of a model, in the engine's own words."""
     text, one = (SYSTEMS / model.file).read_text(encoding="utf-8"), HIDDEN[kind]
     drawn = float(rng.uniform(one.low, one.high))
+    named = (one.name, one.place.format(joint=model.joint, body=model.body), one.estimate)
     if kind in ("none", "offset"):
-        return Case(model, kind, text, drawn)
+        return Case(model, kind, text, drawn, named)
     if kind in ("mass", "gravity"):
         return _heavier(model, kind, text, drawn)
     drawn *= model.strength
-    change = _in_opensim if model.file.endswith(".osim") else _in_mujoco
-    return Case(model, kind, change(model, kind, text, drawn), drawn)
+    if model.file.endswith(".osim"):
+        return Case(model, kind, _in_opensim(model, kind, text, drawn), drawn, named)
+    truth, more = _in_mujoco(model, kind, text, drawn)
+    if kind == "viscous":  # of a joint that has a damper, it is that damper's number
+        return Case(model, kind, truth, more, ("wrong_parameter", f"{model.joint}_damping", "value"))
+    return Case(model, kind, truth, drawn, named)
 
 
 def _heavier(model: Model, kind: str, text: str, share: float) -> Case:
@@ -113,16 +119,15 @@ def _heavier(model: Model, kind: str, text: str, share: float) -> Case:
     value = share * next(one.value for one in engine.parameters if one.name == name)
     changed = engine.text_with_value(text, name, value)
     assert changed is not None
-    return Case(model, kind, changed, value)
+    return Case(model, kind, changed, value, ("wrong_parameter", name, "value"))
 
 
-def _in_mujoco(model: Model, kind: str, text: str, number: float) -> str:
-    """Attributes of the joint, or a tendon that is slack below 0.1 rad."""
+def _in_mujoco(model: Model, kind: str, text: str, number: float) -> tuple[str, float]:
+    """Attributes of the joint, or a tendon that is slack below 0.1 rad; and the attribute's number."""
     if kind == "one-sided":
         tendon = f'<fixed name="hidden" stiffness="{number!r}" springlength="-1000 0.1">'
-        return text.replace(
-            "</mujoco>", f'<tendon>{tendon}<joint joint="{model.joint}" coef="1"/></fixed></tendon></mujoco>'
-        )
+        tendon = f'<tendon>{tendon}<joint joint="{model.joint}" coef="1"/></fixed></tendon>'
+        return text.replace("</mujoco>", f"{tendon}</mujoco>"), number
     engine = read_model(SYSTEMS / model.file)
     own = {one.name: one.value for one in engine.parameters}
     word = {"spring": "stiffness", "viscous": "damping", "Coulomb": "frictionloss"}[kind]
@@ -130,7 +135,7 @@ def _in_mujoco(model: Model, kind: str, text: str, number: float) -> str:
     found = re.search(rf'<joint name="{model.joint}"[^>]*?/?>', text)
     assert found is not None
     tag = re.sub(rf'\s{word}="[^"]*"', "", found[0]).replace("/>", f' {word}="{more!r}"/>')
-    return text[: found.start()] + tag + text[found.end() :]
+    return text[: found.start()] + tag + text[found.end() :], more
 
 
 def _in_opensim(model: Model, kind: str, text: str, number: float) -> str:
@@ -184,16 +189,16 @@ def _sines(rng: np.random.Generator, t: NDArray[np.float64], size: float) -> NDA
 
 def judged(case: Case, answer: EngineAnswer) -> dict[str, object]:
     """One line of the table."""
-    hidden, found = HIDDEN[case.kind], answer.found
+    found = answer.found
     named = ", ".join(f"{one.name} at {one.place}" for one in found.effects) or found.verdict
     row: dict[str, object] = {"hidden": case.kind, "named": named}
     if case.kind == "none":
         row["right"] = not found.effects
     else:
-        place = hidden.place.format(joint=case.model.joint, body=case.model.body)
-        ours = [one for one in found.effects if (one.name, one.place) == (hidden.name, place)]
+        name, place, number = case.named
+        ours = [one for one in found.effects if (one.name, one.place) == (name, place)]
         row["right"] = len(ours) == 1 and len(found.effects) == 1
-        estimate = ours[0].estimates.get(hidden.estimate) if ours else None
+        estimate = ours[0].estimates.get(number) if ours else None
         if estimate is not None:
             row |= {
                 "true": case.number,
@@ -208,11 +213,14 @@ def judged(case: Case, answer: EngineAnswer) -> dict[str, object]:
 def cpu_s() -> float:
     """Processor time of this process and of those that have ended."""
     return sum(
-        used.ru_utime + used.ru_stime for used in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+        used.ru_utime + used.ru_stime
+        for used in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
     )
 
 
-def study(models: list[str], kinds: list[str], seed: int, noise_deg: float, told: Callable[[str], None]) -> pd.DataFrame:
+def study(
+    models: list[str], kinds: list[str], seed: int, noise_deg: float, told: Callable[[str], None]
+) -> pd.DataFrame:
     """Every case, as rows."""
     rows = []
     for name in models:
@@ -239,15 +247,15 @@ def main() -> None:
     models = GIVEN.models
     if GIVEN.quick:
         models, kinds = ["leg"], ["viscous"]
-    table = study(models, kinds, GIVEN.seed, GIVEN.noise, print)
+    table = study(models, kinds, GIVEN.seed, GIVEN.noise, lambda line: print(line, flush=True))
     for name, rows in table.groupby("model"):
         hidden = rows[rows["hidden"] != "none"]
         inside = hidden["inside"].dropna() if "inside" in hidden else []
         invented = rows[(rows["hidden"] == "none") & ~rows["right"].astype(bool)]
         print(
             f"{name}: name and place right in {int(hidden['right'].sum())} of {len(hidden)}, interval holds the number "
-            f"in {int(sum(inside))} of {len(inside)}, invented {len(invented)}, processor time {rows['cpu s'].median():.0f} s "
-            f"a case (median)"
+            f"in {int(sum(inside))} of {len(inside)}, invented {len(invented)}, "
+            f"processor time {rows['cpu s'].median():.0f} s a case (median)"
         )
 
 

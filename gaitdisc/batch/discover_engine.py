@@ -114,7 +114,7 @@ def measured_of_file(file: Path, mapping: Simulation) -> Measured:
         streams[0],
         values=np.concatenate([one.values for one in streams], axis=1),
         channels=channels,
-        suspect=np.concatenate([one.suspect for one in streams], axis=1),
+        suspect=np.concatenate([np.asarray(one.suspect) for one in streams], axis=1),
     )
     return measured_of_recordings([whole], mapping)
 
@@ -180,11 +180,7 @@ def _contacts(engine: Engine) -> tuple[Finding, ...]:
     what = (
         f"bodies touch in the record ({touched} contacts at most): forces there are stiff and were expanded as they are"
     )
-    return (
-        (Finding("warning", "contact", "model", what, "what rests on runs through a contact"),)
-        if touched
-        else ()
-    )
+    return (Finding("warning", "contact", "model", what, "what rests on runs through a contact"),) if touched else ()
 
 
 def _told(engine: Engine, written: WrittenModel, runs: OwnRuns) -> tuple[Finding, ...]:

@@ -17,7 +17,7 @@ def discover(
         Path,
         typer.Argument(
             metavar="SIMULATION",
-            help="A simulation file (TOML), a model (MuJoCo .xml, OpenSim .osim), or a study folder with --participant.",
+            help="A simulation file (TOML), a model (.xml of MuJoCo, .osim), or a study folder with --participant.",
         ),
     ],
     measured: Annotated[

@@ -1,8 +1,9 @@
 """A model of an engine as a simulation that runs at once: its accelerations expanded along the measured motion.
 
 At every sample of the record the engine gives the accelerations and their slopes by each coordinate, speed, control and
-parameter; what a force on a coordinate changes is exact, as forces enter linearly, and so is a parameter that is one. Runs that stay near the record then
-need no call of the engine: what is left out is of second order in their distance from the smoothed record.
+parameter; what a force on a coordinate changes is exact, as forces enter linearly, and so is a parameter that is such a
+force. Runs that stay near the record then need no call of the engine: what is left out is of second order in their
+distance from the smoothed record.
 """
 
 from __future__ import annotations
@@ -158,4 +159,10 @@ def _nudged(
             size = NUDGE * max(float(np.abs(whole[:, column]).max()), 1e-2)
             step = np.zeros(whole.shape[1])
             step[column] = size
-            yield name, whole[:, column], replace(at, **{field: whole + step}), replace(at, **{field: whole - step}), size
+            yield (
+                name,
+                whole[:, column],
+                replace(at, **{field: whole + step}),
+                replace(at, **{field: whole - step}),
+                size,
+            )

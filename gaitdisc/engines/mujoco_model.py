@@ -34,16 +34,17 @@ class MujocoModel:
             import mujoco
         except ImportError as error:
             raise refuse_absent("mujoco", error) from None
-        self.path, self._mujoco = Path(path), mujoco
+        self.path = Path(path)
+        self._mujoco: Any = mujoco
         try:
-            self._model: Any = mujoco.MjModel.from_xml_path(str(path))
+            self._model: Any = self._mujoco.MjModel.from_xml_path(str(path))
         except ValueError as error:
             raise ReadError(
                 f"a model is one that MuJoCo {mujoco.__version__} reads",
                 f"{self.path.name}: {' '.join(str(error).split())[:300]}",
                 "Mend what it names: a part that this version does not know, or a mesh that does not lie beside it.",
             ) from None
-        self._data: Any = mujoco.MjData(self._model)
+        self._data: Any = self._mujoco.MjData(self._model)
         self._refuse_other_joints()
         self.coordinates = tuple(self._coordinate(number) for number in range(self._model.njnt))
         self.controls = tuple(Input(self._name("actuator", k), "1", "actuator") for k in range(self._model.nu))
@@ -92,7 +93,11 @@ class MujocoModel:
         if number < 0 or word not in JOINT_UNITS:
             return None
         one, rest = self.coordinates[number], float(self._model.qpos_spring[number])
-        forms = {"stiffness": f"{rest!r} - {one.name}", "damping": f"-{one.speed}", "frictionloss": f"-sign({one.speed})"}
+        forms = {
+            "stiffness": f"{rest!r} - {one.name}",
+            "damping": f"-{one.speed}",
+            "frictionloss": f"-sign({one.speed})",
+        }
         return number, forms[word]
 
     def acting(self, controls: NDArray[np.float64], rate: float, q: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -11,7 +11,7 @@ from gaitdisc.engines.engine import ByHand
 
 FAR = 1000.0  # [rad], beyond all that a joint does
 BEYOND = 10.0  # [rad], where a one-sided spring pulls that pulls at all
-_THRESHOLD = re.compile(r"max\(0(?:\.0)?, (.+)\)")
+MORE_OF = {"viscous_damping": "damping", "coulomb_friction": "frictionloss"}  # effect: attribute of a joint
 
 
 def with_value(text: str, name: str, value: float, element: tuple[str, str]) -> str | None:
@@ -25,25 +25,13 @@ def with_value(text: str, name: str, value: float, element: tuple[str, str]) -> 
         Tag and name of the element in the file.
     """
     if name == "gravity":
-        tags = [one for one in _tags(text) if one[0] == "option"]
-        given = _attribute(text, tags[0], "gravity") if tags else None
-        vector = np.array([float(word) for word in given.split()]) if given else np.array([0.0, 0.0, -9.81])
-        words = " ".join(repr(float(each)) for each in vector * (value / np.linalg.norm(vector)))
-        if tags:
-            return _with_attribute(text, tags[0], "gravity", words)
-        return _before_end(text, f'  <option gravity="{words}"/>\n')
+        return _with_gravity(text, value)
     word = name.rpartition("_")[2]
     tags = [one for one in _tags(text) if _is(text, one, element)]
     if len(tags) != 1:
         return None
     if word == "mass":
-        inner = [one for one in _tags(text) if one[3] == tags[0][1]]
-        own = [one for one in inner if one[0] in ("inertial", "geom") and _attribute(text, one, "mass")]
-        if len([one for one in inner if one[0] == "geom"]) > 1 and own and own[0][0] != "inertial" or len(own) != 1:
-            return None
-        if own[0][0] == "inertial":
-            return _with_inertia(text, own[0], value)
-        return _with_attribute(text, own[0], "mass", repr(value))
+        return _with_mass(text, tags[0], value)
     if word == "gear":
         rest = (_attribute(text, tags[0], "gear") or "1").split()[1:]
         return _with_attribute(text, tags[0], "gear", " ".join([repr(value), *rest]))
@@ -61,21 +49,42 @@ def with_effect(text: str, effect: ByHand, joint: str) -> str | None:
     tags = [one for one in _tags(text) if _is(text, one, ("joint", joint))]
     if not joint or len(tags) != 1:
         return None
-    tag, at = tags[0], effect.at
-    if effect.term.name == "linear_stiffness":
-        return _with_spring(text, tag, -at(1.0, 0.0))
-    if effect.term.name == "cubic_stiffness" and _attribute(text, tag, "stiffness") is None:
-        return _with_attribute(text, tag, "stiffness", f"0 0 {-at(1.0, 0.0)!r}")
-    if effect.term.name == "viscous_damping":
-        return _with_more(text, tag, "damping", -at(0.0, 1.0))
-    if effect.term.name == "quadratic_drag":
+    tag, name = tags[0], effect.term.name
+    at_one, at_speed_one = -effect.at(1.0, 0.0), -effect.at(0.0, 1.0)
+    found = None
+    if name == "linear_stiffness":
+        found = _with_spring(text, tag, at_one)
+    elif name == "cubic_stiffness" and _attribute(text, tag, "stiffness") is None:
+        found = _with_attribute(text, tag, "stiffness", f"0 0 {at_one!r}")
+    elif name in MORE_OF:
+        found = _with_more(text, tag, MORE_OF[name], at_speed_one)
+    elif name == "quadratic_drag":
         first = (_attribute(text, tag, "damping") or "0").split()
-        return _with_attribute(text, tag, "damping", f"{first[0]} {-at(0.0, 1.0)!r}") if len(first) == 1 else None
-    if effect.term.name == "coulomb_friction":
-        return _with_more(text, tag, "frictionloss", -at(0.0, 1.0))
-    if effect.term.name == "one_sided_spring" and _THRESHOLD.search(effect.term.term):
-        return _with_tendon(text, effect, joint)
-    return None
+        found = _with_attribute(text, tag, "damping", f"{first[0]} {at_speed_one!r}") if len(first) == 1 else None
+    elif name == "one_sided_spring":
+        found = _with_tendon(text, effect, joint)
+    return found
+
+
+def _with_gravity(text: str, value: float) -> str:
+    tags = [one for one in _tags(text) if one[0] == "option"]
+    given = _attribute(text, tags[0], "gravity") if tags else None
+    vector = np.array([float(word) for word in given.split()]) if given else np.array([0.0, 0.0, -9.81])
+    words = " ".join(repr(float(each)) for each in vector * (value / np.linalg.norm(vector)))
+    if tags:
+        return _with_attribute(text, tags[0], "gravity", words)
+    return _before_end(text, f'  <option gravity="{words}"/>\n')
+
+
+def _with_mass(text: str, body: _Tag, value: float) -> str | None:
+    """Another mass of a body's own inertia, or of its one shape with a mass."""
+    inner = [one for one in _tags(text) if one[3] == body[1] and one[0] in ("inertial", "geom")]
+    own = [one for one in inner if one[0] == "inertial"] or inner
+    if len(own) != 1 or _attribute(text, own[0], "mass") is None:
+        return None
+    if own[0][0] == "inertial":
+        return _with_inertia(text, own[0], value)
+    return _with_attribute(text, own[0], "mass", repr(value))
 
 
 def _with_tendon(text: str, effect: ByHand, joint: str) -> str | None:

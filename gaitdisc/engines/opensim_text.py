@@ -7,7 +7,7 @@ from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 
-from gaitdisc.simulation.expression import Name, Number, Operation, Tree, parsed
+from gaitdisc.simulation.expression import Name, Number, Tree, parsed
 from gaitdisc.simulation.parts import Term
 
 ALLOWED = ("sin", "cos", "tan", "tanh", "exp", "sqrt", "min", "max")
@@ -81,17 +81,18 @@ def _translated(tree: Tree, names: dict[str, str]) -> str | None:
         return repr(tree.value)
     if isinstance(tree, Name):
         return names.get(tree.name)
-    assert isinstance(tree, Operation)
     parts = [_translated(one, names) for one in tree.arguments]
-    if any(part is None for part in parts):
+    if None in parts:
         return None
-    given = [f"({part})" for part in parts]
-    if tree.symbol in BINARY:
-        return BINARY[tree.symbol].join(given)
-    if tree.symbol == "neg":
-        return f"(-1)*{given[0]}"
-    if tree.symbol == "abs":
-        return f"sqrt({given[0]}*{given[0]})"
-    if tree.symbol == "sign":  # as this package rounds its corner
-        return f"tanh({given[0]}/0.02)"
-    return f"{tree.symbol}({','.join(given)})" if tree.symbol in ALLOWED else None
+    return _operation(tree.symbol, [f"({part})" for part in parts])
+
+
+def _operation(symbol: str, given: list[str]) -> str | None:
+    if symbol in BINARY:
+        return BINARY[symbol].join(given)
+    written = {
+        "neg": f"(-1)*{given[0]}",
+        "abs": f"sqrt({given[0]}*{given[0]})",
+        "sign": f"tanh({given[0]}/0.02)",  # as this package rounds its corner
+    }
+    return written.get(symbol) or (f"{symbol}({','.join(given)})" if symbol in ALLOWED else None)

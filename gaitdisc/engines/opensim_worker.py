@@ -94,7 +94,6 @@ def _set(model: Any, osim: Any, name: str, value: float) -> None:
         scaled = [float(each.get(k) * share) for each in (moments, products) for k in range(3)]
         body.setInertia(osim.Inertia(*scaled))
         return
-    model.getForceSet().get(name.removesuffix("_optimal_force")).getPropertyByName("optimal_force")
     osim.CoordinateActuator.safeDownCast(model.getForceSet().get(name.removesuffix("_optimal_force"))).setOptimalForce(
         float(value)
     )
@@ -146,7 +145,7 @@ class _Answers:
         ready: dict[bytes, _Ready] = {}
         time = np.arange(controls.shape[1]) / rate
         for run, driven in enumerate(controls):
-            one = ready.setdefault(driven.tobytes(), None) or _Ready(self.osim, self.path, {}, (time, driven))
+            one = ready.get(driven.tobytes()) or _Ready(self.osim, self.path, {}, (time, driven))
             ready[driven.tobytes()] = one
             one.state.setTime(0.0)
             one.placed(q[run], v[run])

@@ -35,7 +35,7 @@ def compile_simulation(simulation: Simulation | PythonSimulation) -> Compiled:
         raise SimulationError(
             "a simulation that is run has equations of its own",
             f"those of {simulation.title!r} are in {simulation.model}",
-            "Give its path to gaitdisc.discover, or to gaitdisc discover: these ask the engine.",
+            "Give its path to gaitdisc discover: there the engine computes.",
         )
     states = tuple(state.name for state in simulation.states)
     inputs = tuple(each.name for each in simulation.inputs)

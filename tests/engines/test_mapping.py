@@ -64,7 +64,7 @@ def test_degrees_that_nobody_said_are_degrees_are_refused(pendulum):
 
 
 def test_a_mapping_is_no_simulation_that_runs_by_itself(pendulum):
-    with pytest.raises(GaitdiscError, match=r"are in pendulum.xml. Give its path to gaitdisc.discover"):
+    with pytest.raises(GaitdiscError, match=r"are in pendulum.xml. Give its path to gaitdisc discover"):
         compile_simulation(drafted(read_model(pendulum)))
 
 
