@@ -17,7 +17,7 @@ from gaitdisc.discovery.grids import rhythm_of
 from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.engines.engine import Engine
 from gaitdisc.engines.expansion import expanded
-from gaitdisc.engines.mapping import read_mapping, refuse_other_units, with_input_changed
+from gaitdisc.engines.mapping import other_values, read_mapping, refuse_other_units, with_input_changed
 from gaitdisc.engines.own_runs import OwnRuns, own_runs
 from gaitdisc.engines.written import WrittenModel, written_model
 from gaitdisc.errors import ChannelError
@@ -90,7 +90,7 @@ def discover_engine(
     written = written_model(engine, augmented)
     told(f"running both with {engine.called}")
     runs = own_runs((engine, written.engine), mapping, data, found.runs, states)
-    findings = (*found.findings, *_contacts(engine), *_told(engine, written, runs))
+    findings = (*found.findings, *other_values(mapping, engine), *_contacts(engine), *_told(engine, written, runs))
     return EngineAnswer(replace(found, findings=findings), augmented, written, engine)
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.engines.engine import Engine, Motion
+from gaitdisc.engines.mapping import REPLACED
 from gaitdisc.simulation.drive import Drive
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import Input
@@ -63,7 +64,9 @@ def expanded(
         for trial, samples in enumerate(drive.samples)
     ]
     lines = tuple((state.name, columns.equations[state.name]) for state in simulation.states)
-    linear = replace(simulation, inputs=inputs, equations=lines, model="", layout="", source=None)
+    linear = replace(simulation, inputs=inputs, equations=lines, definitions=(), model="", layout="", source=None)
+    for name, expression in simulation.definitions:
+        linear = linear.with_input(name.removeprefix(REPLACED), expression)
     return linear, replace(measured, drive=Drive.of(trials, drive.rate, drive.time0))
 
 

@@ -11,12 +11,14 @@ import numpy as np
 
 from gaitdisc.engines.engine import Engine, is_model, read_model, refuse_unknown
 from gaitdisc.errors import SchemaError
+from gaitdisc.recording import Finding
 from gaitdisc.simulation.parts import Port, Sensor, State
 from gaitdisc.simulation.python_simulation import any_equations
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.simulation_file import LARGEST, read_simulation
 from gaitdisc.simulation.writing import write_simulation
 
+REPLACED = "replaced_"  # begins the definition that a control is replaced by
 SAME = 1e-5  # by which a number of the mapping may differ from the model's, as a share: numbers in files are rounded
 
 
@@ -88,7 +90,7 @@ def names_engine(path: Path | str) -> bool:
 
 
 def check_mapping(mapping: Simulation, engine: Engine) -> None:
-    """Refuse a mapping whose names or numbers are not the model's, or in which a coordinate is not measured."""
+    """Refuse a mapping whose names are not the model's."""
     file, coordinates = engine.path.name, engine.coordinates
     known = {
         "coordinate, or its speed": (
@@ -110,14 +112,18 @@ def check_mapping(mapping: Simulation, engine: Engine) -> None:
                 f"it has {', '.join(given) or 'none'}; {file} has {', '.join(has) or 'none'}",
                 f"Write it anew: gaitdisc new {engine.path.with_suffix('.toml').name} --from {file}.",
             )
+
+
+def other_values(mapping: Simulation, engine: Engine) -> tuple[Finding, ...]:
+    """Tell which parameters have another value in the mapping than in the model; the mapping's is used."""
     own = {one.name: one.value for one in engine.parameters}
-    for name, value in mapping.values().items():
-        if abs(value - own[name]) > SAME * max(abs(own[name]), 1e-9):
-            raise SchemaError(
-                "a parameter has the value that the model gives it",
-                f"{name} is {value:g} in the mapping and {own[name]:g} in {file}",
-                "Correct one of them.",
-            )
+    return tuple(
+        Finding(
+            "note", "value", "model", f"{name} is {value:g} in the mapping and {own[name]:g} in the model", "", name
+        )
+        for name, value in mapping.values().items()
+        if abs(value - own[name]) > SAME * max(abs(own[name]), 1e-9)
+    )
 
 
 def refuse_other_units(mapping: Simulation, engine: Engine, largest: dict[str, float]) -> None:
@@ -142,4 +148,4 @@ def refuse_other_units(mapping: Simulation, engine: Engine, largest: dict[str, f
 
 def with_input_changed(mapping: Simulation, name: str, expression: str) -> Simulation:
     """Mapping in which a control is replaced by an expression of the recorded one."""
-    return replace(mapping, definitions=(*mapping.definitions, (f"replaced_{name}", expression)))
+    return replace(mapping, definitions=(*mapping.definitions, (f"{REPLACED}{name}", expression)))

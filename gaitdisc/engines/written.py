@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.engines.engine import ByHand, Engine, Motion, read_model
+from gaitdisc.engines.mapping import REPLACED
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.parts import Term
@@ -66,7 +67,7 @@ def written_model(engine: Engine, augmented: Simulation) -> WrittenModel:
             f"{what} is written into the model; its accelerations agree with the expression to {deviation:.1g}"
         )
     for name, expression in augmented.definitions:
-        control = name.removeprefix("replaced_")
+        control = name.removeprefix(REPLACED)
         notes.append(f"{control}, as {expression}, has no form in the model's file: it stands in augmented.toml alone")
     return WrittenModel(current, text, tuple(notes))
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from gaitdisc.engines.engine import Motion, read_model
 from gaitdisc.engines.expansion import expanded
-from gaitdisc.engines.mapping import drafted
+from gaitdisc.engines.mapping import drafted, with_input_changed
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import Term
@@ -38,6 +38,11 @@ def test_runs_near_the_record_are_those_of_the_engine(pendulum):
     at = Motion(whole[:, 70, :1], whole[:, 70, 1:], controls[70:71])
     assert np.allclose(machine.rates(*point)[:, 1:], model.accelerations(at, {}), rtol=1e-9)
     assert np.allclose(pushed.rates(*point)[:, 1:], model.accelerations(at, {}, np.full((1, 1), 2.5)), rtol=1e-9)
+
+    half = expanded(with_input_changed(drafted(model), "drive", "0.5*drive"), model, measured, whole)[0]
+    at = Motion(at.q, at.v, at.u / 2)
+    assert np.allclose(compile_simulation(half).rates(*point)[:, 1:], model.accelerations(at, {}), rtol=1e-9)
+    at = Motion(at.q, at.v, at.u * 2)
 
     heavier = compile_simulation(linear.with_values({"rod_mass": 2.02}))
     wanted = model.accelerations(at, {"rod_mass": 2.02})
