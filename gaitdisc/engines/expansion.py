@@ -22,6 +22,7 @@ from gaitdisc.simulation.parts import Input
 from gaitdisc.simulation.simulation import Simulation
 
 NUDGE = 1e-4  # of a state's or a parameter's size
+LONGEST = 64  # characters of a name
 STILL = 1e-9  # of a column's size, below which it is one number
 
 
@@ -94,12 +95,15 @@ class _Columns:
         """
         size = max(float(np.abs(column).max()), 1e-12)
         for number, one in enumerate(self.engine.coordinates):
-            own = column[:, number]
+            own, word = column[:, number], f"{one.speed}_{name}"
+            if len(word) > LONGEST:
+                word = f"computed_{len(self.values)}"
             if np.ptp(own) > STILL * size:
-                self.values[f"{one.speed}_{name}"] = own
-            elif abs(own[0]) <= STILL * size:
+                self.values[word] = own
+            elif abs(own[0]) > STILL * size:
+                word = repr(float(own.mean()))
+            else:
                 continue
-            word = f"{one.speed}_{name}" if np.ptp(own) > STILL * size else repr(float(own.mean()))
             self._terms[one.speed].append(f"{word}*{factor}" if factor else word)
 
 

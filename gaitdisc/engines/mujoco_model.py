@@ -168,7 +168,8 @@ class MujocoModel:
     def text_with_effect(self, text: str, effect: ByHand) -> str | None:
         """Text of the model with an effect on a joint."""
         one = self.coordinates[effect.coordinate]
-        return with_effect(text, effect, one.called)
+        values = {each.name: each.value for each in self.parameters}
+        return with_effect(text, effect, one.called, {word: values[f"{one.name}_{word}"] for word in JOINT_UNITS})
 
     def _steps(self, rate: float) -> int:
         """Steps of the integrator for a sample, none longer than the model's own."""

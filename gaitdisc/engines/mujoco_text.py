@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from xml.parsers import expat
 
 import numpy as np
@@ -38,13 +39,15 @@ def with_value(text: str, name: str, value: float, element: tuple[str, str]) -> 
     return _with_attribute(text, tags[0], word, repr(value))
 
 
-def with_effect(text: str, effect: ByHand, joint: str) -> str | None:
+def with_effect(text: str, effect: ByHand, joint: str, own: Mapping[str, float]) -> str | None:
     """Text with an effect on a joint; None where MuJoCo has no form of it.
 
     Parameters
     ----------
     joint : str
         Its name in the file.
+    own : mapping of str to float
+        Stiffness, damping and frictionloss that the joint has, which may come from a default class.
     """
     tags = [one for one in _tags(text) if _is(text, one, ("joint", joint))]
     if not joint or len(tags) != 1:
@@ -53,13 +56,14 @@ def with_effect(text: str, effect: ByHand, joint: str) -> str | None:
     at_one, at_speed_one = -effect.at(1.0, 0.0), -effect.at(0.0, 1.0)
     found = None
     if name == "linear_stiffness":
-        found = _with_spring(text, tag, at_one)
+        found = _with_spring(text, tag, at_one, own["stiffness"])
     elif name == "cubic_stiffness" and _attribute(text, tag, "stiffness") is None:
         found = _with_attribute(text, tag, "stiffness", f"0 0 {at_one!r}")
     elif name in MORE_OF:
-        found = _with_more(text, tag, MORE_OF[name], at_speed_one)
+        attribute = MORE_OF[name]
+        found = _with_more(text, tag, attribute, (own[attribute], at_speed_one))
     elif name == "quadratic_drag":
-        first = (_attribute(text, tag, "damping") or "0").split()
+        first = (_attribute(text, tag, "damping") or repr(own["damping"])).split()
         found = _with_attribute(text, tag, "damping", f"{first[0]} {at_speed_one!r}") if len(first) == 1 else None
     elif name == "one_sided_spring":
         found = _with_tendon(text, effect, joint)
@@ -107,9 +111,9 @@ def _with_tendon(text: str, effect: ByHand, joint: str) -> str | None:
     )
 
 
-def _with_spring(text: str, tag: _Tag, stiffness: float) -> str | None:
+def _with_spring(text: str, tag: _Tag, stiffness: float, before: float) -> str | None:
     """A linear spring about zero, together with the one that the joint has."""
-    own = (_attribute(text, tag, "stiffness") or "0").split()
+    own = (_attribute(text, tag, "stiffness") or repr(before)).split()
     rest = float(_attribute(text, tag, "springref") or 0.0)
     if len(own) > 1:
         return None
@@ -120,9 +124,10 @@ def _with_spring(text: str, tag: _Tag, stiffness: float) -> str | None:
     return _with_attribute(text, tag, "stiffness", repr(both))
 
 
-def _with_more(text: str, tag: _Tag, attribute: str, more: float) -> str:
-    first, *rest = (_attribute(text, tag, attribute) or "0").split()
-    return _with_attribute(text, tag, attribute, " ".join([repr(float(first) + more), *rest]))
+def _with_more(text: str, tag: _Tag, attribute: str, numbers: tuple[float, float]) -> str:
+    """An attribute with more in it than it has, or had before."""
+    first, *rest = (_attribute(text, tag, attribute) or repr(numbers[0])).split()
+    return _with_attribute(text, tag, attribute, " ".join([repr(float(first) + numbers[1]), *rest]))
 
 
 def _with_inertia(text: str, tag: _Tag, mass: float) -> str:
