@@ -44,6 +44,8 @@ class EngineAnswer:
         The mapping with what was found.
     written : WrittenModel
         The model's own text with it.
+    runs : OwnRuns
+        Of the engine itself, before and after.
     engine : Engine
         The model as read.
     """
@@ -51,6 +53,7 @@ class EngineAnswer:
     found: Discovery
     augmented: Simulation
     written: WrittenModel
+    runs: OwnRuns
     engine: Engine
 
 
@@ -90,8 +93,8 @@ def discover_engine(
     written = written_model(engine, augmented)
     told(f"running both with {engine.called}")
     runs = own_runs((engine, written.engine), mapping, data, found.runs, states)
-    findings = (*found.findings, *other_values(mapping, engine), *_contacts(engine), *_told(engine, written, runs))
-    return EngineAnswer(replace(found, findings=findings), augmented, written, engine)
+    findings = (*found.findings, *other_values(mapping, engine), *_contacts(engine), *_told(written, runs))
+    return EngineAnswer(replace(found, findings=findings), augmented, written, runs, engine)
 
 
 def discover_model_file(
@@ -183,12 +186,7 @@ def _contacts(engine: Engine) -> tuple[Finding, ...]:
     return (Finding("warning", "contact", "model", what, "what rests on runs through a contact"),) if touched else ()
 
 
-def _told(engine: Engine, written: WrittenModel, runs: OwnRuns) -> tuple[Finding, ...]:
+def _told(written: WrittenModel, runs: OwnRuns) -> tuple[Finding, ...]:
     """What the engine itself says of the answer."""
     found = [Finding("note", "written back", "model", what, "") for what in written.notes]
-    errors = ", ".join(
-        f"{name} {before:.3g} before and {after:.3g} {unit} after"
-        for name, (before, after, unit) in runs.errors.items()
-    )
-    what = f"run by {engine.called} itself over the held-out runs, the model errs by {errors}"
-    return (*found, Finding("note", "own runs", "model", what, ""))
+    return (*found, Finding("note", "own runs", "model", runs.said, ""))

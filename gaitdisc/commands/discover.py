@@ -45,7 +45,7 @@ def discover(
     from gaitdisc.results.discovery_folder import save_discovery
     from gaitdisc.simulation.writing import write_simulation
 
-    began = time.perf_counter()
+    began, notes = time.perf_counter(), ()
 
     def told(step: str) -> None:
         if not quiet:
@@ -59,7 +59,7 @@ def discover(
 
         answer = discover_model_file(simulation, measured, catalogue, told)
         write_answer(answer, out)
-        found = answer.found
+        found, notes = answer.found, (*answer.written.notes, answer.runs.said)
     else:
         found, augmented = discover_files(simulation, measured, catalogue, told)
         write_simulation(augmented, out / "augmented.toml")
@@ -69,7 +69,7 @@ def discover(
 
         told("drawing the report")
         place = write_discovery_report(found, out)
-    typer.echo(found.sentence)
+    typer.echo("\n".join([found.sentence, *(f"{note[0].upper()}{note[1:]}." for note in notes)]))
     for finding in found.findings:
         if finding.severity != "note":
             typer.echo(finding.line(), err=True)

@@ -27,9 +27,21 @@ class OwnRuns:
     ----------
     errors : mapping of str to tuple
         For each channel: root mean square before and after, and its unit.
+    engine : str
+        Its name.
     """
 
     errors: Mapping[str, tuple[float, float, str]]
+    engine: str
+
+    @property
+    def said(self) -> str:
+        """One sentence."""
+        errors = "; ".join(
+            f"{name} by {before:.3g} {unit} before and {after:.3g} after"
+            for name, (before, after, unit) in self.errors.items()
+        )
+        return f"run by {self.engine} itself over the held-out runs, the model misses {errors}"
 
 
 @dataclass(frozen=True)
@@ -62,7 +74,8 @@ def own_runs(
     stretches = _stretches(measured, runs)
     left = [_left(engine, mapping, measured, stretches, states) for engine in engines]
     units = [mapping.sensor(name).unit for name in measured.channels]
-    return OwnRuns({name: (float(left[0][k]), float(left[1][k]), units[k]) for k, name in enumerate(measured.channels)})
+    rows = zip(*(each.tolist() for each in left), units, strict=True)
+    return OwnRuns(dict(zip(measured.channels, rows, strict=True)), engines[0].called)
 
 
 def _stretches(measured: Measured, runs: Runs) -> list[_Stretch]:

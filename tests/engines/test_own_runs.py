@@ -26,4 +26,5 @@ def test_the_true_model_meets_its_own_record_from_a_wrong_start(pendulum, tmp_pa
     runs = Runs(np.zeros(1, int), span, np.zeros((1, 0)), seen, seen, seen, ("1",))
     found = own_runs((plain, sprung), drafted(plain, degrees=True), measured, runs, whole + np.array([0.02, 0.1]))
     before, after, unit = found.errors["pivot"]
+    assert found.said.startswith("run by MuJoCo itself over the held-out runs, the model misses pivot by ")
     assert unit == "deg" and after < 1e-4 and before > 0.5
