@@ -24,7 +24,7 @@ FLOORS = (
         "results",
         "turbulence",
     ),
-    ("kinetics",),
+    ("kinetics", "engines"),
     ("processing", "discrepancy", "discovery", "comparison", "sensing", "response", "clinic"),
     ("batch", "report"),
     ("library", "commands"),
@@ -37,6 +37,8 @@ SOLE_HOME = {
     "pingouin": {"statistics"},
     "statsmodels": {"statistics"},
     "ezc3d": {"ingest"},
+    "mujoco": {"engines"},
+    "opensim": {"engines"},
 }
 
 

@@ -15,10 +15,13 @@ from gaitdisc.errors import SchemaError
 def discover(
     simulation: Annotated[
         Path,
-        typer.Argument(metavar="SIMULATION", help="A simulation file (TOML), or a study folder with --participant."),
+        typer.Argument(
+            metavar="SIMULATION",
+            help="A simulation file (TOML), a model (.xml of MuJoCo, .osim), or a study folder with --participant.",
+        ),
     ],
     measured: Annotated[
-        Path | None, typer.Argument(metavar="MEASURED", help="Measured trials (CSV or Parquet).")
+        Path | None, typer.Argument(metavar="MEASURED", help="Measured trials (CSV, Parquet; .mot of a model).")
     ] = None,
     out: Annotated[Path, typer.Option(help="Folder of what was found.")] = Path("found"),
     participant: Annotated[
@@ -38,10 +41,11 @@ def discover(
             "Of a study, add --participant.",
         )
     from gaitdisc.batch.discover_files import discover_files, discover_study
+    from gaitdisc.engines.mapping import names_engine
     from gaitdisc.results.discovery_folder import save_discovery
     from gaitdisc.simulation.writing import write_simulation
 
-    began = time.perf_counter()
+    began, notes = time.perf_counter(), ()
 
     def told(step: str) -> None:
         if not quiet:
@@ -49,16 +53,23 @@ def discover(
 
     if measured is None:
         found, augmented = discover_study(simulation, participant, catalogue, told)
+        write_simulation(augmented, out / "augmented.toml")
+    elif names_engine(simulation):
+        from gaitdisc.batch.discover_engine import discover_model_file, write_answer
+
+        answer = discover_model_file(simulation, measured, catalogue, told)
+        write_answer(answer, out)
+        found, notes = answer.found, (*answer.written.notes, answer.runs.said)
     else:
         found, augmented = discover_files(simulation, measured, catalogue, told)
-    write_simulation(augmented, out / "augmented.toml")
+        write_simulation(augmented, out / "augmented.toml")
     place = save_discovery(found, out)
     if draw:
         from gaitdisc.report.discovery_page import write_discovery_report
 
         told("drawing the report")
         place = write_discovery_report(found, out)
-    typer.echo(found.sentence)
+    typer.echo("\n".join([found.sentence, *(f"{note[0].upper()}{note[1:]}." for note in notes)]))
     for finding in found.findings:
         if finding.severity != "note":
             typer.echo(finding.line(), err=True)

@@ -1,4 +1,4 @@
-"""`gaitdisc new`: a study file from a folder of recordings."""
+"""`gaitdisc new`: a study file from a folder of recordings, or the mapping file of a model."""
 
 from __future__ import annotations
 
@@ -11,10 +11,18 @@ from gaitdisc.errors import SchemaError
 
 
 def new(
-    study: Annotated[Path, typer.Argument(help="Folder of the new study.")],
-    recordings: Annotated[Path, typer.Option("--from", help="Folder of recordings; it is not changed.")],
+    study: Annotated[Path, typer.Argument(help="Folder of the new study; of a model, its mapping file (leg.toml).")],
+    recordings: Annotated[
+        Path, typer.Option("--from", help="Folder of recordings, or a model of MuJoCo or OpenSim; it is not changed.")
+    ],
+    degrees: Annotated[bool, typer.Option("--degrees", help="Of a model: angles were recorded in degrees.")] = False,
 ) -> None:
-    """Write a study file from the recordings found in a folder."""
+    """Write a study file from the recordings found in a folder, or a model's mapping file."""
+    from gaitdisc.engines.engine import is_model
+
+    if is_model(recordings):
+        _write_mapping(study, recordings, degrees)
+        return
     from gaitdisc.ingest.new_study import found_study
     from gaitdisc.ingest.study_file import write_study
     from gaitdisc.report.wording import counted
@@ -30,3 +38,18 @@ def new(
         typer.echo(f"  {note}")
     people = counted(len(draft.participants), "participant")
     typer.echo(f"{file} written: {people}. Read it, then: gaitdisc check {study}")
+
+
+def _write_mapping(file: Path, model: Path, degrees: bool) -> None:
+    from gaitdisc.engines.engine import read_model
+    from gaitdisc.engines.mapping import write_mapping
+
+    if file.suffix != ".toml" or file.exists():
+        raise SchemaError(
+            "a model's mapping is a new file that ends in .toml",
+            f"{file} is there already" if file.exists() else f"{file.name} does not",
+            f"Call it {model.with_suffix('.toml').name}: beside the model it is found by itself.",
+        )
+    mapping = write_mapping(read_model(model), file, degrees)
+    columns = [name for name, _ in mapping.observations] + [one.name for one in mapping.inputs]
+    typer.echo(f"{file} written: columns {', '.join(columns)}. Read it, then: gaitdisc discover {model} MEASURED")

@@ -227,19 +227,19 @@ def candidates_of(
         )
         for parameter in simulation.parameters
     ]
-    for name in (one.name for one in simulation.inputs):
+    for name in (one.name for one in simulation.driving):
         if _occurs(name, used):
             found += [Candidate("input_error", "input", name, error) for error in ("input_delay", "input_gain")]
     if isinstance(simulation, Simulation):
         found += [
-            _lagged(simulation, each.name) for each in simulation.inputs if _occurs(each.name, used) and not each.wraps
+            _lagged(simulation, each.name) for each in simulation.driving if _occurs(each.name, used) and not each.wraps
         ]
     for name, _ in simulation.observations:
         found += [
             Candidate("sensor_error", "observation", name, error)
             for error in ("sensor_gain", "sensor_offset", "sensor_lag", "sensor_drift")
         ]
-    driving = tuple(each.name for each in simulation.inputs if not each.wraps)
+    driving = tuple(each.name for each in simulation.driving if not each.wraps)
     has_phase = any(one.name == "phase" for one in simulation.inputs)
     for place in places:
         for shape in shapes:

@@ -48,7 +48,7 @@ def record_filter_of(
     stated = tuple(simulation.sensor(name).lowpass for name in measured.channels)
     unknown = [number for number, cutoff in enumerate(stated) if cutoff is None]
     seen = {number: found for number in unknown if (found := recorded_filter(_trials(measured, number), measured.rate))}
-    inputs = bool(seen) and _inputs_are_filtered(measured)
+    inputs = bool(seen) and _inputs_are_filtered(simulation, measured)
     if inputs or any(one.signal > FELT for one in seen.values()):
         seen = _beside_the_simulation(simulation, measured, period, guess, seen, inputs)
     cutoffs = _together({number: one.cutoff_hz for number, one in seen.items()})
@@ -61,12 +61,12 @@ def _trials(measured: Measured, channel: int) -> list[NDArray[np.float64]]:
     return [seen[:samples, channel] for seen, samples in zip(measured.observed, measured.samples, strict=True)]
 
 
-def _inputs_are_filtered(measured: Measured) -> bool:
+def _inputs_are_filtered(simulation: Simulation, measured: Measured) -> bool:
     """Whether an input went through a filter: of a linear system, the record has then gone through no other."""
     drive = measured.drive
     trials = [each[:samples] for each, samples in zip(drive.inputs, drive.samples, strict=True)]
-    count = drive.inputs.shape[2]
-    found = [recorded_filter([each[:, number] for each in trials], drive.rate) for number in range(count)]
+    numbers = [number for number, one in enumerate(simulation.inputs) if not one.computed]
+    found = [recorded_filter([each[:, number] for each in trials], drive.rate) for number in numbers]
     return any(one is not None and one.signal < SURE for one in found)
 
 

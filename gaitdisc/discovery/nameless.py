@@ -18,7 +18,7 @@ MEANS = "an effect that has no name here"
 def nameless_terms(simulation: Simulation, places: tuple[Place, ...]) -> tuple[Candidate, ...]:
     """List them at every place."""
     rate_of = kinematic_rates(simulation, compile_simulation(simulation))
-    inputs = [one.name for one in simulation.inputs if one.name != "phase"]
+    inputs = [one.name for one in simulation.driving if one.name != "phase"]
     return tuple(
         Candidate("missing_physics", place.kind, place.name, NAME, (term,), None, place.motions[0][0], MEANS)
         for place in places

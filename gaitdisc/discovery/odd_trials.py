@@ -162,7 +162,7 @@ def _turned(inquiry: Inquiry) -> Iterator[Change]:
         changed = replace(measured, observed=-measured.observed)
         yield Change(f"{SIGN}every channel", "", changed)
     for number, part in enumerate(inputs):
-        if not part.wraps:
+        if not part.wraps and not part.computed:
             signs = np.where(np.arange(len(inputs)) == number, -1.0, 1.0)
             drive = replace(measured.drive, inputs=measured.drive.inputs * signs)
             yield Change(f"{SIGN}{part.name}", part.name, replace(measured, drive=drive))
@@ -170,7 +170,7 @@ def _turned(inquiry: Inquiry) -> Iterator[Change]:
 
 def _shifted(bench: _Bench, fit: Fitted, segments: Segments) -> Iterator[Change]:
     """Yield the trials with all channels shifted against the inputs, by what serves one of the trials."""
-    if not bench.simulation.inputs:  # a system that is left to itself has no clock to be shifted against
+    if not bench.simulation.driving:  # a system that is left to itself has no clock to be shifted against
         return
     measured = bench.measured
     most = min(int(LONGEST_SHIFT * bench.rhythm.samples), int(measured.samples.min()) // 3)

@@ -78,10 +78,11 @@ def driven_state(simulation: Simulation, machine: Compiled, port: str) -> str:
 
     In a chain of bodies a moment at one joint may move another joint's angle more than its own.
     """
-    words = set(port.split("_"))
-    namesakes = [state.name for state in simulation.states if state.name in words]
-    if len(namesakes) == 1:
-        return namesakes[0]
+    names = [state.name for state in simulation.states]
+    namesakes = [name for name in names if name in port.split("_")]
+    begins = max((name for name in names if port.startswith(f"{name}_")), key=len, default="")
+    if begins or len(namesakes) == 1:
+        return begins or namesakes[0]
     pushed = compile_simulation(simulation.with_effect(Term(port, "port", "push", "1")))
     rng = np.random.default_rng(0)
     x = rng.uniform(-0.3, 0.3, (16, len(simulation.states)))

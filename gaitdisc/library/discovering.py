@@ -5,9 +5,10 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from gaitdisc.batch.discover_files import discovered
+from gaitdisc.engines.mapping import names_engine
 from gaitdisc.library.models import ModelLike, model_of
 from gaitdisc.recording import Recording
 from gaitdisc.simulation.measured import Measured
@@ -36,7 +37,8 @@ def discover(
     Parameters
     ----------
     model : path, Simulation or callable
-        A simulation file, what `read_simulation` gave, or a Python function (`simulation_from_function`).
+        A simulation file, what `read_simulation` gave, a Python function (`simulation_from_function`), or a model of
+        MuJoCo or OpenSim or its mapping file (docs/engines.md).
     data : path, DataFrame, Recording or sequence of Recording
         Measured trials: a table (or its CSV or Parquet file) with the columns `time` [s], each input and each observed
         channel in the model's units, and `trial` where there are several; or one Recording a trial, whose units are
@@ -52,7 +54,7 @@ def discover(
     found : Discovery
         The verdict, a sentence, the effects with their intervals, rivals, and the gap before and after.
     augmented : Simulation
-        The model with what was found in it; `simulate` runs it.
+        The model with what was found in it; `simulate` runs it. Of a model of MuJoCo or OpenSim, its mapping.
 
     Raises
     ------
@@ -70,6 +72,8 @@ def discover(
     >>> found, augmented = gd.discover("ankle.toml", "walks.csv")  # doctest: +SKIP
     >>> print(found.sentence)  # doctest: +SKIP
     """
+    if isinstance(model, Path | str) and names_engine(model):
+        return _of_engine(Path(model), data, catalogue, progress)
     simulation = model_of(model)
     measured, files = _measured(data, simulation)
     if isinstance(model, Path | str):
@@ -84,6 +88,24 @@ def discover(
 
 def _to_the_terminal(step: str) -> None:
     print(step, file=sys.stderr, flush=True)
+
+
+def _of_engine(
+    model: Path, data: Any, catalogue: Path | str | None, progress: Callable[[str], None] | None
+) -> tuple[Discovery, Simulation]:
+    from gaitdisc.batch.discover_engine import discover_engine, measured_of_file
+
+    files: dict[Path, str] = {}
+
+    def read(mapping: Simulation) -> Measured:
+        if isinstance(data, Path | str):
+            files[Path(data)] = "measured table"
+            return measured_of_file(Path(data), mapping)
+        return _measured(data, mapping)[0]
+
+    chosen = None if catalogue is None else Path(catalogue)
+    answer = discover_engine(model, read, chosen, files, progress or (lambda _: None))
+    return answer.found, answer.augmented
 
 
 def _measured(data: object, simulation: Simulation) -> tuple[Measured, dict[Path, str]]:

@@ -39,7 +39,7 @@ def _check_size(simulation: Simulation) -> None:
         raise SimulationError("a simulation has one state or more", "there is none", "Add [states.<name>].")
     parts = sum(
         len(each)
-        for each in (simulation.states, simulation.inputs, simulation.parameters, simulation.ports,
+        for each in (simulation.states, simulation.driving, simulation.parameters, simulation.ports,
                      simulation.definitions, simulation.observations, simulation.effects)
     )  # fmt: skip
     if parts > MOST_PARTS:

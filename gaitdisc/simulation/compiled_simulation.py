@@ -127,13 +127,17 @@ class Compiled:
         count, steps, n = states.shape
         sample = place[:, 1, None] + np.arange(steps)
         held = np.minimum(sample, drive.samples[place[:, 0], None] - 1)
-        u = drive.inputs[place[:, 0, None], held]
+        used = self.observation.used()
+        first = 1 + n + len(self.inputs)
         t = drive.time0[place[:, 0], None] + sample / drive.rate
         seconds = self._seconds(self.observation, values)
         late = self._delayed(drive, place, states, seconds, past)
         points = count * steps
-        columns = leaf_columns(t.ravel(), states.reshape(points, n), u.reshape(points, -1), values[0])
-        first, used = 1 + n + len(self.inputs), self.observation.used()
+        columns = leaf_columns(t.ravel(), states.reshape(points, n), np.empty((points, 0)), values[0])
+        columns[1 + n : 1 + n] = [
+            drive.inputs[place[:, 0, None], held, column].ravel() if used[1 + n + column] else np.zeros(())
+            for column in range(len(self.inputs))
+        ]
         for column in range(len(self.parameters)):
             if used[first + column]:
                 columns[first + column] = np.repeat(values[:, column], steps)

@@ -29,11 +29,15 @@ class Input:
     ----------
     name, unit, meaning : str
         As in the file. One called `phase` of unit `1` is the share of the stride and wraps at 1.
+    computed : bool
+        Whether an engine computed it along the record (gaitdisc/engines): then it is part of the equations, and no
+        explanation of a gap changes it.
     """
 
     name: str
     unit: str = "1"
     meaning: str = ""
+    computed: bool = False
 
     @property
     def wraps(self) -> bool:

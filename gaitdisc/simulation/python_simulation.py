@@ -101,6 +101,11 @@ class PythonSimulation:
         return replace(self, parts=self.parts.with_sensor(sensor))
 
     @property
+    def driving(self) -> tuple[Input, ...]:
+        """The inputs that were measured."""
+        return self.parts.driving
+
+    @property
     def effects(self) -> tuple[Term, ...]:
         """What was added, and where."""
         return self.parts.effects
@@ -183,12 +188,17 @@ def python_simulation(
     observations : sequence of (str, str)
         Measured column and expression; by default each state under its own name.
     """
-    named = " + ".join(part.name for part in (*inputs, *parameters, *ports)) or "0"
-    equations = tuple((state.name, named) for state in states)
+    equations = any_equations(states, (*inputs, *parameters, *ports))
     parts = Simulation(
         title, tuple(states), tuple(inputs), tuple(parameters), tuple(ports), (), equations, tuple(observations)
     )
     return PythonSimulation(rates, parts)
+
+
+def any_equations(states: Sequence[State], parts: Sequence[Input | Parameter | Port]) -> Lines:
+    """Lines that stand where another program has the equations: each may depend on every part."""
+    named = " + ".join(part.name for part in parts) or "0"
+    return tuple((state.name, named) for state in states)
 
 
 def called(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 
 from gaitdisc.recording.arrays import read_only
@@ -9,6 +10,7 @@ from gaitdisc.simulation.compiled_simulation import Compiled
 from gaitdisc.simulation.expression import Number, Operation, Tree, parsed
 from gaitdisc.simulation.program import compiled_program
 from gaitdisc.simulation.python_simulation import PythonSimulation
+from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
 
 
@@ -29,6 +31,12 @@ def compile_simulation(simulation: Simulation | PythonSimulation) -> Compiled:
     """
     if not isinstance(simulation, Simulation):
         return _of_python(simulation)
+    if simulation.model:
+        raise SimulationError(
+            "a simulation that is run has equations of its own",
+            f"those of {simulation.title!r} are in {simulation.model}",
+            "Give its path to gaitdisc discover: there the engine computes.",
+        )
     states = tuple(state.name for state in simulation.states)
     inputs = tuple(each.name for each in simulation.inputs)
     parameters = tuple(parameter.name for parameter in simulation.parameters)
@@ -54,7 +62,7 @@ def compile_simulation(simulation: Simulation | PythonSimulation) -> Compiled:
 def _of_python(model: PythonSimulation) -> Compiled:
     from gaitdisc.simulation.python_running import PythonCompiled
 
-    own, feeds = compile_simulation(model.parts), compile_simulation(model.feeds)
+    own, feeds = (compile_simulation(replace(one, model="")) for one in (model.parts, model.feeds))
     return PythonCompiled(
         model.parts,
         own.states,

@@ -47,6 +47,8 @@ class Simulation:
         File it was read from.
     layout : str
         Text of that file, whose comments and order are kept when it is written back.
+    model : str
+        File of an engine (OpenSim, MuJoCo) that holds the equations in the place of the file's own.
 
     Raises
     ------
@@ -72,6 +74,7 @@ class Simulation:
     sensors: tuple[Sensor, ...] = ()
     source: Path | None = field(default=None, compare=False)
     layout: str = field(default="", compare=False, repr=False)
+    model: str = ""
 
     def __post_init__(self) -> None:
         """Make every part a tuple, and refuse what does not hold together."""
@@ -104,6 +107,11 @@ class Simulation:
     def signals(self) -> tuple[str, ...]:
         """Names of the states and inputs: what changes in time and can be delayed."""
         return (*(state.name for state in self.states), *(each.name for each in self.inputs))
+
+    @property
+    def driving(self) -> tuple[Input, ...]:
+        """The inputs that were measured."""
+        return tuple(each for each in self.inputs if not each.computed)
 
     def values(self) -> dict[str, float]:
         """Parameters by name."""

@@ -14,6 +14,7 @@ from gaitdisc.regular_file import check_regular
 from gaitdisc.simulation.delay_check import refuse_delays
 from gaitdisc.simulation.observed_units import refuse_units
 from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Term
+from gaitdisc.simulation.python_simulation import any_equations
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.toml_text import parsed_toml
@@ -27,7 +28,7 @@ _TABLES = {
     "ports": ("unit", "meaning"),
 }
 _EXPRESSIONS = ("definitions", "equations", "observations")
-_SECTIONS = ("title", *_TABLES, *_EXPRESSIONS, "effects")
+_SECTIONS = ("title", "model", *_TABLES, *_EXPRESSIONS, "effects")
 _EFFECT = ("port", "equation", "name", "term")
 _OBSERVATION = ("expression", "unit", "sd", "lowpass")
 
@@ -121,24 +122,37 @@ def _simulation(table: Mapping[str, Any], text: str, source: Path | None) -> Sim
         section: tuple((name, _expression(value, (section, name))) for name, value in parts[section].items())
         for section in _EXPRESSIONS
     }
+    states = tuple(
+        State(n, _unit(e, ("states", n)), _text(e, "meaning", ("states", n)), _number(e, "initial", ("states", n)))
+        for n, e in parts["states"].items()
+    )
+    inputs = tuple(
+        Input(n, _unit(e, ("inputs", n)), _text(e, "meaning", ("inputs", n))) for n, e in parts["inputs"].items()
+    )
+    parameters = tuple(_parameter(n, e) for n, e in parts["parameters"].items())
+    ports = tuple(Port(n, _unit(e, ("ports", n)), _text(e, "meaning", ("ports", n))) for n, e in parts["ports"].items())
+    model = _text(table, "model", ())
+    if model and lines["equations"]:
+        raise SimulationError(
+            "the equations stand in the file or in a model of an engine",
+            f"found both, and model = {model!r}",
+            "Take one of them away.",
+            ("equations",),
+        )
     return Simulation(
         _text(table, "title", ()),
-        tuple(
-            State(n, _unit(e, ("states", n)), _text(e, "meaning", ("states", n)), _number(e, "initial", ("states", n)))
-            for n, e in parts["states"].items()
-        ),
-        tuple(
-            Input(n, _unit(e, ("inputs", n)), _text(e, "meaning", ("inputs", n))) for n, e in parts["inputs"].items()
-        ),
-        tuple(_parameter(n, e) for n, e in parts["parameters"].items()),
-        tuple(Port(n, _unit(e, ("ports", n)), _text(e, "meaning", ("ports", n))) for n, e in parts["ports"].items()),
+        states,
+        inputs,
+        parameters,
+        ports,
         lines["definitions"],
-        lines["equations"],
+        any_equations(states, (*inputs, *parameters, *ports)) if model else lines["equations"],
         lines["observations"],
         tuple(_effect(entry, number) for number, entry in enumerate(effects)),
         sensors,
         source,
         text,
+        model,
     )
 
 

@@ -61,7 +61,8 @@ class _Check:
         self.findings: list[Finding] = []
         self._file = simulation.source.name if simulation.source else simulation.title
         self.known: dict[str, Dimension | None] = {"t": dimension_of("s")}
-        for part in (*simulation.states, *simulation.inputs, *simulation.parameters, *simulation.ports):
+        self.known |= {part.name: None for part in simulation.inputs if part.computed}  # of any unit that fits
+        for part in (*simulation.states, *simulation.driving, *simulation.parameters, *simulation.ports):
             self.known[part.name] = dimension_of(part.unit)
             if self.known[part.name] is None:
                 what = f"{part.unit!r} is no unit that the package knows"

@@ -122,7 +122,7 @@ def _changed_text(simulation: Simulation) -> str:
             added += ["", *_parameter(parameter)]
         elif parameter != known[parameter.name]:
             lines = _with_parameter(lines, known[parameter.name], parameter)
-    for section in ("definitions", "equations"):
+    for section in ("definitions",) if simulation.model else ("definitions", "equations"):
         lines = _with_expressions(lines, section, getattr(before, section), getattr(simulation, section))
     lines = _with_observations(lines, before, simulation)
     for state in simulation.states[len(before.states) :]:
@@ -218,6 +218,9 @@ def _with_values(lines: list[str], span: tuple[int, int], values: dict[str, str]
 
 def _new_text(simulation: Simulation, sections: Iterable[str] = ("definitions", "equations", "observations")) -> str:
     lines = [f"title = {_quoted(simulation.title)}"]
+    if simulation.model:
+        lines += [f"model = {_quoted(simulation.model)}"]
+        sections = [section for section in sections if section != "equations"]
     for state in simulation.states:
         lines += ["", *_state(state)]
     for each in simulation.inputs:

@@ -1,0 +1,166 @@
+"""What an engine's model offers, whichever engine it is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.channel import nearest_word
+from gaitdisc.errors import ReadError, SchemaError
+from gaitdisc.simulation.parts import Input, Parameter, Term
+
+ENGINES = {".xml": "mujoco", ".mjcf": "mujoco", ".osim": "opensim"}
+SPEED = "_speed"
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """A free coordinate of a model.
+
+    Parameters
+    ----------
+    name : str
+        As it may stand in an expression.
+    unit : str
+        rad or m.
+    called : str
+        Its name in the model's file.
+    low, high : float
+        Range that the model gives it [unit]; infinite where it gives none.
+    """
+
+    name: str
+    unit: str
+    called: str
+    low: float = -np.inf
+    high: float = np.inf
+
+    @property
+    def speed(self) -> str:
+        """Name of its speed."""
+        return f"{self.name}{SPEED}"
+
+    @property
+    def port(self) -> str:
+        """Name of the generalised force on it."""
+        return f"{self.name}_{'moment' if self.unit == 'rad' else 'force'}"
+
+    @property
+    def force_unit(self) -> str:
+        """Unit of that force."""
+        return "N m" if self.unit == "rad" else "N"
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Where a model is evaluated.
+
+    Parameters
+    ----------
+    q, v : ndarray (point, coordinate)
+        Coordinates and speeds [rad, m; 1/s].
+    u : ndarray (point, control)
+        What acts through each control: its activation where it has one, else the control.
+    """
+
+    q: NDArray[np.float64]
+    v: NDArray[np.float64]
+    u: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ByHand:
+    """A term as a function of its port's own coordinate and speed.
+
+    Parameters
+    ----------
+    at : callable
+        Takes a coordinate and a speed, all else being zero.
+    """
+
+    term: Term
+    coordinate: int
+    at: Callable[[float, float], float]
+
+
+class Engine(Protocol):
+    """A model that an engine has read."""
+
+    path: Path
+    called: str
+    coordinates: tuple[Coordinate, ...]
+    controls: tuple[Input, ...]
+    parameters: tuple[Parameter, ...]  # all that may be changed by name
+    offered: tuple[str, ...]  # those that a new mapping lists
+
+    def accelerations(
+        self, at: Motion, values: Mapping[str, float], forces: NDArray[np.float64] | None = None
+    ) -> NDArray[np.float64]:
+        """Accelerations (point, coordinate) under generalised forces (point, coordinate)."""
+        ...
+
+    def as_force(self, parameter: str) -> tuple[int, str] | None:
+        """Coordinate on which a parameter's unit is a force, and that force over its names; None where it is more."""
+        ...
+
+    def acting(self, controls: NDArray[np.float64], rate: float, q: NDArray[np.float64]) -> NDArray[np.float64]:
+        """What acts through each control along a trial (sample, control): activations computed from excitations."""
+        ...
+
+    def run(self, start: Motion, controls: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+        """Coordinates, then speeds (run, sample, state), by the engine's own integrator."""
+        ...
+
+    def text_with_value(self, text: str, name: str, value: float) -> str | None:
+        """Text of the model with another value of a parameter; None where the file has no place for it."""
+        ...
+
+    def text_with_effect(self, text: str, effect: ByHand) -> str | None:
+        """Text of the model with an effect; None where the engine has no form of it."""
+        ...
+
+
+def is_model(path: Path) -> bool:
+    """Whether a file is one that an engine reads."""
+    return path.suffix.lower() in ENGINES
+
+
+def read_model(path: Path | str) -> Engine:
+    """Model of an engine's file; the engine is imported here."""
+    path = Path(path)
+    if not path.is_file():
+        raise ReadError("a model is read from its file", f"there is none at {path}", "Check the path.")
+    if ENGINES.get(path.suffix.lower()) == "mujoco":
+        from gaitdisc.engines.mujoco_model import MujocoModel
+
+        return MujocoModel(path)
+    if ENGINES.get(path.suffix.lower()) == "opensim":
+        from gaitdisc.engines.opensim_model import OpensimModel
+
+        return OpensimModel(path)
+    raise ReadError("a model is a file of MuJoCo (.xml) or OpenSim (.osim)", f"found {path.name}", "Name such a file.")
+
+
+def refuse_absent(package: str, error: ImportError) -> SchemaError:
+    """Say how an engine is installed."""
+    return SchemaError(
+        f"a model of this kind is computed by the package {package}",
+        f"it is not installed here ({str(error).splitlines()[0][:120]})",
+        f"Install it: pip install 'gaitdisc[{package}]'.",
+    )
+
+
+def refuse_unknown(kind: str, name: str, known: tuple[str, ...], file: str) -> SchemaError:
+    """Say which names a model has."""
+    nearest = nearest_word(name, known)
+    hint = f"Did you mean {nearest!r}? " if nearest else ""
+    return SchemaError(
+        f"a {kind} is one of the model's",
+        f"{file} has none called {name!r}",
+        f"{hint}Known: {', '.join(known) or 'none'}.",
+    )

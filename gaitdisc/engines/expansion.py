@@ -1,0 +1,175 @@
+"""A model of an engine as a simulation that runs at once: its accelerations expanded along the measured motion.
+
+At every sample of the record the engine gives the accelerations and their slopes by each coordinate, speed, control and
+parameter; what a force on a coordinate changes is exact, as forces enter linearly, and so is a parameter that is such a
+force. Runs that stay near the record then need no call of the engine: what is left out is of second order in their
+distance from the smoothed record.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.engines.engine import Engine, Motion
+from gaitdisc.engines.mapping import REPLACED
+from gaitdisc.simulation.drive import Drive
+from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.parts import Input
+from gaitdisc.simulation.simulation import Simulation
+
+NUDGE = 1e-4  # of a state's or a parameter's size
+LONGEST = 64  # characters of a name
+STILL = 1e-9  # of a column's size, below which it is one number
+
+
+def expanded(
+    simulation: Simulation,
+    engine: Engine,
+    measured: Measured,
+    states: NDArray[np.float64],
+    values: Mapping[str, float] | None = None,
+) -> tuple[Simulation, Measured]:
+    """Simulation that is expanded along a record, and the record with what the engine computed along it.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        As the mapping file has it: the names, the observations, the ports.
+    measured : Measured
+        Driven by its inputs.
+    states : ndarray (trial, sample, state)
+        Smoothed: coordinates, then speeds.
+    values : mapping of str to float, optional
+        Parameters around which to expand; the simulation's own where absent.
+    """
+    own = simulation.values() | dict(values or {})
+    drive, count = measured.drive, len(engine.coordinates)
+    motions = []
+    for trial, samples in enumerate(drive.samples):
+        along = states[trial, :samples]
+        u = engine.acting(drive.inputs[trial, :samples], drive.rate, along[:, :count])
+        motions.append(Motion(along[:, :count], along[:, count:], u))
+    at = Motion(*(np.concatenate([getattr(one, name) for one in motions]) for name in ("q", "v", "u")))
+    columns = _Columns(engine)
+    _expand(columns, simulation, at, own)
+    computed = columns.values
+    inputs = (*simulation.inputs, *(Input(name, "", "computed along the record", True) for name in computed))
+    ends = np.cumsum(drive.samples)[:-1]
+    driven = [np.split(column, ends) for column in (*at.u.T, *computed.values())]
+    trials = [
+        np.column_stack([np.empty((int(samples), 0)), *(column[trial] for column in driven)])
+        for trial, samples in enumerate(drive.samples)
+    ]
+    lines = tuple((state.name, columns.equations[state.name]) for state in simulation.states)
+    linear = replace(simulation, inputs=inputs, equations=lines, definitions=(), model="", layout="", source=None)
+    for name, expression in simulation.definitions:
+        linear = linear.with_input(name.removeprefix(REPLACED), expression)
+    return linear, replace(measured, drive=Drive.of(trials, drive.rate, drive.time0))
+
+
+class _Columns:
+    """Equations that are built up, and the columns that stand in them."""
+
+    def __init__(self, engine: Engine) -> None:
+        self.engine = engine
+        self.values: dict[str, NDArray[np.float64]] = {}
+        self._terms: dict[str, list[str]] = {one.speed: [] for one in engine.coordinates}
+
+    @property
+    def equations(self) -> dict[str, str]:
+        """Time derivative of each state."""
+        rates = {speed: " + ".join(terms) or "0" for speed, terms in self._terms.items()}
+        return {one.name: one.speed for one in self.engine.coordinates} | rates
+
+    def add(self, name: str, column: NDArray[np.float64], factor: str = "") -> None:
+        """Add a column (point, coordinate) times a factor to every acceleration; one that rests is a number.
+
+        Parameters
+        ----------
+        name : str
+            What follows the speed's name in that of the column.
+        """
+        size = max(float(np.abs(column).max()), 1e-12)
+        for number, one in enumerate(self.engine.coordinates):
+            own, word = column[:, number], f"{one.speed}_{name}"
+            if len(word) > LONGEST:
+                word = f"computed_{len(self.values)}"
+            if np.ptp(own) > STILL * size:
+                self.values[word] = own
+            elif abs(own[0]) > STILL * size:
+                word = repr(float(own.mean()))
+            else:
+                continue
+            self._terms[one.speed].append(f"{word}*{factor}" if factor else word)
+
+
+def _expand(columns: _Columns, simulation: Simulation, at: Motion, values: Mapping[str, float]) -> None:
+    """Accelerations to first order in states and controls; forces, and parameters that act as such, exactly."""
+    engine = columns.engine
+    base = engine.accelerations(at, values)
+    rest = base.copy()
+    for name, along, ahead, behind, size in _nudged(engine, at, "qvu"):
+        slope = (engine.accelerations(ahead, values) - engine.accelerations(behind, values)) / (2 * size)
+        columns.add(f"by_{name}", slope, name)
+        rest -= slope * along[:, None]
+    columns.add("rate", rest)
+    ports = {port.name for port in simulation.ports}
+    for number, one in enumerate(engine.coordinates):
+        force = np.zeros_like(base)
+        force[:, number] = 1.0
+        acting = [one.port] if one.port in ports else []
+        for name in simulation.values():
+            alike = engine.as_force(name)
+            if alike and alike[0] == number:
+                acting.append(f"({alike[1]})*({name} - {values[name]!r})")
+        if acting:
+            changed = engine.accelerations(at, values, force) - base
+            columns.add(f"by_{one.port}", changed, acting[0] if len(acting) == 1 else f"({' + '.join(acting)})")
+    for name in simulation.values():
+        if engine.as_force(name) is None:
+            _expand_parameter(columns, name, at, values)
+
+
+def _expand_parameter(columns: _Columns, name: str, at: Motion, values: Mapping[str, float]) -> None:
+    """What a parameter changes, to first order in it and in the coordinates."""
+    size = NUDGE * max(abs(values[name]), 1e-2)
+    far, near = ({**values, name: values[name] + each} for each in (size, -size))
+
+    def slope(there: Motion) -> NDArray[np.float64]:
+        return (columns.engine.accelerations(there, far) - columns.engine.accelerations(there, near)) / (2 * size)
+
+    away = f"({name} - {values[name]!r})"
+    rest = slope(at)
+    for other, along, ahead, behind, step in _nudged(columns.engine, at, "q"):
+        mixed = (slope(ahead) - slope(behind)) / (2 * step)
+        columns.add(f"by_{name}_and_{other}", mixed, f"{other}*{away}")
+        rest = rest - mixed * along[:, None]
+    columns.add(f"by_{name}", rest, away)
+
+
+def _nudged(
+    engine: Engine, at: Motion, fields: str
+) -> Iterator[tuple[str, NDArray[np.float64], Motion, Motion, float]]:
+    """Yield each coordinate, speed and control with the motion a little to either side."""
+    names = {
+        "q": [one.name for one in engine.coordinates],
+        "v": [one.speed for one in engine.coordinates],
+        "u": [one.name for one in engine.controls],
+    }
+    for field in fields:
+        whole = getattr(at, field)
+        for column, name in enumerate(names[field]):
+            size = NUDGE * max(float(np.abs(whole[:, column]).max()), 1e-2)
+            step = np.zeros(whole.shape[1])
+            step[column] = size
+            yield (
+                name,
+                whole[:, column],
+                replace(at, **{field: whole + step}),
+                replace(at, **{field: whole - step}),
+                size,
+            )

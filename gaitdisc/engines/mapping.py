@@ -1,0 +1,151 @@
+"""The mapping file of a model: a simulation file whose equations are those of an engine's model beside it."""
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from gaitdisc.engines.engine import Engine, is_model, read_model, refuse_unknown
+from gaitdisc.errors import SchemaError
+from gaitdisc.recording import Finding
+from gaitdisc.simulation.parts import Port, Sensor, State
+from gaitdisc.simulation.python_simulation import any_equations
+from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.simulation.simulation_file import LARGEST, read_simulation
+from gaitdisc.simulation.writing import write_simulation
+
+REPLACED = "replaced_"  # begins the definition that a control is replaced by
+SAME = 1e-5  # by which a number of the mapping may differ from the model's, as a share: numbers in files are rounded
+
+
+def drafted(engine: Engine, degrees: bool = False) -> Simulation:
+    """Mapping of a model: every free coordinate measured in a column of its name, every control another.
+
+    Parameters
+    ----------
+    degrees : bool
+        Whether the columns of angles are in degrees.
+    """
+    found = engine.coordinates
+    states = [State(one.name, one.unit, f"coordinate {one.called}") for one in found]
+    states += [State(one.speed, f"{one.unit}/s") for one in found]
+    parameters = [one for one in engine.parameters if one.name in engine.offered]
+    ports = [Port(one.port, one.force_unit, f"on {one.called}, positive along it") for one in found]
+    turned = {one.name for one in found if degrees and one.unit == "rad"}
+    scale = repr(float(np.rad2deg(1.0)))
+    return Simulation(
+        f"A model of {engine.called}",
+        tuple(states),
+        engine.controls,
+        tuple(parameters),
+        tuple(ports),
+        (),
+        any_equations(states, (*engine.controls, *parameters, *ports)),
+        tuple((one.name, f"{scale}*{one.name}" if one.name in turned else one.name) for one in found),
+        sensors=tuple(Sensor(one.name, "deg" if one.name in turned else one.unit) for one in found),
+        model=engine.path.name,
+    )
+
+
+def write_mapping(engine: Engine, file: Path, degrees: bool = False) -> Simulation:
+    """Write the mapping of a model, for a person to correct."""
+    model = os.path.relpath(engine.path.resolve(), file.resolve().parent)
+    mapping = replace(drafted(engine, degrees), model=Path(model).as_posix())
+    write_simulation(mapping, file)
+    return mapping
+
+
+def read_mapping(path: Path | str) -> tuple[Simulation, Engine]:
+    """Mapping and model: of a mapping file, or of a model with the mapping beside it, or with none.
+
+    Parameters
+    ----------
+    path : Path or str
+        leg.toml with `model = "leg.xml"`, or leg.xml; without a leg.toml beside it every column has a coordinate's name
+        and its unit.
+    """
+    path = Path(path)
+    if is_model(path):
+        beside = path.with_suffix(".toml")
+        if not beside.is_file():
+            engine = read_model(path)
+            return drafted(engine), engine
+        path = beside
+    mapping = read_simulation(path)
+    engine = read_model(path.parent / mapping.model)
+    check_mapping(mapping, engine)
+    return mapping, engine
+
+
+def names_engine(path: Path | str) -> bool:
+    """Whether a file is a model of an engine, or the mapping of one."""
+    path = Path(path)
+    if is_model(path) or not path.is_file() or path.suffix.lower() != ".toml" or path.stat().st_size > LARGEST:
+        return is_model(path)
+    return re.search(rb"^model\s*=", path.read_bytes(), re.MULTILINE) is not None
+
+
+def check_mapping(mapping: Simulation, engine: Engine) -> None:
+    """Refuse a mapping whose names are not the model's."""
+    file, coordinates = engine.path.name, engine.coordinates
+    known = {
+        "coordinate, or its speed": (
+            tuple(one.name for one in mapping.states),
+            (*(one.name for one in coordinates), *(one.speed for one in coordinates)),
+        ),
+        "control": (tuple(one.name for one in mapping.inputs), tuple(one.name for one in engine.controls)),
+        "parameter": (tuple(mapping.values()), tuple(one.name for one in engine.parameters)),
+        "port": (tuple(one.name for one in mapping.ports), tuple(one.port for one in coordinates)),
+    }
+    for kind, (given, has) in known.items():
+        for name in given:
+            if name not in has:
+                raise refuse_unknown(kind, name, has, file)
+        whole = kind not in ("parameter", "port")
+        if whole and given != has:
+            raise SchemaError(
+                f"a mapping lists every {kind.partition(',')[0]} of the model, in its order",
+                f"it has {', '.join(given) or 'none'}; {file} has {', '.join(has) or 'none'}",
+                f"Write it anew: gaitdisc new {engine.path.with_suffix('.toml').name} --from {file}.",
+            )
+
+
+def other_values(mapping: Simulation, engine: Engine) -> tuple[Finding, ...]:
+    """Tell which parameters have another value in the mapping than in the model; the mapping's is used."""
+    own = {one.name: one.value for one in engine.parameters}
+    return tuple(
+        Finding(
+            "note", "value", "model", f"{name} is {value:g} in the mapping and {own[name]:g} in the model", "", name
+        )
+        for name, value in mapping.values().items()
+        if abs(value - own[name]) > SAME * max(abs(own[name]), 1e-9)
+    )
+
+
+def refuse_other_units(mapping: Simulation, engine: Engine, largest: dict[str, float]) -> None:
+    """Refuse angles that can be no radians: degrees that nobody said are degrees.
+
+    Parameters
+    ----------
+    largest : dict of str to float
+        Largest size of each coordinate in the record [rad, m].
+    """
+    for one in engine.coordinates:
+        limit = 2 * np.pi if not np.isfinite(one.high) else 1.5 * max(abs(one.low), abs(one.high))
+        if one.unit == "rad" and largest[one.name] > limit:
+            columns = [name for name, text in mapping.observations if one.name in text] or [one.name]
+            raise SchemaError(
+                f"coordinate {one.called!r} stays within {limit:.3g} rad",
+                f"column {columns[0]!r} makes it {largest[one.name]:.4g} rad: these may be degrees",
+                f"Say so in the mapping: gaitdisc new {engine.path.with_suffix('.toml').name} --from "
+                f"{engine.path.name} --degrees.",
+            )
+
+
+def with_input_changed(mapping: Simulation, name: str, expression: str) -> Simulation:
+    """Mapping in which a control is replaced by an expression of the recorded one."""
+    return replace(mapping, definitions=(*mapping.definitions, (f"{REPLACED}{name}", expression)))

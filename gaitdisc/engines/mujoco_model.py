@@ -1,0 +1,267 @@
+"""A model of MuJoCo: accelerations, activations and runs by the engine itself."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.engines.engine import ByHand, Coordinate, Motion, refuse_absent
+from gaitdisc.engines.mujoco_text import with_effect, with_value
+from gaitdisc.errors import ReadError, SchemaError
+from gaitdisc.simulation.parts import Input, Parameter
+
+JOINT_UNITS = {"stiffness": ("N m/rad", "N/m"), "damping": ("N m s/rad", "N s/m"), "frictionloss": ("N m", "N")}
+
+
+class MujocoModel:
+    """A model of MuJoCo whose joints are hinges and slides.
+
+    Examples
+    --------
+    >>> MujocoModel("leg.xml").coordinates[0].port  # doctest: +SKIP
+    'hip_moment'
+    """
+
+    called = "MuJoCo"
+
+    def __init__(self, path: Path | str) -> None:
+        try:
+            import mujoco
+        except ImportError as error:
+            raise refuse_absent("mujoco", error) from None
+        self.path = Path(path)
+        self._mujoco: Any = mujoco
+        try:
+            self._model: Any = self._mujoco.MjModel.from_xml_path(str(path))
+        except ValueError as error:
+            raise ReadError(
+                f"a model is one that MuJoCo {mujoco.__version__} reads",
+                f"{self.path.name}: {' '.join(str(error).split())[:300]}",
+                "Mend what it names: a part that this version does not know, or a mesh that does not lie beside it.",
+            ) from None
+        self._data: Any = self._mujoco.MjData(self._model)
+        self._refuse_other_joints()
+        self.coordinates = tuple(self._coordinate(number) for number in range(self._model.njnt))
+        self.controls = tuple(Input(self._name("actuator", k), "1", "actuator") for k in range(self._model.nu))
+        self._places = self._places_of_parameters()
+        self.parameters = tuple(
+            Parameter(name, float(np.linalg.norm(array[index])), unit)
+            for name, (array, index, unit) in self._places.items()
+        )
+        self.offered = tuple(one.name for one in self.parameters if one.value and "gear" not in one.name)
+        self._stateful = self._model.actuator_actadr >= 0
+        self.contacts = 0  # most that any evaluated point had
+
+    def accelerations(
+        self, at: Motion, values: Mapping[str, float], forces: NDArray[np.float64] | None = None
+    ) -> NDArray[np.float64]:
+        """Accelerations (point, coordinate), with other values of some parameters.
+
+        Parameters
+        ----------
+        forces : ndarray (point, coordinate), optional
+            Generalised forces besides.
+        """
+        model, data, forward = self._model, self._data, self._mujoco.mj_forward
+        kept = self._changed(values)
+        found = np.empty_like(at.q)
+        own = self._stateful
+        acts = model.actuator_actadr[own]
+        for point in range(len(at.q)):
+            data.qpos[:] = at.q[point]
+            data.qvel[:] = at.v[point]
+            data.ctrl[~own] = at.u[point, ~own]
+            data.act[acts] = at.u[point, own]
+            data.qfrc_applied[:] = 0.0 if forces is None else forces[point]
+            data.qacc_warmstart[:] = 0.0
+            forward(model, data)
+            found[point] = data.qacc
+            self.contacts = max(self.contacts, data.ncon)
+        data.qfrc_applied[:] = 0.0
+        self._restored(kept)
+        return found
+
+    def as_force(self, parameter: str) -> tuple[int, str] | None:
+        """Springs, dampers and friction of joints are forces on their coordinates."""
+        part, _, word = parameter.rpartition("_")
+        number = next((k for k, one in enumerate(self.coordinates) if one.name == part), -1)
+        if number < 0 or word not in JOINT_UNITS:
+            return None
+        one, rest = self.coordinates[number], float(self._model.qpos_spring[number])
+        forms = {
+            "stiffness": f"{rest!r} - {one.name}",
+            "damping": f"-{one.speed}",
+            "frictionloss": f"-sign({one.speed})",
+        }
+        return number, forms[word]
+
+    def acting(self, controls: NDArray[np.float64], rate: float, q: NDArray[np.float64]) -> NDArray[np.float64]:
+        """What acts through each control along a trial (sample, control).
+
+        The activation of an actuator that has one is integrated by MuJoCo from its control; it begins in equilibrium
+        with the first one.
+
+        Parameters
+        ----------
+        q : ndarray (sample, coordinate)
+            The measured motion, which is prescribed.
+        """
+        found = np.array(controls, float)
+        if not self._stateful.any():
+            return found
+        model, data, steps = self._model, self._data, self._steps(rate)
+        h, acts = 1.0 / (rate * steps), model.actuator_actadr[self._stateful]
+        data.qvel[:] = 0.0
+        data.act[acts] = controls[0, self._stateful]
+        for sample in range(len(controls)):
+            found[sample, self._stateful] = data.act[acts]
+            after = controls[min(sample + 1, len(controls) - 1)]
+            data.qpos[:] = q[sample]
+            for step in range(steps):
+                data.ctrl[:] = controls[sample] + (after - controls[sample]) * step / steps
+                self._mujoco.mj_forward(model, data)
+                data.act[:] += h * data.act_dot
+        return found
+
+    def run(self, start: Motion, controls: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+        """Coordinates, then speeds (run, sample, state), by MuJoCo's own integrator.
+
+        Parameters
+        ----------
+        start : Motion
+            Where each run begins.
+        controls : ndarray (run, sample, control)
+            Recorded controls, linear between samples.
+        """
+        model, data, steps = self._model, self._data, self._steps(rate)
+        own, kept = self._stateful, model.opt.timestep
+        model.opt.timestep = 1.0 / (rate * steps)
+        found = np.empty((*controls.shape[:2], model.nq + model.nv))
+        for run, driven in enumerate(controls):
+            self._mujoco.mj_resetData(model, data)
+            data.qpos[:], data.qvel[:] = start.q[run], start.v[run]
+            data.act[model.actuator_actadr[own]] = start.u[run, own]
+            found[run, 0] = *start.q[run], *start.v[run]
+            for sample in range(len(driven) - 1):
+                change = (driven[sample + 1] - driven[sample]) / steps
+                for step in range(steps):
+                    data.ctrl[:] = driven[sample] + step * change
+                    self._mujoco.mj_step(model, data)
+                found[run, sample + 1] = *data.qpos, *data.qvel
+        model.opt.timestep = kept
+        return found
+
+    def text_with_value(self, text: str, name: str, value: float) -> str | None:
+        """Text of the model with another value of a parameter."""
+        kinds = (("body", "_mass"), ("actuator", "_gear"), ("actuator", "_force"))
+        kind = next((kind for kind, ending in kinds if name.endswith(ending)), "joint")
+        counts = {"body": self._model.nbody, "actuator": self._model.nu, "joint": self._model.njnt}
+        part = name.rpartition("_")[0]
+        number = next((k for k in range(counts[kind]) if self._name(kind, k) == part), 0)
+        return with_value(text, name, value, (kind, self._called(kind, number)))
+
+    def text_with_effect(self, text: str, effect: ByHand) -> str | None:
+        """Text of the model with an effect on a joint."""
+        one = self.coordinates[effect.coordinate]
+        values = {each.name: each.value for each in self.parameters}
+        return with_effect(text, effect, one.called, {word: values[f"{one.name}_{word}"] for word in JOINT_UNITS})
+
+    def _steps(self, rate: float) -> int:
+        """Steps of the integrator for a sample, none longer than the model's own."""
+        return max(int(np.ceil(round(1.0 / (rate * self._model.opt.timestep), 6))), 1)
+
+    def _name(self, kind: str, number: int) -> str:
+        """Name of a part as it may stand in an expression."""
+        return re.sub(r"\W", "_", self._called(kind, number)) or f"{kind}_{number + 1}"
+
+    def _called(self, kind: str, number: int) -> str:
+        found = self._mujoco.mj_id2name(self._model, getattr(self._mujoco.mjtObj, f"mjOBJ_{kind.upper()}"), number)
+        return found or ""
+
+    def _refuse_other_joints(self) -> None:
+        model, mujoco = self._model, self._mujoco
+        known = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
+        for number in range(model.njnt):
+            if model.jnt_type[number] not in known:
+                raise SchemaError(
+                    "each joint is a hinge or a slide, which has one coordinate and one speed",
+                    f"{self.path.name}: joint {self._called('joint', number) or number + 1!r} is a ball or free joint",
+                    "Write it as hinges and slides one after the other, or weld the body to the world.",
+                )
+        bound = np.flatnonzero(model.eq_active0)
+        if bound.size:
+            name = self._called("equality", int(bound[0])) or int(bound[0]) + 1
+            raise SchemaError(
+                "every coordinate of the model is free",
+                f"{self.path.name}: the equality constraint {name!r} makes one depend on others",
+                'Switch it off (active="false"), or take the dependent joint out of the model.',
+            )
+        if not model.njnt:
+            raise SchemaError("a model has one joint or more", f"{self.path.name} has none", "Give a body a joint.")
+
+    def _coordinate(self, number: int) -> Coordinate:
+        model = self._model
+        turns = model.jnt_type[number] == int(self._mujoco.mjtJoint.mjJNT_HINGE)
+        limits = model.jnt_range[number] if model.jnt_limited[number] else (-np.inf, np.inf)
+        called = self._called("joint", number)
+        return Coordinate(
+            self._name("joint", number), "rad" if turns else "m", called, float(limits[0]), float(limits[1])
+        )
+
+    def _places_of_parameters(self) -> dict[str, tuple[Any, Any, str]]:
+        """For each number that may be changed by name: the array that holds it, where, and its unit."""
+        model = self._model
+        places: dict[str, tuple[Any, Any, str]] = {}
+        if np.any(model.opt.gravity):
+            places["gravity"] = (model.opt.gravity, slice(None), "m/s^2")
+        for body in range(1, model.nbody):
+            if model.body_dofnum[model.body_rootid[body]] or model.body_weldid[body]:
+                places[f"{self._name('body', body)}_mass"] = (model.body_mass, body, "kg")
+        for number, one in enumerate(self.coordinates):
+            slides = int(one.unit == "m")
+            dof = model.jnt_dofadr[number]
+            for word, array, index in (
+                ("stiffness", model.jnt_stiffness, number),
+                ("damping", model.dof_damping, dof),
+                ("frictionloss", model.dof_frictionloss, dof),
+            ):
+                places[f"{one.name}_{word}"] = (array, index, JOINT_UNITS[word][slides])
+        for number, one in enumerate(self.controls):
+            if model.actuator_gaintype[number] == int(self._mujoco.mjtGain.mjGAIN_MUSCLE):
+                if model.actuator_gainprm[number, 2] > 0:
+                    places[f"{one.name}_force"] = (model.actuator_gainprm, (number, 2), "N")
+            else:
+                places[f"{one.name}_gear"] = (model.actuator_gear, (number, 0), "1")
+        return places
+
+    def _changed(self, values: Mapping[str, float]) -> list[tuple[Any, Any, Any]]:
+        """Put other values in, and give what stood there before."""
+        kept = []
+        for name, value in values.items():
+            array, index, _ = self._places[name]
+            before = np.array(array[index], float)
+            size = float(np.linalg.norm(before))
+            if size == value:
+                continue
+            kept.append((array, index, before))
+            array[index] = before * (value / size) if before.ndim else value
+            if name.endswith("_mass"):  # a body of the same shape: its inertia goes with its mass
+                kept.append((self._model.body_inertia, index, self._model.body_inertia[index].copy()))
+                self._model.body_inertia[index] *= value / size
+            if name.endswith("_force"):
+                kept.append((self._model.actuator_biasprm, index, float(self._model.actuator_biasprm[index])))
+                self._model.actuator_biasprm[index] = value
+        if kept:
+            self._mujoco.mj_setConst(self._model, self._data)
+        return kept
+
+    def _restored(self, kept: list[tuple[Any, Any, Any]]) -> None:
+        for array, index, before in reversed(kept):
+            array[index] = before
+        if kept:
+            self._mujoco.mj_setConst(self._model, self._data)

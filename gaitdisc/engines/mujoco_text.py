@@ -1,0 +1,194 @@
+"""Insertions into the text of an MJCF file: attributes of the user's own elements, and a tendon at its end."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from xml.parsers import expat
+
+import numpy as np
+
+from gaitdisc.engines.engine import ByHand
+
+FAR = 1000.0  # [rad], beyond all that a joint does
+BEYOND = 10.0  # [rad], where a one-sided spring pulls that pulls at all
+MORE_OF = {"viscous_damping": "damping", "coulomb_friction": "frictionloss"}  # effect: attribute of a joint
+
+
+def with_value(text: str, name: str, value: float, element: tuple[str, str]) -> str | None:
+    """Text with a number of a joint, body or option changed; None where the file does not say it.
+
+    Parameters
+    ----------
+    name : str
+        `<part>_mass`, `_stiffness`, `_damping`, `_frictionloss`, `_gear`, `_force`, or gravity.
+    element : tuple of str
+        Tag and name of the element in the file.
+    """
+    if name == "gravity":
+        return _with_gravity(text, value)
+    word = name.rpartition("_")[2]
+    tags = [one for one in _tags(text) if _is(text, one, element)]
+    if len(tags) != 1:
+        return None
+    if word == "mass":
+        return _with_mass(text, tags[0], value)
+    if word == "gear":
+        rest = (_attribute(text, tags[0], "gear") or "1").split()[1:]
+        return _with_attribute(text, tags[0], "gear", " ".join([repr(value), *rest]))
+    return _with_attribute(text, tags[0], word, repr(value))
+
+
+def with_effect(text: str, effect: ByHand, joint: str, own: Mapping[str, float]) -> str | None:
+    """Text with an effect on a joint; None where MuJoCo has no form of it.
+
+    Parameters
+    ----------
+    joint : str
+        Its name in the file.
+    own : mapping of str to float
+        Stiffness, damping and frictionloss that the joint has, which may come from a default class.
+    """
+    tags = [one for one in _tags(text) if _is(text, one, ("joint", joint))]
+    if not joint or len(tags) != 1:
+        return None
+    tag, name = tags[0], effect.term.name
+    at_one, at_speed_one = -effect.at(1.0, 0.0), -effect.at(0.0, 1.0)
+    found = None
+    if name == "linear_stiffness":
+        found = _with_spring(text, tag, at_one, own["stiffness"])
+    elif name == "cubic_stiffness" and _attribute(text, tag, "stiffness") is None:
+        found = _with_attribute(text, tag, "stiffness", f"0 0 {at_one!r}")
+    elif name in MORE_OF:
+        attribute = MORE_OF[name]
+        found = _with_more(text, tag, attribute, (own[attribute], at_speed_one))
+    elif name == "quadratic_drag":
+        first = (_attribute(text, tag, "damping") or repr(own["damping"])).split()
+        found = _with_attribute(text, tag, "damping", f"{first[0]} {at_speed_one!r}") if len(first) == 1 else None
+    elif name == "one_sided_spring":
+        found = _with_tendon(text, effect, joint)
+    return found
+
+
+def _with_gravity(text: str, value: float) -> str:
+    tags = [one for one in _tags(text) if one[0] == "option"]
+    given = _attribute(text, tags[0], "gravity") if tags else None
+    vector = np.array([float(word) for word in given.split()]) if given else np.array([0.0, 0.0, -9.81])
+    words = " ".join(repr(float(each)) for each in vector * (value / np.linalg.norm(vector)))
+    if tags:
+        return _with_attribute(text, tags[0], "gravity", words)
+    return _before_end(text, f'  <option gravity="{words}"/>\n')
+
+
+def _with_mass(text: str, body: _Tag, value: float) -> str | None:
+    """Another mass of a body's own inertia, or of its one shape with a mass."""
+    inner = [one for one in _tags(text) if one[3] == body[1] and one[0] in ("inertial", "geom")]
+    own = [one for one in inner if one[0] == "inertial"] or inner
+    if len(own) != 1 or _attribute(text, own[0], "mass") is None:
+        return None
+    if own[0][0] == "inertial":
+        return _with_inertia(text, own[0], value)
+    return _with_attribute(text, own[0], "mass", repr(value))
+
+
+def _with_tendon(text: str, effect: ByHand, joint: str) -> str | None:
+    """A fixed tendon that is slack on one side of a threshold."""
+    above = abs(effect.at(BEYOND, 0.0)) > 0.0
+    side = 1.0 if above else -1.0
+    far, farther = effect.at(side * BEYOND, 0.0), effect.at(side * 2 * BEYOND, 0.0)
+    stiffness = -(farther - far) / (side * BEYOND)
+    if not stiffness > 0:
+        return None
+    threshold = side * BEYOND + far / stiffness
+    lengths = f"{-FAR!r} {threshold!r}" if above else f"{threshold!r} {FAR!r}"
+    return _before_end(
+        text,
+        "  <tendon>\n"
+        f'    <fixed name="one_sided_spring_{joint}" stiffness="{stiffness!r}" springlength="{lengths}">\n'
+        f'      <joint joint="{joint}" coef="1"/>\n'
+        "    </fixed>\n"
+        "  </tendon>\n",
+    )
+
+
+def _with_spring(text: str, tag: _Tag, stiffness: float, before: float) -> str | None:
+    """A linear spring about zero, together with the one that the joint has."""
+    own = (_attribute(text, tag, "stiffness") or repr(before)).split()
+    rest = float(_attribute(text, tag, "springref") or 0.0)
+    if len(own) > 1:
+        return None
+    both = float(own[0]) + stiffness
+    if rest and both:
+        text = _with_attribute(text, tag, "springref", repr(float(own[0]) * rest / both))
+        tag = next(one for one in _tags(text) if one[1] == tag[1])
+    return _with_attribute(text, tag, "stiffness", repr(both))
+
+
+def _with_more(text: str, tag: _Tag, attribute: str, numbers: tuple[float, float]) -> str:
+    """An attribute with more in it than it has, or had before."""
+    first, *rest = (_attribute(text, tag, attribute) or repr(numbers[0])).split()
+    return _with_attribute(text, tag, attribute, " ".join([repr(float(first) + numbers[1]), *rest]))
+
+
+def _with_inertia(text: str, tag: _Tag, mass: float) -> str:
+    """Another mass of the same shape: the inertia goes with it."""
+    share = mass / float(_attribute(text, tag, "mass") or 1.0)
+    for name in ("diaginertia", "fullinertia"):
+        given = _attribute(text, tag, name)
+        if given:
+            words = " ".join(repr(float(word) * share) for word in given.split())
+            text = _with_attribute(text, tag, name, words)
+            tag = next(one for one in _tags(text) if one[1] == tag[1])
+    return _with_attribute(text, tag, "mass", repr(mass))
+
+
+_Tag = tuple[str, int, int, int]  # name, where it begins and ends, where its parent begins
+
+
+def _tags(text: str) -> list[_Tag]:
+    """Every opening tag of the text, by characters."""
+    whole = text.encode("utf-8")
+    found: list[_Tag] = []
+    above: list[int] = []
+    parser = expat.ParserCreate("utf-8")
+
+    def opened(name: str, _: object) -> None:
+        begin = len(whole[: parser.CurrentByteIndex].decode("utf-8"))
+        end = begin
+        quote = ""
+        while quote or text[end] != ">":
+            quote = "" if text[end] == quote else quote or (text[end] if text[end] in "\"'" else "")
+            end += 1
+        found.append((name, begin, end + 1, above[-1] if above else -1))
+        above.append(begin)
+
+    parser.StartElementHandler = opened
+    parser.EndElementHandler = lambda _: above.pop()
+    parser.Parse(whole, True)
+    return found
+
+
+def _is(text: str, tag: _Tag, element: tuple[str, str]) -> bool:
+    """Whether a tag is that of an element; an actuator's may be any."""
+    kinds = (element[0],) if element[0] != "actuator" else (tag[0],)
+    inside = tag[0] in kinds and _attribute(text, tag, "name") == element[1]
+    return inside and (element[0] != "actuator" or text[tag[3] :].startswith("<actuator"))
+
+
+def _attribute(text: str, tag: _Tag, name: str) -> str | None:
+    found = re.search(rf"\s{name}\s*=\s*(\"[^\"]*\"|'[^']*')", text[tag[1] : tag[2]])
+    return found[1][1:-1] if found else None
+
+
+def _with_attribute(text: str, tag: _Tag, name: str, value: str) -> str:
+    own = text[tag[1] : tag[2]]
+    if _attribute(text, tag, name) is not None:
+        changed = re.sub(rf"(\s{name}\s*=\s*)(\"[^\"]*\"|'[^']*')", lambda found: f'{found[1]}"{value}"', own, count=1)
+    else:
+        changed = re.sub(r"\s*(/?>)$", lambda found: f' {name}="{value}"{found[1]}', own)
+    return text[: tag[1]] + changed + text[tag[2] :]
+
+
+def _before_end(text: str, more: str) -> str:
+    at = text.rindex("</mujoco>")
+    return text[:at] + more + text[at:]

@@ -1,0 +1,142 @@
+"""Runs by the engine's own integrator, without and with what was found: a check that rests on no expansion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.engines.engine import Engine, Motion
+from gaitdisc.results.discovery import Runs
+from gaitdisc.simulation.evaluating import Points, evaluate_many
+from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.simulation import Simulation
+
+MOST_RUNS = 6
+TURNS = 4
+NUDGE = 1e-4
+
+
+@dataclass(frozen=True)
+class OwnRuns:
+    """What runs by the engine itself leave of the record.
+
+    Parameters
+    ----------
+    errors : mapping of str to tuple
+        For each channel: root mean square before and after, and its unit.
+    engine : str
+        Its name.
+    """
+
+    errors: Mapping[str, tuple[float, float, str]]
+    engine: str
+
+    @property
+    def said(self) -> str:
+        """One sentence."""
+        errors = "; ".join(
+            f"{name} by {before:.3g} {unit} before and {after:.3g} after"
+            for name, (before, after, unit) in self.errors.items()
+        )
+        return f"run by {self.engine} itself over the held-out runs, the model misses {errors}"
+
+
+@dataclass(frozen=True)
+class _Stretch:
+    """Some samples of a trial."""
+
+    trial: int
+    first: int
+    end: int
+
+
+def own_runs(
+    engines: tuple[Engine, Engine],
+    mapping: Simulation,
+    measured: Measured,
+    runs: Runs,
+    states: NDArray[np.float64],
+) -> OwnRuns:
+    """Run two models over the held-out runs, each from the start that suits it best.
+
+    Parameters
+    ----------
+    engines : tuple of Engine
+        The model as read, and with what was found.
+    runs : Runs
+        Held-out runs, which say where.
+    states : ndarray (trial, sample, state)
+        Smoothed: where the search for each start begins.
+    """
+    stretches = _stretches(measured, runs)
+    left = [_left(engine, mapping, measured, stretches, states) for engine in engines]
+    units = [mapping.sensor(name).unit for name in measured.channels]
+    rows = zip(*(each.tolist() for each in left), units, strict=True)
+    return OwnRuns(dict(zip(measured.channels, rows, strict=True)), engines[0].called)
+
+
+def _stretches(measured: Measured, runs: Runs) -> list[_Stretch]:
+    found = []
+    for run in np.unique(np.linspace(0, len(runs.trial) - 1, MOST_RUNS).round().astype(int)):
+        name = runs.names[runs.trial[run]]
+        alone = len(measured.trials) == 1
+        trial = 0 if alone else measured.trials.index(name) if name in measured.trials else int(name.split()[-1]) - 1
+        first, last = (round((time - measured.drive.time0[trial]) * measured.rate) for time in runs.time[run, [0, -1]])
+        found.append(_Stretch(trial, first, min(last + 1, int(measured.samples[trial]))))
+    return found
+
+
+def _left(
+    engine: Engine, mapping: Simulation, measured: Measured, stretches: list[_Stretch], states: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Root mean square of what is left in each channel, starts found by Gauss-Newton."""
+    n = len(engine.coordinates)
+    acting = {
+        trial: engine.acting(
+            measured.drive.inputs[trial, : measured.samples[trial]], measured.rate, states[trial, :, :n]
+        )
+        for trial in {one.trial for one in stretches}
+    }
+    total, count = 0.0, 0
+    for one in stretches:
+        controls = measured.drive.inputs[one.trial, one.first : one.end]
+        seen = measured.observed[one.trial, one.first : one.end]
+        known = np.isfinite(seen)
+        size = np.nanstd(measured.observed, axis=(0, 1))
+
+        def residual(starts: NDArray[np.float64], one: _Stretch = one, controls=controls, seen=seen, known=known):
+            u = np.repeat(acting[one.trial][one.first][None], len(starts), axis=0)
+            driven = np.repeat(controls[None], len(starts), axis=0)
+            run = engine.run(Motion(starts[:, :n], starts[:, n:], u), driven, measured.rate)
+            t = measured.time(one.trial)[one.first : one.end]
+            return np.where(known, seen - np.stack([_observed(mapping, measured, t, x, controls) for x in run]), 0.0)
+
+        start = states[one.trial, one.first].copy()
+        left = residual(start[None])[0]
+        for _ in range(TURNS):
+            nudged = residual(start + NUDGE * np.eye(2 * n))
+            slopes = ((nudged - left) / NUDGE / size).reshape(2 * n, -1)
+            move = np.linalg.lstsq(slopes.T, -(left / size).ravel(), rcond=1e-9)[0]
+            tried = residual((start + move)[None])[0]
+            gain = ((left / size) ** 2).sum() - ((tried / size) ** 2).sum()
+            if not gain > 0:
+                break
+            start, left = start + move, tried
+            if gain < 1e-4 * ((left / size) ** 2).sum():
+                break
+        total, count = total + (left**2).sum(axis=0), count + known.sum(axis=0)
+    return np.sqrt(np.asarray(total) / count)
+
+
+def _observed(
+    mapping: Simulation,
+    measured: Measured,
+    t: NDArray[np.float64],
+    x: NDArray[np.float64],
+    u: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    expressions = [dict(mapping.observations)[name] for name in measured.channels]
+    return evaluate_many(replace(mapping, model=""), expressions, Points(t, x, u, rate=measured.rate)).T

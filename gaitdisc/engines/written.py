@@ -1,0 +1,143 @@
+"""What was found, written into the model's own text, loaded again and compared with the expression by hand."""
+
+from __future__ import annotations
+
+import tempfile
+import weakref
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.engines.engine import ByHand, Engine, Motion, read_model
+from gaitdisc.engines.mapping import REPLACED
+from gaitdisc.errors import GaitdiscError
+from gaitdisc.simulation.evaluating import Points, evaluate
+from gaitdisc.simulation.parts import Term
+from gaitdisc.simulation.simulation import Simulation
+
+STATES = 50
+SAME = 1e-9  # of the largest acceleration
+AT_SPEED = 0.5  # [rad/s], from which friction is compared: an engine's own friction holds at standstill
+
+
+@dataclass(frozen=True)
+class WrittenModel:
+    """A model's text with what was found.
+
+    Parameters
+    ----------
+    engine : Engine
+        That reads it.
+    text : str
+        The user's own, with insertions; the same where nothing has a native form.
+    notes : tuple of str
+        What was written in, with its deviation, and what was not.
+    """
+
+    engine: Engine
+    text: str
+    notes: tuple[str, ...]
+
+
+def written_model(engine: Engine, augmented: Simulation) -> WrittenModel:
+    """Write effects and changed parameters into a model's text, as far as they have a form there."""
+    text, notes, current = engine.path.read_text(encoding="utf-8"), [], engine
+    forces: tuple[Term, ...] = ()
+    values: dict[str, float] = {}
+    before = {one.name: one.value for one in engine.parameters}
+    changes: list[tuple[str, Callable[[str], str | None], tuple[Term, ...], dict[str, float]]] = []
+    for name, value in augmented.values().items():
+        if abs(value - before[name]) > SAME * abs(before[name]):
+            changes.append((f"{name} = {value:.6g}", _setting(engine, name, value), (), {name: value}))
+    for term in augmented.effects:
+        changes.append((f"{term.name} at {term.place}", _adding(engine, augmented, term), (term,), {}))
+    for what, change, more_forces, more_values in changes:
+        tried = change(text)
+        wanted = (augmented, (*forces, *more_forces), values | more_values)
+        deviation, read = _compared(engine, tried, *wanted) if tried is not None else (np.inf, None)
+        if tried is None or read is None or deviation > SAME:
+            said = "has no form in the model's own file" if tried is None else _said(deviation)
+            notes.append(f"{what} {said}: it stands in augmented.toml alone")
+            continue
+        text, current, forces, values = tried, read, *wanted[1:]
+        notes.append(
+            f"{what} is written into the model; its accelerations agree with the expression to {deviation:.1g}"
+        )
+    for name, expression in augmented.definitions:
+        control = name.removeprefix(REPLACED)
+        notes.append(f"{control}, as {expression}, has no form in the model's file: it stands in augmented.toml alone")
+    return WrittenModel(current, text, tuple(notes))
+
+
+def _said(deviation: float) -> str:
+    if np.isfinite(deviation):
+        return f"would differ by {deviation:.1g} of the accelerations in the model's own form"
+    return "is refused by the engine in the model's own form"
+
+
+def _setting(engine: Engine, name: str, value: float) -> Callable[[str], str | None]:
+    return lambda text: engine.text_with_value(text, name, value)
+
+
+def _adding(engine: Engine, augmented: Simulation, term: Term) -> Callable[[str], str | None]:
+    number = next((k for k, one in enumerate(engine.coordinates) if one.port == term.place), -1)
+    if number < 0:
+        return lambda _: None
+    count = len(engine.coordinates)
+
+    def at(coordinate: float, speed: float) -> float:
+        x = np.zeros((1, 2 * count))
+        x[0, number], x[0, count + number] = coordinate, speed
+        return float(_by_hand(augmented, term, x)[0])
+
+    return lambda text: engine.text_with_effect(text, ByHand(term, number, at))
+
+
+def _by_hand(augmented: Simulation, term: Term, x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Force of a term at states (point,); infinite where it depends on more than states."""
+    plain = replace(augmented, model="", effects=(), definitions=())
+    if "delay(" in term.term:
+        return np.full(len(x), np.inf)
+    u = np.zeros((len(x), len(augmented.inputs)))
+    return np.broadcast_to(evaluate(plain, term.term, Points(np.zeros(len(x)), x, u)), len(x))
+
+
+def _compared(
+    engine: Engine, text: str, augmented: Simulation, forces: tuple[Term, ...], values: dict[str, float]
+) -> tuple[float, Engine | None]:
+    """Largest deviation of a written model's accelerations from those by hand, over the largest; and that model."""
+    rng, n = np.random.default_rng(0), len(engine.coordinates)
+    low = [max(one.low, -1.0) for one in engine.coordinates]
+    high = [min(one.high, 1.0) for one in engine.coordinates]
+    q = rng.uniform(low, high, (STATES, n))
+    v = rng.uniform(AT_SPEED, 4.0, (STATES, n)) * rng.choice([-1, 1], (STATES, n))
+    at = Motion(q, v, rng.uniform(0, 1, (STATES, len(engine.controls))))
+    push = np.zeros((STATES, n))
+    for term in forces:
+        column = next(k for k, one in enumerate(engine.coordinates) if one.port == term.place)
+        push[:, column] += _by_hand(augmented, term, np.concatenate([q, v], axis=1))
+    try:
+        read = loaded_beside(engine.path, text)
+    except GaitdiscError:
+        return np.inf, None
+    if not np.isfinite(push).all():
+        return np.inf, None
+    wanted = engine.accelerations(at, values, push)
+    found = read.accelerations(at, {})
+    return float(np.abs(found - wanted).max() / np.abs(wanted).max()), read
+
+
+def loaded_beside(path: Path, text: str) -> Engine:
+    """Model of another text, with the files that lie beside the first."""
+    folder = tempfile.TemporaryDirectory()
+    for other in path.resolve().parent.iterdir():
+        if other.name != path.name:
+            (Path(folder.name) / other.name).symlink_to(other)
+    copy = Path(folder.name) / path.name
+    copy.write_text(text, encoding="utf-8")
+    engine = read_model(copy)
+    weakref.finalize(engine, folder.cleanup)  # an engine may read its file again
+    return engine

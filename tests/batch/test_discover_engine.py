@@ -1,0 +1,120 @@
+"""`discover` on a pendulum of MuJoCo: refusals, what goes into the mapping, and one whole inquiry."""
+
+from dataclasses import replace
+from importlib.util import find_spec
+
+import numpy as np
+import pandas as pd
+import pytest
+from typer.testing import CliRunner
+
+from gaitdisc.cli import app
+
+pytestmark = pytest.mark.skipif(find_spec("mujoco") is None, reason="MuJoCo is not installed: gaitdisc[mujoco]")
+
+PENDULUM = """<mujoco model="pendulum">
+  <option timestep="0.001"/>
+  <worldbody>
+    <body name="rod">
+      <joint name="pivot" type="hinge" axis="0 -1 0" damping="0.3"/>
+      <inertial pos="0 0 -0.4" mass="2" diaginertia="0.05 0.05 0.001"/>
+    </body>
+  </worldbody>
+  <actuator>
+    <motor name="drive" joint="pivot" gear="5"/>
+  </actuator>
+</mujoco>
+"""
+SPRING = (
+    '<tendon><fixed name="s" stiffness="20" springlength="-1000 0.1"><joint joint="pivot" coef="1"/></fixed></tendon>'
+)
+
+
+@pytest.fixture(scope="module")
+def lab(tmp_path_factory):
+    """Return a folder with a model, the truth, and four trials of it in degrees."""
+    from gaitdisc.engines.engine import Motion, read_model
+
+    folder = tmp_path_factory.mktemp("lab")
+    (folder / "pendulum.xml").write_text(PENDULUM)
+    (folder / "truth.xml").write_text(PENDULUM.replace("</mujoco>", f"{SPRING}</mujoco>"))
+    truth, rng, t = read_model(folder / "truth.xml"), np.random.default_rng(3), np.arange(300) / 100
+    tables = []
+    for trial in range(1, 5):
+        drive = 0.35 * np.sin(2 * np.pi * rng.uniform(0.5, 1.2) * t + rng.uniform(0, 6))
+        drive += 0.25 * np.sin(2 * np.pi * rng.uniform(1.2, 1.8) * t)
+        start = Motion(rng.uniform(-0.2, 0.2, (1, 1)), np.zeros((1, 1)), np.zeros((1, 1)))
+        pivot = np.rad2deg(truth.run(start, drive[None, :, None], 100.0)[0, :, 0]) + 0.2 * rng.normal(size=len(t))
+        tables.append(pd.DataFrame({"trial": trial, "time": t, "drive": drive, "pivot": pivot}))
+    pd.concat(tables).to_csv(folder / "trials.csv", index=False)
+    return folder
+
+
+def test_a_mapping_is_written_by_new_and_not_over_another(lab, tmp_path):
+    file = tmp_path / "pendulum.toml"
+    done = CliRunner().invoke(app, ["new", str(file), "--from", str(lab / "pendulum.xml"), "--degrees"])
+    assert done.exit_code == 0 and "columns pivot, drive" in done.output
+    again = CliRunner().invoke(app, ["new", str(file), "--from", str(lab / "pendulum.xml")])
+    assert again.exit_code != 0 and "is there already" in str(again.exception)
+
+
+def test_degrees_for_radians_and_a_column_that_is_not_there_are_refused(lab, tmp_path):
+    said = CliRunner().invoke(app, ["discover", str(lab / "pendulum.xml"), str(lab / "trials.csv")])
+    assert said.exit_code != 0 and "these may be degrees" in str(said.exception)
+    table = pd.read_csv(lab / "trials.csv").rename(columns={"drive": "torque"})
+    table.to_csv(tmp_path / "other.csv", index=False)
+    said = CliRunner().invoke(app, ["discover", str(lab / "pendulum.xml"), str(tmp_path / "other.csv")])
+    assert "needs a measured column 'drive'" in str(said.exception)
+
+
+def test_a_coordinate_that_no_column_shows_is_refused(lab):
+    from gaitdisc.batch.discover_engine import measured_of_file, refuse_unmeasured
+    from gaitdisc.engines.engine import read_model
+    from gaitdisc.engines.mapping import drafted
+    from gaitdisc.errors import ChannelError
+
+    model = read_model(lab / "pendulum.xml")
+    mapping = drafted(model)
+    blind = replace(mapping, observations=(("pivot", "drive"),), sensors=())
+    with pytest.raises(ChannelError, match="no column shows 'pivot'"):
+        refuse_unmeasured(blind, model, measured_of_file(lab / "trials.csv", blind))
+
+
+def test_what_was_found_goes_into_the_mapping(lab):
+    from gaitdisc.batch.discover_engine import in_mapping
+    from gaitdisc.engines.engine import read_model
+    from gaitdisc.engines.mapping import drafted
+    from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, GapSize, Runs
+    from gaitdisc.simulation.parts import Term
+
+    mapping = drafted(read_model(lab / "pendulum.xml"))
+    late = FoundEffect("input", "drive", "input_delay", "", {"seconds": Estimate(0.04, 0.03, 0.05, "s")})
+    gap, none = GapSize(1.0, 0.5, 0.1), np.empty((0, 0))
+    found = Discovery(
+        "input_error", "", (), (late,), (), gap, gap, (), (), Runs(np.zeros(0, int), none, none, none, none, none)
+    )
+    term = Term("pivot_moment", "port", "viscous_damping", "-0.2*pivot_speed")
+    answer = replace(mapping, model="").with_values({"rod_mass": 2.1}).with_effect(term)
+    changed = in_mapping(mapping, answer, found)
+    assert changed.model == "pendulum.xml" and changed.effects == (term,) and changed.values()["rod_mass"] == 2.1
+    assert changed.definitions == (("replaced_drive", "delay(drive, 0.04)"),)
+
+
+@pytest.mark.slow
+def test_a_spring_is_named_written_into_the_model_and_met_by_its_own_runs(lab, tmp_path):
+    mapping = ["new", str(lab / "pendulum.toml"), "--from", str(lab / "pendulum.xml"), "--degrees"]
+    assert CliRunner().invoke(app, mapping).exit_code == 0
+    words = ["discover", str(lab / "pendulum.xml"), str(lab / "trials.csv"), "--out", str(tmp_path), "-q"]
+    done = CliRunner().invoke(app, words)
+    assert done.exit_code == 0, done.exception
+    assert "a one-sided spring at the pivot_moment port" in done.output
+    assert "<tendon>" in (tmp_path / "pendulum_augmented.xml").read_text()
+    from gaitdisc import discover, load
+
+    (effect,) = load(tmp_path).effects
+    assert effect.estimates["stiffness"].low < 20.0 < effect.estimates["stiffness"].high
+    said = [one.what for one in load(tmp_path).findings if one.kind in ("own runs", "written back")]
+    assert len(said) == 2 and "run by MuJoCo itself" in said[1]
+    found, augmented = discover(lab / "pendulum.toml", pd.read_csv(lab / "trials.csv"))
+    assert [one.name for one in found.effects] == ["one_sided_spring"] and augmented.model == "pendulum.xml"
+    (lab / "pendulum.toml").unlink()

@@ -1,0 +1,54 @@
+"""What was found goes into the model's own text where the accelerations agree, and is told where it does not."""
+
+import re
+
+import pytest
+
+from gaitdisc.engines.engine import read_model
+from gaitdisc.engines.mapping import drafted, with_input_changed
+from gaitdisc.engines.written import loaded_beside, written_model
+from gaitdisc.simulation.parts import Term
+
+from .conftest import PENDULUM
+
+
+def term(name, text):
+    return Term("pivot_moment", "port", name, text)
+
+
+def test_what_has_a_form_is_written_and_what_has_none_is_told(pendulum):
+    model = read_model(pendulum)
+    mapping = drafted(model).with_values({"rod_mass": 2.2})
+    mapping = mapping.with_effect(term("one_sided_spring", "-4.5*max(0, pivot - 0.1)"))
+    mapping = mapping.with_effect(term("gravity_moment", "-0.5*sin(pivot)"))
+    mapping = mapping.with_effect(term("coulomb_friction", "-0.4*sign(pivot_speed)"))
+    found = written_model(model, with_input_changed(mapping, "drive", "1.2*drive"))
+    assert "<!-- the user's own words stay -->" in found.text
+    assert 'mass="2.2"' in found.text and "frictionloss" in found.text
+    assert float(re.search(r'stiffness="([^"]*)"', found.text)[1]) == pytest.approx(4.5)
+    said = "\n".join(found.notes)
+    assert said.count("is written into the model") == 3
+    assert "gravity_moment at pivot_moment has no form in the model's own file" in said
+    assert "drive, as 1.2*drive, has no form" in said
+    assert found.engine.parameters != model.parameters
+
+
+def test_a_form_that_is_not_the_expression_is_not_written(pendulum):
+    """The term is a spring on the speed: what the name says is written would move the pendulum otherwise."""
+    model = read_model(pendulum)
+    wrong = term("linear_stiffness", "-4*pivot*pivot_speed**2 - pivot")
+    found = written_model(model, drafted(model).with_effect(wrong))
+    assert found.text == PENDULUM
+    assert "would differ by" in found.notes[0]
+
+
+def test_files_that_lie_beside_the_model_are_found(pendulum):
+    (pendulum.parent / "joint.xml").write_text('<mujoco><option timestep="0.003"/></mujoco>')
+    text = PENDULUM.replace("<worldbody>", '<include file="joint.xml"/><worldbody>')
+    assert loaded_beside(pendulum, text).coordinates[0].name == "pivot"
+
+
+@pytest.fixture(autouse=True)
+def _nothing_is_written_beside_the_model(pendulum):
+    yield
+    assert {one.name for one in pendulum.parent.iterdir()} <= {"pendulum.xml", "joint.xml"}
