@@ -3,7 +3,7 @@
 The motion is the cohort's recorded angle. Moments are the walk's own with errors of the usual size: a centre of
 pressure that is off by 3 mm moves the moment of inverse dynamics, muscle moments waver by 5 % (plantarflexors, from
 EMG) and by 1.5 N m (all others). They are moments of muscles that no device can enter, as a musculoskeletal estimate
-gives them; EMG envelopes alone would not do, since in the cohort much comes from actuators that no electrode sees.
+gives them.
 """
 
 from __future__ import annotations
@@ -16,17 +16,18 @@ from scipy.signal import butter, sosfiltfilt
 from gaitdisc.cohort.body import bias, inertia, leg_of
 from gaitdisc.cohort.device import FOOT_KG
 from gaitdisc.cohort.measurement import measured
-from gaitdisc.cohort.muscles import LENGTHENING, activated, strength_of
-from gaitdisc.cohort.person import MUSCLES, Person
+from gaitdisc.cohort.muscles import activated, capacities, strength_of
+from gaitdisc.cohort.person import GROUPS, Person
 from gaitdisc.cohort.walk import QUICK_HZ, SLOW_HZ, TrueWalk
 from gaitdisc.simulation.measured import Measured, TrialColumns, measured_of_trials
 
-INPUTS = ("reference", "net", "per_kg", "plantarflexors", "others", "phase")
+INPUTS = ("recorded", "per_kg", "plantarflexors", "others", "phase")
 LOWPASS_HZ, EDGE_S, TRIALS = 10.0, 2.0, 8
 PRESSURE_M, EMG_ERROR, OTHERS_NM = 0.003, 0.05, 1.5
 ERROR_HZ = 6.0
-TRACKED = (800.0, 57.0, 1.0)  # angle, rate and acceleration in the reference, as in tracked_ankle.toml
+TRACKED = (800.0, 57.0, 1.0)  # of angle, rate and acceleration, as in tracked_ankle.toml
 ANKLE, SIDE = 2, 0
+FLEXIONS = [0, 3, 4]  # hip, knee and ankle among the walk's angles
 Values = NDArray[np.float64]
 
 
@@ -48,10 +49,9 @@ def ankle_trials(walk: TrueWalk, emg_late_s: float) -> Measured:
     net = net + PRESSURE_M * _wander(rng, len(net)) * np.interp(walk.slow_s, walk.quick_s, walk.force[:, SIDE, 1])
     others = others + OTHERS_NM * _wander(rng, len(net))
     late = np.interp(walk.slow_s - emg_late_s, walk.slow_s, by_emg * (1 + EMG_ERROR * _wander(rng, len(net))))
-    columns = [sum(factor * path(walk.slow_s, order) for order, factor in enumerate(TRACKED))]
-    columns += [_low(one) for one in (net, per_kg, late, others)] + [
-        np.mod(walk.phase[:: round(QUICK_HZ / SLOW_HZ)], 1)
-    ]
+    recorded = sum(factor * path(walk.slow_s, order) for order, factor in enumerate(TRACKED)) - _low(net)
+    columns = [recorded, *(_low(one) for one in (per_kg, late, others))]
+    columns.append(np.mod(walk.phase[:: round(QUICK_HZ / SLOW_HZ)], 1))
     inner = slice(round(EDGE_S * SLOW_HZ), -round(EDGE_S * SLOW_HZ))
     inputs, seen = np.column_stack(columns)[inner], angle[inner, None]
     length = len(inputs) // TRIALS
@@ -63,19 +63,19 @@ def ankle_trials(walk: TrueWalk, emg_late_s: float) -> Measured:
 
 def plantarflexor_moment(walk: TrueWalk) -> Values:
     """Moment of gastrocnemius and soleus at the strength of the Nominal walk, towards dorsiflexion (time,) [N m]."""
-    reach = strength_of(walk.person.mass_kg).reach
-    rate = np.radians(np.gradient(walk.angles[:, SIDE, 3:], 1 / SLOW_HZ, axis=0))
+    person = walk.person
+    joint = np.radians(walk.angles[:, SIDE][:, FLEXIONS])
+    rate = np.gradient(joint, 1 / SLOW_HZ, axis=0)
+    reach = capacities(strength_of(person.mass_kg, person.style.strength[SIDE]), joint, rate)[:, :, ANKLE]
     total = np.zeros(len(walk.slow_s))
     for name in ("emg_gas", "emg_sol"):
-        muscle = MUSCLES.index(name)
+        muscle = GROUPS.index(name)
         excitation = walk.excitation[:, SIDE, muscle]
         active, level = np.empty(len(excitation)), excitation[0]
         for sample, drive in enumerate(excitation):
             active[sample] = level
             level = activated(drive, level, 1 / QUICK_HZ)
-        pull = -rate @ np.sign(reach[muscle, 1:])
-        gain = np.clip(1 + LENGTHENING * pull, 0.7, 1.3)
-        total += reach[muscle, ANKLE] * active[:: round(QUICK_HZ / SLOW_HZ)] * gain
+        total += reach[:, muscle] * active[:: round(QUICK_HZ / SLOW_HZ)]
     return total
 
 

@@ -53,7 +53,8 @@ class Compiled:
         Parameters
         ----------
         past : ndarray (trial, sample, state), optional
-            Measured states, for delays that reach before a row's start; held at the start where absent or NaN.
+            Measured states, the first ones or all, for delays that reach before a row's start; held at the start where
+            absent or NaN.
 
         Returns
         -------
@@ -72,7 +73,7 @@ class Compiled:
         program = self._instructions(BLOCK)
         wraps = np.array([each.wraps for each in self.simulation.inputs], bool)
         driven = (drive.rate, drive.time0, drive.inputs, drive.samples, wraps)
-        before = read_only(np.empty((0, 0, 0)) if past is None else np.ascontiguousarray(past, float))
+        before = read_only(np.empty((0, 0, 0)) if past is None else np.ascontiguousarray(self._of_all(past), float))
         integrate(program, driven, (place, starts, values, seconds), (steps, substeps), before, (found, ok))
         return found, ok
 
@@ -165,9 +166,14 @@ class Compiled:
             late[:, :, k] = cubic_in_rows(states[:, :, column], np.clip(position, 0, steps - 1))
             before = (position < 0) & (place[:, 1, None] > 0)
             if past is not None and before.any():
-                measured = before_rows(past[:, :, column], place, position, states[:, 0, column])
+                measured = before_rows(self._of_all(past)[:, :, column], place, position, states[:, 0, column])
                 late[:, :, k] = np.where(before, measured, late[:, :, k])
         return late
+
+    def _of_all(self, past: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Past with NaN for the states that it lacks, the last ones: an effect's own were never measured."""
+        lacking = len(self.states) - past.shape[2]
+        return np.pad(past, ((0, 0), (0, 0), (0, lacking)), constant_values=np.nan) if lacking else past
 
     def _rows(self, drive: Drive, rows: Rows) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
         starts = np.array(rows.starts, float, order="C", ndmin=2)

@@ -178,6 +178,17 @@ def test_a_state_is_delayed_into_the_measured_past():
     np.testing.assert_array_equal(held, unknown)
 
 
+def test_a_state_beyond_the_measured_past_is_held_at_its_start():
+    """A lag that an explanation brings along is a state of its own, which nobody measured."""
+    more = '[observations]\nz = "delay(y, 0.1)"\n'
+    late = compile_simulation(_system(["x", "y"], {"x": "delay(y, 0.2)", "y": "1"}, more=more))
+    drive, rows, past = _free(100), _rows([[0.5, 0.0]], begin=50), np.full((1, 101, 1), 7.0)
+    run = {name: late.run(drive, rows, 20, past=one)[0] for name, one in (("narrow", past), ("none", None))}
+    np.testing.assert_array_equal(run["narrow"], run["none"])
+    seen = late.observe(drive, rows, run["none"], past)[0, :, 0]
+    np.testing.assert_allclose(seen, np.maximum(np.arange(21) / 100 - 0.1, 0.0), atol=1e-12)
+
+
 def test_observations_and_their_delays():
     seen = compile_simulation(
         _system(["x"], {"x": "1 + 0*u"}, ["u"], {"d": 0.1}, '[observations]\ny = "2*x + u"\nz = "delay(x, d)"\n')
