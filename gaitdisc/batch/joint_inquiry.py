@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.errors import StrideError
 from gaitdisc.processing.joint_record import JointRecord
 from gaitdisc.regression.muscle_moment import Driven, MuscleMoment, fitted_moment, sign_at
@@ -15,10 +16,11 @@ from gaitdisc.simulation.simulation import Simulation
 
 STRIDES = 3  # of one trial of the inquiry
 FEWEST_TRIALS = 4
+KNOWN = 0.3  # of the samples of a trial, with a known load of the foot
 BLOCKS = 4  # of the Nominal walk, each left out of the calibration once
 RATE_HZ = 50.0  # enough for moments below 20 Hz
 TRACKED = (800.0, 57.0, 1.0)  # of angle, rate and acceleration
-STRENGTH = 0.1  # by which a muscle group may differ from the Nominal walk's before it is a finding
+STRENGTH = 0.06  # by which a muscle group may differ from the Nominal walk's before it is a finding
 SEEN_RAD = 0.005  # noise of an angle, where it follows its own reference
 # joint -> what a clinician calls the groups that turn it towards its negative and its positive angle
 GROUPS = {
@@ -26,6 +28,16 @@ GROUPS = {
     "knee_angle": ("knee_extensors", "knee_flexors"),
     "hip_flexion": ("hip_extensors", "hip_flexors"),
 }
+EFFECTS = (
+    "constant_load",
+    "linear_stiffness",
+    "one_sided_spring",
+    "dead_zone_spring",
+    "viscous_damping",
+    "one_sided_damper",
+    "coulomb_friction",
+    "phase_locked_moment",
+)
 WORDS = {"ankle_angle": "ankle", "knee_angle": "knee", "hip_flexion": "hip"}
 Values = NDArray[np.float64]
 
@@ -63,25 +75,34 @@ def tracked_joint(record: JointRecord, model: MuscleMoment) -> Simulation:
     """
     word, (against, towards) = WORDS[record.joint], GROUPS[record.joint]
     carried = record.per_kg.size > 0
+    muscles = [(name.split("_")[1], sign_at(record.joint, name)) for name in record.muscles]
+    muscles = [(name, against if sign < 0 else towards) for name, sign in muscles if sign]
     inputs = [
         Input("reference", "rad/s^2", "recorded motion, low-passed: acceleration + 57*rate + 800*angle"),
-        Input(against, "N m", "moment that their EMG gave in the Nominal walk"),
-        Input(towards, "N m", "moment that their EMG gave in the Nominal walk"),
+        *(Input(name, "1", "activation, from its EMG as in the Nominal walk") for name, _ in muscles),
+        *(Input(f"{name}_gain", "N m", "moment at activation 1, as in the Nominal walk") for name, _ in muscles),
         Input("others", "N m", "passive parts, and what no electrode sees, as in the Nominal walk"),
         Input("phase", "1", "percent stride / 100"),
     ]
-    numbers = [
+    groups = [one for one in (against, towards) if any(group == one for _, group in muscles)]
+    numbers = [Parameter("emg_delay", 0.0, "s", meaning="by which EMG acts later than in the Nominal walk")]
+    numbers += [
         Parameter(f"{group}_strength", 1.0, "1", 1 - STRENGTH, 1 + STRENGTH, "against the Nominal walk's")
-        for group in (against, towards)
+        for group in groups
     ]
-    said = [f"{against}_strength*{against}", f"{towards}_strength*{towards}", "others", f"{word}_moment"]
+    said = [f"{group}_strength*{name}_gain*delay({name}, emg_delay)" for name, group in muscles]
+    said += ["others", f"{word}_moment"]
     if carried:
         inputs.append(Input("per_kg", "N m/kg", "what each kg more at the foot adds to the moment that muscles make"))
         numbers.append(Parameter("added_foot_mass", 0.0, "kg", meaning="at the foot, beyond the body's own"))
     total = " + ".join(said) + (" - added_foot_mass*per_kg" if carried else "")
     return Simulation(
         title=f"{word} of {record.subject}: Nominal moment model against inverse dynamics",
-        states=(State(word, "rad", meaning=f"{record.joint}_{record.side}"), State("rate", "rad/s"), State("net", "N m")),
+        states=(
+            State(word, "rad", meaning=f"{record.joint}_{record.side}"),
+            State("rate", "rad/s"),
+            State("net", "N m"),
+        ),
         inputs=tuple(inputs),
         parameters=tuple(numbers),
         ports=(Port(f"{word}_moment", "N m", "a moment that is no muscle's"),),
@@ -99,12 +120,12 @@ def tracked_joint(record: JointRecord, model: MuscleMoment) -> Simulation:
 def tracked_trials(record: JointRecord, model: MuscleMoment, simulation: Simulation) -> Measured:
     """Cut the walk into trials of some strides in a row, with the model's moments as inputs."""
     driven = driven_of(record)
-    by_muscle = model.by_muscle(driven)
     step = max(round(driven.rate_hz / RATE_HZ), 1)
+    names = [name.split("_")[1] for name in record.muscles if sign_at(record.joint, name)]
     columns = {
         "reference": TRACKED[0] * record.angle + TRACKED[1] * record.rate + TRACKED[2] * record.speedup,
-        GROUPS[record.joint][0]: by_muscle[:, driven.signs < 0].sum(axis=1),
-        GROUPS[record.joint][1]: by_muscle[:, driven.signs > 0].sum(axis=1),
+        **dict(zip(names, driven.activation(model.delay_s, model.lag_s).T, strict=True)),
+        **{f"{name}_gain": gain for name, gain in zip(names, model.gain(driven).T, strict=True)},
         "others": model.others(driven),
         "phase": record.phase,
         "per_kg": record.per_kg,
@@ -117,7 +138,7 @@ def tracked_trials(record: JointRecord, model: MuscleMoment, simulation: Simulat
     while first + STRIDES - 1 <= last:
         inside = np.flatnonzero((record.stride >= first) & (record.stride < first + STRIDES))
         whole = len(inside) > 1 and (np.diff(inside) == 1).all() and usable[inside].all()
-        if whole and np.isfinite(record.moment[inside]).mean() > 0.5:
+        if whole and np.isfinite(record.moment[inside]).mean() > KNOWN:
             kept = inside[::step]
             trials.append(TrialColumns(str(len(trials) + 1), record.time[kept], inputs[kept], seen[kept]))
             first += STRIDES
@@ -130,8 +151,8 @@ def tracked_trials(record: JointRecord, model: MuscleMoment, simulation: Simulat
             f"{record.subject} {record.condition} has {last + 1} strides, {len(trials)} times {STRIDES} in a row",
             "Record longer, or keep each foot on its own plate.",
         )
-    names = [one.name for one in simulation.inputs]
-    return measured_of_trials(trials, names, [name for name, _ in simulation.observations], record.subject)
+    driving = [one.name for one in simulation.inputs]
+    return measured_of_trials(trials, driving, [name for name, _ in simulation.observations], record.subject)
 
 
 def _through_lag(moment: Values, rate_hz: float) -> Values:
@@ -145,3 +166,14 @@ def _through_lag(moment: Values, rate_hz: float) -> Values:
     held = (1 - keep) * rate_hz / RATE_HZ
     late = lfilter([1 - held, held - keep], [1.0, -keep], whole - whole[0])[: len(moment)] + whole[0]
     return np.where(known, late, np.nan)
+
+
+def weighed(candidate: Candidate) -> bool:
+    """Whether an explanation is one that a device, a muscle or the recording of a joint can have.
+
+    Inputs and the recorded angle only carry the motion and the EMG; late EMG and weak muscles are numbers of the
+    simulation. What is wrong with the moment model's own shape is no effect of a device.
+    """
+    if candidate.kind == "observation":
+        return candidate.place == "net_moment" and candidate.name in ("sensor_gain", "sensor_lag")
+    return candidate.kind == "parameter" or candidate.name in EFFECTS

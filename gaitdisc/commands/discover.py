@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from gaitdisc.commands.options import Quiet
 from gaitdisc.errors import SchemaError
+
+if TYPE_CHECKING:
+    from gaitdisc.results.discovery import Discovery
+    from gaitdisc.simulation.simulation import Simulation
+
+EVERYONE = "all"
 
 
 def discover(
@@ -23,8 +30,13 @@ def discover(
     out: Annotated[Path, typer.Option(help="Folder of what was found.")] = Path("found"),
     participant: Annotated[
         str,
-        typer.Option(help="Of a study: the Nominal walk's model is the simulation, the device walk what is measured."),
+        typer.Option(
+            help="Of a study: the Nominal walk's model is the simulation, the device walk what is measured; 'all' for all."
+        ),
     ] = "",
+    joint: Annotated[
+        str, typer.Option(help="Of a study with EMG and moments: ankle_angle, knee_angle or hip_flexion.")
+    ] = "ankle_angle",
     catalogue: Annotated[Path | None, typer.Option(help="Effects of your own, beside those that come along.")] = None,
     draw: Annotated[bool, typer.Option("--report/--no-report", help="Write report.html too.")] = True,
     quiet: Quiet = False,
@@ -37,20 +49,29 @@ def discover(
             "Name the measured table after it: gaitdisc discover SIMULATION.toml MEASURED.csv. "
             "Of a study, add --participant.",
         )
-    from gaitdisc.batch.discover_files import discover_files, discover_study
-    from gaitdisc.results.discovery_folder import save_discovery
-    from gaitdisc.simulation.writing import write_simulation
-
     began = time.perf_counter()
 
     def told(step: str) -> None:
         if not quiet:
             typer.echo(f"{time.perf_counter() - began:6.1f} s  {step}", err=True)
 
-    if measured is None:
-        found, augmented = discover_study(simulation, participant, catalogue, told)
+    from gaitdisc.batch.discover_files import discover_files, discover_study
+
+    if measured is not None:
+        _write(*discover_files(simulation, measured, catalogue, told), out, draw, told)
+    elif participant == EVERYONE:
+        _everyone(
+            simulation, out, lambda person: discover_study(simulation, person, catalogue, told, joint), draw, told
+        )
     else:
-        found, augmented = discover_files(simulation, measured, catalogue, told)
+        _write(*discover_study(simulation, participant, catalogue, told, joint), out, draw, told)
+
+
+def _write(found: Discovery, augmented: Simulation, out: Path, draw: bool, told: Callable[[str], None]) -> None:
+    """Write what was found, and say it."""
+    from gaitdisc.results.discovery_folder import save_discovery
+    from gaitdisc.simulation.writing import write_simulation
+
     write_simulation(augmented, out / "augmented.toml")
     place = save_discovery(found, out)
     if draw:
@@ -63,3 +84,34 @@ def discover(
         if finding.severity != "note":
             typer.echo(finding.line(), err=True)
     typer.echo(f"{'report' if draw else 'found'}: {place}")
+
+
+def _everyone(
+    study: Path,
+    out: Path,
+    discovered: Callable[[str], tuple[Discovery, Simulation]],
+    draw: bool,
+    told: Callable[[str], None],
+) -> None:
+    """Search each participant in turn, each into a folder; who cannot be searched costs nobody else."""
+    from gaitdisc.errors import GaitdiscError
+    from gaitdisc.ingest.study_file import load_study
+    from gaitdisc.results.device_people import over_people
+    from gaitdisc.spreadsheet import write_csv
+
+    found: dict[str, Discovery] = {}
+    for person in load_study(study).participants:
+        typer.echo(f"{person.id}:")
+        try:
+            one, augmented = discovered(person.id)
+        except GaitdiscError as error:
+            typer.echo(f"refused: {error}", err=True)
+            continue
+        found[person.id] = one
+        _write(one, augmented, out / person.id, draw, told)
+    table = over_people(found)
+    write_csv(table, out / "people.csv", "%.6g")
+    for row in table.itertuples():
+        interval = "" if row.low != row.low else f", mean {row.mean:.3g} ({row.low:.3g} to {row.high:.3g}) {row.unit}"
+        what = f"{row.effect} at {row.place}, {row.number}" if row.place else row.effect
+        typer.echo(f"{what}: {row.people} of {row.of}{interval}: {row.who}")

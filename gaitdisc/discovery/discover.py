@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from gaitdisc.discovery.answer import answer
 from gaitdisc.discovery.by_share import leaves_noise
+from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.catalogue import Shape
 from gaitdisc.discovery.decision import judge
 from gaitdisc.discovery.held_out import holding_out_others, noted, tells_nothing
@@ -24,13 +25,14 @@ def discover(
     measured: Measured,
     shapes: tuple[Shape, ...] = (),
     told: Callable[[str], None] = lambda _: None,
+    weighed: Callable[[Candidate], bool] = lambda _: True,
 ) -> tuple[Discovery, Simulation]:
     """Find where a simulation and measured trials disagree, name what is missing, add it, show the gap shrink."""
     measured = without_spikes(measured)
-    inquiry = begin_inquiry(simulation, measured, shapes)
+    inquiry = begin_inquiry(simulation, measured, shapes, weighed)
     agreeing = agreeing_trials(inquiry, measured)
     if agreeing is not measured:
-        measured, inquiry = agreeing, begin_inquiry(simulation, agreeing, shapes)
+        measured, inquiry = agreeing, begin_inquiry(simulation, agreeing, shapes, weighed)
     told("fitting the simulation as it was read")
     as_read = inquiry.as_read()
     told(f"weighing {len(inquiry.search.candidates)} explanations")
@@ -39,13 +41,13 @@ def discover(
         kept = without_trial_apart(inquiry)
         if kept is not inquiry.measured:
             told("one trial goes with no explanation of the others: it is left out")
-            measured, inquiry = kept, begin_inquiry(simulation, kept, shapes)
+            measured, inquiry = kept, begin_inquiry(simulation, kept, shapes, weighed)
             as_read = inquiry.as_read()
             verdict = judge(inquiry, as_read)
     unproven = verdict.rivals[:1] if verdict.word == "no_gap" else ()
     if unproven and tells_nothing(inquiry, as_read, *unproven):
         if len(measured.trials) == 1:
-            other = begin_inquiry(simulation, split_in_time(measured, last=False), shapes)
+            other = begin_inquiry(simulation, split_in_time(measured, last=False), shapes, weighed)
         else:
             other = holding_out_others(inquiry, as_read, *unproven)
         told("what is held out never goes where it would act: other data are held out")

@@ -1,4 +1,4 @@
-"""What a mass at the foot, of which the inertia table knows nothing, adds to the ankle's net moment."""
+"""What a mass at the foot, of which the inertia table knows nothing, adds to a joint's net moment."""
 
 from __future__ import annotations
 
@@ -10,17 +10,19 @@ from gaitdisc.signals.derivatives import differentiated
 
 
 def moment_per_foot_kg(
-    ankle: NDArray[np.float64],
+    joint: NDArray[np.float64],
     heel: NDArray[np.float64],
     toe: NDArray[np.float64],
     up: NDArray[np.float64],
     rate_hz: float,
 ) -> NDArray[np.float64]:
-    """Return the moment towards dorsiflexion that carries 1 kg midway between heel and toes (sample,) [N m/kg].
+    """Return the moment that carries 1 kg midway between heel and toes (sample,) [N m/kg].
+
+    It is positive towards dorsiflexion and hip flexion; at the knee that is extension.
 
     Parameters
     ----------
-    ankle, heel, toe : ndarray (sample, 3)
+    joint, heel, toe : ndarray (sample, 3)
         Low-passed places [m].
     up : ndarray (3,)
         Unit vector against gravity.
@@ -36,4 +38,4 @@ def moment_per_foot_kg(
     forward = forward - np.outer(forward @ up, up)
     axis = np.cross(forward / np.linalg.norm(forward, axis=1, keepdims=True), up)
     push = differentiated(middle, rate_hz, 2) + GRAVITY * up
-    return np.einsum("fx,fx->f", axis, np.cross(middle - ankle, push))
+    return np.einsum("fx,fx->f", axis, np.cross(middle - joint, push))

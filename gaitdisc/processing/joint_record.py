@@ -25,6 +25,7 @@ from gaitdisc.signals.emg_quality import emg_findings
 from gaitdisc.signals.envelope import enveloped
 from gaitdisc.signals.strides import cut_strides
 
+JOINT_AT = {"ankle_angle": "ankle_lateral", "knee_angle": "knee_lateral", "hip_flexion": "asis"}  # landmark of a joint
 MOMENT_HZ = 20.0  # the moment keeps what the forces' own filter left of it
 
 
@@ -137,19 +138,21 @@ def _moment(
             "Give mass_kg of the participant in the study file.",
         )
     factor = mass_kg if unit == "N m/kg" and mass_kg is not None else 1.0
-    values = interpolated(own.time, lowpassed(own, MOMENT_HZ).values if own.rate_hz > 3 * MOMENT_HZ else own.values, time)
+    values = interpolated(
+        own.time, lowpassed(own, MOMENT_HZ).values if own.rate_hz > 3 * MOMENT_HZ else own.values, time
+    )
     return values[:, 0] * factor, []
 
 
 def _per_kg(trial: Trial, study: Study, joint: str, time: NDArray[np.float64]) -> NDArray[np.float64]:
-    """What each kg more at the foot adds to the ankle's moment; empty where no marker of the foot shows it."""
-    if joint != "ankle_angle" or "markers" not in trial.streams:
+    """What each kg more at the foot adds to the joint's moment; empty where no marker shows it."""
+    if "markers" not in trial.streams:
         return np.empty(0)
     markers, side, filters = trial.stream("markers"), study.strides.side, study.filters
     labels = marker_labels(markers)
     known = max(shipped_marker_sets().values(), key=lambda one: len(one.names(labels)))
     own = known.names(labels)
-    words = [known.landmarks[place].split() for place in ("ankle_lateral", "heel", "toe")]
+    words = [known.landmarks[place].split() for place in (JOINT_AT[joint], "heel", "toe")]
     wanted = [next((own[at] for one in some if (at := sided(one, side)) in own), "") for some in words]
     if "" in wanted:
         return np.empty(0)
@@ -158,7 +161,7 @@ def _per_kg(trial: Trial, study: Study, joint: str, time: NDArray[np.float64]) -
     everything = marker_places(markers, labels)
     up = up_axis(np.nanmean(everything, axis=1), places[:, 1])
     each = moment_per_foot_kg(places[:, 0], places[:, 1], places[:, 2], up, markers.rate_hz)
-    return interpolated(markers.time, each[:, None], time)[:, 0]
+    return interpolated(markers.time, (-each if joint == "knee_angle" else each)[:, None], time)[:, 0]
 
 
 def _envelopes(

@@ -22,16 +22,24 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-DELAYS_S = np.arange(0.0, 0.13, 0.01)
-LAGS_S = (0.01, 0.02, 0.035, 0.05)
+DELAYS_S = np.arange(0.0, 0.11, 0.02)
+LAGS_S = (0.015, 0.03, 0.05)
 RESPECT = 0.03  # ridge that pulls the four gains of a muscle together, of the mean squared regressor
 HARMONICS = 6  # of the curve that no electrode sees
-STIFF = 0.0
-BLOCKS = 4
 EDGES = (0.01, 0.99)  # quantiles of angle and rate between which a gain varies
 # towards the positive angle (dorsiflexion, knee flexion, hip flexion), or against it
 SPANS: Mapping[str, Mapping[str, int]] = {
-    "ankle_angle": {"sol": -1, "gas": -1, "gasmed": -1, "gaslat": -1, "tp": -1, "per": -1, "perl": -1, "perb": -1, "ta": 1},
+    "ankle_angle": {
+        "sol": -1,
+        "gas": -1,
+        "gasmed": -1,
+        "gaslat": -1,
+        "tp": -1,
+        "per": -1,
+        "perl": -1,
+        "perb": -1,
+        "ta": 1,
+    },
     "knee_angle": {
         **{"ham": 1, "hammed": 1, "hamlat": 1, "bf": 1, "st": 1, "sm": 1, "gas": 1, "gasmed": 1, "gaslat": 1},
         **{"rf": -1, "vas": -1, "vasmed": -1, "vaslat": -1, "vasint": -1},
@@ -122,16 +130,21 @@ class MuscleMoment:
 
     def by_muscle(self, driven: Driven) -> Values:
         """Return each muscle's moment (sample, muscle) [N m]."""
-        corners = _corners(driven, self.span)
-        return driven.signs * driven.activation(self.delay_s, self.lag_s) * (corners @ self.gains.T)
+        return driven.activation(self.delay_s, self.lag_s) * self.gain(driven)
+
+    def gain(self, driven: Driven) -> Values:
+        """Return each muscle's moment for each unit of activation, with its sign (sample, muscle) [N m]."""
+        return driven.signs * (_corners(driven, self.span) @ self.gains.T)
 
     def others(self, driven: Driven) -> Values:
-        """Return what is no muscle's with an electrode (sample,): passive parts, and the curve over the stride [N m]."""
+        """Return passive parts and the curve over the stride, which no electrode sees (sample,) [N m]."""
         return _passive(driven) @ self.passive + _waves(driven.phase) @ self.unseen
 
 
-def fitted_moment(driven: Driven, moment: Values, blocks: NDArray[np.intp]) -> MuscleMoment:
-    """Fit the model to a walk.
+def fitted_moment(
+    driven: Driven, moment: Values, blocks: NDArray[np.intp], timing: tuple[float, float] | None = None
+) -> MuscleMoment:
+    """Fit the model to a walk; delay and lag [s] are searched where they are not given.
 
     Parameters
     ----------
@@ -142,7 +155,7 @@ def fitted_moment(driven: Driven, moment: Values, blocks: NDArray[np.intp]) -> M
     """
     known = np.isfinite(moment) & np.isfinite(driven.phase) & (blocks >= 0)
     span = np.array([np.quantile(one[known], EDGES) for one in (driven.angle, driven.rate)])
-    timings = [(float(delay), lag) for delay in DELAYS_S for lag in LAGS_S]
+    timings = [timing] if timing else [(float(delay), lag) for delay in DELAYS_S for lag in LAGS_S]
     coarse = [_left_out(driven, moment, blocks, span, timing, known) for timing in timings]
     delay, lag = timings[int(np.argmin(coarse))]
     whole = _solved(driven, moment, span, (delay, lag), known)
@@ -202,13 +215,14 @@ def _signed(parts: Values, moment: Values, kept: NDArray[np.bool_], muscles: int
         own = slice(4 * number, 4 * number + 4)
         size = float(np.trace(normal[own, own])) / 4
         normal[own, own] += RESPECT * size * (np.eye(4) - 0.25)
-    normal[-3, -3] += STIFF * kept.sum()
     size = np.sqrt(np.maximum(np.diag(normal), 1e-12))
     scaled = normal / np.outer(size, size) + 1e-9 * np.eye(columns)
     root = np.linalg.cholesky(scaled)
     low = np.full(columns, -np.inf)
     low[: 4 * muscles + 2] = 0.0
-    found = lsq_linear(root.T, np.linalg.solve(root, match / size), (low, np.inf), method="bvls" if columns < 40 else "trf")
+    found = lsq_linear(
+        root.T, np.linalg.solve(root, match / size), (low, np.inf), method="bvls" if columns < 40 else "trf"
+    )
     return found.x / size
 
 
