@@ -63,6 +63,8 @@ class DeviceWalks:
 
 def device_walks(study: Study, participant: str, joint: str = "ankle_angle") -> DeviceWalks:
     """Read one joint of both walks of a participant; a walk that lacks EMG or moments is refused with its name."""
+    if joint not in WORDS:
+        raise SchemaError(f"a joint is one of {', '.join(WORDS)}", f"found {joint!r}", "Correct --joint.")
     person = study.participant(participant)
     lacking = not_compared(study, person)
     if lacking:
@@ -104,23 +106,23 @@ def check_kinetics(trial: Trial) -> None:
     ):
         if key not in trial.streams:
             why = next((f": {one.what}" for one in trial.findings if one.kind == "no moments"), "")
-            raise NoMoments(
+            raise NoMomentsError(
                 f"what a device does at a joint is named from {word} in both walks",
                 f"{trial.name} has no {word}{why if key == 'moments' else ''}",
                 mend,
             )
 
 
-class NoMoments(ChannelError):
+class NoMomentsError(ChannelError):
     """A walk lacks EMG or moments; its motion can still be compared."""
 
 
 def beside(walks: DeviceWalks, found: Discovery) -> dict[str, float]:
     """Root mean square error of the net moment on the held-out strides, model by model [N m].
 
-    Nominal, and Nominal with the named effect, are those of the discovery. Augmented adds a plain regression of what is
-    left (angle, rate, their squares and product, each muscle's moment, harmonics of the stride); Exo is the moment model
-    fitted to the device walk itself. Both learn from all strides of the device walk that are not held out.
+    Nominal, and Nominal with the named effect, are those of the discovery. Augmented adds a plain regression of what
+    is left (angle, rate, their squares and product, each muscle's moment, harmonics of the stride); Exo is the moment
+    model fitted to the device walk itself. Both learn from all strides of the device walk that are not held out.
     """
     device, model = walks.device, walks.model
     at = found.runs.time[np.isfinite(found.runs.time)]

@@ -64,7 +64,7 @@ def discover_study(
         The Nominal model with what was found in it.
     """
     # imported here: a simulation file needs no filters and no pandas
-    from gaitdisc.batch.device_study import NoMoments, beside, device_walks
+    from gaitdisc.batch.device_study import NoMomentsError, beside, device_walks
     from gaitdisc.batch.joint_inquiry import tracked_joint, tracked_trials, weighed
     from gaitdisc.batch.nominal_model import nominal_inquiry
     from gaitdisc.batch.public_words import words_of
@@ -77,7 +77,7 @@ def discover_study(
     walks = {read.path_of(file): called[Path(file).name] for trial in person.trials for file in trial.files}
     try:
         both = device_walks(read, participant, joint)
-    except NoMoments as lacking:
+    except NoMomentsError as lacking:
         told("comparing the motion alone")
         model, data = nominal_inquiry(read, participant, joint)
         found, augmented = discovered(model, data, catalogue, walks, told)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from gaitdisc.results.discovery import Discovery
     from gaitdisc.simulation.simulation import Simulation
 
-EVERYONE = "all"
+EVERYONE, ANKLE = "all", "ankle_angle"
 
 
 def discover(
@@ -31,12 +31,9 @@ def discover(
     participant: Annotated[
         str,
         typer.Option(
-            help="Of a study: the Nominal walk's model is the simulation, the device walk what is measured; 'all' for all."
+            help="Of a study: who; the Nominal walk calibrates, the device walk is searched. W01, W01:knee_angle, or all."
         ),
     ] = "",
-    joint: Annotated[
-        str, typer.Option(help="Of a study with EMG and moments: ankle_angle, knee_angle or hip_flexion.")
-    ] = "ankle_angle",
     catalogue: Annotated[Path | None, typer.Option(help="Effects of your own, beside those that come along.")] = None,
     draw: Annotated[bool, typer.Option("--report/--no-report", help="Write report.html too.")] = True,
     quiet: Quiet = False,
@@ -59,12 +56,16 @@ def discover(
 
     if measured is not None:
         _write(*discover_files(simulation, measured, catalogue, told), out, draw, told)
-    elif participant == EVERYONE:
-        _everyone(
-            simulation, out, lambda person: discover_study(simulation, person, catalogue, told, joint), draw, told
-        )
+        return
+    whose, _, joint = participant.partition(":")
+
+    def discovered(person: str) -> tuple[Discovery, Simulation]:
+        return discover_study(simulation, person, catalogue, told, joint or ANKLE)
+
+    if whose == EVERYONE:
+        _everyone(simulation, out, discovered, draw, told)
     else:
-        _write(*discover_study(simulation, participant, catalogue, told, joint), out, draw, told)
+        _write(*discovered(whose), out, draw, told)
 
 
 def _write(found: Discovery, augmented: Simulation, out: Path, draw: bool, told: Callable[[str], None]) -> None:
@@ -96,7 +97,7 @@ def _everyone(
     """Search each participant in turn, each into a folder; who cannot be searched costs nobody else."""
     from gaitdisc.errors import GaitdiscError
     from gaitdisc.ingest.study_file import load_study
-    from gaitdisc.results.device_people import over_people
+    from gaitdisc.results.device_people import lines, over_people
     from gaitdisc.spreadsheet import write_csv
 
     found: dict[str, Discovery] = {}
@@ -111,7 +112,5 @@ def _everyone(
         _write(one, augmented, out / person.id, draw, told)
     table = over_people(found)
     write_csv(table, out / "people.csv", "%.6g")
-    for row in table.itertuples():
-        interval = "" if row.low != row.low else f", mean {row.mean:.3g} ({row.low:.3g} to {row.high:.3g}) {row.unit}"
-        what = f"{row.effect} at {row.place}, {row.number}" if row.place else row.effect
-        typer.echo(f"{what}: {row.people} of {row.of}{interval}: {row.who}")
+    for line in lines(table):
+        typer.echo(line)

@@ -26,6 +26,7 @@ from gaitdisc.signals.envelope import enveloped
 from gaitdisc.signals.strides import cut_strides
 
 JOINT_AT = {"ankle_angle": "ankle_lateral", "knee_angle": "knee_lateral", "hip_flexion": "asis"}  # landmark of a joint
+LEAST_DEG, PERCENTILES = 2.0, (5, 95)
 MOMENT_HZ = 20.0  # the moment keeps what the forces' own filter left of it
 
 
@@ -92,9 +93,16 @@ def joint_record(trial: Trial, study: Study, joint: str, mass_kg: float | None) 
     side, filters = study.strides.side, study.filters
     name = f"{joint}_{side}"
     raw = trial.stream("kinematics").selected([name])
+    moved = float(np.ptp(np.nanpercentile(raw.values[:, 0], PERCENTILES)))
+    if moved < LEAST_DEG:
+        raise UnitError(
+            f"a joint that walks moves by more than {LEAST_DEG:g} deg",
+            f"{trial.name}: {name} moves by {moved:.2g} deg, as one in radians would that is said to be in degrees",
+            "State the file's unit (inDegrees=no), or choose a joint that is not held.",
+        )
     smooth = lowpassed(raw, filters.kinematics_hz, filters.order, filters.gap_s)
     rate, speedup = (np.radians(differentiated(smooth.values, smooth.rate_hz, order)[:, 0]) for order in (1, 2))
-    moment, stated = _moment(trial, name, mass_kg, raw.time)
+    moment = _moment(trial, name, mass_kg, raw.time)
     envelopes, muscles, dead = _envelopes(trial, study, side, raw.time)
     weight = None if mass_kg is None else mass_kg * GRAVITY
     choice = chosen_contacts(
@@ -121,13 +129,11 @@ def joint_record(trial: Trial, study: Study, joint: str, mass_kg: float | None) 
         phase,
         number,
         _per_kg(trial, study, joint, raw.time),
-        (*trial.findings, *choice.findings, *stated, *dead),
+        (*trial.findings, *choice.findings, *dead),
     )
 
 
-def _moment(
-    trial: Trial, name: str, mass_kg: float | None, time: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], list[Finding]]:
+def _moment(trial: Trial, name: str, mass_kg: float | None, time: NDArray[np.float64]) -> NDArray[np.float64]:
     """Moment of a joint in N m on a time base."""
     own = trial.stream("moments").selected([f"{name}_moment"])
     unit = own.channels[0].unit
@@ -138,10 +144,9 @@ def _moment(
             "Give mass_kg of the participant in the study file.",
         )
     factor = mass_kg if unit == "N m/kg" and mass_kg is not None else 1.0
-    values = interpolated(
-        own.time, lowpassed(own, MOMENT_HZ).values if own.rate_hz > 3 * MOMENT_HZ else own.values, time
-    )
-    return values[:, 0] * factor, []
+    smooth = lowpassed(own, MOMENT_HZ) if own.rate_hz > 3 * MOMENT_HZ else own
+    values = interpolated(own.time, smooth.values, time)
+    return values[:, 0] * factor
 
 
 def _per_kg(trial: Trial, study: Study, joint: str, time: NDArray[np.float64]) -> NDArray[np.float64]:

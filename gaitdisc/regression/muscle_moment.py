@@ -223,7 +223,7 @@ def _signed(parts: Values, moment: Values, kept: NDArray[np.bool_], muscles: int
     found = lsq_linear(
         root.T, np.linalg.solve(root, match / size), (low, np.inf), method="bvls" if columns < 40 else "trf"
     )
-    return found.x / size
+    return np.asarray(found.x / size, np.float64)
 
 
 def _corners(driven: Driven, span: Values) -> Values:

@@ -31,12 +31,26 @@ def over_people(found: Mapping[str, Discovery]) -> pd.DataFrame:
         for effect in one.effects:
             for number, each in effect.estimates.items():
                 own.setdefault((effect.name, effect.place, number, each.unit), {})[person] = each.value
-    rows = [(*key, len(each), len(found), *_mean(list(each.values())), _who(each)) for key, each in own.items()]
+    rows: list[tuple[object, ...]] = [
+        (*key, len(each), len(found), *_mean(list(each.values())), _who(each)) for key, each in own.items()
+    ]
     without = [person for person, one in found.items() if not one.effects]
     if without:
         rows.append((NOTHING, "", "", "", len(without), len(found), *[float("nan")] * 3, ", ".join(without)))
-    rows.sort(key=lambda row: -row[4])
-    return pd.DataFrame(rows, columns=pd.Index(COLUMNS))
+    table = pd.DataFrame(rows, columns=pd.Index(COLUMNS))
+    return table.sort_values("people", ascending=False, kind="stable", ignore_index=True)
+
+
+def lines(table: pd.DataFrame) -> list[str]:
+    """Each row of `over_people` as a line of text."""
+    told = []
+    for row in table.to_dict("records"):
+        what = f"{row['effect']} at {row['place']}, {row['number']}" if row["place"] else row["effect"]
+        mean = f", mean {row['mean']:.3g}" if row["place"] else ""
+        if np.isfinite(row["low"]):
+            mean += f" (95 % {row['low']:.3g} to {row['high']:.3g})"
+        told.append(f"{what}: {row['people']} of {row['of']}{mean} {row['unit']}".rstrip() + f": {row['who']}")
+    return told
 
 
 def _mean(values: list[float]) -> tuple[float, float, float]:
