@@ -31,7 +31,7 @@ def discover(
     participant: Annotated[
         str,
         typer.Option(
-            help="Of a study: who; the Nominal walk calibrates, the device walk is searched. W01, W01:knee_angle, or all."
+            help="Of a study: W01, W01:knee_angle, or all. The Nominal walk calibrates, the device walk is searched."
         ),
     ] = "",
     catalogue: Annotated[Path | None, typer.Option(help="Effects of your own, beside those that come along.")] = None,
