@@ -183,11 +183,16 @@ def _envelopes(
             f"{trial.name} has {', '.join(sorted(lost)) or 'none'}" + (" dead" if lost else ""),
             "Name the muscles in [channels], or set side in [strides] to the leg with electrodes.",
         )
-    filters = study.filters
-    smooth: Recording = (
-        enveloped(own, filters.emg_highpass_hz, filters.emg_lowpass_hz, filters.order)
-        if is_raw(own)
-        else lowpassed(own, filters.emg_lowpass_hz, filters.order, filters.gap_s)
-    )
+    values = np.column_stack([_smooth(own.selected([name]), study, time) for name in own.names])
     left_out = [replace(one, severity="warning", spoils="this muscle is left out") for one in dead]
-    return np.maximum(interpolated(smooth.time, smooth.values, time), 0.0), tuple(own.names), left_out
+    return np.maximum(values, 0.0), tuple(own.names), left_out
+
+
+def _smooth(one: Recording, study: Study, time: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Envelope of one electrode on a time base; one that is an envelope already is low-passed as one is."""
+    filters = study.filters
+    if is_raw(one):
+        smooth = enveloped(one, filters.emg_highpass_hz, filters.emg_lowpass_hz, filters.order)
+    else:
+        smooth = lowpassed(one, filters.emg_lowpass_hz, filters.order, filters.gap_s)
+    return interpolated(smooth.time, smooth.values, time)[:, 0]

@@ -82,3 +82,15 @@ def test_a_leg_without_electrodes_is_refused(trial):
     bare = replace(trial, streams={**trial.streams, "emg": trial.stream("emg").selected(["emg_sol_l"])})
     with pytest.raises(ChannelError, match=r"living EMG of side 'r'.*has none.*set side in \[strides\]"):
         joint_record(bare, STUDY, "ankle_angle", None)
+
+
+def test_an_electrode_that_is_an_envelope_already_is_taken_as_one_beside_raw_ones(trial, record):
+    """As in the EMG of a published walk, where some muscles swing about zero and others never fall below it."""
+    raw = trial.stream("emg")
+    column, values = raw.index("emg_sol_r"), np.array(raw.values)
+    values[:, column] = np.interp(raw.time, record.time, record.envelopes[:, 4])
+    mixed = joint_record(
+        replace(trial, streams={**trial.streams, "emg": replace(raw, values=values)}), STUDY, "ankle_angle", None
+    )
+    np.testing.assert_allclose(mixed.envelopes[:, 3], record.envelopes[:, 3])
+    assert np.corrcoef(mixed.envelopes[:, 4], record.envelopes[:, 4])[0, 1] > 0.98
