@@ -56,7 +56,7 @@ PARTS = (
     Part(5, "gait_population", "ch5_gait_population", "5.3.3, Table 5.2 below, Fig. 5.5", 90, 1),
     Part(5, "sea_surface", "ch5_sea_surface", "5.3.2, Table 5.1, Figs. 5.1, 5.3", 5, 0.2, data="fields/sst_pacific"),
     Part(5, "turbulence", "ch5_turbulence", "5.3.1, Fig. 5.2, on a stand-in", 120, 1),
-    Part(5, "real_people", "ch5_further", "5.2, Fig. 5.1, 5.3.3, 6.2.3: the text's network, real people, forecasts", 12, 2,
+    Part(5, "real_people", "ch5_further", "5.2, Fig. 5.1, 5.3.3, 6.2.3: the text's network, people, forecasts", 12, 2,
          data="gait/exotendon_run"),
     Part(5, "beyond", "ch5_beyond", "6.2.3 and later work: few strides, speed, spread, simulated walkers", 6, 1,
          data="gait/exotendon_run"),

@@ -10,6 +10,7 @@ from typing import cast
 
 from gaitdisc.batch.public_words import PublicWords
 from gaitdisc.discovery.blow_up import refuse_blow_up
+from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.catalogue import read_catalogue
 from gaitdisc.discovery.discover import discover
 from gaitdisc.ingest.file_hash import file_sha256
@@ -47,9 +48,15 @@ def discover_model(
 
 
 def discover_study(
-    study: Path, participant: str, catalogue: Path | None = None, told: Callable[[str], None] = lambda _: None
+    study: Path,
+    participant: str,
+    catalogue: Path | None = None,
+    told: Callable[[str], None] = lambda _: None,
+    joint: str = "ankle_angle",
 ) -> tuple[Discovery, Simulation]:
-    """Find what a participant's Nominal model lacks on the device walk.
+    """Find what the device does at a participant's joint: what the Nominal moment model lacks on the device walk.
+
+    Where a walk lacks EMG or moments, only the motion of both is compared, and the sentence says that nothing is named.
 
     Returns
     -------
@@ -57,21 +64,38 @@ def discover_study(
         The Nominal model with what was found in it.
     """
     # imported here: a simulation file needs no filters and no pandas
+    from gaitdisc.batch.device_study import NoMomentsError, beside, device_walks
+    from gaitdisc.batch.joint_inquiry import tracked_joint, tracked_trials, weighed
     from gaitdisc.batch.nominal_model import nominal_inquiry
     from gaitdisc.batch.public_words import words_of
     from gaitdisc.ingest.study_file import load_study
 
     told(f"reading both walks of {participant} and fitting the Nominal model")
     read = load_study(study)
-    model, data = nominal_inquiry(read, participant)
     person = read.participant(participant)
     called = words_of(read, person).files
     walks = {read.path_of(file): called[Path(file).name] for trial in person.trials for file in trial.files}
-    return discovered(model, data, catalogue, walks, told)
+    try:
+        both = device_walks(read, participant, joint)
+    except NoMomentsError as lacking:
+        told("comparing the motion alone")
+        model, data = nominal_inquiry(read, participant, joint)
+        found, augmented = discovered(model, data, catalogue, walks, told)
+        said = f"{lacking.needed.capitalize()}, and {lacking.found}: it cannot be named. Of the motion alone: "
+        return replace(found, sentence=said + found.sentence), augmented
+    model = tracked_joint(both.device, both.model)
+    data = tracked_trials(both.device, both.model, model)
+    found, augmented = discovered(model, data, catalogue, walks, told, weighed)
+    return replace(found, findings=(*both.findings, *found.findings), beside=beside(both, found)), augmented
 
 
 def discovered(
-    model: Simulation, data: Measured, catalogue: Path | None, files: dict[Path, str], told: Callable[[str], None]
+    model: Simulation,
+    data: Measured,
+    catalogue: Path | None,
+    files: dict[Path, str],
+    told: Callable[[str], None],
+    weighed: Callable[[Candidate], bool] = lambda _: True,
 ) -> tuple[Discovery, Simulation]:
     """Find what a model lacks against measured trials, with what the answer rests on.
 
@@ -79,11 +103,13 @@ def discovered(
     ----------
     files : dict of Path to str
         Files that were read, and what each is called in the result.
+    weighed : callable
+        Whether an explanation is possible; all are by default.
     """
     shapes = read_catalogue(catalogue) if catalogue else ()
     data = replace(data, trials=tuple(_trial_name(name, k) for k, name in enumerate(data.trials, 1)))
     refuse_blow_up(model, data)
-    found, augmented = discover(model, data, shapes, told)
+    found, augmented = discover(model, data, shapes, told, weighed)
     settings = {"title": model.title, "trials": len(data.trials), "rate_hz": data.rate, "channels": list(data.channels)}
     files = {**files, **({catalogue: "catalogue"} if catalogue else {})}
     hashes = {called: file_sha256(path) for path, called in files.items()}

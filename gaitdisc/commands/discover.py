@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from gaitdisc.commands.options import Quiet
 from gaitdisc.errors import SchemaError
+
+if TYPE_CHECKING:
+    from gaitdisc.results.discovery import Discovery
+    from gaitdisc.simulation.simulation import Simulation
+
+EVERYONE, ANKLE = "all", "ankle_angle"
 
 
 def discover(
@@ -26,7 +33,9 @@ def discover(
     out: Annotated[Path, typer.Option(help="Folder of what was found.")] = Path("found"),
     participant: Annotated[
         str,
-        typer.Option(help="Of a study: the Nominal walk's model is the simulation, the device walk what is measured."),
+        typer.Option(
+            help="Of a study: W01, W01:knee_angle, or all. The Nominal walk calibrates, the device walk is searched."
+        ),
     ] = "",
     catalogue: Annotated[Path | None, typer.Option(help="Effects of your own, beside those that come along.")] = None,
     draw: Annotated[bool, typer.Option("--report/--no-report", help="Write report.html too.")] = True,
@@ -40,29 +49,48 @@ def discover(
             "Name the measured table after it: gaitdisc discover SIMULATION.toml MEASURED.csv. "
             "Of a study, add --participant.",
         )
-    from gaitdisc.batch.discover_files import discover_files, discover_study
-    from gaitdisc.engines.mapping import names_engine
-    from gaitdisc.results.discovery_folder import save_discovery
-    from gaitdisc.simulation.writing import write_simulation
-
-    began, notes = time.perf_counter(), ()
+    began = time.perf_counter()
 
     def told(step: str) -> None:
         if not quiet:
             typer.echo(f"{time.perf_counter() - began:6.1f} s  {step}", err=True)
 
-    if measured is None:
-        found, augmented = discover_study(simulation, participant, catalogue, told)
-        write_simulation(augmented, out / "augmented.toml")
-    elif names_engine(simulation):
+    from gaitdisc.batch.discover_files import discover_files, discover_study
+    from gaitdisc.engines.mapping import names_engine
+    from gaitdisc.simulation.writing import write_simulation
+
+    if measured is not None and names_engine(simulation):
         from gaitdisc.batch.discover_engine import discover_model_file, write_answer
 
         answer = discover_model_file(simulation, measured, catalogue, told)
         write_answer(answer, out)
-        found, notes = answer.found, (*answer.written.notes, answer.runs.said)
+        _write(answer.found, out, draw, told, (*answer.written.notes, answer.runs.said))
+        return
+
+    def with_model(found: Discovery, augmented: Simulation, folder: Path) -> None:
+        write_simulation(augmented, folder / "augmented.toml")
+        _write(found, folder, draw, told)
+
+    if measured is not None:
+        with_model(*discover_files(simulation, measured, catalogue, told), out)
+        return
+    whose, _, joint = participant.partition(":")
+
+    def discovered(person: str, folder: Path) -> Discovery:
+        found, augmented = discover_study(simulation, person, catalogue, told, joint or ANKLE)
+        with_model(found, augmented, folder)
+        return found
+
+    if whose == EVERYONE:
+        _everyone(simulation, out, discovered)
     else:
-        found, augmented = discover_files(simulation, measured, catalogue, told)
-        write_simulation(augmented, out / "augmented.toml")
+        discovered(whose, out)
+
+
+def _write(found: Discovery, out: Path, draw: bool, told: Callable[[str], None], notes: Sequence[str] = ()) -> None:
+    """Write what was found, and say it."""
+    from gaitdisc.results.discovery_folder import save_discovery
+
     place = save_discovery(found, out)
     if draw:
         from gaitdisc.report.discovery_page import write_discovery_report
@@ -74,3 +102,23 @@ def discover(
         if finding.severity != "note":
             typer.echo(finding.line(), err=True)
     typer.echo(f"{'report' if draw else 'found'}: {place}")
+
+
+def _everyone(study: Path, out: Path, discovered: Callable[[str, Path], Discovery]) -> None:
+    """Search each participant in turn, each into a folder; who cannot be searched costs nobody else."""
+    from gaitdisc.errors import GaitdiscError
+    from gaitdisc.ingest.study_file import load_study
+    from gaitdisc.results.device_people import lines, over_people
+    from gaitdisc.spreadsheet import write_csv
+
+    found: dict[str, Discovery] = {}
+    for person in load_study(study).participants:
+        typer.echo(f"{person.id}:")
+        try:
+            found[person.id] = discovered(person.id, out / person.id)
+        except GaitdiscError as error:
+            typer.echo(f"refused: {error}", err=True)
+    table = over_people(found)
+    write_csv(table, out / "people.csv", "%.6g")
+    for line in lines(table):
+        typer.echo(line)

@@ -7,6 +7,7 @@ from functools import partial
 
 from gaitdisc.discovery.answer import answer
 from gaitdisc.discovery.by_share import leaves_noise
+from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.catalogue import Shape
 from gaitdisc.discovery.decision import judge
 from gaitdisc.discovery.held_out import holding_out_others, noted, tells_nothing
@@ -25,10 +26,11 @@ def discover(
     measured: Measured,
     shapes: tuple[Shape, ...] = (),
     told: Callable[[str], None] = lambda _: None,
+    weighed: Callable[[Candidate], bool] = lambda _: True,
 ) -> tuple[Discovery, Simulation]:
     """Find where a simulation and measured trials disagree, name what is missing, add it, show the gap shrink."""
     measured = without_spikes(measured)
-    begun = partial(begin_inquiry, simulation, shapes=shapes, told=told)
+    begun = partial(begin_inquiry, simulation, shapes=shapes, told=told, weighed=weighed)
     inquiry = begun(measured)
     agreeing = agreeing_trials(inquiry, measured)
     if agreeing is not measured:

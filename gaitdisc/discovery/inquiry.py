@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.account import account_for
-from gaitdisc.discovery.candidate import candidates_of
+from gaitdisc.discovery.candidate import Candidate, candidates_of
 from gaitdisc.discovery.catalogue import Shape, known_shapes
 from gaitdisc.discovery.evidence import Judged, judged
 from gaitdisc.discovery.first_states import StateGuess, guess_states
@@ -179,6 +179,7 @@ def begin_inquiry(
     measured: Measured,
     shapes: tuple[Shape, ...] = (),
     told: Callable[[str], None] = lambda _: None,
+    weighed: Callable[[Candidate], bool] = lambda _: True,
 ) -> Inquiry:
     """Prepare an inquiry: split the trials, list places and explanations, guess the states.
 
@@ -186,6 +187,8 @@ def begin_inquiry(
     ----------
     measured : Measured
         Its trials; of four, one is held out, of one, the last quarter of its time.
+    weighed : callable
+        Whether an explanation is possible here; all are by default.
     """
     simulation = matched(simulation, measured, shapes)
     if len(measured.trials) == 1:
@@ -193,7 +196,8 @@ def begin_inquiry(
     machine = compile_simulation(simulation)
     rate_of, places = kinematic_rates(simulation, machine), places_of(simulation, machine)
     rhythm = rhythm_of(measured.observed, measured.drive.rate)
-    search = Search(simulation, places, candidates_of(simulation, places, (*known_shapes(), *shapes)), rhythm, told)
+    possible = tuple(filter(weighed, candidates_of(simulation, places, (*known_shapes(), *shapes))))
+    search = Search(simulation, places, possible, rhythm, told)
     trials = len(measured.drive.samples)
     held = max(round(trials / 4), 1)
     guess = guess_states(simulation, measured, rhythm.period, rate_of)

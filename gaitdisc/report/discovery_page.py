@@ -10,6 +10,7 @@ from gaitdisc.report.discovery_tables import (
     data_findings,
     estimates_table,
     gap_table,
+    models_table,
     rivals_table,
     trials_table,
     where_table,
@@ -59,6 +60,7 @@ def write_discovery_report(discovery: Discovery, folder: Path) -> Path:
     tables = {
         "estimates": estimates_table(discovery),
         "gap": gap_table(discovery),
+        "models": models_table(discovery),
         "trials": trials_table(discovery),
         "corrections": corrections_table(discovery),
         "where": where_table(discovery),

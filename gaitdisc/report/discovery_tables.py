@@ -11,7 +11,7 @@ import pandas as pd
 from gaitdisc.report.seen_tables import seen_table
 from gaitdisc.report.table import Table
 from gaitdisc.report.wording import NONE, counted, p_cell
-from gaitdisc.results.amounts import amount, estimate_text, shown_unit
+from gaitdisc.results.amounts import amount, estimate_text, shown_unit, with_unit
 from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect
 from gaitdisc.results.effect_words import at_place, outside_text, spoken
 from gaitdisc.results.told_apart import would_tell_apart
@@ -60,6 +60,18 @@ def gap_table(discovery: Discovery) -> Table:
     headings = ("data", "channel", "before", "after", "noise floor", "closed", "p")
     columns = ("data", "channel", "before", "after", "noise_floor", "unit", "closed", "p")
     return Table("gap", caption, headings, tuple(rows), _frame(records, columns))
+
+
+def models_table(discovery: Discovery) -> Table:
+    """Held-out error of the models of chapter 4, of a device walk, with the named effect among them."""
+    channel, unit = (discovery.channels[-1], discovery.units[-1]) if discovery.channels else ("", "")
+    told = tuple((name, with_unit(amount(one, 0.1), unit)) for name, one in discovery.beside.items())
+    caption = (
+        f"Root mean square error of {channel} on the held-out strides. Nominal: calibrated on the Nominal walk. "
+        "Augmented: Nominal, and a plain regression of what it leaves. Exo: calibrated on the device walk itself. Both "
+        "learn from the device walk's other strides."
+    )
+    return Table("models", caption, ("model", channel), told, _frame(list(discovery.beside.items()), ("model", unit)))
 
 
 def trials_table(discovery: Discovery) -> Table:

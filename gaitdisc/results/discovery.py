@@ -225,6 +225,8 @@ class Discovery(Saved, by="gaitdisc.results.discovery_folder:save_discovery"):
         Settings, files and versions.
     corrections : tuple of Correction
         Numbers that moved within their own bounds.
+    beside : mapping of str to float
+        Of a device walk: model -> its held-out error [unit of the last channel].
     """
 
     verdict: str
@@ -240,6 +242,7 @@ class Discovery(Saved, by="gaitdisc.results.discovery_folder:save_discovery"):
     findings: tuple[Finding, ...] = ()
     provenance: Provenance | None = None
     corrections: tuple[Correction, ...] = ()
+    beside: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Refuse a verdict that the contract does not know."""
@@ -274,6 +277,7 @@ class Discovery(Saved, by="gaitdisc.results.discovery_folder:save_discovery"):
             "gap": {"train": _gap(self.train), "held_out": _gap(self.held_out)},
             "sentence": self.sentence,
             "channels": dict(zip(self.channels, self.units, strict=True)),
+            **({"beside": {name: _number(one) for name, one in self.beside.items()}} if self.beside else {}),
             "findings": [asdict(one) for one in self.findings],
             "provenance": asdict(self.provenance) if self.provenance else None,
         }

@@ -66,6 +66,7 @@ def load_discovery(folder: Path) -> Discovery:
             findings=tuple(map(stored_finding, data["findings"])),
             provenance=Provenance(**made) if made else None,
             corrections=tuple(map(_correction, data["corrections"])),
+            beside={name: _number(one) for name, one in data.get("beside", {}).items()},
         )
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         if hasattr(error, "needed"):  # a refusal of its own

@@ -4,12 +4,14 @@ import json
 
 import numpy as np
 import pytest
+from manufactured_discovery import manufactured
 from typer.testing import CliRunner
 
 from gaitdisc.cli import app
 from gaitdisc.commands.exit_codes import REFUSED
 from gaitdisc.discovery.verdict import Verdict
 from gaitdisc.errors import GaitdiscError
+from gaitdisc.results.discovery_folder import load_discovery
 from gaitdisc.simulation.simulation_file import read_simulation
 
 SPRING = """title = "Spring"
@@ -176,3 +178,24 @@ def test_of_one_trial_it_says_what_cannot_be_held_out(lab, tmp_path):
     assert done.exit_code == 0, done.output
     assert "warning: measured table: one trial: trial '1' is the only one (400 samples)" in done.stderr
     assert "only a later part of this one can be held out" in done.stderr
+
+
+def test_of_a_study_everyone_is_searched_and_who_is_refused_costs_nobody_else(lab, tmp_path, monkeypatch):
+    person = '[[participants]]\nid = "{}"\n[[participants.trials]]\ncondition = "nominal"\nfiles = ["a.mot"]\n'
+    people = "".join(map(person.format, ("W01", "W02", "W03")))
+    (tmp_path / "study.toml").write_text(f'title = "three"\n[conditions]\nnominal = "nominal"\n{people}')
+
+    def searched(_, who, *rest):
+        assert rest[-1] == "knee_angle"
+        if who == "W02":
+            raise GaitdiscError("both walks of W02 are needed", "one is there", "Name the other.")
+        return manufactured(), read_simulation(lab / "good.toml")
+
+    monkeypatch.setattr("gaitdisc.batch.discover_files.discover_study", searched)
+    words = [str(tmp_path / "study.toml"), "--participant", "all:knee_angle", "--out", str(tmp_path / "found")]
+    done = CliRunner().invoke(app, ["discover", *words, "--no-report", "-q"])
+    assert done.exit_code == 0, done.output
+    assert "refused: both walks of W02 are needed; one is there. Name the other." in done.stderr
+    assert "stiffness: 2 of 2, mean 286" in done.stdout
+    assert "W01 286, W03 286" in (tmp_path / "found" / "people.csv").read_text()
+    assert load_discovery(tmp_path / "found" / "W03").verdict == "missing_physics"

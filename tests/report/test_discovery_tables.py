@@ -11,6 +11,7 @@ from gaitdisc.report.discovery_tables import (
     data_findings,
     estimates_table,
     gap_table,
+    models_table,
     rivals_table,
     trials_table,
     where_table,
@@ -103,3 +104,10 @@ def test_a_small_rival_is_said_to_be_small():
     table = rivals_table(manufactured(rivals=(small,)))
     assert table.rows[0][4] == "small"
     assert table.numbers["small"].tolist() == [True]
+
+
+def test_the_models_of_chapter_4_stand_beside_the_named_effect_in_the_channels_unit():
+    table = models_table(replace(manufactured(), beside={"Nominal": 21.4, "Nominal + named effect": 3.2}))
+    assert [row[0] for row in table.rows] == ["Nominal", "Nominal + named effect"]
+    assert table.rows[0][1].startswith("21.4 ")
+    assert models_table(manufactured()).rows == ()

@@ -43,12 +43,13 @@ def test_every_part_of_a_discovery_comes_back(tmp_path):
                        reads_as_effect="cubic_stiffness")  # fmt: skip
     nameless = replace(read, term="-8.0725*(x**2*v)", reads_as="-8.07*(x**2*v)", reads_as_effect="")
     moved = (Correction("mass", 1.5, Estimate(2.0, 1.9, 2.1, "kg")),)
-    discovery = manufactured(effects=(wrong, read, nameless), corrections=moved)
+    beside = {"Nominal": 21.4, "Exo": 4.8}
+    discovery = manufactured(effects=(wrong, read, nameless), corrections=moved, beside=beside)
     save_discovery(discovery, tmp_path)
     again = load_discovery(tmp_path)
     assert (again.effects, again.corrections) == (discovery.effects, discovery.corrections)
     assert (again.held_out, again.channels, again.units) == (discovery.held_out, discovery.channels, discovery.units)
-    assert again.provenance == discovery.provenance
+    assert (again.provenance, again.beside) == (discovery.provenance, beside)
     runs = again.runs
     np.testing.assert_allclose(runs.measured, discovery.runs.measured, rtol=1e-7)
     assert [runs.names[trial] for trial in runs.trial] == ["d", "d"]

@@ -1,5 +1,7 @@
 """Expressions along trajectories."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -49,3 +51,10 @@ def test_a_delay_without_a_series_is_refused(ankle):
 def test_an_unknown_name_is_refused(ankle):
     with pytest.raises(SimulationError, match="Did you mean 'theta'"):
         evaluate(ankle, "thetta", Points(T, X, U))
+
+
+def test_the_delay_of_a_definition_that_does_not_stand_in_it_needs_no_series(ankle):
+    delayed = replace(ankle, definitions=(*ankle.definitions, ("late", "delay(theta, 0.1)")))
+    np.testing.assert_allclose(evaluate(delayed, "2*theta", Points(T, X, U)), 2 * X[:, 0])
+    with pytest.raises(SimulationError, match="the points have no rate"):
+        evaluate(delayed, "late", Points(T, X, U))

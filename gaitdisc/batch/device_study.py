@@ -1,0 +1,157 @@
+"""What a device does, from a laboratory's own files: both walks of a person, to the discovery at a joint."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.batch.joint_inquiry import WORDS, driven_of, nominal_moment
+from gaitdisc.batch.processed_walks import public_trial
+from gaitdisc.batch.public_words import of_trial, words_of
+from gaitdisc.errors import ChannelError, SchemaError
+from gaitdisc.ingest.c3d import C3DReader
+from gaitdisc.ingest.study import Study
+from gaitdisc.ingest.trial_sets import not_compared
+from gaitdisc.kinetics.newton_euler import GRAVITY
+from gaitdisc.processing.joint_record import JointRecord, joint_record
+from gaitdisc.processing.study_walks import StudyWalks
+from gaitdisc.recording import Finding, Trial
+from gaitdisc.regression.muscle_moment import MuscleMoment, fitted_moment
+from gaitdisc.results.discovery import Discovery
+
+HARMONICS = 8  # of the plain regression of what is left
+RIDGE = 1e-3
+Values = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class DeviceWalks:
+    """One joint of both walks of a person, and the moment model that the Nominal walk calibrates."""
+
+    nominal: JointRecord
+    device: JointRecord
+    model: MuscleMoment
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """Of both files, and of the calibration."""
+        return (*self.nominal.findings, *self.device.findings, self._calibration(), *self._masses())
+
+    def _calibration(self) -> Finding:
+        model, word = self.model, WORDS[self.nominal.joint]
+        driven = driven_of(self.nominal)
+        unseen = np.nanstd(model.others(driven)[np.isfinite(self.nominal.moment)])
+        what = (
+            f"the {word}'s moment model leaves {model.left_nm:.1f} N m of {model.before_nm:.1f} N m on Nominal strides "
+            f"left out of its fit (R2 {model.r2:.2f}); EMG acts {1000 * (model.delay_s + model.lag_s):.0f} ms later; "
+            f"{unseen:.1f} N m come from passive parts and from what no electrode sees"
+        )
+        return Finding("note", "moment model", self.nominal.subject, what, "")
+
+    def _masses(self) -> list[Finding]:
+        """Say which mass at the foot would be as large as what the moment model leaves."""
+        per_kg = self.device.per_kg
+        if not per_kg.size:
+            return [Finding("note", "added mass", self.device.subject, "not weighed: no marker shows the foot", "")]
+        least = self.model.left_nm / float(np.nanstd(per_kg))
+        what = f"at the {WORDS[self.device.joint]}, {least:.1f} kg more at the foot would be as large as what is left"
+        return [Finding("note", "added mass", self.device.subject, what, "")]
+
+
+def device_walks(study: Study, participant: str, joint: str = "ankle_angle") -> DeviceWalks:
+    """Read one joint of both walks of a participant; a walk that lacks EMG or moments is refused with its name."""
+    if joint not in WORDS:
+        raise SchemaError(f"a joint is one of {', '.join(WORDS)}", f"found {joint!r}", "Correct --joint.")
+    person = study.participant(participant)
+    lacking = not_compared(study, person)
+    if lacking:
+        raise SchemaError(f"both walks of {participant} are needed", lacking, "Name one trial of each condition.")
+    words = words_of(study, person)
+    records = []
+    with C3DReader() as reader:
+        own = StudyWalks(study, person, partial(public_trial, study, person, words, reader))
+        for word in study.conditions.both:
+            planned = person.trials_of(word)[0]
+            read = own.read_walk(planned)
+            check_kinetics(read.trial)
+            mass_kg = None if read.body_weight_n is None else read.body_weight_n / GRAVITY
+            public = of_trial(words, person, planned)
+            records.append(public.of(partial(joint_record, read.trial, study, joint, mass_kg)))
+    nominal, device = (replace(one, subject=participant) for one in records)
+    return DeviceWalks(nominal, device, nominal_moment(nominal))
+
+
+def check_kinetics(trial: Trial) -> None:
+    """Refuse a walk without EMG, without moments, or whose forces do not carry the body."""
+    wrong = [one for one in trial.findings if one.kind == "force balance" and one.severity == "warning"]
+    if wrong:
+        raise SchemaError(
+            "moments need forces that carry the body, to 12 % of its weight",
+            f"{trial.name}: {wrong[0].what}",
+            "Correct mass_kg in the study file, or the plates' scale; what is left would be named after the error.",
+        )
+    per_kg = [one for one in trial.findings if one.kind == "per body mass"]
+    if per_kg:
+        raise SchemaError(
+            "moments stated in N m are in N m",
+            f"{trial.name}: {per_kg[0].channel} {per_kg[0].what}",
+            "Write their unit as N m/kg in [channels], or multiply by the body's mass.",
+        )
+    for key, word, mend in (
+        ("emg", "EMG", "Add the file with the EMG, or name its channels in [channels]."),
+        ("moments", "joint moments", "Add force platforms, a static trial and mass_kg, or a .sto of moments."),
+    ):
+        if key not in trial.streams:
+            why = next((f": {one.what}" for one in trial.findings if one.kind == "no moments"), "")
+            raise NoMomentsError(
+                f"what a device does at a joint is named from {word} in both walks",
+                f"{trial.name} has no {word}{why if key == 'moments' else ''}",
+                mend,
+            )
+
+
+class NoMomentsError(ChannelError):
+    """A walk lacks EMG or moments; its motion can still be compared."""
+
+
+def beside(walks: DeviceWalks, found: Discovery) -> dict[str, float]:
+    """Root mean square error of the net moment on the held-out strides, model by model [N m].
+
+    Nominal, and Nominal with the named effect, are those of the discovery. Augmented adds a plain regression of what
+    is left (angle, rate, their squares and product, each muscle's moment, harmonics of the stride); Exo is the moment
+    model fitted to the device walk itself. Both learn from all strides of the device walk that are not held out.
+    """
+    device, model = walks.device, walks.model
+    at = found.runs.time[np.isfinite(found.runs.time)]
+    held = np.isin(device.stride, np.unique(device.stride[np.isin(np.round(device.time, 4), np.round(at, 4))]))
+    held &= device.stride >= 0
+    known = np.isfinite(device.moment) & np.isfinite(device.phase) & np.isfinite(device.rate)
+    learned = known & ~held
+    driven = driven_of(device)
+    nominal = model.by_muscle(driven).sum(axis=1) + model.others(driven)
+    left = device.moment - nominal
+    library = _library(device, model.by_muscle(driven))
+    normal = library[learned].T @ library[learned]
+    normal += RIDGE * np.diag(np.diag(normal))
+    augmented = nominal + library @ np.linalg.solve(normal, library[learned].T @ left[learned])
+    blocks = np.where(learned, device.stride * 4 // (int(device.stride.max()) + 1), -1)
+    exo_model = fitted_moment(driven, np.where(learned, device.moment, np.nan), blocks, (model.delay_s, model.lag_s))
+    exo = exo_model.by_muscle(driven).sum(axis=1) + exo_model.others(driven)
+    own = known & held
+    before, after, _ = found.held_out.channels["net_moment"]
+    sizes = {"Nominal": before, "Nominal + named effect": after if found.effects else before}
+    for name, one in (("Augmented (plain regression)", augmented), ("Exo", exo)):
+        sizes[name] = float(np.sqrt(np.mean((device.moment - one)[own] ** 2)))
+    return sizes
+
+
+def _library(device: JointRecord, by_muscle: Values) -> Values:
+    """Columns of the plain regression, each of size 1."""
+    angle, rate = np.nan_to_num(device.angle), np.nan_to_num(device.rate)
+    turn = 2 * np.pi * np.nan_to_num(device.phase)[:, None] * np.arange(1, HARMONICS + 1)
+    columns = [np.ones_like(angle), angle, rate, angle**2, rate**2, angle * rate, *by_muscle.T]
+    whole = np.hstack([np.column_stack(columns), np.sin(turn), np.cos(turn)])
+    return whole / np.maximum(np.sqrt(np.mean(whole**2, axis=0)), 1e-12)

@@ -1,0 +1,179 @@
+"""One joint of a device walk as a tracked simulation: muscles driven by EMG against the moment of inverse dynamics."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.errors import StrideError
+from gaitdisc.processing.joint_record import JointRecord
+from gaitdisc.regression.muscle_moment import Driven, MuscleMoment, fitted_moment, sign_at
+from gaitdisc.simulation.even_time import TrialColumns
+from gaitdisc.simulation.measured import Measured, measured_of_trials
+from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State
+from gaitdisc.simulation.simulation import Simulation
+
+STRIDES = 3  # of one trial of the inquiry
+FEWEST_TRIALS = 4
+KNOWN = 0.3  # of the samples of a trial, with a known load of the foot
+BLOCKS = 4  # of the Nominal walk, each left out of the calibration once
+RATE_HZ = 50.0  # enough for moments below 20 Hz
+TRACKED = (800.0, 57.0, 1.0)  # of angle, rate and acceleration
+STRENGTH = 0.06  # by which a muscle group may differ from the Nominal walk's before it is a finding
+SEEN_RAD = 0.005  # noise of an angle, where it follows its own reference
+# joint -> what a clinician calls the groups that turn it towards its negative and its positive angle
+GROUPS = {
+    "ankle_angle": ("plantarflexors", "dorsiflexors"),
+    "knee_angle": ("knee_extensors", "knee_flexors"),
+    "hip_flexion": ("hip_extensors", "hip_flexors"),
+}
+EFFECTS = (
+    "constant_load",
+    "linear_stiffness",
+    "one_sided_spring",
+    "dead_zone_spring",
+    "viscous_damping",
+    "one_sided_damper",
+    "coulomb_friction",
+    "phase_locked_moment",
+)
+WORDS = {"ankle_angle": "ankle", "knee_angle": "knee", "hip_flexion": "hip"}
+Values = NDArray[np.float64]
+
+
+def driven_of(record: JointRecord) -> Driven:
+    """Return what drives the muscles about the joint of a record."""
+    signs = np.array([sign_at(record.joint, name) for name in record.muscles], float)
+    return Driven(
+        np.nan_to_num(record.envelopes[:, signs != 0]),
+        signs[signs != 0],
+        np.nan_to_num(record.angle),
+        np.nan_to_num(record.rate),
+        record.phase,
+        1 / float(np.median(np.diff(record.time))),
+    )
+
+
+def nominal_moment(record: JointRecord) -> MuscleMoment:
+    """Calibrate the moment model on the Nominal walk, blocks of strides left out in turn."""
+    count = int(record.stride.max()) + 1
+    blocks = np.where(record.stride >= 0, record.stride * BLOCKS // max(count, 1), -1)
+    moment = np.where(np.isfinite(record.rate), record.moment, np.nan)
+    return fitted_moment(driven_of(record), moment, blocks)
+
+
+def tracked_joint(record: JointRecord, model: MuscleMoment) -> Simulation:
+    """Return the simulation: the joint goes with the recorded motion, and the model says its net moment.
+
+    Parameters
+    ----------
+    record : JointRecord
+        Of the device walk.
+    model : MuscleMoment
+        Calibrated on the Nominal walk of the same person.
+    """
+    word, (against, towards) = WORDS[record.joint], GROUPS[record.joint]
+    carried = record.per_kg.size > 0
+    muscles = [(name.split("_")[1], sign_at(record.joint, name)) for name in record.muscles]
+    muscles = [(name, against if sign < 0 else towards) for name, sign in muscles if sign]
+    inputs = [
+        Input("reference", "rad/s^2", "recorded motion, low-passed: acceleration + 57*rate + 800*angle"),
+        *(Input(name, "1", "activation, from its EMG as in the Nominal walk") for name, _ in muscles),
+        *(Input(f"{name}_gain", "N m", "moment at activation 1, as in the Nominal walk") for name, _ in muscles),
+        Input("others", "N m", "passive parts, and what no electrode sees, as in the Nominal walk"),
+        Input("phase", "1", "percent stride / 100"),
+    ]
+    groups = [one for one in (against, towards) if any(group == one for _, group in muscles)]
+    numbers = [Parameter("emg_delay", 0.0, "s", meaning="by which EMG acts later than in the Nominal walk")]
+    numbers += [
+        Parameter(f"{group}_strength", 1.0, "1", 1 - STRENGTH, 1 + STRENGTH, "against the Nominal walk's")
+        for group in groups
+    ]
+    said = [f"{group}_strength*{name}_gain*delay({name}, emg_delay)" for name, group in muscles]
+    said += ["others", f"{word}_moment"]
+    if carried:
+        inputs.append(Input("per_kg", "N m/kg", "what each kg more at the foot adds to the moment that muscles make"))
+        numbers.append(Parameter("added_foot_mass", 0.0, "kg", meaning="at the foot, beyond the body's own"))
+    total = " + ".join(said) + (" - added_foot_mass*per_kg" if carried else "")
+    return Simulation(
+        title=f"{word} of {record.subject}: Nominal moment model against inverse dynamics",
+        states=(
+            State(word, "rad", meaning=f"{record.joint}_{record.side}"),
+            State("rate", "rad/s"),
+            State("net", "N m"),
+        ),
+        inputs=tuple(inputs),
+        parameters=tuple(numbers),
+        ports=(Port(f"{word}_moment", "N m", "a moment that is no muscle's"),),
+        definitions=(("model", total),),
+        equations=(
+            (word, "rate"),
+            ("rate", f"reference - {TRACKED[1]:g}*rate - {TRACKED[0]:g}*{word}"),
+            ("net", f"{RATE_HZ:g}*(model - net)"),
+        ),
+        observations=((f"{word}_angle", word), ("net_moment", "net")),
+        sensors=(Sensor(f"{word}_angle", "rad", sd=SEEN_RAD), Sensor("net_moment", "N m", sd=model.left_nm)),
+    )
+
+
+def tracked_trials(record: JointRecord, model: MuscleMoment, simulation: Simulation) -> Measured:
+    """Cut the walk into trials of some strides in a row, with the model's moments as inputs."""
+    driven = driven_of(record)
+    step = max(round(driven.rate_hz / RATE_HZ), 1)
+    names = [name.split("_")[1] for name in record.muscles if sign_at(record.joint, name)]
+    columns = {
+        "reference": TRACKED[0] * record.angle + TRACKED[1] * record.rate + TRACKED[2] * record.speedup,
+        **dict(zip(names, driven.activation(model.delay_s, model.lag_s).T, strict=True)),
+        **{f"{name}_gain": gain for name, gain in zip(names, model.gain(driven).T, strict=True)},
+        "others": model.others(driven),
+        "phase": record.phase,
+        "per_kg": record.per_kg,
+    }
+    inputs = np.column_stack([columns[one.name] for one in simulation.inputs])
+    seen = np.column_stack([record.seen, _through_lag(record.moment, driven.rate_hz)])
+    usable = np.isfinite(inputs).all(axis=1) & np.isfinite(record.seen)
+    trials: list[TrialColumns] = []
+    first, last = 0, int(record.stride.max())
+    while first + STRIDES - 1 <= last:
+        inside = np.flatnonzero((record.stride >= first) & (record.stride < first + STRIDES))
+        whole = len(inside) > 1 and (np.diff(inside) == 1).all() and usable[inside].all()
+        if whole and np.isfinite(record.moment[inside]).mean() > KNOWN:
+            kept = inside[::step]
+            trials.append(TrialColumns(str(len(trials) + 1), record.time[kept], inputs[kept], seen[kept]))
+            first += STRIDES
+        else:
+            first += 1
+    if len(trials) < FEWEST_TRIALS:
+        raise StrideError(
+            f"what a device does is proven on strides held out: {FEWEST_TRIALS} times {STRIDES} strides in a row, with "
+            "the load of the foot known in half of them",
+            f"{record.subject} {record.condition} has {last + 1} strides, {len(trials)} times {STRIDES} in a row",
+            "Record longer, or keep each foot on its own plate.",
+        )
+    driving = [one.name for one in simulation.inputs]
+    return measured_of_trials(trials, driving, [name for name, _ in simulation.observations], record.subject)
+
+
+def _through_lag(moment: Values, rate_hz: float) -> Values:
+    """Return a moment as the simulation's own state follows it: y' = RATE_HZ (moment - y), straight between samples."""
+    from scipy.signal import lfilter
+
+    known = np.isfinite(moment)
+    at = np.arange(len(moment))
+    whole = np.interp(at, at[known], moment[known])
+    keep = np.exp(-RATE_HZ / rate_hz)
+    held = (1 - keep) * rate_hz / RATE_HZ
+    late = lfilter([1 - held, held - keep], [1.0, -keep], whole - whole[0])[: len(moment)] + whole[0]
+    return np.where(known, late, np.nan)
+
+
+def weighed(candidate: Candidate) -> bool:
+    """Whether an explanation is one that a device, a muscle or the recording of a joint can have.
+
+    Inputs and the recorded angle only carry the motion and the EMG; late EMG and weak muscles are numbers of the
+    simulation. What is wrong with the moment model's own shape is no effect of a device.
+    """
+    if candidate.kind == "observation":
+        return candidate.place == "net_moment" and candidate.name in ("sensor_gain", "sensor_lag")
+    return candidate.kind == "parameter" or candidate.name in EFFECTS

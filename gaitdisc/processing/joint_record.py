@@ -1,0 +1,198 @@
+"""One joint of a walk as an inverse-dynamics problem: its angle, its net moment, and the EMG of the leg's muscles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.errors import ChannelError, UnitError
+from gaitdisc.ingest.study import Study
+from gaitdisc.kinematics.laboratory import up_axis
+from gaitdisc.kinematics.marker_set import sided
+from gaitdisc.kinematics.marker_set_file import shipped_marker_sets
+from gaitdisc.kinematics.markers import marker_labels, marker_places
+from gaitdisc.kinetics.added_mass import moment_per_foot_kg
+from gaitdisc.kinetics.newton_euler import GRAVITY
+from gaitdisc.processing.contact_choice import chosen_contacts
+from gaitdisc.processing.process import is_raw
+from gaitdisc.recording import Finding, Recording, Trial
+from gaitdisc.recording.strides import interpolated
+from gaitdisc.signals.butterworth import lowpassed
+from gaitdisc.signals.derivatives import differentiated
+from gaitdisc.signals.emg_quality import emg_findings
+from gaitdisc.signals.envelope import enveloped
+from gaitdisc.signals.strides import cut_strides
+
+JOINT_AT = {"ankle_angle": "ankle_lateral", "knee_angle": "knee_lateral", "hip_flexion": "asis"}  # landmark of a joint
+LEAST_DEG, PERCENTILES = 2.0, (5, 95)
+MOMENT_HZ = 20.0  # the moment keeps what the forces' own filter left of it
+
+
+@dataclass(frozen=True, eq=False)
+class JointRecord:
+    """One joint of one walk, sample by sample on the time base of the angles.
+
+    Parameters
+    ----------
+    seen : ndarray (sample,)
+        Angle as recorded [rad].
+    angle, rate, speedup : ndarray (sample,)
+        Low-passed angle and its derivatives [rad, rad/s, rad/s2].
+    moment : ndarray (sample,)
+        Internal net moment towards the positive angle [N m]; NaN where the load of the foot is unknown.
+    envelopes : ndarray (sample, muscle)
+        EMG of the joint's side [the file's unit].
+    phase : ndarray (sample,)
+        Share of the stride; NaN outside of strides.
+    stride : ndarray of int (sample,)
+        Number of the stride, -1 outside.
+    per_kg : ndarray (sample,)
+        What each kg more at the foot adds to the net moment [N m/kg]; empty where no marker shows it.
+    """
+
+    joint: str
+    side: str
+    subject: str
+    condition: str
+    time: NDArray[np.float64]
+    seen: NDArray[np.float64]
+    angle: NDArray[np.float64]
+    rate: NDArray[np.float64]
+    speedup: NDArray[np.float64]
+    moment: NDArray[np.float64]
+    envelopes: NDArray[np.float64]
+    muscles: tuple[str, ...]
+    phase: NDArray[np.float64]
+    stride: NDArray[np.intp]
+    per_kg: NDArray[np.float64]
+    findings: tuple[Finding, ...] = ()
+
+    def strides(self, some: NDArray[np.intp]) -> JointRecord:
+        """Return the samples of some strides."""
+        return self.samples(np.isin(self.stride, some))
+
+    def samples(self, kept: NDArray[np.bool_]) -> JointRecord:
+        """Return some samples."""
+        names = ("time", "seen", "angle", "rate", "speedup", "moment", "envelopes", "phase", "stride")
+        part = {name: getattr(self, name)[kept] for name in names}
+        return replace(self, **part, per_kg=self.per_kg[kept] if self.per_kg.size else self.per_kg)
+
+
+def joint_record(trial: Trial, study: Study, joint: str, mass_kg: float | None) -> JointRecord:
+    """Return one joint of a trial: angles low-passed, EMG as envelopes, moments in N m, on the study's side.
+
+    Parameters
+    ----------
+    joint : str
+        Angle without its side, `ankle_angle`.
+    mass_kg : float, optional
+        Of the body, where moments are per kg of it.
+    """
+    side, filters = study.strides.side, study.filters
+    name = f"{joint}_{side}"
+    raw = trial.stream("kinematics").selected([name])
+    moved = float(np.ptp(np.nanpercentile(raw.values[:, 0], PERCENTILES)))
+    if moved < LEAST_DEG:
+        raise UnitError(
+            f"a joint that walks moves by more than {LEAST_DEG:g} deg",
+            f"{trial.name}: {name} moves by {moved:.2g} deg, as one in radians would that is said to be in degrees",
+            "State the file's unit (inDegrees=no), or choose a joint that is not held.",
+        )
+    smooth = lowpassed(raw, filters.kinematics_hz, filters.order, filters.gap_s)
+    rate, speedup = (np.radians(differentiated(smooth.values, smooth.rate_hz, order)[:, 0]) for order in (1, 2))
+    moment = _moment(trial, name, mass_kg, raw.time)
+    envelopes, muscles, dead = _envelopes(trial, study, side, raw.time)
+    weight = None if mass_kg is None else mass_kg * GRAVITY
+    choice = chosen_contacts(
+        trial, study.strides.detector, study.treadmill.direction if study.treadmill else "", weight
+    )
+    strides = cut_strides(choice.contacts[side], raw, study.strides.min_s, study.strides.max_s)
+    phase, number = np.full(len(raw.time), np.nan), np.full(len(raw.time), -1)
+    for count, (start, end) in enumerate(zip(strides.start, strides.end, strict=True)):
+        inside = (raw.time >= start) & (raw.time < end)
+        phase[inside], number[inside] = (raw.time[inside] - start) / (end - start), count
+    return JointRecord(
+        joint,
+        side,
+        trial.subject,
+        trial.condition,
+        raw.time,
+        np.radians(raw.values[:, 0]),
+        np.radians(smooth.values[:, 0]),
+        rate,
+        speedup,
+        moment,
+        envelopes,
+        muscles,
+        phase,
+        number,
+        _per_kg(trial, study, joint, raw.time),
+        (*trial.findings, *choice.findings, *dead),
+    )
+
+
+def _moment(trial: Trial, name: str, mass_kg: float | None, time: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Moment of a joint in N m on a time base."""
+    own = trial.stream("moments").selected([f"{name}_moment"])
+    unit = own.channels[0].unit
+    if unit == "N m/kg" and mass_kg is None:
+        raise UnitError(
+            "moments in N m need the person's body mass [kg]",
+            f"{trial.name} has {name}_moment in N m/kg, and no mass is stated",
+            "Give mass_kg of the participant in the study file.",
+        )
+    factor = mass_kg if unit == "N m/kg" and mass_kg is not None else 1.0
+    smooth = lowpassed(own, MOMENT_HZ) if own.rate_hz > 3 * MOMENT_HZ else own
+    values = interpolated(own.time, smooth.values, time)
+    return values[:, 0] * factor
+
+
+def _per_kg(trial: Trial, study: Study, joint: str, time: NDArray[np.float64]) -> NDArray[np.float64]:
+    """What each kg more at the foot adds to the joint's moment; empty where no marker shows it."""
+    if "markers" not in trial.streams:
+        return np.empty(0)
+    markers, side, filters = trial.stream("markers"), study.strides.side, study.filters
+    labels = marker_labels(markers)
+    known = max(shipped_marker_sets().values(), key=lambda one: len(one.names(labels)))
+    own = known.names(labels)
+    words = [known.landmarks[place].split() for place in (JOINT_AT[joint], "heel", "toe")]
+    wanted = [next((own[at] for one in some if (at := sided(one, side)) in own), "") for some in words]
+    if "" in wanted:
+        return np.empty(0)
+    kept = markers.selected([f"{name}.{axis}" for name in wanted for axis in "xyz"])
+    places = lowpassed(kept, filters.kinematics_hz, filters.order, filters.gap_s).values.reshape(-1, 3, 3)
+    everything = marker_places(markers, labels)
+    up = up_axis(np.nanmean(everything, axis=1), places[:, 1])
+    each = moment_per_foot_kg(places[:, 0], places[:, 1], places[:, 2], up, markers.rate_hz)
+    return interpolated(markers.time, (-each if joint == "knee_angle" else each)[:, None], time)[:, 0]
+
+
+def _envelopes(
+    trial: Trial, study: Study, side: str, time: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], tuple[str, ...], list[Finding]]:
+    """Envelopes of the side's living muscles on a time base."""
+    own = trial.stream("emg").selected_by(lambda channel: channel.quantity == "emg" and channel.side == side)
+    dead = [one for one in emg_findings(own) if one.severity == "refused"] if is_raw(own) else []
+    lost = {one.channel for one in dead}
+    own = own.selected([name for name in own.names if name not in lost])
+    if not own.names:
+        raise ChannelError(
+            f"a moment model driven by EMG needs living EMG of side {side!r}",
+            f"{trial.name} has {', '.join(sorted(lost)) or 'none'}" + (" dead" if lost else ""),
+            "Name the muscles in [channels], or set side in [strides] to the leg with electrodes.",
+        )
+    values = np.column_stack([_smooth(own.selected([name]), study, time) for name in own.names])
+    left_out = [replace(one, severity="warning", spoils="this muscle is left out") for one in dead]
+    return np.maximum(values, 0.0), tuple(own.names), left_out
+
+
+def _smooth(one: Recording, study: Study, time: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Envelope of one electrode on a time base; one that is an envelope already is low-passed as one is."""
+    filters = study.filters
+    if is_raw(one):
+        smooth = enveloped(one, filters.emg_highpass_hz, filters.emg_lowpass_hz, filters.order)
+    else:
+        smooth = lowpassed(one, filters.emg_lowpass_hz, filters.order, filters.gap_s)
+    return interpolated(smooth.time, smooth.values, time)[:, 0]

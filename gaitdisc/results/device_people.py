@@ -1,0 +1,68 @@
+"""What a device does over people: effect by effect, who shows it, and how much, with an interval over people."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+
+from gaitdisc.results.discovery import Discovery
+
+COLUMNS = ("effect", "place", "number", "unit", "people", "of", "mean", "low", "high", "who")
+NOTHING = "nothing named"
+
+
+def over_people(found: Mapping[str, Discovery]) -> pd.DataFrame:
+    """One row for each number of each effect: in how many people it was named, its mean, 95 % interval, and who.
+
+    Parameters
+    ----------
+    found : mapping of str to Discovery
+        By participant.
+
+    Returns
+    -------
+    DataFrame
+        Columns `COLUMNS`; the interval is Student's over people, NaN of one person alone.
+    """
+    own: dict[tuple[str, str, str, str], dict[str, float]] = {}
+    for person, one in found.items():
+        for effect in one.effects:
+            for number, each in effect.estimates.items():
+                own.setdefault((effect.name, effect.place, number, each.unit), {})[person] = each.value
+    rows: list[tuple[object, ...]] = [
+        (*key, len(each), len(found), *_mean(list(each.values())), _who(each)) for key, each in own.items()
+    ]
+    without = [person for person, one in found.items() if not one.effects]
+    if without:
+        rows.append((NOTHING, "", "", "", len(without), len(found), *[float("nan")] * 3, ", ".join(without)))
+    table = pd.DataFrame(rows, columns=pd.Index(COLUMNS))
+    return table.sort_values("people", ascending=False, kind="stable", ignore_index=True)
+
+
+def lines(table: pd.DataFrame) -> list[str]:
+    """Each row of `over_people` as a line of text."""
+    told = []
+    for row in table.to_dict("records"):
+        what = f"{row['effect']} at {row['place']}, {row['number']}" if row["place"] else row["effect"]
+        mean = f", mean {row['mean']:.3g}" if row["place"] else ""
+        if np.isfinite(row["low"]):
+            mean += f" (95 % {row['low']:.3g} to {row['high']:.3g})"
+        told.append(f"{what}: {row['people']} of {row['of']}{mean} {row['unit']}".rstrip() + f": {row['who']}")
+    return told
+
+
+def _mean(values: list[float]) -> tuple[float, float, float]:
+    from scipy.stats import t
+
+    mean = float(np.mean(values))
+    if len(values) < 2:
+        return mean, float("nan"), float("nan")
+    half = float(t.ppf(0.975, len(values) - 1) * np.std(values, ddof=1) / np.sqrt(len(values)))
+    return mean, mean - half, mean + half
+
+
+def _who(each: Mapping[str, float]) -> str:
+    """Everyone who shows it, the largest response first."""
+    return ", ".join(f"{person} {value:.3g}" for person, value in sorted(each.items(), key=lambda one: -abs(one[1])))

@@ -1,0 +1,122 @@
+"""What a device does, from a laboratory's files alone: which hidden effects of the embedded cohort are named.
+
+    python studies/device_from_files.py [OUT.csv] [--people 6] [--seed 777001] [--quick]
+
+People drawn from a seed, outside both cohorts, walk twice 36 s: Nominal, and with one thing hidden. Each person is
+written as a study (angles .mot, EMG and forces .c3d, moments .sto as inverse dynamics gives them, the pressure 3 mm
+off) and searched by `gaitdisc discover STUDY --participant ID`. Beside the named effect stand the models of chapter 4
+on the same held-out strides [N m]; Augmented is a plain regression of what Nominal leaves.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from command_line import QUICK, argument, command_line
+
+GIVEN = command_line(
+    __name__,
+    __doc__,
+    argument("out", "CSV that gets the table (default: none)", nargs="?", type=Path),
+    argument("--people", "how many people", 6),
+    argument("--seed", "of the first person; the next have the next", 777001),
+    QUICK,
+)  # before the slow imports
+
+from dataclasses import replace
+from tempfile import TemporaryDirectory
+
+import numpy as np
+import pandas as pd
+from ankle_records import moment_per_foot_kg
+from scipy.signal import butter, sosfiltfilt
+
+from gaitdisc.batch.demonstration import FORCES, write_trial
+from gaitdisc.batch.discover_files import discover_study
+from gaitdisc.channel import vocabulary
+from gaitdisc.cohort.device import STIFFNESS, Spring
+from gaitdisc.cohort.measurement import measured
+from gaitdisc.cohort.person import Person, drawn
+from gaitdisc.cohort.walk import TrueWalk, walked
+from gaitdisc.ingest.storage import write_storage
+from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
+from gaitdisc.ingest.study_file import write_study
+from gaitdisc.recording import Recording
+
+CONDITIONS, CHANNELS = Conditions(nominal="nominal", device="exo"), {name: f"{name} [N]" for name in FORCES}
+WALK_S, PRESSURE_M, ERROR_HZ = 36.0, 0.003, 6.0
+RIGHT = {
+    "none": ("", ""),
+    "spring": ("one_sided_spring", "ankle_moment"),
+    "weak plantarflexor": ("wrong_parameter", "plantarflexors_strength"),
+    "late EMG": ("wrong_parameter", "emg_delay"),
+    "foot mass": ("wrong_parameter", "added_foot_mass"),
+}
+TRUTH = {"weak plantarflexor": 0.75, "late EMG": -0.04, "foot mass": 0.8, "spring": np.degrees(STIFFNESS)}
+
+
+def summary(table: pd.DataFrame) -> pd.DataFrame:
+    """How many are right, how far off the value is, and the held-out errors [N m], by what was hidden."""
+    rows = table.assign(off=100 * (table["value"] / table["truth"] - 1).abs())
+    rows["inside"] = rows["truth"].between(rows["low"], rows["high"])
+    models = [name for name in map(str, table) if name.startswith(("Nominal", "Augmented", "Exo"))]
+    groups = rows.groupby("hidden", sort=False)
+    counts = groups.agg(n=("right", "size"), right=("right", "sum"), inside=("inside", "sum"))
+    return counts.join(groups[["off", *models]].median())
+
+
+def run(people: int, seed: int, quick: bool) -> pd.DataFrame:
+    """Hide each effect in each person's second walk, and search the files."""
+    drawn_people = [drawn(f"X{one + 1:02d}", seed + one, "fm"[one % 2]) for one in range(1 if quick else people)]
+    hidden = ("spring",) if quick else tuple(RIGHT)
+    return pd.DataFrame([found_in(person, one) for person in drawn_people for one in hidden])
+
+
+def found_in(person: Person, hidden: str) -> dict[str, object]:
+    """One study of one person, one search: what it says beside what is true."""
+    with TemporaryDirectory() as folder:
+        found = discover_study(write_person(person, hidden, Path(folder)), person.name)[0]
+    named = [(one.name, one.place) for one in found.effects]
+    right = RIGHT[hidden] in named if hidden != "none" else not named
+    row: dict[str, object] = {"person": person.name, "hidden": hidden, "verdict": found.verdict, "right": right}
+    row["named"] = ", ".join(f"{name} at {place}" for name, place in named)
+    effect = next((one for one in found.effects if (one.name, one.place) == RIGHT[hidden]), None)
+    first = next(iter(effect.estimates.values())) if effect else None
+    row |= {key: getattr(first, key) if first else np.nan for key in ("value", "low", "high")}
+    return row | {"truth": TRUTH.get(hidden, np.nan)} | dict(found.beside)
+
+
+def write_person(person: Person, hidden: str, folder: Path) -> Path:
+    """Write both walks of a person as a study."""
+    spring, late_s = Spring(STIFFNESS) if hidden == "spring" else None, 0.04 if hidden == "late EMG" else 0.0
+    weak, kilograms = (0.75 if hidden == "weak plantarflexor" else 1.0), (0.8 if hidden == "foot mass" else 0.0)
+    changed = person.adapted_to(spring) if spring else replace(person, plantarflexors=weak, foot_kg=kilograms)
+    planned = []
+    for number, (word, walker, device) in enumerate((("nominal", person, None), ("exo", changed, spring))):
+        walk = walked(walker, device, WALK_S, 1000 * round(person.mass_kg) + number)
+        files = write_trial(measured(walk, f"{person.name}_{word}", word, late_s * number), folder, f"raw/{word}")
+        write_storage(moments(walk), folder / f"raw/{word}_id.sto")
+        planned.append(PlannedTrial(condition=word, files=(*files, f"raw/{word}_id.sto")))
+    mine = Participant(id=person.name, mass_kg=round(person.mass_kg, 1), trials=tuple(planned))
+    study = Study(title=hidden, conditions=CONDITIONS, channels=CHANNELS, participants=(mine,))
+    write_study(study.placed(folder), folder / "study.toml")
+    return folder / "study.toml"
+
+
+def moments(walk: TrueWalk) -> Recording:
+    """Net ankle moment of inverse dynamics that knows no mass at the foot, its centre of pressure 3 mm off."""
+    low = butter(4, ERROR_HZ, fs=100, output="sos")
+    wander = sosfiltfilt(low, np.random.default_rng([walk.seed, 31]).normal(size=len(walk.slow_s)))
+    load = np.interp(walk.slow_s, walk.quick_s, walk.force[:, 0, 1])
+    net = walk.moments[:, 0, 2] + walk.spring[:, 0] - walk.person.foot_kg * moment_per_foot_kg(walk)
+    net = net + PRESSURE_M * wander / wander.std() * load
+    channel = vocabulary().named("ankle_angle_r_moment")
+    assert channel is not None
+    return Recording(walk.slow_s, net[:, None], (channel,), walk.person.name)
+
+
+if __name__ == "__main__":
+    table = run(GIVEN.people, GIVEN.seed, GIVEN.quick)
+    print(table.round(3).to_string(), summary(table).round(3).to_string(), sep="\n")
+    if GIVEN.out:
+        table.to_csv(GIVEN.out, index=False)

@@ -1,0 +1,94 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from made_joint import made_joint
+
+from gaitdisc.batch.device_study import DeviceWalks, NoMomentsError, beside, check_kinetics, device_walks
+from gaitdisc.batch.discover_files import discover_study
+from gaitdisc.batch.joint_inquiry import nominal_moment
+from gaitdisc.channel import vocabulary
+from gaitdisc.errors import SchemaError
+from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
+from gaitdisc.ingest.study_file import write_study
+from gaitdisc.recording import Finding, Recording, Trial
+from gaitdisc.results.discovery import Discovery, GapSize, Runs
+
+
+def trial(*keys, findings=()):
+    channel = vocabulary().named("emg_sol_r")
+    one = Recording(np.arange(4) / 100, np.zeros((4, 1)), (channel,))
+    return Trial("W01_exo", dict.fromkeys(keys, one), findings=tuple(findings))
+
+
+def test_a_walk_whose_forces_do_not_carry_the_body_is_refused_with_the_balance():
+    balance = Finding("warning", "force balance", "walk.c3d", "vertical rms 31.0 % of body weight (mean -29.4 %)", "")
+    with pytest.raises(SchemaError, match=r"forces that carry the body.*W01_exo: .*mean -29.4 %.*Correct mass_kg"):
+        check_kinetics(trial("emg", "moments", findings=[balance]))
+
+
+def test_moments_per_kg_that_say_newton_metres_are_refused():
+    per_kg = Finding("warning", "per body mass", "id.sto", "peaks at 1.4 N m", "", "ankle_angle_r_moment")
+    with pytest.raises(SchemaError, match=r"ankle_angle_r_moment peaks at 1.4 N m.*N m/kg in \[channels\]"):
+        check_kinetics(trial("emg", "moments", findings=[per_kg]))
+
+
+@pytest.mark.parametrize(("has", "lacks", "mend"), [("moments", "EMG", "file with the EMG"),
+                                                    ("emg", "joint moments", "force platforms")])  # fmt: skip
+def test_a_walk_without_emg_or_forces_says_which(has, lacks, mend):
+    with pytest.raises(NoMomentsError, match=rf"named from {lacks} in both walks; W01_exo has no {lacks}.*{mend}"):
+        check_kinetics(trial(has))
+
+
+def one_walk(word="nominal", **others):
+    walk = PlannedTrial(condition=word, files=(f"{word}.mot",))
+    person = Participant(id="W01", trials=(walk,))
+    return Study(title="x", conditions=Conditions(nominal="nominal", device="exo"), participants=(person,), **others)
+
+
+def test_conditions_without_a_pair_are_refused():
+    with pytest.raises(SchemaError, match=r"both walks of W01 are needed; .*1 of 'nominal', none of 'exo'"):
+        device_walks(one_walk(), "W01")
+
+
+def test_a_joint_that_is_none_is_refused():
+    with pytest.raises(SchemaError, match=r"one of ankle_angle, knee_angle, hip_flexion; found 'toe'"):
+        device_walks(one_walk(), "W01", "toe")
+
+
+@pytest.fixture(scope="module")
+def walks():
+    nominal = made_joint(seed=1)
+    return DeviceWalks(nominal, made_joint(seed=3, spring=150.0), nominal_moment(nominal))
+
+
+def test_the_models_of_chapter_4_stand_beside_in_newton_metres(walks):
+    """Augmented can follow the spring; Exo, whose muscles cannot, leaves more of it."""
+    held = np.flatnonzero(walks.device.stride >= 18)
+    blank = np.full((1, len(held), 2), np.nan)
+    runs = Runs(np.zeros(1, int), walks.device.time[held][None], np.empty((0, 0)), blank, blank, blank)
+    size = GapSize(1.0, 0.2, 0.1, channels={"net_moment": (9.0, 1.5, 1.0)})
+    found = Discovery("no_gap", "s", (), (), (), size, size, ("ankle_angle", "net_moment"), ("rad", "N m"), runs)
+    sizes = beside(walks, found)
+    assert list(sizes)[:2] == ["Nominal", "Nominal + named effect"]
+    assert sizes["Nominal + named effect"] == 9.0  # nothing is named
+    assert 0.5 < sizes["Augmented (plain regression)"] < sizes["Exo"] < 9.0
+
+
+def test_it_is_said_what_the_moment_model_is_worth_and_that_no_mass_can_be_weighed(walks):
+    said = [finding.what for finding in walks.findings]
+    assert any("the ankle's moment model leaves" in one and "ms later" in one for one in said)
+    assert "not weighed: no marker shows the foot" in said
+    heavier = replace(walks, device=replace(walks.device, per_kg=0.5 * np.cos(walks.device.time)))
+    assert any("kg more at the foot would be as large" in finding.what for finding in heavier.findings)
+
+
+@pytest.mark.slow
+def test_without_moments_the_motion_is_compared_and_nothing_is_named(tmp_path):
+    from gaitdisc.batch.demonstration import write_demonstration
+
+    study = write_demonstration(tmp_path, 30.0, 1)
+    write_study(study, tmp_path / "study.toml")
+    found = discover_study(tmp_path / "study.toml", "W01")[0]
+    assert "has no joint moments" in found.sentence
+    assert "it cannot be named. Of the motion alone: " in found.sentence

@@ -1,0 +1,96 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gaitdisc.channel import Channel, vocabulary
+from gaitdisc.cohort.marker_trial import marker_trial
+from gaitdisc.cohort.measurement import measured
+from gaitdisc.cohort.person import drawn
+from gaitdisc.cohort.walk import walked
+from gaitdisc.errors import ChannelError, UnitError
+from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
+from gaitdisc.processing.joint_record import joint_record
+from gaitdisc.recording import Recording
+
+ONE = Participant(id="W01", trials=(PlannedTrial(condition="nominal", files=("a.mot",)),))
+STUDY = Study(title="x", conditions=Conditions(nominal="nominal", device="exo"), participants=(ONE,))
+
+
+@pytest.fixture(scope="module")
+def walk():
+    return walked(drawn("W01", 1, "f"), None, 8.0, seed=3)
+
+
+@pytest.fixture(scope="module")
+def trial(walk):
+    seen = measured(walk, "W01_nominal", "nominal")
+    channel = vocabulary().named("ankle_angle_r_moment")
+    moments = Recording(walk.slow_s, walk.moments[:, :1, 2], (channel,))
+    markers = marker_trial(walk, "W01", "nominal").stream("markers")
+    return replace(seen, streams={**seen.streams, "moments": moments, "markers": markers})
+
+
+@pytest.fixture(scope="module")
+def record(trial):
+    return joint_record(trial, STUDY, "ankle_angle", None)
+
+
+def test_a_joint_has_its_angle_moment_and_the_legs_muscles(walk, record):
+    assert record.muscles == tuple(f"emg_{name}_r" for name in ("ham", "rf", "vas", "gas", "sol", "ta", "gmed"))
+    inner = slice(50, -50)
+    assert np.sqrt(np.mean((record.moment - walk.moments[:, 0, 2])[inner] ** 2)) < 3.0
+    assert np.corrcoef(record.angle, record.seen)[0, 1] > 0.99
+    assert (record.envelopes >= 0).all()
+
+
+def test_strides_are_those_of_the_foot(walk, record):
+    own = walk.phase[::10] % 1.0
+    inside = record.stride >= 0
+    apart = np.abs((record.phase - own + 0.5) % 1 - 0.5)[inside]
+    assert np.median(apart) < 0.01
+    assert inside.mean() > 0.7
+
+
+def test_moments_per_kg_need_a_mass(trial, record):
+    per_kg = trial.stream("moments")
+    channel = Channel("ankle_angle_r_moment", "moment", "N m/kg", "r")
+    lighter = replace(
+        trial, streams={**trial.streams, "moments": replace(per_kg, values=per_kg.values / 60.0, channels=(channel,))}
+    )
+    again = joint_record(lighter, STUDY, "ankle_angle", 60.0)
+    np.testing.assert_allclose(again.moment, record.moment, atol=1e-9)
+    with pytest.raises(UnitError, match=r"body mass.*N m/kg, and no mass is stated.*Give mass_kg"):
+        joint_record(lighter, STUDY, "ankle_angle", None)
+
+
+def test_markers_of_the_foot_say_what_a_kilogram_there_would_add(record):
+    """Standing, its weight at some centimetres before the ankle; in swing, what it takes to move it."""
+    stands = (record.phase > 0.15) & (record.phase < 0.35)
+    assert 0.1 < np.mean(record.per_kg[stands]) < 1.2
+    assert np.nanstd(record.per_kg) > 0.2
+
+
+def test_radians_that_say_degrees_are_refused(trial):
+    angles = trial.stream("kinematics")
+    small = replace(trial, streams={**trial.streams, "kinematics": replace(angles, values=np.radians(angles.values))})
+    with pytest.raises(UnitError, match=r"moves by more than 2 deg; .*ankle_angle_r moves by 0.\d+ deg.*inDegrees=no"):
+        joint_record(small, STUDY, "ankle_angle", None)
+
+
+def test_a_leg_without_electrodes_is_refused(trial):
+    bare = replace(trial, streams={**trial.streams, "emg": trial.stream("emg").selected(["emg_sol_l"])})
+    with pytest.raises(ChannelError, match=r"living EMG of side 'r'.*has none.*set side in \[strides\]"):
+        joint_record(bare, STUDY, "ankle_angle", None)
+
+
+def test_an_electrode_that_is_an_envelope_already_is_taken_as_one_beside_raw_ones(trial, record):
+    """As in the EMG of a published walk, where some muscles swing about zero and others never fall below it."""
+    raw = trial.stream("emg")
+    column, values = raw.index("emg_sol_r"), np.array(raw.values)
+    values[:, column] = np.interp(raw.time, record.time, record.envelopes[:, 4])
+    mixed = joint_record(
+        replace(trial, streams={**trial.streams, "emg": replace(raw, values=values)}), STUDY, "ankle_angle", None
+    )
+    np.testing.assert_allclose(mixed.envelopes[:, 3], record.envelopes[:, 3])
+    assert np.corrcoef(mixed.envelopes[:, 4], record.envelopes[:, 4])[0, 1] > 0.98
