@@ -123,7 +123,7 @@ def check_calibrated(model: MuscleMoment, nominal: JointRecord) -> None:
     raise SchemaError(
         f"a device is named beside a moment model that explains {100 * LEAST_R2:.0f} % of the variance of Nominal "
         "strides left out of its fit",
-        f"the {WORDS[nominal.joint]} of {nominal.subject} has R2 {model.r2:.2f}, {nominal.stride.max() + 1:.0f} strides",
+        f"the {WORDS[nominal.joint]} of {nominal.subject} has R2 {model.r2:.2f}, {nominal.stride.max() + 1} strides",
         "Record more strides, add the muscles that span the joint, or check that EMG and forces share a clock.",
     )
 
