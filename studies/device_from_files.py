@@ -33,7 +33,7 @@ from scipy.signal import butter, sosfiltfilt
 
 from gaitdisc.batch.demonstration import FORCES, write_trial
 from gaitdisc.batch.discover_files import discover_study
-from gaitdisc.channel import vocabulary
+from gaitdisc.channel import Channel
 from gaitdisc.cohort.device import STIFFNESS, Spring
 from gaitdisc.cohort.measurement import measured
 from gaitdisc.cohort.person import Person, drawn
@@ -110,9 +110,7 @@ def moments(walk: TrueWalk) -> Recording:
     load = np.interp(walk.slow_s, walk.quick_s, walk.force[:, 0, 1])
     net = walk.moments[:, 0, 2] + walk.spring[:, 0] - walk.person.foot_kg * moment_per_foot_kg(walk)
     net = net + PRESSURE_M * wander / wander.std() * load
-    channel = vocabulary().named("ankle_angle_r_moment")
-    assert channel is not None
-    return Recording(walk.slow_s, net[:, None], (channel,), walk.person.name)
+    return Recording(walk.slow_s, net[:, None], (Channel("ankle_angle_r_moment", "moment", "N m", "r"),))
 
 
 if __name__ == "__main__":

@@ -22,6 +22,7 @@ from gaitdisc.recording import Finding, Trial
 from gaitdisc.regression.muscle_moment import MuscleMoment, fitted_moment
 from gaitdisc.results.discovery import Discovery
 
+LEAST_R2 = 0.7  # two strides of a published walk have -2.4 and 0.70, 36 s of the embedded cohort 0.96
 HARMONICS = 8  # of the plain regression of what is left
 RIDGE = 1e-3
 Values = NDArray[np.float64]
@@ -81,7 +82,9 @@ def device_walks(study: Study, participant: str, joint: str = "ankle_angle") -> 
             public = of_trial(words, person, planned)
             records.append(public.of(partial(joint_record, read.trial, study, joint, mass_kg)))
     nominal, device = (replace(one, subject=participant) for one in records)
-    return DeviceWalks(nominal, device, nominal_moment(nominal))
+    model = nominal_moment(nominal)
+    check_calibrated(model, nominal)
+    return DeviceWalks(nominal, device, model)
 
 
 def check_kinetics(trial: Trial) -> None:
@@ -111,6 +114,18 @@ def check_kinetics(trial: Trial) -> None:
                 f"{trial.name} has no {word}{why if key == 'moments' else ''}",
                 mend,
             )
+
+
+def check_calibrated(model: MuscleMoment, nominal: JointRecord) -> None:
+    """Refuse a moment model that says too little of the Nominal walk: what it leaves is not the device's."""
+    if model.r2 >= LEAST_R2:
+        return
+    raise SchemaError(
+        f"a device is named beside a moment model that explains {100 * LEAST_R2:.0f} % of the variance of Nominal "
+        "strides left out of its fit",
+        f"the {WORDS[nominal.joint]} of {nominal.subject} has R2 {model.r2:.2f}, {nominal.stride.max() + 1} strides",
+        "Record more strides, add the muscles that span the joint, or check that EMG and forces share a clock.",
+    )
 
 
 class NoMomentsError(ChannelError):

@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 from made_joint import made_joint
 
-from gaitdisc.batch.device_study import DeviceWalks, NoMomentsError, beside, check_kinetics, device_walks
+from gaitdisc.batch.device_study import (
+    DeviceWalks,
+    NoMomentsError,
+    beside,
+    check_calibrated,
+    check_kinetics,
+    device_walks,
+)
 from gaitdisc.batch.discover_files import discover_study
 from gaitdisc.batch.joint_inquiry import nominal_moment
 from gaitdisc.channel import vocabulary
@@ -81,6 +88,14 @@ def test_it_is_said_what_the_moment_model_is_worth_and_that_no_mass_can_be_weigh
     assert "not weighed: no marker shows the foot" in said
     heavier = replace(walks, device=replace(walks.device, per_kg=0.5 * np.cos(walks.device.time)))
     assert any("kg more at the foot would be as large" in finding.what for finding in heavier.findings)
+
+
+def test_a_model_that_does_not_explain_the_nominal_walk_names_no_device(walks):
+    check_calibrated(walks.model, walks.nominal)
+    noise = np.random.default_rng(0).normal(0.0, 30.0, len(walks.nominal.time))
+    model = nominal_moment(replace(walks.nominal, moment=noise))
+    with pytest.raises(SchemaError, match=r"the ankle of W01 has R2 -?0\.\d+, 24 strides. Record more strides"):
+        check_calibrated(model, walks.nominal)
 
 
 @pytest.mark.slow
