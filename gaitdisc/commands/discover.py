@@ -97,7 +97,7 @@ def _write(found: Discovery, out: Path, draw: bool, told: Callable[[str], None],
 
         told("drawing the report")
         place = write_discovery_report(found, out)
-    typer.echo("\n".join([found.sentence, *(f"{note[0].upper()}{note[1:]}." for note in notes)]))
+    typer.echo("\n".join([found.sentence, *notes]))
     for finding in found.findings:
         if finding.severity != "note":
             typer.echo(finding.line(), err=True)

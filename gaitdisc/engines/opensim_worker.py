@@ -27,7 +27,6 @@ class _Ready:
         for name, value in values.items():
             _set(self.model, osim, name, value)
         every = self.model.getCoordinateSet()
-        state = osim.Model(self.model).initSystem()
         names = [every.get(k).getName() for k in range(every.getSize())]
         self.locked = [name for name in names if every.get(name).getDefaultLocked()]
         free = [name for name in names if name not in self.locked]

@@ -119,6 +119,8 @@ def _left(
         for _ in range(TURNS):
             nudged = residual(start + NUDGE * np.eye(2 * n))
             slopes = ((nudged - left) / NUDGE / size).reshape(2 * n, -1)
+            if not np.isfinite(slopes).all():  # a run that leaves every bound has no slopes
+                break
             move = np.linalg.lstsq(slopes.T, -(left / size).ravel(), rcond=1e-9)[0]
             tried = residual((start + move)[None])[0]
             gain = ((left / size) ** 2).sum() - ((tried / size) ** 2).sum()

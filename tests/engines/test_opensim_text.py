@@ -25,9 +25,7 @@ def test_a_force_goes_to_the_end_of_the_models_own_forces():
 
 
 def test_an_expression_is_written_as_opensim_reads_it():
-    assert inserted("-2*max(0, knee - 0.1)") == "(-2.0)*(max((0.0),((q)-(0.1))))" or "max((0.0),(q)-(0.1))" in inserted(
-        "-2*max(0, knee - 0.1)"
-    )
+    assert "max((0.0),((q)-(0.1)))" in inserted("-2*max(0, knee - 0.1)")
     assert inserted("-0.5*sign(knee_speed)").endswith("tanh((qdot)/0.02))")
     assert "sqrt((qdot)*(qdot))" in inserted("-knee_speed*abs(knee_speed)")
     assert "^" in inserted("-3*knee**3")
