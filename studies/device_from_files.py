@@ -31,9 +31,9 @@ import pandas as pd
 from ankle_records import moment_per_foot_kg
 from scipy.signal import butter, sosfiltfilt
 
+import gaitdisc as gd
 from gaitdisc.batch.demonstration import FORCES, write_trial
 from gaitdisc.batch.discover_files import discover_study
-from gaitdisc.channel import Channel
 from gaitdisc.cohort.device import STIFFNESS, Spring
 from gaitdisc.cohort.measurement import measured
 from gaitdisc.cohort.person import Person, drawn
@@ -41,7 +41,6 @@ from gaitdisc.cohort.walk import TrueWalk, walked
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import write_study
-from gaitdisc.recording import Recording
 
 CONDITIONS, CHANNELS = Conditions(nominal="nominal", device="exo"), {name: f"{name} [N]" for name in FORCES}
 WALK_S, PRESSURE_M, ERROR_HZ = 36.0, 0.003, 6.0
@@ -103,14 +102,14 @@ def write_person(person: Person, hidden: str, folder: Path) -> Path:
     return folder / "study.toml"
 
 
-def moments(walk: TrueWalk) -> Recording:
+def moments(walk: TrueWalk) -> gd.Recording:
     """Net ankle moment of inverse dynamics that knows no mass at the foot, its centre of pressure 3 mm off."""
     low = butter(4, ERROR_HZ, fs=100, output="sos")
     wander = sosfiltfilt(low, np.random.default_rng([walk.seed, 31]).normal(size=len(walk.slow_s)))
     load = np.interp(walk.slow_s, walk.quick_s, walk.force[:, 0, 1])
     net = walk.moments[:, 0, 2] + walk.spring[:, 0] - walk.person.foot_kg * moment_per_foot_kg(walk)
     net = net + PRESSURE_M * wander / wander.std() * load
-    return Recording(walk.slow_s, net[:, None], (Channel("ankle_angle_r_moment", "moment", "N m", "r"),))
+    return gd.Recording(walk.slow_s, net[:, None], (gd.Channel("ankle_angle_r_moment", "moment", "N m", "r"),))
 
 
 if __name__ == "__main__":

@@ -35,10 +35,10 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy.signal import butter, sosfiltfilt
 
+import gaitdisc as gd
 from gaitdisc.batch.discover_engine import EngineAnswer, discover_model_file
 from gaitdisc.engines.engine import Engine, Motion, read_model
 from gaitdisc.engines.mapping import drafted
-from gaitdisc.simulation.writing import write_simulation
 
 SYSTEMS = Path(__file__).parent / "systems"
 RATE_HZ, SECONDS, TRIALS, CUTOFF_HZ = 100.0, 4.0, 4, 6.0
@@ -232,7 +232,7 @@ def study(
                 model = Path(folder) / case.model.file
                 model.write_text((SYSTEMS / case.model.file).read_text(encoding="utf-8"), encoding="utf-8")
                 engine: Engine = read_model(model)
-                write_simulation(drafted(engine, degrees=True), model.with_suffix(".toml"))
+                gd.write_simulation(drafted(engine, degrees=True), model.with_suffix(".toml"))
                 before = cpu_s()
                 answer = discover_model_file(model, table)
                 row = {"model": name, **judged(case, answer), "cpu s": round(cpu_s() - before, 1)}

@@ -14,21 +14,22 @@ MOST_LINES = 120
 DOOR_ALONE = {"ankle_exo_emg", "command_line", "compare_halves", "curves_over_each_other", "driven_trials",
               "family_wise_error", "fault_cases", "faults_of_meaning", "joints_and_chains", "knee_with_memory",
               "library_pictures", "printed_numbers"}  # fmt: skip
-INSIDE = 44  # at most so many import from deeper: of rooms that the door does not open, or tests of what lies inside
+INSIDE = 46  # at most so many import from deeper: of rooms that the door does not open, or tests of what lies inside
 LONG = {
     "ankle_exo_emg": 200,
     "ch3_further": 228,
     "ch3_seeds": 176,
     "ch3_tables": 198,
-    "ch4_further": 249,
+    "ch4_further": 251,
     "ch4_ours": 131,
     "ch4_outcomes": 161,
-    "ch5_beyond": 194,
+    "ch5_beyond": 195,
     "ch5_further": 209,
     "ch5_gait_individual": 129,
     "cohort_muscles": 137,
     "cohort_norms": 160,
     "contact_bias": 126,
+    "engines": 263,
     "fault_cases": 230,
     "faults_of_meaning": 145,
     "gait10dof_segments": 164,
