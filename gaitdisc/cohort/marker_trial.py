@@ -40,6 +40,7 @@ MOMENT_NM = 0.3  # noise of a belt's moments
 FORCE_N = 2.0
 BELT_M = (2.0, 0.5)  # length, width of a belt
 TO_LABORATORY = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])  # from forwards, up, right
+Segments = dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]  # origin and rotation over time
 # (forwards, down, outwards) of the joint above; down in shares of the segment, the rest in shares of height
 PLACES = {
     "thigh": {
@@ -76,7 +77,7 @@ def standing(person: Person) -> Trial:
     height = leg.thigh_m + leg.shank_m + leg.ankle_m
     hips = np.tile([0.0, height, 0.0], (count, 1))
     rng = np.random.default_rng([round(person.mass_kg * 1e6), 41])
-    markers = _markers(person, leg, angles, hips, rng, angles[0])
+    markers = _markers(person, leg, _segments(person, leg, angles, hips), angles - angles[0], rng)
     return Trial(f"{person.name}_static", {"markers": markers}, subject=person.name)
 
 
@@ -90,8 +91,9 @@ def marker_trial(walk: TrueWalk, name: str, condition: str) -> Trial:
     rng = np.random.default_rng([walk.seed, 43])
     straight = np.zeros((2, 5))
     straight[:, 0] = _tilt(person)
-    markers = _markers(person, leg, angles, hips, rng, straight, condition)
-    forces = _forces(walk, leg, hips, rng, condition)
+    segments = _segments(person, leg, angles, hips)
+    markers = _markers(person, leg, segments, angles - straight, rng, condition)
+    forces = _forces(walk, leg, segments, rng, condition)
     return Trial(
         name, {"markers": markers, "forces": forces}, subject=person.name, condition=condition, surfaces=belts()
     )
@@ -131,9 +133,7 @@ def _pressed(walk: TrueWalk, leg: Leg, side: int) -> NDArray[np.float64]:
     return ankle_place(leg, psi) + pressed_point(leg, psi[:, 2], pressure)
 
 
-def _segments(
-    person: Person, leg: Leg, angles: NDArray[np.float64], hips: NDArray[np.float64]
-) -> dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]:
+def _segments(person: Person, leg: Leg, angles: NDArray[np.float64], hips: NDArray[np.float64]) -> Segments:
     """Origin (time, 3) and rotation (time, 3, 3) of each segment, in forwards, up, right."""
     pelvis = np.repeat(_turned(np.array([[-_tilt(person), 0.0, 0.0]])), len(angles), axis=0)
     found = {"pelvis": (hips - pelvis @ _hip(person, 0.0), pelvis)}
@@ -160,26 +160,29 @@ def _hip(person: Person, sign: float) -> NDArray[np.float64]:
 
 def _turned(angles_deg: NDArray[np.float64]) -> NDArray[np.float64]:
     """Flexion about the proximal z, adduction about the floating axis, rotation about the distal y."""
-    from scipy.spatial.transform import Rotation
-
-    return Rotation.from_euler("ZXY", angles_deg, degrees=True).as_matrix()
+    (a, b, c), (ca, cb, cc) = np.sin(np.radians(angles_deg.T)), np.cos(np.radians(angles_deg.T))
+    rows = [
+        [ca * cc - a * b * c, -a * cb, ca * c + a * b * cc],
+        [a * cc + ca * b * c, ca * cb, a * c - ca * b * cc],
+        [-cb * c, b, cb * cc],
+    ]
+    return np.ascontiguousarray(np.moveaxis(np.array(rows), 2, 0))
 
 
 def _markers(
     person: Person,
     leg: Leg,
-    angles: NDArray[np.float64],
-    hips: NDArray[np.float64],
+    segments: Segments,
+    bent_deg: NDArray[np.float64],
     rng: np.random.Generator,
-    straight: NDArray[np.float64],
     condition: str = "",
 ) -> Recording:
     skin = np.random.default_rng([round(person.mass_kg * 1e6), 37])  # the same in every trial of the person
     columns, channels = [], []
-    for segment, (origin, rotation) in _segments(person, leg, angles, hips).items():
+    for segment, (origin, rotation) in segments.items():
         part, _, side = segment.partition("_")
         column = "rl".find(side) if side else 0
-        flexed = (angles[:, column] - straight[column])[:, [0, 3]] / 60.0
+        flexed = bent_deg[:, column][:, [0, 3]] / 60.0
         for label, place in _places(person, leg, part, side).items():
             away = flexed @ (SKIN_M[part] * skin.normal(size=(2, 3)))
             seen = (origin + np.einsum("tij,tj->ti", rotation, place + away)) @ TO_LABORATORY.T
@@ -210,10 +213,11 @@ def _places(person: Person, leg: Leg, part: str, side: str) -> dict[str, NDArray
     }
 
 
-def _forces(walk: TrueWalk, leg: Leg, hips: NDArray[np.float64], rng: np.random.Generator, condition: str) -> Recording:
+def _forces(walk: TrueWalk, leg: Leg, segments: Segments, rng: np.random.Generator, condition: str) -> Recording:
     """Force and moment about the middle of each belt, in the laboratory's axes."""
     columns, channels = [], []
-    segments = _segments(walk.person, leg, walk.angles + _only_tilt(walk.person), hips)
+    pelvis, turned = segments["pelvis"]
+    hips = pelvis + turned @ _hip(walk.person, 0.0)
     for column, ((side, sign), belt) in enumerate(zip(SIDES, belts(), strict=True)):
         at = _pressed(walk, leg, column) + hips[:, :2]
         foot = segments[f"foot_{side}"][0][:, 2]
@@ -236,7 +240,3 @@ def _forces(walk: TrueWalk, leg: Leg, hips: NDArray[np.float64], rng: np.random.
     return Recording(
         walk.quick_s, np.hstack(columns), tuple(channels), walk.person.name, condition, Source(reader="cohort")
     )
-
-
-def _only_tilt(person: Person) -> NDArray[np.float64]:
-    return np.array([_tilt(person), 0.0, 0.0, 0.0, 0.0])
