@@ -18,7 +18,7 @@ from gaitdisc.simulation.refusal import SimulationError
 
 LONGEST, DEEPEST, LARGEST = 20_000, 250, 4_000  # characters, nesting, nodes
 FUNCTIONS = {  # name: fewest and most arguments
-    **dict.fromkeys(("sin", "cos", "tan", "tanh", "exp", "log", "sqrt", "abs", "sign", "step"), (1, 1)),
+    **dict.fromkeys(("sin", "cos", "tan", "atan", "tanh", "exp", "log", "sqrt", "abs", "sign", "step"), (1, 1)),
     **dict.fromkeys(("max", "min"), (2, 16)),
     **dict.fromkeys(("where", "delay"), (2, 2)),
 }

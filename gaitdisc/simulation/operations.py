@@ -214,7 +214,10 @@ def _chosen(op, registers, places, width):
         for r in range(width):
             x = registers[a + r]
             registers[z + r] = x if np.isnan(x) else (1.0 if x > 0.0 else 0.0)
-    else:
+    elif op == 18:
         for r in range(width):
             x, y = registers[a + r], registers[b + r]
             registers[z + r] = x if np.isnan(x) else (y if x > 0.0 else 0.0)
+    else:
+        for r in range(width):
+            registers[z + r] = math.atan(registers[a + r])

@@ -286,6 +286,16 @@ def _clipped(x: Any, low: Any, high: Any) -> Quantity:
     return _operation("min", _operation("max", x, low), high)
 
 
+def _arcsine(x: Quantity) -> Quantity:
+    return _operation("atan", x / _operation("sqrt", 1 - x * x))
+
+
+def _angle_of(y: Any, x: Any) -> Quantity:
+    """`atan2`, by the tangent of half the angle, which is infinite where x is negative and y is 0."""
+    beyond = _operation("sqrt", x * x + y * y) + x
+    return _chosen(beyond > 0, 2 * _operation("atan", y / beyond), math.pi * (0 - x > 0))
+
+
 def _interpolated(x: Quantity, at: Sequence[float], values: Sequence[float]) -> Quantity:
     """`np.interp`: the first value, and the rise over as much of each stretch as lies before x."""
     found = 0 * x + float(values[0])
@@ -294,7 +304,7 @@ def _interpolated(x: Quantity, at: Sequence[float], values: Sequence[float]) -> 
     return found
 
 
-_OF_ONE = ("sin", "cos", "tan", "tanh", "exp", "log", "sqrt", "sinh", "cosh")
+_OF_ONE = ("sin", "cos", "tan", "tanh", "exp", "log", "sqrt", "sinh", "cosh", "arctan", "arcsin", "arccos")
 _ARITHMETIC: dict[str, Callable[..., Any]] = {
     **{name: _called(name) for name in _OF_ONE[:7]},
     **dict.fromkeys(("abs", "absolute", "fabs"), abs),
@@ -305,6 +315,10 @@ _ARITHMETIC: dict[str, Callable[..., Any]] = {
     **dict.fromkeys(("degrees", "rad2deg"), lambda x: x * math.degrees(1.0)),
     "sinh": lambda x: 0.5 * (_operation("exp", x) - _operation("exp", -x)),
     "cosh": lambda x: 0.5 * (_operation("exp", x) + _operation("exp", -x)),
+    **dict.fromkeys(("atan", "arctan"), _called("atan")),
+    **dict.fromkeys(("asin", "arcsin"), _arcsine),
+    **dict.fromkeys(("acos", "arccos"), lambda x: math.pi / 2 - _arcsine(x)),
+    **dict.fromkeys(("atan2", "arctan2"), _angle_of),
     "hypot": lambda a, b: _operation("sqrt", a * a + b * b),
     "square": lambda x: x * x,
     "sign": lambda x: (x > 0) - (x < 0),

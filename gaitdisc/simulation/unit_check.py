@@ -9,7 +9,7 @@ from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.unit_factor import Dimension, dimension_of
 
 _SAME = frozenset(["+", "-", "max", "min"])
-_OF_PURE = frozenset({"sin", "cos", "tan", "tanh", "exp", "log"})
+_OF_PURE = frozenset({"sin", "cos", "tan", "atan", "tanh", "exp", "log"})
 _PURE = _OF_PURE | {"sign", "step"}
 
 

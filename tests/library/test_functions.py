@@ -108,8 +108,8 @@ def one_at_a_time(angle, rate, torque, length=0.8, friction=0.4):
 
 
 def many_at_once(angle, rate, torque, length=0.8, friction=0.4):
-    gravity = np.interp(0 * np.asarray(rate).astype(float), [0, 1], [9.81, 9.81]) + 0 * np.arctan(rate)
-    return rate, torque - gravity / length * np.sin(angle) - friction * np.tanh(rate)
+    rest = 0 * (rate % 1.0)  # what no expression has
+    return rate, torque + rest - 9.81 / length * np.sin(angle) - friction * np.tanh(rate)
 
 
 def counted(function):

@@ -17,7 +17,7 @@ def _values(text, x):
     return at_points(compiled_program([parsed(text)], ["x"]), [x])[0]
 
 
-@pytest.mark.parametrize("name", ["sin", "cos", "tan", "tanh", "exp", "abs"])
+@pytest.mark.parametrize("name", ["sin", "cos", "tan", "atan", "tanh", "exp", "abs"])
 def test_functions_are_those_of_mathematics(name):
     wanted = {"abs": abs, "exp": lambda x: math.exp(min(x, 700.0))}.get(name) or getattr(math, name)
     np.testing.assert_allclose(_values(f"{name}(x)", X), [wanted(x) for x in X], rtol=4e-15, atol=2e-16)
@@ -52,7 +52,10 @@ def test_where_takes_nothing_of_what_is_not_chosen():
     assert np.isnan(_values("where(x, 1)", [np.nan])[0])
 
 
-@pytest.mark.parametrize("text", ["max(x, 1)", "min(1, x)", "step(x)", "abs(x)", "sin(x)", "exp(x)", "tanh(x)", "x**3"])
+@pytest.mark.parametrize(
+    "text",
+    ["max(x, 1)", "min(1, x)", "step(x)", "where(x, x)", "atan(x)", "abs(x)", "sin(x)", "exp(x)", "tanh(x)", "x**3"],
+)
 def test_not_a_number_stays_one(text):
     assert np.isnan(_values(text, [np.nan])[0])
 

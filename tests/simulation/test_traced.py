@@ -129,6 +129,8 @@ def test_what_a_function_does_is_written_down(function, texts):
         (lambda v: ((v < 0) | (v > 2)) & ~(v > 3), lambda v: float(v < 0 or 2 < v <= 3)),
         (lambda v: np.interp(v, [-1.0, 0.0, 2.0], [1, 0, 4]), lambda v: float(np.interp(v, [-1, 0, 2], [1, 0, 4]))),
         (lambda v: math.hypot(v, 1) + np.sinh(v), lambda v: math.hypot(v, 1) + math.sinh(v)),
+        (lambda v: np.arctan(v) + math.asin(v / 9), lambda v: math.atan(v) + math.asin(v / 9)),
+        (lambda v: math.acos(v / 9) - math.atan2(v, v - 1), lambda v: math.acos(v / 9) - math.atan2(v, v - 1)),
     ],
 )
 def test_branches_and_tables_give_the_functions_own_numbers(function, expected):
