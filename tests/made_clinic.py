@@ -9,9 +9,11 @@ from gaitdisc.channel import Channel
 from gaitdisc.clinic.reference import reference_of
 from gaitdisc.recording import PERCENT
 from gaitdisc.results import PooledCycles, ResponseRun
+from gaitdisc.results.clinical_variables import PROFILE
 from gaitdisc.results.pooled_cycles import CYCLE_COLUMNS
 from gaitdisc.results.provenance import Provenance
 
+SOURCE = "# Made, after the form of Schwartz 2008: 83 children of 4 to 17 years; licence: none, made here"
 T = 2 * np.pi * PERCENT / 100
 KNEE = 5 + 12 * np.exp(-(((PERCENT - 14) / 8) ** 2)) + 55 * np.exp(-(((PERCENT - 72) / 11) ** 2))
 ANKLE = 10 * np.sin(np.pi * PERCENT / 55) * (PERCENT < 55) - 18 * np.exp(-(((PERCENT - 63) / 6) ** 2))
@@ -81,3 +83,21 @@ def made_run(*cycles, refusals=()):
     """Run of cycles and refusals."""
     own = tuple(refusal for one in cycles for refusal in one.refusals)
     return ResponseRun("A week", "walk", "", (), (), (*refusals, *own), PROVENANCE, cycles=cycles)
+
+
+def published_table(change=lambda row: row):
+    """Means and spreads of two groups of speed, in the form of a published reference."""
+    rows = [SOURCE, "group,speed_low,speed_high,people,variable,percent,mean,sd"]
+    for group, low, high, people, shift in (("slow", 0.2, 0.36, 40, -5.0), ("free", 0.36, 0.5, 83, 0.0)):
+        for name in PROFILE:
+            rows += [
+                change(f"{group},{low},{high},{people},{name},{at},{0.1 * at + shift},2.5") for at in range(0, 101, 2)
+            ]
+    return "\n".join(row for row in rows if row) + "\n"
+
+
+def written_table(folder, text):
+    """A table of a published reference as a file."""
+    path = folder / "children.csv"
+    path.write_text(text, encoding="utf-8")
+    return path

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from unittest.mock import patch
 
-from made_clinic import made_controls, made_person, made_run
+from made_clinic import SOURCE, made_controls, made_person, made_run, published_table, written_table
 
 from gaitdisc.commands.clinic_pages import keep_reference, kept_reference, write_people
 from gaitdisc.results import Refusal
@@ -43,11 +43,9 @@ def test_a_run_without_cycles_has_no_pages_of_people(tmp_path):
 
 
 def test_a_published_reference_stays_as_its_table_until_another_takes_its_place(tmp_path):
-    from results.test_published_reference import SOURCE, table, written
-
     run = made_run(made_person("P01"))
     run.save(tmp_path / "run")
-    keep_reference(written(tmp_path, table()), tmp_path / "run")
+    keep_reference(written_table(tmp_path, published_table()), tmp_path / "run")
     index = write_people(run, tmp_path / "run")
     assert SOURCE[2:] in index.read_text() and SOURCE[2:] in (index.parent / "people" / "P01.html").read_text()
     save_reference(made_controls(3), tmp_path / "ref")

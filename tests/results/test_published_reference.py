@@ -6,35 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from made_clinic import made_person
+from made_clinic import SOURCE, made_person, published_table, written_table
 
 from gaitdisc.clinic.reading import read_beside
 from gaitdisc.errors import SchemaError
 from gaitdisc.results.clinical_reference import load_reference, save_reference
-from gaitdisc.results.clinical_variables import PROFILE
 from gaitdisc.results.published_reference import read_published
-
-SOURCE = "# Made, after the form of Schwartz 2008: 83 children of 4 to 17 years; licence: none, made here"
-
-
-def table(change=lambda row: row):
-    rows = [SOURCE, "group,speed_low,speed_high,people,variable,percent,mean,sd"]
-    for group, low, high, people, shift in (("slow", 0.2, 0.36, 40, -5.0), ("free", 0.36, 0.5, 83, 0.0)):
-        for name in PROFILE:
-            rows += [
-                change(f"{group},{low},{high},{people},{name},{at},{0.1 * at + shift},2.5") for at in range(0, 101, 2)
-            ]
-    return "\n".join(row for row in rows if row) + "\n"
-
-
-def written(folder, text):
-    path = folder / "children.csv"
-    path.write_text(text, encoding="utf-8")
-    return path
 
 
 def test_every_second_percent_becomes_a_band_on_101_points(tmp_path):
-    source, (slow, free) = read_published(written(tmp_path, table()))
+    source, (slow, free) = read_published(written_table(tmp_path, published_table()))
     assert source == SOURCE[2:] and (slow.name, slow.speeds, slow.people) == ("slow", (0.2, 0.36), 40)
     np.testing.assert_allclose(free.bands["knee_flexion"].mean, 0.1 * np.arange(101))
     np.testing.assert_allclose(free.bands["knee_flexion"].sd, 2.5)
@@ -42,7 +23,7 @@ def test_every_second_percent_becomes_a_band_on_101_points(tmp_path):
 
 
 def test_a_person_is_beside_the_group_of_the_own_speed_with_scores_and_without_limits(tmp_path):
-    reference = load_reference(written(tmp_path, table()))
+    reference = load_reference(written_table(tmp_path, published_table()))
     grown = read_beside(replace(made_person(), leg_m=0.9), reference)  # 1.215 m/s: 0.41
     assert (
         "“free”, the nearest in speed: 83 people, dimensionless speed 0.36 to 0.50; this person's is 0.41"
@@ -60,18 +41,18 @@ def test_a_person_is_beside_the_group_of_the_own_speed_with_scores_and_without_l
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        (table().replace(SOURCE + "\n", ""), "has no source"),
-        (table().replace(",sd\n", ",spread\n"), "has no column sd"),
-        (table().replace("knee_flexion", "knee"), "slow knee: a variable is one of pelvis_tilt"),
-        (table(lambda row: "" if ",98," in row or ",100," in row else row), "found 49 from 0 to 96 %"),
-        (table().replace("2.5\n", "-2.5\n"), "with mean and sd"),
+        (published_table().replace(SOURCE + "\n", ""), "has no source"),
+        (published_table().replace(",sd\n", ",spread\n"), "has no column sd"),
+        (published_table().replace("knee_flexion", "knee"), "slow knee: a variable is one of pelvis_tilt"),
+        (published_table(lambda row: "" if ",98," in row or ",100," in row else row), "found 49 from 0 to 96 %"),
+        (published_table().replace("2.5\n", "-2.5\n"), "with mean and sd"),
     ],
 )
 def test_another_form_is_refused_with_its_place(tmp_path, text, words):
     with pytest.raises(SchemaError, match=words):
-        load_reference(written(tmp_path, text))
+        load_reference(written_table(tmp_path, text))
 
 
 def test_it_is_kept_as_its_table_and_saved_as_no_legs(tmp_path):
     with pytest.raises(SchemaError, match="Keep its table"):
-        save_reference(load_reference(written(tmp_path, table())), tmp_path / "run")
+        save_reference(load_reference(written_table(tmp_path, published_table())), tmp_path / "run")
