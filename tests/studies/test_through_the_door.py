@@ -22,7 +22,7 @@ LONG = {
     "ch3_tables": 198,
     "ch4_further": 251,
     "ch4_ours": 131,
-    "ch4_outcomes": 161,
+    "ch4_outcomes": 151,
     "ch5_beyond": 195,
     "ch5_further": 209,
     "ch5_gait_individual": 129,
