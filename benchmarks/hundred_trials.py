@@ -130,7 +130,7 @@ def say(folder: Path, files: list[Path], count: int, people: int) -> None:
         print(f"  {name:15} {timed([sys.executable, *words])[0]}{goal}", flush=True)
     kept = sum(
         line.split(",")[column] == "True"
-        for table in sorted((folder / "study").rglob("cycles.csv"))
+        for table in sorted((folder / "study" / "run" / "cycles").rglob("cycles.csv"))
         for lines in [table.read_text().splitlines()]
         for column in [lines[0].split(",").index("kept")]
         for line in lines[1:]
