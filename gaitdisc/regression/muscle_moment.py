@@ -202,7 +202,7 @@ def _bounded(parts: Values, moment: Values, kept: NDArray[np.bool_], muscles: in
     first = 4 * muscles + 3
     seen = _signed(parts[:, :first], moment, kept, muscles)
     left = (moment - parts[:, :first] @ seen)[kept]
-    return np.concatenate([seen, np.linalg.lstsq(parts[kept, first:], left, rcond=None)[0]])
+    return np.asarray(np.concatenate([seen, np.linalg.lstsq(parts[kept, first:], left, rcond=None)[0]]), np.float64)
 
 
 def _signed(parts: Values, moment: Values, kept: NDArray[np.bool_], muscles: int) -> Values:
