@@ -35,7 +35,7 @@ class Made(NamedTuple):
 def main(given: Namespace, tables: Mapping[str, Made], kept: Path) -> None:
     """Compute the tables that are not in the folder, print all of them, and keep them where that is wanted."""
     if given.print:
-        print(printed(pd.read_csv(kept), given.print, tables[given.print]))
+        print(printed(read(kept), given.print, tables[given.print]))
         return
     given.folder.mkdir(parents=True, exist_ok=True)
     for name in given.tables:
@@ -47,12 +47,15 @@ def main(given: Namespace, tables: Mapping[str, Made], kept: Path) -> None:
                 found = pd.DataFrame(tables[name].computed(given.quick)).assign(table=name)
             save_table(found[["table", *Number._fields]], place)
             print(f"{name}: {time.process_time() - begun:.0f} s of processor time", file=sys.stderr, flush=True)
-    every = {
-        name: pd.read_csv(given.folder / f"{name}.csv") for name in tables if (given.folder / f"{name}.csv").exists()
-    }
+    every = {name: read(given.folder / f"{name}.csv") for name in tables if (given.folder / f"{name}.csv").exists()}
     print("\n\n".join(printed(found, name, tables[name]) for name, found in every.items()))
     if given.keep:
         save_table(pd.concat(every.values(), ignore_index=True), kept)
+
+
+def read(path: Path) -> pd.DataFrame:
+    """Kept numbers; a row may be called null."""
+    return pd.read_csv(path, keep_default_na=False, na_values={"value": [""]})
 
 
 def printed(found: pd.DataFrame, name: str, made: Made) -> str:
