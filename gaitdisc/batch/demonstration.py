@@ -4,10 +4,16 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+
+import numpy as np
 
 from gaitdisc.cohort.cohort import the_twelve, walks_of
 from gaitdisc.cohort.marker_trial import standing
+from gaitdisc.cohort.overground import overground
+from gaitdisc.cohort.person import Person
+from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.c3d_writing import write_c3d
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import STATIC, Conditions, Models, Participant, PlannedTrial, Study
@@ -16,6 +22,8 @@ from gaitdisc.recording import Trial
 from gaitdisc.whole_file import write_whole
 
 WALK_S = 60.0
+TRIALS, OVERGROUND = 6, 4.0  # trials of a condition; strides that the last of them has at least
+LABORATORIES = ("angles", "markers", "overground")
 MUSCLES = ("ham", "rf", "vas", "gas", "sol", "ta", "gmed")
 FORCES = tuple(f"ground_force_{side}_v{axis}" for side in "rl" for axis in "xy")
 OUTPUTS = ("hip_flexion_r", "knee_angle_r", "ankle_angle_r", *(f"emg_{muscle}_r" for muscle in MUSCLES[:5]))
@@ -27,7 +35,7 @@ def write_demonstration(
     people: int = 12,
     hidden: str = "spring",
     told: Callable[[str, float], None] = lambda *_: None,
-    markers: bool = False,
+    laboratory: str = "angles",
 ) -> Study:
     """Let the cohort walk and write the recordings, the study file, and apart from them the truth.
 
@@ -37,25 +45,30 @@ def write_demonstration(
         Length of each walk [s]; the dissertation's is 240.
     told : callable
         Called with a pseudonym and 1.0 when that person has walked.
-    markers : bool
-        Whether the laboratory gives markers, belts and a static trial in place of joint angles.
+    laboratory : str
+        `angles` of a treadmill; `markers`, two belts and a static trial in place of them; or markers `overground`:
+        short trials over two plates.
 
     Returns
     -------
     Study
         As written; it passes through the same reading as a laboratory's.
     """
-    participants = []
+    if laboratory not in LABORATORIES:
+        raise SchemaError(
+            f"a laboratory gives one of: {', '.join(LABORATORIES)}", f"found {laboratory!r}", "Use one of these."
+        )
+    participants, markers = [], laboratory != "angles"
     for person in the_twelve()[:people]:
         walks = walks_of(person, duration_s, hidden, markers)
         write = write_marker_trial if markers else write_trial
+        belt = None if laboratory == "overground" else person.speed_m_per_s
         planned = tuple(
             PlannedTrial(
-                condition=word,
-                files=write(trial, folder, f"raw/{person.name}/{word}"),
-                speed_m_per_s=person.speed_m_per_s,
+                condition=word, files=write(trial, folder, f"raw/{person.name}/{trial.name}"), speed_m_per_s=belt
             )
-            for word, trial in walks.trials.items()
+            for word, walk in walks.trials.items()
+            for trial in (_over_ground(walk, person, word) if belt is None else [replace(walk, name=word)])
         )
         if markers:
             files = write_marker_trial(standing(person), folder, f"raw/{person.name}/static")
@@ -74,6 +87,15 @@ def write_demonstration(
     ).placed(folder)
     write_study(study, folder / "study.toml")
     return study
+
+
+def _over_ground(walk: Trial, person: Person, word: str) -> list[Trial]:
+    """Short trials, evenly over a walk on belts."""
+    last = float(walk.stream("markers").time[-1]) - OVERGROUND * person.stride_s
+    return [
+        overground(walk, start, person.stride_s, person.speed_m_per_s, f"{word}_{number}")
+        for number, start in enumerate(np.linspace(2.0, last, TRIALS), 1)
+    ]
 
 
 def write_trial(trial: Trial, folder: Path, stem: str) -> tuple[str, ...]:

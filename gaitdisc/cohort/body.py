@@ -18,7 +18,6 @@ from gaitdisc.cohort.device import FOOT_KG, SHANK_KG
 from gaitdisc.compiled import compiled
 
 GRAVITY = 9.81
-LEG_OF_HEIGHT = 0.530  # greater trochanter over ground, Winter (2009), figure 4.1
 
 
 class Leg(NamedTuple):

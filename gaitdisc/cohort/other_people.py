@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from gaitdisc.cohort.person import CADENCE, CADENCE_SPEED, GROUPS, JOINTS, LEG_OF_HEIGHT, Bump, Person, drawn
+from gaitdisc.cohort.person import CADENCE, CADENCE_SPEED, GROUPS, JOINTS, Bump, Person, drawn
 from gaitdisc.errors import SchemaError
+from gaitdisc.recording.body_measures import LEG_OF_STATURE
 
 ALWAYS = 10.0  # half width of what lasts the whole stride
 BOTH = (0, 1)
@@ -87,7 +88,7 @@ def _sized(person: Person, kind: str) -> Person:
     """A person of another size or speed, with the cadence that goes with both."""
     height, mass, age, faster = SIZES[kind]
     height = height or person.height_m
-    leg = LEG_OF_HEIGHT * height
+    leg = LEG_OF_STATURE * height
     speed = faster * person.dimensionless_speed * float((9.81 * leg) ** 0.5)
     cadence = CADENCE * (faster * person.dimensionless_speed / CADENCE_SPEED) ** 0.5
     return replace(

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.cohort.device import Spring
+from gaitdisc.recording.body_measures import LEG_OF_STATURE
 
 JOINTS = ("hip_flexion", "hip_adduction", "hip_rotation", "knee_angle", "ankle_angle")
 MUSCLES = ("emg_ham", "emg_rf", "emg_vas", "emg_gas", "emg_sol", "emg_ta", "emg_gmed")
@@ -21,7 +22,6 @@ PEAK = np.array([0.45, 0.22, 0.22, 0.45, 0.5, 0.45, 0.45, 0.5, 0.35])  # of acti
 DEAR = np.array([2.0, 4.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0])
 DEAR_APART = np.array([0.9, 0.4, 0.3, 0.15, 0.1, 0.1, 0.1, 0.3, 0.9])  # logarithmic standard deviation between people
 HARMONICS = 4
-LEG_OF_HEIGHT = 0.530
 STANCE, STANCE_SPREAD = 0.607, 0.012  # of adults 60 to 62 % (Perry); of the children 59 (Schwartz et al. 2008)
 CADENCE, CADENCE_SPEED = 0.565, 0.429  # steps and speed, dimensionless, of Schwartz et al. (2008), Free
 
@@ -198,7 +198,7 @@ class Person:
     @property
     def dimensionless_speed(self) -> float:
         """Speed over the square root of gravity times leg length."""
-        return self.speed_m_per_s / float(np.sqrt(9.81 * LEG_OF_HEIGHT * self.height_m))
+        return self.speed_m_per_s / float(np.sqrt(9.81 * LEG_OF_STATURE * self.height_m))
 
 
 def drawn(name: str, seed: int, sex: str) -> Person:
@@ -216,7 +216,7 @@ def drawn(name: str, seed: int, sex: str) -> Person:
     height = (1.63 if sex == "f" else 1.755) + 0.065 * _held(rng)
     mass = (22.6 if sex == "f" else 23.8) * (1 + 0.09 * _held(rng)) * height**2
     speed = 1.36 + 0.11 * _held(rng)
-    leg = LEG_OF_HEIGHT * height
+    leg = LEG_OF_STATURE * height
     cadence = CADENCE * np.sqrt(speed / np.sqrt(9.81 * leg) / CADENCE_SPEED) * (1 + 0.02 * _held(rng))
     return Person(
         name,

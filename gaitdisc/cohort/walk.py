@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.cohort.body import LEG_OF_HEIGHT, leg_of
+from gaitdisc.cohort.body import leg_of
 from gaitdisc.cohort.controller import learnt_table
 from gaitdisc.cohort.device import FOOT_KG, SHANK_KG, Spring
 from gaitdisc.cohort.ground import Belt
@@ -26,6 +26,7 @@ from gaitdisc.cohort.motion import (
 from gaitdisc.cohort.muscles import strength_of
 from gaitdisc.cohort.person import GROUPS, MUSCLES, Person
 from gaitdisc.errors import StrideError
+from gaitdisc.recording.body_measures import LEG_OF_STATURE
 
 WARM_UP_S = 8.0  # walked before the recording begins
 QUICK_HZ, SLOW_HZ = 1000.0, 100.0
@@ -168,7 +169,7 @@ def walked(person: Person, device: Spring | None, duration_s: float, seed: int) 
 
 def _loop(person: Person) -> Loop:
     size = person.mass_kg / TYPICAL_KG
-    leg_m = LEG_OF_HEIGHT * person.height_m
+    leg_m = LEG_OF_STATURE * person.height_m
     return Loop(
         stiffness=size * np.array([60.0, 35.0, 35.0]),
         damping=size * np.array([8.0, 2.0, 1.5]),

@@ -20,9 +20,9 @@ def demo(  # noqa: PLR0913, PLR0917 these are the options of a command
         str, typer.Option(help="What differs between the walks: spring, weak plantarflexor, stiff knee, drop foot, ...")
     ] = "spring",
     clinic: Annotated[bool, typer.Option("--clinic", help="A week of a clinic instead: people, pages, index.")] = False,
-    markers: Annotated[
-        bool, typer.Option("--markers", help="Markers, belts and a static trial in place of joint angles.")
-    ] = False,
+    laboratory: Annotated[
+        str, typer.Option(help="What it gives: angles; markers and belts; or overground, short trials over two plates.")
+    ] = "angles",
     jobs: Jobs = 2,
     quiet: Quiet = False,
 ) -> None:
@@ -38,7 +38,7 @@ def demo(  # noqa: PLR0913, PLR0917 these are the options of a command
 
     typer.echo(f"{people} of the embedded cohort walk {seconds:g} s in each condition: simulated, no people.")
     write_demonstration(
-        folder, seconds, people, hide, lambda who, _: typer.echo(f"  {who}", err=True, nl=not quiet), markers
+        folder, seconds, people, hide, lambda who, _: typer.echo(f"  {who}", err=True, nl=not quiet), laboratory
     )
     study = load_study(folder)
     try:

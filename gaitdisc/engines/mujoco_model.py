@@ -31,7 +31,7 @@ class MujocoModel:
 
     def __init__(self, path: Path | str) -> None:
         try:
-            import mujoco
+            import mujoco  # pyright: ignore[reportMissingImports] the extra
         except ImportError as error:
             raise refuse_absent("mujoco", error) from None
         self.path = Path(path)

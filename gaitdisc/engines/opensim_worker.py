@@ -177,7 +177,7 @@ def serve(questions: BinaryIO, answers: BinaryIO, path: str) -> None:
             return
         try:
             if answered is None:
-                import opensim
+                import opensim  # pyright: ignore[reportMissingImports] the extra
 
                 opensim.Logger.setLevelString("Off")
                 answered = _Answers(opensim, path)

@@ -30,8 +30,9 @@ def moment_per_foot_kg(
     Examples
     --------
     >>> still = np.zeros((9, 3))
-    >>> moment_per_foot_kg(still, still - [0.04, 0, 0], still + [0.16, 0, 0], np.array([0.0, 0, 1]), 100.0)[4].round(3)
-    0.589
+    >>> found = moment_per_foot_kg(still, still - [0.04, 0, 0], still + [0.16, 0, 0], np.array([0.0, 0, 1]), 100.0)
+    >>> round(float(found[4]), 2)  # 6 cm before the joint
+    0.59
     """
     middle = (heel + toe) / 2
     forward = toe - heel

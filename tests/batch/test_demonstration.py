@@ -4,7 +4,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gaitdisc.batch.demonstration import write_demonstration
+from gaitdisc.batch.demonstration import TRIALS, write_demonstration
+from gaitdisc.batch.run_study import run_study
 from gaitdisc.cohort.cohort import the_twelve, walks_of
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.reading import read_planned_trial
@@ -57,10 +58,12 @@ def test_it_says_what_it_is(folder):
 def test_an_effect_that_is_none(tmp_path):
     with pytest.raises(SchemaError, match="found 'magic'"):
         write_demonstration(tmp_path, 30.0, 1, "magic")
+    with pytest.raises(SchemaError, match="one of: angles, markers, overground; found 'video'"):
+        write_demonstration(tmp_path, 30.0, 1, laboratory="video")
 
 
 def test_markers_in_place_of_angles_go_through_the_same_reading(tmp_path):
-    write_demonstration(tmp_path, 30.0, people=1, markers=True)
+    write_demonstration(tmp_path, 30.0, people=1, laboratory="markers")
     study = load_study(tmp_path)
     [person] = study.participants
     assert [trial.condition for trial in person.trials] == ["static", "nominal", "exo"]
@@ -74,3 +77,14 @@ def test_markers_in_place_of_angles_go_through_the_same_reading(tmp_path):
 
 def angled(walk, standing):
     return moved_body(walk.stream("markers"), standing.stream("markers"))[1].angles
+
+
+@pytest.mark.slow
+def test_short_trials_over_two_plates_are_pooled(tmp_path):
+    study = write_demonstration(tmp_path, 30.0, people=1, laboratory="overground")
+    [person] = study.participants
+    assert [trial.condition for trial in person.trials].count("exo") == TRIALS
+    run = run_study(load_study(tmp_path), tmp_path / "run")
+    for pooled in run.cycles:
+        assert pooled.kept["side"].value_counts().min() >= TRIALS
+        assert pooled.kept["kinetic"].sum() >= TRIALS

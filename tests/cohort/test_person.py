@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from gaitdisc.cohort.device import Spring
-from gaitdisc.cohort.person import LEG_OF_HEIGHT, drawn
+from gaitdisc.cohort.person import drawn
+from gaitdisc.recording.body_measures import LEG_OF_STATURE
 
 
 def test_a_seed_is_a_person():
@@ -30,7 +31,7 @@ def test_a_population_is_the_dissertations():
 def test_cadence_is_that_of_schwartz_at_their_speed():
     for seed in range(20):
         person = drawn("A", seed, "m")
-        leg = LEG_OF_HEIGHT * person.height_m
+        leg = LEG_OF_STATURE * person.height_m
         cadence = 2 / person.stride_s * np.sqrt(leg / 9.81)
         expected = 0.565 * np.sqrt(person.dimensionless_speed / 0.429)
         assert cadence == pytest.approx(expected, rel=0.045)
