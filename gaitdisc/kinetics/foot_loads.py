@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.kinetics.plate_steps import PlateStep
+from gaitdisc.kinetics.plate_steps import FootPath, PlateStep
 from gaitdisc.kinetics.platform import Platform
 from gaitdisc.kinetics.wrench import Wrench
 from gaitdisc.recording import Trial
@@ -44,8 +44,8 @@ def foot_loads(
 ) -> dict[str, FootLoad]:
     """Load of both feet from the clean steps of a trial.
 
-    Known are a foot's clean steps, the swing between two of them, the swings that the file's events mark, and every
-    frame where a platform names its foot.
+    Known are a foot's clean steps, the swing between two of them, the swings that its markers or the file's events
+    show, and every frame where a platform names its foot.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def foot_loads(
     cutoff_hz : float
         Of the filter of force and moment; infinite for none.
     airborne : mapping of str to sequence of (float, float), optional
-        Spans in which a foot swings, `swings` for those of the file's events [s].
+        Spans in which a foot swings, as `swings` gives them [s].
     """
     loads = {}
     for side in "rl":
@@ -69,9 +69,9 @@ def foot_loads(
     return loads
 
 
-def swings(trial: Trial) -> dict[str, list[tuple[float, float]]]:
-    """Spans from foot off to the next initial contact of the same foot, by the events of the file [s]."""
-    found: dict[str, list[tuple[float, float]]] = {"r": [], "l": []}
+def swings(trial: Trial, feet: Mapping[str, FootPath]) -> dict[str, list[tuple[float, float]]]:
+    """Spans in which each foot is in the air: it goes forwards fast, or the file's events say so [s]."""
+    found = {side: feet[side].swings() if side in feet else [] for side in "rl"}
     for side, spans in found.items():
         events = [event for event in trial.events if event.side == side]
         for one, after in itertools.pairwise(events):

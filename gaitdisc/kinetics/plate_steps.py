@@ -21,6 +21,7 @@ BESIDE_FOOT_M = 0.10  # a centre of pressure farther from the line from heel to 
 BEYOND_EDGE_M = 0.01  # a marker lies a little beside the sole
 SOLE_AROUND_M = 0.02  # the sole reaches at least this far around its centre of pressure
 STILL_M_PER_S = 0.35  # a part of the foot that bears load hardly moves; one that swings is five times as fast
+SWINGS_M_PER_S = 3 * STILL_M_PER_S  # heel and toes of a foot that bears no load, forwards
 STANDS_S = 0.05  # shorter is a foot that passes
 CLEAR_LOAD = 0.2  # of the greatest load: where the centre of pressure is the foot's
 
@@ -53,6 +54,22 @@ class FootPath:
             )
         for name, value in (("heel", heel), ("toe", toe), ("time", time)):
             object.__setattr__(self, name, value)
+
+    def swings(self) -> list[tuple[float, float]]:
+        """Spans in which heel and toes both go forwards too fast for a foot that bears load [s].
+
+        Forwards is where the foot goes when it is fastest: on a belt it is carried backwards.
+        """
+        rate_hz = (len(self.time) - 1) / float(self.time[-1] - self.time[0])
+        heel, toe = (differentiated(part, rate_hz) for part in (self.heel, self.toe))
+        speed = np.nan_to_num(np.linalg.norm(heel + toe, axis=1))
+        fastest = int(np.argmax(speed))
+        if not speed[fastest] > 0:
+            return []
+        forward = (heel + toe)[fastest] / speed[fastest]
+        with np.errstate(invalid="ignore"):
+            both = (heel @ forward > SWINGS_M_PER_S) & (toe @ forward > SWINGS_M_PER_S)
+        return [(float(self.time[start]), float(self.time[end - 1])) for start, end in runs(both)]
 
     def still(self, part: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Frames in which heel or toe hardly moves, (frame,).

@@ -85,13 +85,13 @@ def trial_kinetics(
             f"{file} has {reasons or 'no loaded platform'}",
             "Leave the trial out of kinetics, or give one whose plates were hit by one foot each.",
         )
-    loads = foot_loads(found, steps, time, settings.force_cutoff_hz, swings(trial))
+    loads = foot_loads(found, steps, time, settings.force_cutoff_hz, swings(trial, feet))
     up = found[0].up
     both = legs(poses, feet, person, settings)
     moments = joint_moments(both, loads, time, up, person, settings)
     balance = ForceBalance(0, *[float("nan")] * 3)
     if len(both) == 2:
-        alike = foot_loads(found, steps, time, settings.marker_cutoff_hz, swings(trial))
+        alike = foot_loads(found, steps, time, settings.marker_cutoff_hz, swings(trial, feet))
         balance = force_balance(both, alike, up, person, _acceleration(markers, trunk, settings.marker_cutoff_hz))
     findings = (*empty_findings(found, file, settings.least_load_n), *left_out, balance.finding(file))
     moments = replace(moments, subject=trial.subject, condition=trial.condition, source=markers.source)

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.kinetics.foot_loads import foot_loads, swings
-from gaitdisc.kinetics.plate_steps import PlateStep
+from gaitdisc.kinetics.plate_steps import FootPath, PlateStep
 from gaitdisc.kinetics.platform import Platform
 from gaitdisc.kinetics.wrench import Wrench
 from gaitdisc.recording import Surface, Trial
@@ -78,4 +78,13 @@ def test_swings_are_from_foot_off_to_the_next_contact():
         ("foot off", "r", 0.7),
     ]
     trial = Trial("walk", {}, tuple(Event(*event) for event in events))
-    assert swings(trial) == {"r": [], "l": [(0.2, 0.6)]}
+    assert swings(trial, {}) == {"r": [], "l": [(0.2, 0.6)]}
+
+
+def test_a_foot_that_flies_off_its_plate_is_known_until_it_comes_down():
+    found, steps = [plate("plate_1", (0.5, 1.2))], [PlateStep("plate_1", "r", 0.5, 1.2)]
+    y = 3.0 * (np.clip(FRAMES, 0.1, 0.5) + np.clip(FRAMES, 1.2, 1.6))
+    heel = np.stack([0 * y, y, 0 * y], axis=1)
+    path = FootPath("r", FRAMES, heel, np.add(heel, [0.0, 0.18, 0.0]))
+    known = foot_loads(found, steps, FRAMES, np.inf, swings(Trial("walk", {}), {"r": path}))["r"].known
+    assert [at(known, t) for t in (0.05, 0.3, 0.8, 1.4, 1.7)] == [False, True, True, True, False]
