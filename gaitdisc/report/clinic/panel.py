@@ -175,13 +175,7 @@ def _band(panel: Panel, y) -> list[str]:
 def _axes(panel: Panel, low: float, high: float, y) -> list[str]:
     parts = [f'<path class="axis" d="M{LEFT} {TOP}V{BOTTOM}H{RIGHT}"/>']
     places = ticks(low, high)
-    digits = (
-        0
-        if all(value == round(value) for value in places)
-        else 1
-        if all(10 * v == round(10 * v, 6) for v in places)
-        else 2
-    )
+    digits = next(d for d in range(12) if all(round(value, d) == value for value in places))
     for value in places:
         at = float(y(value))
         if value == 0:

@@ -70,3 +70,10 @@ def test_a_curve_whose_end_is_not_known_ends_there():
     path = next(one.attrib["d"] for one in root.iter() if one.attrib.get("class") == "mean")
     assert len(re.findall(r"[\d.]+", path)) == 2 * 95 and "nan" not in svg(panel)
     assert "peak at 94 %" in panel.alt
+
+
+def test_every_tick_is_printed_as_it_is():
+    small = np.linspace(-0.16, 0.01, 101)
+    root = ET.fromstring(svg(_panel(lines=(Line("l", small),), band=None)))
+    said = [one.text for one in root.iter() if one.attrib.get("text-anchor") == "end" and one.text]
+    assert {"−0.05", "−0.10", "−0.15"} <= set(said)
