@@ -37,8 +37,9 @@ from scipy.signal import butter, sosfiltfilt
 
 import gaitdisc as gd
 from gaitdisc.batch.discover_engine import EngineAnswer, discover_model_file
-from gaitdisc.engines.engine import Engine, Motion, read_model
+from gaitdisc.engines.engine import Engine, Motion
 from gaitdisc.engines.mapping import drafted
+from gaitdisc.engines.model_file import read_model
 
 SYSTEMS = Path(__file__).parent / "systems"
 RATE_HZ, SECONDS, TRIALS, CUTOFF_HZ = 100.0, 4.0, 4, 6.0

@@ -18,7 +18,7 @@ def new(
     degrees: Annotated[bool, typer.Option("--degrees", help="Of a model: angles were recorded in degrees.")] = False,
 ) -> None:
     """Write a study file from the recordings found in a folder, or a model's mapping file."""
-    from gaitdisc.engines.engine import is_model
+    from gaitdisc.engines.model_file import is_model
 
     if is_model(recordings):
         _write_mapping(study, recordings, degrees)
@@ -41,8 +41,8 @@ def new(
 
 
 def _write_mapping(file: Path, model: Path, degrees: bool) -> None:
-    from gaitdisc.engines.engine import read_model
     from gaitdisc.engines.mapping import write_mapping
+    from gaitdisc.engines.model_file import read_model
 
     if file.suffix != ".toml" or file.exists():
         raise SchemaError(

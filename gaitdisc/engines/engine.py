@@ -11,10 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.channel import nearest_word
-from gaitdisc.errors import ReadError, SchemaError
+from gaitdisc.errors import SchemaError
 from gaitdisc.simulation.parts import Input, Parameter, Term
 
-ENGINES = {".xml": "mujoco", ".mjcf": "mujoco", ".osim": "opensim"}
 SPEED = "_speed"
 
 
@@ -123,27 +122,6 @@ class Engine(Protocol):
     def text_with_effect(self, text: str, effect: ByHand) -> str | None:
         """Text of the model with an effect; None where the engine has no form of it."""
         ...
-
-
-def is_model(path: Path) -> bool:
-    """Whether a file is one that an engine reads."""
-    return path.suffix.lower() in ENGINES
-
-
-def read_model(path: Path | str) -> Engine:
-    """Model of an engine's file; the engine is imported here."""
-    path = Path(path)
-    if not path.is_file():
-        raise ReadError("a model is read from its file", f"there is none at {path}", "Check the path.")
-    if ENGINES.get(path.suffix.lower()) == "mujoco":
-        from gaitdisc.engines.mujoco_model import MujocoModel
-
-        return MujocoModel(path)
-    if ENGINES.get(path.suffix.lower()) == "opensim":
-        from gaitdisc.engines.opensim_model import OpensimModel
-
-        return OpensimModel(path)
-    raise ReadError("a model is a file of MuJoCo (.xml) or OpenSim (.osim)", f"found {path.name}", "Name such a file.")
 
 
 def refuse_absent(package: str, error: ImportError) -> SchemaError:

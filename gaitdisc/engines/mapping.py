@@ -9,7 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from gaitdisc.engines.engine import Engine, is_model, read_model, refuse_unknown
+from gaitdisc.engines.engine import Engine, refuse_unknown
+from gaitdisc.engines.model_file import is_model, read_model
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Finding
 from gaitdisc.simulation.parts import Port, Sensor, State

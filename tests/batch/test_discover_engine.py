@@ -33,7 +33,8 @@ SPRING = (
 @pytest.fixture(scope="module")
 def lab(tmp_path_factory):
     """Return a folder with a model, the truth, and four trials of it in degrees."""
-    from gaitdisc.engines.engine import Motion, read_model
+    from gaitdisc.engines.engine import Motion
+    from gaitdisc.engines.model_file import read_model
 
     folder = tmp_path_factory.mktemp("lab")
     (folder / "pendulum.xml").write_text(PENDULUM)
@@ -69,8 +70,8 @@ def test_degrees_for_radians_and_a_column_that_is_not_there_are_refused(lab, tmp
 
 def test_a_coordinate_that_no_column_shows_is_refused(lab):
     from gaitdisc.batch.discover_engine import measured_of_file, refuse_unmeasured
-    from gaitdisc.engines.engine import read_model
     from gaitdisc.engines.mapping import drafted
+    from gaitdisc.engines.model_file import read_model
     from gaitdisc.errors import ChannelError
 
     model = read_model(lab / "pendulum.xml")
@@ -82,8 +83,8 @@ def test_a_coordinate_that_no_column_shows_is_refused(lab):
 
 def test_what_was_found_goes_into_the_mapping(lab):
     from gaitdisc.batch.discover_engine import in_mapping
-    from gaitdisc.engines.engine import read_model
     from gaitdisc.engines.mapping import drafted
+    from gaitdisc.engines.model_file import read_model
     from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, GapSize, Runs
     from gaitdisc.simulation.parts import Term
 

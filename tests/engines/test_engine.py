@@ -1,27 +1,11 @@
-"""Which files are models, and what is said where the engine or the file is absent."""
+"""What an engine offers: names of ports, and what is said of unknown names."""
 
-import sys
-
-import pytest
-
-from gaitdisc.engines.engine import Coordinate, is_model, read_model, refuse_unknown
-from gaitdisc.errors import GaitdiscError, ReadError
+from gaitdisc.engines.engine import Coordinate, refuse_unknown
 
 
-def test_a_slide_has_a_force_and_a_hinge_a_moment(tmp_path):
+def test_a_slide_has_a_force_and_a_hinge_a_moment():
     assert Coordinate("pelvis_ty", "m", "pelvis_ty").port == "pelvis_ty_force"
     assert Coordinate("knee", "rad", "knee").port == "knee_moment"
-    assert is_model(tmp_path / "leg.xml") and is_model(tmp_path / "arm.OSIM") and not is_model(tmp_path / "leg.toml")
-
-
-def test_a_missing_file_and_a_missing_engine_are_refused(tmp_path, monkeypatch):
-    with pytest.raises(ReadError, match="there is none at"):
-        read_model(tmp_path / "leg.xml")
-    file = tmp_path / "leg.xml"
-    file.write_text("<mujoco/>")
-    monkeypatch.setitem(sys.modules, "mujoco", None)
-    with pytest.raises(GaitdiscError, match=r"Install it: pip install 'gaitdisc\[mujoco\]'"):
-        read_model(file)
 
 
 def test_an_unknown_name_is_told_with_the_nearest():

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from gaitdisc.engines.engine import read_model
 from gaitdisc.engines.mapping import (
     drafted,
     names_engine,
@@ -13,6 +12,7 @@ from gaitdisc.engines.mapping import (
     with_input_changed,
     write_mapping,
 )
+from gaitdisc.engines.model_file import read_model
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import read_simulation
