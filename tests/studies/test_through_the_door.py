@@ -14,7 +14,7 @@ MOST_LINES = 120
 DOOR_ALONE = {"ankle_exo_emg", "command_line", "compare_halves", "curves_over_each_other", "driven_trials",
               "family_wise_error", "fault_cases", "faults_of_meaning", "joints_and_chains", "knee_with_memory",
               "library_pictures", "printed_numbers"}  # fmt: skip
-INSIDE = 46  # at most so many import from deeper: of rooms that the door does not open, or tests of what lies inside
+INSIDE = 47  # at most so many import from deeper: of rooms that the door does not open, or tests of what lies inside
 LONG = {
     "ankle_exo_emg": 200,
     "ch3_further": 228,
