@@ -232,8 +232,7 @@ def study(
                 table = recorded(case, noise_deg, rng, Path(folder))
                 model = Path(folder) / case.model.file
                 model.write_text((SYSTEMS / case.model.file).read_text(encoding="utf-8"), encoding="utf-8")
-                engine: Engine = read_model(model)
-                gd.write_simulation(drafted(engine, degrees=True), model.with_suffix(".toml"))
+                gd.write_simulation(drafted(read_model(model), degrees=True), model.with_suffix(".toml"))
                 before = cpu_s()
                 answer = discover_model_file(model, table)
                 row = {"model": name, **judged(case, answer), "cpu s": round(cpu_s() - before, 1)}
