@@ -37,7 +37,7 @@ from scipy.signal import butter, sosfiltfilt
 
 import gaitdisc as gd
 from gaitdisc.batch.discover_engine import EngineAnswer, discover_model_file
-from gaitdisc.engines.engine import Engine, Motion
+from gaitdisc.engines.engine import Motion
 from gaitdisc.engines.mapping import drafted
 from gaitdisc.engines.model_file import read_model
 
