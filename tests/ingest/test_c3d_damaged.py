@@ -7,26 +7,12 @@ import sys
 
 import numpy as np
 import pytest
+from damaged_c3d import damaged
 
 from gaitdisc.errors import GaitdiscError, ReadError
 from gaitdisc.ingest.c3d import C3DReader
 
 SAMPLES = "c3d_reader_samples"
-
-
-def _damaged(content: bytes, rng: np.random.Generator):
-    """(kind, bytes) of many ways in which a file can be broken."""
-    data = (content[16] + 256 * content[17] - 1) * 512
-    for size in sorted({0, 1, 100, 512, 513, data - 1, data, data + 1, *rng.integers(2, len(content) - 400, 80)}):
-        yield "truncated", content[:size]
-    for place in range(24):
-        for value in (0, 1, 127, 128, 255):
-            yield "header", content[:place] + bytes([value]) + content[place + 1 :]
-    for _ in range(250):
-        broken = bytearray(content)
-        for place in rng.integers(512, data, rng.integers(1, 5)):
-            broken[place] = rng.choice([0, 1, 127, 128, 255, *rng.integers(0, 256, 3)])
-        yield "parameters", bytes(broken)
 
 
 def _memory_bytes() -> int:
@@ -60,7 +46,7 @@ def test_corrupted_files_harm_nobody(tmp_path, write_c3d, some_points, some_anal
     read, refused, before = 0, 0, None
     with C3DReader() as reader:
         for base in (plain, rich):
-            for kind, content in _damaged(base, rng):
+            for kind, content in damaged(base, rng):
                 path.write_bytes(content)
                 try:
                     trial = reader.read(path)
