@@ -146,7 +146,7 @@ def beside(walks: DeviceWalks, found: Discovery) -> dict[str, float]:
     known = np.isfinite(device.moment) & np.isfinite(device.phase) & np.isfinite(device.rate)
     learned = known & ~held
     driven = driven_of(device)
-    nominal = model.by_muscle(driven).sum(axis=1) + model.others(driven)
+    nominal = model.net(driven)
     left = device.moment - nominal
     library = _library(device, model.by_muscle(driven))
     normal = library[learned].T @ library[learned]
@@ -154,7 +154,7 @@ def beside(walks: DeviceWalks, found: Discovery) -> dict[str, float]:
     augmented = nominal + library @ np.linalg.solve(normal, library[learned].T @ left[learned])
     blocks = np.where(learned, device.stride * 4 // (int(device.stride.max()) + 1), -1)
     exo_model = fitted_moment(driven, np.where(learned, device.moment, np.nan), blocks, (model.delay_s, model.lag_s))
-    exo = exo_model.by_muscle(driven).sum(axis=1) + exo_model.others(driven)
+    exo = exo_model.net(driven)
     own = known & held
     before, after, _ = found.held_out.channels["net_moment"]
     sizes = {"Nominal": before, "Nominal + named effect": after if found.effects else before}

@@ -31,10 +31,8 @@ ASIS_WIDTH, PELVIS_DEPTH = 0.145, 0.090  # of height
 CAMERA_M = 0.0003  # noise of a coordinate
 SKIN_M = {"pelvis": 0.003, "thigh": 0.006, "shank": 0.004, "foot": 0.001}  # for 60 deg of the joints beside it
 STANDING_S = 1.0
-SWAY_M, SWAY_AT = (
-    0.040,
-    0.30,
-)  # of the pelvis sideways and with it the feet apart, towards the right leg at this share of its stride
+SWAY_M = 0.040  # of the pelvis sideways, and with it the feet apart
+SWAY_AT = 0.30  # share of the right leg's stride at which it is towards that leg
 INWARDS = 0.05  # sideways force, of the vertical one
 MOMENT_NM = 0.3  # noise of a belt's moments
 FORCE_N = 2.0

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.cohort.marker_trial import FORCE_N, MOMENT_NM
 from gaitdisc.recording import Recording, Surface, Trial
 from gaitdisc.recording.runs import runs
 
@@ -14,7 +15,6 @@ STRIDES = 2.9  # in the cameras' view
 BEFORE = 0.7  # strides before the step on the first plate
 PLATE_M = (0.6, 0.9)  # along and across the walkway; shorter where a step is
 STANDS_N = 20.0
-FORCE_N, MOMENT_NM = 2.0, 0.3  # noise of a plate
 
 
 def overground(belts: Trial, start_s: float, stride_s: float, speed_m_per_s: float, name: str) -> Trial:

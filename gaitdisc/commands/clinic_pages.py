@@ -113,7 +113,7 @@ def write_people(
             failed.append((title, str(person)))
             continue
         try:
-            for page in _pages(person, names[title], reference, run.provenance, (report, say, pdf)):
+            for page in _pages(person, names[title], reference, run.provenance, report, say, pdf):
                 told(page)
             written.append((person, names[title]))
         except WriteError:  # of the disk, not of the person: the page would stand as one that cannot be written
@@ -148,13 +148,11 @@ def write_person(run: ResponseRun, run_folder: Path, person: str, pdf: bool = Fa
         raise SchemaError("a page needs a person of the run", f"{person!r}; there are {people}", "Name one of them.")
     everybody = people_of(run)
     names = dict(zip(everybody, page_names(everybody), strict=True))
-    reference, found = kept_reference(run_folder), []
+    reference, say, found = kept_reference(run_folder), kept_words(run_folder), []
     for title, one in sessions_of(own, reference):
         if isinstance(one, GaitdiscError):
             raise one
-        found += _pages(
-            one, names[title], reference, run.provenance, (run_folder / "report", kept_words(run_folder), pdf)
-        )
+        found += _pages(one, names[title], reference, run.provenance, run_folder / "report", say, pdf)
     return found
 
 
@@ -163,12 +161,13 @@ def _pages(
     name: str,
     reference: ClinicalReference | None,
     provenance: Provenance,
-    how: tuple[Path, PageWords, bool],
+    report: Path,
+    say: PageWords,
+    pdf: bool,
 ) -> list[Path]:
     """Write the page of a person and session into a report, in these words, as HTML and where wanted as PDF."""
     from gaitdisc.report.clinic.person_page import write_person_page
 
-    report, say, pdf = how
     page = write_person_page(person, name, reference, provenance, report, say)
     if not pdf:
         return [page]

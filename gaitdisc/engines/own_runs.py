@@ -100,12 +100,12 @@ def _left(
         )
         for trial in {one.trial for one in stretches}
     }
+    size = np.nanstd(measured.observed, axis=(0, 1))
     total, count = 0.0, 0
     for one in stretches:
         controls = measured.drive.inputs[one.trial, one.first : one.end]
         seen = measured.observed[one.trial, one.first : one.end]
         known = np.isfinite(seen)
-        size = np.nanstd(measured.observed, axis=(0, 1))
 
         def residual(starts: NDArray[np.float64], one: _Stretch = one, controls=controls, seen=seen, known=known):
             u = np.repeat(acting[one.trial][one.first][None], len(starts), axis=0)

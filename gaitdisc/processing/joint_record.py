@@ -16,13 +16,12 @@ from gaitdisc.kinematics.markers import marker_labels, marker_places
 from gaitdisc.kinetics.added_mass import moment_per_foot_kg
 from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.processing.contact_choice import chosen_contacts
-from gaitdisc.processing.process import is_raw
-from gaitdisc.recording import Finding, Recording, Trial
+from gaitdisc.processing.process import envelope_of, is_raw
+from gaitdisc.recording import Finding, Trial
 from gaitdisc.recording.strides import interpolated
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.derivatives import differentiated
 from gaitdisc.signals.emg_quality import emg_findings
-from gaitdisc.signals.envelope import enveloped
 from gaitdisc.signals.strides import cut_strides
 
 JOINT_AT = {"ankle_angle": "ankle_lateral", "knee_angle": "knee_lateral", "hip_flexion": "asis"}  # landmark of a joint
@@ -109,10 +108,6 @@ def joint_record(trial: Trial, study: Study, joint: str, mass_kg: float | None) 
         trial, study.strides.detector, study.treadmill.direction if study.treadmill else "", weight
     )
     strides = cut_strides(choice.contacts[side], raw, study.strides.min_s, study.strides.max_s)
-    phase, number = np.full(len(raw.time), np.nan), np.full(len(raw.time), -1)
-    for count, (start, end) in enumerate(zip(strides.start, strides.end, strict=True)):
-        inside = (raw.time >= start) & (raw.time < end)
-        phase[inside], number[inside] = (raw.time[inside] - start) / (end - start), count
     return JointRecord(
         joint,
         side,
@@ -126,8 +121,8 @@ def joint_record(trial: Trial, study: Study, joint: str, mass_kg: float | None) 
         moment,
         envelopes,
         muscles,
-        phase,
-        number,
+        strides.phi(raw.time) / 100.0,
+        strides.number(raw.time),
         _per_kg(trial, study, joint, raw.time),
         (*trial.findings, *choice.findings, *dead),
     )
@@ -183,16 +178,7 @@ def _envelopes(
             f"{trial.name} has {', '.join(sorted(lost)) or 'none'}" + (" dead" if lost else ""),
             "Name the muscles in [channels], or set side in [strides] to the leg with electrodes.",
         )
-    values = np.column_stack([_smooth(own.selected([name]), study, time) for name in own.names])
+    smooth = [envelope_of(own.selected([name]), study.filters) for name in own.names]
+    values = np.hstack([interpolated(one.time, one.values, time) for one in smooth])
     left_out = [replace(one, severity="warning", spoils="this muscle is left out") for one in dead]
     return np.maximum(values, 0.0), tuple(own.names), left_out
-
-
-def _smooth(one: Recording, study: Study, time: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Envelope of one electrode on a time base; one that is an envelope already is low-passed as one is."""
-    filters = study.filters
-    if is_raw(one):
-        smooth = enveloped(one, filters.emg_highpass_hz, filters.emg_lowpass_hz, filters.order)
-    else:
-        smooth = lowpassed(one, filters.emg_lowpass_hz, filters.order, filters.gap_s)
-    return interpolated(smooth.time, smooth.values, time)[:, 0]

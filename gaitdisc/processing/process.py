@@ -9,7 +9,7 @@ import numpy as np
 
 from gaitdisc.channel import vocabulary
 from gaitdisc.errors import ChannelError, SamplingError, StrideError
-from gaitdisc.ingest.study import Study
+from gaitdisc.ingest.study import Filters, Study
 from gaitdisc.processing.contact_choice import chosen_contacts
 from gaitdisc.processing.side_checks import side_findings
 from gaitdisc.processing.walk import Walk
@@ -129,10 +129,7 @@ def _state(trial: Trial, raw: Recording, study: Study) -> Recording:
         return replace(angles, subject=trial.subject, condition=trial.condition)
     emg = _needed(trial, "emg", study.models.emg)
     _refuse_dead(emg, trial)
-    if is_raw(emg):
-        envelope = enveloped(emg, filters.emg_highpass_hz, filters.emg_lowpass_hz, filters.order)
-    else:
-        envelope = lowpassed(emg, filters.emg_lowpass_hz, filters.order, filters.gap_s)
+    envelope = envelope_of(emg, filters)
     values = interpolated(envelope.time, envelope.values, angles.time)
     marks = interpolated(envelope.time, np.asarray(envelope.suspect, float), angles.time) > 0
     if not np.isfinite(values).any():
@@ -151,6 +148,13 @@ def _state(trial: Trial, raw: Recording, study: Study) -> Recording:
         angles.source,
         np.hstack([np.asarray(angles.suspect), marks | ~np.isfinite(values)]),
     )
+
+
+def envelope_of(emg: Recording, filters: Filters) -> Recording:
+    """Envelope of raw EMG; what is an envelope already is low-passed as one is."""
+    if is_raw(emg):
+        return enveloped(emg, filters.emg_highpass_hz, filters.emg_lowpass_hz, filters.order)
+    return lowpassed(emg, filters.emg_lowpass_hz, filters.order, filters.gap_s)
 
 
 def is_raw(emg: Recording) -> bool:

@@ -118,12 +118,23 @@ class Strides:
         """
         if not len(self):
             return np.full(len(time), np.nan)
-        which = np.searchsorted(self.start, time, side="right") - 1
+        which = self.number(time)
         inside = which >= 0
-        which = np.maximum(which, 0)
-        inside &= time < self.end[which]
         phi = 100.0 * (time - self.start[which]) / self.duration_s[which]
         return np.where(inside, np.minimum(phi, np.nextafter(100.0, 0.0)), np.nan)
+
+    def number(self, time: NDArray[np.float64]) -> NDArray[np.intp]:
+        """Number of the stride, from 0, (time,); -1 outside of the strides.
+
+        Parameters
+        ----------
+        time : ndarray (time,) [s]
+            Times on the trial's clock.
+        """
+        if not len(self):
+            return np.full(len(time), -1)
+        which = np.searchsorted(self.start, time, side="right") - 1
+        return np.where((which >= 0) & (time < self.end[which]), which, -1)
 
     def normalised(self, recording: Recording) -> NDArray[np.float64]:
         """Every stride of a recording on 0 to 100 % in 101 points, (stride, phase, channel) [channel's unit].

@@ -132,6 +132,10 @@ class MuscleMoment:
         """Return each muscle's moment (sample, muscle) [N m]."""
         return driven.activation(self.delay_s, self.lag_s) * self.gain(driven)
 
+    def net(self, driven: Driven) -> Values:
+        """Return the moment of muscles and of what no electrode sees together (sample,) [N m]."""
+        return self.by_muscle(driven).sum(axis=1) + self.others(driven)
+
     def gain(self, driven: Driven) -> Values:
         """Return each muscle's moment for each unit of activation, with its sign (sample, muscle) [N m]."""
         return driven.signs * (_corners(driven, self.span) @ self.gains.T)

@@ -68,3 +68,12 @@ def test_order_and_shape():
         Strides(np.array([0.0, 0.5]), np.array([1.0, 1.5]), "r", "force")
     with pytest.raises(ShapeError, match="as many ends as starts"):
         Strides(np.array([0.0, 0.5]), np.array([1.0]), "r", "force")
+
+
+def test_every_time_has_the_number_of_its_stride():
+    strides = Strides(np.array([1.0, 2.5]), np.array([2.0, 3.5]), "r", "force")
+    time = np.array([0.9, 1.0, 1.99, 2.0, 2.4, 2.5, 3.49, 3.5])
+    np.testing.assert_array_equal(strides.number(time), [-1, 0, 0, -1, -1, 1, 1, -1])
+    np.testing.assert_array_equal(np.isfinite(strides.phi(time)), strides.number(time) >= 0)
+    none = Strides(np.empty(0), np.empty(0), "r", "force")
+    np.testing.assert_array_equal(none.number(time), np.full(8, -1))
