@@ -98,29 +98,18 @@ class Channel:
 
 @dataclass(frozen=True)
 class Vocabulary:
-    """The channels that the package knows, with the other names they go by.
-
-    Parameters
-    ----------
-    positive : dict of str to str
-        Channel name -> what a positive value means.
-    """
+    """The channels that the package knows, with the other names they go by."""
 
     channels: tuple[Channel, ...]
-    positive: dict[str, str]
+    positive: dict[str, str]  # channel name -> what a positive value means
     aliases: dict[str, str]
 
     def named(self, label: str) -> Channel | None:
         """Channel that a label means, or None.
 
-        Parameters
-        ----------
-        label : str
-            As written in a file. Case, blanks and punctuation do not count, nor does the path and the trailing
-            `/value` of OpenSim's full-path labels.
+        label: as written in a file. Case, blanks and punctuation do not count, nor does the path and the trailing
+            `/value` of OpenSim's full-path labels
 
-        Examples
-        --------
         >>> vocabulary().named("/jointset/hip_r/hip_flexion_r/value").name
         'hip_flexion_r'
         >>> vocabulary().named("R Tib Ant").name
@@ -132,8 +121,6 @@ class Vocabulary:
     def nearest(self, label: str, among: Iterable[str] | None = None) -> str | None:
         """Known name most like a label, or None where none is near.
 
-        Examples
-        --------
         >>> vocabulary().nearest("ankle_ange_r")
         'ankle_angle_r'
         """
@@ -143,8 +130,6 @@ class Vocabulary:
 def nearest_word(word: str, among: Iterable[str]) -> str | None:
     """Word of a list most like another, or None where none is near.
 
-    Examples
-    --------
     >>> nearest_word("particpants", ["participants", "filters"])
     'participants'
     """
@@ -156,8 +141,6 @@ def nearest_word(word: str, among: Iterable[str]) -> str | None:
 def folded_label(label: str) -> str:
     """Fold a label to lower case without blanks and punctuation.
 
-    Examples
-    --------
     >>> folded_label("R Tib-Ant")
     'rtibant'
     """
@@ -167,13 +150,8 @@ def folded_label(label: str) -> str:
 def path_label(label: str) -> str:
     """Last part of an OpenSim full-path label that names the coordinate.
 
-    Parameters
-    ----------
-    label : str
-        `/jointset/hip_r/hip_flexion_r/value`, or a plain label, which is returned as it is.
+    label: `/jointset/hip_r/hip_flexion_r/value`, or a plain label, which is returned as it is
 
-    Examples
-    --------
     >>> path_label("/jointset/hip_r/hip_flexion_r/value")
     'hip_flexion_r'
     """
@@ -188,8 +166,6 @@ def path_label(label: str) -> str:
 def side_of(name: str) -> str:
     """Side that a name tells: `r`, `l` or empty.
 
-    Examples
-    --------
     >>> side_of("emg_sol_l"), side_of("hip_flexion_r_moment"), side_of("lumbar_bending")
     ('l', 'r', '')
     """
@@ -207,8 +183,6 @@ def schema_folder() -> Path:
 def vocabulary() -> Vocabulary:
     """Vocabulary of `data_schema/channels.csv`.
 
-    Examples
-    --------
     >>> vocabulary().named("hip_flexion_r").unit
     'deg'
     """

@@ -56,13 +56,8 @@ def compiled(function: Callable[..., Any] | None = None, **options: Any) -> Any:
     The folder is NUMBA_CACHE_DIR, that of the package, or the user's cache. A package that is installed where nobody
     may write, for a user without a home, and a full disk, cost the time to compile once a process and nothing else.
 
-    Parameters
-    ----------
-    function : callable, optional
-        What to compile; without it, a decorator is given back.
+    function: what to compile; without it, a decorator is given back
 
-    Examples
-    --------
     >>> @compiled
     ... def doubled(x):
     ...     return 2 * x

@@ -32,21 +32,10 @@ class Model(Protocol):
 
 @dataclass(frozen=True)
 class Augmented:
-    """A known model plus what it misses (Eq. 4.5).
-
-    Parameters
-    ----------
-    missing : Model
-        The Discrepancy model; same inputs and outputs.
-
-    Examples
-    --------
-    >>> augment(known, missing)(x)  # doctest: +SKIP
-    array(...)  # known(x) + missing(x)
-    """
+    """A known model plus what it misses (Eq. 4.5)."""
 
     known: Model
-    missing: Model
+    missing: Model  # the Discrepancy model; same inputs and outputs
 
     def __post_init__(self) -> None:
         """Refuse models that cannot be added."""

@@ -9,8 +9,6 @@ from html import escape
 def html_of(title: str, rows: Iterable[tuple[str, str]]) -> str:
     """HTML of a title and a few rows of two cells; every text is escaped.
 
-    Examples
-    --------
     >>> html_of("<walk>", [("rate", "100 Hz")])
     '<table><caption>&lt;walk&gt;</caption><tr><th>rate</th><td>100 Hz</td></tr></table>'
     """

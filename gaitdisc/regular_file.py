@@ -22,13 +22,8 @@ _KINDS = (
 def check_regular(path: Path, largest_bytes: int = LARGEST_BYTES) -> int:
     """Size of a file that may be opened: a regular one, or a link to one, that is not too large.
 
-    Returns
-    -------
-    int
-        Length of the file [bytes].
+    returns: length of the file [bytes]
 
-    Examples
-    --------
     >>> check_regular(Path("/"))
     Traceback (most recent call last):
     ...

@@ -28,8 +28,6 @@ _OTHER_SEPARATORS = re.compile(r"[;\t\r]")  # of cells in another language, of r
 def quoted(text: str) -> str:
     """Text of a cell or heading, with an apostrophe in front where a spreadsheet would take it for a formula.
 
-    Examples
-    --------
     >>> quoted("=1+1"), quoted("knee_angle_r"), quoted("-0.5"), quoted("-x")
     ("'=1+1", 'knee_angle_r', '-0.5', "'-x")
     """
@@ -39,8 +37,6 @@ def quoted(text: str) -> str:
 def unquoted(text: str) -> str:
     """Text as it was before `quoted`.
 
-    Examples
-    --------
     >>> unquoted("'=1+1"), unquoted("it's"), unquoted(quoted("'=1"))
     ('=1+1', "it's", "'=1")
     """
@@ -50,12 +46,8 @@ def unquoted(text: str) -> str:
 def write_csv(table: pd.DataFrame, path: Path, float_format: str | None = None) -> None:
     """Write a table as CSV, whole or not at all.
 
-    Parameters
-    ----------
-    table : DataFrame
-        Its index is not written.
-    float_format : str, optional
-        Of every number; by default as many digits as it takes to read the same number again.
+    table: its index is not written
+    float_format: of every number; by default as many digits as it takes to read the same number again
     """
     safe = table.rename(columns=lambda name: quoted(str(name)))
     for place in range(len(table.columns)):
@@ -70,12 +62,8 @@ def write_csv(table: pd.DataFrame, path: Path, float_format: str | None = None) 
 def read_csv(path: Path, words: Sequence[str] = (), skiprows: int = 0) -> pd.DataFrame:
     """Read a table that `write_csv` wrote; an empty cell is a missing number.
 
-    Parameters
-    ----------
-    words : sequence of str
-        Columns whose cells are words, also where they look like numbers: a participant called 007.
-    skiprows : int
-        Lines before the header.
+    words: columns whose cells are words, also where they look like numbers: a participant called 007
+    skiprows: lines before the header
     """
     import pandas as pd
 

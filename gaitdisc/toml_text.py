@@ -14,8 +14,6 @@ _NO_KEYS = re.compile(r"\d\.\d|#.*|\"[^\"\n]*\"|'[^'\n]*'")
 def parsed_toml(text: str) -> dict[str, Any]:
     r"""Table of a TOML text.
 
-    Examples
-    --------
     >>> parsed_toml("[filters]\norder = 4")
     {'filters': {'order': 4}}
     >>> parsed_toml("a = " + "[" * 50 + "]" * 50)

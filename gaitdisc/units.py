@@ -87,8 +87,6 @@ def known_units() -> tuple[str, ...]:
 def parsed_unit(text: str) -> str | None:
     """Unit that a text means, or None where it means none of the closed list.
 
-    Examples
-    --------
     >>> parsed_unit("Nmm"), parsed_unit("mV"), parsed_unit("furlong")
     ('N mm', 'mV', None)
     """
@@ -102,8 +100,6 @@ def parsed_unit(text: str) -> str | None:
 def inner_unit(unit: str) -> str:
     """Unit that the package uses for what is measured in `unit`.
 
-    Examples
-    --------
     >>> inner_unit("N mm")
     'N m'
     """
@@ -113,17 +109,9 @@ def inner_unit(unit: str) -> str:
 def convert(values: NDArray[np.floating], unit: str, to: str) -> NDArray[np.floating]:
     """Same quantity in another unit.
 
-    Parameters
-    ----------
-    values : ndarray, any shape [unit]
-        Numbers to convert.
+    values , any shape [unit]: numbers to convert
+    returns , same shape [to]
 
-    Returns
-    -------
-    ndarray, same shape [to]
-
-    Examples
-    --------
     >>> float(convert(np.array(250.0), "mm", "m"))
     0.25
     """
@@ -143,8 +131,6 @@ def convert(values: NDArray[np.floating], unit: str, to: str) -> NDArray[np.floa
 def rate_unit(unit: str, order: int = 1) -> str:
     """Unit of a time derivative.
 
-    Examples
-    --------
     >>> rate_unit("deg", 2), rate_unit("1", 1)
     ('deg/s2', '1/s')
     """

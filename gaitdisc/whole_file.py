@@ -17,13 +17,8 @@ PART = ".part-"  # files begin with it until they are whole
 def whole_file(path: Path) -> Iterator[Path]:
     """Path to write to; it takes the place of `path` when the block ends well, and vanishes when it does not.
 
-    Yields
-    ------
-    Path
-        A file of the same ending in the same folder.
+    returns: a file of the same ending in the same folder
 
-    Examples
-    --------
     >>> import tempfile
     >>> folder = Path(tempfile.mkdtemp())
     >>> with whole_file(folder / "r2.csv") as part:
@@ -53,13 +48,8 @@ def whole_file(path: Path) -> Iterator[Path]:
 def write_whole(path: Path | str, content: bytes | str) -> Path:
     """Write a file of known content, whole or not at all.
 
-    Parameters
-    ----------
-    content : bytes or str
-        Everything that the file shall hold; text is written as UTF-8.
+    content: everything that the file shall hold; text is written as UTF-8
 
-    Examples
-    --------
     >>> import tempfile
     >>> write_whole(Path(tempfile.mkdtemp()) / "note.txt", "done").read_text()
     'done'
@@ -73,13 +63,8 @@ def write_whole(path: Path | str, content: bytes | str) -> Path:
 def sweep_parts(folder: Path) -> None:
     """Delete what a killed program left of files that it never finished.
 
-    Parameters
-    ----------
-    folder : Path
-        Folder in which, and below which, nobody else writes now.
+    folder: folder in which, and below which, nobody else writes now
 
-    Examples
-    --------
     >>> import tempfile
     >>> folder = Path(tempfile.mkdtemp())
     >>> (folder / ".part-r2-x.csv").touch()

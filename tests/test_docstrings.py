@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import inspect
 import pkgutil
+import re
 
 import pytest
 from numpydoc.docscrape import FunctionDoc
@@ -43,9 +44,19 @@ def _signature(thing) -> list[str]:
     return [name for name in inspect.signature(thing).parameters if name not in ("self", "cls")]
 
 
+ENTRY = re.compile(
+    r"^(?!returns\b|raises\b|Source\b)([a-z_]\w*(?:, \w+)*)(?: .*\)| .*\])?: ", re.M
+)  # name (shape) [unit]: words
+
+
 def _documented(thing) -> list[str]:
+    """Names of the entries of a docstring: of numpydoc's sections, or of the lines that stand in their place inside."""
     entries = FunctionDoc(thing)["Attributes" if hasattr(thing, "_fields") else "Parameters"]
-    return [part.strip().lstrip("*") for entry in entries for part in entry.name.split(",")]
+    below = (inspect.getdoc(thing) or "").partition("\n\n")[2].partition(">>> ")[0].split("\n\n")
+    heads = [entry.name for entry in entries] or [
+        head for lines in below if ENTRY.match(lines) for head in ENTRY.findall(lines)
+    ]
+    return [part.strip().lstrip("*") for head in heads for part in head.split(",")]
 
 
 def _takes_parameters(thing) -> bool:
@@ -96,6 +107,28 @@ def test_no_docstring_names_a_parameter_that_is_not_there(public):
 def test_functions_take_at_most_seven_arguments(public):
     functions = {name: thing for name, thing in public.items() if inspect.isfunction(thing)}
     assert [name for name, thing in functions.items() if len(_signature(thing)) > 7] == []
+
+
+def test_a_line_in_place_of_a_section_names_a_real_parameter_too():
+    def right(length_m, time):
+        """Take a length, or what
+        we have in common: nothing.
+
+        time, length_m (frame,) [m]: of the leg; what stands below
+            is no name: it is indented
+        returns frames (frame,): whole
+        """
+
+    def wrong(length_m):
+        """Take a length.
+
+        length (leg, 3) [m]: of the leg
+        """
+
+    assert _with_other_parameters({"right": right}) == [
+        "right: documented ['time', 'length_m'], signature ['length_m', 'time']"
+    ]
+    assert _with_other_parameters({"wrong": wrong}) == ["wrong: documented ['length'], signature ['length_m']"]
 
 
 def test_a_docstring_that_names_another_parameter_is_found():

@@ -28,19 +28,10 @@ def ablate_study(
 ) -> ResponseRun:
     """Fit every participant's models to less and less data; the run itself is made first where it is not there.
 
-    Parameters
-    ----------
-    lengths_s : sequence of float
-        Lengths of the training part [s]; its whole length is always added.
-    workers : Workers, optional
-        Where participants are computed; in this process, one after the other, by default.
-    told : callable
-        Called with a participant's pseudonym and the fraction of that participant's work that is done.
-
-    Returns
-    -------
-    ResponseRun
-        With `quantities`; whoever had to be refused is in `refusals`.
+    lengths_s: lengths of the training part [s]; its whole length is always added
+    workers: where participants are computed; in this process, one after the other, by default
+    told: called with a participant's pseudonym and the fraction of that participant's work that is done
+    returns: with `quantities`; whoever had to be refused is in `refusals`
     """
     workers = workers or Workers()
     run = run_study(study, folder, workers)

@@ -12,24 +12,16 @@ METHODS = ("pysindy", "pydmd")  # libraries of the extra `chapter3`
 
 
 class Part(NamedTuple):
-    """A part of a chapter.
-
-    Parameters
-    ----------
-    minutes, quick_minutes : float
-        Of one core, about, whole and with `--quick`.
-    words, quick_words : tuple of str
-        What the study is called with.
-    """
+    """A part of a chapter."""
 
     chapter: int
     name: str
     study: str
     makes: str
-    minutes: float
-    quick_minutes: float
-    words: tuple[str, ...] = (OUT,)
-    quick_words: tuple[str, ...] = (OUT, "--quick")
+    minutes: float  # of one core, about, whole and with `--quick`
+    quick_minutes: float  # of one core, about, whole and with `--quick`
+    words: tuple[str, ...] = (OUT,)  # what the study is called with
+    quick_words: tuple[str, ...] = (OUT, "--quick")  # what the study is called with
     libraries: tuple[str, ...] = ()
     data: str = ""  # folder of recordings or fields without which there is nothing to compute
 
@@ -67,8 +59,6 @@ CHAPTERS = tuple(dict.fromkeys(part.chapter for part in PARTS))
 def parts_of(chapter: int, name: str = "") -> tuple[Part, ...]:
     """Parts of a chapter, or the one of that name.
 
-    Examples
-    --------
     >>> [part.name for part in parts_of(4)]
     ['ankle_exo', 'bands', 'outcomes']
     """

@@ -24,21 +24,16 @@ CONDITION = "walking"
 
 @dataclass(frozen=True)
 class Visit:
-    """One walk of a made person.
-
-    Parameters
-    ----------
-    number : int
-        Of the person, who is drawn by it.
-    what, side : str
-        What is planted, and where; empty for a healthy walk, `bad file` for a recording that cannot be read, `child`
-        for somebody of eight years and that size.
-    """
+    """One walk of a made person."""
 
     name: str
-    number: int
+    number: int  # of the person, who is drawn by it
     session: str = ""
+    # what is planted, and where; empty for a healthy walk, `bad file` for a recording that cannot be read, `child` for
+    # somebody of eight years and that size
     what: str = ""
+    # what is planted, and where; empty for a healthy walk, `bad file` for a recording that cannot be read, `child` for
+    # somebody of eight years and that size
     side: str = "r"
 
 
@@ -79,12 +74,8 @@ def write_week(
 ) -> tuple[Study, Study, dict[str, str]]:
     """Write two studies, `controls/` and `week/`, and apart from them what was planted.
 
-    Returns
-    -------
-    controls, week : Study
-        As written; they pass through the same reading as a laboratory's.
-    planted : dict of str to str
-        Person and session -> what was planted, empty for the healthy.
+    returns controls, week: as written; they pass through the same reading as a laboratory's
+    returns planted: person and session -> what was planted, empty for the healthy
     """
     visits = [Visit(f"C{k + 1:02d}", k) for k in range(controls)]
     own = _written(folder / "controls", visits, "Controls, made", CONTROLS_SEED, told)

@@ -30,10 +30,7 @@ def compare_files(
 ) -> Mismatch:
     """Mismatch of two recordings, first minus second.
 
-    Parameters
-    ----------
-    cutoff_hz : float
-        -3 dB frequency of one pass of the low-pass of angles and moments.
+    cutoff_hz: -3 dB frequency of one pass of the low-pass of angles and moments
     """
     names = _names(first, second)
     public = PublicWords(frozenset(channels), dict(zip((first.name, second.name), names, strict=True)))
@@ -60,15 +57,8 @@ def compare_study(
 ) -> Mismatch:
     """Mismatch of the device walk against the nominal walk: of one participant's strides, or over participants.
 
-    Parameters
-    ----------
-    study : Study
-        With both conditions; its filters and its detector are used.
-
-    Returns
-    -------
-    Mismatch
-        Device minus nominal. Participants who lack a walk, or of whom one was refused, are named in the findings.
+    study: with both conditions; its filters and its detector are used
+    returns: device minus nominal. Participants who lack a walk, or of whom one was refused, are named in the findings
     """
     settings = public_settings(study, {"filters", "strides", "conditions"})
     if participant:

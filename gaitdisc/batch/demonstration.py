@@ -39,20 +39,11 @@ def write_demonstration(
 ) -> Study:
     """Let the cohort walk and write the recordings, the study file, and apart from them the truth.
 
-    Parameters
-    ----------
-    duration_s : float
-        Length of each walk [s]; the dissertation's is 240.
-    told : callable
-        Called with a pseudonym and 1.0 when that person has walked.
-    laboratory : str
-        `angles` of a treadmill; `markers`, two belts and a static trial in place of them; or markers `overground`:
-        short trials over two plates.
-
-    Returns
-    -------
-    Study
-        As written; it passes through the same reading as a laboratory's.
+    duration_s: length of each walk [s]; the dissertation's is 240
+    told: called with a pseudonym and 1.0 when that person has walked
+    laboratory: `angles` of a treadmill; `markers`, two belts and a static trial in place of them; or markers
+        `overground`: short trials over two plates
+    returns: as written; it passes through the same reading as a laboratory's
     """
     if laboratory not in LABORATORIES:
         raise SchemaError(

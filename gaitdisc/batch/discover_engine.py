@@ -36,25 +36,13 @@ MOVED = 0.02  # share by which a parameter moves at most for its slopes to hold
 
 @dataclass(frozen=True)
 class EngineAnswer:
-    """What was found of a model, in the forms in which it goes on.
-
-    Parameters
-    ----------
-    augmented : Simulation
-        The mapping with what was found.
-    written : WrittenModel
-        The model's own text with it.
-    runs : OwnRuns
-        Of the engine itself, before and after.
-    engine : Engine
-        The model as read.
-    """
+    """What was found of a model, in the forms in which it goes on."""
 
     found: Discovery
-    augmented: Simulation
-    written: WrittenModel
-    runs: OwnRuns
-    engine: Engine
+    augmented: Simulation  # the mapping with what was found
+    written: WrittenModel  # the model's own text with it
+    runs: OwnRuns  # of the engine itself, before and after
+    engine: Engine  # the model as read
 
 
 def discover_engine(
@@ -66,14 +54,9 @@ def discover_engine(
 ) -> EngineAnswer:
     """Find what a model of MuJoCo or OpenSim lacks.
 
-    Parameters
-    ----------
-    model : Path
-        The model, or its mapping file.
-    measured : callable
-        Reads the trials, once the mapping says what their columns are.
-    files : dict of Path to str, optional
-        What was read, and what it is called in the result.
+    model: the model, or its mapping file
+    measured: reads the trials, once the mapping says what their columns are
+    files: what was read, and what it is called in the result
     """
     mapping, engine = read_mapping(model)
     data = measured(mapping)

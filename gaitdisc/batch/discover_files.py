@@ -58,10 +58,7 @@ def discover_study(
 
     Where a walk lacks EMG or moments, only the motion of both is compared, and the sentence says that nothing is named.
 
-    Returns
-    -------
-    augmented : Simulation
-        The Nominal model with what was found in it.
+    returns augmented: the Nominal model with what was found in it
     """
     # imported here: a simulation file needs no filters and no pandas
     from gaitdisc.batch.device_study import NoMomentsError, beside, device_walks
@@ -99,12 +96,8 @@ def discovered(
 ) -> tuple[Discovery, Simulation]:
     """Find what a model lacks against measured trials, with what the answer rests on.
 
-    Parameters
-    ----------
-    files : dict of Path to str
-        Files that were read, and what each is called in the result.
-    weighed : callable
-        Whether an explanation is possible; all are by default.
+    files: files that were read, and what each is called in the result
+    weighed: whether an explanation is possible; all are by default
     """
     shapes = read_catalogue(catalogue) if catalogue else ()
     data = replace(data, trials=tuple(_trial_name(name, k) for k, name in enumerate(data.trials, 1)))

@@ -27,16 +27,10 @@ EXTRAS = {
 
 @dataclass(frozen=True)
 class Check:
-    """One thing that was looked at.
-
-    Parameters
-    ----------
-    state : str
-        `ok`, `absent` (something optional) or `wrong`.
-    """
+    """One thing that was looked at."""
 
     what: str
-    state: str
+    state: str  # `ok`, `absent` (something optional) or `wrong`
     words: str
 
 

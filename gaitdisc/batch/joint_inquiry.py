@@ -66,12 +66,8 @@ def nominal_moment(record: JointRecord) -> MuscleMoment:
 def tracked_joint(record: JointRecord, model: MuscleMoment) -> Simulation:
     """Return the simulation: the joint goes with the recorded motion, and the model says its net moment.
 
-    Parameters
-    ----------
-    record : JointRecord
-        Of the device walk.
-    model : MuscleMoment
-        Calibrated on the Nominal walk of the same person.
+    record: of the device walk
+    model: calibrated on the Nominal walk of the same person
     """
     word, (against, towards) = WORDS[record.joint], GROUPS[record.joint]
     carried = record.per_kg.size > 0

@@ -29,17 +29,9 @@ def nominal_inquiry(
     device is therefore an acceleration, not a moment: without moments in the study no inertia is known, and what the
     person changes on purpose cannot be told from what the device does.
 
-    Parameters
-    ----------
-    study : Study
-        With both walks; its filters and its detector are used.
-    joint : str
-        Angle, without its side; the side is that of the study's strides.
-
-    Returns
-    -------
-    simulation : Simulation
-        States theta [rad] and omega [rad/s], input phase, port `acceleration` [rad/s^2].
+    study: with both walks; its filters and its detector are used
+    joint: angle, without its side; the side is that of the study's strides
+    returns simulation: states theta [rad] and omega [rad/s], input phase, port `acceleration` [rad/s^2]
     """
     walks, refusals = processed_walks(study, study.participant(participant))
     if refusals:

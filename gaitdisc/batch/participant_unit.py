@@ -28,27 +28,14 @@ SHARE_OF_PROCESSING = 0.1
 
 @dataclass(frozen=True, eq=False)
 class ParticipantUnit:
-    """What a run has of one participant.
-
-    Parameters
-    ----------
-    response : ParticipantResponse, optional
-        None where a walk or the fit was refused.
-    refusals : tuple of Refusal
-        Why, in the words of the error.
-    key : str
-        What the unit rests on, of `response_key`; empty where nothing was read.
-    cycles : tuple of PooledCycles
-        Where cycles are pooled over trials: each session and condition.
-    unfitted : str
-        Why no models were fitted, where the study compares a device and cycles are pooled instead; or empty.
-    """
+    """What a run has of one participant."""
 
     walks: tuple[WalkSummary, ...] = ()
-    response: ParticipantResponse | None = None
-    refusals: tuple[Refusal, ...] = ()
-    key: str = ""
-    cycles: tuple[PooledCycles, ...] = ()
+    response: ParticipantResponse | None = None  # none where a walk or the fit was refused
+    refusals: tuple[Refusal, ...] = ()  # why, in the words of the error
+    key: str = ""  # what the unit rests on, of `response_key`; empty where nothing was read
+    cycles: tuple[PooledCycles, ...] = ()  # where cycles are pooled over trials: each session and condition
+    # why no models were fitted, where the study compares a device and cycles are pooled instead; or empty
     unfitted: str = ""
 
 
@@ -58,10 +45,7 @@ def computed_unit(study: Study, participant: Participant, folder: Path, progress
     What is given back was loaded from the folder in either case, so that arrays stay there until they are looked at,
     and a run that went on has the numbers of one that was never stopped, to the last bit.
 
-    Returns
-    -------
-    ParticipantUnit
-        A refusal is part of the result; it stops this participant and nobody else.
+    returns: a refusal is part of the result; it stops this participant and nobody else
     """
     refused = refused_participant(study, participant)
     if refused:

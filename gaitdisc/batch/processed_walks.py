@@ -21,10 +21,7 @@ from gaitdisc.results import Refusal
 def processed_walks(study: Study, participant: Participant) -> tuple[dict[str, Walk], tuple[Refusal, ...]]:
     """Both walks of a complete participant, by condition, and why one could not be processed, in public words.
 
-    Parameters
-    ----------
-    participant : Participant
-        One who lacks a walk of a condition, or has several, is refused.
+    participant: one who lacks a walk of a condition, or has several, is refused
     """
     lacking = not_compared(study, participant)
     if lacking:

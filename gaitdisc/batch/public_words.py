@@ -36,22 +36,14 @@ _NUMBER = re.compile(r"\d+(e\d+)?[a-zA-Z]{0,2}")
 
 @dataclass(frozen=True)
 class PublicWords:
-    """Words that may be written, and what files are called instead of their names.
-
-    Parameters
-    ----------
-    files : mapping of str to str
-        Name of a file -> what it is called.
-    """
+    """Words that may be written, and what files are called instead of their names."""
 
     words: frozenset[str] = frozenset()
-    files: Mapping[str, str] = field(default_factory=dict)
+    files: Mapping[str, str] = field(default_factory=dict)  # name of a file -> what it is called
 
     def said(self, text: str) -> str:
         """Sentence without a word of the recordings.
 
-        Examples
-        --------
         >>> PublicWords().said("column 'Erika' has no unit")
         "column '…' has no unit (…: words of the recording; `gaitdisc check` shows them.)"
         >>> PublicWords(files={"Erika.mot": "the recording"}).said("Erika.mot has no unit")
@@ -133,10 +125,7 @@ class PublicWords:
 def words_of(study: Study, participant: Participant, named: Iterable[str] = ()) -> PublicWords:
     """Public words of one participant's recordings.
 
-    Parameters
-    ----------
-    named : iterable of str
-        Channels that the user named, beside those of the study.
+    named: channels that the user named, beside those of the study
     """
     said = [study.title, *study.sessions, *study.conditions.words, participant.group, participant.excluded, *named]
     said += [each.id for each in study.participants]
@@ -156,10 +145,7 @@ def of_trial(words: PublicWords, participant: Participant, planned: PlannedTrial
 def with_public_labels(recording: Recording) -> tuple[Recording, int]:
     """Recording whose channels of other names are numbered, and how many these are.
 
-    Parameters
-    ----------
-    recording : Recording
-        Of any channels; a marker's three keep their `.x`, `.y` and `.z`.
+    recording: of any channels; a marker's three keep their `.x`, `.y` and `.z`
     """
     public, called = PublicWords(), dict[str, str]()
     names = []

@@ -25,10 +25,7 @@ def computed_quantity(
 ) -> DataQuantity | Refusal:
     """Compute what less data gives one participant, or load what was computed from the same files and settings.
 
-    Parameters
-    ----------
-    lengths_s : sequence of float
-        Lengths of the training part [s].
+    lengths_s: lengths of the training part [s]
     """
     key = response_key(unit_keys(study, participant))
     stored = stored_quantity(participant, folder, key)

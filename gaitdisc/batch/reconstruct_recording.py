@@ -20,25 +20,13 @@ from gaitdisc.signals.butterworth import KINEMATICS_HZ, lowpassed
 
 @dataclass(frozen=True, eq=False)
 class ToldRecording:
-    """States told of a recording, and how far they are from those that were measured too.
+    """States told of a recording, and how far they are from those that were measured too."""
 
-    Parameters
-    ----------
-    states : Recording
-        What the model tells, from the first full window on.
-    rmse : dict of str to float
-        Of every state that the recording has itself [its unit]; empty where it has sensors alone.
-    coverage : dict of str to float
-        Share of these inside the model's interval.
-    level : float
-        Share that the interval was made for.
-    """
-
-    states: Recording
+    states: Recording  # what the model tells, from the first full window on
     path: Path
-    rmse: dict[str, float]
-    coverage: dict[str, float]
-    level: float
+    rmse: dict[str, float]  # of every state that the recording has itself [its unit]; empty where it has sensors alone
+    coverage: dict[str, float]  # share of these inside the model's interval
+    level: float  # share that the interval was made for
 
     def lines(self) -> list[str]:
         """Return what is said of it."""
@@ -60,15 +48,10 @@ def reconstruct_recording(
 ) -> ToldRecording:
     """Tell the states of one recording, and write them as a `.mot`.
 
-    Parameters
-    ----------
-    cutoff_hz : float
-        -3 dB frequency of one pass of the low-pass; the model's own recordings had the study's.
-    calibration : Path, optional
-        Kinematics of the same person that hold the sensors and every state, some ten strides: the model is corrected
-        for the person by them. Its intervals stay as they are, and are too wide then.
-    missing : str
-        What stands for a reading that is missing: a word of `gaitdisc.sensing.missing.WAYS`.
+    cutoff_hz: -3 dB frequency of one pass of the low-pass; the model's own recordings had the study's
+    calibration: kinematics of the same person that hold the sensors and every state, some ten strides: the model is
+        corrected for the person by them. Its intervals stay as they are, and are too wide then
+    missing: what stands for a reading that is missing: a word of `gaitdisc.sensing.missing.WAYS`
     """
     saved, kinematics = load_model(model), read_trial(file).stream("kinematics")
     if calibration is not None:

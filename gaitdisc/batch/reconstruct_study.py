@@ -33,33 +33,18 @@ CALIBRATION_STRIDES = 10
 
 @dataclass(frozen=True)
 class ReconstructionSettings:
-    """How a study is reconstructed.
+    """How a study is reconstructed."""
 
-    Parameters
-    ----------
-    split : str
-        A word of `gaitdisc.sensing.splits.RULES` or of `ACROSS`.
-    history_s, spacing_s : float
-        Reach of a window, and time from one reading to the next [s].
-    condition : str
-        Walks of this condition alone, of both where it is empty; with the split `condition`, those that are judged.
-    targets : str
-        What is told: `states`, or a word of `gaitdisc.batch.target_walks.TARGETS`.
-    ahead_s : float
-        How far ahead of the last reading the states are told [s]; 0 tells the present.
-    device : str
-        That networks are fitted on: `cpu`, `cuda`, or `auto`, the GPU where there is one.
-    """
-
-    split: str = "temporal"
-    history_s: float = 1.0
-    spacing_s: float = 0.04
+    split: str = "temporal"  # a word of `gaitdisc.sensing.splits.RULES` or of `ACROSS`
+    history_s: float = 1.0  # reach of a window, and time from one reading to the next [s]
+    spacing_s: float = 0.04  # reach of a window, and time from one reading to the next [s]
     kinds: tuple[str, ...] = tuple(KINDS)
+    # walks of this condition alone, of both where it is empty; with the split `condition`, those that are judged
     condition: str = ""
-    targets: str = STATES
-    ahead_s: float = 0.0
+    targets: str = STATES  # what is told: `states`, or a word of `gaitdisc.batch.target_walks.TARGETS`
+    ahead_s: float = 0.0  # how far ahead of the last reading the states are told [s]; 0 tells the present
     seed: int = 0
-    device: str = "auto"
+    device: str = "auto"  # that networks are fitted on: `cpu`, `cuda`, or `auto`, the GPU where there is one
 
     @property
     def condition_read(self) -> str:

@@ -22,8 +22,6 @@ def run_lock(folder: Path) -> Iterator[None]:
     another afterwards, as in a container that is started again, does no harm. Between machines that share a disk such
     locks are not to be relied on: a lock file of another machine is believed. POSIX only: Windows has no such lock.
 
-    Examples
-    --------
     >>> import tempfile
     >>> with run_lock(Path(tempfile.mkdtemp())):
     ...     pass

@@ -41,17 +41,9 @@ def run_study(
     not computed; so a run that was stopped goes on, and loses at most the participant it was at. What was changed since
     it was saved, in a table or in a JSON file, is not loaded but computed again, and said in `renewed`.
 
-    Parameters
-    ----------
-    workers : Workers, optional
-        Where participants are computed; in this process, one after the other, by default.
-    told : callable
-        Called with a participant's pseudonym and the fraction of that participant's work that is done.
-
-    Returns
-    -------
-    ResponseRun
-        Also saved in the folder; refusals are part of it.
+    workers: where participants are computed; in this process, one after the other, by default
+    told: called with a participant's pseudonym and the fraction of that participant's work that is done
+    returns: also saved in the folder; refusals are part of it
     """
     with run_lock(folder):
         renewed = damaged_units(folder)

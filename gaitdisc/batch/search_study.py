@@ -16,10 +16,7 @@ from gaitdisc.sensing.windows import windows_of
 def search_study(study: Study, most: int, settings: ReconstructionSettings | None = None) -> pd.DataFrame:
     """Find the best sets of sensors among the states of a study, for all participants together.
 
-    Returns
-    -------
-    DataFrame
-        As of `gaitdisc.sensing.sensor_search.search_sensors`.
+    returns: as of `gaitdisc.sensing.sensor_search.search_sensors`
     """
     settings = settings or ReconstructionSettings()
     if settings.targets != STATES or settings.ahead_s:

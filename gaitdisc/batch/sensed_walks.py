@@ -40,39 +40,21 @@ STILL_OTHERWISE = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class SensedWalk:
-    """One filtered walk.
-
-    Parameters
-    ----------
-    phi : ndarray (time,) [% stride]
-        Of the study's side.
-    """
+    """One filtered walk."""
 
     recording: Recording
-    phi: NDArray[np.float64]
+    phi: NDArray[np.float64]  # (time,) [% stride], of the study's side
 
 
 @dataclass(frozen=True, eq=False)
 class SensedWalks:
-    """The walks of all participants, of the same channels at the same rate.
+    """The walks of all participants, of the same channels at the same rate."""
 
-    Parameters
-    ----------
-    people : dict of str to tuple of SensedWalk
-        Pseudonym -> walks; those without any are not among them.
-    channels : tuple of Channel
-        Of every recording, in order: the states, then sensors that are none.
-    findings : tuple of Finding
-        States that are left out, and what was seen in the recordings.
-    files : dict of str to str
-        What each file is called -> SHA-256.
-    """
-
-    people: dict[str, tuple[SensedWalk, ...]]
-    channels: tuple[Channel, ...]
+    people: dict[str, tuple[SensedWalk, ...]]  # pseudonym -> walks; those without any are not among them
+    channels: tuple[Channel, ...]  # of every recording, in order: the states, then sensors that are none
     refusals: tuple[Refusal, ...]
-    findings: tuple[Finding, ...]
-    files: dict[str, str]
+    findings: tuple[Finding, ...]  # states that are left out, and what was seen in the recordings
+    files: dict[str, str]  # what each file is called -> SHA-256
 
     @property
     def rate_hz(self) -> float:
@@ -90,12 +72,8 @@ def sensed_walks(
 ) -> SensedWalks:
     """Read and process every walk of a study for reconstruction.
 
-    Parameters
-    ----------
-    sensors : sequence of str
-        Channels of the kinematics that are read; they may be others than the 18 states.
-    condition : str
-        A word of the study's conditions; both where it is empty.
+    sensors: channels of the kinematics that are read; they may be others than the 18 states
+    condition: a word of the study's conditions; both where it is empty
     """
     refuse_unknown_targets(targets)
     walks: dict[str, list[SensedWalk]] = {}

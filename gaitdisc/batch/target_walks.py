@@ -37,15 +37,8 @@ def target_walk(
     kinematics. The centre of pressure and the free moment are no targets: they mean nothing while the foot is in the
     air.
 
-    Parameters
-    ----------
-    trial : Trial
-        With kinematics or markers, and the stream of the targets.
-
-    Returns
-    -------
-    strides : Strides
-        Of the study's side, or of the one whose contacts are found.
+    trial: with kinematics or markers, and the stream of the targets
+    returns strides: of the study's side, or of the one whose contacts are found
     """
     refuse_unknown_targets(targets)
     filters = study.filters

@@ -28,21 +28,11 @@ def vary_study(
 ) -> VariantRun:
     """Fit every participant's models with one thing changed at a time; the run itself is made first if it is not there.
 
-    Parameters
-    ----------
-    folder : Path
-        Folder of the run; what is computed here goes into a folder of the question's name in it.
-    question : str
-        `modalities`: without one family of inputs at a time. `sensitivity`: other cut-offs and training lengths.
-    workers : Workers, optional
-        Where participants are computed; in this process, one after the other, by default.
-    told : callable
-        Called with a participant's pseudonym and the fraction of that participant's work that is done.
-
-    Returns
-    -------
-    VariantRun
-        Also saved in the folder of the question; whoever had to be refused is in `refusals`.
+    folder: folder of the run; what is computed here goes into a folder of the question's name in it
+    question: `modalities`: without one family of inputs at a time. `sensitivity`: other cut-offs and training lengths
+    workers: where participants are computed; in this process, one after the other, by default
+    told: called with a participant's pseudonym and the fraction of that participant's work that is done
+    returns: also saved in the folder of the question; whoever had to be refused is in `refusals`
     """
     if question not in QUESTIONS:
         raise SchemaError(f"a question is one of: {', '.join(QUESTIONS)}", f"found {question!r}", "Use one of these.")

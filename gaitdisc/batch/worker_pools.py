@@ -34,15 +34,9 @@ ONE_THREAD = dict.fromkeys(
 
 @dataclass(frozen=True)
 class Lost:
-    """In the place of a unit: whoever computed it was killed, each time it was tried.
+    """In the place of a unit: whoever computed it was killed, each time it was tried."""
 
-    Parameters
-    ----------
-    reason : str
-        What happened and what to do, as a sentence.
-    """
-
-    reason: str
+    reason: str  # what happened and what to do, as a sentence
 
 
 def computed_in_processes(
@@ -52,10 +46,7 @@ def computed_in_processes(
 
     A process that is killed, or that runs out of memory, is replaced, and its person is tried once more.
 
-    Yields
-    ------
-    (person, unit)
-        `Lost` in the place of a unit that could not be computed.
+    returns (person, unit): `Lost` in the place of a unit that could not be computed
     """
     from joblib.externals.loky.process_executor import TerminatedWorkerError
 

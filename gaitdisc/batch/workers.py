@@ -25,18 +25,11 @@ class ClusterError(GaitdiscError):
 
 @dataclass(frozen=True)
 class Workers:
-    """Where to compute.
+    """Where to compute."""
 
-    Parameters
-    ----------
-    jobs : int
-        Processes side by side, each with one thread; 1 works in this process.
-    cluster : str
-        Address of a Dask scheduler, `tcp://host:8786`; empty for this machine. Its workers need the package, the same
-        version, and the study's folders at the same paths.
-    """
-
-    jobs: int = 1
+    jobs: int = 1  # processes side by side, each with one thread; 1 works in this process
+    # address of a Dask scheduler, `tcp://host:8786`; empty for this machine. Its workers need the package, the same
+    # version, and the study's folders at the same paths
     cluster: str = ""
 
     @property
@@ -57,15 +50,10 @@ def computed_units(
     A process beside this one that is killed costs its own participant's time: that participant is tried once more, and
     if its process is killed again, refused.
 
-    Parameters
-    ----------
-    compute : callable
-        Takes `participant` and `progress`, which is called with the fraction done; can be sent to another process.
-    told : callable
-        Called with a participant's pseudonym and the fraction done; progress within a participant is told only where
-        everything is done in this process.
-    lost : callable
-        Makes the unit of a participant whose process was killed each time; takes the refusal.
+    compute: takes `participant` and `progress`, which is called with the fraction done; can be sent to another process
+    told: called with a participant's pseudonym and the fraction done; progress within a participant is told only where
+        everything is done in this process
+    lost: makes the unit of a participant whose process was killed each time; takes the refusal
     """
     if workers.here:
         for person in people:
@@ -92,10 +80,7 @@ def computed_side_by_side(
 
     A worker that dies is replaced by another: its person is computed again.
 
-    Yields
-    ------
-    (person, unit)
-        `Lost` in the place of a unit whose process on this machine was killed each time.
+    returns (person, unit): `Lost` in the place of a unit whose process on this machine was killed each time
     """
     if not workers.cluster:
         yield from computed_in_processes(workers.jobs, compute, people)

@@ -12,17 +12,10 @@ def multiple_correlation(curves: NDArray[np.float64]) -> float:
     1 less the ratio of the variance about the mean curve to the variance about the grand mean, its root; not defined
     for one cycle, nor where cycles differ more from their mean curve than the curve does from its own mean.
 
-    Parameters
-    ----------
-    curves : ndarray (cycle, phase)
-        On even points.
+    curves (cycle, phase): on even points
+    Source: Kadaba MP, Ramakrishnan HK, Wootten ME et al. 1989, Repeatability of kinematic, kinetic, and
+        electromyographic data.
 
-    References
-    ----------
-    Kadaba MP, Ramakrishnan HK, Wootten ME et al. 1989, Repeatability of kinematic, kinetic, and electromyographic data.
-
-    Examples
-    --------
     >>> round(multiple_correlation(np.array([[0.0, 2.0, 4.0], [1.0, 3.0, 5.0]])), 4)
     0.9258
     """

@@ -22,9 +22,7 @@ def deviation_index(legs: Mapping[str, LegCurves], reference: Sequence[Reference
     distance to the controls' mean in these, its natural logarithm scaled by that of the controls. Differs from the
     paper, whose features are of 6,702 legs of patients and controls: these are of the laboratory's own controls.
 
-    References
-    ----------
-    Schwartz MH, Rozumalski A 2008, The Gait Deviation Index: a new comprehensive index of gait pathology.
+    Source: Schwartz MH, Rozumalski A 2008, The Gait Deviation Index: a new comprehensive index of gait pathology.
     """
     whole = [leg for leg in reference if all(name in leg.curves for name in PROFILE)]
     people = len({leg.person for leg in whole})

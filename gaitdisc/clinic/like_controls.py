@@ -31,28 +31,17 @@ Number = Callable[[ReferenceLeg], float | None]
 
 @dataclass(frozen=True, eq=False)
 class LikeControls:
-    """Controls that a person is read beside, at the person's leg length where it is known.
+    """Controls that a person is read beside, at the person's leg length where it is known."""
 
-    Parameters
-    ----------
-    curves, values : tuple of ReferenceLeg
-        Of the like age and speed, for curves; of the like age at any speed, for times and distances.
-    words : tuple of str
-        Who they are, and what could not be allowed for.
-    """
-
-    curves: Legs
-    values: Legs
-    words: tuple[str, ...] = ()
+    curves: Legs  # of the like age and speed, for curves; of the like age at any speed, for times and distances
+    values: Legs  # of the like age and speed, for curves; of the like age at any speed, for times and distances
+    words: tuple[str, ...] = ()  # who they are, and what could not be allowed for
 
 
 def like_controls(legs: Legs, own: Sequence[LegCurves], leg_m: float | None, age_years: int | None) -> LikeControls:
     """Controls of a condition for one person.
 
-    Parameters
-    ----------
-    leg_m, age_years : float and int, optional
-        Of the person.
+    leg_m, age_years: of the person
     """
     speed = _speed([one.values[SPEED].mean() for one in own if SPEED in one.values], leg_m)
     of_age = _nearest(legs, AGES, age_years, _age)
@@ -100,8 +89,6 @@ def dimensionless_speed(leg: ReferenceLeg) -> float | None:
 def at_leg_length(leg: ReferenceLeg, leg_m: float) -> ReferenceLeg:
     """Control's leg as of somebody of another leg length who walks alike: equal dimensionless numbers (Hof 1996).
 
-    Examples
-    --------
     >>> at_leg_length(ReferenceLeg(1, "l", 4, 60.0, {}, {"step_m": 0.6, "cadence_per_min": 110.0}, 0.9), 0.4).values
     {'step_m': 0.26666666666666666, 'cadence_per_min': 165.0}
     """

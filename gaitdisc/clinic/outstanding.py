@@ -21,12 +21,8 @@ def outstanding(
 ) -> tuple[tuple[Noted, ...], str]:
     """Every number that a rule takes of a person's legs, those that stand out first; and why there is none.
 
-    Parameters
-    ----------
-    table : sequence of Rule, optional
-        Those of `rules.toml` where none are given.
-    of_values : sequence of ReferenceLeg
-        Controls for spatiotemporal values, where they are others than those for curves.
+    table: those of `rules.toml` where none are given
+    of_values: controls for spatiotemporal values, where they are others than those for curves
     """
     people = len({leg.person for leg in reference})
     if people < FEWEST:

@@ -20,8 +20,6 @@ Means = Mapping[str, NDArray[np.float64]]
 def variable_score(curves: NDArray[np.float64], mean: NDArray[np.float64]) -> NDArray[np.float64]:
     """Root mean square difference of curves (..., phase) to the reference's mean.
 
-    Examples
-    --------
     >>> float(variable_score(np.array([3.0, -3.0, 3.0]), np.zeros(3)))
     3.0
     """
@@ -31,8 +29,6 @@ def variable_score(curves: NDArray[np.float64], mean: NDArray[np.float64]) -> ND
 def profile_score(scores: Sequence[float]) -> float:
     """Root mean square of variable scores.
 
-    Examples
-    --------
     >>> round(profile_score([3.0, 4.0]), 3)
     3.536
     """
@@ -47,9 +43,7 @@ def profile_of(
     The score of a leg is over nine curves; the one of both is over fifteen: nine of the left leg, six of the right,
     those of the pelvis once, as in the paper.
 
-    References
-    ----------
-    Baker R, McGinley JL, Schwartz MH et al. 2009, The Gait Profile Score and Movement Analysis Profile.
+    Source: Baker R, McGinley JL, Schwartz MH et al. 2009, The Gait Profile Score and Movement Analysis Profile.
     """
     turned = max((leg.turned_deg for leg in legs.values()), default=0.0)
     if turned > TURNED_DEG:

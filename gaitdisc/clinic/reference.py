@@ -71,8 +71,6 @@ def limits_of(values: NDArray[np.float64], people: int, tests: int = 1) -> Limit
     Prediction limits of a normal distribution whose mean and spread are themselves estimated; legs of one person are
     alike, so that people count as degrees of freedom. Bonferroni's correction for the tests.
 
-    Examples
-    --------
     >>> limits_of(np.array([58.0, 60.0, 62.0, 60.0]), 4).mean
     60.0
     """

@@ -29,26 +29,16 @@ SPATIOTEMPORAL_UNITS = {
 
 @dataclass(frozen=True)
 class Rule:
-    """One number of a leg that may stand out.
-
-    Parameters
-    ----------
-    variable, value : str
-        Clinical variable or spatiotemporal value; the other is empty.
-    least : float
-        Smallest distance to the reference's mean that is spoken of.
-    less, more : str
-        What too small and too large a number is called; empty where it is nothing.
-    """
+    """One number of a leg that may stand out."""
 
     name: str
-    variable: str
-    value: str
+    variable: str  # clinical variable or spatiotemporal value; the other is empty
+    value: str  # clinical variable or spatiotemporal value; the other is empty
     part: str
     take: str
-    least: float
-    less: str
-    more: str
+    least: float  # smallest distance to the reference's mean that is spoken of
+    less: str  # what too small and too large a number is called; empty where it is nothing
+    more: str  # what too small and too large a number is called; empty where it is nothing
 
     @property
     def unit(self) -> str:
@@ -77,8 +67,6 @@ class Rule:
 def part_of(part: str, stance_percent: float) -> slice | None:
     """Points of a part of the cycle on 101 points; None where it hangs on a foot off that is not known.
 
-    Examples
-    --------
     >>> part_of("swing", 60.0), part_of("mid swing", 61.0), part_of("stance", float("nan"))
     (slice(60, 101, None), slice(74, 88, None), None)
     """
@@ -102,8 +90,6 @@ def part_of(part: str, stance_percent: float) -> slice | None:
 def rules() -> tuple[Rule, ...]:
     """Every rule of `rules.toml`.
 
-    Examples
-    --------
     >>> rules()[0].name
     'pelvic tilt'
     """

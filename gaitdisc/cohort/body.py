@@ -21,45 +21,27 @@ GRAVITY = 9.81
 
 
 class Leg(NamedTuple):
-    """Masses and lengths of one leg, in the units of the equations.
-
-    Attributes
-    ----------
-    s1, s2 : float
-        First moments S1, S2 [kg m].
-    foot_kg, foot_forward_m, foot_down_m : float
-        Mass of the foot, and its centre from the ankle.
-    i1, i2, i3 : float
-        M11, M22, M33, which do not depend on the angles [kg m2].
-    ankle_m : float
-        Height of the ankle over the sole [m].
-    sole_m : float
-        Length of the foot [m].
-    """
+    """Masses and lengths of one leg, in the units of the equations."""
 
     thigh_m: float
     shank_m: float
-    s1: float
-    s2: float
-    foot_kg: float
-    foot_forward_m: float
-    foot_down_m: float
-    i1: float
-    i2: float
-    i3: float
-    ankle_m: float
-    sole_m: float
+    s1: float  # first moments S1, S2 [kg m]
+    s2: float  # first moments S1, S2 [kg m]
+    foot_kg: float  # mass of the foot, and its centre from the ankle
+    foot_forward_m: float  # mass of the foot, and its centre from the ankle
+    foot_down_m: float  # mass of the foot, and its centre from the ankle
+    i1: float  # M11, M22, M33, which do not depend on the angles [kg m2]
+    i2: float  # M11, M22, M33, which do not depend on the angles [kg m2]
+    i3: float  # M11, M22, M33, which do not depend on the angles [kg m2]
+    ankle_m: float  # height of the ankle over the sole [m]
+    sole_m: float  # length of the foot [m]
 
 
 def leg_of(height_m: float, mass_kg: float, added_foot_kg: float = 0.0) -> Leg:
     """Leg of a person who wears the device.
 
-    References
-    ----------
-    Winter DA (2009). Biomechanics and Motor Control of Human Movement, 4th edition, table 4.1 and figure 4.1.
+    Source: Winter DA (2009). Biomechanics and Motor Control of Human Movement, 4th edition, table 4.1 and figure 4.1.
 
-    Examples
-    --------
     >>> round(leg_of(1.69, 66.5).thigh_m, 3)
     0.414
     """
@@ -139,15 +121,8 @@ def _foot(leg, c3, s3):
 def ankle_place(leg: Leg, psi: NDArray[np.float64]) -> NDArray[np.float64]:
     """Where the ankle is, from the hip.
 
-    Parameters
-    ----------
-    psi : ndarray (time, 3) [rad]
-        Thigh, shank and foot.
-
-    Returns
-    -------
-    ndarray (time, 2) [m]
-        Forwards, upwards.
+    psi (time, 3) [rad]: thigh, shank and foot
+    returns (time, 2) [m]: forwards, upwards
     """
     x = leg.thigh_m * np.sin(psi[:, 0]) + leg.shank_m * np.sin(psi[:, 1])
     y = -leg.thigh_m * np.cos(psi[:, 0]) - leg.shank_m * np.cos(psi[:, 1])
@@ -159,21 +134,11 @@ def joint_moments(
 ) -> NDArray[np.float64]:
     """Net joint moments of a periodic motion, by inverse dynamics.
 
-    Parameters
-    ----------
-    psi : ndarray (phase, 3) [rad]
-        One whole cycle, evenly spaced, without its end.
-    hip : ndarray (phase, 2) [m/s2]
-        Acceleration of the hip.
-    ground : ndarray (phase, 4) [N, N, m, m]
-        Force forwards and upwards, and its point from the ankle.
-    step_s : float
-        Between two samples [s].
-
-    Returns
-    -------
-    ndarray (phase, 3) [N m]
-        Hip and knee towards flexion, ankle towards dorsiflexion.
+    psi (phase, 3) [rad]: one whole cycle, evenly spaced, without its end
+    hip (phase, 2) [m/s2]: acceleration of the hip
+    ground (phase, 4) [N, N, m, m]: force forwards and upwards, and its point from the ankle
+    step_s: between two samples [s]
+    returns (phase, 3) [N m]: hip and knee towards flexion, ankle towards dorsiflexion
     """
     return _needed(leg, psi, cycle_rate(psi, step_s), cycle_rate(psi, step_s, 2), hip, ground)
 
@@ -197,13 +162,8 @@ def _needed(leg, psi, rate, speedup, hip, ground):
 def cycle_rate(cycle: NDArray[np.float64], step: float, order: int = 1) -> NDArray[np.float64]:
     """Derivative of a periodic curve, exact for the harmonics that it holds.
 
-    Parameters
-    ----------
-    cycle : ndarray (phase, ...)
-        One whole cycle, evenly spaced, without its end.
+    cycle (phase, ...): one whole cycle, evenly spaced, without its end
 
-    Examples
-    --------
     >>> turn = np.arange(64) * 2 * np.pi / 64
     >>> bool(np.allclose(cycle_rate(np.sin(turn), 2 * np.pi / 64), np.cos(turn)))
     True

@@ -25,29 +25,18 @@ HIDDEN = ("spring", "weak plantarflexor", "late EMG", "foot mass", "scaled momen
 
 @dataclass(frozen=True, eq=False)
 class Walks:
-    """The two walks of one person, with the truth.
-
-    Parameters
-    ----------
-    truth : dict
-        What is true of both, for tests alone: plain numbers and lists, to be written as JSON.
-    """
+    """The two walks of one person, with the truth."""
 
     person: Person
     trials: dict[str, Trial]
-    truth: dict[str, Any]
+    truth: dict[str, Any]  # what is true of both, for tests alone: plain numbers and lists, to be written as JSON
 
 
 def the_twelve(calibration: bool = False) -> tuple[Person, ...]:
     """Six women and six men, one of whom changes gait late in the Exo trial.
 
-    Parameters
-    ----------
-    calibration : bool
-        The other twelve, on whom the constants of the model were set; they are never reported.
+    calibration: the other twelve, on whom the constants of the model were set; they are never reported
 
-    Examples
-    --------
     >>> [person.sex for person in the_twelve()].count("f")
     6
     """
@@ -61,17 +50,13 @@ def the_twelve(calibration: bool = False) -> tuple[Person, ...]:
 def walks_of(person: Person, duration_s: float = WALK_S, hidden: str = "spring", markers: bool = False) -> Walks:
     """Walk a person in both conditions and measure it.
 
-    Parameters
-    ----------
-    duration_s : float
-        Length of each walk [s]; a late change of gait keeps its share of it.
-    hidden : str
-        What differs between the conditions: `spring`, with adaptation (the dissertation's); `weak plantarflexor`
+    duration_s: length of each walk [s]; a late change of gait keeps its share of it
+    hidden: what differs between the conditions: `spring`, with adaptation (the dissertation's); `weak plantarflexor`
         (soleus and gastrocnemius give 75 % of their moment), `late EMG` (40 ms), `foot mass` (0.8 kg on each foot),
-        `scaled moment` (the spring's moment is 0.6 of what 5 N m/deg would give), `none`, or a pattern in which
-        the second walk goes (`stiff knee`, `drop foot`, `crouch`, `asymmetric`).
-    markers : bool
-        Whether the trials hold markers and belts with their point and sideways force in place of angles and forces.
+        `scaled moment` (the spring's moment is 0.6 of what 5 N m/deg would give), `none`, or a pattern in which the
+        second walk goes (`stiff knee`, `drop foot`, `crouch`, `asymmetric`)
+    markers: whether the trials hold markers and belts with their point and sideways force in place of angles and
+        forces
     """
     from gaitdisc.cohort.marker_trial import marker_trial
     from gaitdisc.cohort.measurement import measured
@@ -114,10 +99,7 @@ def walks_of(person: Person, duration_s: float = WALK_S, hidden: str = "spring",
 def walked_cohort(duration_s: float = WALK_S, hidden: str = "spring") -> Iterator[Walks]:
     """Walk the twelve, one after the other; only one person is in memory at a time.
 
-    Parameters
-    ----------
-    duration_s : float
-        Length of each walk [s].
+    duration_s: length of each walk [s]
     """
     for person in the_twelve():
         yield walks_of(person, duration_s, hidden)

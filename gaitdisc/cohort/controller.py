@@ -40,36 +40,22 @@ GMED = GROUPS.index("emg_gmed")
 
 
 class Columns(NamedTuple):
-    """Where in a leg's table each quantity begins.
+    """Where in a leg's table each quantity begins."""
 
-    Attributes
-    ----------
-    psi, turning : int
-        Thigh, shank, foot [rad], and their rate by phase [rad].
-    place, path : int
-        Ankle from the hip [m], and its rate by phase [m].
-    force, arm, gate : int
-        Ground force [N], its point from the ankle [m], opening of the gate [1].
-    excitation, others : int
-        Muscle groups [1], and what they leave of the moments [N m].
-    side : int
-        Adduction and rotation: angle, rate and second rate by phase, in turn [rad].
-    gmed, hip, sway : int
-        Habitual activation of gluteus medius [1], acceleration of the hip [m/s2], its speed forwards [m/s].
-    """
-
-    psi: int = 0
-    turning: int = 3
-    place: int = 6
-    path: int = 8
-    force: int = 10
-    arm: int = 12
-    gate: int = 14
-    excitation: int = 15
-    others: int = 24
-    side: int = 27
+    psi: int = 0  # thigh, shank, foot [rad], and their rate by phase [rad]
+    turning: int = 3  # thigh, shank, foot [rad], and their rate by phase [rad]
+    place: int = 6  # ankle from the hip [m], and its rate by phase [m]
+    path: int = 8  # ankle from the hip [m], and its rate by phase [m]
+    force: int = 10  # ground force [N], its point from the ankle [m], opening of the gate [1]
+    arm: int = 12  # ground force [N], its point from the ankle [m], opening of the gate [1]
+    gate: int = 14  # ground force [N], its point from the ankle [m], opening of the gate [1]
+    excitation: int = 15  # muscle groups [1], and what they leave of the moments [N m]
+    others: int = 24  # muscle groups [1], and what they leave of the moments [N m]
+    side: int = 27  # adduction and rotation: angle, rate and second rate by phase, in turn [rad]
+    # habitual activation of gluteus medius [1], acceleration of the hip [m/s2], its speed forwards [m/s]
     gmed: int = 33
-    hip: int = 34
+    hip: int = 34  # habitual activation of gluteus medius [1], acceleration of the hip [m/s2], its speed forwards [m/s]
+    # habitual activation of gluteus medius [1], acceleration of the hip [m/s2], its speed forwards [m/s]
     sway: int = 36
     width: int = 37
 
@@ -80,17 +66,9 @@ COLUMNS = Columns()
 def learnt_table(person: Person, side: int, drifted: float = 0.0) -> NDArray[np.float64]:
     """What one leg of a person has learnt.
 
-    Parameters
-    ----------
-    person : Person
-        With the spring that the commands are adapted to, if any.
-    drifted : float
-        How far the habit has wandered along `drift_deg` [1].
-
-    Returns
-    -------
-    ndarray (phase, column)
-        `PHASES` rows and the first once more; columns as in `COLUMNS`.
+    person: with the spring that the commands are adapted to, if any
+    drifted: how far the habit has wandered along `drift_deg` [1]
+    returns (phase, column): `PHASES` rows and the first once more; columns as in `COLUMNS`
     """
     phase = np.arange(PHASES) / PHASES
     leg = leg_of(person.height_m, person.mass_kg)
@@ -124,10 +102,7 @@ def learnt_table(person: Person, side: int, drifted: float = 0.0) -> NDArray[np.
 def engaged_moment(spring: Spring, person: Person, psi: NDArray[np.float64]) -> NDArray[np.float64]:
     """Moment of a spring on the ankle [N m].
 
-    Parameters
-    ----------
-    psi : ndarray (phase, 3) [rad]
-        Thigh, shank, foot.
+    psi (phase, 3) [rad]: thigh, shank, foot
     """
     return spring.moment(np.degrees(psi[:, 2] - psi[:, 1]), person.engaged_deg)
 

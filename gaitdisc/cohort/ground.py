@@ -26,34 +26,21 @@ RISE, FALL = 0.10, 0.16  # shares of the stance over which the gate opens and cl
 
 
 class Belt(NamedTuple):
-    """How firmly the belt holds a foot.
+    """How firmly the belt holds a foot."""
 
-    Attributes
-    ----------
-    along, up, turn : float
-        Stiffness [N/m, N/m, N m/rad].
-    along_damping, up_damping, turn_damping : float
-        [N s/m, N s/m, N m s/rad].
-    """
-
-    along: float = 6000.0
-    up: float = 12000.0
-    turn: float = 120.0
-    along_damping: float = 180.0
-    up_damping: float = 360.0
-    turn_damping: float = 3.0
+    along: float = 6000.0  # stiffness [N/m, N/m, N m/rad]
+    up: float = 12000.0  # stiffness [N/m, N/m, N m/rad]
+    turn: float = 120.0  # stiffness [N/m, N/m, N m/rad]
+    along_damping: float = 180.0  # [N s/m, N s/m, N m s/rad]
+    up_damping: float = 360.0  # [N s/m, N s/m, N m s/rad]
+    turn_damping: float = 3.0  # [N s/m, N s/m, N m s/rad]
 
 
 def gate(phase: NDArray[np.float64]) -> NDArray[np.float64]:
     """How much of a foot is on the belt: 0 in swing, 1 in mid-stance.
 
-    Parameters
-    ----------
-    phase : ndarray, any shape [share of a stride]
-        0 at contact.
+    phase , any shape [share of a stride]: 0 at contact
 
-    Examples
-    --------
     >>> gate(np.array([0.0, 0.3, 0.7])).tolist()
     [0.0, 1.0, 0.0]
     """
@@ -69,17 +56,9 @@ def habitual_force(phase: NDArray[np.float64], speed: float) -> NDArray[np.float
     Over a stride both feet carry the body's weight and push as much as they brake, as steady walking demands; the
     published curves are scaled and shifted by a few percent for it.
 
-    Parameters
-    ----------
-    phase : ndarray (phase,) [share of a stride]
-        One whole cycle, evenly spaced, without its end.
-    speed : float
-        Dimensionless speed [1].
-
-    Returns
-    -------
-    ndarray (phase, 2) [body weight]
-        Forwards, upwards.
+    phase (phase,) [share of a stride]: one whole cycle, evenly spaced, without its end
+    speed: dimensionless speed [1]
+    returns (phase, 2) [body weight]: forwards, upwards
     """
     up = np.maximum(0.0, habitual("ground_vy", speed).at(phase))
     up = up * 0.5 / up.mean()
@@ -91,10 +70,7 @@ def habitual_force(phase: NDArray[np.float64], speed: float) -> NDArray[np.float
 def pressure_centre(phase: NDArray[np.float64], sole_m: float) -> NDArray[np.float64]:
     """Centre of pressure from the ankle, along the foot [m].
 
-    Parameters
-    ----------
-    phase : ndarray (phase,) [share of a stride]
-        0 at contact; in swing the value is held on the way back and means nothing.
+    phase (phase,) [share of a stride]: 0 at contact; in swing the value is held on the way back and means nothing
     """
     from scipy.interpolate import PchipInterpolator
 

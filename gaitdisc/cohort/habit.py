@@ -46,32 +46,18 @@ BURSTS: dict[str, tuple[tuple[int, float, float, float], ...]] = {
 class Curve:
     """A curve over the stride as a short series.
 
-    Parameters
-    ----------
-    basis : str
-        `fourier`, or `stance sine`: sines over the stance, exactly zero in swing.
-    mean : float
-        Mean over the stride; 0 for a stance sine.
-    terms : tuple of float
-        cosine1, sine1, cosine2, ... or the amplitudes of 1, 2, ... half waves.
-
-    Examples
-    --------
     >>> Curve("fourier", 1.0, (2.0, 0.0)).at(np.array([0.0, 0.5])).tolist()
     [3.0, -1.0]
     """
 
-    basis: str
-    mean: float
-    terms: tuple[float, ...]
+    basis: str  # `fourier`, or `stance sine`: sines over the stance, exactly zero in swing
+    mean: float  # mean over the stride; 0 for a stance sine
+    terms: tuple[float, ...]  # cosine1, sine1, cosine2, ... or the amplitudes of 1, 2, ... half waves
 
     def at(self, phase: NDArray[np.float64]) -> NDArray[np.float64]:
         """Value at phases of the stride.
 
-        Parameters
-        ----------
-        phase : ndarray, any shape [share of a stride]
-            0 at contact.
+        phase , any shape [share of a stride]: 0 at contact
         """
         own = np.mod(phase, 1.0)
         if self.basis == "fourier":
@@ -87,16 +73,10 @@ class Curve:
 def habitual(name: str, speed: float) -> Curve:
     """Habitual curve of a person who walks at a dimensionless speed.
 
-    Parameters
-    ----------
-    name : str
-        A joint angle (`knee_angle`), `pelvis_tilt` [deg], `ground_vx` or `ground_vy` [body weight], `emg_rf`,
-        `emg_ham`, `emg_gas`, `emg_ta` [EMG unit].
-    speed : float
-        Walking speed over the square root of gravity times leg length [1]; held within 0.35 and 0.60.
+    name: a joint angle (`knee_angle`), `pelvis_tilt` [deg], `ground_vx` or `ground_vy` [body weight], `emg_rf`,
+        `emg_ham`, `emg_gas`, `emg_ta` [EMG unit]
+    speed: walking speed over the square root of gravity times leg length [1]; held within 0.35 and 0.60
 
-    Examples
-    --------
     >>> knee = habitual("knee_angle", 0.429)
     >>> round(float(knee.at(np.linspace(0, 1, 101)).max()), 1)  # published: 59.1 deg
     59.3

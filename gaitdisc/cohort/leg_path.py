@@ -28,13 +28,8 @@ def staged(person: Person, phase: NDArray[np.float64]) -> NDArray[np.float64]:
     Contact stays contact; the middle of the stride comes later, by as much as puts the end of the stance where the
     person has it: stage = phase - delay (1 - cos(2 pi phase)) / 2.
 
-    Parameters
-    ----------
-    phase : ndarray, any shape [share of a stride]
-        0 at contact.
+    phase , any shape [share of a stride]: 0 at contact
 
-    Examples
-    --------
     >>> from gaitdisc.cohort.person import drawn
     >>> person = drawn("W01", 1, "f")
     >>> round(float(staged(person, np.array([person.stance]))[0]), 3) == LOADED_SHARE
@@ -47,17 +42,9 @@ def staged(person: Person, phase: NDArray[np.float64]) -> NDArray[np.float64]:
 def habit_angles(person: Person, side: int, phase: NDArray[np.float64], drifted: float = 0.0) -> NDArray[np.float64]:
     """Joint angles of a person's habit, before the belt has its say.
 
-    Parameters
-    ----------
-    phase : ndarray (phase,) [share of a stride]
-        0 at contact; the curves follow the person's own stance (`staged`).
-    drifted : float
-        How far the habit has wandered [1].
-
-    Returns
-    -------
-    ndarray (phase, joint) [deg]
-        In the order of `JOINTS`; hip flexion is counted from the vertical.
+    phase (phase,) [share of a stride]: 0 at contact; the curves follow the person's own stance (`staged`)
+    drifted: how far the habit has wandered [1]
+    returns (phase, joint) [deg]: in the order of `JOINTS`; hip flexion is counted from the vertical
     """
     speed, style, phase = person.dimensionless_speed, person.style, staged(person, phase)
     curves = np.column_stack([habitual(joint, speed).at(phase) for joint in JOINTS])
@@ -78,14 +65,8 @@ def habit_angles(person: Person, side: int, phase: NDArray[np.float64], drifted:
 def thigh_shank_foot(angles: NDArray[np.float64]) -> NDArray[np.float64]:
     """Absolute angles of the segments from joint angles.
 
-    Parameters
-    ----------
-    angles : ndarray (phase, joint) [deg]
-        In the order of `JOINTS`.
-
-    Returns
-    -------
-    ndarray (phase, 3) [rad]
+    angles (phase, joint) [deg]: in the order of `JOINTS`
+    returns (phase, 3) [rad]
     """
     thigh = angles[:, 0]
     shank = thigh - angles[:, 3]
@@ -98,15 +79,8 @@ def hip_motion(person: Person, phase: NDArray[np.float64]) -> NDArray[np.float64
     The body's centre moves as the ground forces of both feet accelerate it (2.8 cm up and down, 1.6 cm to and fro in a
     person of 1.62 m at 1.27 m/s); the pelvis turns and tilts about it.
 
-    Parameters
-    ----------
-    phase : ndarray (phase,) [share of a stride]
-        One whole cycle from the contact of the hip's own foot.
-
-    Returns
-    -------
-    ndarray (phase, 2) [m/s]
-        Forwards, upwards; means of zero.
+    phase (phase,) [share of a stride]: one whole cycle from the contact of the hip's own foot
+    returns (phase, 2) [m/s]: forwards, upwards; means of zero
     """
     phase = staged(person, phase)
     force = habitual_force(phase, person.dimensionless_speed)
@@ -124,16 +98,9 @@ def belt_held(person: Person, leg: Leg, psi: NDArray[np.float64], hip_rate: NDAr
     speed. The smallest smooth correction of thigh, shank and foot is added (least squares over `CORRECTED` harmonics,
     Gauss-Newton) with which the point under the pressure goes backwards at the belt's speed, and neither up nor down.
 
-    Parameters
-    ----------
-    psi : ndarray (phase, 3) [rad]
-        One whole cycle.
-    hip_rate : ndarray (phase, 2) [m/s]
-        From `hip_motion`.
-
-    Returns
-    -------
-    ndarray (phase, 3) [rad]
+    psi (phase, 3) [rad]: one whole cycle
+    hip_rate (phase, 2) [m/s]: from `hip_motion`
+    returns (phase, 3) [rad]
     """
     phase = np.arange(len(psi)) / len(psi)
     order = np.arange(1, CORRECTED + 1)
@@ -170,17 +137,9 @@ def belt_held(person: Person, leg: Leg, psi: NDArray[np.float64], hip_rate: NDAr
 def contact_path(leg: Leg, psi: NDArray[np.float64], pressure: NDArray[np.float64]) -> NDArray[np.float64]:
     """Rate by phase of the foot's point under the pressure, from the hip.
 
-    Parameters
-    ----------
-    psi : ndarray (phase, 3) [rad]
-        One whole cycle.
-    pressure : ndarray (phase,) [m]
-        Centre of pressure along the foot.
-
-    Returns
-    -------
-    ndarray (phase, 2) [m]
-        Forwards, upwards.
+    psi (phase, 3) [rad]: one whole cycle
+    pressure (phase,) [m]: centre of pressure along the foot
+    returns (phase, 2) [m]: forwards, upwards
     """
     lever, turning = pressed_point(leg, psi[:, 2], pressure), by_phase(psi)[:, 2:]
     return by_phase(ankle_place(leg, psi)) + turning * lever[:, ::-1] * (-1.0, 1.0)
@@ -189,17 +148,9 @@ def contact_path(leg: Leg, psi: NDArray[np.float64], pressure: NDArray[np.float6
 def pressed_point(leg: Leg, foot: NDArray[np.float64], pressure: NDArray[np.float64]) -> NDArray[np.float64]:
     """Point under the pressure, from the ankle, in the laboratory's directions.
 
-    Parameters
-    ----------
-    foot : ndarray (phase,) [rad]
-        Absolute angle of the foot.
-    pressure : ndarray (phase,) [m]
-        Centre of pressure along the foot, from the ankle.
-
-    Returns
-    -------
-    ndarray (phase, 2) [m]
-        Forwards, upwards.
+    foot (phase,) [rad]: absolute angle of the foot
+    pressure (phase,) [m]: centre of pressure along the foot, from the ankle
+    returns (phase, 2) [m]: forwards, upwards
     """
     c, s = np.cos(foot), np.sin(foot)
     return np.column_stack([pressure * c + leg.ankle_m * s, pressure * s - leg.ankle_m * c])
@@ -208,10 +159,7 @@ def pressed_point(leg: Leg, foot: NDArray[np.float64], pressure: NDArray[np.floa
 def by_phase(cycle: NDArray[np.float64]) -> NDArray[np.float64]:
     """Rate by phase of one whole cycle.
 
-    Parameters
-    ----------
-    cycle : ndarray (phase, ...)
-        Evenly spaced, without its end.
+    cycle (phase, ...): evenly spaced, without its end
     """
     return cycle_rate(cycle, 1 / len(cycle))
 

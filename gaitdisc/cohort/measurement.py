@@ -21,19 +21,10 @@ FORCE_N = 4.0
 def measured(walk: TrueWalk, name: str, condition: str, emg_late_s: float = 0.0) -> Trial:
     """Measure a walk.
 
-    Parameters
-    ----------
-    emg_late_s : float
-        Delay of the EMG against the rest, a fault that is hidden on request [s].
+    emg_late_s: delay of the EMG against the rest, a fault that is hidden on request [s]
+    returns: `kinematics` (10 angles, 100 Hz), `emg` (14 channels, 1000 Hz, amplified, 16 bits of +-5 V), `forces`
+        (forwards and upwards under each foot, 1000 Hz)
 
-    Returns
-    -------
-    Trial
-        `kinematics` (10 angles, 100 Hz), `emg` (14 channels, 1000 Hz, amplified, 16 bits of +-5 V), `forces` (forwards
-        and upwards under each foot, 1000 Hz).
-
-    Examples
-    --------
     >>> from gaitdisc.cohort.person import drawn
     >>> from gaitdisc.cohort.walk import walked
     >>> trial = measured(walked(drawn("W01", 1, "f"), None, 4.0, seed=3), "W01_nominal", "nominal")

@@ -40,62 +40,32 @@ SLOW = 1 + 6 + 4 + 6 + 2 + 2 + 2 + 6
 
 
 class Loop(NamedTuple):
-    """Feedback and unrest of one person.
+    """Feedback and unrest of one person."""
 
-    Attributes
-    ----------
-    stiffness, damping : ndarray (3,)
-        Impedance of hip, knee, ankle about the habit [N m/rad, N m s/rad].
-    loaded : ndarray (3,)
-        By which share the impedance of each joint grows under load, its damping by half as much [1].
-    reflex, reflex_lag_s : float
-        Gain [N m/rad] and lag of the reflex.
-    side_stiffness, side_damping, side_inertia : ndarray (2,)
-        Of hip adduction and rotation [N m/rad, N m s/rad, kg m2].
-    hurry : float
-        Relative pace for each rad that a leg is ahead [1/rad].
-    moment_noise : ndarray (5,)
-        Standard deviation at hip, knee, ankle, adduction, rotation [N m].
-    muscle_noise : ndarray (2,)
-        Relative, fast and slow [1].
-    pace_noise : ndarray (2,)
-        Relative, fast and slow [1].
-    pelvis : ndarray (4,)
-        Support of the pelvis: stiffness and damping fore-aft, then vertical [N/m, N s/m].
-    """
-
-    stiffness: NDArray[np.float64]
-    damping: NDArray[np.float64]
+    stiffness: NDArray[np.float64]  # (3,), impedance of hip, knee, ankle about the habit [N m/rad, N m s/rad]
+    damping: NDArray[np.float64]  # (3,), impedance of hip, knee, ankle about the habit [N m/rad, N m s/rad]
+    # (3,), by which share the impedance of each joint grows under load, its damping by half as much [1]
     loaded: NDArray[np.float64]
-    reflex: float
-    reflex_lag_s: float
-    side_stiffness: NDArray[np.float64]
-    side_damping: NDArray[np.float64]
-    side_inertia: NDArray[np.float64]
-    hurry: float
-    moment_noise: NDArray[np.float64]
-    muscle_noise: NDArray[np.float64]
-    pace_noise: NDArray[np.float64]
+    reflex: float  # gain [N m/rad] and lag of the reflex
+    reflex_lag_s: float  # gain [N m/rad] and lag of the reflex
+    side_stiffness: NDArray[np.float64]  # (2,), of hip adduction and rotation [N m/rad, N m s/rad, kg m2]
+    side_damping: NDArray[np.float64]  # (2,), of hip adduction and rotation [N m/rad, N m s/rad, kg m2]
+    side_inertia: NDArray[np.float64]  # (2,), of hip adduction and rotation [N m/rad, N m s/rad, kg m2]
+    hurry: float  # relative pace for each rad that a leg is ahead [1/rad]
+    moment_noise: NDArray[np.float64]  # (5,), standard deviation at hip, knee, ankle, adduction, rotation [N m]
+    muscle_noise: NDArray[np.float64]  # (2,), relative, fast and slow [1]
+    pace_noise: NDArray[np.float64]  # (2,), relative, fast and slow [1]
     whole_kg: float
+    # (4,), support of the pelvis: stiffness and damping fore-aft, then vertical [N/m, N s/m]
     pelvis: NDArray[np.float64]
 
 
 class Worn(NamedTuple):
-    """Device and treadmill in the units of the equations.
+    """Device and treadmill in the units of the equations."""
 
-    Attributes
-    ----------
-    stiffness : float
-        Of the spring [N m/rad].
-    engaged : float
-        Dorsiflexion at which it engages [rad].
-    speed : float
-        Of the belt [m/s].
-    """
-
-    stiffness: float
-    engaged: float
-    speed: float
+    stiffness: float  # of the spring [N m/rad]
+    engaged: float  # dorsiflexion at which it engages [rad]
+    speed: float  # of the belt [m/s]
     stride_s: float
 
 

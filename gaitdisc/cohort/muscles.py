@@ -56,35 +56,22 @@ LEAST_GAIN, MOST_GAIN = 0.5, 1.5  # of a moment with the joint's angle
 
 
 class Strength(NamedTuple):
-    """Muscles of one person's leg, in the units of the equations.
+    """Muscles of one person's leg, in the units of the equations."""
 
-    Attributes
-    ----------
-    reach : ndarray (muscle, joint) [N m]
-        Moment at full activation, at rest and at zero angle.
-    pace : ndarray (muscle, joint) [s/rad]
-        Lengthening, of the fastest shortening, for each rad/s of the joint.
-    bend : ndarray (muscle, joint) [1/rad]
-        Relative gain of the moment with the joint's angle.
-    take_up, take_down : ndarray (muscle, joint) [1/(N m)]
-        Excitation for a change of the command towards flexion (dorsiflexion), and against it.
-    abduction : float
-        Of gluteus medius [N m].
-    """
-
-    reach: NDArray[np.float64]
+    reach: NDArray[np.float64]  # (muscle, joint) [N m], moment at full activation, at rest and at zero angle
+    # (muscle, joint) [s/rad], lengthening, of the fastest shortening, for each rad/s of the joint
     pace: NDArray[np.float64]
-    bend: NDArray[np.float64]
+    bend: NDArray[np.float64]  # (muscle, joint) [1/rad], relative gain of the moment with the joint's angle
+    # (muscle, joint) [1/(N m)], excitation for a change of the command towards flexion (dorsiflexion), and against it
     take_up: NDArray[np.float64]
+    # (muscle, joint) [1/(N m)], excitation for a change of the command towards flexion (dorsiflexion), and against it
     take_down: NDArray[np.float64]
-    abduction: float
+    abduction: float  # of gluteus medius [N m]
 
 
 def strength_of(mass_kg: float, strong: NDArray[np.float64] | None = None) -> Strength:
     """Muscles of a person's leg; `strong` is how strong each group is against others of that mass.
 
-    Examples
-    --------
     >>> strength_of(70.0).reach.shape
     (9, 3)
     """

@@ -19,21 +19,12 @@ BOTH = (0, 1)
 
 @dataclass(frozen=True)
 class Pattern:
-    """A way of walking.
+    """A way of walking."""
 
-    Parameters
-    ----------
-    bumps : tuple of (joint, centre, half width, degrees)
-        Changes of the habit, in shares of the stride.
-    weak : tuple of (group, factor)
-        Strength of muscles.
-    sides : tuple of int
-        Legs that it concerns, 0 for the right.
-    """
-
+    # tuple of (joint, centre, half width, degrees), changes of the habit, in shares of the stride
     bumps: tuple[tuple[str, float, float, float], ...] = ()
-    weak: tuple[tuple[str, float], ...] = ()
-    sides: tuple[int, ...] = BOTH
+    weak: tuple[tuple[str, float], ...] = ()  # tuple of (group, factor), strength of muscles
+    sides: tuple[int, ...] = BOTH  # legs that it concerns, 0 for the right
 
 
 PATTERNS = {

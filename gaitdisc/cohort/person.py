@@ -28,23 +28,13 @@ CADENCE, CADENCE_SPEED = 0.565, 0.429  # steps and speed, dimensionless, of Schw
 
 @dataclass(frozen=True)
 class Bump:
-    """A change of one joint's habit over part of the stride, as a raised cosine.
+    """A change of one joint's habit over part of the stride, as a raised cosine."""
 
-    Parameters
-    ----------
-    side, joint : int
-        Leg (0 right), column of `JOINTS`.
-    centre, half_width : float
-        Shares of the stride; wider than a stride is a constant.
-    degrees : float
-        At the centre.
-    """
-
-    side: int
-    joint: int
-    centre: float
-    half_width: float
-    degrees: float
+    side: int  # leg (0 right), column of `JOINTS`
+    joint: int  # leg (0 right), column of `JOINTS`
+    centre: float  # shares of the stride; wider than a stride is a constant
+    half_width: float  # shares of the stride; wider than a stride is a constant
+    degrees: float  # at the centre
 
     def at(self, phase: NDArray[np.float64]) -> NDArray[np.float64]:
         """Change at phases of the stride [deg]."""
@@ -55,104 +45,43 @@ class Bump:
 
 @dataclass(frozen=True, eq=False)
 class Style:
-    """How a person's habit differs from the average one.
+    """How a person's habit differs from the average one."""
 
-    Parameters
-    ----------
-    size : ndarray (joint,)
-        Factor on each curve.
-    offset_deg : ndarray (side, joint) [deg]
-        Constant shift of what is measured: where the markers sit.
-    wave_deg : ndarray (side, joint, harmonic, 2) [deg]
-        Cosine and sine of the first harmonics on top.
-    strength : ndarray (side, group)
-        How strong each muscle group is, against others of that body mass.
-    recruitment : Recruitment
-        How the muscles are habitually used.
-    bumps : tuple of Bump
-        Changes of the habit that make a gait pattern of the clinic.
-    """
-
-    size: NDArray[np.float64]
-    offset_deg: NDArray[np.float64]
-    wave_deg: NDArray[np.float64]
-    strength: NDArray[np.float64]
-    recruitment: Recruitment
-    bumps: tuple[Bump, ...] = ()
+    size: NDArray[np.float64]  # (joint,), factor on each curve
+    offset_deg: NDArray[np.float64]  # (side, joint) [deg], constant shift of what is measured: where the markers sit
+    wave_deg: NDArray[np.float64]  # (side, joint, harmonic, 2) [deg], cosine and sine of the first harmonics on top
+    strength: NDArray[np.float64]  # (side, group), how strong each muscle group is, against others of that body mass
+    recruitment: Recruitment  # how the muscles are habitually used
+    bumps: tuple[Bump, ...] = ()  # changes of the habit that make a gait pattern of the clinic
 
 
 @dataclass(frozen=True, eq=False)
 class Recruitment:
-    """How a person habitually uses the muscles, before what the moments demand.
+    """How a person habitually uses the muscles, before what the moments demand."""
 
-    Parameters
-    ----------
-    delay : ndarray (side, synergy) [share of a stride]
-        By which each synergy is late.
-    weight : ndarray (side, group, synergy)
-        Factor on each muscle's part in each synergy.
-    width : ndarray (group,)
-        Factor on how long the bursts last.
-    rest : ndarray (group,)
-        Excitation between bursts, of 1 at the largest effort.
-    dear : ndarray (group,)
-        Effort that each muscle costs in static optimisation, against others: what people share out differently.
-    cocontraction : float
-        Factor on all habitual activity: what exceeds the demand is co-contraction.
-    """
-
-    delay: NDArray[np.float64]
-    weight: NDArray[np.float64]
-    width: NDArray[np.float64]
-    rest: NDArray[np.float64]
+    delay: NDArray[np.float64]  # (side, synergy) [share of a stride], by which each synergy is late
+    weight: NDArray[np.float64]  # (side, group, synergy), factor on each muscle's part in each synergy
+    width: NDArray[np.float64]  # (group,), factor on how long the bursts last
+    rest: NDArray[np.float64]  # (group,), excitation between bursts, of 1 at the largest effort
+    # (group,), effort that each muscle costs in static optimisation, against others: what people share out differently
     dear: NDArray[np.float64]
-    cocontraction: float
+    cocontraction: float  # factor on all habitual activity: what exceeds the demand is co-contraction
 
 
 @dataclass(frozen=True, eq=False)
 class Adaptation:
-    """What a person learns on a spring of 5 N m/deg; in proportion on another.
+    """What a person learns on a spring of 5 N m/deg; in proportion on another."""
 
-    Parameters
-    ----------
-    relief : float
-        Share of the spring's moment that the commands allow for.
-    habit_deg : ndarray (side, joint, harmonic, 2) [deg]
-        Change of the habit, cosine and sine of the first harmonics.
-    effort : ndarray (group,)
-        Relative change of each muscle's habitual excitation.
-    """
-
-    relief: float
+    relief: float  # share of the spring's moment that the commands allow for
+    # (side, joint, harmonic, 2) [deg], change of the habit, cosine and sine of the first harmonics
     habit_deg: NDArray[np.float64]
-    effort: NDArray[np.float64]
+    effort: NDArray[np.float64]  # (group,), relative change of each muscle's habitual excitation
 
 
 @dataclass(frozen=True, eq=False)
 class Person:
     """Somebody of the cohort.
 
-    Parameters
-    ----------
-    engaged_deg : float
-        Dorsiflexion at which the device's spring engages [deg].
-    drift_deg : ndarray (side, joint, harmonic, 2) [deg]
-        Habit towards which the person wanders slowly, and back.
-    unrest : float
-        Factor on all variability from stride to stride.
-    stance : float
-        Share of the stride that a foot is loaded by more than 20 N.
-    change_s : float
-        Time of a change of gait on the device [s]; infinite for those who stay the same.
-    learnt : Spring, optional
-        Spring that the commands are adapted to; None before any device.
-    plantarflexors : float
-        Strength of soleus and gastrocnemius that the person's own commands do not know of; 1 is as they expect.
-    foot_kg : float
-        Mass on each foot that the commands do not know of [kg].
-
-    Examples
-    --------
     >>> person = drawn("W01", seed=1, sex="f")
     >>> person.learnt is None, person.adapted_to(Spring()).learnt
     (True, Spring(stiffness=5.0, slack_deg=0.0))
@@ -165,16 +94,18 @@ class Person:
     mass_kg: float
     speed_m_per_s: float
     stride_s: float
-    engaged_deg: float
+    engaged_deg: float  # dorsiflexion at which the device's spring engages [deg]
     style: Style = field(repr=False)
     adaptation: Adaptation = field(repr=False)
+    # (side, joint, harmonic, 2) [deg], habit towards which the person wanders slowly, and back
     drift_deg: NDArray[np.float64] = field(repr=False)
-    unrest: float = 1.0
-    stance: float = STANCE
-    change_s: float = float("inf")
-    learnt: Spring | None = None
+    unrest: float = 1.0  # factor on all variability from stride to stride
+    stance: float = STANCE  # share of the stride that a foot is loaded by more than 20 N
+    change_s: float = float("inf")  # time of a change of gait on the device [s]; infinite for those who stay the same
+    learnt: Spring | None = None  # spring that the commands are adapted to; None before any device
+    # strength of soleus and gastrocnemius that the person's own commands do not know of; 1 is as they expect
     plantarflexors: float = 1.0
-    foot_kg: float = 0.0
+    foot_kg: float = 0.0  # mass on each foot that the commands do not know of [kg]
 
     def adapted_to(self, spring: Spring) -> Person:
         """Return the same person after practice with a spring."""
@@ -188,10 +119,7 @@ class Person:
     def relieved(self, relief: float) -> Person:
         """Return the same person, who learns another share of the spring's moment.
 
-        Parameters
-        ----------
-        relief : float
-            Share of the spring's moment that the commands allow for, 0 to 1.
+        relief: share of the spring's moment that the commands allow for, 0 to 1
         """
         return replace(self, adaptation=replace(self.adaptation, relief=relief))
 
@@ -207,8 +135,6 @@ def drawn(name: str, seed: int, sex: str) -> Person:
     Sizes follow the dissertation's twelve adults (1.69 +- 0.10 m, 66.5 +- 11.7 kg, 1.36 +- 0.11 m/s); cadence follows
     speed and leg length with the dimensionless cadence of Schwartz et al. (2008), as the square root of speed.
 
-    Examples
-    --------
     >>> 1.4 < drawn("W01", 7, "f").height_m < 1.9
     True
     """

@@ -45,31 +45,6 @@ DRIFT_S = 25.0
 class TrueWalk:
     """Everything that happened during a walk.
 
-    Parameters
-    ----------
-    quick_s, slow_s : ndarray (time,) [s]
-        Clocks at 1000 and 100 Hz.
-    phase : ndarray (quick,) [strides]
-        Of the right foot, counted on; a whole number is a contact. The left foot is half a stride off.
-    force : ndarray (quick, 2, 2) [N]
-        Side; forwards, upwards.
-    excitation : ndarray (quick, 2, 9) [1]
-        Side; muscle group in the order of `GROUPS`, those with electrodes first.
-    angles : ndarray (slow, 2, 5) [deg]
-        Side; joint in the order of `JOINTS`.
-    moments : ndarray (slow, 2, 3) [N m]
-        Side; hip and knee towards flexion, ankle towards dorsiflexion, without the device.
-    spring : ndarray (slow, 2) [N m]
-        Moment of the device on each ankle, towards dorsiflexion.
-    sole : ndarray (slow, 2) [m/s]
-        Speed forwards of the foot's point under the pressure; minus the belt's speed where the foot stands.
-    acceleration : ndarray (slow, 2, 3) [deg/s2]
-        Side; hip, knee, ankle.
-    pelvis : ndarray (slow, 2) [m]
-        Forwards, upwards: how far the pelvis is from its habitual path.
-
-    Examples
-    --------
     >>> from gaitdisc.cohort.person import drawn
     >>> walk = walked(drawn("W01", 1, "f"), None, 5.0, seed=3)
     >>> walk.angles.shape, walk.excitation.shape
@@ -79,16 +54,23 @@ class TrueWalk:
     person: Person
     device: Spring
     seed: int
-    quick_s: NDArray[np.float64] = field(repr=False)
-    slow_s: NDArray[np.float64] = field(repr=False)
+    quick_s: NDArray[np.float64] = field(repr=False)  # (time,) [s], clocks at 1000 and 100 Hz
+    slow_s: NDArray[np.float64] = field(repr=False)  # (time,) [s], clocks at 1000 and 100 Hz
+    # (quick,) [strides], of the right foot, counted on; a whole number is a contact. The left foot is half a stride off
     phase: NDArray[np.float64] = field(repr=False)
-    force: NDArray[np.float64] = field(repr=False)
+    force: NDArray[np.float64] = field(repr=False)  # (quick, 2, 2) [N], side; forwards, upwards
+    # (quick, 2, 9) [1], side; muscle group in the order of `GROUPS`, those with electrodes first
     excitation: NDArray[np.float64] = field(repr=False)
-    angles: NDArray[np.float64] = field(repr=False)
+    angles: NDArray[np.float64] = field(repr=False)  # (slow, 2, 5) [deg], side; joint in the order of `JOINTS`
+    # (slow, 2, 3) [N m], side; hip and knee towards flexion, ankle towards dorsiflexion, without the device
     moments: NDArray[np.float64] = field(repr=False)
+    # (slow, 2) [N m], moment of the device on each ankle, towards dorsiflexion
     spring: NDArray[np.float64] = field(repr=False)
+    # (slow, 2) [m/s], speed forwards of the foot's point under the pressure; minus the belt's speed where the foot
+    # stands
     sole: NDArray[np.float64] = field(repr=False)
-    acceleration: NDArray[np.float64] = field(repr=False)
+    acceleration: NDArray[np.float64] = field(repr=False)  # (slow, 2, 3) [deg/s2], side; hip, knee, ankle
+    # (slow, 2) [m], forwards, upwards: how far the pelvis is from its habitual path
     pelvis: NDArray[np.float64] = field(repr=False)
 
     def contacts(self, side: int = 0) -> NDArray[np.float64]:
@@ -99,24 +81,15 @@ class TrueWalk:
     def mean_stride(self, values: NDArray[np.float64], side: int = 0) -> NDArray[np.float64]:
         """Mean curve over the true phase, 101 points.
 
-        Parameters
-        ----------
-        values : ndarray (slow or quick, ...)
-            A field of this walk.
+        values (slow or quick, ...): a field of this walk
         """
         return self.strides(values, side).mean(axis=0)
 
     def strides(self, values: NDArray[np.float64], side: int = 0) -> NDArray[np.float64]:
         """Each stride on 101 points of its true phase.
 
-        Parameters
-        ----------
-        values : ndarray (slow or quick, ...)
-            A field of this walk.
-
-        Returns
-        -------
-        ndarray (stride, 101, ...)
+        values (slow or quick, ...): a field of this walk
+        returns (stride, 101, ...)
         """
         quick = len(values) == len(self.quick_s)
         own = (self.phase if quick else self.phase[:: round(QUICK_HZ / SLOW_HZ)]) + 0.5 * side
@@ -130,17 +103,10 @@ class TrueWalk:
 def walked(person: Person, device: Spring | None, duration_s: float, seed: int) -> TrueWalk:
     """Walk on the treadmill for a while.
 
-    Parameters
-    ----------
-    device : Spring or None
-        None, or stiffness 0, is the device without its spring; both give the same walk to the last bit.
-    duration_s : float
-        Length of the recording, after `WARM_UP_S` that are not kept [s].
-    seed : int
-        Of the variability; the same seed gives the same walk.
+    device: none, or stiffness 0, is the device without its spring; both give the same walk to the last bit
+    duration_s: length of the recording, after `WARM_UP_S` that are not kept [s]
+    seed: of the variability; the same seed gives the same walk
 
-    Examples
-    --------
     >>> from gaitdisc.cohort.person import drawn
     >>> walk = walked(drawn("W01", 1, "f"), Spring(5.0), 5.0, seed=3)
     >>> bool(walk.spring.min() < -5.0)

@@ -25,13 +25,8 @@ def common_shift(first: NDArray[np.float64], second: NDArray[np.float64]) -> Ali
     of the gap or less in half of them (where it is less than 1 % of the stride: does not widen it). A joint that turns
     later by itself, or walks of another rhythm, share none.
 
-    Parameters
-    ----------
-    first, second : ndarray (phase, channel) [each channel's unit]
-        Mean curves over one stride on 101 points.
+    first, second (phase, channel) [each channel's unit]: mean curves over one stride on 101 points
 
-    Examples
-    --------
     >>> percent = np.arange(101.0)
     >>> wave = np.stack([np.sin(2 * np.pi * k * percent / 100 + k) for k in (1, 2, 3)], axis=1)
     >>> found = common_shift(shifted(wave, -7.0), wave + [0.0, 5.0, -2.0])
@@ -56,15 +51,9 @@ def common_shift(first: NDArray[np.float64], second: NDArray[np.float64]) -> Ali
 def own_shift(first: NDArray[np.float64], second: NDArray[np.float64]) -> float:
     """By how much later one curve fits another best, whatever lies between them [% stride].
 
-    Parameters
-    ----------
-    first, second : ndarray (phase,) [channel's unit]
-        Mean curves on 101 points.
-
-    Returns
-    -------
-    float
-        To a fraction of a percent, by a parabola through the three least gaps; 15 or -15 where there is none within.
+    first, second (phase,) [channel's unit]: mean curves on 101 points
+    returns: to a fraction of a percent, by a parabola through the three least gaps; 15 or -15 where there is none
+        within
     """
     one, other = first[:-1] - first[:-1].mean(), second[:-1] - second[:-1].mean()
     shifts = np.arange(-MOST_SHIFT, MOST_SHIFT + 1)
@@ -80,12 +69,8 @@ def own_shift(first: NDArray[np.float64], second: NDArray[np.float64]) -> float:
 def shifted(curves: NDArray[np.float64], percent: float) -> NDArray[np.float64]:
     """Curves moved later along the stride, which is closed: 100 % is 0 %.
 
-    Parameters
-    ----------
-    curves : ndarray (phase, ...) [each channel's unit]
-        On 101 points.
-    percent : float
-        Linear between points [% stride].
+    curves (phase, ...) [each channel's unit]: on 101 points
+    percent: linear between points [% stride]
     """
     places = (np.arange(100.0) - percent) % 100.0
     low = np.floor(places).astype(int) % 100
@@ -97,12 +82,8 @@ def shifted(curves: NDArray[np.float64], percent: float) -> NDArray[np.float64]:
 def aligned(walks: Sequence[NDArray[np.float64]], percent: float) -> list[NDArray[np.float64]]:
     """Strides of walks moved later along the stride.
 
-    Parameters
-    ----------
-    walks : sequence of ndarray (stride, phase, channel) [each channel's unit]
-        Complete.
-    percent : float
-        By how much [% stride].
+    walks each (stride, phase, channel) [each channel's unit]: complete
+    percent: by how much [% stride]
     """
     return [np.moveaxis(shifted(np.moveaxis(curves, 1, 0), percent), 0, 1) for curves in walks]
 

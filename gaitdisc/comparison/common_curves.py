@@ -21,18 +21,10 @@ STILL = 1e-6  # of its largest value: a channel that moves less is locked
 
 @dataclass(frozen=True, eq=False)
 class CommonCurves:
-    """Strides of two walks or more, complete, on the channels that all have.
+    """Strides of two walks or more, complete, on the channels that all have."""
 
-    Parameters
-    ----------
-    channels : tuple of Channel
-        In the order of the first walk.
-    curves : tuple of ndarray (stride, phase, channel) [each channel's unit]
-        One a walk.
-    """
-
-    channels: tuple[Channel, ...]
-    curves: tuple[NDArray[np.float64], ...]
+    channels: tuple[Channel, ...]  # in the order of the first walk
+    curves: tuple[NDArray[np.float64], ...]  # each (stride, phase, channel) [each channel's unit], one a walk
     findings: tuple[Finding, ...]
 
 

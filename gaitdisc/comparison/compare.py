@@ -78,17 +78,10 @@ def compare_walks(
     have in common is taken off first (`common_shift`): it says that the marks of initial contact lie apart, and would
     make a gap in every channel that moves. What is smaller than `smallest` is not named.
 
-    Parameters
-    ----------
-    second : WalkSummary
-        What was measured, or the other condition; its strides give the spread.
-    smallest : Smallest
-        Difference that is named at least; 2 deg, 0.1 N m/kg, 5 % of body weight or of the channel's range by default.
-
-    Returns
-    -------
-    Mismatch
-        Its p speaks of these two recordings; that other people, or another day, would give the same it cannot say.
+    second: what was measured, or the other condition; its strides give the spread
+    smallest: difference that is named at least; 2 deg, 0.1 N m/kg, 5 % of body weight or of the channel's range by
+        default
+    returns: its p speaks of these two recordings; that other people, or another day, would give the same it cannot say
     """
     common = common_curves((first, second), wanted)
     means = [curves.mean(axis=0) for curves in common.curves]
@@ -110,19 +103,11 @@ def compare_people(
 ) -> Mismatch:
     """Mismatch of two conditions over people, paired: each person's mean difference is one unit.
 
-    Parameters
-    ----------
-    pairs : sequence of (WalkSummary, WalkSummary)
-        Both walks of each person, in the same order of conditions; first minus second.
-    wanted : sequence of str, optional
-        Only these channels; by default all that every walk has.
-    smallest : Smallest
-        Difference that is named at least, as in `compare_walks`; the shift in common is that of the mean curves.
-
-    Returns
-    -------
-    Mismatch
-        Its standard deviations are those from stride to stride, root mean square over people.
+    pairs sequence of (WalkSummary, WalkSummary): both walks of each person, in the same order of conditions; first
+        minus second
+    wanted: only these channels; by default all that every walk has
+    smallest: difference that is named at least, as in `compare_walks`; the shift in common is that of the mean curves
+    returns: its standard deviations are those from stride to stride, root mean square over people
     """
     if len(pairs) < FEWEST_IN_ONE:
         raise ComparisonError(
@@ -155,18 +140,10 @@ def compare_people(
 def best_shift(first: NDArray[np.float64], second: NDArray[np.float64]) -> tuple[float, float]:
     """By how much later the first curve fits the second best [% stride], and the rms gap that is left then.
 
-    Parameters
-    ----------
-    first, second : ndarray (phase,) [channel's unit]
-        Mean curves over one stride on 101 points; the stride is closed, 100 % is 0 %.
+    first, second (phase,) [channel's unit]: mean curves over one stride on 101 points; the stride is closed, 100 % is
+        0 %
+    returns shift_percent, rms: within 10 % of the stride, in steps of 1 %
 
-    Returns
-    -------
-    shift_percent, rms : float
-        Within 10 % of the stride, in steps of 1 %.
-
-    Examples
-    --------
     >>> wave = np.sin(2 * np.pi * PERCENT / 100)
     >>> [round(value, 3) for value in best_shift(np.roll(wave[:-1], -3)[np.arange(101) % 100], wave)]
     [3.0, 0.0]

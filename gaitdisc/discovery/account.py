@@ -40,19 +40,11 @@ class Part:
 
 @dataclass(frozen=True)
 class Account:
-    """The simulation with some explanations in it, fitted to segments.
+    """The simulation with some explanations in it, fitted to segments."""
 
-    Parameters
-    ----------
-    simulation : Simulation
-        With the explanations, their numbers as parameters.
-    parts : tuple of Part
-        The explanations, with the numbers that were found.
-    """
-
-    simulation: Simulation
+    simulation: Simulation  # with the explanations, their numbers as parameters
     machine: Compiled
-    parts: tuple[Part, ...]
+    parts: tuple[Part, ...]  # the explanations, with the numbers that were found
     fit: Fitted
 
     @property
@@ -108,14 +100,9 @@ def account_for(
 
     A number that an explanation calls wrong may leave its bounds.
 
-    Parameters
-    ----------
-    starts : ndarray (segment, state)
-        Start states to begin from.
-    enough : float
-        A step that takes less off the misfit is the last.
-    like : Account, optional
-        Whose numbers with bounds the fit begins with; the file's where absent.
+    starts (segment, state): start states to begin from
+    enough: a step that takes less off the misfit is the last
+    like: whose numbers with bounds the fit begins with; the file's where absent
     """
     simulation, names = with_parts(base, parts)
     prior = prior_of(base, frozenset(part.candidate.place for part in parts if part.candidate.kind == "parameter"))

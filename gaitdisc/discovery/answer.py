@@ -32,10 +32,7 @@ DIGITS = 3  # of the numbers in an expression that a person reads; those of the 
 def answer(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> tuple[Discovery, Simulation]:
     """Write down what an inquiry came to.
 
-    Returns
-    -------
-    augmented : Simulation
-        The simulation with what was found, its numbers written in.
+    returns augmented: the simulation with what was found, its numbers written in
     """
     now, base = verdict.account, inquiry.search.base
     channels = tuple(name for name, _ in base.observations)
@@ -154,10 +151,7 @@ def small_ones(parts: tuple[Part, ...]) -> tuple[FoundEffect, ...]:
 def whereabouts(inquiry: Inquiry, verdict: Verdict, train: GapSize) -> tuple[Whereabouts, ...]:
     """Say where the gap arises.
 
-    Parameters
-    ----------
-    train : GapSize
-        The gap before and after on the trials that were learned from.
+    train: the gap before and after on the trials that were learned from
     """
     if verdict.shaking:
         return (Whereabouts(verdict.shaking.place.kind, verdict.shaking.place.name, float("nan")),)

@@ -30,20 +30,12 @@ AS_MUCH = 0.8  # of what the best closes, a simpler set must close to stand in i
 
 @dataclass(frozen=True, eq=False)
 class Beam:
-    """Sets of explanations that were fitted to the same runs.
-
-    Parameters
-    ----------
-    as_read : Weighed
-        The simulation as read, on these runs.
-    known : dict of frozenset to Weighed
-        Every set that was fitted so far.
-    """
+    """Sets of explanations that were fitted to the same runs."""
 
     search: Search
     scale: GapScale
-    as_read: Weighed
-    known: dict[Explanations, Weighed] = field(default_factory=dict)
+    as_read: Weighed  # the simulation as read, on these runs
+    known: dict[Explanations, Weighed] = field(default_factory=dict)  # every set that was fitted so far
 
     def cost(self, now: Weighed) -> float:
         """Return what is left of the gap plus the price of what closes the rest, in shares of the gap as read."""
@@ -165,10 +157,7 @@ class Beam:
     def near(self, now: Weighed, within: float) -> list[Weighed]:
         """Return other sets that cost hardly more, the cheapest first.
 
-        Parameters
-        ----------
-        within : float
-            How much more, in shares of the gap as read.
+        within: how much more, in shares of the gap as read
         """
         others = [
             one

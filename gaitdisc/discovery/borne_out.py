@@ -22,19 +22,11 @@ MOST_EXACT = 60  # pieces, up to which the distribution of the sum of ranks is c
 
 @dataclass(frozen=True)
 class PairedTest:
-    """A one-sided signed-rank test of the squared errors before and after, over pieces of held-out runs.
+    """A one-sided signed-rank test of the squared errors before and after, over pieces of held-out runs."""
 
-    Parameters
-    ----------
-    p : float
-        Chance of so clear a fall if each piece could as well rise; NaN where a run failed.
-    fall : float
-        Of the summed squared error over that of the noise; negative where it rises.
-    """
-
-    p: float
+    p: float  # chance of so clear a fall if each piece could as well rise; NaN where a run failed
     pieces: int
-    fall: float
+    fall: float  # of the summed squared error over that of the noise; negative where it rises
 
     @property
     def bears_out(self) -> bool:
@@ -47,16 +39,10 @@ def paired_test(
 ) -> PairedTest:
     """Compare the squared errors of two models over pieces of the same runs.
 
-    Parameters
-    ----------
-    before, after : ndarray (run, sample, channel)
-        Measured minus each model [the channel's unit]; NaN where nothing was measured.
-    floor : ndarray (channel,)
-        Standard deviation of the noise [the channel's unit].
-
-    References
-    ----------
-    Wilcoxon 1945, Biometrics Bulletin 1, 80.
+    before, after (run, sample, channel): measured minus each model [the channel's unit]; NaN where nothing was
+        measured
+    floor (channel,): standard deviation of the noise [the channel's unit]
+    Source: Wilcoxon 1945, Biometrics Bulletin 1, 80.
     """
     fall = (before**2 - after**2) / floor**2
     if np.isinf(fall).any() or (np.isnan(fall) & ~np.isnan(before)).any():
@@ -75,13 +61,8 @@ def speaking(gains: NDArray[np.float64]) -> NDArray[np.float64]:
 
     Which these are does not depend on which model is the better, so that the test keeps its level.
 
-    Parameters
-    ----------
-    gains : ndarray (piece,)
-        Differences of the two models' errors.
+    gains (piece,): differences of the two models' errors
 
-    Examples
-    --------
     >>> speaking(np.array([3.0, 2.0, 0.01, -2.5, 4.0, 2.0, 3.0])).tolist()
     [4.0, 3.0, 3.0, -2.5, 2.0, 2.0]
     """
@@ -93,13 +74,8 @@ def speaking(gains: NDArray[np.float64]) -> NDArray[np.float64]:
 def memory_of(residual: NDArray[np.float64]) -> int:
     """Return after how many samples what is left has forgotten itself, for the channel that remembers longest.
 
-    Parameters
-    ----------
-    residual : ndarray (run, sample, channel)
-        Measured minus a model.
+    residual (run, sample, channel): measured minus a model
 
-    Examples
-    --------
     >>> memory_of(np.random.default_rng(0).normal(size=(4, 500, 1)))
     1
     """
@@ -117,13 +93,8 @@ def memory_of(residual: NDArray[np.float64]) -> int:
 def signed_rank_p(gains: NDArray[np.float64]) -> float:
     """Chance of so great a sum of the ranks of what is gained, if each gain could as well have had the other sign.
 
-    Parameters
-    ----------
-    gains : ndarray (piece,)
-        Zeros are left out.
+    gains (piece,): zeros are left out
 
-    Examples
-    --------
     >>> signed_rank_p(np.array([3.0, 2.0, 1.0])), signed_rank_p(np.array([3.0, -2.0, 1.0])), signed_rank_p(np.zeros(9))
     (0.125, 0.375, 1.0)
     """

@@ -25,26 +25,15 @@ TIED = 0.02  # of the gap, by which another set may cost more
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """A set of explanations, and what was weighed beside it.
+    """A set of explanations, and what was weighed beside it."""
 
-    Parameters
-    ----------
-    as_read, now : Judged
-        The simulation as read and with the set, on the same runs.
-    closed : float
-        Share of the gap that goes, on runs left out of the fit.
-    test : PairedTest
-        Of the errors left out of the fit, with and without the set; its p times the number of explanations that were
-        open (Bonferroni), for the same runs chose among these.
-    small : tuple of Part
-        Explanations that close too little to be named, or not beyond chance.
-    """
-
-    as_read: Judged
-    now: Judged
-    closed: float
+    as_read: Judged  # the simulation as read and with the set, on the same runs
+    now: Judged  # the simulation as read and with the set, on the same runs
+    closed: float  # share of the gap that goes, on runs left out of the fit
+    # of the errors left out of the fit, with and without the set; its p times the number of explanations that were open
+    # (Bonferroni), for the same runs chose among these
     test: PairedTest
-    small: tuple[Part, ...]
+    small: tuple[Part, ...]  # explanations that close too little to be named, or not beyond chance
     near: tuple[Judged, ...]
 
 
@@ -75,10 +64,7 @@ def closing_most(inquiry: Inquiry, scale: GapScale, also: tuple[tuple[Part, ...]
     First on runs on which the simulation as read stays near the data, then on longer ones, where losses show that are
     small in a short run.
 
-    Parameters
-    ----------
-    also : tuple of tuple of Part
-        Sets that another search found, weighed beside those that are found here.
+    also: sets that another search found, weighed beside those that are found here
     """
     search = inquiry.search
     search = replace(search, candidates=(*search.candidates, *nameless_terms(search.base, search.places)))

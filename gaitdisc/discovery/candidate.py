@@ -38,41 +38,22 @@ Identity = tuple[str, tuple[str, ...]]
 
 @dataclass(frozen=True)
 class Candidate:
-    """One explanation of a gap, at one place.
-
-    Parameters
-    ----------
-    kind : str
-        What `place` is: `port`, `equation`, `parameter`, `input`, `observation`.
-    name : str
-        Name of the effect, of discovery.md's tables.
-    pieces : tuple of str
-        For a missing term, its pieces over the simulation's names; its constants as words that begin with `_`.
-    constants : mapping of str to str
-        For a missing term, its constants and the grid on which each is searched.
-    role : str
-        For a missing term, what stands for x in it (for the grids).
-    value : float
-        For a wrong parameter, the number in the file.
-    names : mapping of str to str
-        For a missing term, what a person calls its numbers.
-    bounds : tuple of float
-        For a wrong parameter, `low` and `high` of the file; empty where it has not both.
-    states : mapping of str to str
-        States that it brings along, and the time derivative of each; its constants in them as in `pieces`.
-    """
+    """One explanation of a gap, at one place."""
 
     verdict: str
-    kind: str
+    kind: str  # what `place` is: `port`, `equation`, `parameter`, `input`, `observation`
     place: str
-    name: str
+    name: str  # name of the effect, of discovery.md's tables
+    # for a missing term, its pieces over the simulation's names; its constants as words that begin with `_`
     pieces: tuple[str, ...] = ()
+    # for a missing term, its constants and the grid on which each is searched
     constants: Mapping[str, str] | None = None
-    role: str = ""
+    role: str = ""  # for a missing term, what stands for x in it (for the grids)
     means: str = ""
-    value: float = 0.0
-    names: Mapping[str, str] | None = None
-    bounds: tuple[float, ...] = ()
+    value: float = 0.0  # for a wrong parameter, the number in the file
+    names: Mapping[str, str] | None = None  # for a missing term, what a person calls its numbers
+    bounds: tuple[float, ...] = ()  # for a wrong parameter, `low` and `high` of the file; empty where it has not both
+    # states that it brings along, and the time derivative of each; its constants in them as in `pieces`
     states: Mapping[str, str] = field(default_factory=dict)
 
     @property
@@ -108,10 +89,7 @@ class Candidate:
     def written(self, simulation: Simulation, numbers: Mapping[str, str]) -> Simulation:
         """Return the simulation with this explanation in it.
 
-        Parameters
-        ----------
-        numbers : mapping of str to str
-            For each slot, a number or the name of a parameter, as text.
+        numbers: for each slot, a number or the name of a parameter, as text
         """
         if self.verdict == "missing_physics":
             for name, rate in self.states_at(numbers).items():
@@ -146,10 +124,7 @@ class Candidate:
     def pieces_at(self, constants: Mapping[str, str]) -> tuple[str, ...]:
         """Return the pieces of a missing term with its constants written in.
 
-        Parameters
-        ----------
-        constants : mapping of str to str
-            For each constant, a number or the name of a parameter, as text.
+        constants: for each constant, a number or the name of a parameter, as text
         """
         marked = {f"_{slot}": text for slot, text in constants.items()}
         return Shape(self.name, self.pieces).written(marked)
@@ -157,10 +132,7 @@ class Candidate:
     def states_at(self, numbers: Mapping[str, str]) -> dict[str, str]:
         """Return the states that it brings along, and the time derivative of each.
 
-        Parameters
-        ----------
-        numbers : mapping of str to str
-            For each slot, a number or the name of a parameter, as text.
+        numbers: for each slot, a number or the name of a parameter, as text
         """
         marked = {f"_{slot}": text for slot, text in numbers.items()}
         return {name: with_names(rate, marked) for name, rate in self.states.items()}
@@ -168,10 +140,7 @@ class Candidate:
     def term(self, numbers: Mapping[str, str]) -> str:
         """Return the missing term as an expression.
 
-        Parameters
-        ----------
-        numbers : mapping of str to str
-            For each slot, a number or the name of a parameter, as text.
+        numbers: for each slot, a number or the name of a parameter, as text
         """
         pieces = self.pieces_at({slot: numbers[slot] for slot in self.constants or {}})
         return " + ".join(
@@ -193,10 +162,7 @@ class Candidate:
     def named(self, tag: str) -> dict[str, str]:
         """Return the parameter that stands for each slot.
 
-        Parameters
-        ----------
-        tag : str
-            Begins the names of those that are added; a wrong parameter is there already.
+        tag: begins the names of those that are added; a wrong parameter is there already
         """
         return {slot: self.place if self.verdict == "wrong_parameter" else f"{tag}_{slot}" for slot in self.slots}
 
@@ -278,8 +244,6 @@ def _lagged(simulation: Simulation, name: str) -> Candidate:
 def free_name(name: str, taken: Collection[str]) -> str:
     """Return a name, with a number behind it where it is taken.
 
-    Examples
-    --------
     >>> free_name("hysteresis_knee", ["hysteresis_knee"])
     'hysteresis_knee_2'
     """

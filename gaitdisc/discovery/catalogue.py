@@ -31,37 +31,22 @@ _ENTRIES = ("name", "pieces", "states", "constants", "needs", "names", "means")
 class Shape:
     """A physical effect before it has a place: what it looks like and which of its numbers are unknown.
 
-    Parameters
-    ----------
-    name : str
-        The effect's name; several shapes may share one (a spring engaging above or below).
-    pieces : tuple of str
-        Expressions of the roles x (a position-like state), v (its rate), y (another state), a and b (two states), u (an
-        input), of `t`, `phase` and the constants. Each piece has its own factor in the fit.
-    constants : mapping of str to str
-        Unknown numbers inside the shape, and the grid on which the search for each begins.
-    needs : str
-        What the place must offer: `angle`, or nothing.
-    means : str
-        One clause that a person understands; `{x0}` in it is the constant x0.
-    names : mapping of str to str
-        What a person calls its numbers: those of `factor`, `factor_1`, ... and of the constants.
-    states : mapping of str to str
-        States that the effect brings along, and the time derivative of each; they may stand in the pieces.
-
-    Examples
-    --------
     >>> spring = Shape("one_sided_spring", ("max(0, x - x0)",), {"x0": "quantiles of x"})
     >>> spring.roles, spring.written({"x": "theta"})
     (('x',), ('max(0, theta - x0)',))
     """
 
-    name: str
+    name: str  # the effect's name; several shapes may share one (a spring engaging above or below)
+    # expressions of the roles x (a position-like state), v (its rate), y (another state), a and b (two states), u (an
+    # input), of `t`, `phase` and the constants. Each piece has its own factor in the fit
     pieces: tuple[str, ...]
+    # unknown numbers inside the shape, and the grid on which the search for each begins
     constants: Mapping[str, str] = field(default_factory=dict)
-    needs: str = ""
-    means: str = ""
+    needs: str = ""  # what the place must offer: `angle`, or nothing
+    means: str = ""  # one clause that a person understands; `{x0}` in it is the constant x0
+    # what a person calls its numbers: those of `factor`, `factor_1`, ... and of the constants
     names: Mapping[str, str] = field(default_factory=dict)
+    # states that the effect brings along, and the time derivative of each; they may stand in the pieces
     states: Mapping[str, str] = field(default_factory=dict)
 
     @property
@@ -79,11 +64,8 @@ class Shape:
     def written(self, names: Mapping[str, str]) -> tuple[str, ...]:
         """Return the pieces with names put for roles and constants.
 
-        Parameters
-        ----------
-        names : mapping of str to str
-            A state's name, or a difference of two, for each role; a parameter's name or a number for each constant.
-            What is not mentioned stays.
+        names: a state's name, or a difference of two, for each role; a parameter's name or a number for each constant.
+            What is not mentioned stays
         """
         return tuple(with_names(piece, names) for piece in self.pieces)
 
@@ -91,13 +73,8 @@ class Shape:
 def with_names(expression: str, names: Mapping[str, str]) -> str:
     """Return an expression with other names, or numbers, in the place of some of its names.
 
-    Parameters
-    ----------
-    names : mapping of str to str
-        A name, a number or an expression for each; what is not mentioned stays.
+    names: a name, a number or an expression for each; what is not mentioned stays
 
-    Examples
-    --------
     >>> with_names("max(0, x - x0)", {"x": "hip - knee", "x0": "0.2"})
     'max(0, (hip - knee) - 0.2)'
     """
@@ -113,8 +90,6 @@ def with_names(expression: str, names: Mapping[str, str]) -> str:
 def known_shapes() -> tuple[Shape, ...]:
     """Return the shapes that come with the package.
 
-    Examples
-    --------
     >>> "coulomb_friction" in {shape.name for shape in known_shapes()}
     True
     """
@@ -125,13 +100,8 @@ def known_shapes() -> tuple[Shape, ...]:
 def read_catalogue(path: Path | str) -> tuple[Shape, ...]:
     r"""Read effects of the user's own, in the form of the package's catalogue.
 
-    Parameters
-    ----------
-    path : Path or str
-        A TOML file with one `[[shape]]` for each effect.
+    path: a TOML file with one `[[shape]]` for each effect
 
-    Examples
-    --------
     >>> import tempfile
     >>> file = Path(tempfile.mkdtemp()) / "mine.toml"
     >>> _ = file.write_text('[[shape]]\nname = "quintic"\npieces = ["x**5"]\nmeans = "a very stiff spring"')

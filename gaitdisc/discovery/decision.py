@@ -104,10 +104,7 @@ def needed(inquiry: Inquiry, as_read: Judged, now: Judged) -> Judged:
 def plainest(inquiry: Inquiry, scale: GapScale, named: Judged) -> Verdict | None:
     """Return the verdict on the plainest explanations that close most of the gap; None where these close too little.
 
-    Parameters
-    ----------
-    named : Judged
-        The simulation with what the search let in, which leaves more than noise.
+    named: the simulation with what the search let in, which leaves more than noise
     """
     found = closing_most(inquiry, scale, (named.account.parts,) if named.account.parts else ())
     if found is None or found.closed < HALF:
@@ -129,12 +126,8 @@ def plainest(inquiry: Inquiry, scale: GapScale, named: Judged) -> Verdict | None
 def searched(inquiry: Inquiry, as_read: Judged, scale: GapScale) -> tuple[Judged, Judged, list[Judged]]:
     """Search on short runs, and on longer ones where these show nothing and the system is not chaotic.
 
-    Returns
-    -------
-    as_read, named : Judged
-        The simulation as read and with what was let in, on the same runs.
-    rivals : list of Judged
-        What else stood for the first place, best first.
+    returns as_read, named: the simulation as read and with what was let in, on the same runs
+    returns rivals: what else stood for the first place, best first
     """
     named, rivals = grown(inquiry.search, as_read, MOST, scale.noise)
     if named.account.parts or not inquiry.is_tame(as_read):
@@ -151,10 +144,7 @@ def lasting(inquiry: Inquiry, as_read: Judged, named: Judged) -> Judged:
 
     Where fear of chaos keeps runs short, several explanations together can do what one does with another number.
 
-    Parameters
-    ----------
-    as_read, named : Judged
-        The simulation as read and with what the search let in, on the same runs.
+    as_read, named: the simulation as read and with what the search let in, on the same runs
     """
     if len(named.account.parts) < 2 or inquiry.is_tame(as_read):
         return named
@@ -171,10 +161,7 @@ def weighed_with_memory(
 ) -> Verdict | None:
     """Return a verdict where what is left remembers its past, and random pushes or a shape explain it better.
 
-    Parameters
-    ----------
-    as_read, named : Judged
-        The simulation as read and with what the search let in.
+    as_read, named: the simulation as read and with what the search let in
     """
     plain, *found = compared([as_read, named, *([shape] if shape else [])], inquiry.search.base)
     shaking = random_push(inquiry, as_read)
@@ -190,10 +177,7 @@ def weighed_with_memory(
 def says_more(inquiry: Inquiry, shape: Judged, named: Judged) -> bool:
     """Whether one shape without a name explains more than several names together.
 
-    Parameters
-    ----------
-    shape, named : Judged
-        The simulation with a fitted shape, and with what the search let in.
+    shape, named: the simulation with a fitted shape, and with what the search let in
     """
     named, shape = compared([named, shape], inquiry.search.base)
     return shape.evidence < named.evidence - MARGIN
@@ -202,10 +186,7 @@ def says_more(inquiry: Inquiry, shape: Judged, named: Judged) -> bool:
 def decided(inquiry: Inquiry, named: Judged, rivals: list[Judged]) -> tuple[Judged, list[Judged]]:
     """Return what was named, fitted to long runs; where a rival comes near, the one that long runs prefer.
 
-    Returns
-    -------
-    rivals : list of Judged
-        All that stood for the first place, best first.
+    returns rivals: all that stood for the first place, best first
     """
     longer = inquiry.lengthened(named)
     if len(named.account.parts) > 1:
@@ -228,12 +209,8 @@ def random_push(inquiry: Inquiry, as_read: Judged) -> Shaken | None:
 def explains(inquiry: Inquiry, as_read: Judged, now: Judged, shaking: Shaken | None) -> bool:
     """Whether something that repeats itself explains the gap, also on held-out trials.
 
-    Parameters
-    ----------
-    as_read, now : Judged
-        The simulation as read and with what was found, under one noise.
-    shaking : Shaken or None
-        Random pushes that would explain it as well; they leave nothing for anything that repeats itself.
+    as_read, now: the simulation as read and with what was found, under one noise
+    shaking: random pushes that would explain it as well; they leave nothing for anything that repeats itself
     """
     if not now.account.parts or as_read.evidence - now.evidence < MARGIN:
         return False
@@ -249,10 +226,7 @@ def borne_out(inquiry: Inquiry, before: Judged, now: Judged, as_read: Judged | N
     Over runs as long as it was fitted to, which show a small effect best; where chaos makes these too long, over those
     that the search began with will do.
 
-    Parameters
-    ----------
-    as_read : Judged, optional
-        The simulation as read, on the runs that the search began with; `before` where absent.
+    as_read: the simulation as read, on the runs that the search began with; `before` where absent
     """
     proof, first = proof_of(inquiry, before, now, now), as_read or before
     if proof.bears_out or inquiry.is_tame(first):

@@ -19,8 +19,6 @@ _WORD = re.compile(r"(.*?)\^?(-?\d+)?")
 def places_unit(simulation: Simulation, kind: str, place: str) -> str:
     """Return the unit of what is added at a port, or to the derivative of a state.
 
-    Examples
-    --------
     >>> from gaitdisc.simulation.bundled import bundled
     >>> places_unit(bundled("ankle"), "port", "ankle_moment")
     'N m'
@@ -33,8 +31,6 @@ def places_unit(simulation: Simulation, kind: str, place: str) -> str:
 def divided(unit: str, by: str) -> str:
     """Return one unit over another.
 
-    Examples
-    --------
     >>> divided("N m", "rad/s"), divided("1", "s"), divided("N", "N")
     ('N m s/rad', '1/s', '1')
     """
@@ -44,13 +40,8 @@ def divided(unit: str, by: str) -> str:
 def unit_of(expression: str, units: Mapping[str, str]) -> str:
     """Return the unit of an expression.
 
-    Parameters
-    ----------
-    units : mapping of str to str
-        Unit by name; a name that is not there is a pure number.
+    units: unit by name; a name that is not there is a pure number
 
-    Examples
-    --------
     >>> unit_of("v*abs(v)", {"v": "rad/s"}), unit_of("max(0, x - x0)", {"x": "m"})
     ('rad^2/s^2', 'm')
     """
@@ -60,8 +51,6 @@ def unit_of(expression: str, units: Mapping[str, str]) -> str:
 def unit_of_state(simulation: Simulation, rate: str) -> str:
     """Return the unit of a state whose time derivative is an expression.
 
-    Examples
-    --------
     >>> from gaitdisc.simulation.bundled import bundled
     >>> unit_of_state(bundled("ankle"), "omega - abs(omega)*z/0.1")
     'rad'
@@ -73,8 +62,6 @@ def unit_of_state(simulation: Simulation, rate: str) -> str:
 def channel_unit(expression: str, units: Mapping[str, str]) -> str:
     """Return the unit of an observed channel; of one in other units than its states', `1` where it is not known.
 
-    Examples
-    --------
     >>> of = {"theta": "rad", "x": "m"}
     >>> [channel_unit(text, of) for text in ("theta", "57.2958*theta", "-1*theta", "1000*x", "x + 0.1")]
     ['rad', 'deg', 'rad', '1', 'm']
@@ -90,8 +77,6 @@ def channel_unit(expression: str, units: Mapping[str, str]) -> str:
 def unit_of_channel(simulation: Simulation, channel: str) -> str:
     """Return the unit of an observed channel: the file's, or what follows from its expression.
 
-    Examples
-    --------
     >>> from gaitdisc.simulation.bundled import bundled
     >>> unit_of_channel(bundled("ankle"), "theta")
     'rad'

@@ -25,11 +25,8 @@ _WAVE = re.compile(r"(sin|cos)\((.*)\)")
 def estimates_of(account: Account, number: int, base: Simulation) -> dict[str, Estimate]:
     """Return the numbers of one explanation.
 
-    Returns
-    -------
-    dict of str to Estimate
-        By name: `stiffness`, `engagement`, ... A stiffness, a damping, a drag and a friction are positive where they
-        resist. A sine and a cosine of one argument are an `amplitude` and a `phase`.
+    returns: by name: `stiffness`, `engagement`, ... A stiffness, a damping, a drag and a friction are positive where
+        they resist. A sine and a cosine of one argument are an `amplitude` and a `phase`
     """
     part, own = account.parts[number], account.names[number]
     rows = [account.fit.free.index(own[slot]) for slot in part.candidate.slots]
@@ -39,10 +36,7 @@ def estimates_of(account: Account, number: int, base: Simulation) -> dict[str, E
 def named_estimates(part: Part, covariance: NDArray[np.float64], base: Simulation) -> dict[str, Estimate]:
     """Return an explanation's numbers under their names.
 
-    Parameters
-    ----------
-    covariance : ndarray (slot, slot)
-        Of its numbers, in the order of its slots; NaN where it is not known.
+    covariance (slot, slot): of its numbers, in the order of its slots; NaN where it is not known
     """
     candidate, slots = part.candidate, part.candidate.slots
     units, names = slot_units(candidate, base), NAMES | dict(candidate.names or {})

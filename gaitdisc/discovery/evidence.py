@@ -17,17 +17,11 @@ INTEGRATED = 1e-4  # of a channel's spread: how far two integrators of one model
 
 @dataclass(frozen=True)
 class Judged:
-    """An account fitted under a noise that was learned from it, or from a better one.
-
-    Parameters
-    ----------
-    gained : float
-        Fall of the evidence against the same without its last explanation, under one noise.
-    """
+    """An account fitted under a noise that was learned from it, or from a better one."""
 
     account: Account
     shooting: Shooting
-    gained: float = 0.0
+    gained: float = 0.0  # fall of the evidence against the same without its last explanation, under one noise
 
     @property
     def evidence(self) -> float:
@@ -76,10 +70,7 @@ def judged(shooting: Shooting, base: Simulation, account: Account, rounds: int =
 def compared(accounts: list[Judged], base: Simulation) -> list[Judged]:
     """Put accounts under one noise: what the best of them leaves.
 
-    Parameters
-    ----------
-    accounts : list of Judged
-        Of the same segments; those under the noise of the first stay as they are.
+    accounts: of the same segments; those under the noise of the first stay as they are
     """
     accounts = [one.under(accounts[0], base) for one in accounts]
     for _ in range(len(accounts)):

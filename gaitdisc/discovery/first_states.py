@@ -21,15 +21,9 @@ TURNS = 4  # of rates and positions, where a channel sees both
 
 @dataclass(frozen=True)
 class StateGuess:
-    """States of every trial, roughly.
+    """States of every trial, roughly."""
 
-    Parameters
-    ----------
-    states : ndarray (trial, sample, state)
-        NaN beyond a trial's end.
-    """
-
-    states: NDArray[np.float64]
+    states: NDArray[np.float64]  # (trial, sample, state), NaN beyond a trial's end
 
     def starts(self, segments: Segments) -> NDArray[np.float64]:
         """Return the guess at each segment's first sample (segment, state)."""
@@ -38,10 +32,7 @@ class StateGuess:
     def with_run(self, segments: Segments, states: NDArray[np.float64]) -> StateGuess:
         """Return the guess with a run put in its place where there is one.
 
-        Parameters
-        ----------
-        states : ndarray (segment, sample, state)
-            Their states; those that effects bring along, after the others, are left out.
+        states (segment, sample, state): their states; those that effects bring along, after the others, are left out
         """
         return StateGuess(segments.put(self.states, states[..., : self.states.shape[2]]))
 
@@ -49,18 +40,10 @@ class StateGuess:
 def guess_states(simulation: Simulation, measured: Measured, period: float, rate_of: dict[str, str]) -> StateGuess:
     """Guess the states: the observation map solved for them on smoothed channels, rates as slopes of positions.
 
-    Parameters
-    ----------
-    simulation : Simulation
-        Names, and observations: any expressions of states, inputs and time.
-    period : float
-        The motion's main period [s].
-
-    Returns
-    -------
-    StateGuess
-        A state that the channels do not determine and that is no rate of one that they do begins at its `initial`, or
-        at 0, moved by what the channels say of it.
+    simulation: names, and observations: any expressions of states, inputs and time
+    period: the motion's main period [s]
+    returns: a state that the channels do not determine and that is no rate of one that they do begins at its
+        `initial`, or at 0, moved by what the channels say of it
     """
     machine, drive = compile_simulation(simulation), measured.drive
     observed, rate = measured.observed, drive.rate

@@ -12,34 +12,18 @@ from gaitdisc.discovery.prior import Prior
 
 @dataclass(frozen=True)
 class Fitted:
-    """A simulation fitted to segments.
-
-    Parameters
-    ----------
-    values : ndarray (parameter,)
-        Every parameter of the simulation, fitted or not, in its unit.
-    starts : ndarray (segment, state)
-        Start states.
-    states : ndarray (segment, sample, state)
-        The run.
-    residual : ndarray (segment, sample, channel)
-        Measured minus run [the channel's unit].
-    white : ndarray (segment, sample times channel)
-        The residual as independent numbers of unit variance.
-    slopes : ndarray (segment, sample times channel, state + free)
-        What each start state and each constant would change in `white`; zero where a run failed.
-    prior : Prior
-        Of those of the constants that have bounds; they stand last in `free`.
-    """
+    """A simulation fitted to segments."""
 
     free: tuple[str, ...]
-    values: NDArray[np.float64]
-    starts: NDArray[np.float64]
-    states: NDArray[np.float64]
-    residual: NDArray[np.float64]
-    white: NDArray[np.float64]
+    values: NDArray[np.float64]  # (parameter,), every parameter of the simulation, fitted or not, in its unit
+    starts: NDArray[np.float64]  # (segment, state), start states
+    states: NDArray[np.float64]  # (segment, sample, state), the run
+    residual: NDArray[np.float64]  # (segment, sample, channel), measured minus run [the channel's unit]
+    white: NDArray[np.float64]  # (segment, sample times channel), the residual as independent numbers of unit variance
+    # (segment, sample times channel, state + free), what each start state and each constant would change in `white`;
+    # zero where a run failed
     slopes: NDArray[np.float64]
-    prior: Prior = field(default_factory=Prior)
+    prior: Prior = field(default_factory=Prior)  # of those of the constants that have bounds; they stand last in `free`
 
     @property
     def misfit(self) -> float:
@@ -62,10 +46,7 @@ class Fitted:
     def where(self, better: NDArray[np.bool_], other: Fitted) -> Fitted:
         """Return another fit's segments where these are better, and its constants if all are.
 
-        Parameters
-        ----------
-        better : ndarray of bool (segment,)
-            Which.
+        better (segment,): which
         """
         if better.all():
             return other
@@ -116,10 +97,7 @@ class Fitted:
 def start_basis(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return an orthonormal basis, segment by segment, of what the start states can explain.
 
-    Parameters
-    ----------
-    slopes : ndarray (segment, number, state)
-        Slopes of the whitened residual.
+    slopes (segment, number, state): slopes of the whitened residual
     """
     size = np.linalg.norm(slopes, axis=1, keepdims=True)
     basis, triangle = np.linalg.qr(slopes / np.where(size > 0, size, 1.0))
@@ -130,11 +108,7 @@ def start_basis(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
 def without(basis: NDArray[np.float64], columns: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return columns less what a basis explains of them.
 
-    Parameters
-    ----------
-    basis : ndarray (segment, number, state)
-        Orthonormal, from `start_basis`.
-    columns : ndarray (segment, number, column)
-        Whitened.
+    basis (segment, number, state): orthonormal, from `start_basis`
+    columns (segment, number, column): whitened
     """
     return columns - basis @ (np.swapaxes(basis, 1, 2) @ columns)

@@ -76,10 +76,7 @@ def fitted_shape(now: Judged, search: Search, scale: GapScale) -> Judged | None:
     and tried as one bump. Each number costs a little of the gap. What is left remembers itself as long as a shape is
     wrong: under noise that does so too, the wrong one would be the likelier.
 
-    Returns
-    -------
-    Judged or None
-        Under the noise that it leaves; None where no shape can be fitted.
+    returns: under the noise that it leaves; None where no shape can be fitted
     """
     plain = weighed(scale, now.shooting, search.base, (), now.account)
     if not np.isfinite(plain.gap):
@@ -96,10 +93,7 @@ def fitted_shape(now: Judged, search: Search, scale: GapScale) -> Judged | None:
 def cost_of(one: Weighed, plain: Weighed) -> float:
     """Return what an account leaves of the gap on runs left out of the fit, and a little for each of its numbers.
 
-    Parameters
-    ----------
-    one, plain : Weighed
-        With a shape or its reading, and the simulation as read.
+    one, plain: with a shape or its reading, and the simulation as read
     """
     return one.gap / plain.gap + EACH_NUMBER * one.account.size if plain.gap > 0 else np.inf
 

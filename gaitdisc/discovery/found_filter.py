@@ -35,15 +35,8 @@ def record_filter_of(
 ) -> tuple[RecordFilter, tuple[Finding, ...]]:
     """Return what the measured channels went through: as the file says, or as their spectra show.
 
-    Parameters
-    ----------
-    period : float
-        The motion's main period [s].
-
-    Returns
-    -------
-    findings : tuple of Finding
-        About filters that the file does not tell of.
+    period: the motion's main period [s]
+    returns findings: about filters that the file does not tell of
     """
     stated = tuple(simulation.sensor(name).lowpass for name in measured.channels)
     unknown = [number for number, cutoff in enumerate(stated) if cutoff is None]

@@ -28,18 +28,10 @@ TURNS, AGAIN = 15, 6
 
 @dataclass(frozen=True)
 class GapScale:
-    """What a gap is measured against.
+    """What a gap is measured against."""
 
-    Parameters
-    ----------
-    noise : ndarray (channel,)
-        Standard deviation of the sensors' noise [the channel's unit].
-    spread : ndarray (channel,)
-        Standard deviation of the measurement [the channel's unit].
-    """
-
-    noise: NDArray[np.float64]
-    spread: NDArray[np.float64]
+    noise: NDArray[np.float64]  # (channel,), standard deviation of the sensors' noise [the channel's unit]
+    spread: NDArray[np.float64]  # (channel,), standard deviation of the measurement [the channel's unit]
 
     @property
     def size(self) -> NDArray[np.float64]:
@@ -79,20 +71,12 @@ class GapScale:
 
 @dataclass(frozen=True, eq=False)
 class Weighed:
-    """A simulation with some explanations in it, and what it leaves of runs that it was not fitted to.
-
-    Parameters
-    ----------
-    errors : ndarray (piece,)
-        Mean squares left out of the fit, in squares of the scale's size.
-    gap : float
-        Their root mean square above the sensors' noise.
-    """
+    """A simulation with some explanations in it, and what it leaves of runs that it was not fitted to."""
 
     account: Account
     shooting: Shooting
-    errors: NDArray[np.float64]
-    gap: float
+    errors: NDArray[np.float64]  # (piece,), mean squares left out of the fit, in squares of the scale's size
+    gap: float  # their root mean square above the sensors' noise
 
     @property
     def judged(self) -> Judged:
@@ -103,10 +87,7 @@ class Weighed:
 def weighed(scale: GapScale, shooting: Shooting, base: Simulation, parts: tuple[Part, ...], like: Account) -> Weighed:
     """Fit a simulation with explanations in it, and measure what it leaves of runs left out of the fit.
 
-    Parameters
-    ----------
-    like : Account
-        Of the same segments: where start states and numbers with bounds begin.
+    like: of the same segments: where start states and numbers with bounds begin
     """
     enough = CONVERGED * shooting.seen.size / REMEMBERED
     shooting = shooting.with_noise(scale.error_of(like.fit))

@@ -19,21 +19,11 @@ NOISE_FACTOR = 6.0  # times the median line of the spectrum is taken for noise
 
 @dataclass(frozen=True)
 class Rhythm:
-    """The times of a record that grids are made from.
+    """The times of a record that grids are made from."""
 
-    Parameters
-    ----------
-    period : float
-        The motion's main period [s].
-    duration : float
-        The longest trial [s].
-    rate : float
-        Samples a second [Hz].
-    """
-
-    period: float
-    duration: float
-    rate: float
+    period: float  # the motion's main period [s]
+    duration: float  # the longest trial [s]
+    rate: float  # samples a second [Hz]
 
     @property
     def samples(self) -> float:
@@ -44,15 +34,9 @@ class Rhythm:
 def rhythm_of(observed: NDArray[np.float64], rate: float) -> Rhythm:
     """Read the main period off the measured channels.
 
-    Parameters
-    ----------
-    observed : ndarray (trial, sample, channel)
-        Measured, NaN where a trial has ended.
-    rate : float
-        Samples a second [Hz].
+    observed (trial, sample, channel): measured, NaN where a trial has ended
+    rate: samples a second [Hz]
 
-    Examples
-    --------
     >>> t = np.arange(1000) / 100
     >>> bool(abs(rhythm_of(np.sin(2 * np.pi * 0.5 * t)[None, :, None], 100).period - 2.0) < 0.1)
     True
@@ -82,12 +66,8 @@ def _bridged(trial: NDArray[np.float64]) -> NDArray[np.float64]:
 def grid(kind: str, along: NDArray[np.float64], rhythm: Rhythm) -> NDArray[np.float64]:
     """Return where the search for one constant begins.
 
-    Parameters
-    ----------
-    kind : str
-        As in the catalogue: `quantiles of x`, `half widths of x`, `delays`, `frequencies`, `phases`, `phase widths`.
-    along : ndarray (sample,)
-        x along the run.
+    kind: as in the catalogue: `quantiles of x`, `half widths of x`, `delays`, `frequencies`, `phases`, `phase widths`
+    along (sample,): x along the run
     """
     if kind == "quantiles of x":
         return np.quantile(along, QUANTILES)
@@ -105,13 +85,8 @@ def grid(kind: str, along: NDArray[np.float64], rhythm: Rhythm) -> NDArray[np.fl
 def delays(rhythm: Rhythm, either_way: bool = False) -> NDArray[np.float64]:
     """Return the delays at which a search begins [s]: up to about half a period.
 
-    Parameters
-    ----------
-    either_way : bool
-        Whether a signal may as well come early: one that was recorded late.
+    either_way: whether a signal may as well come early: one that was recorded late
 
-    Examples
-    --------
     >>> late = delays(Rhythm(1.0, 10.0, 100.0))
     >>> both = delays(Rhythm(1.0, 10.0, 100.0), either_way=True)
     >>> bool(late.min() > 0), sorted(both) == sorted([*late, *-late])
@@ -124,10 +99,7 @@ def delays(rhythm: Rhythm, either_way: bool = False) -> NDArray[np.float64]:
 def cells(constants: dict[str, str], along: NDArray[np.float64], rhythm: Rhythm) -> list[dict[str, float]]:
     """Return every combination of the constants' beginnings.
 
-    Parameters
-    ----------
-    along : ndarray (sample,)
-        x along the run.
+    along (sample,): x along the run
     """
     axes = [grid(kind, along, rhythm) for kind in constants.values()]
     return [dict(zip(constants, (float(one) for one in cell), strict=True)) for cell in product(*axes)]

@@ -23,16 +23,9 @@ def grown(
 ) -> tuple[Judged, list[Judged]]:
     """Let explanations in while they earn their place.
 
-    Parameters
-    ----------
-    noise : ndarray (channel,), optional
-        Standard deviation of the sensors' noise: two explanations that leave far more of an error are not refined, for
-        no set of names is exact then.
-
-    Returns
-    -------
-    rivals : list of Judged
-        What else stood for the first place, best first.
+    noise (channel,): standard deviation of the sensors' noise: two explanations that leave far more of an error are
+        not refined, for no set of names is exact then
+    returns rivals: what else stood for the first place, best first
     """
     rivals: list[Judged] = []
     explored = {now.account.explanations}
@@ -65,10 +58,7 @@ def grown(
 def leaves(now: Judged, noise: NDArray[np.float64]) -> float:
     """Return the mean square of what an account leaves, over the variance of the sensors' noise.
 
-    Parameters
-    ----------
-    noise : ndarray (channel,)
-        Its standard deviation [the channel's unit].
+    noise (channel,): its standard deviation [the channel's unit]
     """
     return float(np.nanmean((now.account.fit.residual / noise) ** 2))
 
@@ -78,10 +68,7 @@ def beside_others(search: Search, pair: Judged, firsts: list[Judged], explored: 
 
     Two effects together may look most like a third one, which then stands in the way of both.
 
-    Parameters
-    ----------
-    explored : set of Explanations
-        Beside which another was sought; those of this search are added.
+    explored: beside which another was sought; those of this search are added
     """
     pairs = [pair]
     unlike = [one for number, one in enumerate(firsts) if not any(_alike(one, other) for other in firsts[:number])]
@@ -99,12 +86,8 @@ def _alike(one: Judged, other: Judged) -> bool:
 def settled(search: Search, now: Judged, worth: float, explored: set[Explanations]) -> Judged:
     """Exchange and throw out explanations until nothing changes.
 
-    Parameters
-    ----------
-    worth : float
-        By which the evidence must get worse for one to stay.
-    explored : set of Explanations
-        Beside which another was sought; those of this search are added.
+    worth: by which the evidence must get worse for one to stay
+    explored: beside which another was sought; those of this search are added
     """
     for _ in range(SETTLED):
         before = now
@@ -117,10 +100,7 @@ def settled(search: Search, now: Judged, worth: float, explored: set[Explanation
 def exchanged(search: Search, now: Judged, explored: set[Explanations]) -> Judged:
     """Return the account after each explanation was tried against all others in its place.
 
-    Parameters
-    ----------
-    explored : set of Explanations
-        Beside which another was sought; those of this search are added.
+    explored: beside which another was sought; those of this search are added
     """
     for number in range(len(now.account.parts)):
         rest = search.without(now, number)
@@ -139,10 +119,7 @@ def exchanged(search: Search, now: Judged, explored: set[Explanations]) -> Judge
 def pruned(search: Search, now: Judged, worth: float) -> Judged:
     """Return the account without the explanations that a better choice of the others has made idle.
 
-    Parameters
-    ----------
-    worth : float
-        By which the evidence must get worse for one to stay.
+    worth: by which the evidence must get worse for one to stay
     """
     while len(now.account.parts) > 1:
         fewer = [search.without(now, number) for number in range(len(now.account.parts))]

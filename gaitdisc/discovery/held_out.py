@@ -24,17 +24,11 @@ WORTH_ASKING = 50.0  # evidence of the trials that were learned from
 
 @dataclass(frozen=True)
 class Trial:
-    """Runs over some trials, with the constants of an account and start states of their own.
-
-    Parameters
-    ----------
-    measured : ndarray (run, sample, channel)
-        The measurement.
-    """
+    """Runs over some trials, with the constants of an account and start states of their own."""
 
     segments: Segments
     fit: Fitted
-    measured: NDArray[np.float64]
+    measured: NDArray[np.float64]  # (run, sample, channel), the measurement
 
     @property
     def misfits(self) -> NDArray[np.float64]:
@@ -62,10 +56,7 @@ def tells_nothing(inquiry: Inquiry, as_read: Judged, now: Judged) -> bool:
     A spring that engages beyond where a trial goes changes nothing in it. What counts is how far the two runs are
     apart, never which of them the measurement prefers.
 
-    Parameters
-    ----------
-    as_read, now : Judged
-        The simulation as read and with what trials that were learned from speak for.
+    as_read, now: the simulation as read and with what trials that were learned from speak for
     """
     if not now.account.parts or now.gained < WORTH_ASKING:
         return False
@@ -75,10 +66,7 @@ def tells_nothing(inquiry: Inquiry, as_read: Judged, now: Judged) -> bool:
 def holding_out_others(inquiry: Inquiry, as_read: Judged, now: Judged) -> Inquiry:
     """Return the inquiry with other trials held out: the last of those that can tell.
 
-    Parameters
-    ----------
-    as_read, now : Judged
-        The simulation as read and with what trials that were learned from speak for.
+    as_read, now: the simulation as read and with what trials that were learned from speak for
     """
     held = _telling(inquiry, as_read, now)[-len(inquiry.held_out) :]
     learned = tuple(sorted({*inquiry.learned, *inquiry.held_out} - {*held}))
@@ -115,8 +103,6 @@ def _lengths(periods: float) -> list[float]:
 
     The start of a long run is found near that of a short one; from a rough guess its search may end elsewhere.
 
-    Examples
-    --------
     >>> _lengths(4.5), _lengths(0.4)
     ([0.5, 1.5, 4.5], [0.4])
     """
@@ -128,16 +114,10 @@ def _lengths(periods: float) -> list[float]:
 
 @dataclass(frozen=True)
 class Proof:
-    """Held-out runs of two models, and whether the second is better by more than chance.
+    """Held-out runs of two models, and whether the second is better by more than chance."""
 
-    Parameters
-    ----------
-    before, after : Trial
-        The same runs without and with what is to be borne out.
-    """
-
-    before: Trial
-    after: Trial
+    before: Trial  # the same runs without and with what is to be borne out
+    after: Trial  # the same runs without and with what is to be borne out
     test: PairedTest
 
     @property
@@ -171,14 +151,9 @@ def gap_size(
 ) -> GapSize:
     """Measure the gap before and after.
 
-    Parameters
-    ----------
-    before, after : Trial
-        The same runs of the simulation as read and with what was found.
-    floor : ndarray (channel,)
-        Standard deviation of the noise [the channel's unit].
-    test : PairedTest
-        Of the squared errors, or of those of what the data did not bear out.
+    before, after: the same runs of the simulation as read and with what was found
+    floor (channel,): standard deviation of the noise [the channel's unit]
+    test: of the squared errors, or of those of what the data did not bear out
     """
     spread = np.nanstd(after.measured, axis=(0, 1))
     rms = [np.sqrt(np.nanmean(one.fit.residual**2, axis=(0, 1))) for one in (before, after)]
@@ -190,10 +165,7 @@ def gap_size(
 def drawn_runs(inquiry: Inquiry, before: Trial, after: Trial) -> Runs:
     """Return the runs as a report draws them.
 
-    Parameters
-    ----------
-    before, after : Trial
-        The same runs of the simulation as read and with what was found.
+    before, after: the same runs of the simulation as read and with what was found
     """
     segments, drive = before.segments, inquiry.measured.drive
     names = [one.name for one in inquiry.search.base.inputs]

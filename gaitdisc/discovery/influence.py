@@ -22,18 +22,12 @@ NEARLY_OFF = 0.3  # a gain by which little of an input is left
 
 @dataclass(frozen=True)
 class Idle:
-    """What changes nothing in any measured channel.
-
-    Parameters
-    ----------
-    constant : tuple of str
-        Measured channels that no state, place, parameter or input changes.
-    """
+    """What changes nothing in any measured channel."""
 
     places: tuple[str, ...] = ()
     parameters: tuple[str, ...] = ()
     states: tuple[str, ...] = ()
-    constant: tuple[str, ...] = ()
+    constant: tuple[str, ...] = ()  # measured channels that no state, place, parameter or input changes
 
     def findings(self, source: str, kind: str) -> tuple[Finding, ...]:
         """One for each kind."""
@@ -58,10 +52,7 @@ def idle_parts(
 ) -> Idle:
     """Find what changes nothing in any measured channel along runs that begin at the data.
 
-    Parameters
-    ----------
-    starts : ndarray (segment, state)
-        Where each run begins.
+    starts (segment, state): where each run begins
     """
     machine = pushable(simulation, places)
     n, own = starts.shape[1], len(simulation.parameters)

@@ -46,20 +46,12 @@ MOST_SEARCHED = 10_000  # samples, all runs together: what is found on them is f
 
 @dataclass(frozen=True)
 class Inquiry:
-    """A simulation, measured trials, and which of them are held out.
+    """A simulation, measured trials, and which of them are held out."""
 
-    Parameters
-    ----------
-    search : Search
-        The simulation, and everything that could explain a gap.
-    learned, held_out : tuple of int
-        Trials that are searched and fitted, and trials that are only judged on.
-    """
-
-    search: Search
+    search: Search  # the simulation, and everything that could explain a gap
     measured: Measured
-    learned: tuple[int, ...]
-    held_out: tuple[int, ...]
+    learned: tuple[int, ...]  # trials that are searched and fitted, and trials that are only judged on
+    held_out: tuple[int, ...]  # trials that are searched and fitted, and trials that are only judged on
     guess: StateGuess
     record_filter: RecordFilter
 
@@ -84,10 +76,7 @@ class Inquiry:
     def noise_floor(self, noise: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the size of the sensors' noise (channel,), or where it is not known, what a simulation leaves.
 
-        Parameters
-        ----------
-        noise : ndarray (channel,)
-            What a simulation leaves [the channel's unit].
+        noise (channel,): what a simulation leaves [the channel's unit]
         """
         return np.where(np.isnan(self.sensor_noise), noise, self.sensor_noise)
 
@@ -144,10 +133,7 @@ class Inquiry:
     def lengthened(self, now: Judged, most: int = 10**9) -> Judged:
         """Return an account fitted to runs as long as it can follow.
 
-        Parameters
-        ----------
-        most : int
-            Longest run wanted [samples].
+        most: longest run wanted [samples]
         """
         longest = min(most, self.longest - 2 * now.shooting.segments.margin)
         followed = np.sqrt(1 + (FOLLOWED**2 - 1) / self.record_filter.gains**2)
@@ -183,12 +169,8 @@ def begin_inquiry(
 ) -> Inquiry:
     """Prepare an inquiry: split the trials, list places and explanations, guess the states.
 
-    Parameters
-    ----------
-    measured : Measured
-        Its trials; of four, one is held out, of one, the last quarter of its time.
-    weighed : callable
-        Whether an explanation is possible here; all are by default.
+    measured: its trials; of four, one is held out, of one, the last quarter of its time
+    weighed: whether an explanation is possible here; all are by default
     """
     simulation = matched(simulation, measured, shapes)
     if len(measured.trials) == 1:
@@ -232,10 +214,7 @@ def _less_idle(inquiry: Inquiry) -> Inquiry:
 def split_in_time(measured: Measured, last: bool = True) -> Measured:
     """Return one trial as two: what is learned from, and a quarter of its time, held out.
 
-    Parameters
-    ----------
-    last : bool
-        Whether the last quarter is held out, or the first.
+    last: whether the last quarter is held out, or the first
     """
     drive, samples = measured.drive, int(measured.samples[0])
     quarter = samples // 4

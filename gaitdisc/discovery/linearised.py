@@ -26,29 +26,17 @@ MOST_RUNS = 0.8  # of the segments, in which growth must stay below
 
 @dataclass(frozen=True)
 class Linearised:
-    """The one-sample maps of a fitted run, linearised.
+    """The one-sample maps of a fitted run, linearised."""
 
-    Parameters
-    ----------
-    onward : ndarray (segment, step, state, state)
-        F: what a change of state becomes one sample later.
-    pushed : ndarray (segment, step, state, place)
-        G: what a unit push at a place, held over the sample, adds.
-    landed : ndarray (segment, step, state)
-        Where each step of the run lands.
-    """
-
-    onward: NDArray[np.float64]
+    onward: NDArray[np.float64]  # (segment, step, state, state), f: what a change of state becomes one sample later
+    # (segment, step, state, place), g: what a unit push at a place, held over the sample, adds
     pushed: NDArray[np.float64]
-    landed: NDArray[np.float64]
+    landed: NDArray[np.float64]  # (segment, step, state), where each step of the run lands
 
     def first_growth(self, factor: float, states: NDArray[np.float64]) -> int | None:
         """Return the first sample at which a small change of the start has grown so much in a fifth of the segments.
 
-        Parameters
-        ----------
-        states : ndarray (segment, sample, state)
-            The run, for that spread.
+        states (segment, sample, state): the run, for that spread
         """
         scale = np.maximum(states.std(axis=(0, 1)), 1e-9)
         change = np.repeat(np.eye(len(scale))[None], len(states), axis=0)
@@ -64,20 +52,14 @@ class Linearised:
     def among(self, some: NDArray[np.intp]) -> Linearised:
         """Return the maps of some of the segments.
 
-        Parameters
-        ----------
-        some : ndarray of int
-            Their numbers.
+        some: their numbers
         """
         return Linearised(self.onward[some], self.pushed[some], self.landed[some])
 
     def of_push(self, place: int, push: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the change of state (segment, sample, state, candidate) that pushes at a place cause.
 
-        Parameters
-        ----------
-        push : ndarray (segment, sample, candidate)
-            The push at each sample [the place's unit].
+        push (segment, sample, candidate): the push at each sample [the place's unit]
         """
         held = 0.5 * (push[:, :-1] + push[:, 1:])
         return self.of_change(self.pushed[:, :, :, place, None] * held[:, :, None, :])
@@ -85,10 +67,7 @@ class Linearised:
     def of_change(self, change: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the change of state (segment, sample, state, candidate) that changes of each step's landing cause.
 
-        Parameters
-        ----------
-        change : ndarray (segment, step, state, candidate)
-            What each step lands further.
+        change (segment, step, state, candidate): what each step lands further
         """
         segments, steps, states, candidates = change.shape
         out = np.zeros((segments, steps + 1, states, candidates))
@@ -111,12 +90,8 @@ def linearise_along(
 ) -> Linearised:
     """Linearise every step along given states.
 
-    Parameters
-    ----------
-    run : ndarray (segment, sample, state)
-        The states.
-    values : ndarray (parameter,)
-        Its parameters.
+    run (segment, sample, state): the states
+    values (parameter,): its parameters
     """
     machine = pushable(simulation, places)
     n, own = run.shape[2], len(values)
@@ -146,10 +121,7 @@ def pushable(simulation: Simulation, places: tuple[Place, ...]) -> Compiled:
 def seen_change(shooting: Shooting, machine: Compiled, fit: Fitted, change: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return what changes of state change in the measured channels (segment, sample, channel, candidate).
 
-    Parameters
-    ----------
-    change : ndarray (segment, sample, state, candidate)
-        To first order.
+    change (segment, sample, state, candidate): to first order
     """
     if machine.observation.delays:
         return _seen_late(shooting, machine, fit, change)

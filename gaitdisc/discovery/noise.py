@@ -19,25 +19,19 @@ WHITE_SHARE = 0.05  # of the variance is taken as white: no simulation is right 
 class Noise:
     """Stationary noise of each channel as an autoregression of its own past.
 
-    Parameters
-    ----------
-    predictors : tuple of tuple of ndarray
-        For each channel, the predictor of each order 0, 1, ..., p (p,): what the samples before say of the next.
-    spread : tuple of ndarray
-        For each channel, the standard deviation of what each of these predictors leaves [the channel's unit].
-    filtered : tuple of float
-        For each channel, how much less than all the past leaves where white noise went through the record's filter;
-        1 where there is none.
-
-    Examples
-    --------
     >>> white = Noise(((np.zeros(0),),), (np.array([2.0]),))
     >>> white.whitened(np.full((1, 3, 1), 4.0))[0, :, 0]
     array([2., 2., 2.])
     """
 
+    # each ndarray, for each channel, the predictor of each order 0, 1, ..., p (p,): what the samples before say of the
+    # next
     predictors: tuple[tuple[NDArray[np.float64], ...], ...]
+    # each ndarray, for each channel, the standard deviation of what each of these predictors leaves [the channel's
+    # unit]
     spread: tuple[NDArray[np.float64], ...]
+    # for each channel, how much less than all the past leaves where white noise went through the record's filter; 1
+    # where there is none
     filtered: tuple[float, ...] = ()
 
     @property
@@ -59,13 +53,9 @@ class Noise:
     def whitened(self, residual: NDArray[np.float64], known: NDArray[np.bool_] | None = None) -> NDArray[np.float64]:
         """Return residuals as independent numbers of unit variance, if the noise is what it is taken for.
 
-        Parameters
-        ----------
-        residual : ndarray (segment, sample, channel, ...)
-            Each segment begins afresh: its first samples are predicted from the few before them. So it does after
-            samples that are not known.
-        known : ndarray of bool (segment, sample, channel), optional
-            Where there is a residual; nothing is left elsewhere.
+        residual (segment, sample, channel, ...): each segment begins afresh: its first samples are predicted from the
+            few before them. So it does after samples that are not known
+        known (segment, sample, channel): where there is a residual; nothing is left elsewhere
         """
         wide = np.ascontiguousarray(residual, float).reshape(*residual.shape[:3], -1)
         if not any(self.lags):
@@ -84,10 +74,7 @@ class Noise:
 def white_noise(size: NDArray[np.float64]) -> Noise:
     """Return noise without memory.
 
-    Parameters
-    ----------
-    size : ndarray (channel,)
-        Its standard deviation [the channel's unit].
+    size (channel,): its standard deviation [the channel's unit]
     """
     return Noise(tuple((np.zeros(0),) for _ in size), tuple(np.array([one]) for one in size))
 
@@ -101,21 +88,13 @@ def noise_of(
 ) -> Noise:
     """Learn the noise from residuals (Yule-Walker; the order by the Bayesian criterion).
 
-    Parameters
-    ----------
-    residual : ndarray (segment, sample, channel)
-        Measured minus fitted; NaN where nothing was measured. Segments are not joined.
-    used : float
-        Numbers that the fit took from each segment and channel; the variance is enlarged accordingly.
-    white_share : float
-        Of the variance, taken as white whatever the residuals say.
-    least : float or ndarray (channel,)
-        Standard deviation of white noise that is there in any case: what integration and rounding leave.
-    memory : ndarray (lag, channel), optional
-        Autocorrelation of what the record's filter leaves of white noise.
+    residual (segment, sample, channel): measured minus fitted; NaN where nothing was measured. Segments are not joined
+    used: numbers that the fit took from each segment and channel; the variance is enlarged accordingly
+    white_share: of the variance, taken as white whatever the residuals say
+    least float or (channel,): standard deviation of white noise that is there in any case: what integration and
+        rounding leave
+    memory (lag, channel): autocorrelation of what the record's filter leaves of white noise
 
-    Examples
-    --------
     >>> e = np.random.default_rng(0).normal(0, 3, (20, 200, 1))
     >>> noise = noise_of(e)
     >>> noise.lags, bool(abs(noise.size[0] - 3) < 0.1)

@@ -21,30 +21,17 @@ LEFT = 0.5  # of a channel's spread, beyond which a sample is not solved
 
 @dataclass(frozen=True)
 class ObservationMap:
-    """What a simulation observes at the samples of one trial, over each channel's spread; delays are taken as none.
-
-    Parameters
-    ----------
-    t : ndarray (sample,)
-        Time [s].
-    u : ndarray (sample, input)
-        Inputs.
-    spread : ndarray (channel,)
-        Of the measured channels [each channel's unit].
-    """
+    """What a simulation observes at the samples of one trial, over each channel's spread; delays are taken as none."""
 
     machine: Compiled
-    t: NDArray[np.float64]
-    u: NDArray[np.float64]
-    spread: NDArray[np.float64]
+    t: NDArray[np.float64]  # (sample,), time [s]
+    u: NDArray[np.float64]  # (sample, input), inputs
+    spread: NDArray[np.float64]  # (channel,), of the measured channels [each channel's unit]
 
     def at(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the channels that states give (sample, channel).
 
-        Parameters
-        ----------
-        x : ndarray (sample, state)
-            States.
+        x (sample, state): states
         """
         machine, program = self.machine, self.machine.observation
         signals = dict(zip((*machine.states, *machine.inputs), (*x.T, *self.u.T), strict=True))
@@ -56,10 +43,7 @@ class ObservationMap:
     def jacobian(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the slopes of the channels by the states (sample, channel, state); zero where there is none.
 
-        Parameters
-        ----------
-        x : ndarray (sample, state)
-            States.
+        x (sample, state): states
         """
         columns = []
         for state in range(x.shape[1]):
@@ -71,12 +55,8 @@ class ObservationMap:
     def drift(self, x: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
         """Return how fast the channels change while the states rest, through inputs and time (sample, channel) [1/s].
 
-        Parameters
-        ----------
-        x : ndarray (sample, state)
-            States.
-        rate : float
-            Samples a second [Hz].
+        x (sample, state): states
+        rate: samples a second [Hz]
         """
         number = np.arange(len(x))
         after, before = np.minimum(number + 1, len(x) - 1), np.maximum(number - 1, 0)
@@ -90,21 +70,12 @@ class ObservationMap:
 
         What the channels do not determine stays as it began (pseudo-inverse).
 
-        Parameters
-        ----------
-        seen : ndarray (sample, channel)
-            Measured, over each channel's spread.
-        begin : ndarray (sample, state)
-            Where the search begins.
-        free : ndarray of bool (state,)
-            States that may move.
-
-        Returns
-        -------
-        states : ndarray (sample, state)
-            The best of the searches from there, and from 1 to either side, where a slope may be zero at 0.
-        determined : ndarray of bool (sample, state)
-            Whether the channels determine the state.
+        seen (sample, channel): measured, over each channel's spread
+        begin (sample, state): where the search begins
+        free (state,): states that may move
+        returns states (sample, state): the best of the searches from there, and from 1 to either side, where a slope
+            may be zero at 0
+        returns determined (sample, state): whether the channels determine the state
         """
         x = self._descended(seen, begin, free)
         left = self._left(seen, x)

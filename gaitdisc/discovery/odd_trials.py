@@ -40,22 +40,13 @@ AS_GOOD = 1.1  # times the least error; of changes that serve alike, the first i
 
 @dataclass(frozen=True)
 class Odd:
-    """A trial that goes with the simulation only once it is changed, while the others go worse.
-
-    Parameters
-    ----------
-    change : str
-        What is to be done to it, in words: `the sign of x is turned`.
-    channel : str
-        The channel or input that is meant; empty where all are.
-    errors : tuple of float
-        Of the trial as it is and once changed, of the others (median) as they are and if changed alike; in standard
-        deviations of the channels.
-    """
+    """A trial that goes with the simulation only once it is changed, while the others go worse."""
 
     trial: int
-    change: str
-    channel: str
+    change: str  # what is to be done to it, in words: `the sign of x is turned`
+    channel: str  # the channel or input that is meant; empty where all are
+    # of the trial as it is and once changed, of the others (median) as they are and if changed alike; in standard
+    # deviations of the channels
     errors: tuple[float, float, float, float]
 
 
@@ -71,10 +62,7 @@ class Change:
 def agreeing_trials(inquiry: Inquiry, measured: Measured) -> Measured:
     """Return the trials without those that are turned in sign or shifted in time, each with a finding.
 
-    Parameters
-    ----------
-    measured : Measured
-        These, as they were given; of fewer than three, none can be said to be the odd one.
+    measured: these, as they were given; of fewer than three, none can be said to be the odd one
     """
     odd = odd_trials(inquiry) if len(measured.trials) > FEWEST_OTHERS else ()
     if not odd:

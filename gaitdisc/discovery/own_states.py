@@ -24,12 +24,8 @@ def with_own_states(
 ) -> NDArray[np.float64]:
     """Return start states (segment, state) with those of the effects' own states, where these are not yet among them.
 
-    Parameters
-    ----------
-    values : ndarray (parameter,)
-        Its parameters.
-    starts : ndarray (segment, state)
-        Of the simulation as read, first; what follows is replaced.
+    values (parameter,): its parameters
+    starts (segment, state): of the simulation as read, first; what follows is replaced
     """
     if shooting.past is None or len(machine.states) == shooting.past.shape[2]:
         return starts[:, : len(machine.states)]
@@ -41,10 +37,7 @@ def with_own_states(
 def followed(shooting: Shooting, simulation: Simulation, values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the effects' own states along the states of the record (version, trial, sample, own state).
 
-    Parameters
-    ----------
-    values : ndarray (version, parameter)
-        Its parameters, several versions of them.
+    values (version, parameter): its parameters, several versions of them
     """
     assert shooting.past is not None
     drive = shooting.measured.drive

@@ -18,36 +18,22 @@ ANGLES = ("rad", "deg")
 
 @dataclass(frozen=True)
 class Place:
-    """A port, or an equation of a model without ports.
-
-    Parameters
-    ----------
-    motions : tuple of (str, str)
-        Position-like state and its rate, the place's own first, then its differences with others, then (at a port) the
-        others; the rate is empty for a state that has none (first-order systems).
-    others : tuple of str
-        States that would act here as a coupling.
-    products : tuple of (str, str)
-        Pairs of states whose product may act here.
-    angle : bool
-        Whether the place's own position is an angle.
-    """
+    """A port, or an equation of a model without ports."""
 
     kind: str
     name: str
+    # tuple of (str, str), Position-like state and its rate, the place's own first, then its differences with others,
+    # then (at a port) the others; the rate is empty for a state that has none (first-order systems)
     motions: tuple[tuple[str, str], ...]
-    others: tuple[str, ...]
-    products: tuple[tuple[str, str], ...]
-    angle: bool
+    others: tuple[str, ...]  # states that would act here as a coupling
+    products: tuple[tuple[str, str], ...]  # tuple of (str, str), pairs of states whose product may act here
+    angle: bool  # whether the place's own position is an angle
 
 
 def kinematic_rates(simulation: Simulation, machine: Compiled) -> dict[str, str]:
     """Find the states whose equation only says that their derivative is another state.
 
-    Returns
-    -------
-    dict of str to str
-        Position-like state -> the state that is its rate.
+    returns: Position-like state -> the state that is its rate
     """
     states = [state.name for state in simulation.states]
     rng = np.random.default_rng(0)

@@ -45,10 +45,7 @@ DRIVES = 0.05  # more, for a friction that drives the motion
 def price_of(candidate: Candidate, values: Mapping[str, float]) -> float:
     """Return the share of the gap that an explanation must close to be worth its statement.
 
-    Parameters
-    ----------
-    values : mapping of str to float
-        Its numbers: a friction that drives costs more than one that resists.
+    values: its numbers: a friction that drives costs more than one that resists
     """
     drives = candidate.name in LOSSES and values.get("factor", 0.0) > 0
     return PRICES.get(candidate.name, PLAIN) + DRIVES * drives

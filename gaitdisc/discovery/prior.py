@@ -15,19 +15,16 @@ class Prior:
     """Normal distributions of parameters around the file's values, cut off at the file's bounds.
 
     Half the width between the bounds is two standard deviations.
-
-    Parameters
-    ----------
-    places : ndarray of int (number,)
-        Where they stand among the parameters.
-    value, low, high : ndarray (number,)
-        As in the file [each parameter's unit].
     """
 
     names: tuple[str, ...] = ()
+    # (number,), where they stand among the parameters
     places: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
+    # (number,), as in the file [each parameter's unit]
     value: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
+    # (number,), as in the file [each parameter's unit]
     low: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
+    # (number,), as in the file [each parameter's unit]
     high: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
 
     @property
@@ -38,10 +35,7 @@ class Prior:
     def left(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return how far numbers are from the file's, in standard deviations (number,): file minus number.
 
-        Parameters
-        ----------
-        values : ndarray (parameter,)
-            All parameters.
+        values (parameter,): all parameters
         """
         return (self.value - values[self.places]) / self.sd
 
@@ -54,10 +48,7 @@ class Prior:
     def within(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return parameters with those that have bounds put inside them (parameter,).
 
-        Parameters
-        ----------
-        values : ndarray (parameter,)
-            All parameters.
+        values (parameter,): all parameters
         """
         inside = values.copy()
         inside[self.places] = np.clip(values[self.places], self.low, self.high)
@@ -67,13 +58,8 @@ class Prior:
 def prior_of(simulation: Simulation, exact: frozenset[str] = frozenset()) -> Prior:
     """Read the prior off a simulation's bounds.
 
-    Parameters
-    ----------
-    simulation : Simulation
-        A parameter with `low` and `high` has a prior; one with a single bound or none is exact.
+    simulation: a parameter with `low` and `high` has a prior; one with a single bound or none is exact
 
-    Examples
-    --------
     >>> from gaitdisc.simulation.bundled import bundled
     >>> prior = prior_of(bundled("ankle"), frozenset(["b"]))
     >>> prior.names, prior.sd.round(3).tolist()

@@ -41,15 +41,9 @@ AS_MUCH = 0.95  # of what the shape closes of the held-out squared error, which 
 
 @dataclass(frozen=True)
 class Piece:
-    """A piece that a reading may be made of, at one point of its constants' grid.
+    """A piece that a reading may be made of, at one point of its constants' grid."""
 
-    Parameters
-    ----------
-    text : str
-        Over the simulation's names, its constants as words that begin with `_`.
-    """
-
-    text: str
+    text: str  # over the simulation's names, its constants as words that begin with `_`
     kinds: dict[str, str]
     values: dict[str, float]
 
@@ -62,11 +56,9 @@ class Piece:
 def read_shape(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> Verdict:
     """Return a verdict on a learned shape with its reading in its place; as it was where there is none.
 
-    References
-    ----------
-    Brunton, Proctor and Kutz 2016, PNAS 113, 3932 (a library of pieces, few of which act); Miller 2002, Subset
-    Selection in Regression (all pairs are tried here, in place of thresholds); Rackauckas et al. 2020, arXiv 2001.04385
-    (a learned term of an equation, read by regression).
+    Source: Brunton, Proctor and Kutz 2016, PNAS 113, 3932 (a library of pieces, few of which act); Miller 2002, Subset
+        Selection in Regression (all pairs are tried here, in place of thresholds); Rackauckas et al. 2020, arXiv
+        2001.04385 (a learned term of an equation, read by regression).
     """
     shape = verdict.account
     if verdict.word != NAME or len(shape.account.parts) != 1 or not verdict.proof:

@@ -23,17 +23,11 @@ ROOT_TWO = math.sqrt(2.0)
 class RecordFilter:
     """Filters of the observed channels.
 
-    Parameters
-    ----------
-    cutoffs_hz : tuple of float or None
-        -3 dB frequency of one pass, channel by channel; None where a channel was not filtered.
-
-    Examples
-    --------
     >>> RecordFilter((6.0, None), 100.0).margin, RecordFilter((None,), 100.0).margin
     (17, 0)
     """
 
+    # -3 dB frequency of one pass, channel by channel; None where a channel was not filtered
     cutoffs_hz: tuple[float | None, ...]
     rate_hz: float
 
@@ -71,10 +65,7 @@ class RecordFilter:
     def filtered(self, observed: NDArray[np.float64], axis: int) -> NDArray[np.float64]:
         """Simulated channels as the record would have them.
 
-        Parameters
-        ----------
-        observed : ndarray (..., sample, channel, ...)
-            Runs; the channels follow the samples.
+        observed (..., sample, channel, ...): runs; the channels follow the samples
         """
         if not self.margin:
             return observed
@@ -100,12 +91,8 @@ def _coefficients(cutoff: float) -> NDArray[np.float64]:
 def run_both_ways(values: NDArray[np.float64], channel: int, coefficients: NDArray[np.float64], padding: int) -> None:
     """Filter one channel forwards and backwards, in place; runs are continued beyond their ends by turning them over.
 
-    Parameters
-    ----------
-    values : ndarray (run, sample, channel, column)
-        Runs.
-    coefficients : ndarray (3,)
-        b0, a1, a2.
+    values (run, sample, channel, column): runs
+    coefficients (3,): b0, a1, a2
     """
     b, a1, a2 = coefficients[0], coefficients[1], coefficients[2]
     runs, samples, _, columns = values.shape

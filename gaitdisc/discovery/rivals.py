@@ -14,19 +14,11 @@ MOST = 6
 
 @dataclass(frozen=True)
 class Rival:
-    """Another explanation of the same data.
-
-    Parameters
-    ----------
-    gained : float
-        Fall of the Bayesian criterion from the simulation as read.
-    tied : bool
-        Whether these data cannot tell it from the answer.
-    """
+    """Another explanation of the same data."""
 
     account: Judged
-    gained: float
-    tied: bool
+    gained: float  # fall of the Bayesian criterion from the simulation as read
+    tied: bool  # whether these data cannot tell it from the answer
 
     @property
     def part(self) -> Part:
@@ -42,15 +34,9 @@ def evidence_of(search: Search, now: Judged) -> float:
 def rivals_of(search: Search, now: Judged, found: tuple[Judged, ...], gained: float) -> tuple[Rival, ...]:
     """Weigh other explanations against an answer: alone, and in the place of each that the answer is made of.
 
-    Parameters
-    ----------
-    now : Judged
-        The simulation with what was found; without any explanation, rivals keep the evidence that they were found with.
-
-    Returns
-    -------
-    tuple of Rival
-        Best first; none of them explains by the same effect at the same place as the answer.
+    now: the simulation with what was found; without any explanation, rivals keep the evidence that they were found
+        with
+    returns: best first; none of them explains by the same effect at the same place as the answer
     """
     own = set(now.labels)
     others: dict[str, Judged] = {}

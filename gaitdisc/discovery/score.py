@@ -29,17 +29,11 @@ TRIED = "tried"  # begins the names of the numbers of what is scored
 
 @dataclass(frozen=True)
 class Score:
-    """What a candidate promises.
-
-    Parameters
-    ----------
-    gain : float
-        Fall of the misfit (twice the log likelihood) that they promise.
-    """
+    """What a candidate promises."""
 
     candidate: Candidate
     values: dict[str, float]
-    gain: float
+    gain: float  # fall of the misfit (twice the log likelihood) that they promise
 
 
 @dataclass(frozen=True)

@@ -50,15 +50,8 @@ class Search:
     def extended(self, now: Judged, judge: int = JUDGED) -> list[Judged]:
         """Return the account and, after it, others with one explanation more, all under the noise that the best leaves.
 
-        Parameters
-        ----------
-        judge : int
-            How many of the most promising, once refitted, are put under that noise.
-
-        Returns
-        -------
-        list of Judged
-            Empty where no explanation fits; in no order after the first.
+        judge: how many of the most promising, once refitted, are put under that noise
+        returns: empty where no explanation fits; in no order after the first
         """
         account, shooting = now.account, now.shooting
         scorer = self.scorer(shooting, account)

@@ -17,25 +17,13 @@ from gaitdisc.simulation.drive import Rows
 
 @dataclass(frozen=True)
 class Segments:
-    """Runs of equal length inside the trials, each sample in at most one.
+    """Runs of equal length inside the trials, each sample in at most one."""
 
-    Parameters
-    ----------
-    trial : ndarray of int (segment,)
-        The trial that each lies in.
-    begin : ndarray of int (segment,)
-        Its first sample.
-    margin : int
-        Samples at either end that are run and not compared.
-    every : int
-        Of the others, which are compared: every one, every other, ...
-    """
-
-    trial: NDArray[np.intp]
-    begin: NDArray[np.intp]
+    trial: NDArray[np.intp]  # (segment,), the trial that each lies in
+    begin: NDArray[np.intp]  # (segment,), its first sample
     length: int
-    margin: int = 0
-    every: int = 1
+    margin: int = 0  # samples at either end that are run and not compared
+    every: int = 1  # of the others, which are compared: every one, every other, ..
 
     def __len__(self) -> int:
         return len(self.begin)
@@ -43,22 +31,15 @@ class Segments:
     def of(self, records: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the segments of records (segment, sample, ...).
 
-        Parameters
-        ----------
-        records : ndarray (trial, sample, ...)
-            Of every trial.
+        records (trial, sample, ...): of every trial
         """
         return records[self.trial[:, None], self.samples]
 
     def put(self, records: NDArray[np.float64], runs: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return records (trial, sample, ...) with runs in their places; of two that overlap, the one that is compared.
 
-        Parameters
-        ----------
-        records : ndarray (trial, sample, ...)
-            Of every trial.
-        runs : ndarray (segment, sample, ...)
-            One for each segment.
+        records (trial, sample, ...): of every trial
+        runs (segment, sample, ...): one for each segment
         """
         out = records.copy()
         out[self.trial[:, None], self.samples] = runs
@@ -80,23 +61,15 @@ class Segments:
     def among(self, some: NDArray[np.intp]) -> Segments:
         """Return some of the segments.
 
-        Parameters
-        ----------
-        some : ndarray of int
-            Their numbers.
+        some: their numbers
         """
         return replace(self, trial=self.trial[some], begin=self.begin[some])
 
     def spread(self, most: int) -> Segments:
         """Return every second, third, ... segment of each trial, so that they hold about a number of samples together.
 
-        Parameters
-        ----------
-        most : int
-            Samples, all segments together; each trial keeps its first segment.
+        most: samples, all segments together; each trial keeps its first segment
 
-        Examples
-        --------
         >>> cut_segments(np.array([100]), (0,), 20).spread(60).begin.tolist()
         [0, 40, 80]
         """
@@ -120,12 +93,8 @@ class Segments:
     def rows(self, starts: NDArray[np.float64], values: NDArray[np.float64]) -> Rows:
         """Return what it takes to run several versions of a simulation over all segments, version by version.
 
-        Parameters
-        ----------
-        starts : ndarray (version, segment, state)
-            Start states.
-        values : ndarray (version, parameter)
-            Parameters.
+        starts (version, segment, state): start states
+        values (version, parameter): parameters
         """
         versions, segments = starts.shape[:2]
         return Rows(
@@ -141,18 +110,11 @@ def cut_segments(
 ) -> Segments:
     """Cut trials into segments of about a length.
 
-    Parameters
-    ----------
-    samples : ndarray of int (trial,)
-        Samples of every trial.
-    length : int
-        Samples wanted without the margins; the shortest of the trials decides what divides it evenly. A length that
-        came of a cut comes of it again.
-    margin : int
-        Samples that are run before and after these; as many at either end of a trial are not compared.
+    samples (trial,): samples of every trial
+    length: samples wanted without the margins; the shortest of the trials decides what divides it evenly. A length
+        that came of a cut comes of it again
+    margin: samples that are run before and after these; as many at either end of a trial are not compared
 
-    Examples
-    --------
     >>> cut_segments(np.array([100, 70]), (0, 1), 30).begin.tolist()
     [0, 35, 0, 35]
     """

@@ -18,18 +18,9 @@ def sensor_noise(observed: NDArray[np.float64]) -> NDArray[np.float64]:
 
     Noise that a filter has made smooth is not seen: of such a record the estimate is too small.
 
-    Parameters
-    ----------
-    observed : ndarray (trial, sample, channel)
-        Measured, NaN where nothing was.
+    observed (trial, sample, channel): measured, NaN where nothing was
+    returns (channel,): [the channel's unit]; the median over the trials
 
-    Returns
-    -------
-    ndarray (channel,)
-        [the channel's unit]; the median over the trials.
-
-    Examples
-    --------
     >>> t = np.arange(2000) / 100
     >>> noise = np.random.default_rng(0).normal(0, 0.02, t.size)
     >>> bool(abs(sensor_noise((np.sin(6 * t) + noise)[None, :, None])[0] - 0.02) < 0.002)

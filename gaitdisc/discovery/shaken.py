@@ -22,34 +22,20 @@ ROUNDED = 1e-3  # of the variance is taken as white: what is left of a record ab
 
 @dataclass(frozen=True)
 class Shaken:
-    """How well random pushes at one place explain what is left.
-
-    Parameters
-    ----------
-    evidence : float
-        Minus twice the restricted log likelihood plus the price of its numbers, over the segments looked at.
-    rival : float
-        The same for sensor noise with a memory of its own (an autoregression), over the same segments.
-    strength : float
-        Standard deviation of the push, held over one sample [the place's unit].
-    numbers : int
-        How many measured numbers were looked at.
-    """
+    """How well random pushes at one place explain what is left."""
 
     place: Place
+    # minus twice the restricted log likelihood plus the price of its numbers, over the segments looked at
     evidence: float
-    rival: float
-    strength: float
-    numbers: int
+    rival: float  # the same for sensor noise with a memory of its own (an autoregression), over the same segments
+    strength: float  # standard deviation of the push, held over one sample [the place's unit]
+    numbers: int  # how many measured numbers were looked at
 
 
 def shaken(shooting: Shooting, account: Account, places: tuple[Place, ...]) -> list[Shaken]:
     """Weigh random pushes at every place against noise of the sensors; the best place first.
 
-    Returns
-    -------
-    list of Shaken
-        Pushes are independent from sample to sample; the sensors' noise beside them is white.
+    returns: pushes are independent from sample to sample; the sensors' noise beside them is white
     """
     fit, segments = account.fit, shooting.segments
     most = max(MOST_NUMBERS // fit.residual.shape[2], 8)

@@ -27,24 +27,15 @@ ENOUGH = 1e-2
 
 @dataclass(frozen=True)
 class Shooting:
-    """Segments of measured trials and what it takes to run a simulation over them.
+    """Segments of measured trials and what it takes to run a simulation over them."""
 
-    Parameters
-    ----------
-    measured : Measured
-        Trials, with the inputs that drive the simulation.
-    past : ndarray (trial, sample, state) or None
-        States before a segment begins, for what comes late.
-    prior : Prior
-        Of the parameters that have bounds and are fitted.
-    """
-
-    measured: Measured
+    measured: Measured  # trials, with the inputs that drive the simulation
     segments: Segments
     noise: Noise
     substeps: int = 2
+    # (trial, sample, state) or None, states before a segment begins, for what comes late
     past: NDArray[np.float64] | None = None
-    prior: Prior = field(default_factory=Prior)
+    prior: Prior = field(default_factory=Prior)  # of the parameters that have bounds and are fitted
     record_filter: RecordFilter | None = None
 
     @cached_property
@@ -67,19 +58,10 @@ class Shooting:
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Run a simulation over all segments, several versions at once.
 
-        Parameters
-        ----------
-        starts : ndarray (version, segment, state)
-            Start states.
-        values : ndarray (version, parameter)
-            Parameters.
-
-        Returns
-        -------
-        states : ndarray (version, segment, sample, state)
-            NaN from where a run left every bound.
-        observed : ndarray (version, segment, sample, channel)
-            What would be recorded, where it is compared.
+        starts (version, segment, state): start states
+        values (version, parameter): parameters
+        returns states (version, segment, sample, state): NaN from where a run left every bound
+        returns observed (version, segment, sample, channel): what would be recorded, where it is compared
         """
         rows, drive = self.segments.rows(starts, values), self.measured.drive
         states, _ = machine.run(drive, rows, self.segments.length - 1, substeps=self.substeps, past=self.past)
@@ -91,12 +73,8 @@ class Shooting:
     ) -> NDArray[np.float64]:
         """Run every step of every segment by itself, and return where it lands (version, segment, step, state).
 
-        Parameters
-        ----------
-        states : ndarray (version, segment, step, state)
-            Where each step starts.
-        values : ndarray (version, parameter)
-            Parameters of each version.
+        states (version, segment, step, state): where each step starts
+        values (version, parameter): parameters of each version
         """
         rows = self.segments.steps.rows(states.reshape(len(states), -1, states.shape[-1]), values)
         landed, _ = machine.run(self.measured.drive, rows, 1, substeps=self.substeps, past=self.past)
@@ -107,22 +85,15 @@ class Shooting:
     ) -> NDArray[np.float64]:
         """Return what would be recorded along given states, where it is compared (version, segment, sample, channel).
 
-        Parameters
-        ----------
-        states : ndarray (version, segment, sample, state)
-            Its states.
-        values : ndarray (version, parameter)
-            Its parameters.
+        states (version, segment, sample, state): its states
+        values (version, parameter): its parameters
         """
         return self.filtered(self.unfiltered(machine, states, values), 2)
 
     def filtered(self, observed: NDArray[np.float64], axis: int) -> NDArray[np.float64]:
         """Return channels as they come out of the filter that the record went through, where they are compared.
 
-        Parameters
-        ----------
-        observed : ndarray (..., sample, channel, ...)
-            Channels of whole segments.
+        observed (..., sample, channel, ...): channels of whole segments
         """
         recorded = self.record_filter.filtered(observed, axis) if self.record_filter else observed
         return recorded[(slice(None),) * axis + (self.segments.compared,)]
@@ -132,12 +103,8 @@ class Shooting:
     ) -> NDArray[np.float64]:
         """Return what the sensors see along given states, before any filter (version, segment, sample, channel).
 
-        Parameters
-        ----------
-        states : ndarray (version, segment, sample, state)
-            Its states.
-        values : ndarray (version, parameter)
-            Its parameters.
+        states (version, segment, sample, state): its states
+        values (version, parameter): its parameters
         """
         rows = self.segments.rows(states[:, :, 0], values)
         seen = machine.observe(self.measured.drive, rows, states.reshape(-1, *states.shape[2:]), past=self.past)
@@ -148,10 +115,7 @@ class Shooting:
 
         What is not finite counts as none, and so does what was not measured.
 
-        Parameters
-        ----------
-        residual : ndarray (segment, sample, channel, ...)
-            Where it is compared [the channel's unit].
+        residual (segment, sample, channel, ...): where it is compared [the channel's unit]
         """
         if not np.isfinite(residual).all():
             residual = np.nan_to_num(residual, nan=0.0, posinf=0.0, neginf=0.0)
@@ -163,12 +127,8 @@ class Shooting:
     ) -> Fitted:
         """Return the fit at given constants and start states, with its slopes.
 
-        Parameters
-        ----------
-        values : ndarray (parameter,)
-            All parameters.
-        starts : ndarray (segment, state)
-            Start states.
+        values (parameter,): all parameters
+        starts (segment, state): start states
         """
         n, index = starts.shape[1], [machine.parameters.index(name) for name in free]
         spans = np.maximum(np.abs(starts).max(axis=0), 1e-3)
@@ -199,14 +159,9 @@ class Shooting:
     ) -> Fitted:
         """Fit constants and start states (Levenberg-Marquardt; the start states of each segment solved for within).
 
-        Parameters
-        ----------
-        values : ndarray (parameter,)
-            Where all parameters begin.
-        starts : ndarray (segment, state)
-            Where the start states begin.
-        enough : float
-            A step that takes less off the misfit is the last.
+        values (parameter,): where all parameters begin
+        starts (segment, state): where the start states begin
+        enough: a step that takes less off the misfit is the last
         """
         now = self._descended(machine, self.at(machine, free, values, starts), turns, enough)
         elsewhere = self._begun_elsewhere(machine, now, starts)
@@ -254,10 +209,7 @@ class Shooting:
     def with_past(self, states: NDArray[np.float64]) -> Shooting:
         """Return the same segments with a run's states as the past of what comes late.
 
-        Parameters
-        ----------
-        states : ndarray (segment, sample, state)
-            A fitted run; states that effects bring along, after the others, are left out.
+        states (segment, sample, state): a fitted run; states that effects bring along, after the others, are left out
         """
         if self.past is None:
             return self

@@ -56,18 +56,10 @@ def spiked(record: NDArray[np.float64]) -> NDArray[np.bool_]:
     and 5 % of the channel's range; and what lies before and after lies together. An impact turns a position with
     samples on its way, steps a rate once, and gives a force a pulse with shoulders; none of them is marked.
 
-    Parameters
-    ----------
-    record : ndarray (sample,)
-        One channel of a trial; NaN where a cell is empty.
+    record (sample,): one channel of a trial; NaN where a cell is empty
+    Source: Hampel 1974, J. Am. Stat. Assoc. 69, 383. Differs: the deviation is from the line between the neighbours,
+        and a step or a corner of the motion is told apart by what comes after.
 
-    References
-    ----------
-    Hampel 1974, J. Am. Stat. Assoc. 69, 383. Differs: the deviation is from the line between the neighbours, and a step
-    or a corner of the motion is told apart by what comes after.
-
-    Examples
-    --------
     >>> x = np.sin(np.arange(300) / 15)
     >>> x[[100, 200, 201]] += [3.0, -2.0, -2.5]
     >>> np.flatnonzero(spiked(x)).tolist()

@@ -26,15 +26,8 @@ def without_trial_apart(inquiry: Inquiry) -> Measured:
     follows from its slopes, to first order, for each trial in turn: this finds the one to suspect. The others are then
     searched without it, and for comparison without the next.
 
-    Parameters
-    ----------
-    inquiry : Inquiry
-        The simulation as read and all trials, which leave more than noise whatever is named.
-
-    Returns
-    -------
-    Measured
-        The trials as they were where none stands apart, or there are too few or too many to say.
+    inquiry: the simulation as read and all trials, which leave more than noise whatever is named
+    returns: the trials as they were where none stands apart, or there are too few or too many to say
     """
     measured = inquiry.measured
     count = len(measured.trials)

@@ -19,18 +19,12 @@ def whiten(
 ) -> None:
     """Write one channel's innovations, in units of their spread.
 
-    Parameters
-    ----------
-    residual : ndarray (segment, sample, channel, column)
-        What is left; each segment begins afresh, and so does what follows a gap.
-    known : ndarray of bool (segment, sample, channel)
-        Where there is a residual; nothing is left elsewhere.
-    predictors : ndarray (order + 1, order)
-        Row p predicts from the p samples before.
-    spread : ndarray (order + 1,)
-        What each leaves.
-    out : ndarray (segment, sample, channel, column)
-        Written in place.
+    residual (segment, sample, channel, column): what is left; each segment begins afresh, and so does what follows a
+        gap
+    known (segment, sample, channel): where there is a residual; nothing is left elsewhere
+    predictors (order + 1, order): row p predicts from the p samples before
+    spread (order + 1,): what each leaves
+    out (segment, sample, channel, column): written in place
     """
     segments, samples, _, columns = residual.shape
     last = len(spread) - 1

@@ -65,10 +65,7 @@ def on_longer_runs(inquiry: Inquiry, scale: GapScale, now: Weighed) -> Weighed |
 def as_read_on(inquiry: Inquiry, scale: GapScale, as_read: Weighed, longer: Weighed) -> Weighed:
     """Run the simulation as read over the runs of what was found; an error beyond the spread counts as the spread.
 
-    Parameters
-    ----------
-    as_read, longer : Weighed
-        The simulation as read on shorter runs, and what was found on longer ones.
+    as_read, longer: the simulation as read on shorter runs, and what was found on longer ones
     """
     shooting = longer.shooting.with_noise(scale.error_of(as_read.account.fit))
     starts = longer.account.fit.starts

@@ -27,10 +27,7 @@ DIRECTIONS = re.compile(
 def sentence_of(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> Discovery:
     """Return the discovery with its sentence.
 
-    Parameters
-    ----------
-    parts : tuple of Part
-        The explanations behind the effects, in their order; none for verdicts without a term, number or signal.
+    parts: the explanations behind the effects, in their order; none for verdicts without a term, number or signal
     """
     said = [_said(discovery, base, parts), _tied(discovery), _shown(discovery), _moved(discovery)]
     return replace(discovery, sentence=" ".join(one for one in said if one))

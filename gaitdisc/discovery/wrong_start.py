@@ -15,10 +15,7 @@ WRONG = 5.0  # standard errors from the file's number
 def wrong_starts(simulation: Simulation, as_read: Judged) -> dict[str, Estimate]:
     """Find the states that begin elsewhere than the file says.
 
-    Returns
-    -------
-    dict of str to Estimate
-        State -> where the trials begin on average, weighted by how well each tells, with its 95 % interval.
+    returns: state -> where the trials begin on average, weighted by how well each tells, with its 95 % interval
     """
     fit, segments = as_read.account.fit, as_read.shooting.segments
     first = np.flatnonzero(segments.begin == 0)

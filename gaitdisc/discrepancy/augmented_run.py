@@ -21,18 +21,10 @@ FIELD_STEP_S = LONGEST_STEP_S  # where the known rates are a field's: as the fie
 
 @dataclass(frozen=True, eq=False)
 class AugmentedRun:
-    """States or channels of the augmented model.
+    """States or channels of the augmented model."""
 
-    Parameters
-    ----------
-    values : ndarray (sample, channel)
-        NaN from where it diverged.
-    diverged_s : float or None
-        Time of the last finite sample [s], where it left every bound.
-    """
-
-    values: NDArray[np.float64]
-    diverged_s: float | None
+    values: NDArray[np.float64]  # (sample, channel), NaN from where it diverged
+    diverged_s: float | None  # time of the last finite sample [s], where it left every bound
 
     def __post_init__(self) -> None:
         """Freeze the numbers."""
@@ -44,17 +36,10 @@ def with_learned_rates(
 ) -> AugmentedRun:
     """Integrate f + delta_f (Eq. 3.4).
 
-    Parameters
-    ----------
-    start : ndarray (state,)
-        First state.
-    time : ndarray (sample,) [s]
-        Even.
-    step_s : float, optional
-        Longest step [s]; where absent, 2.5 ms, and 5 ms of rates that are no simulation file.
+    start (state,): first state
+    time (sample,) [s]: even
+    step_s: longest step [s]; where absent, 2.5 ms, and 5 ms of rates that are no simulation file
 
-    Examples
-    --------
     >>> from gaitdisc.regression.polynomials import library
     >>> from gaitdisc.regression.sindy import Sindy
     >>> from gaitdisc.simulation.parts import State
@@ -87,14 +72,9 @@ def on_states(
 ) -> AugmentedRun:
     """Correct the known model's solution (Eq. 3.5).
 
-    Parameters
-    ----------
-    start : ndarray (state,)
-        First state of the known model.
-    time : ndarray (sample,) [s]
-        Even.
-    summed : bool
-        As the published code does with SINDy: delta is taken for a rate, integrated from zero and then added.
+    start (state,): first state of the known model
+    time (sample,) [s]: even
+    summed: as the published code does with SINDy: delta is taken for a rate, integrated from zero and then added
     """
     dt = float(time[1] - time[0])
     states = system.known.run(start[None], dt, len(time) - 1)[0]

@@ -30,12 +30,8 @@ class BurgersRates:
     def run(self, starts: NDArray[np.float64], dt_s: float, steps: int) -> NDArray[np.float64]:
         """Fields (start, steps + 1, state); NaN from where one diverged.
 
-        Parameters
-        ----------
-        starts : ndarray (start, state)
-            First fields.
-        dt_s : float
-            Between samples [s].
+        starts (start, state): first fields
+        dt_s: between samples [s]
         """
         found = np.full((len(starts), steps + 1, POINTS), np.nan)
         substeps = max(1, int(np.ceil(dt_s / LONGEST_STEP_S)))
@@ -55,13 +51,8 @@ class BurgersRates:
 def slope_and_bend(x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """First and second derivative in space of fields, by Fourier, (point, state) each.
 
-    Parameters
-    ----------
-    x : ndarray (point, state)
-        Fields.
+    x (point, state): fields
 
-    Examples
-    --------
     >>> angle = 2 * np.pi / LENGTH * places()[None]
     >>> slope, bend = slope_and_bend(np.sin(angle))
     >>> bool(np.allclose(slope, 2 * np.pi / LENGTH * np.cos(angle)))
@@ -78,13 +69,8 @@ def smoothed_in_space(fields: NDArray[np.float64]) -> NDArray[np.float64]:
     The noise's power is the median of that of the shortest quarter of the waves; waves up to half as many again as
     stand five times above it, over all samples, are kept.
 
-    Parameters
-    ----------
-    fields : ndarray (sample, state)
-        Measured, with noise.
+    fields (sample, state): measured, with noise
 
-    Examples
-    --------
     >>> clean = np.exp(-places() ** 2) + np.zeros((50, 1))
     >>> noisy = clean + 0.01 * np.random.default_rng(0).standard_normal(clean.shape)
     >>> bool(np.std(smoothed_in_space(noisy) - clean) < 0.005)
@@ -106,15 +92,9 @@ def places() -> NDArray[np.float64]:
 def burgers(cubic: float, sign: float = -1.0) -> System:
     """System of Eqs. 3.11 and 3.12.
 
-    Parameters
-    ----------
-    cubic : float
-        eps: 0.01 in the text, 0.1 in the published code.
-    sign : float
-        Of the exponent of the first pulse exp(sign (x + 2)^2): -1 in the published code, +1 in the text.
+    cubic: eps: 0.01 in the text, 0.1 in the published code
+    sign: of the exponent of the first pulse exp(sign (x + 2)^2): -1 in the published code, +1 in the text
 
-    Examples
-    --------
     >>> burgers(0.1).true(np.ones((1, 256)))[0, 0].round(6)
     np.float64(-0.1)
     """

@@ -16,13 +16,6 @@ from gaitdisc.recording import Samples
 class ByOutput:
     """A model for each output; a `gaitdisc.model.Model`.
 
-    Parameters
-    ----------
-    models : tuple of Model
-        Of the same inputs, each with one output, in order.
-
-    Examples
-    --------
     >>> from gaitdisc.regression.polynomials import library
     >>> from gaitdisc.regression.sindy import Sindy
     >>> twice = Sindy(("x",), ("a",), library(1, 1), np.array([[0.0], [2.0]]), 0.1)
@@ -31,7 +24,7 @@ class ByOutput:
     [[8.0, 2.0]]
     """
 
-    models: tuple[Model, ...]
+    models: tuple[Model, ...]  # of the same inputs, each with one output, in order
 
     @property
     def inputs(self) -> tuple[str, ...]:

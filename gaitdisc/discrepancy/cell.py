@@ -33,18 +33,9 @@ def cell(
 ) -> DiscrepancyCell:
     """Learn one error signal by one method, and judge the augmented model.
 
-    Parameters
-    ----------
-    settings : MethodSettings, optional
-        Of the methods; SINDy's threshold is the published one in the published variant.
+    settings: of the methods; SINDy's threshold is the published one in the published variant
+    returns: with the refusal in words where nothing can be fitted
 
-    Returns
-    -------
-    DiscrepancyCell
-        With the refusal in words where nothing can be fitted.
-
-    Examples
-    --------
     >>> from gaitdisc.discrepancy.system import system_of
     >>> from gaitdisc.simulation.bundled import bundled
     >>> from gaitdisc.simulation.parts import Term

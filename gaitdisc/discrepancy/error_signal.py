@@ -25,15 +25,10 @@ FLOW_STEPS = 8  # of Runge-Kutta, between two samples
 def error_samples(record: Record, approach: Approach, of_time: bool = False) -> Samples:
     """Samples of an error signal, that any method is fitted to.
 
-    Parameters
-    ----------
-    approach : str
-        `dynamics`: the deterministic dynamical error at the measured states (Eqs. 3.4, 3.6); `state`: the systematic
-        state-space residual at the known model's states (Eq. 3.5), of the measurement as it is: low-passed, its noise
-        would be taken for signal (only the published variant is).
+    approach: `dynamics`: the deterministic dynamical error at the measured states (Eqs. 3.4, 3.6); `state`: the
+        systematic state-space residual at the known model's states (Eq. 3.5), of the measurement as it is: low-passed,
+        its noise would be taken for signal (only the published variant is)
 
-    Examples
-    --------
     >>> from gaitdisc.discrepancy.record import Conditions, recorded
     >>> from gaitdisc.discrepancy.system import system_of
     >>> from gaitdisc.simulation.bundled import bundled
@@ -112,12 +107,8 @@ def flow_error(known: Callable, y: NDArray[np.float64], dt_s: float) -> NDArray[
     while a central difference has it in the *whole* rate, which for the Lorenz system at 0.01 s is larger than what is
     to be found.
 
-    Parameters
-    ----------
-    y : ndarray (sample, state)
-        States.
-    dt_s : float
-        Between samples [s].
+    y (sample, state): states
+    dt_s: between samples [s]
     """
     ahead = y[2:] - flow(known, y[1:-1], dt_s)
     behind = y[:-2] - flow(known, y[1:-1], -dt_s)

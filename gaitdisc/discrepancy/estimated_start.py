@@ -20,21 +20,11 @@ Run = Callable[[NDArray[np.float64], NDArray[np.float64]], tuple[NDArray[np.floa
 
 @dataclass(frozen=True, eq=False)
 class EstimatedStart:
-    """A state with its uncertainty.
+    """A state with its uncertainty."""
 
-    Parameters
-    ----------
-    state : ndarray (state,)
-        At the last sample of the record.
-    sd : ndarray (state,)
-        Standard error from the noise alone; NaN where no window could be fitted.
-    samples : int
-        Of the window; 0 where no window could be fitted and the state is the first guess.
-    """
-
-    state: NDArray[np.float64]
-    sd: NDArray[np.float64]
-    samples: int
+    state: NDArray[np.float64]  # (state,), at the last sample of the record
+    sd: NDArray[np.float64]  # (state,), standard error from the noise alone; NaN where no window could be fitted
+    samples: int  # of the window; 0 where no window could be fitted and the state is the first guess
 
     def __post_init__(self) -> None:
         """Freeze the numbers."""
@@ -52,23 +42,13 @@ def estimated_start(
     of the model's own error: of the windows that double in length the longest is taken whose end agrees, within 2.5
     standard errors in every state, with the ends of all shorter ones.
 
-    Parameters
-    ----------
-    run : callable
-        From a first state (state,) and times (sample,) [s] to states (sample, state) and channels (sample, channel).
-    time : ndarray (sample,) [s]
-        Of the record, even.
-    measured : ndarray (sample, channel)
-        With its noise.
-    guess : ndarray (sample, state)
-        Smoothed states, where each fit begins; their distance from `measured` in the channels is the noise.
+    run: from a first state (state,) and times (sample,) [s] to states (sample, state) and channels (sample, channel)
+    time (sample,) [s]: of the record, even
+    measured (sample, channel): with its noise
+    guess (sample, state): smoothed states, where each fit begins; their distance from `measured` in the channels is
+        the noise
+    Source: Goldenshluger and Nemirovski 1997, Math. Methods Stat. 6:135 (windows whose intervals intersect).
 
-    References
-    ----------
-    Goldenshluger and Nemirovski 1997, Math. Methods Stat. 6:135 (windows whose intervals intersect).
-
-    Examples
-    --------
     >>> t, rng = np.arange(2000) / 100, np.random.default_rng(0)
     >>> still = lambda start, time: (np.tile(start, (len(time), 1)), np.tile(start, (len(time), 1)))
     >>> found = estimated_start(still, t, 3 + 0.1 * rng.standard_normal((2000, 1)), np.full((2000, 1), 3.0))

@@ -26,13 +26,9 @@ def filtered_start(record: Record, learned: Model, by: Filter) -> NDArray[np.flo
     The noise is what smoothing took from the record. Of five sizes of process noise, which stands for what the learned
     model lacks, the one is taken under which the unscented filter finds the measurements likeliest.
 
-    References
-    ----------
-    Julier and Uhlmann 2004, Proc. IEEE 92:401; Evensen 1994, J. Geophys. Res. 99:10143; Mehra 1970, IEEE Trans. Autom.
-    Control 15:175 (process noise from the innovations).
+    Source: Julier and Uhlmann 2004, Proc. IEEE 92:401; Evensen 1994, J. Geophys. Res. 99:10143; Mehra 1970, IEEE
+        Trans. Autom. Control 15:175 (process noise from the innovations).
 
-    Examples
-    --------
     >>> from gaitdisc.discrepancy.cell import learned_model
     >>> from gaitdisc.discrepancy.methods import MethodSettings
     >>> from gaitdisc.discrepancy.record import Conditions, recorded

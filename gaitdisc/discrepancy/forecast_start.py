@@ -17,8 +17,6 @@ MOST_STATES = 12  # of a fit by differences; a field begins at its last smoothed
 def forecast_start(record: Record, learned: Model | None, approach: Approach) -> NDArray[np.float64]:
     """State at the end of the training part, estimated from the measurement under the model that forecasts, (state,).
 
-    Examples
-    --------
     >>> from gaitdisc.discrepancy.record import Conditions, recorded
     >>> from gaitdisc.discrepancy.system import system_of
     >>> from gaitdisc.simulation.bundled import bundled

@@ -30,8 +30,6 @@ def grid(
 
     Before the first, each method is fitted to a short record, so that no cell's seconds hold importing and compiling.
 
-    Examples
-    --------
     >>> from gaitdisc.discrepancy.system import system_of
     >>> from gaitdisc.simulation.bundled import bundled
     >>> from gaitdisc.simulation.parts import Term

@@ -25,30 +25,17 @@ NOTHING = 1e-6  # of the known model's own rates or states: an error signal belo
 
 @dataclass(frozen=True, eq=False)
 class HiddenEffect:
-    """A system and what is hidden in it.
-
-    Parameters
-    ----------
-    words : str
-        What is hidden, in words; empty for nothing.
-    effect : tuple of str
-        Place and name by which `gaitdisc discover` would name it; empty for nothing.
-    amount : float
-        Its number, in the convention of `gaitdisc discover`.
-    terms : mapping of str to mapping of str to float
-        Output to terms with their coefficients, by which SINDy would name it; empty where it has no such name.
-    duration_s : float
-        Of the record [s].
-    """
+    """A system and what is hidden in it."""
 
     case: str
-    words: str
+    words: str  # what is hidden, in words; empty for nothing
     system: System
-    effect: tuple[str, ...] = ()
-    amount: float = float("nan")
+    effect: tuple[str, ...] = ()  # place and name by which `gaitdisc discover` would name it; empty for nothing
+    amount: float = float("nan")  # its number, in the convention of `gaitdisc discover`
+    # output to terms with their coefficients, by which SINDy would name it; empty where it has no such name
     terms: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     approach: Approach = "dynamics"
-    duration_s: float = 50.0
+    duration_s: float = 50.0  # of the record [s]
 
 
 def method_answer(
@@ -58,8 +45,6 @@ def method_answer(
 
     SINDy answers with terms, the others with a curve: of time (DMD) or of the states (Gaussian process, network).
 
-    Examples
-    --------
     >>> from gaitdisc.discrepancy.record import Conditions
     >>> from gaitdisc.discrepancy.system import system_of
     >>> from gaitdisc.simulation.bundled import bundled

@@ -17,21 +17,11 @@ Step = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 @dataclass(frozen=True, eq=False)
 class Filtered:
-    """States and what they let one see.
+    """States and what they let one see."""
 
-    Parameters
-    ----------
-    states : ndarray (sample, state)
-        After each measurement.
-    sd : ndarray (sample, state)
-        Their standard deviations.
-    likelihood : float
-        Logarithm of the density of what was measured, each sample given those before.
-    """
-
-    states: NDArray[np.float64]
-    sd: NDArray[np.float64]
-    likelihood: float
+    states: NDArray[np.float64]  # (sample, state), after each measurement
+    sd: NDArray[np.float64]  # (sample, state), their standard deviations
+    likelihood: float  # logarithm of the density of what was measured, each sample given those before
 
     def __post_init__(self) -> None:
         """Freeze the numbers."""
@@ -41,21 +31,11 @@ class Filtered:
 
 @dataclass(frozen=True, eq=False)
 class Uncertainty:
-    """Noise that a filter assumes.
+    """Noise that a filter assumes."""
 
-    Parameters
-    ----------
-    first : ndarray (state,)
-        Standard deviation of the first state.
-    step : ndarray (state,)
-        That each step adds.
-    measured : float or ndarray (channel,)
-        Of what is measured.
-    """
-
-    first: NDArray[np.float64]
-    step: NDArray[np.float64]
-    measured: float | NDArray[np.float64]
+    first: NDArray[np.float64]  # (state,), standard deviation of the first state
+    step: NDArray[np.float64]  # (state,), that each step adds
+    measured: float | NDArray[np.float64]  # float or (channel,), of what is measured
 
 
 def linear_kalman(
@@ -64,23 +44,12 @@ def linear_kalman(
 ) -> Filtered:  # fmt: skip
     """Kalman filter.
 
-    Parameters
-    ----------
-    turn : ndarray (state, state)
-        One sample on.
-    seen : ndarray (state,)
-        Of one measured channel.
-    y : ndarray (sample,)
-        Measured.
-    start : ndarray (state,)
-        First state.
+    turn (state, state): one sample on
+    seen (state,): of one measured channel
+    y (sample,): measured
+    start (state,): first state
+    Source: Kalman 1960, J. Basic Eng. 82:35.
 
-    References
-    ----------
-    Kalman 1960, J. Basic Eng. 82:35.
-
-    Examples
-    --------
     >>> noise = Uncertainty(np.ones(1), np.zeros(1), 1.0)
     >>> linear_kalman(np.eye(1), np.ones(1), np.ones(99), np.zeros(1), noise).states[-1].round(2)
     array([0.99])
@@ -105,21 +74,11 @@ def unscented_kalman(
 ) -> Filtered:
     """Unscented Kalman filter.
 
-    Parameters
-    ----------
-    seen : callable
-        From states (point, state) to what is measured of them, (point,) or (point, channel).
-    y : ndarray (sample,) or (sample, channel)
-        Measured.
-    start : ndarray (state,)
-        First state.
+    seen: from states (point, state) to what is measured of them, (point,) or (point, channel)
+    y (sample,) or (sample, channel): measured
+    start (state,): first state
+    Source: Julier and Uhlmann 2004, Proc. IEEE 92:401; scaled sigma points with alpha 0.1, beta 2, kappa 0.
 
-    References
-    ----------
-    Julier and Uhlmann 2004, Proc. IEEE 92:401; scaled sigma points with alpha 0.1, beta 2, kappa 0.
-
-    Examples
-    --------
     >>> noise = Uncertainty(np.ones(1), np.zeros(1), 1.0)
     >>> unscented_kalman(lambda x: x, lambda x: x[:, 0], np.ones(99), np.zeros(1), noise).states[-1].round(2)
     array([0.99])
@@ -165,22 +124,12 @@ def ensemble_kalman(
 ) -> Filtered:
     """Ensemble Kalman filter, every member moved towards a measurement with noise of its own.
 
-    Parameters
-    ----------
-    seen : callable
-        From states (member, state) to what is measured of them, (member,) or (member, channel).
-    y : ndarray (sample,) or (sample, channel)
-        Measured.
-    start : ndarray (state,)
-        First state; the members are drawn around it.
+    seen: from states (member, state) to what is measured of them, (member,) or (member, channel)
+    y (sample,) or (sample, channel): measured
+    start (state,): first state; the members are drawn around it
+    Source: Evensen 1994, J. Geophys. Res. 99:10143; Burgers, van Leeuwen, Evensen 1998, Mon. Weather Rev. 126:1719.
+        The spread is multiplied by 1.02 at each sample (Anderson and Anderson 1999, Mon. Weather Rev. 127:2741).
 
-    References
-    ----------
-    Evensen 1994, J. Geophys. Res. 99:10143; Burgers, van Leeuwen, Evensen 1998, Mon. Weather Rev. 126:1719. The spread
-    is multiplied by 1.02 at each sample (Anderson and Anderson 1999, Mon. Weather Rev. 127:2741).
-
-    Examples
-    --------
     >>> noise = Uncertainty(np.ones(1), np.zeros(1), 1.0)
     >>> found = ensemble_kalman(lambda x: x, lambda x: x[:, 0], np.ones(99), np.zeros(1), noise)
     >>> bool(abs(found.states[-1, 0] - 1) < 0.3)

@@ -43,12 +43,8 @@ class KnownRates:
     def run(self, starts: NDArray[np.float64], dt_s: float, steps: int) -> NDArray[np.float64]:
         """States (start, steps + 1, state) from many starts; NaN from where one diverged.
 
-        Parameters
-        ----------
-        starts : ndarray (start, state)
-            First states.
-        dt_s : float
-            Between samples [s].
+        starts (start, state): first states
+        dt_s: between samples [s]
         """
         drive = Drive.of([np.empty((steps + 1, 0))], 1.0 / dt_s)
         none = np.zeros(len(starts), int)

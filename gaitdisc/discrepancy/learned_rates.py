@@ -17,16 +17,10 @@ PRODUCTS, KERNELS, LAYERS, TIMES = 0, 1, 2, 3  # what `tables` holds
 def learned_rate(kind, tables, place, x, out):
     """Outputs of a learned term at one state.
 
-    Parameters
-    ----------
-    kind : int
-        Of what `tables` holds: products of powers, Gaussian kernels, layers of a network, or values in time.
-    tables : tuple of ndarray
-        Six matrices, as `learned_term` lays them out.
-    x : ndarray (state,)
-        State.
-    out : ndarray (state,)
-        Changed in place.
+    kind: of what `tables` holds: products of powers, Gaussian kernels, layers of a network, or values in time
+    tables each ndarray: six matrices, as `learned_term` lays them out
+    x (state,): state
+    out (state,): changed in place
     """
     if kind == 0:
         _products(tables, x, out)
@@ -106,16 +100,10 @@ def _layers(tables, x, out):
 def integrate_augmented(program, learned, start, plan, found):
     """Known rates plus a learned term, by Runge-Kutta of order 4; ends where a state leaves every bound.
 
-    Parameters
-    ----------
-    program : tuple
-        Code that each stage runs, registers with parameters and constants in their places.
-    start : ndarray (state,)
-        First state.
-    plan : tuple
-        Samples to go, steps for each, size of a step [s].
-    found : ndarray (sample, state)
-        Changed in place; NaN stays where the run diverged.
+    program: code that each stage runs, registers with parameters and constants in their places
+    start (state,): first state
+    plan: samples to go, steps for each, size of a step [s]
+    found (sample, state): changed in place; NaN stays where the run diverged
     """
     code, registers = program
     kind, tables = learned

@@ -22,30 +22,18 @@ TABLES = 6
 
 @dataclass(frozen=True, eq=False)
 class LearnedTerm:
-    """Features and weights.
-
-    Parameters
-    ----------
-    tables : tuple of ndarray
-        Six matrices.
-    """
+    """Features and weights."""
 
     kind: int
-    tables: Tables
+    tables: Tables  # each ndarray, six matrices
 
 
 def learned_term(model: Model, times: NDArray[np.float64]) -> LearnedTerm:
     """Lay out a learned model.
 
-    Parameters
-    ----------
-    model : Model
-        `Sindy`, `Dmd`, `GaussianProcess`, or the dissertation's network as the trainer gives it, one or by output.
-    times : ndarray (stage,) [s]
-        Of the integrator's half steps, for a model of time.
+    model: `Sindy`, `Dmd`, `GaussianProcess`, or the dissertation's network as the trainer gives it, one or by output
+    times (stage,) [s]: of the integrator's half steps, for a model of time
 
-    Examples
-    --------
     >>> from gaitdisc.regression.polynomials import library
     >>> cubic = Sindy(("x",), ("x",), library(1, 3), np.array([[0.0], [0], [0], [0.01]]), 0.005)
     >>> learned_term(cubic, np.empty(0)).kind == PRODUCTS

@@ -27,20 +27,12 @@ MOST_SAMPLES = 3000  # of all points at all times
 
 @dataclass(frozen=True, eq=False)
 class LocalField:
-    """A learned function of value, slope and bend at a point, at every point; a `gaitdisc.model.Model`.
+    """A learned function of value, slope and bend at a point, at every point; a `gaitdisc.model.Model`."""
 
-    Parameters
-    ----------
-    inputs, outputs : tuple of str
-        Values of the field; what is learned of each.
-    said : str
-        Terms of the learned function, where the method says any.
-    """
-
-    inputs: tuple[str, ...]
-    outputs: tuple[str, ...]
+    inputs: tuple[str, ...]  # values of the field; what is learned of each
+    outputs: tuple[str, ...]  # values of the field; what is learned of each
     term: LearnedTerm
-    said: str = ""
+    said: str = ""  # terms of the learned function, where the method says any
 
     def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """Outputs (sample, place) for fields (sample, place)."""
@@ -55,10 +47,7 @@ def fit_local_field(samples: Samples, method: Method, settings: MethodSettings, 
 
     Of all points at all times 3,000 are drawn: neighbours in space and time hold the same.
 
-    Parameters
-    ----------
-    samples : Samples
-        Fields on a ring of even points, and the error signal at each.
+    samples: fields on a ring of even points, and the error signal at each
     """
     points, error = _points(samples.x), samples.y.reshape(-1, 1)
     some = np.sort(np.random.default_rng(seed).choice(len(points), min(MOST_SAMPLES, len(points)), replace=False))
@@ -77,10 +66,7 @@ def recorded_field(system: System, conditions: Conditions) -> Record:
 def local_cell(record: Record, method: Method, settings: MethodSettings | None = None) -> DiscrepancyCell:
     """Learn the missing rate of a field as a function of the field at a point, and judge the augmented model.
 
-    Returns
-    -------
-    DiscrepancyCell
-        With the refusal in words where nothing can be fitted.
+    returns: with the refusal in words where nothing can be fitted
     """
     made, begun = record.conditions, clock.process_time()
     head = (record.system.name, method, "dynamics", "at each point", made.noise, made.seed, record.system.channels)

@@ -22,27 +22,16 @@ BAGS, SINDY_BAGS = 10, 20  # of BOP-DMD and of SINDy's ensemble, where none are 
 
 @dataclass(frozen=True)
 class MethodSettings:
-    """Settings of all methods.
-
-    Parameters
-    ----------
-    threshold : float, optional
-        Of SINDy; chosen on an inner block where absent.
-    bags : int
-        Of SINDy's ensemble and of BOP-DMD; 0 for plain SINDy, for twenty of `esindy` and for ten of BOP-DMD.
-    most_exact : int
-        Samples up to which the Gaussian process is exact.
-    nodes : int
-        Of either hidden layer of the networks, one network for each output; the published code has ten.
-    """
+    """Settings of all methods."""
 
     degree: int = 3
-    threshold: float | None = None
+    threshold: float | None = None  # of SINDy; chosen on an inner block where absent
+    # of SINDy's ensemble and of BOP-DMD; 0 for plain SINDy, for twenty of `esindy` and for ten of BOP-DMD
     bags: int = 0
     delays: int = DELAYS
     rank: int = RANK
-    most_exact: int = MOST_EXACT
-    nodes: int = 10
+    most_exact: int = MOST_EXACT  # samples up to which the Gaussian process is exact
+    nodes: int = 10  # of either hidden layer of the networks, one network for each output; the published code has ten
 
 
 def fitted(samples: Samples, method: Method, settings: MethodSettings, seed: int = 0) -> Model:
@@ -53,10 +42,8 @@ def fitted(samples: Samples, method: Method, settings: MethodSettings, seed: int
     trained as the published ones, by Levenberg-Marquardt with Bayesian regularisation: stochastic descent, stopped by
     an inner block of a few seconds, left a bias that the forecast gathers (docs/results.md, chapter 3).
 
-    Parameters
-    ----------
-    samples : Samples
-        Of states, or of time for the methods of `OF_TIME`; outputs are the error signal, for `wsindy` the known rates.
+    samples: of states, or of time for the methods of `OF_TIME`; outputs are the error signal, for `wsindy` the known
+        rates
     """
     fits: dict[str, Callable[[], Model]] = {
         "sindy": lambda: fit_sindy(samples, settings.degree, settings.threshold, settings.bags, seed),

@@ -31,22 +31,13 @@ STARTS = {FORECAST: ESTIMATED, ORACLE: TRUE}
 
 @dataclass(frozen=True, eq=False)
 class Recommendation:
-    """A method and what speaks for it.
+    """A method and what speaks for it."""
 
-    Parameters
-    ----------
-    method : str
-        `sindy`, `dmd`, `bopdmd`, `gp`, `nn`; empty where none did better than the known model.
-    why : str
-        One or two sentences with the numbers.
-    evidence : DataFrame
-        The measured cells that it rests on, best first: system, method, noise, samples learned from, start, forecast
-        accuracy with the least and greatest of the seeds [%], valid time [s], seconds. First those that started from
-        the estimated state, then the same from the true state, an oracle.
-    """
-
-    method: str
-    why: str
+    method: str  # `sindy`, `dmd`, `bopdmd`, `gp`, `nn`; empty where none did better than the known model
+    why: str  # one or two sentences with the numbers
+    # the measured cells that it rests on, best first: system, method, noise, samples learned from, start, forecast
+    # accuracy with the least and greatest of the seeds [%], valid time [s], seconds. First those that started from the
+    # estimated state, then the same from the true state, an oracle
     evidence: pd.DataFrame
 
 
@@ -66,22 +57,14 @@ def recommend(
     where it diverged. Where a step, or a length, is more than twice or less than half of what was measured at that
     noise, `why` says so.
 
-    Parameters
-    ----------
-    want : str
-        `interpretability`: terms or frequencies that a person can read; `speed`: the fastest within 5 points of the
-        best; `forecast`: the best forecast.
-    chaotic : bool
-        Judge by the Lorenz system's valid time, of equal ones by the accuracy, instead of the Van der Pol oscillator's
-        accuracy.
-    dt_s : float, optional
-        Between samples [s], for systems that turn once in 0.7 (Lorenz) to 6 s (Van der Pol) as the measured ones;
-        where absent, the step at which most was measured.
-    evidence : DataFrame, optional
-        As `measured_cells` makes it; what the studies of chapter 3 measured where absent.
+    want: `interpretability`: terms or frequencies that a person can read; `speed`: the fastest within 5 points of the
+        best; `forecast`: the best forecast
+    chaotic: judge by the Lorenz system's valid time, of equal ones by the accuracy, instead of the Van der Pol
+        oscillator's accuracy
+    dt_s: between samples [s], for systems that turn once in 0.7 (Lorenz) to 6 s (Van der Pol) as the measured ones;
+        where absent, the step at which most was measured
+    evidence: as `measured_cells` makes it; what the studies of chapter 3 measured where absent
 
-    Examples
-    --------
     >>> recommend(0.001, 3000, "interpretability").method
     'sindy'
     """
@@ -168,10 +151,8 @@ def measured_cells(cells: Sequence[DiscrepancyCell]) -> pd.DataFrame:
 def evidence_of(seeds: pd.DataFrame) -> pd.DataFrame:
     """Evidence of forecasts: medians over seeds with their range, by start.
 
-    Parameters
-    ----------
-    seeds : DataFrame
-        A row a seed and part: system, method, noise, dt_s, samples, part, accuracy [%], valid_s, seconds, diverged_s.
+    seeds: a row a seed and part: system, method, noise, dt_s, samples, part, accuracy [%], valid_s, seconds,
+        diverged_s
     """
     table = seeds[seeds["part"].isin(list(STARTS))].copy()
     table["start"] = table["part"].map(STARTS)

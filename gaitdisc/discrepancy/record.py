@@ -19,30 +19,17 @@ LEAST_SAMPLES = 60  # a training part shorter than this carries no smoothing and
 
 @dataclass(frozen=True)
 class Conditions:
-    """How a system is recorded and judged; the defaults are the text's, with what it leaves open done right.
+    """How a system is recorded and judged; the defaults are the text's, with what it leaves open done right."""
 
-    Parameters
-    ----------
-    noise : float
-        Standard deviation of the noise, as a share of each channel's own, or in its unit.
-    absolute : bool
-        The noise is in each channel's unit, as in the published code.
-    dt_s, duration_s : float
-        Between samples, and of the record [s].
-    train_share : float
-        Share of the record that is learned from.
-    published : bool
-        As the published code: 4 Hz filter where there is noise, central differences, each forecast starts from the
-        last measured sample, and the truth that it is judged by is run again from there. Otherwise: a cut-off where
-        the noise begins, the flow of the known model in place of a derivative, starts and truth of the trajectory.
-    """
-
-    noise: float = 0.0
+    noise: float = 0.0  # standard deviation of the noise, as a share of each channel's own, or in its unit
     seed: int = 0
-    absolute: bool = False
-    dt_s: float = 0.01
-    duration_s: float = 50.0
-    train_share: float = 0.6
+    absolute: bool = False  # the noise is in each channel's unit, as in the published code
+    dt_s: float = 0.01  # between samples, and of the record [s]
+    duration_s: float = 50.0  # between samples, and of the record [s]
+    train_share: float = 0.6  # share of the record that is learned from
+    # as the published code: 4 Hz filter where there is noise, central differences, each forecast starts from the last
+    # measured sample, and the truth that it is judged by is run again from there. Otherwise: a cut-off where the noise
+    # begins, the flow of the known model in place of a derivative, starts and truth of the trajectory
     published: bool = False
     kind: NoiseKind = "normal"
     trajectories: int = 1
@@ -51,30 +38,16 @@ class Conditions:
 
 @dataclass(frozen=True, eq=False)
 class Record:
-    """Truth and measurement of one run.
-
-    Parameters
-    ----------
-    time : ndarray (sample,) [s]
-        Even.
-    truth : ndarray (sample, state)
-        x0 of Eq. 3.2.
-    measured : ndarray (sample, channel)
-        y of Eqs. 3.3 and 3.15.
-    filtered : ndarray (training sample, channel)
-        Measured in the training part, smoothed.
-    others : tuple of Record
-        From other starts, learned from as well; their training parts alone are looked at.
-    """
+    """Truth and measurement of one run."""
 
     system: System
     conditions: Conditions
-    time: NDArray[np.float64]
-    truth: NDArray[np.float64]
-    measured: NDArray[np.float64]
-    filtered: NDArray[np.float64]
+    time: NDArray[np.float64]  # (sample,) [s], even
+    truth: NDArray[np.float64]  # (sample, state), x0 of Eq. 3.2
+    measured: NDArray[np.float64]  # (sample, channel), y of Eqs. 3.3 and 3.15
+    filtered: NDArray[np.float64]  # (training sample, channel), measured in the training part, smoothed
     split: int
-    others: tuple[Record, ...] = ()
+    others: tuple[Record, ...] = ()  # from other starts, learned from as well; their training parts alone are looked at
 
     def __post_init__(self) -> None:
         """Freeze the numbers."""
@@ -84,10 +57,7 @@ class Record:
     def start(self, forecast: bool) -> NDArray[np.float64]:
         """State that the known and the augmented model begin from, (state,).
 
-        Parameters
-        ----------
-        forecast : bool
-            At the end of the training part instead of its beginning.
+        forecast: at the end of the training part instead of its beginning
         """
         if not forecast and self.system.assumed is not None:
             return self.system.assumed
@@ -125,8 +95,6 @@ class Record:
 def recorded(system: System, conditions: Conditions) -> Record:
     """Run the true system and measure it.
 
-    Examples
-    --------
     >>> from gaitdisc.discrepancy.system import system_of
     >>> from gaitdisc.simulation.bundled import bundled
     >>> recorded(system_of(bundled("lorenz")), Conditions(duration_s=5.0)).split

@@ -20,15 +20,9 @@ def drawn_noise(
 ) -> NDArray[np.float64]:
     """Noise of one standard deviation whatever its kind, (sample, channel).
 
-    Parameters
-    ----------
-    clean : ndarray (sample, channel)
-        What is measured; multiplicative noise grows with its size.
-    size : ndarray (channel,) [channel's unit]
-        Standard deviation; of multiplicative noise, root mean square over the record.
+    clean (sample, channel): what is measured; multiplicative noise grows with its size
+    size (channel,) [channel's unit]: standard deviation; of multiplicative noise, root mean square over the record
 
-    Examples
-    --------
     >>> rng = np.random.default_rng(0)
     >>> noise = drawn_noise("coloured", np.zeros((100_000, 1)), np.ones(1), 0.01, rng)
     >>> float(noise.std().round(1)), float(np.corrcoef(noise[:-10, 0], noise[10:, 0])[0, 1].round(1))

@@ -12,15 +12,10 @@ from gaitdisc.discrepancy.system import Rates
 
 @dataclass(frozen=True)
 class ShakenRates:
-    """Rates with a random push of every state between any two samples; a `system.Rates`.
-
-    Parameters
-    ----------
-    strength : tuple of float
-        Of each state: standard deviation of the pushes of a second [unit of the state/sqrt(s)].
-    """
+    """Rates with a random push of every state between any two samples; a `system.Rates`."""
 
     rates: Rates
+    # of each state: standard deviation of the pushes of a second [unit of the state/sqrt(s)]
     strength: tuple[float, ...]
     seed: int = 0
 
@@ -31,15 +26,9 @@ class ShakenRates:
     def run(self, starts: NDArray[np.float64], dt_s: float, steps: int) -> NDArray[np.float64]:
         """States (start, steps + 1, state), all starts under the same pushes.
 
-        Parameters
-        ----------
-        starts : ndarray (start, state)
-            First states.
-        dt_s : float
-            Between samples [s]; a push stands at the end of each.
+        starts (start, state): first states
+        dt_s: between samples [s]; a push stands at the end of each
 
-        Examples
-        --------
         >>> from gaitdisc.discrepancy.known_rates import KnownRates
         >>> from gaitdisc.simulation.parts import State
         >>> from gaitdisc.simulation.simulation import Simulation

@@ -24,40 +24,24 @@ class Rates(Protocol):
     def run(self, starts: NDArray[np.float64], dt_s: float, steps: int) -> NDArray[np.float64]:
         """States (start, steps + 1, state) from many starts; NaN from where one diverged.
 
-        Parameters
-        ----------
-        starts : ndarray (start, state)
-            First states.
-        dt_s : float
-            Between samples [s].
+        starts (start, state): first states
+        dt_s: between samples [s]
         """
         ...
 
 
 @dataclass(frozen=True, eq=False)
 class System:
-    """Known dynamics f, true dynamics F = f + g, and the measured channels (Eqs. 3.1-3.3, 3.15).
-
-    Parameters
-    ----------
-    start : ndarray (state,)
-        Where both begin.
-    observation : ndarray (channel, state)
-        C of Eq. 3.15; the channels are the first states.
-    assumed : ndarray (state,), optional
-        Where the known model is thought to begin, if that is wrong.
-    units : tuple of str
-        Of the states; empty where they have none.
-    """
+    """Known dynamics f, true dynamics F = f + g, and the measured channels (Eqs. 3.1-3.3, 3.15)."""
 
     name: str
     states: tuple[str, ...]
     known: Rates
     true: Rates
-    start: NDArray[np.float64]
-    observation: NDArray[np.float64]
-    assumed: NDArray[np.float64] | None = None
-    units: tuple[str, ...] = ()
+    start: NDArray[np.float64]  # (state,), where both begin
+    observation: NDArray[np.float64]  # (channel, state), c of Eq. 3.15; the channels are the first states
+    assumed: NDArray[np.float64] | None = None  # (state,), where the known model is thought to begin, if that is wrong
+    units: tuple[str, ...] = ()  # of the states; empty where they have none
 
     def __post_init__(self) -> None:
         """Freeze the numbers."""
@@ -75,13 +59,8 @@ def system_of(
 ) -> System:
     """System of a simulation file and the effect that is hidden from it.
 
-    Parameters
-    ----------
-    gain : tuple of float
-        Of the measured channels, which are the first states; every state and 1 where empty.
+    gain: of the measured channels, which are the first states; every state and 1 where empty
 
-    Examples
-    --------
     >>> from gaitdisc.simulation.bundled import bundled
     >>> system_of(bundled("van_der_pol"), Term("y", "equation", "cubic_stiffness", "-0.01*x**3")).states
     ('x', 'y')

@@ -19,25 +19,13 @@ SPEED = "_speed"
 
 @dataclass(frozen=True)
 class Coordinate:
-    """A free coordinate of a model.
+    """A free coordinate of a model."""
 
-    Parameters
-    ----------
-    name : str
-        As it may stand in an expression.
-    unit : str
-        rad or m.
-    called : str
-        Its name in the model's file.
-    low, high : float
-        Range that the model gives it [unit]; infinite where it gives none.
-    """
-
-    name: str
-    unit: str
-    called: str
-    low: float = -np.inf
-    high: float = np.inf
+    name: str  # as it may stand in an expression
+    unit: str  # rad or m
+    called: str  # its name in the model's file
+    low: float = -np.inf  # range that the model gives it [unit]; infinite where it gives none
+    high: float = np.inf  # range that the model gives it [unit]; infinite where it gives none
 
     @property
     def speed(self) -> str:
@@ -57,34 +45,21 @@ class Coordinate:
 
 @dataclass(frozen=True)
 class Motion:
-    """Where a model is evaluated.
+    """Where a model is evaluated."""
 
-    Parameters
-    ----------
-    q, v : ndarray (point, coordinate)
-        Coordinates and speeds [rad, m; 1/s].
-    u : ndarray (point, control)
-        What acts through each control: its activation where it has one, else the control.
-    """
-
-    q: NDArray[np.float64]
-    v: NDArray[np.float64]
+    q: NDArray[np.float64]  # (point, coordinate), coordinates and speeds [rad, m; 1/s]
+    v: NDArray[np.float64]  # (point, coordinate), coordinates and speeds [rad, m; 1/s]
+    # (point, control), what acts through each control: its activation where it has one, else the control
     u: NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class ByHand:
-    """A term as a function of its port's own coordinate and speed.
-
-    Parameters
-    ----------
-    at : callable
-        Takes a coordinate and a speed, all else being zero.
-    """
+    """A term as a function of its port's own coordinate and speed."""
 
     term: Term
     coordinate: int
-    at: Callable[[float, float], float]
+    at: Callable[[float, float], float]  # takes a coordinate and a speed, all else being zero
 
 
 class Engine(Protocol):

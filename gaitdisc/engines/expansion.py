@@ -35,16 +35,10 @@ def expanded(
 ) -> tuple[Simulation, Measured]:
     """Simulation that is expanded along a record, and the record with what the engine computed along it.
 
-    Parameters
-    ----------
-    simulation : Simulation
-        As the mapping file has it: the names, the observations, the ports.
-    measured : Measured
-        Driven by its inputs.
-    states : ndarray (trial, sample, state)
-        Smoothed: coordinates, then speeds.
-    values : mapping of str to float, optional
-        Parameters around which to expand; the simulation's own where absent.
+    simulation: as the mapping file has it: the names, the observations, the ports
+    measured: driven by its inputs
+    states (trial, sample, state): smoothed: coordinates, then speeds
+    values: parameters around which to expand; the simulation's own where absent
     """
     own = simulation.values() | dict(values or {})
     drive, count = measured.drive, len(engine.coordinates)
@@ -88,10 +82,7 @@ class _Columns:
     def add(self, name: str, column: NDArray[np.float64], factor: str = "") -> None:
         """Add a column (point, coordinate) times a factor to every acceleration; one that rests is a number.
 
-        Parameters
-        ----------
-        name : str
-            What follows the speed's name in that of the column.
+        name: what follows the speed's name in that of the column
         """
         size = max(float(np.abs(column).max()), 1e-12)
         for number, one in enumerate(self.engine.coordinates):

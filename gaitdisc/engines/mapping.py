@@ -26,10 +26,7 @@ SAME = 1e-5  # by which a number of the mapping may differ from the model's, as 
 def drafted(engine: Engine, degrees: bool = False) -> Simulation:
     """Mapping of a model: every free coordinate measured in a column of its name, every control another.
 
-    Parameters
-    ----------
-    degrees : bool
-        Whether the columns of angles are in degrees.
+    degrees: whether the columns of angles are in degrees
     """
     found = engine.coordinates
     states = [State(one.name, one.unit, f"coordinate {one.called}") for one in found]
@@ -63,11 +60,8 @@ def write_mapping(engine: Engine, file: Path, degrees: bool = False) -> Simulati
 def read_mapping(path: Path | str) -> tuple[Simulation, Engine]:
     """Mapping and model: of a mapping file, or of a model with the mapping beside it, or with none.
 
-    Parameters
-    ----------
-    path : Path or str
-        leg.toml with `model = "leg.xml"`, or leg.xml; without a leg.toml beside it every column has a coordinate's name
-        and its unit.
+    path: leg.toml with `model = "leg.xml"`, or leg.xml; without a leg.toml beside it every column has a coordinate's
+        name and its unit
     """
     path = Path(path)
     if is_model(path):
@@ -130,10 +124,7 @@ def other_values(mapping: Simulation, engine: Engine) -> tuple[Finding, ...]:
 def refuse_other_units(mapping: Simulation, engine: Engine, largest: dict[str, float]) -> None:
     """Refuse angles that can be no radians: degrees that nobody said are degrees.
 
-    Parameters
-    ----------
-    largest : dict of str to float
-        Largest size of each coordinate in the record [rad, m].
+    largest: largest size of each coordinate in the record [rad, m]
     """
     for one in engine.coordinates:
         limit = 2 * np.pi if not np.isfinite(one.high) else 1.5 * max(abs(one.low), abs(one.high))

@@ -19,13 +19,7 @@ JOINT_UNITS = {"stiffness": ("N m/rad", "N/m"), "damping": ("N m s/rad", "N s/m"
 
 
 class MujocoModel:
-    """A model of MuJoCo whose joints are hinges and slides.
-
-    Examples
-    --------
-    >>> MujocoModel("leg.xml").coordinates[0].port  # doctest: +SKIP
-    'hip_moment'
-    """
+    """A model of MuJoCo whose joints are hinges and slides."""
 
     called = "MuJoCo"
 
@@ -62,10 +56,7 @@ class MujocoModel:
     ) -> NDArray[np.float64]:
         """Accelerations (point, coordinate), with other values of some parameters.
 
-        Parameters
-        ----------
-        forces : ndarray (point, coordinate), optional
-            Generalised forces besides.
+        forces (point, coordinate): generalised forces besides
         """
         model, data, forward = self._model, self._data, self._mujoco.mj_forward
         kept = self._changed(values)
@@ -106,10 +97,7 @@ class MujocoModel:
         The activation of an actuator that has one is integrated by MuJoCo from its control; it begins in equilibrium
         with the first one.
 
-        Parameters
-        ----------
-        q : ndarray (sample, coordinate)
-            The measured motion, which is prescribed.
+        q (sample, coordinate): the measured motion, which is prescribed
         """
         found = np.array(controls, float)
         if not self._stateful.any():
@@ -131,12 +119,8 @@ class MujocoModel:
     def run(self, start: Motion, controls: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
         """Coordinates, then speeds (run, sample, state), by MuJoCo's own integrator.
 
-        Parameters
-        ----------
-        start : Motion
-            Where each run begins.
-        controls : ndarray (run, sample, control)
-            Recorded controls, linear between samples.
+        start: where each run begins
+        controls (run, sample, control): recorded controls, linear between samples
         """
         model, data, steps = self._model, self._data, self._steps(rate)
         own, kept = self._stateful, model.opt.timestep

@@ -18,12 +18,8 @@ MORE_OF = {"viscous_damping": "damping", "coulomb_friction": "frictionloss"}  # 
 def with_value(text: str, name: str, value: float, element: tuple[str, str]) -> str | None:
     """Text with a number of a joint, body or option changed; None where the file does not say it.
 
-    Parameters
-    ----------
-    name : str
-        `<part>_mass`, `_stiffness`, `_damping`, `_frictionloss`, `_gear`, `_force`, or gravity.
-    element : tuple of str
-        Tag and name of the element in the file.
+    name: `<part>_mass`, `_stiffness`, `_damping`, `_frictionloss`, `_gear`, `_force`, or gravity
+    element: tag and name of the element in the file
     """
     if name == "gravity":
         return _with_gravity(text, value)
@@ -42,12 +38,8 @@ def with_value(text: str, name: str, value: float, element: tuple[str, str]) -> 
 def with_effect(text: str, effect: ByHand, joint: str, own: Mapping[str, float]) -> str | None:
     """Text with an effect on a joint; None where MuJoCo has no form of it.
 
-    Parameters
-    ----------
-    joint : str
-        Its name in the file.
-    own : mapping of str to float
-        Stiffness, damping and frictionloss that the joint has, which may come from a default class.
+    joint: its name in the file
+    own: stiffness, damping and frictionloss that the joint has, which may come from a default class
     """
     tags = [one for one in _tags(text) if _is(text, one, ("joint", joint))]
     if not joint or len(tags) != 1:

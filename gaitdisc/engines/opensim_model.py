@@ -24,13 +24,7 @@ WORKER = Path(__file__).with_name("opensim_worker.py")
 
 
 class OpensimModel:
-    """A model of OpenSim whose coordinates are driven by actuators without muscles' states.
-
-    Examples
-    --------
-    >>> OpensimModel("arm.osim").coordinates[0].port  # doctest: +SKIP
-    'shoulder_moment'
-    """
+    """A model of OpenSim whose coordinates are driven by actuators without muscles' states."""
 
     called = "OpenSim"
 

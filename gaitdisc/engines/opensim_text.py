@@ -17,12 +17,8 @@ BINARY = {"+": "+", "-": "-", "*": "*", "/": "/", "**": "^"}
 def with_effect(text: str, term: Term, names: tuple[str, str], coordinate: str) -> str | None:
     """Text with a force of an expression on a coordinate; None where the expression knows more than that coordinate.
 
-    Parameters
-    ----------
-    names : tuple of str
-        Coordinate and speed as the term calls them.
-    coordinate : str
-        As the file calls it.
+    names: coordinate and speed as the term calls them
+    coordinate: as the file calls it
     """
     expression = _translated(parsed(term.term), {names[0]: "q", names[1]: "qdot"})
     found = re.search(r"<ForceSet\b.*?</ForceSet>", text, re.DOTALL)

@@ -21,18 +21,10 @@ NUDGE = 1e-4
 
 @dataclass(frozen=True)
 class OwnRuns:
-    """What runs by the engine itself leave of the record.
+    """What runs by the engine itself leave of the record."""
 
-    Parameters
-    ----------
-    errors : mapping of str to tuple
-        For each channel: root mean square before and after, and its unit.
-    engine : str
-        Its name.
-    """
-
-    errors: Mapping[str, tuple[float, float, str]]
-    engine: str
+    errors: Mapping[str, tuple[float, float, str]]  # for each channel: root mean square before and after, and its unit
+    engine: str  # its name
 
     @property
     def said(self) -> str:
@@ -62,14 +54,9 @@ def own_runs(
 ) -> OwnRuns:
     """Run two models over the held-out runs, each from the start that suits it best.
 
-    Parameters
-    ----------
-    engines : tuple of Engine
-        The model as read, and with what was found.
-    runs : Runs
-        Held-out runs, which say where.
-    states : ndarray (trial, sample, state)
-        Smoothed: where the search for each start begins.
+    engines: the model as read, and with what was found
+    runs: Held-out runs, which say where
+    states (trial, sample, state): smoothed: where the search for each start begins
     """
     stretches = _stretches(measured, runs)
     left = [_left(engine, mapping, measured, stretches, states) for engine in engines]

@@ -26,21 +26,11 @@ AT_SPEED = 0.5  # [rad/s], from which friction is compared: an engine's own fric
 
 @dataclass(frozen=True)
 class WrittenModel:
-    """A model's text with what was found.
+    """A model's text with what was found."""
 
-    Parameters
-    ----------
-    engine : Engine
-        That reads it.
-    text : str
-        The user's own, with insertions; the same where nothing has a native form.
-    notes : tuple of str
-        What was written in, with its deviation, and what was not.
-    """
-
-    engine: Engine
-    text: str
-    notes: tuple[str, ...]
+    engine: Engine  # that reads it
+    text: str  # the user's own, with insertions; the same where nothing has a native form
+    notes: tuple[str, ...]  # what was written in, with its deviation, and what was not
 
 
 def written_model(engine: Engine, augmented: Simulation) -> WrittenModel:

@@ -24,20 +24,10 @@ def judged_unit(
 ) -> tuple[str, Finding | None]:
     """Unit of a file's angles: the stated one if the numbers do not contradict it.
 
-    Parameters
-    ----------
-    time : ndarray (time,) [s]
-        Times of the samples.
-    values : ndarray (time, angle) [deg or rad]
-        Angles as read.
+    time (time,) [s]: times of the samples
+    values (time, angle) [deg or rad]: angles as read
+    returns finding: said where the unit was judged by magnitude, or where it is in doubt
 
-    Returns
-    -------
-    finding : Finding or None
-        Said where the unit was judged by magnitude, or where it is in doubt.
-
-    Examples
-    --------
     >>> t = np.linspace(0, 2, 200)
     >>> judged_unit(t, 30 * np.sin(6 * t)[:, None], ["hip_flexion_r"], "deg", "walk.mot")
     ('deg', None)
@@ -85,15 +75,9 @@ def copied_coordinate_unit(
     OpenSim converts rotational coordinates when it writes a file but leaves coupled ones as they are, so that in a file
     of degrees the copy stands in radians, and in one of radians it may stand in degrees. The knee it copies tells.
 
-    Parameters
-    ----------
-    values : ndarray (time,) [deg or rad]
-        As read.
-    angles : dict of str to ndarray (time,) [deg]
-        The other angles of the file, already in degrees.
+    values (time,) [deg or rad]: as read
+    angles each (time,) [deg]: the other angles of the file, already in degrees
 
-    Examples
-    --------
     >>> knee = np.array([10.0, 60.0])
     >>> copied_coordinate_unit("knee_angle_r_beta", np.radians(knee), {"knee_angle_r": knee})
     'rad'

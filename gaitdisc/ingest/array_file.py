@@ -28,46 +28,26 @@ _REMEDY = "See docs/sessions.md, recordings in .mat and .npz, for how a path is 
 
 @dataclass(frozen=True, eq=False)
 class Cells:
-    """Elements of a cell array or of an array of structs, in MATLAB's order.
+    """Elements of a cell array or of an array of structs, in MATLAB's order."""
 
-    Parameters
-    ----------
-    held : tuple
-        Nodes: mappings, `Cells`, arrays of numbers, or words that say what else there is.
-    """
-
-    held: tuple[Any, ...]
+    held: tuple[Any, ...]  # nodes: mappings, `Cells`, arrays of numbers, or words that say what else there is
 
 
 @dataclass(frozen=True, eq=False)
 class ArrayFile:
-    """A file of named variables; only those that are asked for are read.
-
-    Parameters
-    ----------
-    opened : callable
-        Gives the node of one of them.
-    """
+    """A file of named variables; only those that are asked for are read."""
 
     raw: RawFile
     names: tuple[str, ...]
-    opened: Callable[[str], Any]
+    opened: Callable[[str], Any]  # gives the node of one of them
 
     def numbers(self, path: str, part: str = "") -> NDArray[np.float64]:
         """Numbers at a path.
 
-        Parameters
-        ----------
-        path : str
-            `name`, `struct.field`, `cells{2}`, `structs(3).field`, and at the end columns counted from 1: `x(:,2)`.
-        part : str
-            Stands for `*` in the path; a number also chooses among the elements of a cell array, or of structs, that
-            the path does not choose from.
-
-        Returns
-        -------
-        ndarray
-            As stored, or one column.
+        path: `name`, `struct.field`, `cells{2}`, `structs(3).field`, and at the end columns counted from 1: `x(:,2)`
+        part: stands for `*` in the path; a number also chooses among the elements of a cell array, or of structs, that
+            the path does not choose from
+        returns: as stored, or one column
         """
         whole = path.replace("*", part) if part else path
         columns = _COLUMN.search(whole)

@@ -22,23 +22,10 @@ ENDINGS = (".mat", ".npz")
 def read_arrays(path: Path | str, channels: Mapping[str, str] | None = None, part: str = "") -> Trial:
     """Trial of variables in a `.mat` or `.npz` file.
 
-    Parameters
-    ----------
-    channels : mapping of str to str, optional
-        The study's `[channels]`: path of a variable -> `name [unit] @ 100 Hz`, or `name [unit] @ variable` of a rate
-        [Hz] or of times [s]. A marker's three columns are one entry. Entries without a rate are of other files.
-    part : str
-        Which trial of a file that holds several: its number in cell arrays from 1, or what `*` stands for in paths.
-
-    Returns
-    -------
-    Trial
-        Streams as far as the study names their channels, each on its own clock.
-
-    Examples
-    --------
-    >>> read_arrays("walk.mat", {"RKNEE(:,1)": "knee_angle_r @ 100 Hz"})  # doctest: +SKIP
-    Trial(...)
+    channels: the study's `[channels]`: path of a variable -> `name [unit] @ 100 Hz`, or `name [unit] @ variable` of a
+        rate [Hz] or of times [s]. A marker's three columns are one entry. Entries without a rate are of other files
+    part: which trial of a file that holds several: its number in cell arrays from 1, or what `*` stands for in paths
+    returns: streams as far as the study names their channels, each on its own clock
     """
     file = open_arrays(path)
     wanted = {label: said for label, said in (channels or {}).items() if said_clock(said)}

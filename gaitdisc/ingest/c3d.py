@@ -35,8 +35,6 @@ class C3DReader:
     The process is started at the first file, started anew when a file kills it and after 100 files, and ends with the
     `with` block. The reader may be used again after that.
 
-    Examples
-    --------
     >>> with C3DReader() as reader:
     ...     reader.read("missing.c3d")
     Traceback (most recent call last):
@@ -69,16 +67,9 @@ class C3DReader:
         other analog channel. The first frame is at 0 s. Nothing passes that names a person: neither label prefixes nor
         the groups SUBJECTS, TRIAL, MANUFACTURER.
 
-        Parameters
-        ----------
-        channels : mapping of str to str, optional
-            The study's own names, see `LabelMap`: label, description, `#<n>` for the n-th analog channel or
-            `<label>.x` -> name, or `name [unit]`.
-
-        Returns
-        -------
-        Trial
-            With findings for everything that had to be judged.
+        channels: the study's own names, see `LabelMap`: label, description, `#<n>` for the n-th analog channel or
+            `<label>.x` -> name, or `name [unit]`
+        returns: with findings for everything that had to be judged
         """
         path = Path(path)
         try:
@@ -147,8 +138,6 @@ class C3DReader:
 def read_c3d(path: str | Path, channels: Mapping[str, str] | None = None) -> Trial:
     """Trial of one C3D file; `C3DReader` is faster for many.
 
-    Examples
-    --------
     >>> read_c3d("missing.c3d")
     Traceback (most recent call last):
     ...

@@ -26,18 +26,11 @@ _DEVICE = re.compile(r"^(?:(?:voltage|analog|raw|emg|signal|electric potential)[
 class AnalogLabel:
     """What the file calls one analog channel.
 
-    Parameters
-    ----------
-    number : int
-        Place among the analog channels, from 1.
-
-    Examples
-    --------
     >>> AnalogLabel(5, "Voltage.L Rect", "", "V").muscle.name
     'emg_rf_l'
     """
 
-    number: int
+    number: int  # place among the analog channels, from 1
     label: str
     description: str
     unit: str
@@ -68,10 +61,7 @@ class AnalogLabel:
 def analog_labels(parameters: C3DParameters, count: int) -> list[AnalogLabel]:
     """Return what the file calls its analog channels.
 
-    Parameters
-    ----------
-    count : int
-        Analog channels; a file may list more labels or fewer.
+    count: analog channels; a file may list more labels or fewer
     """
     people = named_people(parameters)
     texts = [[*parameters.texts("ANALOG", name)[:count], *[""] * count] for name in ("LABELS", "DESCRIPTIONS", "UNITS")]
@@ -88,8 +78,6 @@ def emg_names(channels: list[AnalogLabel]) -> list[str]:
     alike or cut give way to the numbers in the description (`Voltage [5,1]`: `emg_5_1`), and those to the place among
     the analog channels.
 
-    Examples
-    --------
     >>> cut = [AnalogLabel(n, "Voltage.Voltage.", f"Analog EMG::Voltage [5,{n}]", "V") for n in (1, 2)]
     >>> emg_names(cut), emg_names([AnalogLabel(3, "EMG3", "", "V")])
     (['emg_5_1', 'emg_5_2'], ['emg_3'])
@@ -114,12 +102,8 @@ def analog_streams(
 ) -> tuple[Streams, list[Finding]]:
     """Streams `emg` and `signals` of the analog channels, and `forces` where the study maps channels to forces.
 
-    Parameters
-    ----------
-    rows : ndarray (sample, channel)
-        In the file's units.
-    plate_channels : set of int
-        Columns that belong to force plates and are read there.
+    rows (sample, channel): in the file's units
+    plate_channels: columns that belong to force plates and are read there
     """
     analog = analog_labels(parameters, rows.shape[1])
     mapped = {one.number: labels.name(f"#{one.number}", one.label, one.plain, one.description) for one in analog}

@@ -19,13 +19,8 @@ _OFF = {"foot off", "toe off", "to", "fo", "off"}
 def event_kind(label: str, context: str) -> tuple[str, str]:
     """What an event is and on which side.
 
-    Parameters
-    ----------
-    label : str
-        `Foot Strike`, `Right Foot Off`, or the short dialect of Qualisys: `LHS`, `RTO`.
+    label: `Foot Strike`, `Right Foot Off`, or the short dialect of Qualisys: `LHS`, `RTO`
 
-    Examples
-    --------
     >>> event_kind("Foot Strike", "Left"), event_kind("RTO", ""), event_kind("Sync", "General")
     (('initial contact', 'l'), ('foot off', 'r'), ('Sync', ''))
     """
@@ -50,10 +45,7 @@ def file_events(
     the first frame kept is TRIAL:ACTUAL_START_FIELD. Some software writes them on the clock of the cropped file
     instead: where all events lie outside of the file on the first clock and inside on the second, that one is taken.
 
-    Returns
-    -------
-    events : tuple of Event
-        In order of time; those outside of the file are left out and told.
+    returns events: in order of time; those outside of the file are left out and told
     """
     times = parameters.numbers("EVENT", "TIMES")
     labels = parameters.texts("EVENT", "LABELS")

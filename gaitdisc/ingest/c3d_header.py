@@ -26,40 +26,21 @@ _MAGIC = (
 class C3DHeader:
     """What the header block of a C3D file says.
 
-    Parameters
-    ----------
-    file : str
-        Name of the file without its folder.
-    size : int
-        Length of the file [bytes].
-    processor : str
-        `Intel`, `DEC` or `MIPS`: the order of bytes and the kind of float.
-    parameter_block, data_block : int
-        Where the parameter section and the data begin [blocks of 512 bytes, from 1].
-    analog_values : int
-        Analog values in a frame: channels times samples a frame.
-    samples_per_frame : int
-        Analog samples of one channel in a frame.
-    scale : float
-        Factor of integer points; negative where points are stored as floats.
-
-    Examples
-    --------
     >>> C3DHeader("walk.c3d", 2048, "Intel", 2, 4, 3, 0, 0, 1, 100, -1.0, 100.0).frames
     100
     """
 
-    file: str
-    size: int
-    processor: str
-    parameter_block: int
-    data_block: int
+    file: str  # name of the file without its folder
+    size: int  # length of the file [bytes]
+    processor: str  # `Intel`, `DEC` or `MIPS`: the order of bytes and the kind of float
+    parameter_block: int  # where the parameter section and the data begin [blocks of 512 bytes, from 1]
+    data_block: int  # where the parameter section and the data begin [blocks of 512 bytes, from 1]
     points: int
-    analog_values: int
-    samples_per_frame: int
+    analog_values: int  # analog values in a frame: channels times samples a frame
+    samples_per_frame: int  # analog samples of one channel in a frame
     first_frame: int
     last_frame: int
-    scale: float
+    scale: float  # factor of integer points; negative where points are stored as floats
     rate_hz: float
 
     @property
@@ -71,9 +52,7 @@ class C3DHeader:
 def read_c3d_header(path: str | Path) -> C3DHeader:
     """Header of a C3D file, or a refusal that says what the file is instead.
 
-    References
-    ----------
-    The C3D file format, c3d.org: header words 1 to 12 and the processor byte of the parameter section.
+    Source: The C3D file format, c3d.org: header words 1 to 12 and the processor byte of the parameter section.
     """
     path = Path(path)
     head, size = _first_bytes(path)
@@ -117,13 +96,8 @@ def read_c3d_header(path: str | Path) -> C3DHeader:
 def decoded(raw: bytes, width: int, processor: str) -> NDArray[np.generic]:
     """Numbers that bytes of a C3D file stand for.
 
-    Parameters
-    ----------
-    width : int
-        1 for bytes, 2 for 16-bit integers, 4 for floats.
+    width: 1 for bytes, 2 for 16-bit integers, 4 for floats
 
-    Examples
-    --------
     >>> decoded(bytes([0x00, 0x00, 0x80, 0x3F]), 4, "Intel"), decoded(bytes([0x80, 0x40, 0, 0]), 4, "DEC")
     (array([1.], dtype=float32), array([1.], dtype=float32))
     """

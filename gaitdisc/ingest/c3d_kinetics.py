@@ -32,20 +32,12 @@ _OF_GROUND = re.compile(r"[LR]?Ground")
 
 @dataclass(frozen=True)
 class Evidence:
-    """What shows whether kinetics are divided by body mass.
-
-    Parameters
-    ----------
-    certain : bool
-        Whether plates and reaction forces were compared.
-    mass_kg : float or None
-        Plate over reaction force, where both saw one step.
-    """
+    """What shows whether kinetics are divided by body mass."""
 
     per_kg: bool | None
     words: str = ""
-    certain: bool = False
-    mass_kg: float | None = None
+    certain: bool = False  # whether plates and reaction forces were compared
+    mass_kg: float | None = None  # plate over reaction force, where both saw one step
 
 
 def body_mass(parameters: C3DParameters) -> float | None:
@@ -69,16 +61,9 @@ def house_kinetics(
     Its joint moments are those of the load on the joint: at push-off the ankle's is positive, where a moment of the
     muscles towards dorsiflexion is negative. The ankle's impulse shows which of the two a file holds.
 
-    Parameters
-    ----------
-    kinetics : (values, channels)
-        Stream `moments`, (frame, channel) [N, N m, W as the file states].
-    plates_n : ndarray (frame, plate) [N]
-        Size of the force of each plate; no column where there is none.
-
-    References
-    ----------
-    Vicon, Plug-in Gait Reference Guide: kinetic outputs are normalised by body mass.
+    kinetics (values, channels): stream `moments`, (frame, channel) [N, N m, W as the file states]
+    plates_n (frame, plate) [N]: size of the force of each plate; no column where there is none
+    Source: Vicon, Plug-in Gait Reference Guide: kinetic outputs are normalised by body mass.
     """
     kinetics, findings = _in_true_unit(kinetics, plates_n, mass_kg, file)
     kinetics, more = _internal(kinetics, file)

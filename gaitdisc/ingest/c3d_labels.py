@@ -15,8 +15,6 @@ from gaitdisc.recording import Finding
 def without_people(label: str, people: Iterable[str]) -> str:
     """Label without the names of people, as the prefix `Name:` or as a word in it.
 
-    Examples
-    --------
     >>> without_people("Ann:LASI", ["Ann"]), without_people("EMG Ann soleus", ["Ann"])
     ('LASI', 'EMG soleus')
     """
@@ -29,8 +27,6 @@ def without_people(label: str, people: Iterable[str]) -> str:
 def without_prefix(label: str) -> str:
     """Label of a point without the prefix that tells whose it is.
 
-    Examples
-    --------
     >>> without_prefix("Ann:LASI")
     'LASI'
     """
@@ -54,8 +50,6 @@ def named_people(parameters: C3DParameters) -> tuple[str, ...]:
 def told_apart(labels: Sequence[str], word: str) -> list[str]:
     """Labels of which no two are equal: those that are get their number, those that are empty a word and theirs.
 
-    Examples
-    --------
     >>> told_apart(["a", "", "b", "a"], "point")
     ['a_1', 'point_2', 'b', 'a_4']
     """
@@ -79,8 +73,6 @@ class LabelMap:
     fifth analog channel, `RKneeAngles.x` for one component of a model output, `LCAL` for a marker. A value is the name
     of a channel, or `name [unit]` where the file does not tell the unit.
 
-    Examples
-    --------
     >>> LabelMap({"#5": "emg_sol_r", "Sensor 1": "emg_ta_r"}).name("#1", "sensor 1")
     'emg_ta_r'
     """
@@ -92,10 +84,7 @@ class LabelMap:
     def name(self, *labels: str) -> str | None:
         """Name that the study gives a channel of these labels, None where it gives none.
 
-        Parameters
-        ----------
-        *labels : str
-            All that the channel goes by, the most particular first.
+        *labels: all that the channel goes by, the most particular first
         """
         for label in labels:
             for key, name in self._names.items():

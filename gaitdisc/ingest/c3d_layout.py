@@ -17,27 +17,16 @@ _SATURATED = 65535  # a 16-bit frame number that stands for "more than that"
 class C3DLayout:
     """Shape of the data section.
 
-    Parameters
-    ----------
-    frames, points, channels, samples_per_frame : int
-        Frames, points a frame, analog channels, samples of each channel a frame.
-    word_bytes : int
-        4 where values are floats, 2 where they are integers.
-    data_block : int
-        Where the data begin [blocks of 512 bytes, from 1].
-
-    Examples
-    --------
     >>> C3DLayout(100, 10, 2, 20, 4, 3).end
     33024
     """
 
-    frames: int
-    points: int
-    channels: int
-    samples_per_frame: int
-    word_bytes: int
-    data_block: int
+    frames: int  # frames, points a frame, analog channels, samples of each channel a frame
+    points: int  # frames, points a frame, analog channels, samples of each channel a frame
+    channels: int  # frames, points a frame, analog channels, samples of each channel a frame
+    samples_per_frame: int  # frames, points a frame, analog channels, samples of each channel a frame
+    word_bytes: int  # 4 where values are floats, 2 where they are integers
+    data_block: int  # where the data begin [blocks of 512 bytes, from 1]
 
     @property
     def frame_bytes(self) -> int:
@@ -52,20 +41,14 @@ class C3DLayout:
     def fits(self, size: int) -> bool:
         """Whether a file of that size can hold the data.
 
-        Parameters
-        ----------
-        size : int
-            Length of the file [bytes].
+        size: length of the file [bytes]
         """
         return self.end <= size
 
     def fills(self, size: int) -> bool:
         """Whether a file of that size holds the data and nothing after them but the padding of the last block.
 
-        Parameters
-        ----------
-        size : int
-            Length of the file [bytes].
+        size: length of the file [bytes]
         """
         return self.end <= size < self.end + BLOCK
 

@@ -27,15 +27,7 @@ FACTORS = (1e-3, 1.0, 1e-2)  # mm, as Nexus writes; m; cm: the first that makes 
 def read_body_measures(path: Path | str) -> BodyMeasures:
     """Measures of the person that a C3D file holds in PROCESSING, SUBJECTS or SUBJECT.
 
-    Returns
-    -------
-    BodyMeasures
-        None or absent where the file has nothing, zero, or a number that is none in mm, m or cm.
-
-    Examples
-    --------
-    >>> read_body_measures("P01_static.c3d").knee_width_m["l"]  # doctest: +SKIP
-    0.102
+    returns: none or absent where the file has nothing, zero, or a number that is none in mm, m or cm
     """
     path = Path(path)
     return body_measures_of(read_c3d_parameters(path, read_c3d_header(path)), path.name)
@@ -49,8 +41,6 @@ def body_measures_in(path: Path) -> BodyMeasures:
 def body_measures_of(parameters: C3DParameters, file: str) -> BodyMeasures:
     """Measures of the person that stand in parameters.
 
-    Examples
-    --------
     >>> import numpy as np
     >>> some = C3DParameters({("PROCESSING", "LKNEEWIDTH"): np.array([102.0])})
     >>> dict(body_measures_of(some, "a.c3d").knee_width_m)

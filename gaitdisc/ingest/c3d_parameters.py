@@ -23,18 +23,13 @@ _WIDTHS = {-1: 1, 1: 1, 2: 2, 4: 4}
 class C3DParameters:
     """Parameters by group and name.
 
-    Parameters
-    ----------
-    values : mapping of (str, str) to tuple of str or ndarray
-        Texts without trailing blanks; numbers in the file's dimensions, first index fastest in the file.
-
-    Examples
-    --------
     >>> some = C3DParameters({("POINT", "USED"): np.array([-1]), ("POINT", "LABELS"): ("LASI",)})
     >>> some.count("POINT", "USED"), some.texts("POINT", "LABELS"), some.number("POINT", "RATE")
     (65535, ('LASI',), None)
     """
 
+    # mapping of (str, str) to tuple of str or ndarray, texts without trailing blanks; numbers in the file's dimensions,
+    # first index fastest in the file
     values: Mapping[tuple[str, str], Value]
 
     def texts(self, group: str, name: str) -> tuple[str, ...]:
@@ -83,9 +78,8 @@ class C3DParameters:
 def read_c3d_parameters(path: str | Path, header: C3DHeader) -> C3DParameters:
     """Every parameter of a C3D file.
 
-    References
-    ----------
-    The C3D file format, c3d.org. An offset to the next parameter is read as unsigned, as long label lists need it.
+    Source: The C3D file format, c3d.org. An offset to the next parameter is read as unsigned, as long label lists need
+        it.
     """
     start = (header.parameter_block - 1) * BLOCK
     with Path(path).open("rb") as file:

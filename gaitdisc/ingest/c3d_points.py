@@ -27,28 +27,15 @@ MOVES_RAD = 0.6  # a knee of a walk in radians; one that stands sways by less th
 class ModelOutput:
     """A kind of point that is not a place.
 
-    Parameters
-    ----------
-    group : str
-        List of the group POINT that names them.
-    quantity, stream : str
-        What they measure and where they go.
-    units : str
-        Parameter of the group POINT with their unit.
-    usual : str
-        Unit where the file does not tell.
-
-    Examples
-    --------
     >>> [kind.group for kind in MODEL_OUTPUTS]
     ['ANGLES', 'FORCES', 'MOMENTS', 'POWERS', 'SCALARS']
     """
 
-    group: str
-    quantity: str
-    stream: str
-    units: str
-    usual: str
+    group: str  # list of the group POINT that names them
+    quantity: str  # what they measure and where they go
+    stream: str  # what they measure and where they go
+    units: str  # parameter of the group POINT with their unit
+    usual: str  # unit where the file does not tell
 
 
 MODEL_OUTPUTS = (
@@ -64,10 +51,7 @@ _INNER = {"angle": "deg", "force": "N", "moment": "N m", "power": "W"}
 def point_names(parameters: C3DParameters, count: int) -> list[str]:
     """Names of the points, all different, without the names of people.
 
-    Parameters
-    ----------
-    count : int
-        Points a frame; a file may list more labels or fewer.
+    count: points a frame; a file may list more labels or fewer
     """
     labels = [without_prefix(label) for label in parameters.texts("POINT", "LABELS")[:count]]
     return told_apart([*labels, *[""] * (count - len(labels))], "point")
@@ -76,10 +60,7 @@ def point_names(parameters: C3DParameters, count: int) -> list[str]:
 def length_unit(parameters: C3DParameters, places: NDArray[np.float64], file: str) -> tuple[str, list[Finding]]:
     """Unit of the markers: as the file says, or judged by their distance from the origin where it says nothing.
 
-    Parameters
-    ----------
-    places : ndarray (frame, coordinate)
-        Of markers, in the file's unit, NaN allowed; some thousand frames are looked at.
+    places (frame, coordinate): of markers, in the file's unit, NaN allowed; some thousand frames are looked at
     """
     far = distance_from_origin(places)
     text = parameters.text("POINT", "UNITS")
@@ -109,15 +90,8 @@ def point_streams(
 ) -> tuple[Streams, str, list[Finding]]:
     """Streams `markers`, `kinematics` and `moments` of the points.
 
-    Parameters
-    ----------
-    rows : ndarray (frame, 3 * point)
-        In the file's units, NaN where a point was not seen.
-
-    Returns
-    -------
-    streams : dict of str to (values, channels)
-        In m, deg, N, N m and W; only those that the file has.
+    rows (frame, 3 * point): in the file's units, NaN where a point was not seen
+    returns streams dict of str to (values, channels): in m, deg, N, N m and W; only those that the file has
     """
     names = point_names(parameters, rows.shape[1] // 3)
     kinds = _kinds(names, parameters)

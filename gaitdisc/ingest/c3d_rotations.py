@@ -25,9 +25,7 @@ def file_segments(path: Path, header: C3DHeader, parameters: C3DParameters, sour
 
     Axes are as the file has them, the columns of `r`, in the laboratory's frame.
 
-    References
-    ----------
-    ROTATION data type, c-motion.com: USED, RATIO, DATA_START, LABELS; 17 floats for each segment and frame.
+    Source: ROTATION data type, c-motion.com: USED, RATIO, DATA_START, LABELS; 17 floats for each segment and frame.
     """
     used = parameters.count("ROTATION", "USED") or 0
     start = parameters.count("ROTATION", "DATA_START") or 0

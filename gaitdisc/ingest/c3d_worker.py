@@ -30,19 +30,10 @@ ROWS_AT_ONCE = 16384
 def points_in_rows(points: NDArray[np.float64], residuals: NDArray[np.float64]) -> NDArray[np.float64]:
     """Coordinates with time first, NaN where the residual says that a point was not seen.
 
-    Parameters
-    ----------
-    points : ndarray (3 or 4, point, frame)
-        As ezc3d gives them.
-    residuals : ndarray (point, frame)
-        Negative where a point is invalid.
+    points (3 or 4, point, frame): as ezc3d gives them
+    residuals (point, frame): negative where a point is invalid
+    returns (frame, 3 * point)
 
-    Returns
-    -------
-    ndarray (frame, 3 * point)
-
-    Examples
-    --------
     >>> points_in_rows(np.ones((4, 1, 2)), np.array([[0.0, -1.0]]))
     array([[ 1.,  1.,  1.],
            [nan, nan, nan]])
@@ -89,10 +80,7 @@ READERS = {"ezc3d": read_with_ezc3d, "c3d": read_with_c3d}
 def answer(request: dict[str, Any]) -> tuple[dict[str, Any], tuple[Any, ...]]:
     """Answer one request: the numbers if the reader finds the counts that the header promises, or what it said.
 
-    Parameters
-    ----------
-    request : dict
-        `path`, `reader` (`ezc3d` or `c3d`), and the expected `frames`, `points`, `channels` and `samples`.
+    request: `path`, `reader` (`ezc3d` or `c3d`), and the expected `frames`, `points`, `channels` and `samples`
     """
     reader = request["reader"]
     try:
@@ -121,10 +109,7 @@ def answer(request: dict[str, Any]) -> tuple[dict[str, Any], tuple[Any, ...]]:
 def serve(requests: IO[bytes], answers: IO[bytes]) -> None:
     """Answer requests until there are no more.
 
-    Parameters
-    ----------
-    requests, answers : binary streams
-        Lines of JSON; arrays follow an answer as raw float64.
+    requests, answers: lines of JSON; arrays follow an answer as raw float64
     """
     for line in iter(requests.readline, b""):
         request = json.loads(line)

@@ -31,24 +31,12 @@ def write_c3d(recordings: Sequence[Recording], path: Path | str, surfaces: Seque
     that another channel is a ground force the study's `[channels]` must say (`"ground_force_r_vy" =
     "ground_force_r_vy [N]"`), as for any treadmill that is no force plate.
 
-    Parameters
-    ----------
-    recordings : sequence of Recording
-        One of markers, or none; the others with one time base, of a multiple of the markers' rate or of 100 Hz.
-        Samples of a last frame that is not whole are left away.
-    surfaces : sequence of Surface
-        Force plates, of type 2: `<name>_fx`, `_fy`, `_fz` [N] and `_mx`, `_my`, `_mz` [N m] among the channels are the
-        force on the foot and its moment about the centre of the surface, in the laboratory's axes. They are read back
-        as `plate_1_fx` and on, in the order of the surfaces.
-
-    References
-    ----------
-    The C3D file format, c3d.org: POINT, ANALOG, FORCE_PLATFORM of type 2.
-
-    Examples
-    --------
-    >>> write_c3d([markers, emg, forces], "walk.c3d", trial.surfaces)  # doctest: +SKIP
-    PosixPath('walk.c3d')
+    recordings: one of markers, or none; the others with one time base, of a multiple of the markers' rate or of 100
+        Hz. Samples of a last frame that is not whole are left away
+    surfaces: force plates, of type 2: `<name>_fx`, `_fy`, `_fz` [N] and `_mx`, `_my`, `_mz` [N m] among the channels
+        are the force on the foot and its moment about the centre of the surface, in the laboratory's axes. They are
+        read back as `plate_1_fx` and on, in the order of the surfaces
+    Source: The C3D file format, c3d.org: POINT, ANALOG, FORCE_PLATFORM of type 2.
     """
     import ezc3d
 

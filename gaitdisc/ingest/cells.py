@@ -16,35 +16,19 @@ MISSING = ("", "nan", "NaN", "NAN", "-nan", "-nan(ind)", "nan(ind)", "1.#QNAN", 
 
 @dataclass(frozen=True)
 class Cells:
-    """Numbers of a table and the lines they stand in.
+    """Numbers of a table and the lines they stand in."""
 
-    Parameters
-    ----------
-    values : ndarray (row, column)
-        Numbers; NaN for blank cells.
-    lines : ndarray of int (row,)
-        Line of the file that each row stands in, counted from 1.
-    first_column : list of str
-        First cell of each row as printed.
-    """
-
-    values: NDArray[np.float64]
-    lines: NDArray[np.intp]
-    first_column: list[str]
+    values: NDArray[np.float64]  # (row, column), numbers; NaN for blank cells
+    lines: NDArray[np.intp]  # (row,), line of the file that each row stands in, counted from 1
+    first_column: list[str]  # first cell of each row as printed
 
 
 @dataclass(frozen=True)
 class Form:
-    """How the cells of a table are written.
-
-    Parameters
-    ----------
-    separator : str
-        What stands between cells; a blank means any run of blanks and tabs.
-    """
+    """How the cells of a table are written."""
 
     file: str
-    separator: str = "\t"
+    separator: str = "\t"  # what stands between cells; a blank means any run of blanks and tabs
     decimal: str = "."
 
     def split(self, line: str) -> list[str]:
@@ -55,13 +39,8 @@ class Form:
 def parsed_cells(lines: Sequence[str], labels: Sequence[str], first_line: int, form: Form) -> Cells:
     r"""Numbers of a table's body.
 
-    Parameters
-    ----------
-    first_line : int
-        Line of the file in which the body starts, counted from 1.
+    first_line: line of the file in which the body starts, counted from 1
 
-    Examples
-    --------
     >>> parsed_cells(["0\t1.5", "0.1\t"], ["time", "a"], 3, Form("walk.mot")).values
     array([[0. , 1.5],
            [0.1, nan]])

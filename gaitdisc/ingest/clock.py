@@ -18,8 +18,6 @@ ALREADY_EVEN = 1e-6  # of a step
 def printed_digit(texts: Iterable[str]) -> float:
     """Size of the last digit in use, the finest of a column; zeros that only fill up a number are none.
 
-    Examples
-    --------
     >>> printed_digit(["0", "0.017", "0.033"]), printed_digit(["0.000000", "0.017000"]), printed_digit(["5.25e-04"])
     (0.001, 0.001, 1e-06)
     """
@@ -40,22 +38,11 @@ def even_time(
     the even base by more than that. Where the digit is coarser than 35 % of a step a missing sample would look like
     rounding, so all steps must be the same there.
 
-    Parameters
-    ----------
-    time : ndarray (time,) [s]
-        As read.
-    digit_s : float
-        Size of the last printed digit [s]; 0 for binary files.
-    lines : ndarray of int (time,), optional
-        Line of each sample in the file, for the message; the row counted from 1 without it.
+    time (time,) [s]: as read
+    digit_s: size of the last printed digit [s]; 0 for binary files
+    lines (time,): line of each sample in the file, for the message; the row counted from 1 without it
+    returns (time,) [s]: the same array where it is even already
 
-    Returns
-    -------
-    ndarray (time,) [s]
-        The same array where it is even already.
-
-    Examples
-    --------
     >>> even_time(np.array([0.0, 0.017, 0.033, 0.05]), 1e-3, "walk.mot")
     array([0.        , 0.01666667, 0.03333333, 0.05      ])
     """

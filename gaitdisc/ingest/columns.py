@@ -32,33 +32,19 @@ _CLOCK = " @ "
 class Column:
     """A column of a file: what it measures and the unit in which the file gives it.
 
-    Parameters
-    ----------
-    channel : Channel
-        What it is inside; its unit is the one used inside.
-    unit : str
-        Unit of the numbers in the file.
-    guessed : str
-        What had to be guessed, in words; empty where nothing was.
-
-    Examples
-    --------
     >>> Column("knee [rad]", Channel("knee_angle_r", "angle", "deg", "r"), "rad").converted(np.array([1.0])).round(2)
     array([57.3])
     """
 
     label: str
-    channel: Channel
-    unit: str
-    guessed: str = ""
+    channel: Channel  # what it is inside; its unit is the one used inside
+    unit: str  # unit of the numbers in the file
+    guessed: str = ""  # what had to be guessed, in words; empty where nothing was
 
     def converted(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """Numbers in the unit used inside.
 
-        Parameters
-        ----------
-        values : ndarray (time,) [unit]
-            As read.
+        values (time,) [unit]: as read
         """
         base, rate = (self.unit.partition("/s")[0], True) if "/s" in self.unit else (self.unit, False)
         inside = self.channel.unit.partition("/s")[0] if rate else self.channel.unit
@@ -68,13 +54,8 @@ class Column:
 def split_unit(text: str) -> tuple[str, str | None]:
     """Name and unit of `name [unit]`, or of `name [unit] @ clock`; the unit is None where none is stated.
 
-    Parameters
-    ----------
-    text : str
-        A label of a file, or a value of the study's `[channels]`.
+    text: a label of a file, or a value of the study's `[channels]`
 
-    Examples
-    --------
     >>> split_unit("emg_sol_r [mV]"), split_unit("knee_angle_r")
     (('emg_sol_r', 'mV'), ('knee_angle_r', None))
     """
@@ -86,13 +67,8 @@ def split_unit(text: str) -> tuple[str, str | None]:
 def said_clock(said: str) -> str:
     """What follows `@` in a value of the study's `[channels]`: a rate, or a variable of times; empty without one.
 
-    Parameters
-    ----------
-    said : str
-        `name [unit] @ clock`.
+    said: `name [unit] @ clock`
 
-    Examples
-    --------
     >>> said_clock("knee_angle_r [deg] @ 100 Hz"), said_clock("knee_angle_r [deg]")
     ('100 Hz', '')
     """
@@ -102,13 +78,8 @@ def said_clock(said: str) -> str:
 def mapped_label(label: str, channels: Mapping[str, str] | None) -> str | None:
     """What the study's `[channels]` says that a label means, or None.
 
-    Parameters
-    ----------
-    channels : mapping of str to str, optional
-        Label -> `name` or `name [unit]`. Case, blanks and punctuation of labels count only where they must.
+    channels: label -> `name` or `name [unit]`. Case, blanks and punctuation of labels count only where they must
 
-    Examples
-    --------
     >>> mapped_label("Sensor 1.EMG", {"sensor 1 emg": "emg_sol_r [mV]"})
     'emg_sol_r [mV]'
     """
@@ -123,8 +94,6 @@ def mapped_label(label: str, channels: Mapping[str, str] | None) -> str | None:
 def named_channel(name: str) -> Channel:
     """Channel of a name: that of the vocabulary, or one whose quantity the name tells.
 
-    Examples
-    --------
     >>> named_channel("emg_gracilis_r").quantity, named_channel("RHEE.x").quantity, named_channel("trigger").quantity
     ('emg', 'marker', 'signal')
     """
@@ -145,8 +114,6 @@ def named_channel(name: str) -> Channel:
 def check_written_names(names: Sequence[str], file: str) -> None:
     """Refuse names that a text table cannot hold.
 
-    Examples
-    --------
     >>> check_written_names(["knee_angle_r"], "walk.csv")
     """
     for name in names:
@@ -161,8 +128,6 @@ def check_written_names(names: Sequence[str], file: str) -> None:
 def column_in_unit(label: str, channel: Channel, unit_text: str, file: str) -> Column:
     """Column whose unit the file or the study states.
 
-    Examples
-    --------
     >>> column_in_unit("F", Channel("ground_force_r_vy", "vertical_force", "N", "r"), "kN", "a.csv").channel.unit
     'N'
     """
@@ -196,13 +161,8 @@ def column_in_unit(label: str, channel: Channel, unit_text: str, file: str) -> C
 def column_of(label: str, file: str, channels: Mapping[str, str] | None) -> Column:
     """Column of a label, by the study's own map or the vocabulary.
 
-    Parameters
-    ----------
-    channels : mapping of str to str, optional
-        The study's `[channels]`.
+    channels: the study's `[channels]`
 
-    Examples
-    --------
     >>> column_of("knee_angle_r", "walk.csv", None).unit
     'deg'
     """

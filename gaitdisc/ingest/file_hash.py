@@ -18,8 +18,6 @@ def file_sha256(path: Path) -> str:
 
     Unchanged means: same file number, size, and times of writing and of change, to the nanosecond.
 
-    Examples
-    --------
     >>> import tempfile
     >>> file = Path(tempfile.mkdtemp()) / "a"
     >>> _ = file.write_bytes(b"abc")

@@ -68,8 +68,6 @@ _STARTS = ("noexo", "withoutexo", "nonexo", "nodevice")
 def words_in(name: str) -> list[str]:
     """Words of a name in lower case, numbers at their ends taken off.
 
-    Examples
-    --------
     >>> words_in("c3d_Trimmed_running_exotendon3")
     ['c3d', 'trimmed', 'running', 'exotendon']
     """
@@ -80,13 +78,8 @@ def words_in(name: str) -> list[str]:
 def condition_word(path: Path) -> tuple[str, str]:
     """Word of a path that tells the condition, and which of the two it is.
 
-    Parameters
-    ----------
-    path : Path
-        Relative to the folder that is searched; the file's own name counts before its folders.
+    path: relative to the folder that is searched; the file's own name counts before its folders
 
-    Examples
-    --------
     >>> condition_word(Path("P01/walk_no_exo.mot")), condition_word(Path("exo/walk2.mot"))
     (('noexo', 'nominal'), ('exo', 'device'))
     """
@@ -106,8 +99,6 @@ def condition_word(path: Path) -> tuple[str, str]:
 def walk_key(path: Path) -> str:
     """What is left of a file's name when the words for its kind are taken away: files of one walk share it.
 
-    Examples
-    --------
     >>> walk_key(Path("IK_gait.mot")), walk_key(Path("gait_emg.sto")), walk_key(Path("coordinates.sto"))
     ('gait', 'gait', '')
     """
@@ -118,8 +109,6 @@ def walk_key(path: Path) -> str:
 def walk_place(path: Path) -> tuple[str, ...]:
     """Folders of a file without those that only tell the kind: files of one walk may lie in `IK` and in `GRF`.
 
-    Examples
-    --------
     >>> walk_place(Path("P01/IK/walk1.mot")) == walk_place(Path("P01/GRF/walk1.mot")) == ("P01",)
     True
     """
@@ -129,8 +118,6 @@ def walk_place(path: Path) -> tuple[str, ...]:
 def person_word(path: Path) -> str:
     """Word of a path that tells the person: the first folder that tells nothing else, or a part such as `S01`.
 
-    Examples
-    --------
     >>> person_word(Path("welk002/manual_ik.mot")), person_word(Path("S03_exo.mot")), person_word(Path("exo/walk.mot"))
     ('welk002', 'S03', '')
     >>> person_word(Path("controls/Anna/pre/Straight/trial01.c3d"))
@@ -145,8 +132,6 @@ def person_word(path: Path) -> str:
 def group_word(path: Path) -> str:
     """Word of a path that tells a group: a folder such as `controls` above those of persons; or empty.
 
-    Examples
-    --------
     >>> group_word(Path("controls/P01/walk.c3d")), group_word(Path("P01/walk.c3d"))
     ('controls', '')
     """
@@ -159,15 +144,9 @@ def session_word(path: Path) -> tuple[str, str]:
 
     A word counts before any date, and the date of an inner folder before that of an outer one, which may be of birth.
 
-    Returns
-    -------
-    word : str
-        Such as `pre` or `visit 2`; empty for a date and where no word tells.
-    order : str
-        Later sessions have a greater one; empty where no word tells.
+    returns word: such as `pre` or `visit 2`; empty for a date and where no word tells
+    returns order: later sessions have a greater one; empty where no word tells
 
-    Examples
-    --------
     >>> session_word(Path("P01/post/walk.c3d")), session_word(Path("P01/2024-03-01/walk.c3d"))
     (('post', 'a04'), ('', 'd20240301'))
     """
@@ -186,8 +165,6 @@ def session_word(path: Path) -> tuple[str, str]:
 def kind_of_trial(path: Path) -> str:
     """Tell whether names say that somebody stands, circles the legs, or does something else than walk; or empty.
 
-    Examples
-    --------
     >>> kind_of_trial(Path("P01/Static/a.c3d")), kind_of_trial(Path("P01/hip_ROM1.c3d")), kind_of_trial(Path("a.c3d"))
     ('static', 'other', '')
     >>> kind_of_trial(Path("P01/star_arc_right.c3d"))
@@ -204,8 +181,6 @@ def kind_of_trial(path: Path) -> str:
 def walk_word(path: Path) -> str:
     """Word of a path that tells how somebody walks, where it is no word for with or without a device; or empty.
 
-    Examples
-    --------
     >>> walk_word(Path("HC002D/Straight/HC002D06.c3d")), walk_word(Path("P01/walk_fast2.c3d"))
     ('straight', 'fast')
     >>> walk_word(Path("P01/Marble floor/01.c3d")), walk_word(Path("P01/walk01.c3d")), walk_word(Path("P01/01.c3d"))

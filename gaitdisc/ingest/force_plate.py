@@ -17,21 +17,6 @@ LEAST_LOAD_N = 20.0  # below it a centre of pressure is noise divided by noise
 class ForcePlate:
     """Where a plate lies and how its channels make a force.
 
-    Parameters
-    ----------
-    kind : int
-        1: force, centre of pressure and free moment; 2: force and moment; 3: eight forces of four pillars; 4: as 2,
-        through a calibration matrix.
-    corners : ndarray (4, 3) [m]
-        In the laboratory's axes; the first lies towards the plate's +x and +y, the second towards -x and +y.
-    origin : ndarray (3,) [m]
-        From the origin of the sensors to the centre of the surface, in the plate's axes; type 3: half the distances
-        between the pillars, and the depth of the sensors.
-    calibration : ndarray (6, 6) or (0, 0)
-        Type 4 only; gives N and N times the file's unit of length.
-
-    Examples
-    --------
     >>> corners = np.array([[0.5, 0.4, 0], [0, 0.4, 0], [0, 0, 0], [0.5, 0, 0]])
     >>> ForcePlate(1, 2, (0, 1, 2, 3, 4, 5), corners, np.zeros(3), np.empty((0, 0))).axes
     array([[1., 0., 0.],
@@ -40,11 +25,16 @@ class ForcePlate:
     """
 
     number: int
+    # 1: force, centre of pressure and free moment; 2: force and moment; 3: eight forces of four pillars; 4: as 2,
+    # through a calibration matrix
     kind: int
     columns: tuple[int, ...]
+    # (4, 3) [m], in the laboratory's axes; the first lies towards the plate's +x and +y, the second towards -x and +y
     corners: NDArray[np.float64]
+    # (3,) [m], from the origin of the sensors to the centre of the surface, in the plate's axes; type 3: half the
+    # distances between the pillars, and the depth of the sensors
     origin: NDArray[np.float64]
-    calibration: NDArray[np.float64]
+    calibration: NDArray[np.float64]  # (6, 6) or (0, 0), type 4 only; gives N and N times the file's unit of length
 
     @property
     def surface(self) -> Surface:
@@ -76,12 +66,8 @@ class ForcePlate:
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Force [N] and moment about the centre of the surface [N m], each (sample, 3), in the plate's axes.
 
-        Parameters
-        ----------
-        values : ndarray (sample, channel)
-            The plate's channels in the file's units.
-        units : tuple of str
-            Units of the channels; of what the matrix gives for type 4.
+        values (sample, channel): the plate's channels in the file's units
+        units: units of the channels; of what the matrix gives for type 4
         """
         if self.kind == 4:
             values = values @ self.calibration.T
@@ -109,19 +95,10 @@ def _of_pillars(values: NDArray[np.float64], origin: NDArray[np.float64]) -> tup
 def centre_of_pressure(force: NDArray[np.float64], moment: NDArray[np.float64]) -> NDArray[np.float64]:
     """Centre of pressure on the surface, in the plate's axes, NaN below 20 N.
 
-    Parameters
-    ----------
-    force : ndarray (sample, 3) [N]
-        In the plate's axes.
-    moment : ndarray (sample, 3) [N m]
-        About the centre of the surface.
+    force (sample, 3) [N]: in the plate's axes
+    moment (sample, 3) [N m]: about the centre of the surface
+    returns (sample, 3) [m]
 
-    Returns
-    -------
-    ndarray (sample, 3) [m]
-
-    Examples
-    --------
     >>> centre_of_pressure(np.array([[0, 0, -500.0], [0, 0, -1.0]]), np.array([[50.0, 25, 0], [1, 1, 0]]))
     array([[ 0.05, -0.1 ,  0.  ],
            [  nan,   nan,   nan]])

@@ -28,15 +28,10 @@ def force_plates(
 ) -> tuple[list[ForcePlate], list[Finding]]:
     """Plates that the group FORCE_PLATFORM describes, and why others cannot be used.
 
-    Parameters
-    ----------
-    unscaled : frozenset of int
-        Columns of analog channels without a scale that can be used.
-
-    References
-    ----------
-    The C3D file format, c3d.org, FORCE_PLATFORM. Laboratories write ORIGIN with either sign for types 2 to 4; as the
-    surface lies on the side that feet come from, which is the plate's -z, a positive third coordinate is turned around.
+    unscaled: columns of analog channels without a scale that can be used
+    Source: The C3D file format, c3d.org, FORCE_PLATFORM. Laboratories write ORIGIN with either sign for types 2 to 4;
+        as the surface lies on the side that feet come from, which is the plate's -z, a positive third coordinate is
+        turned around.
     """
     used = parameters.count("FORCE_PLATFORM", "USED") or 0
     kinds = parameters.numbers("FORCE_PLATFORM", "TYPE").ravel()
@@ -96,10 +91,7 @@ def plate_streams(
     the surface, NaN below 20 N. A foot cannot pull at a plate: where a loaded plate says it does, the file gives the
     force of the foot on the ground and is turned around; a plate that nobody stepped on follows the others.
 
-    Parameters
-    ----------
-    rows : ndarray (sample, channel)
-        Analog channels in the file's units.
+    rows (sample, channel): analog channels in the file's units
     """
     findings: list[Finding] = []
     wrenches, measured = [], []

@@ -27,8 +27,6 @@ def with_flexion_positive(streams: Mapping[str, Recording]) -> tuple[dict[str, R
     channel is turned, and with it its speed, its acceleration and OpenSim's generalised moment of that coordinate. A
     knee that hardly bends follows the other knee of the trial. One that goes beyond both is left and named.
 
-    Examples
-    --------
     >>> from gaitdisc.channel import vocabulary
     >>> knee = np.linspace(5, -60, 100)[:, None]
     >>> walk = Recording(np.arange(100) / 100, knee, (vocabulary().named("knee_angle_r"),))

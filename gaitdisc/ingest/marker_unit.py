@@ -14,13 +14,8 @@ MILLIMETRES_AT_LEAST = 100.0
 def distance_from_origin(places: NDArray[np.float64]) -> float:
     """How far markers lie out, as the 99th percentile of their coordinates; NaN without any.
 
-    Parameters
-    ----------
-    places : ndarray (frame, coordinate)
-        In the file's unit, NaN allowed; some thousand frames are looked at.
+    places (frame, coordinate): in the file's unit, NaN allowed; some thousand frames are looked at
 
-    Examples
-    --------
     >>> distance_from_origin(np.array([[1.0, -2.0]]))
     1.99
     """
@@ -32,8 +27,6 @@ def distance_from_origin(places: NDArray[np.float64]) -> float:
 def refuse_other_unit(unit: str, far: float, file: str, where: str) -> None:
     """Refuse a unit that the distance from the origin contradicts.
 
-    Examples
-    --------
     >>> refuse_other_unit("mm", 1500.0, "walk.trc", "Units in line 3")
     """
     if (unit == "m" and far >= MILLIMETRES_AT_LEAST) or (unit == "mm" and 0 < far <= METRES_AT_MOST):

@@ -18,15 +18,8 @@ from gaitdisc.regular_file import check_regular
 def read_sst_pacific(path: Path) -> Field:
     """Read 399 months of sea-surface temperature anomalies of the tropical Pacific, 2 degrees apart.
 
-    Parameters
-    ----------
-    path : Path
-        `.npz` with `sst` (month, cell), `landmask` (1 = land), `lon`, `lat`.
-
-    Returns
-    -------
-    Field
-        `sst` [degC], an anomaly; land is left out; time in months since January 1970.
+    path: `.npz` with `sst` (month, cell), `landmask` (1 = land), `lon`, `lat`
+    returns: `sst` [degC], an anomaly; land is left out; time in months since January 1970
     """
     held = _arrays(path, ("sst", "landmask", "lon", "lat"))
     lat, lon = np.unique(held["lat"]), np.unique(held["lon"])
@@ -47,15 +40,8 @@ def read_sst_pacific(path: Path) -> Field:
 def read_navy_winds(path: Path) -> Field:
     """Read 132 months of winds of the whole globe, 2.5 degrees apart.
 
-    Parameters
-    ----------
-    path : Path
-        `.npz` with `u` (eastward) and `v` (northward), (month, lat, lon), `lon`, `lat`.
-
-    Returns
-    -------
-    Field
-        `u` and `v` [m/s]; time in months since January 1982.
+    path: `.npz` with `u` (eastward) and `v` (northward), (month, lat, lon), `lon`, `lat`
+    returns: `u` and `v` [m/s]; time in months since January 1982
     """
     held = _arrays(path, ("u", "v", "lon", "lat"))
     lat, lon = (np.asarray(held[name], float) for name in ("lat", "lon"))

@@ -18,15 +18,9 @@ ATTRIBUTES = ("units", "scale_factor", "add_offset", "missing_value", "_FillValu
 
 @dataclass(frozen=True, eq=False)
 class Variable:
-    """One variable as it is stored.
+    """One variable as it is stored."""
 
-    Parameters
-    ----------
-    stored : ndarray, any shape
-        Packed numbers.
-    """
-
-    stored: NDArray[Any]
+    stored: NDArray[Any]  # , any shape, packed numbers
     attributes: Mapping[str, Any]
 
     @property

@@ -51,30 +51,21 @@ STILL_M, STILL_DEG = 0.05, 8.0  # who stands sways by some centimetres
 
 @dataclass(frozen=True)
 class FoundTrial:
-    """Files of one walk, found in a folder.
+    """Files of one walk, found in a folder."""
 
-    Parameters
-    ----------
-    files : tuple of Path
-        Relative to the folder that was searched.
-    person, group : str
-        Words of the path that tell the person and a group, or empty.
-    session : str
-        What the session is put in order by, or empty.
-    word, which : str
-        Word that tells the condition, and `nominal`, `device`, `static`, `functional`, `other` (no walk) or empty.
-    angles, varying, emg : tuple of str, optional
-        Joint angles, those of them that vary, and EMG channels; None where the files hold no such stream.
-    """
-
-    files: tuple[Path, ...]
-    person: str
-    group: str
-    session: str
+    files: tuple[Path, ...]  # relative to the folder that was searched
+    person: str  # words of the path that tell the person and a group, or empty
+    group: str  # words of the path that tell the person and a group, or empty
+    session: str  # what the session is put in order by, or empty
+    # word that tells the condition, and `nominal`, `device`, `static`, `functional`, `other` (no walk) or empty
     word: str
+    # word that tells the condition, and `nominal`, `device`, `static`, `functional`, `other` (no walk) or empty
     which: str
+    # joint angles, those of them that vary, and EMG channels; None where the files hold no such stream
     angles: tuple[str, ...] | None
+    # joint angles, those of them that vary, and EMG channels; None where the files hold no such stream
     varying: tuple[str, ...] | None
+    # joint angles, those of them that vary, and EMG channels; None where the files hold no such stream
     emg: tuple[str, ...] | None
 
     @property
@@ -100,25 +91,11 @@ def found_study(
     person; a static trial by its name, or because nobody moves in it. Files of one stem are one trial. The angles are
     those of section 4.2.2 that every walk has and that vary.
 
-    Parameters
-    ----------
-    home : Path or str, optional
-        Folder in which the study file will lie; its paths are relative to it. The same folder by default.
-    files : sequence of Path, optional
-        Only these, relative to the folder.
-    looked : dict, optional
-        What was read before of files that are as they were; is added to.
-
-    Returns
-    -------
-    study : Study
-        A draft that can be run as it is; trials whose condition no name tells are 'unknown' and not used.
-    notes : list of str
-        What was guessed, left out or could not be read.
-
-    Examples
-    --------
-    >>> study, notes = found_study("recordings")  # doctest: +SKIP
+    home: folder in which the study file will lie; its paths are relative to it. The same folder by default
+    files: only these, relative to the folder
+    looked: what was read before of files that are as they were; is added to
+    returns study: a draft that can be run as it is; trials whose condition no name tells are 'unknown' and not used
+    returns notes: what was guessed, left out or could not be read
     """
     folder = Path(folder)
     if not folder.is_dir():
@@ -249,8 +226,6 @@ def _found(files: tuple[Path, ...], trial: Trial) -> FoundTrial:
 def stands(trial: Trial) -> bool:
     """Tell whether somebody stands still: half of the markers stay within 5 cm, or without markers hips and knees.
 
-    Examples
-    --------
     >>> stands(Trial("no markers, no angles", {}))
     False
     """
@@ -300,13 +275,7 @@ def _walks(files: Sequence[Path]) -> list[list[Path]]:
 
 
 def named_conditions(found: Sequence[FoundTrial], notes: list[str]) -> tuple[Conditions, dict[str, str]]:
-    """Conditions of a draft, and the condition of each word that was found.
-
-    Examples
-    --------
-    >>> named_conditions(found, [])[0].words  # doctest: +SKIP
-    ('straight', 'turn')
-    """
+    """Conditions of a draft, and the condition of each word that was found."""
     walks = [trial for trial in found if trial.walked]
     told: dict[str, str] = {}
     for which in ("nominal", "device"):

@@ -43,27 +43,17 @@ _METRES = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}
 
 @dataclass(frozen=True)
 class Measured:
-    """What a table says of a person; None or empty where it says nothing.
+    """What a table says of a person; None or empty where it says nothing."""
 
-    Parameters
-    ----------
-    mass_kg, height_m : float, optional
-        Body mass [kg] and stature [m].
-    age_years : int, optional
-        Whole years; a date of birth is never read.
-    """
-
-    mass_kg: float | None = None
-    height_m: float | None = None
+    mass_kg: float | None = None  # body mass [kg] and stature [m]
+    height_m: float | None = None  # body mass [kg] and stature [m]
     sex: Sex = ""
-    age_years: int | None = None
+    age_years: int | None = None  # whole years; a date of birth is never read
 
 
 def is_people_table(path: Path) -> bool:
     """Whether a file's name is that of a table of people: `participants.tsv`, `manifest.csv` and the like.
 
-    Examples
-    --------
     >>> is_people_table(Path("raw/participants.tsv")), is_people_table(Path("S01/walk.csv"))
     (True, False)
     """
@@ -73,10 +63,7 @@ def is_people_table(path: Path) -> bool:
 def measured_people(folder: Path, files: Iterable[Path], notes: list[str]) -> dict[str, Measured]:
     """Mass, sex, stature and age by the folded word that tells the person, from the tables of people among some files.
 
-    Parameters
-    ----------
-    notes : list of str
-        Is added to: what was taken, and what could not be.
+    notes: is added to: what was taken, and what could not be
     """
     found: dict[str, Measured] = {}
     for file in sorted(files):
@@ -95,13 +82,8 @@ def measured_people(folder: Path, files: Iterable[Path], notes: list[str]) -> di
 def person_key(word: str) -> str:
     """Word by which a row of a table and a folder of recordings are the same person.
 
-    Parameters
-    ----------
-    word : str
-        As it stands in the table, or in the path.
+    word: as it stands in the table, or in the path
 
-    Examples
-    --------
     >>> person_key("sub-01"), person_key("S_07 ")
     ('01', 's07')
     """

@@ -25,8 +25,6 @@ _LEG = re.compile(r"(ankle_angle|knee_angle|hip_flexion)_[rl]_moment")
 def per_kg_findings(streams: Mapping[str, Recording]) -> list[Finding]:
     """Say that ground forces or joint moments stated in N or N m are per kg of body mass.
 
-    Examples
-    --------
     >>> from gaitdisc.channel import vocabulary
     >>> steps = np.tile(np.r_[np.full(60, 9.8), np.zeros(40)], 3)[:, None]
     >>> belt = Recording(np.arange(300) / 100, steps, (vocabulary().named("ground_force_r_vy"),))

@@ -23,20 +23,13 @@ FEW = 0.01  # of the samples; where EMG is beyond its range more often, it is co
 class PlausibleRange:
     """Least and largest value that a quantity can have.
 
-    Parameters
-    ----------
-    channels : str
-        Pattern of their names; empty for all.
-
-    Examples
-    --------
     >>> PlausibleRange("marker", "m", "", -100.0, 100.0).covers(Channel("RHEE.x", "marker", "m"))
     True
     """
 
     quantity: str
     unit: str
-    channels: str
+    channels: str  # pattern of their names; empty for all
     low: float
     high: float
 
@@ -50,8 +43,6 @@ class PlausibleRange:
 def plausible_ranges() -> tuple[PlausibleRange, ...]:
     """Ranges of `data_schema/ranges.csv`, in its order: the first that covers a channel holds.
 
-    Examples
-    --------
     >>> next(one.high for one in plausible_ranges() if one.covers(Channel("knee_angle_r", "angle", "deg", "r")))
     180.0
     """
@@ -71,18 +62,9 @@ def without_impossible(
     EMG of which a channel is often beyond the range is in another unit than the file states. It is left and named: its
     course is right, its amplitude is not.
 
-    Parameters
-    ----------
-    begin_s : mapping of str to float, optional
-        Time of the file's first frame of each stream, where the streams are a part of the file [s].
+    begin_s: time of the file's first frame of each stream, where the streams are a part of the file [s]
+    returns findings: one for each channel, with the first such frame, its number and its unit
 
-    Returns
-    -------
-    findings : list of Finding
-        One for each channel, with the first such frame, its number and its unit.
-
-    Examples
-    --------
     >>> knee = np.array([[10.0], [1e6], [30.0]])
     >>> walk = Recording(np.arange(3) / 100, knee, (Channel("knee_angle_r", "angle", "deg", "r"),))
     >>> kept, findings = without_impossible({"kinematics": walk})

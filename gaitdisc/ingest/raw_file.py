@@ -17,22 +17,13 @@ from gaitdisc.regular_file import LARGEST_TEXT_BYTES, check_regular
 class RawFile:
     """Bytes of one file, read once.
 
-    Parameters
-    ----------
-    name : str
-        Name without the folder; the folder may tell who the person is and goes no further.
-    sha256 : str
-        Of these bytes, where it is known; otherwise it is computed when it is asked for.
-
-    Examples
-    --------
     >>> RawFile("walk.mot", b"abc").source("mot").sha256[:8]
     'ba7816bf'
     """
 
-    name: str
+    name: str  # name without the folder; the folder may tell who the person is and goes no further
     content: bytes
-    sha256: str = ""
+    sha256: str = ""  # of these bytes, where it is known; otherwise it is computed when it is asked for
 
     @property
     def stem(self) -> str:
@@ -61,8 +52,6 @@ class RawFile:
 def read_raw(path: Path | str, largest_bytes: int = LARGEST_TEXT_BYTES) -> RawFile:
     """Read a file's bytes.
 
-    Examples
-    --------
     >>> read_raw("walk.mot")
     Traceback (most recent call last):
     ...

@@ -27,29 +27,18 @@ MEBIBYTE = 2**20
 class ReadRequest:
     """One file for one reader.
 
-    Parameters
-    ----------
-    frames, points, channels, samples : int
-        Counts that the file's header promises; `samples` are those of one analog channel.
-    limit_s : float
-        Processor time after which the reader is stopped; by the clock it is given `CLOCK` times as long.
-    cap_bytes : int
-        Address space that the reader may take, where the system can cap it.
-
-    Examples
-    --------
     >>> ReadRequest.of_size("walk.c3d", "ezc3d", (100, 10, 2, 2000), 50 * 2**20).limit_s
     20.0
     """
 
     path: str
     reader: str
-    frames: int
-    points: int
-    channels: int
-    samples: int
-    limit_s: float
-    cap_bytes: int
+    frames: int  # counts that the file's header promises; `samples` are those of one analog channel
+    points: int  # counts that the file's header promises; `samples` are those of one analog channel
+    channels: int  # counts that the file's header promises; `samples` are those of one analog channel
+    samples: int  # counts that the file's header promises; `samples` are those of one analog channel
+    limit_s: float  # processor time after which the reader is stopped; by the clock it is given `CLOCK` times as long
+    cap_bytes: int  # address space that the reader may take, where the system can cap it
 
     @property
     def clock_s(self) -> float:
@@ -60,10 +49,7 @@ class ReadRequest:
     def of_size(cls, path: str, reader: str, counts: tuple[int, int, int, int], size: int) -> ReadRequest:
         """Request with the limits for a file of that size: 10 s + 0.2 s/MB, 512 MB + 12 times the file.
 
-        Parameters
-        ----------
-        size : int
-            Length of the file [bytes].
+        size: length of the file [bytes]
         """
         limit_s = SECONDS_AT_LEAST + 0.2 * size / MEBIBYTE
         return cls(path, reader, *counts, limit_s=limit_s, cap_bytes=512 * MEBIBYTE + 12 * size)
@@ -71,24 +57,12 @@ class ReadRequest:
 
 @dataclass(frozen=True, eq=False)
 class RawTrial:
-    """Numbers of a C3D file in its own units, time first, or why there are none.
+    """Numbers of a C3D file in its own units, time first, or why there are none."""
 
-    Parameters
-    ----------
-    points : ndarray (frame, 3 * point)
-        NaN where a point was not seen.
-    analog : ndarray (sample, channel)
-        Scaled as the file says.
-    reader : str
-        Name and version of the reader; empty if it did not read the file.
-    said : str
-        Why there are no numbers, empty where there are.
-    """
-
-    points: NDArray[np.float64]
-    analog: NDArray[np.float64]
-    reader: str = ""
-    said: str = ""
+    points: NDArray[np.float64]  # (frame, 3 * point), NaN where a point was not seen
+    analog: NDArray[np.float64]  # (sample, channel), scaled as the file says
+    reader: str = ""  # name and version of the reader; empty if it did not read the file
+    said: str = ""  # why there are no numbers, empty where there are
 
 
 _NOTHING = np.empty((0, 0))

@@ -122,15 +122,7 @@ def read_planned_trial(
 ) -> Trial:
     """Trial as a study plans it: its files, channel map, crop, pseudonym and condition.
 
-    Returns
-    -------
-    Trial
-        Named by pseudonym, session and condition, and a number where there are several.
-
-    Examples
-    --------
-    >>> read_planned_trial(study, study.participants[0], study.participants[0].trials[0]).name  # doctest: +SKIP
-    'P01 natural'
+    returns: named by pseudonym, session and condition, and a number where there are several
     """
     paths = [study.path_of(file) for file in planned.files]
     trial = read_trial(paths, study.channels, participant.id, planned.condition, planned.crop_s, reader, planned.part)

@@ -30,24 +30,9 @@ def read_storage(path: Path | str, channels: Mapping[str, str] | None = None) ->
     how far hips and knees move; translations are in m whatever it states. Wrong counts in a header are told where the
     rows agree among themselves; fewer rows than it claims are refused, since the file was cut.
 
-    Parameters
-    ----------
-    channels : mapping of str to str, optional
-        The study's `[channels]`: label -> `name` or `name [unit]`.
-
-    Returns
-    -------
-    Trial
-        Streams `kinematics`, `emg`, `forces`, `moments`, `signals`, as far as the file has them.
-
-    References
-    ----------
-    OpenSim documentation, "Storage (.sto) Files" and "Motion (.mot) Files".
-
-    Examples
-    --------
-    >>> read_storage("ik.mot").streams["kinematics"]["knee_angle_r"]  # doctest: +SKIP
-    array([...])
+    channels: the study's `[channels]`: label -> `name` or `name [unit]`
+    returns: streams `kinematics`, `emg`, `forces`, `moments`, `signals`, as far as the file has them
+    Source: OpenSim documentation, "Storage (.sto) Files" and "Motion (.mot) Files".
     """
     raw = read_raw(path)
     lines = raw.lines()
@@ -70,11 +55,6 @@ def write_storage(recording: Recording, path: Path | str) -> Path:
     `inDegrees` is always stated. Channels that their names alone do not tell are described by lines such as
     `column 3=emg [V] r` in the header, which OpenSim passes over. Marks of suspect samples, subject and
     condition are not written.
-
-    Examples
-    --------
-    >>> write_storage(recording, "ik.mot")  # doctest: +SKIP
-    PosixPath('ik.mot')
     """
     path = Path(path)
     check_written_names(recording.names, path.name)

@@ -30,13 +30,8 @@ def storage_columns(header: StorageHeader, file: str, channels: Mapping[str, str
     `*_moment` in N m, `*_force` in N, `/speed` per second, EMG without a unit. Angles are marked `deg` here; whether
     the file holds radians is judged on the numbers.
 
-    Parameters
-    ----------
-    channels : mapping of str to str, optional
-        The study's `[channels]`.
+    channels: the study's `[channels]`
 
-    Examples
-    --------
     >>> header = StorageHeader("Coordinates", ("time", "/jointset/hip_r/hip_flexion_r/value"), 3)
     >>> storage_columns(header, "a.sto")[0].channel.name
     'hip_flexion_r'
@@ -50,8 +45,6 @@ def storage_columns(header: StorageHeader, file: str, channels: Mapping[str, str
 def naming_findings(columns: Sequence[Column], file: str) -> list[Finding]:
     """Say what was guessed about the columns of a file.
 
-    Examples
-    --------
     >>> naming_findings([Column("x", Channel("x", "signal", "1"), "1", "kept as a signal")], "a.sto")[0].what
     'x: kept as a signal'
     """

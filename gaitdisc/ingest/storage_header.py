@@ -17,39 +17,22 @@ _OWN_COLUMN = re.compile(r"column\s+(\d+)\s*=\s*(\w+)\s*\[([^\]]*)\]\s*(r|l|)\s*
 
 @dataclass(frozen=True)
 class StorageHeader:
-    """What stands above the numbers.
+    """What stands above the numbers."""
 
-    Parameters
-    ----------
-    title : str
-        First line: `Coordinates`, `Inverse Dynamics Generalized Forces`, or any name.
-    body_line : int
-        Line in which the numbers start, counted from 1.
-    degrees : bool or None
-        What `inDegrees` states; None where it is absent.
-    rows, columns : tuple of int
-        Counts that the header claims; two of a kind where both styles stand in it.
-    own : dict of int to (str, str, str)
-        Column -> quantity, unit and side, in files that `write_storage` wrote.
-    separator : str
-        What stands between cells: a tab, or a blank for any run of blanks.
-    """
-
-    title: str
+    title: str  # first line: `Coordinates`, `Inverse Dynamics Generalized Forces`, or any name
     labels: tuple[str, ...]
-    body_line: int
-    degrees: bool | None = None
-    rows: tuple[int, ...] = ()
-    columns: tuple[int, ...] = ()
+    body_line: int  # line in which the numbers start, counted from 1
+    degrees: bool | None = None  # what `inDegrees` states; None where it is absent
+    rows: tuple[int, ...] = ()  # counts that the header claims; two of a kind where both styles stand in it
+    columns: tuple[int, ...] = ()  # counts that the header claims; two of a kind where both styles stand in it
+    # dict of int to (str, str, str), column -> quantity, unit and side, in files that `write_storage` wrote
     own: Mapping[int, tuple[str, str, str]] = field(default_factory=dict)
-    separator: str = "\t"
+    separator: str = "\t"  # what stands between cells: a tab, or a blank for any run of blanks
 
 
 def parsed_header(lines: Sequence[str], file: str) -> StorageHeader:
     r"""Header of a storage file.
 
-    Examples
-    --------
     >>> lines = ["Coordinates", "nRows=1", "inDegrees=yes", "endheader", "time\tknee_angle_r", "0\t1"]
     >>> h = parsed_header(lines, "a.mot")
     >>> h.degrees, h.labels, h.body_line

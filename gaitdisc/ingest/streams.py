@@ -28,14 +28,9 @@ _STREAM = {
 def stream_of(channel: Channel) -> str:
     """Stream that a channel belongs to.
 
-    Parameters
-    ----------
-    channel : Channel
-        A free moment of the ground goes with the ground forces, the generalised force of a pelvis translation with the
-        joint moments.
+    channel: a free moment of the ground goes with the ground forces, the generalised force of a pelvis translation
+        with the joint moments
 
-    Examples
-    --------
     >>> stream_of(Channel("ground_torque_r_y", "moment", "N m", "r"))
     'forces'
     >>> stream_of(Channel("pelvis_tx_force", "force", "N"))
@@ -57,15 +52,9 @@ def sorted_trial(
 ) -> Trial:
     """Trial of one file whose columns share one time base.
 
-    Parameters
-    ----------
-    time : ndarray (time,) [s]
-        Even.
-    values : ndarray (time, channel) [each channel's unit]
-        Converted already.
+    time (time,) [s]: even
+    values (time, channel) [each channel's unit]: converted already
 
-    Examples
-    --------
     >>> knee = Channel("knee_angle_r", "angle", "deg", "r")
     >>> list(sorted_trial(Source("a.mot"), np.arange(3.0), np.zeros((3, 1)), [knee]).streams)
     ['kinematics']

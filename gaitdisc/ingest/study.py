@@ -122,18 +122,13 @@ class Participant(_Part):
     def trials_of(self, condition: str) -> tuple[PlannedTrial, ...]:
         """Return the trials of one condition.
 
-        Parameters
-        ----------
-        condition : str
-            A word of the study's `[conditions]`.
+        condition: a word of the study's `[conditions]`
         """
         return tuple(trial for trial in self.trials if trial.condition == condition)
 
     def trial_name(self, planned: PlannedTrial) -> str:
         """Name of one trial: pseudonym, session, condition, and a number where there are several.
 
-        Examples
-        --------
         >>> walk, again = (PlannedTrial(condition="barefoot", files=(f"{n}.c3d",)) for n in "ab")
         >>> Participant(id="P01", trials=(walk, again)).trial_name(again)
         'P01 barefoot 2'
@@ -235,10 +230,7 @@ class HeldOut(_Part):
     def length_s(self, duration_s: float) -> float:
         """Return the length of the held-out part [s].
 
-        Parameters
-        ----------
-        duration_s : float
-            Length of the trial [s].
+        duration_s: length of the trial [s]
         """
         return self.seconds if self.seconds is not None else (self.share or 0.0) * duration_s
 
@@ -260,8 +252,6 @@ class Quality(_Part):
 class Study(_Part):
     """A study; frozen, with every default of the dissertation.
 
-    Examples
-    --------
     >>> study = Study(conditions=Conditions(nominal="natural", device="exo"), participants=(Participant(id="P01"),))
     >>> study.filters.kinematics_hz, study.models.seed, study.one_condition_only()
     (6.0, 0, ('P01',))

@@ -36,12 +36,7 @@ _LIMITS = {
 
 
 def schema_error(error: ValidationError, model: type[BaseModel], text: str, file: str) -> SchemaError:
-    """Sentence for the first of pydantic's findings, with the count of the others.
-
-    Examples
-    --------
-    >>> raise schema_error(error, Study, text, "study.toml")  # doctest: +SKIP
-    """
+    """Sentence for the first of pydantic's findings, with the count of the others."""
     findings = [each for each in error.errors(include_url=False) if not _follows(each)]
     first = min(findings, key=lambda each: (each["type"] != "extra_forbidden", line_of(text, _place(each)) or 0))
     place = _place(first)

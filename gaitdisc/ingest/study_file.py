@@ -43,13 +43,7 @@ _TOP = """\
 
 
 def load_study(path: Path | str) -> Study:
-    """Study of a file, or of the `study.toml` in a folder.
-
-    Examples
-    --------
-    >>> load_study("study.toml").conditions.device  # doctest: +SKIP
-    'exotendon'
-    """
+    """Study of a file, or of the `study.toml` in a folder."""
     path = Path(path)
     if path.is_dir():
         path = path / "study.toml"
@@ -73,15 +67,7 @@ def load_study(path: Path | str) -> Study:
 def write_study(study: Study, path: Path | str) -> Path:
     """Write a study file with every default and a word on each key, whole or not at all.
 
-    Parameters
-    ----------
-    study : Study
-        What to write; its paths are made relative to the new file where they were relative to another one.
-
-    Examples
-    --------
-    >>> write_study(study, "study.toml")  # doctest: +SKIP
-    PosixPath('study.toml')
+    study: what to write; its paths are made relative to the new file where they were relative to another one
     """
     path = Path(path)
     if path.is_dir():
@@ -92,14 +78,7 @@ def write_study(study: Study, path: Path | str) -> Path:
 def study_text(study: Study, folder: Path | None = None) -> str:
     """Text of a study file.
 
-    Parameters
-    ----------
-    folder : Path, optional
-        Folder of the new file; that of the study by default.
-
-    Examples
-    --------
-    >>> print(study_text(study))  # doctest: +SKIP
+    folder: folder of the new file; that of the study by default
     """
     parts = [_TOP + _pair(study, "title") + _pair(study, "sessions")]
     for key in (
@@ -173,8 +152,6 @@ def _moved(file: str, old: Path, new: Path | None) -> str:
 def study_schema() -> Mapping[str, Any]:
     """JSON Schema of the study file, as it stands in `data_schema/study.schema.json`.
 
-    Examples
-    --------
     >>> study_schema()["title"]
     'Study'
     """

@@ -24,13 +24,8 @@ MISSPELT = 0.85  # likeness to a known name above which another name is taken fo
 def refuse(place: Sequence[str | int], needed: str, found: str, remedy: str) -> NoReturn:
     """Refuse a study from within its validation.
 
-    Parameters
-    ----------
-    place : sequence of str or int
-        Keys and places in lists that lead to what is wrong, from the part that is being checked.
+    place: keys and places in lists that lead to what is wrong, from the part that is being checked
 
-    Examples
-    --------
     >>> refuse(("id",), "a pseudonym", "found 'P01' twice", "Rename one.")
     Traceback (most recent call last):
     ...
@@ -41,12 +36,7 @@ def refuse(place: Sequence[str | int], needed: str, found: str, remedy: str) -> 
 
 
 def check_conditions(conditions: Conditions, unknown: str) -> None:
-    """Refuse conditions of which two share a word, and a word for unnamed trials that is no condition.
-
-    Examples
-    --------
-    >>> check_conditions(conditions, "unknown")  # doctest: +SKIP
-    """
+    """Refuse conditions of which two share a word, and a word for unnamed trials that is no condition."""
     words = conditions.words
     if len(set(words)) < len(words) or unknown in words:
         found = f"found {' and '.join(map(repr, words))}"
@@ -59,12 +49,7 @@ def check_conditions(conditions: Conditions, unknown: str) -> None:
 
 
 def check_sessions(study: Study) -> None:
-    """Refuse sessions that are dates or stand twice, and trials of a session that the study does not list.
-
-    Examples
-    --------
-    >>> check_sessions(study)  # doctest: +SKIP
-    """
+    """Refuse sessions that are dates or stand twice, and trials of a session that the study does not list."""
     for i, word in enumerate(study.sessions):
         if _DATE.search(word):
             remedy = 'Write words in the order of the dates, such as sessions = ["before", "after"].'
@@ -89,14 +74,7 @@ def check_sessions(study: Study) -> None:
 def check_participants(study: Study, others: Sequence[str]) -> None:
     """Refuse conditions that are none of the study's, and pseudonyms that stand twice.
 
-    Parameters
-    ----------
-    others : sequence of str
-        Words that a trial may have beside the study's conditions: for one that is not known, and for standing.
-
-    Examples
-    --------
-    >>> check_participants(study, ("unknown", "static"))  # doctest: +SKIP
+    others: words that a trial may have beside the study's conditions: for one that is not known, and for standing
     """
     words = study.conditions.words
     ids = Counter(each.id.lower() for each in study.participants)
@@ -115,13 +93,8 @@ def check_participants(study: Study, others: Sequence[str]) -> None:
 def check_channels(channels: Mapping[str, str]) -> None:
     """Refuse a channel map with an unknown unit, a misspelt name, or one name for two labels.
 
-    Parameters
-    ----------
-    channels : mapping of str to str
-        Label -> `name` or `name [unit]`.
+    channels: label -> `name` or `name [unit]`
 
-    Examples
-    --------
     >>> check_channels({"Sensor 1": "emg_sol_r [mV]"})
     """
     owners: dict[str, str] = {}
@@ -145,14 +118,7 @@ def check_channels(channels: Mapping[str, str]) -> None:
 def check_variables(models: Models, channels: Mapping[str, str]) -> None:
     """Refuse model variables that are misspelt, doubled, or outputs that are not among the inputs.
 
-    Parameters
-    ----------
-    channels : mapping of str to str
-        The study's channel map; its names are known as well.
-
-    Examples
-    --------
-    >>> check_variables(models, {})  # doctest: +SKIP
+    channels: the study's channel map; its names are known as well
     """
     mapped = {split_unit(said)[0] for said in channels.values()}
     inputs = (*models.angles, *models.emg)

@@ -47,15 +47,7 @@ def read_table(path: Path | str, channels: Mapping[str, str] | None = None) -> T
     vocabulary have their unit by definition; every other name must state one. A column of times of another name is
     named by the study: `"Frame time" = "time [s]"`. A line of units below the header counts as part of it.
 
-    Parameters
-    ----------
-    channels : mapping of str to str, optional
-        The study's `[channels]`: label -> `name` or `name [unit]`.
-
-    Examples
-    --------
-    >>> read_table("walk.csv").streams["kinematics"]["knee_angle_r"]  # doctest: +SKIP
-    array([...])
+    channels: the study's `[channels]`: label -> `name` or `name [unit]`
     """
     raw = read_raw(path)
     if raw.name.lower().endswith(".parquet"):
@@ -68,13 +60,8 @@ def read_table(path: Path | str, channels: Mapping[str, str] | None = None) -> T
 def read_frame(frame: pd.DataFrame, channels: Mapping[str, str] | None = None) -> Trial:
     """Trial of a DataFrame with the columns of a plain table; times may stand in its index.
 
-    Parameters
-    ----------
-    channels : mapping of str to str, optional
-        As `read_table` takes it.
+    channels: as `read_table` takes it
 
-    Examples
-    --------
     >>> import pandas as pd
     >>> table = pd.DataFrame({"time": [0.0, 0.01, 0.02], "knee_angle_r": [5.0, 6.0, 7.0]})
     >>> read_frame(table).streams["kinematics"]["knee_angle_r"].tolist()
@@ -126,15 +113,7 @@ def _trial(source: Source, table: TimedColumns, channels: Mapping[str, str] | No
 def write_table(recording: Recording, path: Path | str) -> Path:
     """Write a recording as a plain table, whole or not at all; every column states its unit.
 
-    Parameters
-    ----------
-    recording : Recording
-        Any channels; marks of suspect samples, subject and condition are not written.
-
-    Examples
-    --------
-    >>> write_table(recording, "walk.csv")  # doctest: +SKIP
-    PosixPath('walk.csv')
+    recording: any channels; marks of suspect samples, subject and condition are not written
     """
     path = Path(path)
     check_written_names(recording.names, path.name)
@@ -274,12 +253,8 @@ def checked_angles(
 ) -> list[Finding]:
     """Whether the numbers of angles contradict their unit; a UnitError where they do.
 
-    Parameters
-    ----------
-    time : ndarray (time,) [s]
-        Of the samples.
-    values : ndarray (time, column)
-        In the file's units.
+    time (time,) [s]: of the samples
+    values (time, column): in the file's units
     """
     findings = []
     for unit in ("deg", "rad"):

@@ -15,13 +15,8 @@ _PAIR = re.compile(rf"\s*({_DOTTED})\s*=")
 def line_of(text: str, place: Place) -> int | None:
     r"""Line of a key, or of the table it belongs to where the key itself is absent.
 
-    Returns
-    -------
-    int or None
-        Counted from 1; None where not even the table is there.
+    returns: counted from 1; None where not even the table is there
 
-    Examples
-    --------
     >>> line_of("title = 'x'\n[filters]\norder = 3\n", ("filters", "order"))
     3
     """

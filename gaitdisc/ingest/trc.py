@@ -27,20 +27,14 @@ RATE_TOLERANCE = 2e-3  # between the header's rate and the time column; 59.94 Hz
 
 @dataclass(frozen=True)
 class TrcHeader:
-    """What stands above the positions.
-
-    Parameters
-    ----------
-    body_line : int
-        Line in which the frames start, counted from 1.
-    """
+    """What stands above the positions."""
 
     rate_hz: float
     frames: int
     markers: int
     unit: str
     labels: tuple[str, ...]
-    body_line: int
+    body_line: int  # line in which the frames start, counted from 1
 
 
 def read_trc(path: Path | str, channels: Mapping[str, str] | None = None) -> Trial:
@@ -49,20 +43,8 @@ def read_trc(path: Path | str, channels: Mapping[str, str] | None = None) -> Tri
     Labels are taken in their order, whatever column they stand over, since exporters shift that line by one tab. What
     stands before a colon in a label is the subject's name and is dropped. A marker at exactly (0, 0, 0) was not seen.
 
-    Parameters
-    ----------
-    channels : mapping of str to str, optional
-        The study's `[channels]`: label -> name of the marker.
-
-    Returns
-    -------
-    Trial
-        One stream, `markers`: `<marker>.x`, `.y`, `.z` [m], NaN in gaps.
-
-    Examples
-    --------
-    >>> read_trc("markers.trc").streams["markers"]["RHEE.y"]  # doctest: +SKIP
-    array([...])
+    channels: the study's `[channels]`: label -> name of the marker
+    returns: one stream, `markers`: `<marker>.x`, `.y`, `.z` [m], NaN in gaps
     """
     raw = read_raw(path)
     lines = raw.lines()
@@ -88,8 +70,6 @@ def read_trc(path: Path | str, channels: Mapping[str, str] | None = None) -> Tri
 def parsed_trc_header(lines: Sequence[str], file: str) -> TrcHeader:
     r"""Header of a marker file.
 
-    Examples
-    --------
     >>> keys = "DataRate\tNumFrames\tNumMarkers\tUnits"
     >>> parsed_trc_header(["PathFileType\t4", keys, "100\t1\t1\tmm", "Frame#\tTime\tRHEE"], "a.trc").labels
     ('RHEE',)

@@ -9,31 +9,17 @@ from gaitdisc.ingest.study import FUNCTIONAL, STATIC, UNKNOWN, Participant, Plan
 
 @dataclass(frozen=True)
 class TrialSet:
-    """Walks of one participant in one session under one condition, of which cycles are pooled.
+    """Walks of one participant in one session under one condition, of which cycles are pooled."""
 
-    Parameters
-    ----------
-    session, condition : str
-        Words of the study; the session is empty where there are none.
-    """
-
-    session: str
-    condition: str
+    session: str  # words of the study; the session is empty where there are none
+    condition: str  # words of the study; the session is empty where there are none
     trials: tuple[PlannedTrial, ...]
 
 
 def is_static(study: Study, planned: PlannedTrial) -> bool:
     """Whether a trial is one in which the person stands.
 
-    Parameters
-    ----------
-    study : Study
-        Whose conditions may use that very word for a way of walking.
-
-    Examples
-    --------
-    >>> is_static(study, planned)  # doctest: +SKIP
-    False
+    study: whose conditions may use that very word for a way of walking
     """
     return planned.condition == STATIC and STATIC not in study.conditions.words
 
@@ -44,24 +30,12 @@ def is_functional(study: Study, planned: PlannedTrial) -> bool:
 
 
 def is_walk(study: Study, planned: PlannedTrial) -> bool:
-    """Whether a trial is used as a walk.
-
-    Examples
-    --------
-    >>> is_walk(study, planned)  # doctest: +SKIP
-    True
-    """
+    """Whether a trial is used as a walk."""
     return planned.condition != UNKNOWN and not is_static(study, planned) and not is_functional(study, planned)
 
 
 def trial_sets(study: Study, participant: Participant) -> tuple[TrialSet, ...]:
-    """Walks of a participant by session and condition, in the study's order of both.
-
-    Examples
-    --------
-    >>> [one.condition for one in trial_sets(study, study.participants[0])]  # doctest: +SKIP
-    ['straight', 'turn']
-    """
+    """Walks of a participant by session and condition, in the study's order of both."""
     found = []
     for session in (None, *study.sessions):
         for word in study.conditions.words:
@@ -72,12 +46,7 @@ def trial_sets(study: Study, participant: Participant) -> tuple[TrialSet, ...]:
 
 
 def static_trial(study: Study, participant: Participant, session: str) -> PlannedTrial | None:
-    """Trial in which a participant stands: of the session, else the only one there is; None without.
-
-    Examples
-    --------
-    >>> static_trial(study, study.participants[0], "")  # doctest: +SKIP
-    """
+    """Trial in which a participant stands: of the session, else the only one there is; None without."""
     return _of_session([trial for trial in participant.trials if is_static(study, trial)], session)
 
 
@@ -95,11 +64,6 @@ def refused_participant(study: Study, participant: Participant) -> str:
     """Why nothing of a participant is reported; empty where something is.
 
     Who lacks one of two compared conditions is refused, but for a group, such as controls, that never has it.
-
-    Examples
-    --------
-    >>> refused_participant(study, study.participants[0])  # doctest: +SKIP
-    ''
     """
     if participant.excluded:
         return f"excluded in the study: {participant.excluded}"
@@ -114,13 +78,7 @@ def refused_participant(study: Study, participant: Participant) -> str:
 
 
 def not_compared(study: Study, participant: Participant) -> str:
-    """Why models cannot compare two walks of a participant; empty where they can.
-
-    Examples
-    --------
-    >>> not_compared(study, study.participants[0])  # doctest: +SKIP
-    ''
-    """
+    """Why models cannot compare two walks of a participant; empty where they can."""
     if study.conditions.device is None:
         return "the study compares no device"
     walks = [trial for trial in participant.trials if is_walk(study, trial)]

@@ -28,23 +28,16 @@ Points = Mapping[str, NDArray[np.float64]]
 
 @dataclass(frozen=True, eq=False)
 class Calibration:
-    """What the static trial says of a person; trials of the same session and markers are read with it.
-
-    Parameters
-    ----------
-    body : mapping of str to mapping of str to ndarray (3,) [m]
-        Segment -> point that follows it (marker, by the name of the set, or `hip`, `knee`, `ankle`) -> place in the
-        segment's frame.
-    points : mapping of str to mapping of str to ndarray (3,) [m]
-        Segment -> joint centre or landmark (`hip_r`, `knee_r`, `heel_r`, `asis_l`, ...) -> place in its frame.
-    static : mapping of str to Pose
-        Segment -> its one frame in the static trial.
-    """
+    """What the static trial says of a person; trials of the same session and markers are read with it."""
 
     marker_set: MarkerSet
+    # each (3,) [m], segment -> point that follows it (marker, by the name of the set, or `hip`, `knee`, `ankle`) ->
+    # place in the segment's frame
     body: Mapping[str, Points]
+    # each (3,) [m], segment -> joint centre or landmark (`hip_r`, `knee_r`, `heel_r`, `asis_l`, ...) -> place in its
+    # frame
     points: Mapping[str, Points]
-    static: Mapping[str, Pose]
+    static: Mapping[str, Pose]  # segment -> its one frame in the static trial
     findings: tuple[Finding, ...] = ()
 
 
@@ -56,13 +49,10 @@ def calibrated(
 ) -> Calibration:
     """Frames, joint centres and marker places of a person from the static trial.
 
-    Parameters
-    ----------
-    measures : BodyMeasures, optional
-        Widths of knee and ankle, distance of the iliac spines, leg lengths, diameter of the markers. What the static
-        trial shows itself (both condyles, both malleoli) needs none.
-    hips : mapping of str to ndarray (3,) [m], optional
-        `hip_l`, `hip_r` in the pelvis' frame, as `functional_hips` finds them; of the marker set where there is none.
+    measures: widths of knee and ankle, distance of the iliac spines, leg lengths, diameter of the markers. What the
+        static trial shows itself (both condyles, both malleoli) needs none
+    hips each (3,) [m]: `hip_l`, `hip_r` in the pelvis' frame, as `functional_hips` finds them; of the marker set where
+        there is none
     """
     if static is None:
         raise ChannelError(

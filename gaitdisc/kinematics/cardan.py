@@ -13,22 +13,11 @@ def clinical_angles(proximal: NDArray[np.float64], distal: NDArray[np.float64]) 
     inwards (about y). The floating axis is at right angles to both others, so that no order is chosen; the numbers are
     those of the Cardan sequence z, x, y, and OpenSim's.
 
-    Parameters
-    ----------
-    proximal, distal : ndarray (frame, 3, 3)
-        Axes of the segments in the laboratory's frame, as columns: x forward, y up, z to the right.
+    proximal, distal (frame, 3, 3): axes of the segments in the laboratory's frame, as columns: x forward, y up, z to
+        the right
+    returns (frame, 3) [deg]: each in [-180, 180], adduction in [-90, 90]; NaN where a segment is unknown
+    Source: Grood & Suntay 1983, J Biomech Eng 105:136; Wu 2002, J Biomech 35:543.
 
-    Returns
-    -------
-    ndarray (frame, 3) [deg]
-        Each in [-180, 180], adduction in [-90, 90]; NaN where a segment is unknown.
-
-    References
-    ----------
-    Grood & Suntay 1983, J Biomech Eng 105:136; Wu 2002, J Biomech 35:543.
-
-    Examples
-    --------
     >>> quarter = np.array([[[0.0, -1, 0], [1, 0, 0], [0, 0, 1]]])
     >>> clinical_angles(np.eye(3)[None], quarter).tolist()
     [[90.0, 0.0, 0.0]]
@@ -43,17 +32,9 @@ def clinical_angles(proximal: NDArray[np.float64], distal: NDArray[np.float64]) 
 def rotation_of(angles_deg: NDArray[np.float64]) -> NDArray[np.float64]:
     """Rotation of the distal segment in the proximal one; what `clinical_angles` takes apart.
 
-    Parameters
-    ----------
-    angles_deg : ndarray (frame, 3) [deg]
-        Flexion, adduction, rotation, with the signs of a right limb.
+    angles_deg (frame, 3) [deg]: flexion, adduction, rotation, with the signs of a right limb
+    returns (frame, 3, 3)
 
-    Returns
-    -------
-    ndarray (frame, 3, 3)
-
-    Examples
-    --------
     >>> angles = np.array([[30.0, -5.0, 8.0]])
     >>> clinical_angles(np.eye(3)[None], rotation_of(angles)).round(9).tolist()
     [[30.0, -5.0, 8.0]]

@@ -18,19 +18,10 @@ FROM_STRAIGHT_DEG = 30.0  # a shank that turns by 300 deg/s one way and back aga
 def held_in_gaps(free: Mapping[str, Pose], placed: Placed, points: Mapping[str, Points]) -> dict[str, Pose]:
     """Poses of the body held together at its joints, in the frames in which some segment is unknown and beside them.
 
-    Parameters
-    ----------
-    free : mapping of str to Pose
-        Each segment laid over its own points; NaN where these are too few.
-    placed : mapping of str to (ndarray (marker, 3), ndarray (frame, marker, 3)) [m]
-        As `held_together` takes them.
-    points : mapping of str to mapping of str to ndarray (3,) [m]
-        As `held_together` takes them.
-
-    Returns
-    -------
-    dict of str to Pose
-        NaN in all other frames, and where the markers do not determine the segment.
+    free: each segment laid over its own points; NaN where these are too few
+    placed each ((marker, 3), (frame, marker, 3)) [m]: as `held_together` takes them
+    points each (3,) [m]: as `held_together` takes them
+    returns: NaN in all other frames, and where the markers do not determine the segment
     """
     unknown = ~np.logical_and.reduce([free[segment].known for segment in SEGMENTS])
     beside = np.convolve(unknown, np.ones(3), "same") > 0
@@ -51,18 +42,10 @@ def carried_over(free: Pose, held: Pose) -> Pose:
     Held together, two markers and a joint determine a pose. It differs from that of the segment's own points: skin
     moves; the difference at both ends of a gap is led over it, so that no step is made.
 
-    Parameters
-    ----------
-    free : Pose
-        Laid over its own points; NaN where these are too few.
-    held : Pose
-        Of the body held together; NaN where it is not determined.
-
-    Returns
-    -------
-    Pose
-        Known frames as they were; NaN where the held body turns by more than 30 deg from the straight way between
-        the ends, as it does in another minimum and in gaps that are too long.
+    free: laid over its own points; NaN where these are too few
+    held: of the body held together; NaN where it is not determined
+    returns: known frames as they were; NaN where the held body turns by more than 30 deg from the straight way between
+        the ends, as it does in another minimum and in gaps that are too long
     """
     ends: NDArray[np.intp] = np.flatnonzero(free.known & held.known)
     gaps: NDArray[np.intp] = np.flatnonzero(~free.known & held.known)

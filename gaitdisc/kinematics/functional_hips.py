@@ -38,10 +38,7 @@ def functional_hips(
     spheres on which they move. A side whose thigh hardly moves, or in one plane, or not about a point, keeps the hip
     that the calibration has.
 
-    Parameters
-    ----------
-    calibration : Calibration
-        Of the same person's static trial, with the hips of a regression.
+    calibration: of the same person's static trial, with the hips of a regression
     """
     file = markers.source.file or "the functional trial"
     placed = placed_markers(markers, calibration)
@@ -85,9 +82,7 @@ def _found(
 def fixed_point(above: Pose, below: Pose) -> Pivot:
     """Point that stays nearest to one place in both segments, in the frame of the one above [m].
 
-    References
-    ----------
-    Ehrig 2006, J Biomech 39:2798 (symmetrical centre of rotation estimation).
+    Source: Ehrig 2006, J Biomech 39:2798 (symmetrical centre of rotation estimation).
     """
     both = np.concatenate([above.rotation, -below.rotation], axis=2)
     apart = below.origin - above.origin
@@ -99,19 +94,10 @@ def fixed_point(above: Pose, below: Pose) -> Pivot:
 def sphere_centre(places: NDArray[np.float64], start: NDArray[np.float64]) -> Pivot:
     """Centre that all markers keep their distances from, without the bias that noise gives it.
 
-    Parameters
-    ----------
-    places : ndarray (frame, marker, 3) [m]
-        In the frame of the segment above.
-    start : ndarray (3,) [m]
-        Where the search for the bias begins.
+    places (frame, marker, 3) [m]: in the frame of the segment above
+    start (3,) [m]: where the search for the bias begins
+    Source: Gamage & Lasenby 2002, J Biomech 35:87; Halvorsen 2003, J Biomech 36:999 (the bias).
 
-    References
-    ----------
-    Gamage & Lasenby 2002, J Biomech 35:87; Halvorsen 2003, J Biomech 36:999 (the bias).
-
-    Examples
-    --------
     >>> turn = np.linspace(0, 6, 90)
     >>> way = np.stack([np.sin(turn), -2 + np.cos(3 * turn) / 2, np.cos(turn)], axis=1)
     >>> way = 0.4 * way / np.linalg.norm(way, axis=1, keepdims=True) + [0.1, 0.2, 0.3]

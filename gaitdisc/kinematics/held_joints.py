@@ -36,28 +36,17 @@ def held_together(
     lost markers is carried by them. Joints turn freely about all three axes; in a plane, all turn about its normal, and
     the pelvis stays beside it.
 
-    Parameters
-    ----------
-    first : mapping of str to Pose
-        Each segment laid over its own markers, where the search begins; where one is unknown, it begins between the
-        frames before and after.
-    placed : mapping of str to (ndarray (marker, 3), ndarray (frame, marker, 3)) [m]
-        Segment -> its markers in its own frame, and in the laboratory; NaN where one is missing.
-    points : mapping of str to mapping of str to ndarray (3,) [m]
-        Segment -> joint centre (`hip_r`, ...) -> place in its frame, for the segments on both sides of the joint.
-    plane : ndarray (frame, 3, 3), optional
-        The walker's forward, up and right, as columns, where only the plane of forward and up is wanted.
-    steady_m : float
-        A segment whose turn has a shorter lever is unknown (`levers_m`) [m].
-
-    Returns
-    -------
-    dict of str to Pose
-        A segment is NaN in frames whose markers do not determine it; all are where no pose is near them.
-
-    References
-    ----------
-    Lu & O'Connor 1999, J Biomech 32:129. Differs from the source: all markers weigh the same.
+    first: each segment laid over its own markers, where the search begins; where one is unknown, it begins between the
+        frames before and after
+    placed each ((marker, 3), (frame, marker, 3)) [m]: segment -> its markers in its own frame, and in the laboratory;
+        NaN where one is missing
+    points each (3,) [m]: segment -> joint centre (`hip_r`, ...) -> place in its frame, for the segments on both sides
+        of the joint
+    plane (frame, 3, 3): the walker's forward, up and right, as columns, where only the plane of forward and up is
+        wanted
+    steady_m: a segment whose turn has a shorter lever is unknown (`levers_m`) [m]
+    returns: a segment is NaN in frames whose markers do not determine it; all are where no pose is near them
+    Source: Lu & O'Connor 1999, J Biomech 32:129. Differs from the source: all markers weigh the same.
     """
     turns, origin = _beginning(first)
     if plane is not None:
@@ -188,17 +177,9 @@ def _apart_m(turns: Turns, origins: Turns, placed: Placed) -> NDArray[np.float64
 def levers_m(normal: NDArray[np.float64], allowed: NDArray[np.float64]) -> Turns:
     """How well markers determine each segment: error of a marker over the error of the turn that it makes.
 
-    Parameters
-    ----------
-    normal : ndarray (frame, all, all)
-        Matrix of the normal equations.
-    allowed : ndarray (frame, all, allowed)
-        Steps that may be taken.
-
-    Returns
-    -------
-    dict of str to ndarray (frame,) [m]
-        About the axis for which it is shortest.
+    normal (frame, all, all): matrix of the normal equations
+    allowed (frame, all, allowed): steps that may be taken
+    returns each (frame,) [m]: about the axis for which it is shortest
     """
     some = _among(normal, allowed)
     spread = allowed @ np.linalg.inv(some + DAMPING * np.eye(some.shape[1])) @ np.swapaxes(allowed, 1, 2)

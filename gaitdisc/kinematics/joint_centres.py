@@ -16,19 +16,10 @@ _MM = 1e-3
 def harrington_hip(width_m: float, depth_m: float, side: str) -> NDArray[np.float64]:
     """Hip joint centre in the frame of the pelvis, from mid-ASIS (x forward, y up, z to the right) [m].
 
-    Parameters
-    ----------
-    width_m : float
-        Distance between the anterior superior iliac spines [m].
-    depth_m : float
-        Distance from the middle of the anterior to the middle of the posterior spines [m].
+    width_m: distance between the anterior superior iliac spines [m]
+    depth_m: distance from the middle of the anterior to the middle of the posterior spines [m]
+    Source: Harrington 2007, J Biomech 40:595: x = -0.24 PD - 9.9, y = -0.30 PW - 10.9, z = 0.33 PW + 7.3 mm.
 
-    References
-    ----------
-    Harrington 2007, J Biomech 40:595: x = -0.24 PD - 9.9, y = -0.30 PW - 10.9, z = 0.33 PW + 7.3 mm.
-
-    Examples
-    --------
     >>> harrington_hip(0.240, 0.150, "r").round(4).tolist()
     [-0.0459, -0.0829, 0.0865]
     """
@@ -40,26 +31,13 @@ def harrington_hip(width_m: float, depth_m: float, side: str) -> NDArray[np.floa
 class DavisHip:
     """Hip joint centre of Plug-in Gait, from leg length.
 
-    Parameters
-    ----------
-    width_m : float
-        Distance between the anterior superior iliac spines [m].
-    mean_leg_m : float
-        Mean length of both legs [m].
-    leg_m : float
-        Length of the leg itself [m], from which the distance from spine to trochanter is estimated.
-    marker_radius_m : float
-        Of the markers [m].
-
-    References
-    ----------
-    Davis 1991, Hum Mov Sci 10:575; Kadaba 1990: theta = 28.4 deg and beta = 18 deg, as 0.5 and 0.314 rad.
+    Source: Davis 1991, Hum Mov Sci 10:575; Kadaba 1990: theta = 28.4 deg and beta = 18 deg, as 0.5 and 0.314 rad.
     """
 
-    width_m: float
-    mean_leg_m: float
-    leg_m: float
-    marker_radius_m: float
+    width_m: float  # distance between the anterior superior iliac spines [m]
+    mean_leg_m: float  # mean length of both legs [m]
+    leg_m: float  # length of the leg itself [m], from which the distance from spine to trochanter is estimated
+    marker_radius_m: float  # of the markers [m]
 
     def centre(self, side: str) -> NDArray[np.float64]:
         """Hip joint centre in the frame of the pelvis, from mid-ASIS [m]."""
@@ -81,23 +59,12 @@ def chord_centre(
     The line from the centre to the proximal joint and the line from the centre to the lateral marker are at right
     angles; of the two such points the one away from the wand is taken.
 
-    Parameters
-    ----------
-    proximal : ndarray (3,) [m]
-        Joint centre above.
-    wand : ndarray (3,) [m]
-        Marker that shows the plane, lateral of the segment.
-    lateral : ndarray (3,) [m]
-        Marker over the lateral condyle or malleolus.
-    distance_m : float
-        Half the width of the joint and the radius of the marker [m].
+    proximal (3,) [m]: joint centre above
+    wand (3,) [m]: marker that shows the plane, lateral of the segment
+    lateral (3,) [m]: marker over the lateral condyle or malleolus
+    distance_m: half the width of the joint and the radius of the marker [m]
+    Source: Davis 1991, Hum Mov Sci 10:575; Plug-in Gait calls it CHORD.
 
-    References
-    ----------
-    Davis 1991, Hum Mov Sci 10:575; Plug-in Gait calls it CHORD.
-
-    Examples
-    --------
     >>> centre = chord_centre(np.array([0, 1.0, 0]), np.array([0, 0.5, 0.2]), np.array([0, 0, 0.05]), 0.05)
     >>> centre.round(6).tolist()
     [0.0, 0.0, 0.0]

@@ -18,35 +18,18 @@ UPRIGHT = 0.85  # cosine between an axis of the laboratory and the line from fee
 
 @dataclass(frozen=True, eq=False)
 class WalkingFrame:
-    """The walker's frame over time: x forward, y up, z to the right.
+    """The walker's frame over time: x forward, y up, z to the right."""
 
-    Parameters
-    ----------
-    rotation : ndarray (frame, 3, 3)
-        Columns are forward, up, right in the laboratory's frame.
-    how : str
-        What up and forward were found from.
-    """
-
-    rotation: NDArray[np.float64]
-    how: str
+    rotation: NDArray[np.float64]  # (frame, 3, 3), columns are forward, up, right in the laboratory's frame
+    how: str  # what up and forward were found from
 
 
 def up_axis(pelvis: NDArray[np.float64], feet: NDArray[np.float64], file: str = "") -> NDArray[np.float64]:
     """Axis of the laboratory that points up: the one along which the pelvis lies above the feet.
 
-    Parameters
-    ----------
-    pelvis, feet : ndarray (frame, 3) [m]
-        Middle of the pelvis and of both feet; NaN allowed.
+    pelvis, feet (frame, 3) [m]: middle of the pelvis and of both feet; NaN allowed
+    returns (3,): unit vector along an axis
 
-    Returns
-    -------
-    ndarray (3,)
-        Unit vector along an axis.
-
-    Examples
-    --------
     >>> up_axis(np.array([[1.0, 2.0, 0.9]]), np.array([[1.0, 2.1, 0.1]]))
     array([0., 0., 1.])
     """
@@ -75,15 +58,10 @@ def up_axis(pelvis: NDArray[np.float64], feet: NDArray[np.float64], file: str = 
 def check_right_handed(pelvis: NDArray[np.float64], up: NDArray[np.float64], file: str = "") -> None:
     """Refuse markers of a mirrored laboratory frame.
 
-    Parameters
-    ----------
-    pelvis : ndarray (frame, 3, 3)
-        Axes of the pelvis: z from the left to the right spine, x from the sacrum forward, y at right angles to both.
-    up : ndarray (3,)
-        Up in the laboratory.
+    pelvis (frame, 3, 3): axes of the pelvis: z from the left to the right spine, x from the sacrum forward, y at right
+        angles to both
+    up (3,): up in the laboratory
 
-    Examples
-    --------
     >>> check_right_handed(np.eye(3)[None], np.array([0.0, -1.0, 0.0]), "a.c3d")  # doctest: +ELLIPSIS
     Traceback (most recent call last):
     ...
@@ -112,14 +90,9 @@ def walking_frame(
     turns by 15 deg or more, its mean path otherwise; where it does not travel (a treadmill, standing), the way that the
     pelvis faces on the mean. Of a person who walks backwards, forward is against the path.
 
-    Parameters
-    ----------
-    origin : ndarray (frame, 3) [m]
-        The pelvis over time; NaN allowed.
-    facing : ndarray (frame, 3)
-        Axis of the pelvis that points forward.
-    up : ndarray (3,)
-        Up in the laboratory.
+    origin (frame, 3) [m]: the pelvis over time; NaN allowed
+    facing (frame, 3): axis of the pelvis that points forward
+    up (3,): up in the laboratory
     """
     if given is not None:
         return WalkingFrame(_frames(np.tile(_level_given(given, up), (len(origin), 1)), up), "forward as given")

@@ -38,42 +38,27 @@ PLACEHOLDER = re.compile(r"\{(S|s|side)\}")
 class MarkerSet:
     """Markers of one laboratory's convention.
 
-    Parameters
-    ----------
-    name : str
-        Name of its file without the ending.
-    title, citation : str
-        What it is and where it is described.
-    aliases : mapping of str to tuple of str
-        Name in this set -> other names of the same marker. `{S}` stands for R and L.
-    landmarks : mapping of str to str
-        Landmark -> markers: `A + B` is the midpoint, `A | B` is A or, where that is absent, B.
-    joint_centres : mapping of str to tuple of str
-        `hip`, `knee`, `ankle` -> methods, the first that there are markers and measures for is taken.
-    axes : mapping of str to str
-        `shank`: whose medial-lateral axis it takes; `foot`: `flat` on the floor, or `as placed` from heel to toe.
-    joints : str
-        `free`: each segment is laid over its own points; `held`: all at once, with the joints held together; `planar`:
-        the same, and everything moves in the plane of walking, as a planar model's body does.
-    tracked : mapping of str to tuple of str
-        `pelvis`, `thigh`, `shank`, `foot` -> markers that follow the segment; `hip`, `knee`, `ankle` are the
-        joint centres that the segment above carries.
-
-    Examples
-    --------
     >>> from gaitdisc.kinematics.marker_set_file import marker_set
     >>> marker_set("plug_in_gait").tracked["thigh"]
     ('hip', '{S}THI', '{S}KNE')
     """
 
-    name: str
-    title: str
-    citation: str
+    name: str  # name of its file without the ending
+    title: str  # what it is and where it is described
+    citation: str  # what it is and where it is described
+    # name in this set -> other names of the same marker. `{S}` stands for R and L
     aliases: Mapping[str, tuple[str, ...]]
+    # landmark -> markers: `A + B` is the midpoint, `A | B` is A or, where that is absent, B
     landmarks: Mapping[str, str]
+    # `hip`, `knee`, `ankle` -> methods, the first that there are markers and measures for is taken
     joint_centres: Mapping[str, tuple[str, ...]]
+    # `shank`: whose medial-lateral axis it takes; `foot`: `flat` on the floor, or `as placed` from heel to toe
     axes: Mapping[str, str]
+    # `free`: each segment is laid over its own points; `held`: all at once, with the joints held together; `planar`:
+    # the same, and everything moves in the plane of walking, as a planar model's body does
     joints: str
+    # `pelvis`, `thigh`, `shank`, `foot` -> markers that follow the segment; `hip`, `knee`, `ankle` are the joint
+    # centres that the segment above carries
     tracked: Mapping[str, tuple[str, ...]]
 
     def with_joints(self, joints: str) -> MarkerSet:
@@ -95,14 +80,9 @@ class MarkerSet:
     def names(self, labels: Iterable[str]) -> dict[str, str]:
         """Names in this set of the labels of a recording: set's name -> label.
 
-        Parameters
-        ----------
-        labels : iterable of str
-            Markers as the file has them. Case, blanks and punctuation do not count; a label that is the set's own name
-            comes before one that is an alias.
+        labels: markers as the file has them. Case, blanks and punctuation do not count; a label that is the set's own
+            name comes before one that is an alias
 
-        Examples
-        --------
         >>> from gaitdisc.kinematics.marker_set_file import marker_set
         >>> marker_set("helen_hayes").names(["R.ASIS", "RKNEE"])
         {'RASI': 'R.ASIS', 'RKNE': 'RKNEE'}
@@ -133,8 +113,6 @@ class MarkerSet:
     def followers(self, segment: str) -> tuple[str, ...]:
         """Points that follow a segment: markers by the names of this set, `hip`, `knee`, `ankle` for a joint centre.
 
-        Examples
-        --------
         >>> from gaitdisc.kinematics.marker_set_file import marker_set
         >>> marker_set("plug_in_gait").followers("shank_r")
         ('knee', 'RTIB', 'RANK')
@@ -145,13 +123,8 @@ class MarkerSet:
     def landmark(self, key: str, side: str, names: Iterable[str]) -> tuple[str, ...]:
         """Markers of a landmark, of which it is the midpoint: the first choice that is there, empty where none is.
 
-        Parameters
-        ----------
-        names : iterable of str
-            Markers that are there, in the names of this set.
+        names: markers that are there, in the names of this set
 
-        Examples
-        --------
         >>> from gaitdisc.kinematics.marker_set_file import marker_set
         >>> marker_set("plug_in_gait").landmark("sacrum", "l", ["LPSI", "RPSI"])
         ('LPSI', 'RPSI')
@@ -166,10 +139,7 @@ class MarkerSet:
     def lacking(self, names: Iterable[str]) -> list[str]:
         """Markers that a static trial must have and that are not there; of several choices the first is named.
 
-        Parameters
-        ----------
-        names : iterable of str
-            Markers that are there, in the names of this set.
+        names: markers that are there, in the names of this set
         """
         there = set(names)
         absent = []
@@ -183,10 +153,7 @@ class MarkerSet:
     def needed_landmarks(self, names: Iterable[str]) -> list[str]:
         """Landmarks without which no frame can be built from these markers.
 
-        Parameters
-        ----------
-        names : iterable of str
-            Markers that are there, in the names of this set.
+        names: markers that are there, in the names of this set
         """
         there = set(names)
         needed: list[str] = list(NEEDED)
@@ -201,13 +168,8 @@ class MarkerSet:
 def sided(name: str, side: str) -> str:
     """Name of a marker on one side.
 
-    Parameters
-    ----------
-    name : str
-        With `{S}` (R, L), `{s}` (r, l) or `{side}` (right, left), or without.
+    name: with `{S}` (R, L), `{s}` (r, l) or `{side}` (right, left), or without
 
-    Examples
-    --------
     >>> sided("{S}ASI", "l"), sided("knee_{side}", "r")
     ('LASI', 'knee_right')
     """
@@ -218,8 +180,6 @@ def sided(name: str, side: str) -> str:
 def on_sides(points: Iterable[str], sides: str) -> tuple[str, ...]:
     """Names of points on one side or on both, each once.
 
-    Examples
-    --------
     >>> on_sides(["{S}ASI", "SACR"], "lr")
     ('LASI', 'RASI', 'SACR')
     """
@@ -229,8 +189,6 @@ def on_sides(points: Iterable[str], sides: str) -> tuple[str, ...]:
 def choices(text: str) -> list[tuple[str, ...]]:
     """Markers of each choice of a landmark.
 
-    Examples
-    --------
     >>> choices("SACR | LPSI + RPSI")
     [('SACR',), ('LPSI', 'RPSI')]
     """

@@ -56,11 +56,8 @@ def shipped_marker_sets() -> dict[str, MarkerSet]:
 def read_marker_set(path: Path) -> MarkerSet:
     """Marker set of a TOML file.
 
-    Parameters
-    ----------
-    path : Path
-        File with the tables `[landmarks]`, `[joint_centres]`, `[tracked]`; `[aliases]`, `[axes]` and `joints` may be
-        left out.
+    path: file with the tables `[landmarks]`, `[joint_centres]`, `[tracked]`; `[aliases]`, `[axes]` and `joints` may be
+        left out
     """
     try:
         check_regular(path, LARGEST_BYTES)
@@ -187,14 +184,9 @@ def _check_tracked(tracked: Mapping[str, tuple[str, ...]], file: str) -> None:
 def recognised_marker_set(static: Iterable[str], trial: Iterable[str], file: str = "") -> MarkerSet:
     """Marker set that comes along and that the labels are of.
 
-    Returns
-    -------
-    MarkerSet
-        Of those for which the static trial has all landmarks and the trial three points a segment: the one of which
-        most markers are there.
+    returns: of those for which the static trial has all landmarks and the trial three points a segment: the one of
+        which most markers are there
 
-    Examples
-    --------
     >>> legs = [f"{side}{name}" for side in "LR" for name in ("ASI", "THI", "KNE", "TIB", "ANK", "HEE", "TOE")]
     >>> recognised_marker_set(["SACR", *legs], ["SACR", *legs]).name
     'plug_in_gait'

@@ -32,10 +32,7 @@ def marker_labels(markers: Recording) -> list[str]:
 def marker_places(markers: Recording, labels: Sequence[str]) -> NDArray[np.float64]:
     """Positions of markers.
 
-    Returns
-    -------
-    ndarray (frame, marker, 3) [m]
-        NaN, in all three, where a marker was not seen.
+    returns (frame, marker, 3) [m]: NaN, in all three, where a marker was not seen
     """
     columns = [markers.index(f"{label}.{axis}") for label in labels for axis in "xyz"]
     places = np.array(markers.values[:, columns]).reshape(len(markers.time), len(labels), 3)
@@ -46,22 +43,13 @@ def marker_places(markers: Recording, labels: Sequence[str]) -> NDArray[np.float
 def still_places(markers: Recording, names: Mapping[str, str], needed: Sequence[str]) -> tuple[dict, float, float]:
     """Where each marker is while the person stands stillest, over half a second in which every needed marker is seen.
 
-    Parameters
-    ----------
-    names : mapping of str to str
-        Name in the marker set -> label in the recording.
-    needed : sequence of str
-        Markers, by the names of the set, without which no frame can be built.
-
-    Returns
-    -------
-    places : dict of str to ndarray (3,) [m]
-        Median over the half second, or over the whole trial for a marker that is missing in it; without those that are
-        never seen.
-    moved_m : float
-        How far the needed markers are from their places, at most on the mean over markers, in that half second [m].
-    start_s : float
-        Where it begins [s].
+    names: name in the marker set -> label in the recording
+    needed: markers, by the names of the set, without which no frame can be built
+    returns places each (3,) [m]: median over the half second, or over the whole trial for a marker that is missing in
+        it; without those that are never seen
+    returns moved_m: how far the needed markers are from their places, at most on the mean over markers, in that half
+        second [m]
+    returns start_s: where it begins [s]
     """
     all_places = marker_places(markers, list(names.values()))
     rows = [list(names).index(name) for name in needed]

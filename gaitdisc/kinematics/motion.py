@@ -30,33 +30,18 @@ ANOTHER_SHAPE_M = 0.01  # median; with their own static trials six people have u
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """A trial as segments that move.
+    """A trial as segments that move."""
 
-    Parameters
-    ----------
-    angles : Recording
-        Joint angles, pelvis and foot progression [deg], pelvis translations [m].
-    poses : mapping of str to Pose
-        Segment (`pelvis`, `thigh_l`, ...) -> origin and axes in the laboratory's frame, frame by frame.
-    joint_centres : mapping of str to ndarray (frame, 3) [m]
-        Joint (`hip_l`, ...) -> place in the laboratory's frame.
-    walking : WalkingFrame
-        Forward, up and right of the walker.
-    residual_m : mapping of str to ndarray (frame,) [m]
-        Segment -> root mean square distance of its markers from where the static trial has them.
-    marker_set : str
-        Name of the set that was used.
-    findings : tuple of Finding
-        What was inferred, bridged or left out.
-    """
-
-    angles: Recording
+    angles: Recording  # joint angles, pelvis and foot progression [deg], pelvis translations [m]
+    # segment (`pelvis`, `thigh_l`, ...) -> origin and axes in the laboratory's frame, frame by frame
     poses: Mapping[str, Pose]
+    # each (frame, 3) [m], joint (`hip_l`, ...) -> place in the laboratory's frame
     joint_centres: Mapping[str, NDArray[np.float64]]
-    walking: WalkingFrame
+    walking: WalkingFrame  # forward, up and right of the walker
+    # each (frame,) [m], segment -> root mean square distance of its markers from where the static trial has them
     residual_m: Mapping[str, NDArray[np.float64]]
-    marker_set: str
-    findings: tuple[Finding, ...] = ()
+    marker_set: str  # name of the set that was used
+    findings: tuple[Finding, ...] = ()  # what was inferred, bridged or left out
 
 
 def joint_angles(
@@ -69,26 +54,11 @@ def joint_angles(
 ) -> Recording:
     """Joint angles of a trial from its markers.
 
-    Parameters
-    ----------
-    static : Recording or None
-        Markers of the same person standing, with the same markers; None is refused.
-    marker_set : MarkerSet, str or Path, optional
-        A set, its name, or its file; recognised by the labels where it is not given.
-    forward : sequence of 3 floats, optional
-        Direction of walking in the laboratory's axes; found from the pelvis where it is not given.
-    joints : str, optional
-        `free`, `held` or `planar`; as the marker set says where it is not given.
-
-    Returns
-    -------
-    Recording
-        `pelvis_tilt`, `hip_flexion_r`, `knee_angle_r`, ... [deg] with the package's signs, `pelvis_tx`, ... [m].
-
-    Examples
-    --------
-    >>> walk, static = read_trial("walk.c3d"), read_trial("static.c3d")  # doctest: +SKIP
-    >>> angles = joint_angles(walk.stream("markers"), static.stream("markers"))  # doctest: +SKIP
+    static: markers of the same person standing, with the same markers; None is refused
+    marker_set: a set, its name, or its file; recognised by the labels where it is not given
+    forward: direction of walking in the laboratory's axes; found from the pelvis where it is not given
+    joints: `free`, `held` or `planar`; as the marker set says where it is not given
+    returns: `pelvis_tilt`, `hip_flexion_r`, `knee_angle_r`, ... [deg] with the package's signs, `pelvis_tx`, ... [m]
     """
     return moved_body(markers, static, marker_set, measures, forward, joints).motion.angles
 
@@ -120,10 +90,7 @@ def chosen_marker_set(
 ) -> MarkerSet:
     """Marker set of a trial: the one given, or the one that the labels are of.
 
-    Parameters
-    ----------
-    static : Recording or None
-        Markers of the static trial; None is refused where the set is to be recognised.
+    static: markers of the static trial; None is refused where the set is to be recognised
     """
     if isinstance(given, MarkerSet):
         return given
@@ -141,10 +108,7 @@ def chosen_marker_set(
 def motion(markers: Recording, calibration: Calibration, forward: Sequence[float] | None = None) -> Motion:
     """Segments, joint centres and angles of a trial.
 
-    Parameters
-    ----------
-    forward : sequence of 3 floats, optional
-        Direction of walking in the laboratory's axes; found from the pelvis where it is not given.
+    forward: direction of walking in the laboratory's axes; found from the pelvis where it is not given
     """
     file = markers.source.file or "the trial"
     placed = placed_markers(markers, calibration)
@@ -222,12 +186,8 @@ def angles_of_poses(
 ) -> Recording:
     """Joint angles, pelvis and foot progression [deg], pelvis translations [m] of segments in space.
 
-    Parameters
-    ----------
-    base : Recording
-        Whose times and names the angles get.
-    bridged : mapping of str to ndarray (frame,)
-        Segment -> frames in which it is not to be trusted.
+    base: whose times and names the angles get
+    bridged each (frame,): segment -> frames in which it is not to be trusted
     """
     turns = {segment: pose.rotation for segment, pose in poses.items()}
     columns: list[tuple[Channel, NDArray[np.float64], NDArray[np.bool_]]] = []

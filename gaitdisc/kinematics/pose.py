@@ -19,21 +19,14 @@ NOT_A_ROTATION = 1e-6  # largest difference of R^T R from the identity, and of d
 class Pose:
     """Origin and axes of one segment in the laboratory's frame.
 
-    Parameters
-    ----------
-    origin : ndarray (frame, 3) [m]
-        The segment's origin in the laboratory's frame; NaN where it is unknown.
-    rotation : ndarray (frame, 3, 3)
-        Columns are the segment's axes in the laboratory's frame: x forward, y up, z to the right of the
-        person; NaN where unknown. `rotation @ v` turns a vector of the segment into the laboratory's frame.
-
-    Examples
-    --------
     >>> Pose(np.zeros((2, 3)), np.tile(np.eye(3), (2, 1, 1))).known
     array([ True,  True])
     """
 
+    # (frame, 3) [m], the segment's origin in the laboratory's frame; NaN where it is unknown
     origin: NDArray[np.float64]
+    # (frame, 3, 3), columns are the segment's axes in the laboratory's frame: x forward, y up, z to the right of the
+    # person; NaN where unknown. `rotation @ v` turns a vector of the segment into the laboratory's frame
     rotation: NDArray[np.float64]
 
     def __post_init__(self) -> None:
@@ -71,17 +64,9 @@ class Pose:
     def to_laboratory(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Points fixed in the segment, in the laboratory's frame.
 
-        Parameters
-        ----------
-        points : ndarray (point, 3) or (3,) [m]
-            In the segment's frame.
+        points (point, 3) or (3,) [m]: in the segment's frame
+        returns (frame, point, 3) or (frame, 3) [m]
 
-        Returns
-        -------
-        ndarray (frame, point, 3) or (frame, 3) [m]
-
-        Examples
-        --------
         >>> Pose(np.ones((1, 3)), np.eye(3)[None]).to_laboratory(np.array([0.0, 1.0, 0.0]))
         array([[1., 2., 1.]])
         """
@@ -93,17 +78,9 @@ class Pose:
     def to_segment(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Points of the laboratory's frame, in the segment's frame.
 
-        Parameters
-        ----------
-        points : ndarray (frame, point, 3) or (frame, 3) [m]
-            In the laboratory's frame.
+        points (frame, point, 3) or (frame, 3) [m]: in the laboratory's frame
+        returns of the same shape [m]
 
-        Returns
-        -------
-        ndarray of the same shape [m]
-
-        Examples
-        --------
         >>> Pose(np.ones((1, 3)), np.eye(3)[None]).to_segment(np.array([[1.0, 2.0, 1.0]]))
         array([[0., 1., 0.]])
         """

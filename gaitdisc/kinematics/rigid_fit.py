@@ -15,39 +15,21 @@ LEAST_BREADTH_M = 0.01  # second largest extent of the points that are seen: on 
 
 @dataclass(frozen=True, eq=False)
 class RigidFit:
-    """Pose of a body and how well its markers keep their shape.
+    """Pose of a body and how well its markers keep their shape."""
 
-    Parameters
-    ----------
-    pose : Pose
-        NaN in frames with fewer than three points, or points on a line.
-    seen : ndarray of bool (frame, point)
-        Points that were there.
-    residual_m : ndarray (frame,) [m]
-        Root of the mean square distance between the points and those of the body.
-    """
-
-    pose: Pose
-    seen: NDArray[np.bool_]
+    pose: Pose  # NaN in frames with fewer than three points, or points on a line
+    seen: NDArray[np.bool_]  # (frame, point), points that were there
+    # (frame,) [m], root of the mean square distance between the points and those of the body
     residual_m: NDArray[np.float64]
 
 
 def fitted_pose(body: NDArray[np.float64], observed: NDArray[np.float64]) -> RigidFit:
     """Pose that brings a rigid body nearest to the observed points.
 
-    Parameters
-    ----------
-    body : ndarray (point, 3) [m]
-        Points in the frame of the segment.
-    observed : ndarray (frame, point, 3) [m]
-        The same points in the laboratory; NaN where they are not seen.
+    body (point, 3) [m]: points in the frame of the segment
+    observed (frame, point, 3) [m]: the same points in the laboratory; NaN where they are not seen
+    Source: Söderkvist & Wedin 1993, J Biomech 26:1473 (singular values; a mirrored solution is never taken).
 
-    References
-    ----------
-    Söderkvist & Wedin 1993, J Biomech 26:1473 (singular values; a mirrored solution is never taken).
-
-    Examples
-    --------
     >>> body = np.array([[0, 0, 0], [0.1, 0, 0], [0, 0.2, 0], [0, 0, 0.1]])
     >>> fitted_pose(body, body[None] + 1.0).pose.origin.round(9)
     array([[1., 1., 1.]])
@@ -74,12 +56,8 @@ def fitted_pose(body: NDArray[np.float64], observed: NDArray[np.float64]) -> Rig
 def residual_m(pose: Pose, body: NDArray[np.float64], observed: NDArray[np.float64]) -> NDArray[np.float64]:
     """Root mean square distance of observed points from those of a body in a pose, frame by frame [m].
 
-    Parameters
-    ----------
-    body : ndarray (point, 3) [m]
-        Points in the frame of the segment.
-    observed : ndarray (frame, point, 3) [m]
-        The same points in the laboratory; NaN where they are not seen.
+    body (point, 3) [m]: points in the frame of the segment
+    observed (frame, point, 3) [m]: the same points in the laboratory; NaN where they are not seen
     """
     apart = ((observed - pose.to_laboratory(body)) ** 2).sum(axis=2)
     seen = np.isfinite(apart)

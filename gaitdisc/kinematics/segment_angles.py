@@ -24,11 +24,8 @@ SKEWED = 0.01  # largest difference of R^T R from the identity that rounding mak
 def segment_angles(segments: Recording) -> tuple[Recording, tuple[Finding, ...]]:
     """Joint angles [deg] of a trial's segments after Grood and Suntay, and what was found on the way.
 
-    Parameters
-    ----------
-    segments : Recording
-        `<segment>.x`, ... [m] and `<segment>.r11`, ... of `pelvis`, `l_thigh`, `l_shank`, `l_foot` and the right leg's,
-        whose axes point to the right, forward and up, as Theia3D writes them.
+    segments: `<segment>.x`, ... [m] and `<segment>.r11`, ... of `pelvis`, `l_thigh`, `l_shank`, `l_foot` and the right
+        leg's, whose axes point to the right, forward and up, as Theia3D writes them
     """
     file = segments.source.file or "the trial"
     there = {name.rpartition(".")[0] for name in segments.names}

@@ -23,10 +23,7 @@ PlacedMarkers = dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]
 def placed_markers(markers: Recording, calibration: Calibration) -> PlacedMarkers:
     """Markers of each segment, in its frame and in the laboratory.
 
-    Returns
-    -------
-    dict of str to (ndarray (marker, 3), ndarray (frame, marker, 3)) [m]
-        Those that both trials have; NaN where one is not seen.
+    returns each ((marker, 3), (frame, marker, 3)) [m]: those that both trials have; NaN where one is not seen
     """
     names = calibration.marker_set.names(marker_labels(markers))
     placed = {}
@@ -49,12 +46,8 @@ def free_poses(
 ) -> dict[str, Pose]:
     """Each segment laid over its own points, the pelvis first: each carries the joint below it.
 
-    Parameters
-    ----------
-    placed : dict of str to (ndarray (marker, 3), ndarray (frame, marker, 3)) [m]
-        As `placed_markers` returns them.
-    held : mapping of str to Pose, optional
-        Carries a segment through frames in which its own points are too few.
+    placed each ((marker, 3), (frame, marker, 3)) [m]: as `placed_markers` returns them
+    held: carries a segment through frames in which its own points are too few
     """
     poses: dict[str, Pose] = {}
     for segment in SEGMENTS:
@@ -75,19 +68,10 @@ def joined_poses(
 ) -> dict[str, Pose]:
     """The segments with their joints as the marker set has them: free, held, or in the plane of walking.
 
-    Parameters
-    ----------
-    placed : dict of str to (ndarray (marker, 3), ndarray (frame, marker, 3)) [m]
-        As `placed_markers` returns them.
-    calibration : Calibration
-        Of the same person; its marker set says how the joints are.
-    walker : ndarray (frame, 3, 3)
-        The walker's forward, up and right as columns.
-
-    Returns
-    -------
-    dict of str to Pose
-        Free segments that lost markers are carried by the others where these determine them.
+    placed each ((marker, 3), (frame, marker, 3)) [m]: as `placed_markers` returns them
+    calibration: of the same person; its marker set says how the joints are
+    walker (frame, 3, 3): the walker's forward, up and right as columns
+    returns: free segments that lost markers are carried by the others where these determine them
     """
     joints = calibration.marker_set.joints
     if joints != "free":
@@ -100,9 +84,7 @@ def joined_poses(
 def carried_joint(joint: str, poses: Mapping[str, Pose], calibration: Calibration) -> NDArray[np.float64]:
     """A joint centre as the segment above carries it.
 
-    Returns
-    -------
-    ndarray (frame, 3) [m]
+    returns (frame, 3) [m]
     """
     name, side = joint.split("_")
     above = {"hip": "pelvis", "knee": f"thigh_{side}", "ankle": f"shank_{side}"}[name]

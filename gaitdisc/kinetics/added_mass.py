@@ -20,15 +20,9 @@ def moment_per_foot_kg(
 
     It is positive towards dorsiflexion and hip flexion; at the knee that is extension.
 
-    Parameters
-    ----------
-    joint, heel, toe : ndarray (sample, 3)
-        Low-passed places [m].
-    up : ndarray (3,)
-        Unit vector against gravity.
+    joint, heel, toe (sample, 3): Low-passed places [m]
+    up (3,): unit vector against gravity
 
-    Examples
-    --------
     >>> still = np.zeros((9, 3))
     >>> found = moment_per_foot_kg(still, still - [0.04, 0, 0], still + [0.16, 0, 0], np.array([0.0, 0, 1]), 100.0)
     >>> round(float(found[4]), 2)  # 6 cm before the joint

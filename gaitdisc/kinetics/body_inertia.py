@@ -27,15 +27,6 @@ _SPREAD_OF_LENGTH = 0.1  # a bone whose length varies by more than a tenth is no
 class Person:
     """What of a person the inertia of the segments depends on.
 
-    Parameters
-    ----------
-    sex : str
-        `f`, `m`, or empty where it is unknown: then the means of both columns of a table are taken.
-    stature_m : float or None
-        Only for de Leva's foot, which is measured from heel to the tip of the toes.
-
-    Examples
-    --------
     >>> Person(0.7)
     Traceback (most recent call last):
     ...
@@ -43,8 +34,8 @@ class Person:
     """
 
     mass_kg: float | None
-    sex: str = ""
-    stature_m: float | None = None
+    sex: str = ""  # `f`, `m`, or empty where it is unknown: then the means of both columns of a table are taken
+    stature_m: float | None = None  # only for de Leva's foot, which is measured from heel to the tip of the toes
 
     def __post_init__(self) -> None:
         """Check once what everything below divides by."""
@@ -78,20 +69,12 @@ class Person:
 class FootPoints:
     """Where heel and toes lie in the foot's frame, its origin being the centre of the ankle.
 
-    Parameters
-    ----------
-    heel : ndarray (3,) [m]
-        Back of the heel.
-    toe : ndarray (3,) [m]
-        Over the head of the second metatarsal, or midway between those of the first and the fifth.
-
-    Examples
-    --------
     >>> FootPoints(np.array([-0.05, -0.06, 0.0]), np.array([0.13, -0.06, 0.0])).toe_length_m
     0.14317821063276354
     """
 
-    heel: NDArray[np.float64]
+    heel: NDArray[np.float64]  # (3,) [m], back of the heel
+    # (3,) [m], over the head of the second metatarsal, or midway between those of the first and the fifth
     toe: NDArray[np.float64]
 
     @property
@@ -102,25 +85,16 @@ class FootPoints:
 
 @dataclass(frozen=True)
 class TableRow:
-    """One segment of a table, for one sex.
+    """One segment of a table, for one sex."""
 
-    Parameters
-    ----------
-    mass : float [% of body mass]
-        Of one segment.
-    centre : tuple of float [% of the segment's length]
-        x, y, z of the right side, from the proximal joint's centre (de Leva's foot: from the heel); empty where the
-        table is read for its masses only.
-    gyration : tuple of float [% of the segment's length]
-        xx, yy, zz, xy, xz, yz of the right side; a negative product of inertia has a negative number.
-    count : int
-        How many of it a body has.
-    """
-
-    mass: float
+    mass: float  # [% of body mass], of one segment
+    # tuple of float [% of the segment's length], x, y, z of the right side, from the proximal joint's centre (de Leva's
+    # foot: from the heel); empty where the table is read for its masses only
     centre: tuple[float, ...]
+    # tuple of float [% of the segment's length], xx, yy, zz, xy, xz, yz of the right side; a negative product of
+    # inertia has a negative number
     gyration: tuple[float, ...]
-    count: int
+    count: int  # how many of it a body has
     source: str
 
 
@@ -128,13 +102,10 @@ class TableRow:
 def inertia_table(table: str, sex: str) -> Mapping[str, TableRow]:
     """Segments of a table for one sex, as `data_schema/segment_inertia.csv` has them.
 
-    References
-    ----------
-    Dumas, Chèze & Verriest (2007), J. Biomech. 40, 543-553, and its corrigendum, 40, 1651-1652. de Leva (1996),
-    J. Biomech. 29, 1223-1230. Both as other programs print them: docs/kinetics.md says which numbers differ there.
+    Source: Dumas, Chèze & Verriest (2007), J. Biomech. 40, 543-553, and its corrigendum, 40, 1651-1652. de Leva
+        (1996), J. Biomech. 29, 1223-1230. Both as other programs print them: docs/kinetics.md says which numbers
+        differ there.
 
-    Examples
-    --------
     >>> inertia_table("dumas2007", "m")["thigh"].mass
     12.3
     """
@@ -161,10 +132,7 @@ def leg_inertia(
 ) -> dict[str, RigidBody]:
     """Inertia of foot, shank and thigh of one side.
 
-    Parameters
-    ----------
-    side : str
-        `r` or `l`; the left leg is the right one's mirror image.
+    side: `r` or `l`; the left leg is the right one's mirror image
     """
     lengths = {**lengths_m, "foot": foot.toe_length_m}
     for segment in LEG:
@@ -189,10 +157,7 @@ def leg_inertia(
 def segment_lengths(poses: Mapping[str, Pose], side: str) -> dict[str, float]:
     """Lengths of shank and thigh between the joint centres, the median over the frames [m].
 
-    Parameters
-    ----------
-    poses : mapping of str to Pose
-        With origins in the proximal joint centres: `thigh_r`, `shank_r`, `foot_r`.
+    poses: with origins in the proximal joint centres: `thigh_r`, `shank_r`, `foot_r`
     """
     found = {}
     for segment, beyond in (("shank", "foot"), ("thigh", "shank")):

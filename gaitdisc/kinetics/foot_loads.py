@@ -21,18 +21,10 @@ HOLE_S = 0.06  # between what the file calls foot off and the end of the force
 
 @dataclass(frozen=True, eq=False)
 class FootLoad:
-    """Wrench of the ground on one foot.
+    """Wrench of the ground on one foot."""
 
-    Parameters
-    ----------
-    wrench : Wrench
-        At each frame; zero where the foot is in the air.
-    known : ndarray of bool (frame,)
-        False where the foot may be on the ground and no platform says what it carries.
-    """
-
-    wrench: Wrench
-    known: NDArray[np.bool_]
+    wrench: Wrench  # at each frame; zero where the foot is in the air
+    known: NDArray[np.bool_]  # (frame,), false where the foot may be on the ground and no platform says what it carries
 
 
 def foot_loads(
@@ -47,14 +39,9 @@ def foot_loads(
     Known are a foot's clean steps, the swing between two of them, the swings that its markers or the file's events
     show, and every frame where a platform names its foot.
 
-    Parameters
-    ----------
-    time : ndarray (frame,) [s]
-        Of the markers.
-    cutoff_hz : float
-        Of the filter of force and moment; infinite for none.
-    airborne : mapping of str to sequence of (float, float), optional
-        Spans in which a foot swings, as `swings` gives them [s].
+    time (frame,) [s]: of the markers
+    cutoff_hz: of the filter of force and moment; infinite for none
+    airborne mapping of str to sequence of (float, float): spans in which a foot swings, as `swings` gives them [s]
     """
     loads = {}
     for side in "rl":

@@ -31,26 +31,14 @@ FEWEST_FRAMES = 10
 class ForceBalance:
     """Force that the motion needs against the force that was measured.
 
-    Parameters
-    ----------
-    frames : int
-        In which the load of both feet is known.
-    rms : float [% of body weight]
-        Of the vertical difference.
-    level_rms : float [% of body weight]
-        Of the horizontal difference, both directions together.
-    mean : float [% of body weight]
-        Of the vertical difference, measured less needed: positive where the mass is given too small.
-
-    Examples
-    --------
     >>> print(ForceBalance(120, 3.21, 2.5, 0.4).line())
     force balance over 120 frames: vertical rms 3.2 % of body weight (mean +0.4 %), horizontal rms 2.5 %
     """
 
-    frames: int
-    rms: float
-    level_rms: float
+    frames: int  # in which the load of both feet is known
+    rms: float  # [% of body weight], of the vertical difference
+    level_rms: float  # [% of body weight], of the horizontal difference, both directions together
+    # [% of body weight], of the vertical difference, measured less needed: positive where the mass is given too small
     mean: float
 
     @property
@@ -83,12 +71,8 @@ def force_balance(
 ) -> ForceBalance:
     """Balance of forces over the frames in which the load of both feet is known.
 
-    Parameters
-    ----------
-    up : ndarray (3,)
-        Unit vector against gravity.
-    trunk : ndarray (frame, 3) [m/s2], optional
-        Acceleration of head, arms and trunk; that of the middle of the hips by default.
+    up (3,): unit vector against gravity
+    trunk (frame, 3) [m/s2]: acceleration of head, arms and trunk; that of the middle of the hips by default
     """
     if set(found) != {"l", "r"}:
         raise ChannelError(

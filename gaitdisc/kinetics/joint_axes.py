@@ -19,23 +19,13 @@ SEGMENTS_OF = {"hip": ("pelvis", "thigh"), "knee": ("thigh", "shank"), "ankle": 
 
 
 class JointPart(NamedTuple):
-    """One of the three parts of a joint moment.
-
-    Attributes
-    ----------
-    angle : str
-        Angle that a positive part drives, without its side: `knee_angle`.
-    axis : int
-        0 nearer segment's z, 1 floating, 2 farther segment's y.
-    right, left : int
-        Sign of the positive angle about the axis, for each leg.
-    """
+    """One of the three parts of a joint moment."""
 
     joint: str
-    angle: str
-    axis: int
-    right: int
-    left: int
+    angle: str  # angle that a positive part drives, without its side: `knee_angle`
+    axis: int  # 0 nearer segment's z, 1 floating, 2 farther segment's y
+    right: int  # sign of the positive angle about the axis, for each leg
+    left: int  # sign of the positive angle about the axis, for each leg
 
     def sign(self, side: str) -> int:
         """Sign of the positive angle about the axis."""
@@ -58,18 +48,10 @@ PARTS = (
 def joint_axes(nearer: Pose, farther: Pose) -> NDArray[np.float64]:
     """Unit axes of a joint in the laboratory's frame, (frame, axis, 3); NaN where the first and third lie on one line.
 
-    Parameters
-    ----------
-    nearer, farther : Pose
-        The segments on the trunk's side of the joint and beyond it.
+    nearer, farther: the segments on the trunk's side of the joint and beyond it
+    Source: Grood & Suntay (1983), J. Biomech. Eng. 105, 136-144. Schache & Baker (2007), Gait Posture 25, 440-452,
+        compare the frames in which joint moments are given, and recommend these axes.
 
-    References
-    ----------
-    Grood & Suntay (1983), J. Biomech. Eng. 105, 136-144. Schache & Baker (2007), Gait Posture 25, 440-452, compare
-    the frames in which joint moments are given, and recommend these axes.
-
-    Examples
-    --------
     >>> straight = Pose(np.zeros((1, 3)), np.eye(3)[None])
     >>> joint_axes(straight, straight)[0].tolist()
     [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
@@ -84,11 +66,7 @@ def joint_axes(nearer: Pose, farther: Pose) -> NDArray[np.float64]:
 def along(vector: NDArray[np.float64], axes: NDArray[np.float64], part: JointPart, side: str) -> NDArray[np.float64]:
     """Part of a vector towards the positive angle, (frame,).
 
-    Parameters
-    ----------
-    vector : ndarray (frame, 3)
-        In the laboratory's frame, such as a moment [N m].
-    axes : ndarray (frame, axis, 3)
-        From `joint_axes`.
+    vector (frame, 3): in the laboratory's frame, such as a moment [N m]
+    axes (frame, axis, 3): from `joint_axes`
     """
     return part.sign(side) * np.einsum("fx,fx->f", vector, axes[:, part.axis])

@@ -29,33 +29,23 @@ _ALONG_BONE = {0: 2, 1: 0, 2: 1}  # the segment's own axis that takes the place 
 class KineticsSettings:
     """How moments are computed.
 
-    Parameters
-    ----------
-    marker_cutoff_hz, force_cutoff_hz : float [Hz]
-        Of the zero-lag filters; infinite for none. Unlike cut-offs leave what the forces have and the accelerations
-        have lost as a moment that nobody made after an impact (Kristianslund 2012); alike ones take both away.
-    least_load_n : float [N]
-        Force at which a foot counts as off a platform, and below which there is no centre of pressure.
-    inertia : str
-        Table of segment inertia: `dumas2007` or `deleva1996`.
-    frame : str
-        `joint`: parts along the axes of the joint angles; `distal`: along the axes of the segment beyond the joint, as
-        Plug-in Gait gives them.
+    Source: Kristianslund, Krosshaug & van den Bogert (2012), J. Biomech. 45, 666-671.
 
-    References
-    ----------
-    Kristianslund, Krosshaug & van den Bogert (2012), J. Biomech. 45, 666-671.
-
-    Examples
-    --------
     >>> KineticsSettings().force_cutoff_hz
     20.0
     """
 
+    # [Hz], of the zero-lag filters; infinite for none. Unlike cut-offs leave what the forces have and the accelerations
+    # have lost as a moment that nobody made after an impact (Kristianslund 2012); alike ones take both away
     marker_cutoff_hz: float = 6.0
+    # [Hz], of the zero-lag filters; infinite for none. Unlike cut-offs leave what the forces have and the accelerations
+    # have lost as a moment that nobody made after an impact (Kristianslund 2012); alike ones take both away
     force_cutoff_hz: float = 20.0
+    # [N], force at which a foot counts as off a platform, and below which there is no centre of pressure
     least_load_n: float = LEAST_LOAD_N
-    inertia: str = "dumas2007"
+    inertia: str = "dumas2007"  # table of segment inertia: `dumas2007` or `deleva1996`
+    # `joint`: parts along the axes of the joint angles; `distal`: along the axes of the segment beyond the joint, as
+    # Plug-in Gait gives them
     frame: str = "joint"
 
     def __post_init__(self) -> None:
@@ -86,12 +76,8 @@ def legs(
 ) -> dict[str, Leg]:
     """Legs of which all segments have a pose, filtered and differentiated.
 
-    Parameters
-    ----------
-    poses : mapping of str to Pose
-        `pelvis`, `thigh_r` and so on; origins in the proximal joint centres.
-    feet : mapping of str to FootPath
-        Heel and toe markers of `r` and `l`, on the frames of the poses.
+    poses: `pelvis`, `thigh_r` and so on; origins in the proximal joint centres
+    feet: heel and toe markers of `r` and `l`, on the frames of the poses
     """
     names = {side: {"pelvis": "pelvis", **{one: f"{one}_{side}" for one in LEG}} for side in feet}
     whole = {side: own for side, own in names.items() if set(own.values()) <= set(poses)}
@@ -133,17 +119,9 @@ def joint_moments(
     plantarflexors' moment of push-off is negative. Powers are moment times relative angular velocity, positive when
     generated. NaN where the load of the foot or a pose is unknown.
 
-    Parameters
-    ----------
-    time : ndarray (frame,) [s]
-        Of the poses.
-    up : ndarray (3,)
-        Unit vector against gravity.
-
-    Returns
-    -------
-    Recording
-        `hip_flexion_r_moment` [N m/kg], `hip_power_r` [W/kg] and so on, on the frames of the poses.
+    time (frame,) [s]: of the poses
+    up (3,): unit vector against gravity
+    returns: `hip_flexion_r_moment` [N m/kg], `hip_power_r` [W/kg] and so on, on the frames of the poses
     """
     columns: list[NDArray[np.float64]] = []
     channels: list[Channel] = []

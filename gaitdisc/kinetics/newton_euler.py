@@ -22,34 +22,20 @@ GRAVITY = 9.80665  # m/s2
 class RigidBody:
     """Inertia of one segment in its own frame.
 
-    Parameters
-    ----------
-    centre : ndarray (3,) [m]
-        Of mass, from the segment's origin.
-    tensor : ndarray (3, 3) [kg m2]
-        About the centre of mass.
-
-    Examples
-    --------
     >>> RigidBody(3.0, np.array([0.0, -0.2, 0.0]), 0.05 * np.eye(3)).mass_kg
     3.0
     """
 
     mass_kg: float
-    centre: NDArray[np.float64]
-    tensor: NDArray[np.float64]
+    centre: NDArray[np.float64]  # (3,) [m], of mass, from the segment's origin
+    tensor: NDArray[np.float64]  # (3, 3) [kg m2], about the centre of mass
 
 
 def needed_wrench(moving: SegmentMotion, body: RigidBody, up: NDArray[np.float64]) -> Wrench:
     """Wrench that moves a segment as it moves and bears its weight: m (a - g), and the rate of its angular momentum.
 
-    Parameters
-    ----------
-    up : ndarray (3,)
-        Unit vector against gravity, in the laboratory's frame.
+    up (3,): unit vector against gravity, in the laboratory's frame
 
-    Examples
-    --------
     >>> from gaitdisc.kinematics.pose import Pose
     >>> still = SegmentMotion(Pose(np.zeros((1, 3)), np.eye(3)[None]), *np.zeros((3, 1, 3)))
     >>> body = RigidBody(2.0, np.array([0.1, 0.0, 0.0]), np.eye(3))
@@ -69,24 +55,14 @@ def joint_wrenches(
 ) -> list[Wrench]:
     """What each joint of a chain gives to the segments beyond it, from the last joint upwards.
 
-    Parameters
-    ----------
-    chain : sequence of (SegmentMotion, RigidBody)
-        Segments from the one on the ground (foot) to the nearest to the trunk (thigh); each one's proximal joint is
-        the joint that is named after it.
-    up : ndarray (3,)
-        Unit vector against gravity.
-
-    Returns
-    -------
-    list of Wrench
-        One for each segment, by its proximal joint: of the nearer segment on the farther one. `about` the joint's
-        centre it is the internal joint moment.
-
-    References
-    ----------
-    Winter (2009), Biomechanics and Motor Control of Human Movement, chapter 7; Dumas, Aissaoui & de Guise (2004),
-    Comput. Methods Biomech. Biomed. Eng. 7, 159-166, compute the same moments with wrenches and quaternions.
+    chain sequence of (SegmentMotion, RigidBody): segments from the one on the ground (foot) to the nearest to the
+        trunk (thigh); each one's proximal joint is the joint that is named after it
+    up (3,): unit vector against gravity
+    returns: one for each segment, by its proximal joint: of the nearer segment on the farther one. `about` the joint's
+        centre it is the internal joint moment
+    Source: Winter (2009), Biomechanics and Motor Control of Human Movement, chapter 7; Dumas, Aissaoui & de Guise
+        (2004), Comput. Methods Biomech. Biomed. Eng. 7, 159-166, compute the same moments with wrenches and
+        quaternions.
     """
     carried, beyond = [], None
     for moving, body in chain:

@@ -28,20 +28,12 @@ CLEAR_LOAD = 0.2  # of the greatest load: where the centre of pressure is the fo
 
 @dataclass(frozen=True, eq=False)
 class FootPath:
-    """Heel and toes of one foot in the laboratory's frame.
-
-    Parameters
-    ----------
-    time : ndarray (frame,) [s]
-        Of the markers.
-    heel, toe : ndarray (frame, 3) [m]
-        Of the markers; NaN where one is missing.
-    """
+    """Heel and toes of one foot in the laboratory's frame."""
 
     side: str
-    time: NDArray[np.float64]
-    heel: NDArray[np.float64]
-    toe: NDArray[np.float64]
+    time: NDArray[np.float64]  # (frame,) [s], of the markers
+    heel: NDArray[np.float64]  # (frame, 3) [m], of the markers; NaN where one is missing
+    toe: NDArray[np.float64]  # (frame, 3) [m], of the markers; NaN where one is missing
 
     def __post_init__(self) -> None:
         """Check shapes once."""
@@ -74,10 +66,7 @@ class FootPath:
     def still(self, part: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Frames in which heel or toe hardly moves, (frame,).
 
-        Parameters
-        ----------
-        part : ndarray (frame, 3) [m]
-            `heel` or `toe`.
+        part (frame, 3) [m]: `heel` or `toe`
         """
         rate_hz = (len(self.time) - 1) / float(self.time[-1] - self.time[0])
         with np.errstate(invalid="ignore"):
@@ -86,12 +75,8 @@ class FootPath:
     def beside(self, points: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.float64]:
         """How far points lie from the line from heel to toe, seen from above, (frame,) [m].
 
-        Parameters
-        ----------
-        points : ndarray (frame, 3) [m]
-            One for each frame.
-        up : ndarray (3,)
-            Against gravity.
+        points (frame, 3) [m]: one for each frame
+        up (3,): against gravity
         """
         level = np.eye(3) - np.outer(up, up)
         line, off = (self.toe - self.heel) @ level, (points - self.heel) @ level
@@ -102,12 +87,8 @@ class FootPath:
 def foot_paths(markers: Recording, names: Mapping[str, tuple[str, str]]) -> dict[str, FootPath]:
     """Paths of the feet by their markers.
 
-    Parameters
-    ----------
-    markers : Recording
-        Channels `<marker>.x`, `<marker>.y`, `<marker>.z` [m].
-    names : mapping of str to (str, str)
-        Side (`r`, `l`) to the heel marker and the toe marker.
+    markers: channels `<marker>.x`, `<marker>.y`, `<marker>.z` [m]
+    names mapping of str to (str, str): side (`r`, `l`) to the heel marker and the toe marker
     """
     return {
         side: FootPath(side, markers.time, *(marker_position(markers, name) for name in pair))
@@ -119,28 +100,16 @@ def foot_paths(markers: Recording, names: Mapping[str, tuple[str, str]]) -> dict
 class PlateStep:
     """One loading of a platform.
 
-    Parameters
-    ----------
-    side : str
-        `r` or `l`; empty where the foot is unknown.
-    start, end : float [s]
-        Of the loading.
-    reason : str
-        Why it cannot be used; empty where one foot alone stepped on it with all of its sole.
-    whole : bool
-        False where the recording begins or ends in it: its forces are right, and it is no whole stance.
-
-    Examples
-    --------
     >>> PlateStep("plate_1", "r", 0.4, 1.1).clean
     True
     """
 
     platform: str
-    side: str
-    start: float
-    end: float
-    reason: str = ""
+    side: str  # `r` or `l`; empty where the foot is unknown
+    start: float  # [s], of the loading
+    end: float  # [s], of the loading
+    reason: str = ""  # why it cannot be used; empty where one foot alone stepped on it with all of its sole
+    # false where the recording begins or ends in it: its forces are right, and it is no whole stance
     whole: bool = True
 
     @property
@@ -165,12 +134,8 @@ def plate_steps(
     centre of pressure follows no foot's line; where the other foot stands on the same platform meanwhile; where the
     heel or the toes bear load beyond the platform's edge, or the centre of pressure comes within 2 cm of it.
 
-    Parameters
-    ----------
-    feet : mapping of str to FootPath
-        `r`, `l`; a platform that names its foot is only held against them.
-    least_load_n : float
-        Force at which a loading ends [N].
+    feet: `r`, `l`; a platform that names its foot is only held against them
+    least_load_n: force at which a loading ends [N]
     """
     steps = []
     for platform in found:
@@ -186,10 +151,7 @@ def plate_steps(
 def empty_findings(found: Sequence[Platform], file: str, least_load_n: float = LEAST_LOAD_N) -> list[Finding]:
     """Say which platforms nobody stepped on.
 
-    Parameters
-    ----------
-    least_load_n : float
-        Force at which a loading ends [N].
+    least_load_n: force at which a loading ends [N]
     """
     return [
         Finding(

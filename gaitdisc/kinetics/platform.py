@@ -24,29 +24,15 @@ _SIDED = re.compile(r"ground_force_(\w+?)_v[xyz]")
 
 @dataclass(frozen=True, eq=False)
 class Platform:
-    """What measures the force of the ground on a foot.
-
-    Parameters
-    ----------
-    time : ndarray (sample,) [s]
-        On the trial's clock.
-    up : ndarray (3,)
-        Unit vector from the ground to the foot, against gravity.
-    point : ndarray (3,) [m]
-        A point of its surface.
-    surface : Surface or None
-        Where it lies; None where only forces and centres of pressure were written.
-    side : str
-        `r` or `l` where the file says whose foot it is, empty otherwise.
-    """
+    """What measures the force of the ground on a foot."""
 
     name: str
-    time: NDArray[np.float64]
+    time: NDArray[np.float64]  # (sample,) [s], on the trial's clock
     wrench: Wrench
-    up: NDArray[np.float64]
-    point: NDArray[np.float64]
-    surface: Surface | None = None
-    side: str = ""
+    up: NDArray[np.float64]  # (3,), unit vector from the ground to the foot, against gravity
+    point: NDArray[np.float64]  # (3,) [m], a point of its surface
+    surface: Surface | None = None  # where it lies; None where only forces and centres of pressure were written
+    side: str = ""  # `r` or `l` where the file says whose foot it is, empty otherwise
 
     @property
     def rate_hz(self) -> float:
@@ -61,20 +47,14 @@ class Platform:
     def pressure_centre(self, least_load_n: float = LEAST_LOAD_N) -> NDArray[np.float64]:
         """Where the force meets the surface, (sample, 3) [m]; NaN where it presses with less than `least_load_n`.
 
-        Parameters
-        ----------
-        least_load_n : float
-            Least force along the normal [N].
+        least_load_n: least force along the normal [N]
         """
         return self.wrench.pressure_centre(self.point, self.up, least_load_n)
 
     def loadings(self, least_load_n: float = LEAST_LOAD_N) -> NDArray[np.intp]:
         """First and last sample of each loading, as force contacts are found, (loading, 2).
 
-        Parameters
-        ----------
-        least_load_n : float
-            Force at which a loading ends [N]; it begins 2.5 times as high.
+        least_load_n: force at which a loading ends [N]; it begins 2.5 times as high
         """
         return loaded(self.load_n, self.rate_hz, least_load_n / 0.4)
 
@@ -84,10 +64,7 @@ class Platform:
         What an empty plate shows is no force on a foot and is taken as zero before the filter. Force and moment about
         the surface are filtered; the centre of pressure is not, as it is a quotient.
 
-        Parameters
-        ----------
-        spans : sequence of (float, float) [s]
-            Loadings by the foot that is meant.
+        spans sequence of (float, float) [s]: loadings by the foot that is meant
         """
         on = np.zeros(len(self.time), bool)
         for start, end in spans:
@@ -105,11 +82,6 @@ def platforms(trial: Trial) -> list[Platform]:
     Plates of a C3D file are `plate_1_fx` to `plate_1_mz`, with their corners in `trial.surfaces`; forces of a `.mot`
     or `.sto` file are `ground_force_r_vx`, with their point `ground_force_r_px` and moment `ground_torque_r_x`, in
     OpenSim's frame, y up.
-
-    Examples
-    --------
-    >>> [platform.name for platform in platforms(read_trial("walk.c3d"))]  # doctest: +SKIP
-    ['plate_1', 'plate_2']
     """
     forces = trial.stream("forces")
     surfaces = {surface.name: surface for surface in trial.surfaces}

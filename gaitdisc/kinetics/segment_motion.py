@@ -18,30 +18,17 @@ from gaitdisc.signals.derivatives import differentiated
 
 @dataclass(frozen=True, eq=False)
 class SegmentMotion:
-    """A pose and its first two derivatives in the laboratory's frame.
-
-    Parameters
-    ----------
-    acceleration : ndarray (frame, 3) [m/s2]
-        Of the origin.
-    angular_velocity : ndarray (frame, 3) [rad/s]
-        Of the segment.
-    angular_acceleration : ndarray (frame, 3) [rad/s2]
-        Of the segment.
-    """
+    """A pose and its first two derivatives in the laboratory's frame."""
 
     pose: Pose
-    acceleration: NDArray[np.float64]
-    angular_velocity: NDArray[np.float64]
-    angular_acceleration: NDArray[np.float64]
+    acceleration: NDArray[np.float64]  # (frame, 3) [m/s2], of the origin
+    angular_velocity: NDArray[np.float64]  # (frame, 3) [rad/s], of the segment
+    angular_acceleration: NDArray[np.float64]  # (frame, 3) [rad/s2], of the segment
 
     def acceleration_of(self, point: NDArray[np.float64]) -> NDArray[np.float64]:
         """Acceleration of a point of the segment, (frame, 3) [m/s2].
 
-        Parameters
-        ----------
-        point : ndarray (3,) [m]
-            In the segment's frame.
+        point (3,) [m]: in the segment's frame
         """
         arm = self.pose.rotation @ np.asarray(point, float)
         spin = np.cross(self.angular_velocity, np.cross(self.angular_velocity, arm))
@@ -51,15 +38,8 @@ class SegmentMotion:
 def smoothed_pose(pose: Pose, time: NDArray[np.float64], cutoff_hz: float) -> Pose:
     """Pose without what is faster than the cut-off: origin and axes are filtered, the axes made a rotation again.
 
-    Parameters
-    ----------
-    time : ndarray (frame,) [s]
-        Even.
-
-    Returns
-    -------
-    Pose
-        Gaps up to 0.1 s are bridged, as in every filtered recording here; longer ones stay NaN.
+    time (frame,) [s]: even
+    returns: gaps up to 0.1 s are bridged, as in every filtered recording here; longer ones stay NaN
     """
     frames = len(pose)
     values = np.hstack([pose.origin, pose.rotation.reshape(frames, 9)])
@@ -72,13 +52,8 @@ def smoothed_pose(pose: Pose, time: NDArray[np.float64], cutoff_hz: float) -> Po
 def nearest_rotations(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
     """Rotations nearest to matrices in the least-squares sense, (frame, 3, 3); NaN where a matrix has one.
 
-    Parameters
-    ----------
-    matrices : ndarray (frame, 3, 3)
-        Nearly rotations.
+    matrices (frame, 3, 3): nearly rotations
 
-    Examples
-    --------
     >>> nearest_rotations(1.01 * np.eye(3)[None]).round(9).tolist()
     [[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]]
     """
@@ -105,10 +80,7 @@ def segment_motions(
 ) -> dict[str, SegmentMotion]:
     """SegmentMotion of several segments, filtered alike.
 
-    Parameters
-    ----------
-    time : ndarray (frame,) [s]
-        Even.
+    time (frame,) [s]: even
     """
     found = {}
     rate_hz = (len(time) - 1) / float(time[-1] - time[0]) if len(time) > 1 else np.nan

@@ -25,18 +25,10 @@ from gaitdisc.signals.direction import marker_position
 
 @dataclass(frozen=True, eq=False)
 class TrialKinetics:
-    """Joint moments and powers of a trial.
+    """Joint moments and powers of a trial."""
 
-    Parameters
-    ----------
-    moments : Recording
-        Moments [N m/kg] and powers [W/kg] on the frames of the markers.
-    steps : tuple of PlateStep
-        On all platforms, with the reasons of those that are left out.
-    """
-
-    moments: Recording
-    steps: tuple[PlateStep, ...]
+    moments: Recording  # moments [N m/kg] and powers [W/kg] on the frames of the markers
+    steps: tuple[PlateStep, ...]  # on all platforms, with the reasons of those that are left out
     balance: ForceBalance
     loads: Mapping[str, FootLoad]
     found: Mapping[str, Leg]
@@ -53,24 +45,11 @@ def trial_kinetics(
 ) -> TrialKinetics:
     """Joint moments and powers of a trial, with the steps they rest on and the balance of forces.
 
-    Parameters
-    ----------
-    trial : Trial
-        With markers and forces on one clock, in one frame.
-    poses : mapping of str to Pose
-        On the frames of the markers; unfiltered, as they are filtered here. Origins of `thigh_r`, `shank_r`, `foot_r`
-        are the centres of hip, knee and ankle.
-    feet : mapping of str to FootPath
-        `r`, `l`: heel and toes, as `foot_paths` takes them from markers.
-    trunk : sequence of str
-        Markers whose mean moves as head, arms and trunk do (C7, CLAV), for the balance of forces only.
-
-    Examples
-    --------
-    >>> feet = foot_paths(trial.stream("markers"), {"r": ("RHEE", "RTOE")})  # doctest: +SKIP
-    >>> result = trial_kinetics(trial, poses, feet, Person(56.8, "f"))  # doctest: +SKIP
-    >>> result.moments["ankle_angle_r_moment"].min()  # doctest: +SKIP
-    -1.31
+    trial: with markers and forces on one clock, in one frame
+    poses: on the frames of the markers; unfiltered, as they are filtered here. Origins of `thigh_r`, `shank_r`,
+        `foot_r` are the centres of hip, knee and ankle
+    feet: `r`, `l`: heel and toes, as `foot_paths` takes them from markers
+    trunk: markers whose mean moves as head, arms and trunk do (C7, CLAV), for the balance of forces only
     """
     settings = settings or KineticsSettings()
     markers = trial.stream("markers")

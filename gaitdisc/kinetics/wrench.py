@@ -17,21 +17,12 @@ LEAST_LOAD_N = 20.0  # below it a centre of pressure is noise divided by noise
 class Wrench:
     """Force and moment in the laboratory's frame, sample by sample.
 
-    Parameters
-    ----------
-    force : ndarray (sample, 3) [N]
-        Of the ground on the foot, where it is a ground reaction.
-    moment : ndarray (sample, 3) [N m]
-        About the origin of the laboratory.
-
-    Examples
-    --------
     >>> Wrench.at(np.array([[0.5, 0.0, 0.0]]), np.array([[0.0, 0.0, 700.0]])).moment
     array([[   0., -350.,    0.]])
     """
 
-    force: NDArray[np.float64]
-    moment: NDArray[np.float64]
+    force: NDArray[np.float64]  # (sample, 3) [N], of the ground on the foot, where it is a ground reaction
+    moment: NDArray[np.float64]  # (sample, 3) [N m], about the origin of the laboratory
 
     def __post_init__(self) -> None:
         """Check shapes once."""
@@ -51,14 +42,9 @@ class Wrench:
     ) -> Wrench:
         """Wrench of a force that acts at a point, and a moment about that point.
 
-        Parameters
-        ----------
-        point : ndarray (sample, 3) or (3,) [m]
-            In the laboratory's frame.
-        force : ndarray (sample, 3) [N]
-            Force.
-        moment : ndarray (sample, 3) [N m]
-            About the point; none by default.
+        point (sample, 3) or (3,) [m]: in the laboratory's frame
+        force (sample, 3) [N]: force
+        moment (sample, 3) [N m]: about the point; none by default
         """
         return cls(force, np.cross(point, force) + moment)
 
@@ -74,10 +60,7 @@ class Wrench:
     def about(self, point: NDArray[np.float64]) -> NDArray[np.float64]:
         """Moment about another point, (sample, 3) [N m].
 
-        Parameters
-        ----------
-        point : ndarray (sample, 3) or (3,) [m]
-            In the laboratory's frame.
+        point (sample, 3) or (3,) [m]: in the laboratory's frame
         """
         return self.moment - np.cross(point, self.force)
 
@@ -86,17 +69,10 @@ class Wrench:
     ) -> NDArray[np.float64]:
         """Where the force meets a surface, (sample, 3) [m]; NaN where it presses with less than `least_load_n`.
 
-        Parameters
-        ----------
-        point : ndarray (3,) [m]
-            A point of the surface.
-        up : ndarray (3,)
-            Its unit normal, towards the foot.
-        least_load_n : float
-            Least force along the normal [N].
+        point (3,) [m]: a point of the surface
+        up (3,): its unit normal, towards the foot
+        least_load_n: least force along the normal [N]
 
-        Examples
-        --------
         >>> step = Wrench.at(np.array([0.2, 0.1, 0.0]), np.array([[30.0, 0.0, 700.0], [0.0, 0.0, 19.0]]))
         >>> step.pressure_centre(np.zeros(3), np.array([0.0, 0.0, 1.0])).round(9)
         array([[0.2, 0.1, 0. ],
@@ -113,13 +89,8 @@ class Wrench:
     ) -> NDArray[np.float64]:
         """Moment about the surface's normal at the centre of pressure, (sample,) [N m]; NaN where there is none.
 
-        Parameters
-        ----------
-        point : ndarray (3,) [m]
-            A point of the surface.
-        up : ndarray (3,)
-            Its unit normal, towards the foot.
-        least_load_n : float
-            Least force along the normal [N].
+        point (3,) [m]: a point of the surface
+        up (3,): its unit normal, towards the foot
+        least_load_n: least force along the normal [N]
         """
         return self.about(self.pressure_centre(point, up, least_load_n)) @ up

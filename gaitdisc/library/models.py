@@ -18,15 +18,8 @@ ModelLike = Path | str | Simulation | PythonSimulation | Callable[..., Any]
 def model_of(model: ModelLike) -> Simulation:
     """Simulation of what a script names.
 
-    Parameters
-    ----------
-    model : path, Simulation, PythonSimulation or callable
-        A simulation file, an object, or a Python function as `simulation_from_function` takes it.
-
-    Raises
-    ------
-    SimulationError
-        If it is none of these, or the file or function does not hold together.
+    model: a simulation file, an object, or a Python function as `simulation_from_function` takes it
+    raises SimulationError if it is none of these, or the file or function does not hold together
     """
     if isinstance(model, Path | str):
         return read_simulation(model)

@@ -251,15 +251,8 @@ def save_reconstructor(fitted: Reconstructor, folder: Path) -> None:
 def load_reconstructor(folder: Path) -> Reconstructor:
     """Load a reconstructor.
 
-    Parameters
-    ----------
-    folder : Path
-        That `Reconstructor.save` or `gaitdisc reconstruct` wrote.
-
-    Raises
-    ------
-    SchemaError
-        If a file is missing, damaged, or of another version.
+    folder: that `Reconstructor.save` or `gaitdisc reconstruct` wrote
+    raises SchemaError if a file is missing, damaged, or of another version
     """
     model = load_model(folder)
     what = model.reconstructor.sensing

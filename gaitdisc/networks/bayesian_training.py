@@ -35,13 +35,10 @@ def train_bayesian(samples: Samples, nodes: int = NODES, seed: int = 0) -> Train
     weights descend on all samples with both as they are. A Gaussian process is fitted in the same two turns. No sample
     is held back, and nothing is stopped early.
 
-    References
-    ----------
-    MacKay 1992, Neural Computation 4:415 and 4:448; Foresee and Hagan 1997, ICNN 3:1930. The published code of
-    chapter 3 trains logsig-radbas-purelin layers of ten nodes so (MATLAB's `trainbr`), on all samples in both turns.
+    Source: MacKay 1992, Neural Computation 4:415 and 4:448; Foresee and Hagan 1997, ICNN 3:1930. The published code of
+        chapter 3 trains logsig-radbas-purelin layers of ten nodes so (MATLAB's `trainbr`), on all samples in both
+        turns.
 
-    Examples
-    --------
     >>> t = np.arange(200) / 20
     >>> s = Samples(t[:, None], np.sin(t)[:, None], ("a",), ("b",), t, t)
     >>> bool(abs(train_bayesian(s)(np.array([[2.02]]))[0, 0] - np.sin(2.02)) < 1e-3)

@@ -16,22 +16,15 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class RecurrentWeights:
-    """Weights of a `Shred` in double precision, as `recurrent_steps` takes them.
-
-    Parameters
-    ----------
-    layers : tuple of ((ndarray, ndarray), (ndarray, ndarray))
-        Weights (input, gate * node) and (node, gate * node), and offsets, of each recurrent layer.
-    decoder : (three of ndarray (input, output), three of ndarray (output,))
-        Weights and offsets of the decoder.
-    masked : bool
-        Whether the network reads beside each value that it is missing.
-    """
+    """Weights of a `Shred` in double precision, as `recurrent_steps` takes them."""
 
     cell: str
+    # tuple of ((ndarray, ndarray), (ndarray, ndarray)), weights (input, gate * node) and (node, gate * node), and
+    # offsets, of each recurrent layer
     layers: tuple[tuple[tuple[Array, Array], tuple[Array, Array]], ...]
+    # (three of (input, output), three of (output,)), weights and offsets of the decoder
     decoder: tuple[tuple[Array, Array, Array], tuple[Array, Array, Array]]
-    masked: bool
+    masked: bool  # whether the network reads beside each value that it is missing
 
     @property
     def nodes(self) -> int:
@@ -75,8 +68,6 @@ class CarriedWindows:
 
     Examples
     --------
-    >>> CarriedWindows(network, 25, 4).update(np.array([12.1, 30.4, -3.3]))  # doctest: +SKIP
-    array([nan, ...])
     """
 
     def __init__(self, network: TrainedNetwork, count: int, spacing: int) -> None:
@@ -94,10 +85,7 @@ class CarriedWindows:
     def update(self, reading: NDArray[np.float64]) -> NDArray[np.float64]:
         """Outputs (output,) of the window that ends with a new reading; NaN until there is a whole one.
 
-        Parameters
-        ----------
-        reading : ndarray (sensor,) [each sensor's unit]
-            Taken one sample after the one before.
+        reading (sensor,) [each sensor's unit]: taken one sample after the one before
         """
         read = (reading - self._mean) / self._sd
         if self._weights.masked:

@@ -21,18 +21,10 @@ from gaitdisc.networks.training_settings import TrainingSettings
 
 @dataclass(frozen=True)
 class Descent:
-    """How the loss on the check part went, epoch by epoch.
+    """How the loss on the check part went, epoch by epoch."""
 
-    Parameters
-    ----------
-    losses : tuple of float
-        Mean squared error of the scaled outputs on the check part, after every epoch.
-    best_epoch : int
-        Epoch, from 1, whose weights the network has now.
-    """
-
-    losses: tuple[float, ...]
-    best_epoch: int
+    losses: tuple[float, ...]  # mean squared error of the scaled outputs on the check part, after every epoch
+    best_epoch: int  # epoch, from 1, whose weights the network has now
     arithmetic: str
 
 
@@ -44,12 +36,8 @@ class Steps(Protocol):
     def epoch(self, order: Tensor, rates: NDArray[np.float64]) -> None:
         """Step through all samples once, in that order and at these learning rates.
 
-        Parameters
-        ----------
-        order : Tensor (sample,)
-            In which the samples are seen.
-        rates : ndarray (step,)
-            Learning rate of each step.
+        order Tensor (sample,): in which the samples are seen
+        rates (step,): learning rate of each step
         """
         ...
 
@@ -78,14 +66,10 @@ def descend(
 
     Decay acts on weight matrices only. The best weights are kept as a copy: a reference would follow the descent.
 
-    Parameters
-    ----------
-    part, check : pair of Tensor ((sample, input), (sample, output))
-        Scaled samples to descend on, and to judge each epoch by.
-
-    References
-    ----------
-    Loshchilov and Hutter 2019, Decoupled weight decay regularization. The dissertation does not say how it trained.
+    part, check pair of Tensor ((sample, input), (sample, output)): scaled samples to descend on, and to judge each
+        epoch by
+    Source: Loshchilov and Hutter 2019, Decoupled weight decay regularization. The dissertation does not say how it
+        trained.
     """
     steps = _steps(network, part, check, schedule, settings)
     order = torch.Generator().manual_seed(settings.seed)

@@ -16,18 +16,11 @@ from gaitdisc.recording import Scale
 class Ensemble:
     """Mean of networks that differ in their first weights and in the order of the samples; a `gaitdisc.model.Model`.
 
-    Parameters
-    ----------
-    members : tuple of TrainedNetwork
-        At least one; of the same inputs, outputs and scales.
-
-    References
-    ----------
-    Lakshminarayanan, Pritzel and Blundell 2017, Simple and scalable predictive uncertainty estimation using deep
-    ensembles; without its variance head and adversarial training.
+    Source: Lakshminarayanan, Pritzel and Blundell 2017, Simple and scalable predictive uncertainty estimation using
+        deep ensembles; without its variance head and adversarial training.
     """
 
-    members: tuple[TrainedNetwork, ...]
+    members: tuple[TrainedNetwork, ...]  # at least one; of the same inputs, outputs and scales
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -58,10 +51,7 @@ class Ensemble:
 
         It tells where the members disagree, which is not the whole of the error: what all of them miss is not in it.
 
-        Parameters
-        ----------
-        x : ndarray (sample, input) [each input's unit]
-            As for the model itself.
+        x (sample, input) [each input's unit]: as for the model itself
         """
         return np.std([member(x) for member in self.members], axis=0)
 
@@ -69,10 +59,7 @@ class Ensemble:
 def save_ensemble(ensemble: Ensemble, path: Path) -> None:
     """Save every member beside the others: `weights.npz` becomes `weights_1.npz` and so on.
 
-    Parameters
-    ----------
-    path : Path
-        Of the `.npz` file that a single network would have.
+    path: of the `.npz` file that a single network would have
     """
     for number, member in enumerate(ensemble.members, 1):
         save_network(member, member_path(path, number))
@@ -81,13 +68,8 @@ def save_ensemble(ensemble: Ensemble, path: Path) -> None:
 def member_path(path: Path, number: int) -> Path:
     """File of one member.
 
-    Parameters
-    ----------
-    path : Path
-        Of the `.npz` file that a single network would have.
+    path: of the `.npz` file that a single network would have
 
-    Examples
-    --------
     >>> member_path(Path("weights.npz"), 2).name
     'weights_2.npz'
     """

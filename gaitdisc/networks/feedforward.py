@@ -36,10 +36,7 @@ class FeedForward(nn.Module):
     def features(self, x: Tensor) -> Tensor:
         """Return what the linear layer reads, (sample, node).
 
-        Parameters
-        ----------
-        x : Tensor (sample, input)
-            Scaled inputs.
+        x Tensor (sample, input): scaled inputs
         """
         n = self.radial(torch.sigmoid(self.sigmoid(x)))
         return torch.exp(-n * n)
@@ -47,9 +44,6 @@ class FeedForward(nn.Module):
     def forward(self, x: Tensor) -> Tensor:
         """Scaled outputs, (sample, output).
 
-        Parameters
-        ----------
-        x : Tensor (sample, input)
-            Scaled inputs.
+        x Tensor (sample, input): scaled inputs
         """
         return self.readout(self.features(x))

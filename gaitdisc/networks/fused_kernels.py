@@ -36,12 +36,8 @@ def exponential(x: np.float32) -> np.float32:
     Beyond -87 and 88 it has the value that it has there. The library's own exponential would be called element by
     element.
 
-    References
-    ----------
-    Moshier, Cephes Mathematical Library, `expf`: Cody-Waite reduction and the polynomial of degree 5.
+    Source: Moshier, Cephes Mathematical Library, `expf`: Cody-Waite reduction and the polynomial of degree 5.
 
-    Examples
-    --------
     >>> round(float(exponential(np.float32(1.0))), 6)
     2.718282
     """
@@ -63,13 +59,8 @@ def exponential(x: np.float32) -> np.float32:
 def layers(weights: NDArray[np.float32], inputs: int, nodes: int, outputs: int):
     """Return the three matrices, then the three offsets: views into the vector.
 
-    Parameters
-    ----------
-    weights : ndarray (weight,)
-        Weights or their gradient.
+    weights (weight,): weights or their gradient
 
-    Examples
-    --------
     >>> [part.shape for part in layers(np.zeros(7880, np.float32), 49, 64, 8)]
     [(64, 49), (64, 64), (8, 64), (64,), (64,), (8,)]
     """
@@ -157,16 +148,10 @@ def gradient(
 ) -> None:
     """What a block of samples adds to the gradient of a batch's mean squared error.
 
-    Parameters
-    ----------
-    weights, into : ndarray (weight,)
-        Weights, and where their gradient goes.
-    x, y : ndarray (sample, input), (sample, output)
-        Scaled samples of the block, contiguous.
-    hidden : ndarray (5, at least sample, node)
-        Room to work in; its last length tells the number of nodes.
-    samples : int
-        Samples of the whole batch, over which the mean is taken.
+    weights, into (weight,): weights, and where their gradient goes
+    x, y (sample, input), (sample, output): scaled samples of the block, contiguous
+    hidden (5, at least sample, node): room to work in; its last length tells the number of nodes
+    samples: samples of the whole batch, over which the mean is taken
     """
     count, nodes = len(x), hidden.shape[2]
     _, w2, w3, _, _, b3 = layers(weights, x.shape[1], nodes, y.shape[1])
@@ -191,12 +176,8 @@ def mean_squared_error(
 ) -> float:
     """Mean squared error over samples and outputs.
 
-    Parameters
-    ----------
-    weights : ndarray (weight,)
-        Of the network.
-    x, y : ndarray (sample, input), (sample, output)
-        Scaled samples, contiguous.
+    weights (weight,): of the network
+    x, y (sample, input), (sample, output): scaled samples, contiguous
     """
     hidden = np.empty((3, BLOCK, nodes), np.float32)
     found = np.empty((BLOCK, y.shape[1]), np.float32)
@@ -245,19 +226,12 @@ def descend_epoch(
 ) -> None:
     """One pass over the samples, a step of Adam for each batch; weights and moments are changed in place.
 
-    Parameters
-    ----------
-    weights : ndarray (weight,)
-        Of the network.
-    moments : ndarray (2, weight)
-        Running means of the gradient and of its square.
-    x, y : ndarray (sample, input), (sample, output)
-        Scaled samples, contiguous.
-    order : ndarray (sample,)
-        In which the samples are seen.
-    paces : ndarray (step, 3)
-        Of each step: factor on the weight matrices (decoupled decay), step size over the bias correction of the mean,
-        factor on the root of the mean square (its bias correction).
+    weights (weight,): of the network
+    moments (2, weight): running means of the gradient and of its square
+    x, y (sample, input), (sample, output): scaled samples, contiguous
+    order (sample,): in which the samples are seen
+    paces (step, 3): of each step: factor on the weight matrices (decoupled decay), step size over the bias correction
+        of the mean, factor on the root of the mean square (its bias correction)
     """
     nodes, batch = sizes
     hidden = np.empty((5, BLOCK, nodes), np.float32)

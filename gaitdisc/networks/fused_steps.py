@@ -39,12 +39,8 @@ class FusedSteps:
     def epoch(self, order: Tensor, rates: NDArray[np.float64]) -> None:
         """Step through all samples once.
 
-        Parameters
-        ----------
-        order : Tensor (sample,)
-            In which the samples are seen.
-        rates : ndarray (step,)
-            Learning rate of each step.
+        order Tensor (sample,): in which the samples are seen
+        rates (step,): learning rate of each step
         """
         number = self._done + 1 + np.arange(len(rates))
         self._done += len(rates)
@@ -68,10 +64,7 @@ class FusedSteps:
     def restore(self, weights: NDArray[np.float32]) -> None:
         """Give the network weights that it had before.
 
-        Parameters
-        ----------
-        weights : ndarray (weight,)
-            From `weights`.
+        weights (weight,): from `weights`
         """
         self._weights[:] = weights
         parameters = matrices_then_offsets(self._network)
@@ -84,8 +77,6 @@ class FusedSteps:
 def matrices_then_offsets(network: FeedForward) -> tuple[Tensor, ...]:
     """Return the parameters in the order of the compiled code's one vector.
 
-    Examples
-    --------
     >>> [tuple(p.shape) for p in matrices_then_offsets(FeedForward(3, 2, nodes=4))]
     [(4, 3), (4, 4), (2, 4), (4,), (4,), (2,)]
     """
@@ -96,8 +87,6 @@ def matrices_then_offsets(network: FeedForward) -> tuple[Tensor, ...]:
 def can_be_fused(network: nn.Module) -> bool:
     """Tell whether the compiled code computes this network: the dissertation's own, in float32, on the CPU.
 
-    Examples
-    --------
     >>> can_be_fused(FeedForward(3, 2)), can_be_fused(FeedForward(3, 2).double()), can_be_fused(nn.Linear(3, 2))
     (True, False, False)
     """

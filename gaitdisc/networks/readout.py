@@ -21,10 +21,7 @@ class WithReadout(Protocol):
     def features(self, x: Tensor) -> Tensor:
         """Return what the readout reads, (sample, node).
 
-        Parameters
-        ----------
-        x : Tensor (sample, input)
-            Scaled inputs.
+        x Tensor (sample, input): scaled inputs
         """
         ...
 
@@ -34,12 +31,8 @@ def solve_readout(network: nn.Module, part: tuple[Tensor, Tensor], penalty: floa
 
     Minimises sum (y - W h - b)^2 / samples + penalty sum W^2, in double precision; b is not penalised.
 
-    Parameters
-    ----------
-    network : torch module
-        With `features` and a linear layer `readout`; its readout is changed in place.
-    part : pair of Tensor ((sample, input), (sample, output))
-        Scaled samples.
+    network: with `features` and a linear layer `readout`; its readout is changed in place
+    part pair of Tensor ((sample, input), (sample, output)): scaled samples
     """
     parts = cast(WithReadout, network)
     network.eval()
@@ -55,15 +48,8 @@ def choose_penalty(
 ) -> tuple[float, float]:
     """Penalty of the readout that does best on a check part, and the mean squared error it reaches there.
 
-    Parameters
-    ----------
-    part, check : pair of Tensor ((sample, input), (sample, output))
-        Scaled samples to solve on, and to judge by.
-
-    Returns
-    -------
-    penalty, loss : float
-        One of `PENALTIES`; mean squared error of the scaled outputs.
+    part, check pair of Tensor ((sample, input), (sample, output)): scaled samples to solve on, and to judge by
+    returns penalty, loss: one of `PENALTIES`; mean squared error of the scaled outputs
     """
     network.eval()
     squares = _squares(_features(network, part[0]), part[1].cpu().double().numpy())

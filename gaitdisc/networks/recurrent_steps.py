@@ -14,23 +14,12 @@ Array = NDArray[np.float64]
 def gru_step(read: Array, states: Array, weights: tuple[Array, Array], offsets: tuple[Array, Array]) -> Array:
     """States of a layer of gated recurrent units after one more reading, (window, node).
 
-    Parameters
-    ----------
-    read : ndarray (window, input)
-        What each window reads now.
-    states : ndarray (window, node)
-        Before.
-    weights : (ndarray (input, 3 node), ndarray (node, 3 node))
-        Of what is read, and of the state: reset gate, update gate, candidate.
-    offsets : pair of ndarray (3 node,)
-        Of the two.
+    read (window, input): what each window reads now
+    states (window, node): before
+    weights ((input, 3 node), (node, 3 node)): of what is read, and of the state: reset gate, update gate, candidate
+    offsets pair of (3 node,): of the two
+    Source: Cho et al. 2014; the reset gate acts after the product, as in torch.
 
-    References
-    ----------
-    Cho et al. 2014; the reset gate acts after the product, as in torch.
-
-    Examples
-    --------
     >>> one, two, none = np.ones((1, 3)), np.zeros((1, 3)), np.zeros(3)
     >>> gru_step(np.zeros((1, 1)), np.ones((1, 1)), (one, two), (none, none))  # gates half open, candidate 0
     array([[0.5]])
@@ -55,23 +44,13 @@ def lstm_step(
 ) -> tuple[Array, Array]:
     """States and cells of a layer of long short-term memory after one more reading, each (window, node).
 
-    Parameters
-    ----------
-    read : ndarray (window, input)
-        What each window reads now.
-    states : (ndarray (window, node), ndarray (window, node))
-        States and cells before.
-    weights : (ndarray (input, 4 node), ndarray (node, 4 node))
-        Of what is read, and of the state: input gate, forget gate, candidate, output gate.
-    offsets : pair of ndarray (4 node,)
-        Of the two.
+    read (window, input): what each window reads now
+    states ((window, node), (window, node)): states and cells before
+    weights ((input, 4 node), (node, 4 node)): of what is read, and of the state: input gate, forget gate, candidate,
+        output gate
+    offsets pair of (4 node,): of the two
+    Source: Hochreiter and Schmidhuber 1997, with the forget gate of Gers et al. 2000, as in torch.
 
-    References
-    ----------
-    Hochreiter and Schmidhuber 1997, with the forget gate of Gers et al. 2000, as in torch.
-
-    Examples
-    --------
     >>> one, two, none = np.ones((1, 4)), np.zeros((1, 4)), np.zeros(4)
     >>> lstm_step(np.zeros((1, 1)), (np.ones((1, 1)), np.ones((1, 1))), (one, two), (none, none))[1]
     array([[0.5]])
@@ -97,17 +76,10 @@ def lstm_step(
 def decoded(features: Array, weights: tuple[Array, Array, Array], offsets: tuple[Array, Array, Array]) -> Array:
     """Scaled outputs of a shallow decoder for one sample, (output,).
 
-    Parameters
-    ----------
-    features : ndarray (node,)
-        What the first layer reads.
-    weights : three of ndarray (input, output)
-        Of the two rectified layers, and of the linear one.
-    offsets : three of ndarray (output,)
-        Of these.
+    features (node,): what the first layer reads
+    weights three of (input, output): of the two rectified layers, and of the linear one
+    offsets three of (output,): of these
 
-    Examples
-    --------
     >>> one = np.ones((1, 1))
     >>> decoded(np.array([-3.0]), (one, -one, one), (np.zeros(1), np.ones(1), np.zeros(1)))
     array([1.])

@@ -15,25 +15,16 @@ LEAST_STEPS = 1000  # short recordings have few batches an epoch: they get more 
 
 @dataclass(frozen=True, eq=False)
 class Schedule:
-    """Every step of a descent, whatever computes it.
+    """Every step of a descent, whatever computes it."""
 
-    Parameters
-    ----------
-    rates : ndarray (epoch, step of the epoch)
-        Learning rate, from the first one to 0 along a cosine, or the same in all.
-    decay : float
-        Decoupled decay of weight matrices, times the learning rate each step.
-    """
-
+    # (epoch, step of the epoch), learning rate, from the first one to 0 along a cosine, or the same in all
     rates: NDArray[np.float64]
-    decay: float
+    decay: float  # decoupled decay of weight matrices, times the learning rate each step
     batch: int
 
     def continued(self, decay: float) -> Schedule:
         """Return the schedule that goes on where this one led to: a third of its epochs, half its rate.
 
-        Examples
-        --------
         >>> schedule_of(512, 0.1, TrainingSettings()).continued(0.3).rates.shape
         (167, 2)
         """
@@ -44,12 +35,8 @@ class Schedule:
 def schedule_of(samples: int, decay: float, settings: TrainingSettings) -> Schedule:
     """Schedule for a training part of that many samples.
 
-    References
-    ----------
-    Loshchilov and Hutter 2017, SGDR: stochastic gradient descent with warm restarts; one period, no restart.
+    Source: Loshchilov and Hutter 2017, SGDR: stochastic gradient descent with warm restarts; one period, no restart.
 
-    Examples
-    --------
     >>> schedule_of(512, 0.1, TrainingSettings()).rates[[0, 250, 499], [0, 0, 1]].round(8).tolist()
     [0.01, 0.005, 2e-08]
     """
@@ -62,8 +49,6 @@ def schedule_of(samples: int, decay: float, settings: TrainingSettings) -> Sched
 def epochs_of(samples: int, settings: TrainingSettings) -> int:
     """Passes over a training part of that many samples: the epochs of the settings, or what 1,000 steps need.
 
-    Examples
-    --------
     >>> epochs_of(21_000, TrainingSettings()), epochs_of(2_000, TrainingSettings())
     (20, 125)
     """

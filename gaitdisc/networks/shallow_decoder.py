@@ -33,19 +33,13 @@ class ShallowDecoder(nn.Module):
     def features(self, x: Tensor) -> Tensor:
         """Return what the linear layer reads, (sample, node).
 
-        Parameters
-        ----------
-        x : Tensor (sample, input)
-            Scaled inputs.
+        x Tensor (sample, input): scaled inputs
         """
         return torch.relu(self.second(torch.relu(self.first(x))))
 
     def forward(self, x: Tensor) -> Tensor:
         """Scaled states, (sample, state).
 
-        Parameters
-        ----------
-        x : Tensor (sample, input)
-            Scaled inputs.
+        x Tensor (sample, input): scaled inputs
         """
         return self.readout(self.features(x))

@@ -72,10 +72,7 @@ class Shred(nn.Module):
     def latent(self, x: Tensor) -> Tensor:
         """Last hidden state of the recurrent layers (Eq. 5.3), (window, node).
 
-        Parameters
-        ----------
-        x : Tensor (window, reading * sensor)
-            Scaled windows.
+        x Tensor (window, reading * sensor): scaled windows
         """
         history = x.reshape(len(x), -1, self.sensors)
         if self.masked:
@@ -87,19 +84,13 @@ class Shred(nn.Module):
     def features(self, x: Tensor) -> Tensor:
         """Return what the linear layer reads, (window, node).
 
-        Parameters
-        ----------
-        x : Tensor (window, reading * sensor)
-            Scaled windows.
+        x Tensor (window, reading * sensor): scaled windows
         """
         return self.decoder.features(self.latent(x))
 
     def forward(self, x: Tensor) -> Tensor:
         """Scaled states, (window, state).
 
-        Parameters
-        ----------
-        x : Tensor (window, reading * sensor)
-            Scaled windows.
+        x Tensor (window, reading * sensor): scaled windows
         """
         return self.decoder.readout(self.features(x))

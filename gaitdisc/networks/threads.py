@@ -14,8 +14,6 @@ from threadpoolctl import threadpool_limits
 def torch_threads(count: int) -> Iterator[None]:
     """Let torch use that many threads on the CPU, and as many as before when the block ends.
 
-    Examples
-    --------
     >>> with torch_threads(1):
     ...     torch.get_num_threads()
     1
@@ -34,8 +32,6 @@ def pinned_threads(count: int) -> Iterator[None]:
 
     Matrices of 64 columns are slower on two threads than on one, and two trainings beside each other slower still.
 
-    Examples
-    --------
     >>> from threadpoolctl import threadpool_info
     >>> with pinned_threads(1):
     ...     {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"}

@@ -50,12 +50,8 @@ class TorchSteps:
     def epoch(self, order: Tensor, rates: NDArray[np.float64]) -> None:
         """Step through all samples once.
 
-        Parameters
-        ----------
-        order : Tensor (sample,)
-            In which the samples are seen.
-        rates : ndarray (step,)
-            Learning rate of each step.
+        order Tensor (sample,): in which the samples are seen
+        rates (step,): learning rate of each step
         """
         self._network.train()
         x, y = (values[order.to(values.device)] for values in self._part)

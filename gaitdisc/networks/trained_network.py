@@ -25,19 +25,13 @@ WEIGHT = "weight:"
 
 @dataclass(frozen=True, eq=False)
 class TrainedNetwork:
-    """Named inputs to named outputs, in their units; a `gaitdisc.model.Model`.
-
-    Parameters
-    ----------
-    network : torch module
-        Takes and gives scaled numbers; on the CPU.
-    """
+    """Named inputs to named outputs, in their units; a `gaitdisc.model.Model`."""
 
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
     x_scale: Scale
     y_scale: Scale
-    network: nn.Module
+    network: nn.Module  # takes and gives scaled numbers; on the CPU
 
     @property
     def ignored(self) -> tuple[str, ...]:
@@ -69,10 +63,7 @@ class TrainedNetwork:
 def save_network(network: TrainedNetwork, path: Path) -> None:
     """Save a trained network; what is loaded again equals it to the last bit.
 
-    Parameters
-    ----------
-    path : Path
-        Of an `.npz` file; written whole or not at all.
+    path: of an `.npz` file; written whole or not at all
     """
     names = {"format": FORMAT, "inputs": network.inputs, "outputs": network.outputs}
     arrays = {
@@ -90,10 +81,7 @@ def save_network(network: TrainedNetwork, path: Path) -> None:
 def load_network(path: Path, build: Callable[[int, int], nn.Module]) -> TrainedNetwork:
     """Load a network that `save_network` wrote.
 
-    Parameters
-    ----------
-    build : callable
-        Takes the number of inputs and of outputs and makes the torch module, as in training: `FeedForward`.
+    build: takes the number of inputs and of outputs and makes the torch module, as in training: `FeedForward`
     """
     try:
         with np.load(path, allow_pickle=False) as file:

@@ -29,33 +29,21 @@ SEAM_S = 0.3  # as Trajectory.split: zero-lag filters look ahead over the seam
 
 @dataclass(frozen=True, eq=False)
 class Training:
-    """A trained network and how it came about.
-
-    Parameters
-    ----------
-    decay, penalty : float
-        Weight decay and readout penalty that did best on the inner block; no penalty where nothing is solved.
-    epochs, best_epoch : int
-        Epochs of the descent with that decay, and the one whose weights were kept.
-    losses : tuple of float
-        Mean squared error of the scaled outputs on the inner block after every one of these epochs.
-    n_training, n_inner : int
-        Samples of the whole training part, and of its inner block.
-    seconds : float
-        Wall-clock time of everything, all candidates included [s].
-    arithmetic : str
-        What computed the descent: `fused`, the compiled code for the dissertation's network on the CPU, or `torch`.
-    """
+    """A trained network and how it came about."""
 
     network: TrainedNetwork
+    # weight decay and readout penalty that did best on the inner block; no penalty where nothing is solved
     decay: float
+    # weight decay and readout penalty that did best on the inner block; no penalty where nothing is solved
     penalty: float
-    epochs: int
-    best_epoch: int
+    epochs: int  # epochs of the descent with that decay, and the one whose weights were kept
+    best_epoch: int  # epochs of the descent with that decay, and the one whose weights were kept
+    # mean squared error of the scaled outputs on the inner block after every one of these epochs
     losses: tuple[float, ...]
-    n_training: int
-    n_inner: int
-    seconds: float
+    n_training: int  # samples of the whole training part, and of its inner block
+    n_inner: int  # samples of the whole training part, and of its inner block
+    seconds: float  # Wall-clock time of everything, all candidates included [s]
+    # what computed the descent: `fused`, the compiled code for the dissertation's network on the CPU, or `torch`
     arithmetic: str
 
 
@@ -83,13 +71,9 @@ def train(
     Where a check part is given, it is the inner block, and takes no part in the last layer either: its errors remain
     errors on samples that were not fitted.
 
-    Parameters
-    ----------
-    build : callable
-        Takes the number of inputs and of outputs, makes a torch module with `features` and a linear `readout`:
-        `FeedForward`.
-    check : Samples, optional
-        What stops and chooses in place of the last `inner_share`: another stretch of time, or another person.
+    build: takes the number of inputs and of outputs, makes a torch module with `features` and a linear `readout`:
+        `FeedForward`
+    check: what stops and chooses in place of the last `inner_share`: another stretch of time, or another person
     """
     begun = time.perf_counter()
     settings, progress = settings or TrainingSettings(), progress or (lambda _: None)
@@ -171,13 +155,8 @@ def _share(progress: Callable[[float], None], number: int, count: int, fraction:
 def chosen_device(wanted: str) -> torch.device:
     """Device to train on.
 
-    Parameters
-    ----------
-    wanted : str
-        `cpu`, `cuda`, or `auto`: the GPU where there is one.
+    wanted: `cpu`, `cuda`, or `auto`: the GPU where there is one
 
-    Examples
-    --------
     >>> chosen_device("cpu")
     device(type='cpu')
     """

@@ -13,57 +13,34 @@ PRECISIONS = ("float32", "bfloat16")
 class TrainingSettings:
     """Settings of the trainer, the same for every kind of network.
 
-    Parameters
-    ----------
-    epochs : int
-        Passes over the training part; more where 1,000 steps need more.
-    learning_rate : float
-        Of the first step; it falls to 0 along a cosine, or stays where `falling` is False.
-    patience : int
-        Epochs without gain on the inner block after which a descent ends; 0 goes through all of them.
-    solved : bool
-        Whether the last layer is solved by least squares after the descent, or stays as it was descended.
-    decays : tuple of float
-        Candidates of the decoupled weight decay, weak to strong; they are tried in this order until the inner block
-        does worse, each from the weights of the one before, and the best is used.
-    inner_share : float
-        Share of the training part in the inner block, its last samples.
-    seed : int
-        Of the first weights and of the order of the samples.
-    device : str
-        `cpu`, `cuda`, or `auto`: the GPU where there is one.
-    threads : int
-        Threads of one training on the CPU. Networks of this size train slower on two threads than on one; participants
-        are what to run beside each other.
-    arithmetic : str
-        `auto` computes the dissertation's network on the CPU by compiled code, with torch's numbers to rounding, and
-        everything else by torch; `torch` computes everything by torch.
-    precision : str
-        `float32`, or `bfloat16`: torch multiplies in bfloat16 while descending, and keeps weights, losses and the
-        readout in float32 and better. It pays for an LSTM (1.5 to 1.7 times as fast on a processor that has bfloat16),
-        not for the GRU of 64 (docs/results.md).
-    missing_inputs : bool
-        Whether inputs may be missing (NaN); the network has to know what to do with them, as `Shred` with `masked`.
-
-    Examples
-    --------
     >>> TrainingSettings(seed=3).batch
     256
     """
 
-    epochs: int = 20
+    epochs: int = 20  # passes over the training part; more where 1,000 steps need more
     batch: int = 256
-    learning_rate: float = 1e-2
+    learning_rate: float = 1e-2  # of the first step; it falls to 0 along a cosine, or stays where `falling` is False
     falling: bool = True
-    patience: int = 0
+    patience: int = 0  # epochs without gain on the inner block after which a descent ends; 0 goes through all of them
+    # whether the last layer is solved by least squares after the descent, or stays as it was descended
     solved: bool = True
+    # candidates of the decoupled weight decay, weak to strong; they are tried in this order until the inner block does
+    # worse, each from the weights of the one before, and the best is used
     decays: tuple[float, ...] = (0.1, 0.3, 1.0)
-    inner_share: float = 0.15
-    seed: int = 0
-    device: str = "cpu"
+    inner_share: float = 0.15  # share of the training part in the inner block, its last samples
+    seed: int = 0  # of the first weights and of the order of the samples
+    device: str = "cpu"  # `cpu`, `cuda`, or `auto`: the GPU where there is one
+    # threads of one training on the CPU. Networks of this size train slower on two threads than on one; participants
+    # are what to run beside each other
     threads: int = 1
+    # `auto` computes the dissertation's network on the CPU by compiled code, with torch's numbers to rounding, and
+    # everything else by torch; `torch` computes everything by torch
     arithmetic: str = "auto"
+    # `float32`, or `bfloat16`: torch multiplies in bfloat16 while descending, and keeps weights, losses and the readout
+    # in float32 and better. It pays for an LSTM (1.5 to 1.7 times as fast on a processor that has bfloat16), not for
+    # the GRU of 64 (docs/results.md)
     precision: str = "float32"
+    # whether inputs may be missing (NaN); the network has to know what to do with them, as `Shred` with `masked`
     missing_inputs: bool = False
 
     def __post_init__(self) -> None:

@@ -34,19 +34,13 @@ AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 @dataclass(frozen=True)
 class ContactChoice:
-    """Initial contacts of both feet, and what was seen on the way.
-
-    Parameters
-    ----------
-    findings : tuple of Finding
-        Which detector was taken and why, how far others differ [ms], and those that could not be used.
-    offset_s : float, optional
-        By how much a plate, or an event of the file, places contacts later than markers or angles do, the median of
-        the steps that both see [s]; None where nothing else sees a step. `contacts` are moved by it.
-    """
+    """Initial contacts of both feet, and what was seen on the way."""
 
     contacts: Mapping[str, Contacts]
+    # which detector was taken and why, how far others differ [ms], and those that could not be used
     findings: tuple[Finding, ...]
+    # by how much a plate, or an event of the file, places contacts later than markers or angles do, the median of the
+    # steps that both see [s]; None where nothing else sees a step. `contacts` are moved by it
     offset_s: float | None = None
 
     @property
@@ -68,12 +62,8 @@ def chosen_contacts(
     of the strides that another sees: a plate in the floor catches one step of many. That one step corrects the others:
     contacts from markers and from angles are moved by the median of what the plate, or else the file's events, say.
 
-    Parameters
-    ----------
-    direction : str
-        Direction of walking in the laboratory's axes, `+x` to `-z`; inferred from the markers where it is empty.
-    body_weight_n : float, optional
-        Mass x 9.81, by which a plate counts as loaded; 50 N without it.
+    direction: direction of walking in the laboratory's axes, `+x` to `-z`; inferred from the markers where it is empty
+    body_weight_n: mass x 9.81, by which a plate counts as loaded; 50 N without it
     """
     seen, refused = seen_contacts(trial, direction, body_weight_n)
     found = {name: contacts for name, contacts in seen.items() if _stride_count(contacts)}
@@ -98,17 +88,9 @@ def seen_contacts(
 ) -> tuple[dict[str, dict[str, Contacts]], dict[str, GaitdiscError | None]]:
     """Contacts as each detector places them, and why a detector finds no stride of both feet.
 
-    Parameters
-    ----------
-    direction : str
-        Direction of walking in the laboratory's axes, `+x` to `-z`; inferred from the markers where it is empty.
-    body_weight_n : float, optional
-        Mass x 9.81, by which a plate counts as loaded.
-
-    Returns
-    -------
-    refused : dict of str to GaitdiscError or None
-        Detector -> its error; None where it sees contacts, but no stride of both feet.
+    direction: direction of walking in the laboratory's axes, `+x` to `-z`; inferred from the markers where it is empty
+    body_weight_n: mass x 9.81, by which a plate counts as loaded
+    returns refused: detector -> its error; None where it sees contacts, but no stride of both feet
     """
     attempts: dict[str, Callable[[], dict[str, Contacts]]] = {}
     if "forces" in trial.streams:
@@ -202,10 +184,7 @@ def named_markers(markers: Recording) -> tuple[dict[str, str], list[str]]:
 def trial_direction(markers: Recording, heels: Mapping[str, str], pelvis: list[str], direction: str = "") -> Direction:
     """Direction of walking of a trial: the one that is given, else from its markers.
 
-    Parameters
-    ----------
-    direction : str
-        In the laboratory's axes, `+x` to `-z`; inferred where it is empty.
+    direction: in the laboratory's axes, `+x` to `-z`; inferred where it is empty
     """
     if not direction:
         return walking_direction(markers, heels, pelvis)

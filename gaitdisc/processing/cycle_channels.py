@@ -27,17 +27,10 @@ def cycle_channels(
 ) -> tuple[Recording | None, tuple[Recording, ...], tuple[Finding, ...]]:
     """Filtered angles, moments, powers, belt forces and EMG envelopes of a trial, those of the vocabulary.
 
-    Parameters
-    ----------
-    smooth_moments : bool
-        Whether moments and powers were computed of filtered markers and forces, so that they stay as they are.
-
-    Returns
-    -------
-    legs : Recording or None
-        Angles of the legs, gaps bridged where they may be, not filtered.
-    states : tuple of Recording
-        What cycles are cut of, each at its own rate.
+    smooth_moments: whether moments and powers were computed of filtered markers and forces, so that they stay as they
+        are
+    returns legs: angles of the legs, gaps bridged where they may be, not filtered
+    returns states: what cycles are cut of, each at its own rate
     """
     legs, states, findings = None, [], []
     for key, quantities in (

@@ -29,24 +29,11 @@ def filter_null(
 ) -> dict[str, float]:
     """R2 of x'' regressed on x and x' in noise that passed through the same filters as each channel.
 
-    Parameters
-    ----------
-    kinematics_hz : float
-        Rate at which angles were measured and everything is differentiated.
-    emg_hz : float, optional
-        Rate of the raw EMG; None where the recording holds envelopes, which are low-passed only.
+    kinematics_hz: rate at which angles were measured and everything is differentiated
+    emg_hz: rate of the raw EMG; None where the recording holds envelopes, which are low-passed only
+    returns: channel name to R2, about 0.5 for every low-pass
+    Source: A flat band has m2^2 / (m0 m4) = 5/9; see `gaitdisc.statistics.band_limit_null`.
 
-    Returns
-    -------
-    dict of str to float
-        Channel name to R2, about 0.5 for every low-pass.
-
-    References
-    ----------
-    A flat band has m2^2 / (m0 m4) = 5/9; see `gaitdisc.statistics.band_limit_null`.
-
-    Examples
-    --------
     >>> knee = Channel("knee_angle_r", "angle", "deg", "r")
     >>> round(filter_null([knee], Filters(), 100.0)["knee_angle_r"], 1)
     0.5
@@ -63,10 +50,7 @@ def filter_null(
 def filter_null_of(walk: Walk, filters: Filters) -> dict[str, float]:
     """R2 that noise reaches through the filters of one walk, at the rates it was measured with.
 
-    Parameters
-    ----------
-    walk : Walk
-        Whether its EMG is raw or holds envelopes is seen from the EMG.
+    walk: whether its EMG is raw or holds envelopes is seen from the EMG
     """
     emg = walk.trial.streams.get("emg")
     emg_hz = emg.rate_hz if emg is not None and is_raw(emg) else None

@@ -91,10 +91,8 @@ class Inspection:
 def inspected_study(study: Study) -> Iterator[Inspection]:
     """Read and process every trial of a study as `gaitdisc run` would; those of unknown conditions are read too.
 
-    Yields
-    ------
-    Inspection
-        One a trial, in the study's order; then one for each participant, or session and condition, that is refused.
+    returns: one a trial, in the study's order; then one for each participant, or session and condition, that is
+        refused
     """
     refused = []
     with C3DReader() as reader:

@@ -31,40 +31,24 @@ MOMENT_HZ = 20.0  # the moment keeps what the forces' own filter left of it
 
 @dataclass(frozen=True, eq=False)
 class JointRecord:
-    """One joint of one walk, sample by sample on the time base of the angles.
-
-    Parameters
-    ----------
-    seen : ndarray (sample,)
-        Angle as recorded [rad].
-    angle, rate, speedup : ndarray (sample,)
-        Low-passed angle and its derivatives [rad, rad/s, rad/s2].
-    moment : ndarray (sample,)
-        Internal net moment towards the positive angle [N m]; NaN where the load of the foot is unknown.
-    envelopes : ndarray (sample, muscle)
-        EMG of the joint's side [the file's unit].
-    phase : ndarray (sample,)
-        Share of the stride; NaN outside of strides.
-    stride : ndarray of int (sample,)
-        Number of the stride, -1 outside.
-    per_kg : ndarray (sample,)
-        What each kg more at the foot adds to the net moment [N m/kg]; empty where no marker shows it.
-    """
+    """One joint of one walk, sample by sample on the time base of the angles."""
 
     joint: str
     side: str
     subject: str
     condition: str
     time: NDArray[np.float64]
-    seen: NDArray[np.float64]
-    angle: NDArray[np.float64]
-    rate: NDArray[np.float64]
-    speedup: NDArray[np.float64]
+    seen: NDArray[np.float64]  # (sample,), angle as recorded [rad]
+    angle: NDArray[np.float64]  # (sample,), Low-passed angle and its derivatives [rad, rad/s, rad/s2]
+    rate: NDArray[np.float64]  # (sample,), Low-passed angle and its derivatives [rad, rad/s, rad/s2]
+    speedup: NDArray[np.float64]  # (sample,), Low-passed angle and its derivatives [rad, rad/s, rad/s2]
+    # (sample,), internal net moment towards the positive angle [N m]; NaN where the load of the foot is unknown
     moment: NDArray[np.float64]
-    envelopes: NDArray[np.float64]
+    envelopes: NDArray[np.float64]  # (sample, muscle), EMG of the joint's side [the file's unit]
     muscles: tuple[str, ...]
-    phase: NDArray[np.float64]
-    stride: NDArray[np.intp]
+    phase: NDArray[np.float64]  # (sample,), share of the stride; NaN outside of strides
+    stride: NDArray[np.intp]  # (sample,), number of the stride, -1 outside
+    # (sample,), what each kg more at the foot adds to the net moment [N m/kg]; empty where no marker shows it
     per_kg: NDArray[np.float64]
     findings: tuple[Finding, ...] = ()
 
@@ -82,12 +66,8 @@ class JointRecord:
 def joint_record(trial: Trial, study: Study, joint: str, mass_kg: float | None) -> JointRecord:
     """Return one joint of a trial: angles low-passed, EMG as envelopes, moments in N m, on the study's side.
 
-    Parameters
-    ----------
-    joint : str
-        Angle without its side, `ankle_angle`.
-    mass_kg : float, optional
-        Of the body, where moments are per kg of it.
+    joint: angle without its side, `ankle_angle`
+    mass_kg: of the body, where moments are per kg of it
     """
     side, filters = study.strides.side, study.filters
     name = f"{joint}_{side}"

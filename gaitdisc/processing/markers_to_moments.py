@@ -19,18 +19,10 @@ from gaitdisc.recording import Finding, Trial
 
 @dataclass(frozen=True, eq=False)
 class ComputedTrial:
-    """A trial with what was computed from its markers.
+    """A trial with what was computed from its markers."""
 
-    Parameters
-    ----------
-    trial : Trial
-        With angles and, where platforms allow it, moments.
-    steps : tuple of PlateStep, optional
-        On all platforms, clean or not; None where no moments could be computed.
-    """
-
-    trial: Trial
-    steps: tuple[PlateStep, ...] | None
+    trial: Trial  # with angles and, where platforms allow it, moments
+    steps: tuple[PlateStep, ...] | None  # on all platforms, clean or not; None where no moments could be computed
 
 
 def with_angles_and_moments(
@@ -45,15 +37,8 @@ def with_angles_and_moments(
     What a model in the file itself held under these streams gives way. A trial without forces, or without a step of
     one foot alone on a platform, has angles only and says why in its findings.
 
-    Parameters
-    ----------
-    forward : sequence of 3 floats, optional
-        Direction of walking in the laboratory's axes; found from the pelvis where it is not given.
-
-    Returns
-    -------
-    Trial
-        Streams `kinematics` [deg, m] and `moments` [N m/kg, W/kg] on the frames of the markers.
+    forward: direction of walking in the laboratory's axes; found from the pelvis where it is not given
+    returns: streams `kinematics` [deg, m] and `moments` [N m/kg, W/kg] on the frames of the markers
     """
     return computed_trial(trial, calibration, person, settings, forward).trial
 
@@ -67,10 +52,7 @@ def computed_trial(
 ) -> ComputedTrial:
     """As `with_angles_and_moments`, with the steps on platforms that the moments rest on.
 
-    Parameters
-    ----------
-    forward : sequence of 3 floats, optional
-        Direction of walking in the laboratory's axes; found from the pelvis where it is not given.
+    forward: direction of walking in the laboratory's axes; found from the pelvis where it is not given
     """
     moved = motion(trial.stream("markers"), calibration, forward)
     own = [key for key in ("kinematics", "moments") if key in trial.streams]
@@ -106,10 +88,7 @@ def _residual(moved: Motion, file: str) -> Finding:
 def foot_paths_of(moved: Motion, calibration: Calibration) -> dict[str, FootPath]:
     """Paths of heel and toes as the feet's segments carry them, with or without their markers in a frame.
 
-    Parameters
-    ----------
-    calibration : Calibration
-        That says where heel and toes lie in the foot.
+    calibration: that says where heel and toes lie in the foot
     """
     found = {}
     for side in "lr":

@@ -17,13 +17,8 @@ def on_one_base(trial: Trial, rate_hz: float, keys: tuple[str, ...] | None = Non
     A stream that is faster than `rate_hz` is low-passed at 0.4 times that rate; raw EMG becomes its envelope (40 Hz
     high-pass, rectified, 10 Hz low-pass), since nothing of the raw signal would be left.
 
-    Returns
-    -------
-    Recording
-        The span that all streams cover; filter edges and bridged gaps are marked suspect.
+    returns: the span that all streams cover; filter edges and bridged gaps are marked suspect
 
-    Examples
-    --------
     >>> from gaitdisc.cohort.cohort import the_twelve, walks_of
     >>> on_one_base(walks_of(the_twelve()[0], 5.0).trials["nominal"], 100.0).rate_hz
     100.0

@@ -20,13 +20,8 @@ def repeated_stride(trial: Trial) -> Trial:
 
     Only streams on the time base of the kinematics are kept. A last sample that repeats the first is left out.
 
-    Parameters
-    ----------
-    trial : Trial
-        With the kinematics of one stride, wherever in the stride it begins.
+    trial: with the kinematics of one stride, wherever in the stride it begins
 
-    Examples
-    --------
     >>> from gaitdisc.channel import Channel
     >>> t = np.linspace(0.0, 1.0, 101)
     >>> hip = Recording(t, 30 * np.cos(2 * np.pi * t)[:, None], (Channel("hip_flexion_r", "angle", "deg", "r"),))

@@ -88,10 +88,7 @@ def pooled_cycles(study: Study, participant: Participant, read: Read) -> tuple[P
     file sees a step that markers or angles see too, these are moved by the median difference of all such steps of the
     participant's session.
 
-    Returns
-    -------
-    tuple of PooledCycles
-        One for each session and condition; those without a kept cycle say why in `refusals`.
+    returns: one for each session and condition; those without a kept cycle say why in `refusals`
     """
     sets = trial_sets(study, participant)
     found: list[PooledCycles] = []

@@ -17,18 +17,10 @@ from gaitdisc.recording import Recording
 
 @dataclass(frozen=True, eq=False)
 class ShelvedRecordings:
-    """Recordings of a trial, on disk or, where that has no room, in memory.
+    """Recordings of a trial, on disk or, where that has no room, in memory."""
 
-    Parameters
-    ----------
-    kept : tuple of Recording
-        With their samples, or with one sample each where these are on disk.
-    files : tuple of Path
-        Where the samples lie; empty where they are in memory.
-    """
-
-    kept: tuple[Recording, ...]
-    files: tuple[Path, ...] = ()
+    kept: tuple[Recording, ...]  # with their samples, or with one sample each where these are on disk
+    files: tuple[Path, ...] = ()  # where the samples lie; empty where they are in memory
 
     @property
     def channels(self) -> tuple[Channel, ...]:

@@ -32,15 +32,9 @@ MODEL = ("kinematics", "moments")
 
 @dataclass(eq=False)
 class Standing:
-    """The static trial of a person's session, and what is computed with it; what all walks share is said once.
+    """The static trial of a person's session, and what is computed with it; what all walks share is said once."""
 
-    Parameters
-    ----------
-    study : Study
-        With its `[kinematics]`.
-    """
-
-    study: Study
+    study: Study  # with its `[kinematics]`
     participant: Participant
     planned: PlannedTrial | None
     markers: Recording | None
@@ -199,10 +193,7 @@ def _circled(study: Study, participant: Participant, session: str, read: Read) -
 def marker_set_of(study: Study) -> str | Path | None:
     """Name or file of the marker set that a study names, files relative to the study file; None where it names none.
 
-    Parameters
-    ----------
-    study : Study
-        With or without `[kinematics]`.
+    study: with or without `[kinematics]`
     """
     named = study.kinematics.marker_set if study.kinematics else ""
     return study.path_of(named) if named.endswith(".toml") else named or None

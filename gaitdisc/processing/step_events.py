@@ -37,25 +37,17 @@ Times = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class StepEvents:
-    """What was seen of the steps of one trial, nothing corrected yet.
+    """What was seen of the steps of one trial, nothing corrected yet."""
 
-    Parameters
-    ----------
-    detector : str
-        What sees most strides: `events`, `force`, `markers` or `angles`.
-    off_detector : str
-        `markers` or `angles`, whichever shows foot off; empty where neither does.
-    contacts, foot_offs : mapping of str to ndarray [s]
-        Side -> times, as these detectors place them.
-    ground_contacts, ground_offs : mapping of str to tuple of (float, str)
-        Side -> time and `events` or `force`; no contacts where the detector sees the ground itself.
-    """
-
-    detector: str
-    off_detector: str
-    contacts: Mapping[str, Times]
-    foot_offs: Mapping[str, Times]
+    detector: str  # what sees most strides: `events`, `force`, `markers` or `angles`
+    off_detector: str  # `markers` or `angles`, whichever shows foot off; empty where neither does
+    contacts: Mapping[str, Times]  # each ndarray [s], side -> times, as these detectors place them
+    foot_offs: Mapping[str, Times]  # each ndarray [s], side -> times, as these detectors place them
+    # mapping of str to tuple of (float, str), side -> time and `events` or `force`; no contacts where the detector sees
+    # the ground itself
     ground_contacts: Mapping[str, tuple[tuple[float, str], ...]]
+    # mapping of str to tuple of (float, str), side -> time and `events` or `force`; no contacts where the detector sees
+    # the ground itself
     ground_offs: Mapping[str, tuple[tuple[float, str], ...]]
 
     def later_s(self, kind: str) -> Times:
@@ -72,15 +64,8 @@ class StepEvents:
     def corrected(self, kind: str, offset_s: float) -> dict[str, tuple[tuple[float, str], ...]]:
         """Events moved by an offset, each replaced by the ground's own where that saw it.
 
-        Parameters
-        ----------
-        offset_s : float
-            Added to what markers or angles say [s].
-
-        Returns
-        -------
-        dict of str to tuple of (float, str)
-            Side -> time and what placed it, in order of time.
+        offset_s: added to what markers or angles say [s]
+        returns dict of str to tuple of (float, str): side -> time and what placed it, in order of time
         """
         own, ground = self._of(kind)
         by = self.detector if kind == "contacts" else self.off_detector
@@ -106,12 +91,8 @@ def step_events(
     The file's events go before force before markers before angles, but none that sees fewer than 80 % of the strides
     that another sees; angles only where nothing else sees a stride. What the ground or the file saw stands beside.
 
-    Parameters
-    ----------
-    direction : str
-        Direction of walking in the laboratory's axes, `+x` to `-z`; inferred where it is empty.
-    body_weight_n : float, optional
-        Mass x 9.81, by which a plate counts as loaded; 50 N without it.
+    direction: direction of walking in the laboratory's axes, `+x` to `-z`; inferred where it is empty
+    body_weight_n: mass x 9.81, by which a plate counts as loaded; 50 N without it
     """
     seen, refused = seen_contacts(trial, direction, body_weight_n)
     strides = {name: _stride_count(contacts) for name, contacts in seen.items()}
@@ -138,10 +119,7 @@ def step_events(
 def over_ground(trial: Trial) -> bool:
     """Whether somebody walks through the laboratory: by the path of the pelvis, else by the length of the trial.
 
-    Parameters
-    ----------
-    trial : Trial
-        With markers, or with `pelvis_tx` and `pelvis_tz`; without either a trial of up to 10 s is one over ground.
+    trial: with markers, or with `pelvis_tx` and `pelvis_tz`; without either a trial of up to 10 s is one over ground
     """
     markers = trial.streams.get("markers")
     if markers is not None:
@@ -164,10 +142,7 @@ def over_ground(trial: Trial) -> bool:
 def trial_markers(trial: Trial, direction: str = "") -> tuple[dict[str, str], list[str], Direction] | None:
     """Heels, pelvis and direction of walking of a trial; None where its markers do not give them.
 
-    Parameters
-    ----------
-    direction : str
-        In the laboratory's axes, `+x` to `-z`; inferred where it is empty.
+    direction: in the laboratory's axes, `+x` to `-z`; inferred where it is empty
     """
     if "markers" not in trial.streams:
         return None

@@ -14,20 +14,11 @@ from gaitdisc.recording import Trial
 
 @dataclass(frozen=True, eq=False)
 class ReadWalk:
-    """A trial before it is filtered.
+    """A trial before it is filtered."""
 
-    Parameters
-    ----------
-    trial : Trial
-        With the angles that its study asks for, and moments where they could be computed.
-    body_weight_n : float, optional
-        Of the person [N]; None where neither the study nor a file states a mass.
-    without_angles : str
-        Why no angles were computed of the trial's markers; empty where it has angles, or no markers.
-    """
-
-    trial: Trial
-    body_weight_n: float | None = None
+    trial: Trial  # with the angles that its study asks for, and moments where they could be computed
+    body_weight_n: float | None = None  # of the person [N]; None where neither the study nor a file states a mass
+    # why no angles were computed of the trial's markers; empty where it has angles, or no markers
     without_angles: str = ""
 
     def processed(self, study: Study) -> Walk:

@@ -26,20 +26,17 @@ Timed = Mapping[str, tuple[tuple[float, str], ...]]
 
 @dataclass(frozen=True)
 class Places:
-    """Where the feet were in one cycle.
+    """Where the feet were in one cycle."""
 
-    Parameters
-    ----------
-    step_s : float
-        From the contact of the other foot to the next of this one [s].
-    stride_m, step_m, width_m : float
-        Length of the stride; of the step, from where the other heel landed inside of the cycle to where this one lands
-        at its end; how far beside the line of the stride the other landed [m]; NaN without markers.
-    """
-
-    step_s: float = NAN
+    step_s: float = NAN  # from the contact of the other foot to the next of this one [s]
+    # length of the stride; of the step, from where the other heel landed inside of the cycle to where this one lands at
+    # its end; how far beside the line of the stride the other landed [m]; NaN without markers
     stride_m: float = NAN
+    # length of the stride; of the step, from where the other heel landed inside of the cycle to where this one lands at
+    # its end; how far beside the line of the stride the other landed [m]; NaN without markers
     step_m: float = NAN
+    # length of the stride; of the step, from where the other heel landed inside of the cycle to where this one lands at
+    # its end; how far beside the line of the stride the other landed [m]; NaN without markers
     width_m: float = NAN
 
 
@@ -49,13 +46,8 @@ def cut_cycles(contacts: Timed, offs: Timed) -> list[Cycle]:
     Left out is a cycle that has no contact of the other foot inside, or more than one, where the contacts of the other
     foot were seen before and after.
 
-    Parameters
-    ----------
-    contacts, offs : mapping of str to tuple of (float, str)
-        Side -> time [s] and what placed it.
+    contacts, offs mapping of str to tuple of (float, str): side -> time [s] and what placed it
 
-    Examples
-    --------
     >>> contacts = {"r": ((0.0, "force"), (1.0, "force")), "l": ((0.5, "force"),)}
     >>> one = cut_cycles(contacts, {"r": ((0.6, "force"),), "l": ((0.1, "force"),)})[0]
     >>> one.foot_off, one.opposite_off, one.opposite_contact, one.reason
@@ -83,27 +75,18 @@ def cut_cycles(contacts: Timed, offs: Timed) -> list[Cycle]:
 
 @dataclass(frozen=True)
 class PlateLoadings:
-    """When the plates of a trial were loaded.
+    """When the plates of a trial were loaded."""
 
-    Parameters
-    ----------
-    belts : frozenset of str
-        Sides that have a force of their own, as on a split belt.
-    spans : tuple of (float, float)
-        From when to when a plate was loaded, whole in the recording [s]; empty where there are belts.
-    """
-
-    belts: frozenset[str] = frozenset()
+    belts: frozenset[str] = frozenset()  # sides that have a force of their own, as on a split belt
+    # tuple of (float, float), from when to when a plate was loaded, whole in the recording [s]; empty where there are
+    # belts
     spans: tuple[tuple[float, float], ...] = ()
 
 
 def plate_loadings(trial: Trial, rise_n: float = RISE_N) -> PlateLoadings:
     """When the plates of a trial were loaded.
 
-    Parameters
-    ----------
-    rise_n : float
-        Force above which a foot is on the ground [N].
+    rise_n: force above which a foot is on the ground [N]
     """
     if "forces" not in trial.streams:
         return PlateLoadings()
@@ -131,28 +114,17 @@ def _is_stance(step: PlateStep, one: Cycle) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class HeelPaths:
-    """Where the heels of a trial were, and which way the person walked.
+    """Where the heels of a trial were, and which way the person walked."""
 
-    Parameters
-    ----------
-    time : ndarray (frame,) [s]
-        Of the markers.
-    heels : mapping of str to ndarray (frame, 3) [m]
-        By side.
-    """
-
-    time: NDArray[np.float64]
-    heels: Mapping[str, NDArray[np.float64]]
+    time: NDArray[np.float64]  # (frame,) [s], of the markers
+    heels: Mapping[str, NDArray[np.float64]]  # each (frame, 3) [m], by side
     way: Direction
 
 
 def heel_paths(trial: Trial, direction: str = "") -> HeelPaths | None:
     """Paths of the heels of a trial; None where its markers do not show them.
 
-    Parameters
-    ----------
-    direction : str
-        In the laboratory's axes, `+x` to `-z`; inferred where it is empty.
+    direction: in the laboratory's axes, `+x` to `-z`; inferred where it is empty
     """
     known = trial_markers(trial, direction)
     if known is None:
@@ -165,12 +137,8 @@ def heel_paths(trial: Trial, direction: str = "") -> HeelPaths | None:
 def feet_in(cycles: list[Cycle], feet: HeelPaths | None, belt_m_per_s: float = 0.0) -> list[Places]:
     """Where the feet were in each cycle.
 
-    Parameters
-    ----------
-    feet : HeelPaths, optional
-        Of the trial; without them only the step's time is known, and on a belt how far it ran in a stride.
-    belt_m_per_s : float
-        Speed of a belt, whose length is added to each stride [m/s].
+    feet: of the trial; without them only the step's time is known, and on a belt how far it ran in a stride
+    belt_m_per_s: speed of a belt, whose length is added to each stride [m/s]
     """
     if feet is None:
         ran = belt_m_per_s or NAN
@@ -203,10 +171,7 @@ def feet_in(cycles: list[Cycle], feet: HeelPaths | None, belt_m_per_s: float = 0
 def with_gaps(cycles: list[Cycle], legs: Recording | None) -> list[Cycle]:
     """Same cycles, left out where an angle of the own leg is missing or the recording does not reach.
 
-    Parameters
-    ----------
-    legs : Recording, optional
-        Angles, gaps bridged where they may be; None where the trial has none.
+    legs: angles, gaps bridged where they may be; None where the trial has none
     """
     if legs is None:
         return cycles
@@ -224,10 +189,7 @@ def with_gaps(cycles: list[Cycle], legs: Recording | None) -> list[Cycle]:
 def moved_events(steps: StepEvents, contact_s: float, off_s: float) -> list[Cycle]:
     """Cycles of a trial whose events are moved by these offsets, the ground's own left where they are.
 
-    Parameters
-    ----------
-    contact_s, off_s : float
-        Added to contacts and to foot offs of markers or angles [s].
+    contact_s, off_s: added to contacts and to foot offs of markers or angles [s]
     """
     return cut_cycles(steps.corrected("contacts", contact_s), steps.corrected("foot_offs", off_s))
 

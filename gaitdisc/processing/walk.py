@@ -16,26 +16,15 @@ from gaitdisc.results.walk_summary import STRIDE_COLUMNS
 
 @dataclass(frozen=True, eq=False)
 class Walk:
-    """One processed trial.
-
-    Parameters
-    ----------
-    state : Recording
-        Filtered joint angles, and EMG envelopes where the study asks for them, on the time base of the kinematics.
-    trajectory : Trajectory
-        State, derivatives and percent stride of the study's side.
-    findings : tuple of Finding
-        Of the reader, of the quality checks, and of the stride detectors.
-    side : str
-        Side whose strides the percent stride of the trajectory follows.
-    """
+    """One processed trial."""
 
     trial: Trial
+    # filtered joint angles, and EMG envelopes where the study asks for them, on the time base of the kinematics
     state: Recording
     strides: Mapping[str, Strides]
-    trajectory: Trajectory
-    findings: tuple[Finding, ...]
-    side: str
+    trajectory: Trajectory  # state, derivatives and percent stride of the study's side
+    findings: tuple[Finding, ...]  # of the reader, of the quality checks, and of the stride detectors
+    side: str  # side whose strides the percent stride of the trajectory follows
 
     def summary(self) -> WalkSummary:
         """What is kept of the walk: curves of every stride of the study's side, strides, findings, file hashes.

@@ -47,13 +47,8 @@ def walk_pair(
     are kept. Strides that are unlike the others in two angles of the legs (a stumble) are left out, with a finding; a
     change that lasts four strides or more stays. A recording of one stride that closes in itself counts as one.
 
-    Parameters
-    ----------
-    cutoff_hz : float
-        -3 dB frequency of one pass of the low-pass of angles and moments.
+    cutoff_hz: -3 dB frequency of one pass of the low-pass of angles and moments
 
-    Examples
-    --------
     >>> from gaitdisc.cohort.cohort import the_twelve, walks_of
     >>> walks = walks_of(the_twelve()[0], 20.0).trials.values()
     >>> [(walk.detector, walk.curves.shape[1:]) for walk in walk_pair(*walks)]

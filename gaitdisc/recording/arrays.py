@@ -11,13 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 def read_only(values: ArrayLike, dtype: Any = float) -> NDArray[Any]:
     """View of an array that cannot be written through.
 
-    Parameters
-    ----------
-    values : array_like, any shape
-        Numbers; they are not copied where they already have the type.
+    values: numbers; they are not copied where they already have the type
 
-    Examples
-    --------
     >>> read_only([1, 2]).flags.writeable
     False
     """
@@ -29,8 +24,6 @@ def read_only(values: ArrayLike, dtype: Any = float) -> NDArray[Any]:
 def mean_where_known(values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Mean over the first axis of the values that are there; NaN where none is.
 
-    Examples
-    --------
     >>> mean_where_known(np.array([[1.0, np.nan, np.nan], [3.0, 5.0, np.nan]])).tolist()
     [2.0, 5.0, nan]
     """

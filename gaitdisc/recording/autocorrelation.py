@@ -12,17 +12,9 @@ def autocorrelation_time(values: NDArray[np.float64], forgotten: float = 0.0) ->
     So many numbers in a row say no more together than one that stands alone. Correlations are summed up to the first
     that is no larger than `forgotten`.
 
-    Parameters
-    ----------
-    values : ndarray (time, column)
-        In order of time.
+    values (time, column): in order of time
+    Source: Sokal 1997, Monte Carlo methods in statistical mechanics.
 
-    References
-    ----------
-    Sokal 1997, Monte Carlo methods in statistical mechanics.
-
-    Examples
-    --------
     >>> noise = np.random.default_rng(0).standard_normal(100_000)
     >>> slow = np.convolve(noise, np.ones(5), "same")
     >>> autocorrelation_time(np.column_stack([noise, slow]), 0.05).round(1).tolist()

@@ -24,43 +24,29 @@ LEG_OF_STATURE = 0.530  # greater trochanter over ground, Winter (2009), figure 
 class BodyMeasures:
     """Mass and lengths of a person; None or absent where nobody measured.
 
-    Parameters
-    ----------
-    mass_kg : float, optional
-        Body mass [kg].
-    height_m : float, optional
-        Stature [m].
-    inter_asis_m : float, optional
-        Distance between the anterior superior iliac spines [m].
-    marker_diameter_m : float, optional
-        Of the markers that were used [m].
-    leg_length_m, knee_width_m, ankle_width_m : mapping of str to float
-        Side (`l`, `r`) to leg length from spine to medial malleolus, width of the knee between its condyles, width of
-        the ankle between its malleoli [m].
-    source : str
-        Where they are from: a file's name, or `given`.
-
-    Examples
-    --------
     >>> BodyMeasures(mass_kg=60.3, knee_width_m={"l": 0.124, "r": 0.121}).knee_width_m["l"]
     0.124
     """
 
-    mass_kg: float | None = None
-    height_m: float | None = None
-    inter_asis_m: float | None = None
-    marker_diameter_m: float | None = None
+    mass_kg: float | None = None  # body mass [kg]
+    height_m: float | None = None  # stature [m]
+    inter_asis_m: float | None = None  # distance between the anterior superior iliac spines [m]
+    marker_diameter_m: float | None = None  # of the markers that were used [m]
+    # side (`l`, `r`) to leg length from spine to medial malleolus, width of the knee between its condyles, width of the
+    # ankle between its malleoli [m]
     leg_length_m: Mapping[str, float] = field(default_factory=dict)
+    # side (`l`, `r`) to leg length from spine to medial malleolus, width of the knee between its condyles, width of the
+    # ankle between its malleoli [m]
     knee_width_m: Mapping[str, float] = field(default_factory=dict)
+    # side (`l`, `r`) to leg length from spine to medial malleolus, width of the knee between its condyles, width of the
+    # ankle between its malleoli [m]
     ankle_width_m: Mapping[str, float] = field(default_factory=dict)
-    source: str = "given"
+    source: str = "given"  # where they are from: a file's name, or `given`
 
     @property
     def leg_m(self) -> float | None:
         """Mean leg length [m], by stature where nobody measured a leg; None without either.
 
-        Examples
-        --------
         >>> round(BodyMeasures(height_m=1.7).leg_m, 3), BodyMeasures().leg_m
         (0.901, None)
         """

@@ -11,37 +11,21 @@ NAN = float("nan")
 class Cycle:
     """From one initial contact to the next of the same foot, on the trial's clock.
 
-    Parameters
-    ----------
-    start, end : float
-        Initial contacts [s].
-    contacts_by : tuple of (str, str)
-        What places the two contacts: `events`, `force`, `markers` or `angles`.
-    foot_off, opposite_off, opposite_contact : float
-        The other events inside of the cycle [s]; NaN where nothing places them.
-    foot_off_by : str
-        What places foot off; empty where nothing does.
-    kinetic : bool
-        Whether this foot alone was on one plate, or on its own belt, for the whole stance.
-    reason : str
-        Why the cycle is left out, in words, with the number that decided; empty where it is kept.
-
-    Examples
-    --------
     >>> Cycle("r", 1.0, 2.0, ("markers", "markers"), foot_off=1.5).stance_percent
     50.0
     """
 
     side: str
-    start: float
-    end: float
+    start: float  # initial contacts [s]
+    end: float  # initial contacts [s]
+    # tuple of (str, str), what places the two contacts: `events`, `force`, `markers` or `angles`
     contacts_by: tuple[str, str]
-    foot_off: float = NAN
-    opposite_off: float = NAN
-    opposite_contact: float = NAN
-    foot_off_by: str = ""
-    kinetic: bool = False
-    reason: str = ""
+    foot_off: float = NAN  # the other events inside of the cycle [s]; NaN where nothing places them
+    opposite_off: float = NAN  # the other events inside of the cycle [s]; NaN where nothing places them
+    opposite_contact: float = NAN  # the other events inside of the cycle [s]; NaN where nothing places them
+    foot_off_by: str = ""  # what places foot off; empty where nothing does
+    kinetic: bool = False  # whether this foot alone was on one plate, or on its own belt, for the whole stance
+    reason: str = ""  # why the cycle is left out, in words, with the number that decided; empty where it is kept
 
     @property
     def duration_s(self) -> float:

@@ -24,21 +24,11 @@ STEP_TOLERANCE = 1e-3  # of the mean step; ingest evens out what a file's printe
 
 @dataclass(frozen=True)
 class Source:
-    """Where a recording comes from.
+    """Where a recording comes from."""
 
-    Parameters
-    ----------
-    file : str
-        Name of the file without its folder; empty for what the package made itself.
-    sha256 : str
-        Hash of the file's bytes, 64 hexadecimal digits, or empty.
-    reader : str
-        What read it: `ezc3d 1.7.2`, `mot`, `simulation`.
-    """
-
-    file: str = ""
-    sha256: str = ""
-    reader: str = ""
+    file: str = ""  # name of the file without its folder; empty for what the package made itself
+    sha256: str = ""  # hash of the file's bytes, 64 hexadecimal digits, or empty
+    reader: str = ""  # what read it: `ezc3d 1.7.2`, `mot`, `simulation`
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,17 +9,9 @@ from numpy.typing import NDArray
 def runs(mask: NDArray[np.bool_]) -> NDArray[np.intp]:
     """First sample of each run of True, and the one after its last.
 
-    Parameters
-    ----------
-    mask : ndarray of bool (time,)
-        Any condition on the samples.
+    mask (time,): any condition on the samples
+    returns (run, 2) [sample]
 
-    Returns
-    -------
-    ndarray (run, 2) [sample]
-
-    Examples
-    --------
     >>> runs(np.array([False, True, True, False, True])).tolist()
     [[1, 3], [4, 5]]
     """
@@ -30,15 +22,9 @@ def runs(mask: NDArray[np.bool_]) -> NDArray[np.intp]:
 def spans_s(time: NDArray[np.float64], mask: NDArray[np.bool_]) -> tuple[tuple[float, float], ...]:
     """Spans of the runs of True, from the first sample of each to one step after its last.
 
-    Parameters
-    ----------
-    time : ndarray (time,) [s]
-        Even.
-    mask : ndarray of bool (time,)
-        Any condition on the samples.
+    time (time,) [s]: even
+    mask (time,): any condition on the samples
 
-    Examples
-    --------
     >>> spans_s(np.arange(4.0), np.array([False, True, True, False]))
     ((1.0, 3.0),)
     """

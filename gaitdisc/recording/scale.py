@@ -15,18 +15,11 @@ ABSOLUTE_FLOOR = 1e-12  # deg, m, V and their rates: rounding, never a signal
 
 @dataclass(frozen=True, eq=False)
 class Scale:
-    """Mean and standard deviation of every column, as the training part has them.
+    """Mean and standard deviation of every column, as the training part has them."""
 
-    Parameters
-    ----------
-    mean : ndarray (column,) [each column's unit]
-        What is subtracted.
-    sd : ndarray (column,) [each column's unit]
-        What is divided by; infinite for a constant column, which thereby becomes 0 wherever it is used, also where it
-        is not constant any more.
-    """
-
-    mean: NDArray[np.float64]
+    mean: NDArray[np.float64]  # (column,) [each column's unit], what is subtracted
+    # (column,) [each column's unit], what is divided by; infinite for a constant column, which thereby becomes 0
+    # wherever it is used, also where it is not constant any more
     sd: NDArray[np.float64]
 
     def __post_init__(self) -> None:
@@ -42,20 +35,14 @@ class Scale:
     def scaled(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """Without unit: zero mean and unit standard deviation where the scale comes from.
 
-        Parameters
-        ----------
-        values : ndarray (sample, column) [each column's unit]
-            In the order of the scale.
+        values (sample, column) [each column's unit]: in the order of the scale
         """
         return (values - self.mean) / self.sd
 
     def unscaled(self, scaled: NDArray[np.float64]) -> NDArray[np.float64]:
         """Back in the columns' units; a constant column gets its constant.
 
-        Parameters
-        ----------
-        scaled : ndarray (sample, column)
-            Without unit.
+        scaled (sample, column): without unit
         """
         return scaled * np.where(self.constant, 0.0, self.sd) + self.mean
 
@@ -63,13 +50,9 @@ class Scale:
 def scale_of(values: NDArray[np.float64]) -> Scale:
     """Scale of the columns of a training part.
 
-    Parameters
-    ----------
-    values : ndarray (sample, column) [each column's unit]
-        Finite, or NaN where a value is missing; a column that is missing throughout is constant.
+    values (sample, column) [each column's unit]: finite, or NaN where a value is missing; a column that is missing
+        throughout is constant
 
-    Examples
-    --------
     >>> scale = scale_of(np.array([[0.0, 7.0], [2.0, 7.0]]))
     >>> scale.mean, scale.sd, scale.constant
     (array([1., 7.]), array([ 1., inf]), array([False,  True]))

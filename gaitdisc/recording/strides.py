@@ -18,19 +18,11 @@ PERCENT = read_only(np.arange(101.0))  # 0 to 100 % inclusive
 
 @dataclass(frozen=True)
 class DroppedStride:
-    """A stride that is not used, and why.
+    """A stride that is not used, and why."""
 
-    Parameters
-    ----------
-    start, end : float
-        Initial contacts [s].
-    reason : str
-        In words, with the number that decided.
-    """
-
-    start: float
-    end: float
-    reason: str
+    start: float  # initial contacts [s]
+    end: float  # initial contacts [s]
+    reason: str  # in words, with the number that decided
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,21 +166,11 @@ def interpolated(
 ) -> NDArray[np.float64]:
     """Linear interpolation on an even time base that lets NaN through and does not extrapolate.
 
-    Parameters
-    ----------
-    time : ndarray (time,) [s]
-        Even.
-    values : ndarray (time, channel)
-        NaN allowed.
-    points : ndarray, any shape [s]
-        Where to read the values.
+    time (time,) [s]: even
+    values (time, channel): NaN allowed
+    points , any shape [s]: where to read the values
+    returns (*points.shape, channel)
 
-    Returns
-    -------
-    ndarray (*points.shape, channel)
-
-    Examples
-    --------
     >>> interpolated(np.arange(3.0), np.arange(3.0)[:, None] ** 2, np.array([0.5, 2.0, 3.0])).ravel()
     array([0.5, 4. , nan])
     """

@@ -15,22 +15,13 @@ from gaitdisc.recording.arrays import read_only
 class Surface:
     """A rectangle that a foot can step on.
 
-    Parameters
-    ----------
-    name : str
-        First part of its channels' names: `plate_1`.
-    corners : ndarray (4, 3) [m]
-        In order around it, in the laboratory's frame.
-
-    Examples
-    --------
     >>> plate = Surface("plate_1", np.array([[0.0, 0, 0], [0.4, 0, 0], [0.4, 0.6, 0], [0, 0.6, 0]]))
     >>> plate.outside(np.array([[0.1, 0.1, 0.05], [0.5, 0.3, 0.0]])).round(9).tolist()
     [-0.1, 0.1]
     """
 
-    name: str
-    corners: NDArray[np.float64]
+    name: str  # first part of its channels' names: `plate_1`
+    corners: NDArray[np.float64]  # (4, 3) [m], in order around it, in the laboratory's frame
 
     def __post_init__(self) -> None:
         """Check the corners once."""
@@ -58,10 +49,7 @@ class Surface:
     def outside(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """How far points lie beyond the nearest edge, seen along the normal, (point,) [m]; negative inside.
 
-        Parameters
-        ----------
-        points : ndarray (point, 3) [m]
-            In the laboratory's frame.
+        points (point, 3) [m]: in the laboratory's frame
         """
         towards = np.roll(self.corners, -1, axis=0) - self.corners
         outwards = np.cross(towards, self.normal)

@@ -17,32 +17,19 @@ from gaitdisc.recording.arrays import read_only
 class Trajectory:
     """State and derivatives on one even time base.
 
-    Parameters
-    ----------
-    time : ndarray (time,) [s]
-        Even.
-    x, xdot, xddot : ndarray (time, channel) [unit, unit/s, unit/s2]
-        State and its time derivatives.
-    phi : ndarray (time,) [% stride]
-        0 <= phi < 100, NaN outside of strides.
-    usable : ndarray of bool (time, channel)
-        False where x, xdot or xddot is missing or not to be trusted.
-
-    Examples
-    --------
     >>> t, x = np.arange(4) / 100, np.zeros((4, 1))
     >>> knee = Channel("knee_angle_r", "angle", "deg", "r")
     >>> Trajectory(t, x, x, x, np.zeros(4), (knee,), np.ones((4, 1), bool)).names
     ('knee_angle_r',)
     """
 
-    time: NDArray[np.float64]
-    x: NDArray[np.float64]
-    xdot: NDArray[np.float64]
-    xddot: NDArray[np.float64]
-    phi: NDArray[np.float64]
+    time: NDArray[np.float64]  # (time,) [s], even
+    x: NDArray[np.float64]  # (time, channel) [unit, unit/s, unit/s2], state and its time derivatives
+    xdot: NDArray[np.float64]  # (time, channel) [unit, unit/s, unit/s2], state and its time derivatives
+    xddot: NDArray[np.float64]  # (time, channel) [unit, unit/s, unit/s2], state and its time derivatives
+    phi: NDArray[np.float64]  # (time,) [% stride], 0 <= phi < 100, NaN outside of strides
     channels: tuple[Channel, ...]
-    usable: NDArray[np.bool_]
+    usable: NDArray[np.bool_]  # (time, channel), false where x, xdot or xddot is missing or not to be trusted
     subject: str = ""
     condition: str = ""
 
@@ -85,10 +72,7 @@ class Trajectory:
     def rows(self, chosen: slice | NDArray[np.bool_] | NDArray[np.intp]) -> Trajectory:
         """Trajectory of some samples; usually a contiguous part.
 
-        Parameters
-        ----------
-        chosen : slice or ndarray
-            Samples to keep.
+        chosen slice or ndarray: samples to keep
         """
         parts = {name: getattr(self, name)[chosen] for name in ("time", "x", "xdot", "xddot")}
         return replace(self, phi=self.phi[chosen], usable=self.usable[chosen], **parts)
@@ -99,12 +83,8 @@ class Trajectory:
         Zero-lag filters look ahead: what they carry over the seam is kept out of the training part, whose last
         `seam_s` are left away. The held-out part keeps its full length.
 
-        Parameters
-        ----------
-        held_out_s : float
-            Length of the held-out part [s]; the dissertation holds out the last 30 s of 240 s (section 4.2.2).
-        seam_s : float
-            Length left away before the seam [s].
+        held_out_s: length of the held-out part [s]; the dissertation holds out the last 30 s of 240 s (section 4.2.2)
+        seam_s: length left away before the seam [s]
         """
         held = round(held_out_s * self.rate_hz)
         last = len(self.time) - held - round(seam_s * self.rate_hz)

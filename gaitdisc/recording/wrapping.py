@@ -27,8 +27,6 @@ LEAST_LEAP = 0.75  # of a turn, from one sample to the next
 def turn_of(channel: Channel) -> float | None:
     """One turn in the unit of a channel that may come round; None for every other channel.
 
-    Examples
-    --------
     >>> turn_of(Channel("pelvis_rotation", "angle", "deg")), turn_of(Channel("knee_angle_r", "angle", "deg", "r"))
     (360.0, None)
     """
@@ -38,14 +36,9 @@ def turn_of(channel: Channel) -> float | None:
 def unwrapped(recording: Recording) -> Recording:
     """Recording whose headings go on where they came round.
 
-    Parameters
-    ----------
-    recording : Recording
-        Any channels; only headings (of pelvis, trunk, head, foot) that leap by 270 deg or more from one sample to the
-        next, or by more than 180 deg over a gap, are changed.
+    recording: any channels; only headings (of pelvis, trunk, head, foot) that leap by 270 deg or more from one sample
+        to the next, or by more than 180 deg over a gap, are changed
 
-    Examples
-    --------
     >>> x = np.array([[170.0], [178.0], [-174.0]])
     >>> unwrapped(Recording(np.arange(3) / 100, x, (Channel("pelvis_rotation", "angle", "deg"),))).values.ravel()
     array([170., 178., 186.])
@@ -69,14 +62,9 @@ def unwrapped(recording: Recording) -> Recording:
 def wrapped(recording: Recording, as_in: Recording) -> Recording:
     """Recording whose headings come round again as those of another one do.
 
-    Parameters
-    ----------
-    as_in : Recording
-        Before it was unwrapped; where its smallest value is not negative, headings run from 0 to 360 deg, else from
-        -180 to 180 deg.
+    as_in: before it was unwrapped; where its smallest value is not negative, headings run from 0 to 360 deg, else from
+        -180 to 180 deg
 
-    Examples
-    --------
     >>> x = np.array([[170.0], [178.0], [-174.0]])
     >>> raw = Recording(np.arange(3) / 100, x, (Channel("pelvis_rotation", "angle", "deg"),))
     >>> wrapped(unwrapped(raw), raw).values.ravel()
@@ -97,13 +85,8 @@ def wrapped(recording: Recording, as_in: Recording) -> Recording:
 def in_one_turn(curves: NDArray[np.float64], turn: float) -> NDArray[np.float64]:
     """Curves of a heading moved by whole turns, so that their mean is the mean of their directions.
 
-    Parameters
-    ----------
-    curves : ndarray (curve, point)
-        Each without a leap; NaN allowed.
+    curves (curve, point): each without a leap; NaN allowed
 
-    Examples
-    --------
     >>> in_one_turn(np.array([[170.0, 175.0], [-190.0, -185.0]]), 360.0)
     array([[170., 175.],
            [170., 175.]])

@@ -23,25 +23,15 @@ SMALLEST = 1e-12  # of the largest eigenvalue, a millionth in size: rounding, ab
 
 @dataclass(frozen=True, eq=False)
 class Dmd:
-    """A sum of modes in time; a `gaitdisc.model.Model` whose only input is time.
-
-    Parameters
-    ----------
-    modes : ndarray of complex (mode, output) [output's unit]
-        With their amplitudes at `start`.
-    eigenvalues : ndarray of complex (mode,) [1/s]
-        Growth and angular frequency; the growth is not above zero.
-    start : float [s]
-        Time that the amplitudes belong to.
-    spread : ndarray (mode,) [1/s]
-        Standard deviation of the eigenvalues over the bags of BOP-DMD; zero without bags.
-    """
+    """A sum of modes in time; a `gaitdisc.model.Model` whose only input is time."""
 
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
-    modes: NDArray[np.complex128]
+    modes: NDArray[np.complex128]  # of complex (mode, output) [output's unit], with their amplitudes at `start`
+    # of complex (mode,) [1/s], growth and angular frequency; the growth is not above zero
     eigenvalues: NDArray[np.complex128]
-    start: float
+    start: float  # [s], time that the amplitudes belong to
+    # (mode,) [1/s], standard deviation of the eigenvalues over the bags of BOP-DMD; zero without bags
     spread: NDArray[np.float64]
 
     def __post_init__(self) -> None:
@@ -59,26 +49,16 @@ class Dmd:
 def fit_dmd(samples: Samples, delays: int = DELAYS, rank: int = RANK, bags: int = 0, seed: int = 0) -> Dmd:
     """Fit modes to the outputs, which are stacked with their delays (Hankel matrix).
 
-    Parameters
-    ----------
-    samples : Samples
-        Training part only, evenly in time; the inputs are not looked at.
-    bags : int
-        Fits on columns drawn at random (BOP-DMD), whose mean is taken; 0 for optimised DMD.
+    samples: training part only, evenly in time; the inputs are not looked at
+    bags: fits on columns drawn at random (BOP-DMD), whose mean is taken; 0 for optimised DMD
 
-    Notes
-    -----
     The Hankel matrix is projected on its first `rank` left singular vectors, and at most 600 of its columns, evenly in
     time, go into the variable projection: it takes seconds instead of minutes on 3,000 samples. Modes that die out by
     twelve orders within one sample are left out, as in exact DMD.
 
-    References
-    ----------
-    Askham and Kutz 2018, SIAM J. Appl. Dyn. Syst. 17:380; Sashidhar and Kutz 2022, Phil. Trans. R. Soc. A 380:20210199.
-    The published code of chapter 3 has 100 delays and 15 modes that do not grow.
+    Source: Askham and Kutz 2018, SIAM J. Appl. Dyn. Syst. 17:380; Sashidhar and Kutz 2022, Phil. Trans. R. Soc. A
+        380:20210199. The published code of chapter 3 has 100 delays and 15 modes that do not grow.
 
-    Examples
-    --------
     >>> t = np.arange(300) / 100
     >>> s = Samples(t[:, None], np.sin(9 * t)[:, None], ("t",), ("a",), t, t)
     >>> bool(abs(fit_dmd(s, delays=20, rank=2)(np.array([[4.0]]))[0, 0] - np.sin(36.0)) < 1e-6)
@@ -98,21 +78,12 @@ def fit_dmd(samples: Samples, delays: int = DELAYS, rank: int = RANK, bags: int 
 
 
 class Hankel(NamedTuple):
-    """Outputs stacked with their delays.
+    """Outputs stacked with their delays."""
 
-    Parameters
-    ----------
-    columns : ndarray (delay x output, column)
-        Outputs over their size.
-    axes : ndarray (delay x output, mode)
-        First left singular vectors, less those whose singular values are rounding.
-    size : ndarray (output,)
-        Root mean square.
-    """
-
-    columns: NDArray[np.float64]
+    columns: NDArray[np.float64]  # (delay x output, column), outputs over their size
+    # (delay x output, mode), first left singular vectors, less those whose singular values are rounding
     axes: NDArray[np.float64]
-    size: NDArray[np.float64]
+    size: NDArray[np.float64]  # (output,), root mean square
 
 
 def delayed(samples: Samples, delays: int, rank: int) -> Hankel:

@@ -12,8 +12,6 @@ from gaitdisc.errors import TrainingError
 def chapter3_library(name: str) -> ModuleType:
     """Library of the extra `chapter3`.
 
-    Examples
-    --------
     >>> chapter3_library("math").pi > 3
     True
     """

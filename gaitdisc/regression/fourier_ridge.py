@@ -19,31 +19,18 @@ LEAST_SAMPLES = 20
 
 @dataclass(frozen=True, eq=False)
 class FourierRidge:
-    """Linear in the inputs and in cosines of random mixtures of them; a `gaitdisc.model.Model`.
-
-    Parameters
-    ----------
-    frequencies : ndarray (input, feature)
-        Of the cosines, for scaled inputs; no feature makes it plain ridge regression.
-    phases : ndarray (feature,) [rad]
-        Of the cosines.
-    weights : ndarray (input + feature, output)
-        For scaled inputs, cosines, and scaled outputs.
-    offset : ndarray (output,)
-        Of the scaled outputs.
-    penalty : float
-        Per sample, as chosen on the check part.
-    """
+    """Linear in the inputs and in cosines of random mixtures of them; a `gaitdisc.model.Model`."""
 
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
     x_scale: Scale
     y_scale: Scale
+    # (input, feature), of the cosines, for scaled inputs; no feature makes it plain ridge regression
     frequencies: NDArray[np.float64]
-    phases: NDArray[np.float64]
-    weights: NDArray[np.float64]
-    offset: NDArray[np.float64]
-    penalty: float
+    phases: NDArray[np.float64]  # (feature,) [rad], of the cosines
+    weights: NDArray[np.float64]  # (input + feature, output), for scaled inputs, cosines, and scaled outputs
+    offset: NDArray[np.float64]  # (output,), of the scaled outputs
+    penalty: float  # per sample, as chosen on the check part
 
     def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """Outputs (sample, output) for inputs (sample, input); NaN where an input is NaN."""
@@ -59,19 +46,10 @@ def fit_fourier_ridge(training: Samples, check: Samples, features: int = 0, seed
     Minimises sum (y - W h - b)^2 / samples + penalty sum W^2 on scaled outputs, where h holds the scaled inputs and
     sqrt(2 / features) cos(frequency x + phase). The check part takes no part in the fit nor in the scales.
 
-    Parameters
-    ----------
-    training, check : Samples
-        What is fitted, and what the penalty is chosen by.
-    features : int
-        Random Fourier features; 0 is ridge regression on the inputs alone.
+    training, check: what is fitted, and what the penalty is chosen by
+    features: random Fourier features; 0 is ridge regression on the inputs alone
+    Source: Rahimi and Recht 2007, Random features for large-scale kernel machines; the Gaussian kernel.
 
-    References
-    ----------
-    Rahimi and Recht 2007, Random features for large-scale kernel machines; the Gaussian kernel.
-
-    Examples
-    --------
     >>> t = np.arange(400) / 100
     >>> s = Samples(np.sin(t)[:, None], 3 * np.sin(t)[:, None] + 1, ("a",), ("b",), t, t)
     >>> fit_fourier_ridge(s.rows(slice(0, 300)), s.rows(slice(300, None)))(np.array([[0.5]])).round(3)

@@ -26,40 +26,21 @@ JITTER = 1e-9  # of the signal's variance, so that a matrix stays positive
 
 @dataclass(frozen=True, eq=False)
 class GaussianProcess:
-    """Mean of a Gaussian process for each output; a `gaitdisc.model.Model`.
-
-    Parameters
-    ----------
-    centres : ndarray (centre, input)
-        Scaled inputs that the kernel is laid on.
-    lengths : ndarray (output, input)
-        Length scales of the squared-exponential kernel, of scaled inputs.
-    weights : ndarray (centre, output) [output's unit]
-        Of the kernels.
-    offset : ndarray (output,) [output's unit]
-        Mean of the training part.
-    noise : ndarray (output,) [output's unit]
-        Standard deviation of what the process takes for noise.
-    size : ndarray (output,) [output's unit]
-        Standard deviation of the process far from any sample.
-    known : ndarray (output, centre, centre)
-        What the samples take away from that variance; empty where it was not kept.
-    kind : str
-        Of the kernel.
-    """
+    """Mean of a Gaussian process for each output; a `gaitdisc.model.Model`."""
 
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
     scale: Scale
-    centres: NDArray[np.float64]
-    lengths: NDArray[np.float64]
-    weights: NDArray[np.float64]
-    offset: NDArray[np.float64]
-    noise: NDArray[np.float64]
+    centres: NDArray[np.float64]  # (centre, input), scaled inputs that the kernel is laid on
+    lengths: NDArray[np.float64]  # (output, input), length scales of the squared-exponential kernel, of scaled inputs
+    weights: NDArray[np.float64]  # (centre, output) [output's unit], of the kernels
+    offset: NDArray[np.float64]  # (output,) [output's unit], mean of the training part
+    noise: NDArray[np.float64]  # (output,) [output's unit], standard deviation of what the process takes for noise
     exact: bool
-    size: NDArray[np.float64]
+    size: NDArray[np.float64]  # (output,) [output's unit], standard deviation of the process far from any sample
+    # (output, centre, centre), what the samples take away from that variance; empty where it was not kept
     known: NDArray[np.float64]
-    kind: KernelKind = "squared_exponential"
+    kind: KernelKind = "squared_exponential"  # of the kernel
 
     def __post_init__(self) -> None:
         """Freeze the numbers."""
@@ -78,10 +59,7 @@ class GaussianProcess:
     def sd(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """Standard deviation of the outputs without their noise, (sample, output) [output's unit].
 
-        Parameters
-        ----------
-        x : ndarray (sample, input)
-            Inputs.
+        x (sample, input): inputs
         """
         if not len(self.known):
             raise TrainingError(
@@ -110,19 +88,12 @@ def fit_gaussian_process(
     all samples are conditioned on: exactly, or, of long records, by the projected process on inducing points that are
     far apart from each other.
 
-    Parameters
-    ----------
-    variance : bool
-        Keep what the standard deviation is computed from: the square of the centres for each output. Noise that
-        remembers its past, as that of filtered samples does, counts for as many samples less (`autocorrelation_time`).
+    variance: keep what the standard deviation is computed from: the square of the centres for each output. Noise that
+        remembers its past, as that of filtered samples does, counts for as many samples less (`autocorrelation_time`)
+    Source: Rasmussen and Williams 2006, Gaussian Processes for Machine Learning, Eqs. 2.25, 2.26, 4.17, 5.9, 8.26,
+        8.27. The published code uses MATLAB's `fitrgp` with one length scale for all inputs; here each input has its
+        own.
 
-    References
-    ----------
-    Rasmussen and Williams 2006, Gaussian Processes for Machine Learning, Eqs. 2.25, 2.26, 4.17, 5.9, 8.26, 8.27. The
-    published code uses MATLAB's `fitrgp` with one length scale for all inputs; here each input has its own.
-
-    Examples
-    --------
     >>> t = np.arange(100) / 10
     >>> s = Samples(t[:, None], np.sin(t)[:, None], ("a",), ("b",), t, t)
     >>> bool(abs(fit_gaussian_process(s)(np.array([[2.05]]))[0, 0] - np.sin(2.05)) < 1e-4)
@@ -156,13 +127,8 @@ def fit_gaussian_process(
 def far_apart(x: NDArray[np.float64], count: int) -> NDArray[np.int64]:
     """Numbers of points that are far apart from each other: each next one is the farthest from those before.
 
-    Parameters
-    ----------
-    x : ndarray (point, input)
-        Scaled.
+    x (point, input): scaled
 
-    Examples
-    --------
     >>> far_apart(np.array([[0.0], [0.1], [3.0], [1.0]]), 3).tolist()
     [0, 2, 3]
     """

@@ -16,19 +16,10 @@ def kernel(
 ) -> NDArray[np.float64]:
     """Covariance of a process of size one between points (a's point, b's point).
 
-    Parameters
-    ----------
-    a, b : ndarray (point, input)
-        Scaled.
-    lengths : ndarray (input,)
-        Length scales.
+    a, b (point, input): scaled
+    lengths (input,): length scales
+    Source: Rasmussen and Williams 2006, Gaussian Processes for Machine Learning, Eqs. 4.9 and 4.17.
 
-    References
-    ----------
-    Rasmussen and Williams 2006, Gaussian Processes for Machine Learning, Eqs. 4.9 and 4.17.
-
-    Examples
-    --------
     >>> here, there = np.zeros((1, 1)), np.ones((1, 1))
     >>> [float(kernel(kind, here, there, np.ones(1))[0, 0].round(4)) for kind in KERNELS]
     [0.6065, 0.4834, 0.524]

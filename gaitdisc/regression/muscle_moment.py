@@ -55,8 +55,6 @@ Values = NDArray[np.float64]
 def sign_at(joint: str, muscle: str) -> int:
     """Return the direction in which a muscle turns a joint, of a channel such as `emg_sol_r`; 0 where it does not.
 
-    Examples
-    --------
     >>> sign_at("ankle_angle", "emg_sol_r"), sign_at("ankle_angle", "emg_vas_r")
     (-1, 0)
     """
@@ -65,26 +63,14 @@ def sign_at(joint: str, muscle: str) -> int:
 
 @dataclass(frozen=True, eq=False)
 class Driven:
-    """What drives the muscles about a joint in one walk.
+    """What drives the muscles about a joint in one walk."""
 
-    Parameters
-    ----------
-    envelopes : ndarray (sample, muscle)
-        EMG envelopes of the muscles that span the joint.
-    signs : ndarray (muscle,)
-        Towards the positive angle or against it.
-    angle, rate, phase : ndarray (sample,)
-        [rad, rad/s, share of the stride].
-    rate_hz : float
-        Samples a second.
-    """
-
-    envelopes: Values
-    signs: Values
-    angle: Values
-    rate: Values
-    phase: Values
-    rate_hz: float
+    envelopes: Values  # (sample, muscle), EMG envelopes of the muscles that span the joint
+    signs: Values  # (muscle,), towards the positive angle or against it
+    angle: Values  # (sample,), [rad, rad/s, share of the stride]
+    rate: Values  # (sample,), [rad, rad/s, share of the stride]
+    phase: Values  # (sample,), [rad, rad/s, share of the stride]
+    rate_hz: float  # samples a second
 
     def activation(self, delay_s: float, lag_s: float) -> Values:
         """Return the envelopes so much later, through a first-order lag (sample, muscle)."""
@@ -98,29 +84,18 @@ class Driven:
 
 @dataclass(frozen=True, eq=False)
 class MuscleMoment:
-    """A fitted moment model.
+    """A fitted moment model."""
 
-    Parameters
-    ----------
-    gains : ndarray (muscle, 4)
-        At low and high angle, each at low and high rate, without sign [N m per unit of the envelope].
-    passive : ndarray (3,)
-        Stiffness [N m/rad], damping [N m s/rad], constant [N m].
-    unseen : ndarray (2 x HARMONICS,)
-        Sines and cosines of the curve over the stride that no electrode sees [N m].
-    span : ndarray (2, 2)
-        Low and high angle [rad] and rate [rad/s] between which gains vary.
-    left_nm, before_nm : float
-        Root mean square of what is left, and of the moment about its mean, on strides left out of the fit [N m].
-    """
-
+    # (muscle, 4), at low and high angle, each at low and high rate, without sign [N m per unit of the envelope]
     gains: Values
-    passive: Values
-    unseen: Values
-    span: Values
+    passive: Values  # (3,), stiffness [N m/rad], damping [N m s/rad], constant [N m]
+    unseen: Values  # (2 x HARMONICS,), sines and cosines of the curve over the stride that no electrode sees [N m]
+    span: Values  # (2, 2), low and high angle [rad] and rate [rad/s] between which gains vary
     delay_s: float
     lag_s: float
+    # root mean square of what is left, and of the moment about its mean, on strides left out of the fit [N m]
     left_nm: float = float("nan")
+    # root mean square of what is left, and of the moment about its mean, on strides left out of the fit [N m]
     before_nm: float = float("nan")
 
     @property
@@ -150,12 +125,8 @@ def fitted_moment(
 ) -> MuscleMoment:
     """Fit the model to a walk; delay and lag [s] are searched where they are not given.
 
-    Parameters
-    ----------
-    moment : ndarray (sample,)
-        Net moment towards the positive angle [N m].
-    blocks : ndarray of int (sample,)
-        Which block of strides each sample belongs to; -1 for none. Each is left out of the fit once.
+    moment (sample,): net moment towards the positive angle [N m]
+    blocks (sample,): which block of strides each sample belongs to; -1 for none. Each is left out of the fit once
     """
     known = np.isfinite(moment) & np.isfinite(driven.phase) & (blocks >= 0)
     span = np.array([np.quantile(one[known], EDGES) for one in (driven.angle, driven.rate)])

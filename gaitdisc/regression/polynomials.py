@@ -9,13 +9,8 @@ from numpy.typing import NDArray
 def written(inputs: tuple[str, ...], powers: NDArray[np.int64]) -> str:
     """Return a term of the library as a simulation file writes it.
 
-    Parameters
-    ----------
-    powers : ndarray of int (input,)
-        Of the term.
+    powers (input,): of the term
 
-    Examples
-    --------
     >>> written(("x", "y"), np.array([2, 1]))
     'x**2*y'
     """
@@ -26,8 +21,6 @@ def written(inputs: tuple[str, ...], powers: NDArray[np.int64]) -> str:
 def library(inputs: int, degree: int) -> NDArray[np.int64]:
     """Powers of every product of the inputs up to a degree, (term, input), the constant first.
 
-    Examples
-    --------
     >>> library(2, 2).tolist()
     [[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2]]
     """
@@ -44,12 +37,8 @@ def library(inputs: int, degree: int) -> NDArray[np.int64]:
 def products(x: NDArray[np.float64], powers: NDArray[np.int64]) -> NDArray[np.float64]:
     """Columns of the library, (sample, term).
 
-    Parameters
-    ----------
-    x : ndarray (sample, input)
-        Inputs.
-    powers : ndarray of int (term, input)
-        From `library`.
+    x (sample, input): inputs
+    powers (term, input): from `library`
     """
     columns = np.ones((len(x), len(powers)))
     for k, row in enumerate(powers):

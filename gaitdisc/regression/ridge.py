@@ -19,33 +19,18 @@ SEAM_S = 0.3  # as Trajectory.split: zero-lag filters look ahead over the seam
 
 @dataclass(frozen=True, eq=False)
 class Ridge:
-    """Linear in the inputs and in harmonics of percent stride; a `gaitdisc.model.Model`.
-
-    Parameters
-    ----------
-    harmonics : int
-        Sines and cosines of 1 to so many cycles a stride, beside the inputs; 0 where `phi` is not among them.
-    scale : Scale
-        Of inputs and harmonics in the training part.
-    weights : ndarray (column, output) [each output's unit]
-        For scaled columns.
-    offset : ndarray (output,) [each output's unit]
-        Mean of each output in the training part.
-    penalty : float
-        Per sample, as chosen on the inner block.
-    n_training, n_inner : int
-        Samples of the whole training part, and of its inner block.
-    """
+    """Linear in the inputs and in harmonics of percent stride; a `gaitdisc.model.Model`."""
 
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
+    # sines and cosines of 1 to so many cycles a stride, beside the inputs; 0 where `phi` is not among them
     harmonics: int
-    scale: Scale
-    weights: NDArray[np.float64]
-    offset: NDArray[np.float64]
-    penalty: float
-    n_training: int
-    n_inner: int
+    scale: Scale  # of inputs and harmonics in the training part
+    weights: NDArray[np.float64]  # (column, output) [each output's unit], for scaled columns
+    offset: NDArray[np.float64]  # (output,) [each output's unit], mean of each output in the training part
+    penalty: float  # per sample, as chosen on the inner block
+    n_training: int  # samples of the whole training part, and of its inner block
+    n_inner: int  # samples of the whole training part, and of its inner block
 
     def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """Outputs (sample, output) for inputs (sample, input)."""
@@ -59,13 +44,8 @@ def fit_ridge(samples: Samples, harmonics: int = 8, inner_share: float = 0.15) -
     that does best on the last `inner_share` of the samples (contiguous, 0.3 s apart, all outputs weighed by their
     variance); then everything is fitted again on all samples.
 
-    Parameters
-    ----------
-    harmonics : int
-        Harmonics of percent stride beside the inputs, where `phi` is among them; 0 for none.
+    harmonics: harmonics of percent stride beside the inputs, where `phi` is among them; 0 for none
 
-    Examples
-    --------
     >>> t = np.arange(400) / 100
     >>> s = Samples(np.sin(t)[:, None], 3 * np.sin(t)[:, None] + 1, ("a",), ("b",), t, t)
     >>> fit_ridge(s)(np.array([[0.5]])).round(3)

@@ -19,10 +19,7 @@ FORMAT = 1
 def save_ridge(model: FourierRidge, path: Path) -> None:
     """Save a ridge regression; what is loaded again equals it to the last bit.
 
-    Parameters
-    ----------
-    path : Path
-        Of an `.npz` file; written whole or not at all.
+    path: of an `.npz` file; written whole or not at all
     """
     names = {"format": FORMAT, "inputs": model.inputs, "outputs": model.outputs, "penalty": model.penalty}
     arrays = {

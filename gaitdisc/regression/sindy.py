@@ -20,19 +20,12 @@ LEAST_BEFORE_INNER = 20
 
 @dataclass(frozen=True, eq=False)
 class Sindy:
-    """Sums of products of the inputs; a `gaitdisc.model.Model`.
-
-    Parameters
-    ----------
-    powers : ndarray of int (term, input)
-        Of each term of the library.
-    coefficients : ndarray (term, output) [output's unit over term's unit]
-        Zero where a term is not in the model.
-    """
+    """Sums of products of the inputs; a `gaitdisc.model.Model`."""
 
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
-    powers: NDArray[np.int64]
+    powers: NDArray[np.int64]  # (term, input), of each term of the library
+    # (term, output) [output's unit over term's unit], zero where a term is not in the model
     coefficients: NDArray[np.float64]
     threshold: float
 
@@ -63,17 +56,9 @@ def fit_sindy(samples: Samples, degree: int = 3, threshold: float | None = None,
     of the samples (contiguous, 0.3 s apart) is within 2 % of the least, or below 1e-4 of the outputs'
     mean square; an output smaller than a twentieth of the largest one is weighed as a twentieth of it.
 
-    Parameters
-    ----------
-    bags : int
-        Fits on samples drawn with replacement, whose median is taken; 0 for one plain fit.
+    bags: fits on samples drawn with replacement, whose median is taken; 0 for one plain fit
+    Source: Brunton, Proctor, Kutz 2016, PNAS 113:3932; Fasel et al. 2022, Proc. R. Soc. A 478:20210904 for the bags.
 
-    References
-    ----------
-    Brunton, Proctor, Kutz 2016, PNAS 113:3932; Fasel et al. 2022, Proc. R. Soc. A 478:20210904 for the bags.
-
-    Examples
-    --------
     >>> t = np.arange(200) / 20
     >>> x = np.column_stack([np.sin(t), np.cos(np.sqrt(2) * t)])
     >>> s = Samples(x, -0.01 * x[:, :1] ** 3, ("x", "y"), ("v",), t, t)

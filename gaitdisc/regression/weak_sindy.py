@@ -21,20 +21,11 @@ def fit_weak_sindy(samples: Samples, degree: int = 3, window_s: float = WINDOW_S
     test function that vanishes at its window's ends and integrated, the rate becomes the input itself against the test
     function's slope (integration by parts), so that noise is averaged where a derivative would multiply it.
 
-    Parameters
-    ----------
-    samples : Samples
-        Evenly in time; an input and an output for each state.
-    window_s : float
-        Length of a test function (1 - s^2)^4 over -1 < s < 1 [s]; windows follow each other by an eighth.
+    samples: evenly in time; an input and an output for each state
+    window_s: length of a test function (1 - s^2)^4 over -1 < s < 1 [s]; windows follow each other by an eighth
+    Source: Messenger and Bortz 2021, Multiscale Model. Simul. 19:1474; the threshold is chosen as in `fit_sindy`, by
+        the last 15 % of the windows.
 
-    References
-    ----------
-    Messenger and Bortz 2021, Multiscale Model. Simul. 19:1474; the threshold is chosen as in `fit_sindy`, by the last
-    15 % of the windows.
-
-    Examples
-    --------
     >>> t = np.arange(1000) / 100
     >>> x = np.column_stack([np.sin(t), np.cos(t)])
     >>> known = np.column_stack([x[:, 1], -0.5 * x[:, 0]])

@@ -11,17 +11,11 @@ from gaitdisc.report.table import Table, save_tables
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """One part, as it is computed.
-
-    Parameters
-    ----------
-    sentences : tuple of str
-        What the figures and tables say; a block without any is not shown.
-    """
+    """One part, as it is computed."""
 
     anchor: str
     heading: str
-    sentences: tuple[str, ...]
+    sentences: tuple[str, ...]  # what the figures and tables say; a block without any is not shown
     figures: tuple[Figure, ...] = ()
     tables: tuple[Table, ...] = ()
 

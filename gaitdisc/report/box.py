@@ -20,10 +20,7 @@ def draw_box(
 ) -> None:
     """Draw a box whose whiskers reach the smallest and the largest value.
 
-    Parameters
-    ----------
-    values : ndarray (participant,)
-        Finite.
+    values (participant,): finite
     """
     line = {"color": colour, "linewidth": 0.9}
     axes.boxplot(

@@ -30,10 +30,7 @@ BARS = (("nominal", "augmented"), ("augmented", "exo"), ("nominal", "exo"))  # t
 def comparison_figures(run: ResponseRun) -> list[Figure]:
     """Boxes of R2 over participants, three a variable, with a bar above every pair that differs.
 
-    Parameters
-    ----------
-    run : ResponseRun
-        With tests; where there are none, there is no figure.
+    run: with tests; where there are none, there is no figure
     """
     if run.tests is None or run.tests.too_few:
         return []

@@ -53,8 +53,6 @@ def comparison_sentences(run: ResponseRun) -> list[str]:
 def p_text(p: float) -> str:
     """Write a p to three figures, or that it is smaller than 0.0001.
 
-    Examples
-    --------
     >>> p_text(2 / 2**11), p_text(0.0420), p_text(1e-7), p_text(float("nan"))
     ('0.000977', '0.042', '<0.0001', 'not tested')
     """

@@ -36,10 +36,7 @@ def curves_figures(run: ResponseRun, participant: str, name: str) -> list[Figure
 def curve_numbers(run: ResponseRun, participant: str) -> pd.DataFrame:
     """Mean and standard deviation over strides of every channel and walk on 101 points.
 
-    Returns
-    -------
-    DataFrame
-        channel, unit, walk (`nominal` or `exo`), percent, n (strides with a value there), mean, sd.
+    returns: channel, unit, walk (`nominal` or `exo`), percent, n (strides with a value there), mean, sd
     """
     tables = []
     for walk in WALKS:
@@ -79,8 +76,6 @@ def walk_of(run: ResponseRun, participant: str, walk: str) -> WalkSummary | None
 def sides_together(names: list[str]) -> list[str]:
     """Channels with left and right of one joint side by side, left first; what has no other side comes last.
 
-    Examples
-    --------
     >>> sides_together(["pelvis_tilt", "hip_flexion_r", "ankle_angle_r", "hip_flexion_l", "ankle_angle_l"])
     ['hip_flexion_l', 'hip_flexion_r', 'ankle_angle_l', 'ankle_angle_r', 'pelvis_tilt']
     """
@@ -95,10 +90,7 @@ def sides_together(names: list[str]) -> list[str]:
 def draw_walks(axes: Axes, curves: pd.DataFrame, colour: str) -> None:
     """Draw mean and spread of both walks of one channel over the stride.
 
-    Parameters
-    ----------
-    curves : DataFrame
-        Rows of `curve_numbers` of one channel.
+    curves: rows of `curve_numbers` of one channel
     """
     axes.axhline(0.0, color="#cccccc", linewidth=0.6, zorder=0)
     for walk, rows in curves.groupby("walk", sort=False):

@@ -76,12 +76,8 @@ def draw_cycles(
 ) -> None:
     """Draw every cycle faint, and their mean; from three cycles on its spread.
 
-    Parameters
-    ----------
-    every : ndarray (cycle, phase)
-        On 0 to 100 % in 101 points.
-    mean, sd : ndarray (phase,)
-        Over the cycles.
+    every (cycle, phase): on 0 to 100 % in 101 points
+    mean, sd (phase,): over the cycles
     """
     look = SIDES[side]
     axes.axhline(0.0, color="#cccccc", linewidth=0.6, zorder=0)

@@ -47,10 +47,7 @@ def shown_runs(discovery: Discovery) -> pd.DataFrame:
 def stretch_of(table: pd.DataFrame, channel: str) -> pd.DataFrame:
     """A typical stretch of the first trial.
 
-    Parameters
-    ----------
-    table : DataFrame
-        Of `shown_runs`.
+    table: of `shown_runs`
     """
     one = table[table["trial"] == table["trial"].iloc[0]].reset_index(drop=True)
     gap = (one[f"{channel}_measured"] - one[f"{channel}_simulated"]).to_numpy() ** 2
@@ -61,10 +58,7 @@ def stretch_of(table: pd.DataFrame, channel: str) -> pd.DataFrame:
 def draw_runs(axes: Axes, numbers: pd.DataFrame, channel: str) -> None:
     """Draw one channel over time: measured, simulated as read and with what was found; the gap is shaded.
 
-    Parameters
-    ----------
-    numbers : DataFrame
-        Of `stretch_of`.
+    numbers: of `stretch_of`
     """
     time = numbers["time"].to_numpy()
     seen, simulated, augmented = (numbers[f"{channel}_{word}"].to_numpy() for word in WORDS)
@@ -76,12 +70,8 @@ def draw_runs(axes: Axes, numbers: pd.DataFrame, channel: str) -> None:
 def draw_left(axes: Axes, numbers: pd.DataFrame, channel: str, floor: float) -> None:
     """Draw what is left of one channel over time: measured minus simulated, as read and with what was found.
 
-    Parameters
-    ----------
-    numbers : DataFrame
-        Of `stretch_of`.
-    floor : float
-        Standard deviation of the sensor's noise [as drawn]; twice it is shaded grey.
+    numbers: of `stretch_of`
+    floor: standard deviation of the sensor's noise [as drawn]; twice it is shaded grey
     """
     time = numbers["time"].to_numpy()
     seen, simulated, augmented = (numbers[f"{channel}_{word}"].to_numpy() for word in WORDS)
@@ -98,13 +88,8 @@ def within_bounds(discovery: Discovery) -> str:
 def typical_stretch(gap: NDArray[np.float64], samples: int) -> tuple[int, int]:
     """Return first and end sample of the stretch whose mean squared gap is the median of all such stretches.
 
-    Parameters
-    ----------
-    gap : ndarray (sample,)
-        Squared gap.
+    gap (sample,): squared gap
 
-    Examples
-    --------
     >>> typical_stretch(np.array([9.0, 9, 1, 1, 4, 4]), 2)
     (4, 6)
     """
@@ -117,12 +102,8 @@ def typical_stretch(gap: NDArray[np.float64], samples: int) -> tuple[int, int]:
 def binned(along: NDArray[np.float64], values: NDArray[np.float64], edges: NDArray[np.float64]) -> pd.DataFrame:
     """Return mean and standard deviation of values in bins, those with too few samples left out.
 
-    Parameters
-    ----------
-    along, values : ndarray (sample,)
-        Where, and what.
-    edges : ndarray (bin + 1,)
-        Ends of the bins.
+    along, values (sample,): where, and what
+    edges (bin + 1,): ends of the bins
     """
     which = np.clip(np.digitize(along, edges) - 1, 0, len(edges) - 2)
     groups = pd.Series(values).groupby(which)
@@ -256,10 +237,7 @@ def _mark_stride(axes: Axes, discovery: Discovery) -> None:
 def discovery_key(measured: bool) -> list[Artist]:
     """Handles of the legend.
 
-    Parameters
-    ----------
-    measured : bool
-        Whether what was measured is drawn, with the gap shaded.
+    measured: whether what was measured is drawn, with the gap shaded
     """
     from matplotlib.patches import Patch
 

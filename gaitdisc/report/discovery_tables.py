@@ -176,8 +176,6 @@ def data_findings(discovery: Discovery) -> Table:
 def closed_share(before: float, after: float, floor: float) -> float:
     """Return which share of the squared gap above the noise is closed; NaN where there is none.
 
-    Examples
-    --------
     >>> closed_share(2.0, 1.0, 1.0), round(closed_share(3.0, 1.5, 1.0), 2)
     (1.0, 0.84)
     """

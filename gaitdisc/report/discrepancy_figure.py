@@ -51,10 +51,7 @@ BAR = 0.16  # of the distance between two noises, for one method
 def error_figure(cells: Sequence[DiscrepancyCell], name: str, source: str, channel: int = 0) -> Figure:
     """Truth minus known and truth minus augmented over the record's time, a row a method (Figs. 3.3, 3.4, 3.7, 3.8).
 
-    Parameters
-    ----------
-    name, source : str
-        Of the files; the figure of the dissertation that it stands for.
+    name, source: of the files; the figure of the dissertation that it stands for
     """
     cells = [cell for cell in cells if cell.parts]
     drawn, grid = panels(len(cells), len(PARTS), 0.95, Room(across=0.4, down=0.5))
@@ -99,14 +96,9 @@ def _unit(cell: DiscrepancyCell, channel: int) -> str:
 def system_figure(cell: DiscrepancyCell, missing: NDArray[np.float64], name: str, source: str) -> Figure:
     """Phase portraits and time evolution of true and known system, and what is missing in rates and states.
 
-    Parameters
-    ----------
-    cell : DiscrepancyCell
-        Any, with every state measured; its training part is drawn.
-    missing : ndarray (sample, channel)
-        Rates that the known system lacks, along the truth.
-    name, source : str
-        Of the files; the figure of the dissertation that it stands for (Figs. 3.2, 3.6).
+    cell: any, with every state measured; its training part is drawn
+    missing (sample, channel): rates that the known system lacks, along the truth
+    name, source: of the files; the figure of the dissertation that it stands for (Figs. 3.2, 3.6)
     """
     found, channels = cell.parts[PARTS[0]], cell.channels
     said = [f"{channel} [{_unit(cell, k)}]" for k, channel in enumerate(channels)]
@@ -153,10 +145,7 @@ def system_figure(cell: DiscrepancyCell, missing: NDArray[np.float64], name: str
 def accuracy_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) -> Figure:
     """Clipped accuracy against noise, a row an approach (Figs. 3.5, 3.10, 3.13).
 
-    Parameters
-    ----------
-    name, source : str
-        Of the files; the figure of the dissertation that it stands for.
+    name, source: of the files; the figure of the dissertation that it stands for
     """
     table = cells_table([cell for cell in cells if cell.parts])
     approaches, noises = list(dict.fromkeys(table["approach"])), sorted(table["noise"].unique())
@@ -199,10 +188,7 @@ def accuracy_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) ->
 def horizon_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) -> Figure:
     """Percent change in RMSE against the forecast horizon, a panel an approach (Fig. 3.9).
 
-    Parameters
-    ----------
-    name, source : str
-        Of the files; the figure of the dissertation that it stands for.
+    name, source: of the files; the figure of the dissertation that it stands for
     """
     cells = [cell for cell in cells if cell.parts]
     approaches = list(dict.fromkeys(cell.approach for cell in cells))
@@ -242,10 +228,7 @@ def _horizons(last_s: float) -> list[float]:
 def cost_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) -> Figure:
     """Seconds to fit and to run, by method and approach (Fig. 3.11).
 
-    Parameters
-    ----------
-    name, source : str
-        Of the files; the figure of the dissertation that it stands for.
+    name, source: of the files; the figure of the dissertation that it stands for
     """
     rows = pd.DataFrame(
         [{"approach": c.approach, "method": c.method, "fit_s": c.fit_s, "run_s": c.run_s} for c in cells if c.parts]
@@ -277,10 +260,7 @@ def cost_figure(cells: Sequence[DiscrepancyCell], name: str, source: str) -> Fig
 def field_figure(found: PartAccuracy, places: Sequence[float], name: str, source: str) -> Figure:
     """Error of known and augmented model over space and the record's time (Fig. 3.12).
 
-    Parameters
-    ----------
-    name, source : str
-        Of the files; the figure of the dissertation that it stands for.
+    name, source: of the files; the figure of the dissertation that it stands for
     """
     drawn, grid = panels(1, 2, 2.0, Room(right=1.0, top=0.3, across=0.6))
     some = np.unique(np.linspace(0, len(found.time) - 1, 200).astype(int))

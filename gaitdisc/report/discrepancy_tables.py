@@ -68,13 +68,8 @@ def _cell(parts: list[PartAccuracy], asked: int) -> str:
 def spread_words(values: NDArray[np.float64]) -> str:
     """Median, and least and greatest where there are several.
 
-    Parameters
-    ----------
-    values : ndarray (seed,)
-        [%].
+    values (seed,): [%]
 
-    Examples
-    --------
     >>> spread_words(np.array([99.5])), spread_words(np.array([-3.0, 4.0, 1.0]))
     ('99.5', '1.0 [-3.0, 4.0]')
     >>> spread_words(np.array([98.8, -6628419.0, 99.2]))

@@ -21,10 +21,7 @@ AXES = {
 def disturbance_figure(found: pd.DataFrame, whose: str, name: str) -> Figure:
     """One panel a disturbance, one line a model.
 
-    Parameters
-    ----------
-    found : DataFrame
-        disturbance, level, model, rmse_deg.
+    found: disturbance, level, model, rmse_deg
     """
     from matplotlib.lines import Line2D
 

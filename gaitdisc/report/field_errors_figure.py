@@ -34,12 +34,8 @@ ROUTE_LOOKS = (
 def histograms_figure(cells: Sequence[FieldCell], name: str, source: str) -> Figure:
     """How often errors of each size are made, a panel a split, a line a route.
 
-    Parameters
-    ----------
-    cells : sequence of FieldCell
-        Of one model and quantity; several runs of a route and split are added up.
-    name, source : str
-        Of the files; the figure of the dissertation that it stands for.
+    cells: of one model and quantity; several runs of a route and split are added up
+    name, source: of the files; the figure of the dissertation that it stands for
     """
     splits = list(dict.fromkeys(cell.split for cell in cells))
     routes = list(dict.fromkeys(cell.route for cell in cells))
@@ -88,12 +84,8 @@ def _histogram(axes: Axes, some: Sequence[FieldCell], look: Look) -> pd.DataFram
 def boxes_figure(cells: Sequence[FieldCell], name: str, source: str, ceilings: dict[str, float]) -> Figure:
     """Relative error of many models, a panel a split, a box a kind of sensor, every model a point.
 
-    Parameters
-    ----------
-    name, source : str
-        Of the files; the figure of the dissertation that it stands for.
-    ceilings : dict of str to float
-        Split -> relative error of the test part projected onto the training part's modes.
+    name, source: of the files; the figure of the dissertation that it stands for
+    ceilings: split -> relative error of the test part projected onto the training part's modes
     """
     splits = list(dict.fromkeys(cell.split for cell in cells))
     routes = list(dict.fromkeys(cell.route for cell in cells))
@@ -123,12 +115,8 @@ def boxes_figure(cells: Sequence[FieldCell], name: str, source: str, ceilings: d
 def latent_figure(found: pd.DataFrame, name: str, source: str) -> Figure:
     """Error against the nodes of the recurrent layer, beside the energy that as many modes leave.
 
-    Parameters
-    ----------
-    found : DataFrame
-        From `gaitdisc.sensing.latent_size.latent_sizes`, of one quantity, of any splits.
-    name, source : str
-        Of the files; the figure of the dissertation that it stands for.
+    found: from `gaitdisc.sensing.latent_size.latent_sizes`, of one quantity, of any splits
+    name, source: of the files; the figure of the dissertation that it stands for
     """
     drawn, ((left, right),) = panels(1, 2, 2.1, Room(across=0.8, top=0.2))
     splits = list(dict.fromkeys(found["split"]))

@@ -25,14 +25,9 @@ ROUTE_COLOURS = ("#c8102e", "#1f4fc8", "#00875a", "#d97700", "#7a3fa0")
 def maps_figure(field: Field, snapshots: Mapping[str, NDArray[np.floating]], name: str, source: str) -> Figure:
     """One quantity of a field on its grid, one panel a snapshot, all on one scale of colour.
 
-    Parameters
-    ----------
-    field : Field
-        Whose grid, quantity and unit are shown: its first quantity, and its middle plane where it has three axes.
-    snapshots : mapping of str to ndarray (point,)
-        Title -> values [the quantity's unit].
-    name, source : str
-        Of the files; the figure of the dissertation that it stands for.
+    field: whose grid, quantity and unit are shown: its first quantity, and its middle plane where it has three axes
+    snapshots each (point,): title -> values [the quantity's unit]
+    name, source: of the files; the figure of the dissertation that it stands for
     """
     planes = {title: _plane(field.on_grid(values)) for title, values in snapshots.items()}
     middle, reach = _span(np.concatenate([plane.ravel() for plane in planes.values()]))
@@ -69,10 +64,7 @@ def maps_figure(field: Field, snapshots: Mapping[str, NDArray[np.floating]], nam
 def routes_figure(field: Field, routes: Mapping[str, NDArray[np.floating]], name: str, source: str) -> Figure:
     """Where sensors go, on the grid of a field with two axes.
 
-    Parameters
-    ----------
-    routes : mapping of str to ndarray (time, axis)
-        Name -> where the sensor is; one that stays is drawn as a point.
+    routes each (time, axis): name -> where the sensor is; one that stays is drawn as a point
     """
     vertical, across = field.axes[-2:]
     height = float(np.clip(7.0 * np.ptp(vertical.coordinates) / np.ptp(across.coordinates), 1.2, 3.8))

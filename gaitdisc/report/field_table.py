@@ -13,10 +13,8 @@ from gaitdisc.results.field_cell import FieldCell, field_cells_table
 def field_table(cells: Sequence[FieldCell], name: str, printed: Mapping[tuple[str, str], float] | None = None) -> Table:
     """Relative L2 error of every route, model and split; the least of each row and split is marked by a star.
 
-    Parameters
-    ----------
-    printed : mapping of (str, str) to float, optional
-        (route, split) -> what the dissertation prints for its SHRED on its field; shown in a column of its own.
+    printed mapping of (str, str) to float: (route, split) -> what the dissertation prints for its SHRED on its field;
+        shown in a column of its own
     """
     splits = list(dict.fromkeys(cell.split for cell in cells))
     models = list(dict.fromkeys(cell.model for cell in cells if not _is_bound(cell.model)))

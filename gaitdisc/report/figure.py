@@ -26,51 +26,31 @@ PNG_COLOURS = 96
 
 @dataclass(frozen=True, eq=False)
 class Figure:
-    """What is drawn, with all that a reader needs to use it.
-
-    Parameters
-    ----------
-    caption : str
-        What is seen, with n, unit and split.
-    alt : str
-        What is seen, for those who cannot see it.
-    numbers : DataFrame
-        The very numbers drawn.
-    """
+    """What is drawn, with all that a reader needs to use it."""
 
     name: str
-    caption: str
-    alt: str
-    numbers: pd.DataFrame
+    caption: str  # what is seen, with n, unit and split
+    alt: str  # what is seen, for those who cannot see it
+    numbers: pd.DataFrame  # the very numbers drawn
     drawn: matplotlib.figure.Figure
 
 
 @dataclass(frozen=True)
 class SavedFigure:
-    """A figure on disk and as data in the page.
-
-    Parameters
-    ----------
-    width : float
-        Natural width [px at 96 dots per inch].
-    """
+    """A figure on disk and as data in the page."""
 
     name: str
     caption: str
     alt: str
     data: str
-    width: float
+    width: float  # natural width [px at 96 dots per inch]
 
 
 def save_figure(figure: Figure, folder: Path, inline_bytes: int = LARGEST_INLINE_SVG) -> SavedFigure:
     """Write the figure as SVG and PNG, and the numbers drawn as CSV; drawing again gives the same bytes.
 
-    Parameters
-    ----------
-    figure : Figure
-        What to save; its drawing is closed for further use.
-    inline_bytes : int
-        Largest SVG that is shown in the page; beyond it the smaller of SVG and PNG is.
+    figure: what to save; its drawing is closed for further use
+    inline_bytes: largest SVG that is shown in the page; beyond it the smaller of SVG and PNG is
     """
     _place_no_empty_labels(figure.drawn)
     svg, png = _svg(figure.drawn), _png(figure.drawn)
@@ -91,8 +71,6 @@ def save_figures(figures: Iterable[Figure], folder: Path, inline_bytes: int = LA
 def file_names(participants: Sequence[str]) -> dict[str, str]:
     """Part of a file name for every participant: letters, digits, `-` and `_`, no two alike.
 
-    Examples
-    --------
     >>> file_names(["P 1", "P/1"])
     {'P 1': 'P_1', 'P/1': 'P_1-2'}
     """

@@ -31,8 +31,6 @@ JOINTS = {
 def region_words(row: Mapping[str, Any]) -> str:
     """Part of the stride in words.
 
-    Examples
-    --------
     >>> region_words({"from_percent": 12.0, "to_percent": 55.0})
     'between 12 and 55 % of the stride'
     """
@@ -45,8 +43,6 @@ def region_words(row: Mapping[str, Any]) -> str:
 def p_words(p: float) -> str:
     """A p as it is printed.
 
-    Examples
-    --------
     >>> p_words(0.0004), p_words(0.0312)
     ('p < .001', 'p = .031')
     """
@@ -56,13 +52,8 @@ def p_words(p: float) -> str:
 def direction_words(name: str, gap: float, unit: str) -> str:
     """Which way and how far a channel lies from the other walk's.
 
-    Parameters
-    ----------
-    gap : float
-        First minus second [unit].
+    gap: first minus second [unit]
 
-    Examples
-    --------
     >>> direction_words("ankle_angle_r", -6.1, "deg"), direction_words("pelvis_tilt", 2.0, "deg")
     ('the right ankle is up to 6.1 deg more plantarflexed', 'pelvis tilt is up to 2.0 deg higher')
     """
@@ -77,8 +68,6 @@ def direction_words(name: str, gap: float, unit: str) -> str:
 def spoken(name: str) -> str:
     """Name of a channel as it is said in a sentence, the side first.
 
-    Examples
-    --------
     >>> spoken("knee_angle_r"), spoken("emg_sol_l"), spoken("pelvis_tilt")
     ('right knee angle', 'left EMG soleus', 'pelvis tilt')
     """
@@ -89,8 +78,6 @@ def spoken(name: str) -> str:
 def with_unit(size: str, unit: str) -> str:
     """Size with its unit; a ratio has none.
 
-    Examples
-    --------
     >>> with_unit("6.1", "deg"), with_unit("0.15", "1")
     ('6.1 deg', '0.15')
     """
@@ -100,8 +87,6 @@ def with_unit(size: str, unit: str) -> str:
 def amount(value: float) -> str:
     """Write a size with one digit after the point, or two significant digits where it is small.
 
-    Examples
-    --------
     >>> amount(6.14), amount(0.0321), amount(123.4)
     ('6.1', '0.032', '123.4')
     """

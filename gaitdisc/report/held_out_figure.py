@@ -36,11 +36,8 @@ def held_out_figures(response: ParticipantResponse, name: str) -> list[Figure]:
 def held_out_numbers(response: ParticipantResponse) -> pd.DataFrame:
     """Measured and predicted second derivatives of the last `WINDOW_S` seconds.
 
-    Returns
-    -------
-    DataFrame
-        variable, unit, time_s, percent, measured, nominal, augmented; augmented_low, augmented_high where there is a
-        band.
+    returns: variable, unit, time_s, percent, measured, nominal, augmented; augmented_low, augmented_high where there
+        is a band
     """
     held = response.held_out
     shown = held.time >= (held.time[-1] - WINDOW_S if len(held.time) else 0.0)
@@ -142,10 +139,7 @@ def _band_words(response: ParticipantResponse) -> str:
 def listed_models(rows: pd.DataFrame) -> str:
     """Legend of the models in words.
 
-    Parameters
-    ----------
-    rows : DataFrame
-        With a column for each model that is drawn.
+    rows: with a column for each model that is drawn
     """
     looks = {"nominal": "orange, dashed: Nominal", "augmented": "green, solid: Augmented"}
     return "; ".join(words for model, words in looks.items() if model in rows)

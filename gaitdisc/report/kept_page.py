@@ -20,10 +20,6 @@ def page_of(run_folder: Path, draw: Callable[[], Path]) -> Path:
 
     The page stands for as long as the run's files, this package's code and the report's own files are what they were;
     the time at which a run was looked at again is no part of that, nor are files that came beside, such as PDF.
-
-    Examples
-    --------
-    >>> page_of(folder, lambda: write_report(run, folder / "report"))  # doctest: +SKIP
     """
     report = run_folder / "report"
     rests_on = _rests_on(run_folder)

@@ -23,10 +23,7 @@ LATENT, MODES = "latent state of SHRED", "modes of the states"
 def course_numbers(phi: NDArray[np.float64], components: NDArray[np.float64]) -> pd.DataFrame:
     """Mean and standard deviation of each component in 2 % of the stride.
 
-    Returns
-    -------
-    DataFrame
-        component, from 1; percent; mean; sd [1].
+    returns: component, from 1; percent; mean; sd [1]
     """
     known = np.isfinite(phi)
     place = np.clip(np.digitize(phi[known], BINS) - 1, 0, len(BINS) - 2)
@@ -54,10 +51,7 @@ def draw_course(axes: Axes, numbers: pd.DataFrame) -> None:
 def latent_course_figure(courses: dict[str, pd.DataFrame], name: str, source: str) -> Figure:
     """Draw the latent state and the modes side by side.
 
-    Parameters
-    ----------
-    courses : dict of str to DataFrame
-        Title of each panel -> its `course_numbers`.
+    courses: title of each panel -> its `course_numbers`
     """
     drawn, (row,) = panels(1, len(courses), 2.1, Room(across=0.7, top=0.5))
     for axes, (title, numbers) in zip(row, courses.items(), strict=True):

@@ -69,10 +69,7 @@ def _figure(mismatch: Mismatch, names: list[str], name: str, kind: str, draw: Dr
 def draw_both(axes: Axes, curves: pd.DataFrame, regions: list[dict[str, Any]], colour: str) -> None:
     """Draw both walks over the stride, shaded where they differ by more than chance.
 
-    Parameters
-    ----------
-    curves : DataFrame
-        Rows of `mismatch_numbers` of one channel.
+    curves: rows of `mismatch_numbers` of one channel
     """
     percent = curves["percent"].to_numpy()
     sd = curves["sd_second"].fillna(0.0)
@@ -89,10 +86,7 @@ def draw_both(axes: Axes, curves: pd.DataFrame, regions: list[dict[str, Any]], c
 def draw_gap(axes: Axes, curves: pd.DataFrame, regions: list[dict[str, Any]], colour: str) -> None:
     """Draw the gap over the stride with its band.
 
-    Parameters
-    ----------
-    curves : DataFrame
-        Rows of `mismatch_numbers` of one channel.
+    curves: rows of `mismatch_numbers` of one channel
     """
     percent = curves["percent"].to_numpy()
     axes.axhline(0.0, color="#888888", linewidth=0.6, zorder=0)

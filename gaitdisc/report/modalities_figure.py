@@ -54,10 +54,7 @@ def modalities_figure(run: VariantRun) -> Figure | None:
 def falls(run: VariantRun) -> pd.DataFrame:
     """Fall of R2 without each family of inputs, median over the variables of a group; networks only.
 
-    Returns
-    -------
-    DataFrame
-        variables (`angles` or `EMG`), without, model, participant, fall.
+    returns: variables (`angles` or `EMG`), without, model, participant, fall
     """
     table = run.r2_table()
     table = table[table["kind"] == "network"]
@@ -116,8 +113,6 @@ def modalities_sentences(run: VariantRun) -> tuple[str, ...]:
 def family_words(family: str) -> str:
     """Name of a family of inputs as it is read.
 
-    Examples
-    --------
     >>> family_words("emg_sol"), family_words("knee_angle"), family_words("EMG velocities")
     ('EMG soleus', 'knee angle', 'EMG velocities')
     """

@@ -34,13 +34,8 @@ def naming_table(namings: Sequence[Naming], name: str) -> Table:
 def seeds_of(found: pd.DataFrame) -> tuple[str, float]:
     """Most frequent answer of the seeds, `right` where it is, and its share.
 
-    Parameters
-    ----------
-    found : DataFrame
-        Rows of one case, tool and noise.
+    found: rows of one case, tool and noise
 
-    Examples
-    --------
     >>> seeds_of(pd.DataFrame({"right": [True, False, True], "answer": ["named", "curve", "named"]}))
     ('right', 0.6666666666666666)
     """

@@ -17,10 +17,7 @@ if TYPE_CHECKING:
 def write_page(template: str, shown: Mapping[str, Any], folder: Path) -> Path:
     """Write `report.html` of a folder.
 
-    Parameters
-    ----------
-    shown : mapping
-        What the template names, but for the version of this package.
+    shown: what the template names, but for the version of this package
     """
     return write_whole(folder / "report.html", page_text(template, shown))
 

@@ -12,16 +12,10 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Look:
-    """How one thing is drawn.
-
-    Parameters
-    ----------
-    line : Any
-        Matplotlib's line style: a word, or lengths of dashes.
-    """
+    """How one thing is drawn."""
 
     colour: str
-    line: Any
+    line: Any  # Matplotlib's line style: a word, or lengths of dashes
     mark: str
 
 

@@ -47,31 +47,20 @@ Arguments = ParamSpec("Arguments")
 
 @dataclass(frozen=True)
 class Room:
-    """Room around and between panels.
+    """Room around and between panels."""
 
-    Parameters
-    ----------
-    left, right, top, bottom : float
-        Margins of the figure [inch]; the legend stands in the top margin.
-    across, down : float
-        Between two columns, between two rows [inch].
-    """
-
-    left: float = 0.75
-    right: float = 0.12
-    top: float = 0.55
-    bottom: float = 0.45
-    across: float = 0.75
-    down: float = 0.42
+    left: float = 0.75  # margins of the figure [inch]; the legend stands in the top margin
+    right: float = 0.12  # margins of the figure [inch]; the legend stands in the top margin
+    top: float = 0.55  # margins of the figure [inch]; the legend stands in the top margin
+    bottom: float = 0.45  # margins of the figure [inch]; the legend stands in the top margin
+    across: float = 0.75  # between two columns, between two rows [inch]
+    down: float = 0.42  # between two columns, between two rows [inch]
 
 
 def panels(rows: int, columns: int, height: float, room: Room) -> tuple[matplotlib.figure.Figure, list[list[Axes]]]:
     """Empty panels of equal size, in rows and columns.
 
-    Parameters
-    ----------
-    height : float
-        Of one panel [inch].
+    height: of one panel [inch]
     """
     from matplotlib.figure import Figure as Drawing
 
@@ -98,10 +87,7 @@ def panels(rows: int, columns: int, height: float, room: Room) -> tuple[matplotl
 def panels_for(count: int, columns: int, height: float, room: Room) -> tuple[matplotlib.figure.Figure, list[Axes]]:
     """Panels for so many things, row by row, in so many columns at most.
 
-    Parameters
-    ----------
-    height : float
-        Of one panel [inch].
+    height: of one panel [inch]
     """
     columns = min(columns, count)
     drawn, grid = panels(-(-count // columns), columns, height, room)
@@ -114,10 +100,7 @@ def panels_for(count: int, columns: int, height: float, room: Room) -> tuple[mat
 def legend(drawn: matplotlib.figure.Figure, handles: Sequence[Artist], down: float = 0.0) -> None:
     """Write one row of a legend above all panels.
 
-    Parameters
-    ----------
-    down : float
-        Below the top of the figure [inch]: a second row stands under the first.
+    down: below the top of the figure [inch]: a second row stands under the first
     """
     top = (0.5, 1.0 - down / drawn.get_figheight())
     drawn.legend(handles=list(handles), loc="upper center", ncols=len(handles), bbox_to_anchor=top)
@@ -158,8 +141,6 @@ def in_style(draw: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
 def sheets(items: Sequence[Item], most: int, name: str) -> dict[str, list[Item]]:
     """Split what would make too long a figure into parts of nearly equal length, numbered where there are several.
 
-    Examples
-    --------
     >>> sheets("abcdef", 4, "r2")
     {'r2-1': ['a', 'b', 'c'], 'r2-2': ['d', 'e', 'f']}
     >>> sheets("abc", 4, "r2")

@@ -25,8 +25,6 @@ def provenance_tables(made: Provenance) -> dict[str, Table]:
 def flattened(settings: Mapping[str, Any], prefix: str = "") -> list[tuple[str, str]]:
     """Settings as rows of dotted name and value; of files the name alone, without the folders of this machine.
 
-    Examples
-    --------
     >>> flattened({"seed": 1, "filters": {"cutoff_hz": 6.0}})
     [('seed', '1'), ('filters.cutoff_hz', '6.0')]
     """

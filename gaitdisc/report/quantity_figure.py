@@ -44,10 +44,7 @@ def quantity_figure(run: ResponseRun) -> Figure | None:
 def quantity_numbers(run: ResponseRun) -> pd.DataFrame:
     """Median R2 over the variables of a group, for each participant, length and model; networks only.
 
-    Returns
-    -------
-    DataFrame
-        variables (`angles` or `EMG`), participant, length_s, model, r2, count (variables).
+    returns: variables (`angles` or `EMG`), participant, length_s, model, r2, count (variables)
     """
     tables = []
     for quantity in run.quantities:

@@ -37,10 +37,7 @@ def r2_figures(run: ResponseRun) -> list[Figure]:
 def r2_numbers(run: ResponseRun) -> pd.DataFrame:
     """R2 of every participant and variable on the held-out device walk.
 
-    Returns
-    -------
-    DataFrame
-        participant, variable, model (empty for the null), kind, r2.
+    returns: participant, variable, model (empty for the null), kind, r2
     """
     tables = []
     for response in run.responses:
@@ -76,10 +73,7 @@ def _figure(run: ResponseRun, numbers: pd.DataFrame, name: str) -> Figure:
 def draw_r2(axes: Axes, numbers: pd.DataFrame) -> None:
     """Draw R2 of every variable, a row each.
 
-    Parameters
-    ----------
-    numbers : DataFrame
-        Of `r2_numbers`.
+    numbers: of `r2_numbers`
     """
     names, low = list(dict.fromkeys(numbers["variable"])), _limit(numbers)
     for row, variable in enumerate(names):

@@ -13,18 +13,12 @@ from gaitdisc.results import ParticipantResponse, ResponseRun
 
 @dataclass(frozen=True)
 class R2Column:
-    """One column of the table.
-
-    Parameters
-    ----------
-    model, kind, walk : str
-        As in the response's table; the null belongs to no model.
-    """
+    """One column of the table."""
 
     key: str
-    model: str
-    kind: str
-    walk: str
+    model: str  # as in the response's table; the null belongs to no model
+    kind: str  # as in the response's table; the null belongs to no model
+    walk: str  # as in the response's table; the null belongs to no model
 
     @property
     def title(self) -> str:
@@ -46,10 +40,7 @@ R2_TABLE = (
 def r2_by_variable(response: ParticipantResponse) -> pd.DataFrame:
     """R2 of one participant, (variable, column of `R2_TABLE`); NaN where it was not computed.
 
-    Parameters
-    ----------
-    response : ParticipantResponse
-        Holds one row for each variable, model, kind and walk.
+    response: holds one row for each variable, model, kind and walk
     """
     known = response.r2
     found = {
@@ -68,10 +59,7 @@ def r2_by_variable(response: ParticipantResponse) -> pd.DataFrame:
 def medians(table: pd.DataFrame) -> pd.Series:
     """Median of each column over the variables that were computed.
 
-    Parameters
-    ----------
-    table : DataFrame
-        Of `r2_by_variable`.
+    table: of `r2_by_variable`
     """
     return table.median(axis=0, skipna=True)
 
@@ -86,10 +74,7 @@ def participant_medians(run: ResponseRun) -> pd.DataFrame:
 def quartiles_over_participants(run: ResponseRun) -> pd.DataFrame:
     """Median, quartiles and number of participants of every variable and column, one row each.
 
-    Returns
-    -------
-    DataFrame
-        variable, column, median, q1, q3, n (participants that have the number).
+    returns: variable, column, median, q1, q3, n (participants that have the number)
     """
     rows = []
     tables = [r2_by_variable(response) for response in run.responses]

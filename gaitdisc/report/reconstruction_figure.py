@@ -71,10 +71,7 @@ def _figure(done: Reconstruction, participant: str, numbers: pd.DataFrame, name:
 def draw_state(axes: Axes, numbers: pd.DataFrame) -> None:
     """Draw one state over the stride: measured with its spread, and what each model estimates.
 
-    Parameters
-    ----------
-    numbers : DataFrame
-        Rows of `Reconstruction.curves` of one person and state.
+    numbers: rows of `Reconstruction.curves` of one person and state
     """
     for number, (model, rows) in enumerate(numbers.groupby("model", sort=False)):
         if number == 0:

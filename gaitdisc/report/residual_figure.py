@@ -39,10 +39,7 @@ def residual_figures(response: ParticipantResponse, name: str) -> list[Figure]:
 def residual_numbers(response: ParticipantResponse) -> pd.DataFrame:
     """Mean residual with its interval, and every stride, point by point.
 
-    Returns
-    -------
-    DataFrame
-        variable, unit, model, percent, n (strides with a value there), mean, low, high, stride_1, stride_2, ...
+    returns: variable, unit, model, percent, n (strides with a value there), mean, low, high, stride_1, stride_2, ..
     """
     means = {model: mean_interval(response.residuals[model]) for model in MODELS if model in response.residuals}
     tables = []
@@ -69,13 +66,8 @@ def residual_numbers(response: ParticipantResponse) -> pd.DataFrame:
 def mean_interval(residuals: NDArray[np.float64]) -> StrideMean:
     """Mean over strides with its interval; with too few strides for an interval, the mean alone.
 
-    Parameters
-    ----------
-    residuals : ndarray (stride, phase, output) [unit/s2]
-        In order of time; NaN where a stride has no value.
+    residuals (stride, phase, output) [unit/s2]: in order of time; NaN where a stride has no value
 
-    Examples
-    --------
     >>> found = mean_interval(np.ones((2, 101, 1)))
     >>> float(found.mean[0, 0]), float(found.low[0, 0])
     (1.0, nan)

@@ -33,17 +33,11 @@ MOST_OPEN = 2  # with more participants than this, the first screen is brief and
 
 @dataclass(frozen=True, eq=False)
 class Section:
-    """What the page shows of one participant.
-
-    Parameters
-    ----------
-    sentences : list of str
-        The answer for this participant; empty where there is no response.
-    """
+    """What the page shows of one participant."""
 
     participant: str
     anchor: str
-    sentences: list[str]
+    sentences: list[str]  # the answer for this participant; empty where there is no response
     r2: Table | None
     reasons: list[str]
     dropped: Table | None

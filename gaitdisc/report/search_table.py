@@ -12,10 +12,7 @@ from gaitdisc.results.reconstruction import WORTH, enough_sensors
 def search_table(found: pd.DataFrame) -> Table:
     """Best set of every size.
 
-    Parameters
-    ----------
-    found : DataFrame
-        `search` of a reconstruction.
+    found: `search` of a reconstruction
     """
     chosen = enough_sensors(found)
     rows = tuple(
@@ -42,10 +39,7 @@ def search_table(found: pd.DataFrame) -> Table:
 def search_sentences(found: pd.DataFrame) -> list[str]:
     """How many sensors are enough, and what one more would bring.
 
-    Parameters
-    ----------
-    found : DataFrame
-        `search` of a reconstruction.
+    found: `search` of a reconstruction
     """
     chosen = enough_sensors(found)
     row = found.iloc[chosen]

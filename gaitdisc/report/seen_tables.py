@@ -12,8 +12,6 @@ from gaitdisc.results import Refusal
 def seen_table(findings: Sequence[Finding], caption: str, what: str = "what") -> Table:
     """What was seen in the files, in the order given.
 
-    Examples
-    --------
     >>> seen_table([Finding("note", "unit", "a.c3d", "mm taken as m", "")], "Seen, n = 1.").rows
     (('note', 'a.c3d', '', 'unit: mm taken as m', ''),)
     """
@@ -24,8 +22,6 @@ def seen_table(findings: Sequence[Finding], caption: str, what: str = "what") ->
 def left_out_table(refusals: Sequence[Refusal], name: str, caption: str) -> Table:
     """Everybody and everything left out, with the reason.
 
-    Examples
-    --------
     >>> left_out_table([Refusal("P01", "", "no file")], "left-out", "Left out, n = 1.").rows
     (('P01', 'all', 'no file'),)
     """

@@ -15,11 +15,8 @@ HEADINGS = ("Nominal", "Augmented", "Exo", "null")
 def setting_medians(run: VariantRun) -> pd.DataFrame:
     """Median over participants of the median over variables, for each setting, group of variables and model.
 
-    Returns
-    -------
-    DataFrame
-        variant, variables (`angles`, `EMG`), participants, and a column for each of Nominal, Augmented, Exo, the ridge
-        regression's Augmented and the null.
+    returns: variant, variables (`angles`, `EMG`), participants, and a column for each of Nominal, Augmented, Exo, the
+        ridge regression's Augmented and the null
     """
     table = run.r2_table()
     table = table.assign(variables=np.where(table["variable"].str.startswith("emg_"), "EMG", "angles"))
@@ -43,10 +40,7 @@ def setting_medians(run: VariantRun) -> pd.DataFrame:
 def orders(run: VariantRun) -> pd.DataFrame:
     """In how many participants Nominal < Augmented holds, and in how many variables the two are shown to differ.
 
-    Returns
-    -------
-    DataFrame
-        variant, participants, holds, variables, different (NaN where nothing was tested).
+    returns: variant, participants, holds, variables, different (NaN where nothing was tested)
     """
     table = run.r2_table()
     table = table[table["kind"] == "network"]

@@ -23,10 +23,7 @@ STEP, PITCH = 0.23, 1.4  # from one box to the next, and from one sensor set to 
 def sensor_sets_figure(errors: pd.DataFrame, data: str, name: str, rule: str) -> Figure:
     """One panel a unit, one group of boxes a sensor set, one box a model.
 
-    Parameters
-    ----------
-    errors : DataFrame
-        `errors` of reconstructions, with a column `sensors`.
+    errors: `errors` of reconstructions, with a column `sensors`
     """
     from matplotlib.lines import Line2D
 

@@ -23,12 +23,8 @@ LESS_THAN_NOTHING = (
 def sensor_sets_table(summary: pd.DataFrame, printed: pd.DataFrame, name: str, rule: str) -> Table:
     """One row a data set, sensor set and model.
 
-    Parameters
-    ----------
-    summary : DataFrame
-        `summary` of reconstructions, with columns `data` and `sensors`.
-    printed : DataFrame
-        sensors, model, mean, sd: of the dissertation.
+    summary: `summary` of reconstructions, with columns `data` and `sensors`
+    printed: sensors, model, mean, sd: of the dissertation
     """
     numbers = pd.DataFrame(
         [

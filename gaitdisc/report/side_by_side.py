@@ -14,15 +14,9 @@ MOST_PROCESSES = 4  # that draw; each holds some 400 MB
 def drawn_side_by_side(draw: Callable[..., Result], each: Sequence[tuple[Any, ...]], alone: int) -> list[Result]:
     """Draw for each of many, in processes where there are more than so many.
 
-    Parameters
-    ----------
-    draw : callable
-        Can be sent to another process, as its arguments and what it gives.
-    alone : int
-        Up to so many are drawn here, one after the other.
+    draw: can be sent to another process, as its arguments and what it gives
+    alone: up to so many are drawn here, one after the other
 
-    Examples
-    --------
     >>> drawn_side_by_side(max, [(1, 2), (4, 3)], 2)
     [2, 4]
     """

@@ -27,10 +27,7 @@ _HEIGHTS = {"r": 1.0, "l": 0.0, "": 0.5}
 def stride_numbers(run: ResponseRun, participant: str) -> pd.DataFrame:
     """Every stride of a participant with its duration, and a letter for the kind of reason that dropped it.
 
-    Returns
-    -------
-    DataFrame
-        Columns of `COLUMNS`, in order of time within each walk.
+    returns: columns of `COLUMNS`, in order of time within each walk
     """
     walks = [walk_of(run, participant, walk) for walk in WALKS]
     tables = [
@@ -51,8 +48,6 @@ def stride_numbers(run: ResponseRun, participant: str) -> pd.DataFrame:
 def reason_kind(reason: str) -> str:
     """Kind of a reason: its words without its numbers, so that like reasons are counted together.
 
-    Examples
-    --------
     >>> reason_kind("lasts 1.62 s, the median is 1.08 s")
     'lasts … s, the median is … s'
     """

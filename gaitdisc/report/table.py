@@ -13,34 +13,21 @@ from gaitdisc.spreadsheet import write_csv
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """A table as it is printed.
-
-    Parameters
-    ----------
-    caption : str
-        What it shows, with n, unit and split where there are numbers.
-    numbers : DataFrame
-        What the CSV holds.
-    groups : tuple of (str, int)
-        Headings above the headings, with the number of columns that each spans.
-    summary : bool
-        The last row sums up the others.
-    """
+    """A table as it is printed."""
 
     name: str
-    caption: str
+    caption: str  # what it shows, with n, unit and split where there are numbers
     columns: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
-    numbers: pd.DataFrame
+    numbers: pd.DataFrame  # what the CSV holds
+    # tuple of (str, int), headings above the headings, with the number of columns that each spans
     groups: tuple[tuple[str, int], ...] = ()
-    summary: bool = False
+    summary: bool = False  # the last row sums up the others
 
 
 def words_table(name: str, caption: str, headings: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> Table:
     """Table whose CSV holds the very words that are read: settings, hashes, findings, reasons.
 
-    Examples
-    --------
     >>> words_table("files", "Files.", ("file", "SHA-256"), [("a.c3d", "ff")]).numbers["file"].tolist()
     ['a.c3d']
     """
@@ -57,10 +44,7 @@ def save_tables(tables: Iterable[Table], folder: Path) -> None:
 def save_table(table: pd.DataFrame, path: Path) -> None:
     """Write a table as CSV, whole, with the same bytes for the same numbers.
 
-    Parameters
-    ----------
-    table : DataFrame
-        Its index is not written.
+    table: its index is not written
     """
     write_csv(table, path, "%.8g")
 
@@ -68,8 +52,6 @@ def save_table(table: pd.DataFrame, path: Path) -> None:
 def as_markdown(table: Table) -> str:
     """Return a table as documents of the project hold it.
 
-    Examples
-    --------
     >>> print(as_markdown(words_table("s", "", ("where", "ours"), [("3.4", "a")])))
     | where | ours |
     |---|---|

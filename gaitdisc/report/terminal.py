@@ -11,8 +11,6 @@ if TYPE_CHECKING:
 def plain(words: str, style: str = "") -> rich.text.Text:
     """Words that rich prints letter by letter, whatever they are; every cell and caption with a user's name is made so.
 
-    Examples
-    --------
     >>> plain("xo[/b] :walking:").plain
     'xo[/b] :walking:'
     """

@@ -30,10 +30,7 @@ _SHORT = {"nominal": "Nominal", "augmented": "Augm.", "exo": "Exo", "": "null"}
 def r2_text(run: ResponseRun) -> rich.table.Table:
     """R2 of one participant by variable, or of several participants by person, each the median over variables.
 
-    Parameters
-    ----------
-    run : ResponseRun
-        The whole result. Where nobody could be analysed, the table says who was refused, and why.
+    run: the whole result. Where nobody could be analysed, the table says who was refused, and why
     """
     if not run.responses:
         return _refused(run)

@@ -17,10 +17,7 @@ SHELL = re.compile(r"e_(\d+)")
 def flow_figure(numbers: pd.DataFrame, power: float, name: str) -> Figure:
     """Mean spectrum beside the slope of -5/3, and dissipation beside the power that is put in.
 
-    Parameters
-    ----------
-    numbers : DataFrame
-        From `gaitdisc.turbulence.isotropic.record_turbulence`.
+    numbers: from `gaitdisc.turbulence.isotropic.record_turbulence`
     """
     drawn, ((left, right),) = panels(1, 2, 2.2, Room(across=0.8, top=0.3))
     shells = [column for column in numbers.columns if SHELL.fullmatch(column)]

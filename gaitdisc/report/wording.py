@@ -22,8 +22,6 @@ _TRANSLATIONS = {"pelvis_tx": "pelvis fore-aft", "pelvis_ty": "pelvis vertical",
 def sideless(name: str) -> str:
     """Name of a channel without its side: what the two sides have in common.
 
-    Examples
-    --------
     >>> sideless("ankle_angle_r"), sideless("hip_flexion_l_moment")
     ('ankle_angle', 'hip_flexion_moment')
     """
@@ -33,13 +31,8 @@ def sideless(name: str) -> str:
 def label(name: str) -> str:
     """Name of a channel as it is read in a title.
 
-    Parameters
-    ----------
-    name : str
-        Name of a channel; one that the vocabulary lacks is left as it is, but for its underscores.
+    name: name of a channel; one that the vocabulary lacks is left as it is, but for its underscores
 
-    Examples
-    --------
     >>> label("ankle_angle_r"), label("emg_sol_l"), label("pelvis_tilt")
     ('ankle angle, right', 'EMG soleus, left', 'pelvis tilt')
     """
@@ -55,8 +48,6 @@ def label(name: str) -> str:
 def upwards(name: str) -> str:
     """What upwards means in a figure of a channel, or empty where the vocabulary does not say.
 
-    Examples
-    --------
     >>> upwards("knee_angle_r"), upwards("emg_sol_r")
     ('flexion', '')
     """
@@ -66,8 +57,6 @@ def upwards(name: str) -> str:
 def unit_text(unit: str) -> str:
     """Unit as it is printed.
 
-    Examples
-    --------
     >>> unit_text("deg/s2")
     'deg/s²'
     """
@@ -79,8 +68,6 @@ def number(value: float, digits: int = 2) -> str:
 
     A share (R², to two digits or more) that falls short of all is not printed as all; an amount is rounded.
 
-    Examples
-    --------
     >>> number(0.8712), number(-0.004), number(0.9987), number(0.97, 1), number(float("nan"))
     ('0.87', '0.00', '>0.99', '1.0', 'not computed')
     """
@@ -95,8 +82,6 @@ def number(value: float, digits: int = 2) -> str:
 def p_cell(p: float) -> str:
     """Write a p as it stands in a table.
 
-    Examples
-    --------
     >>> p_cell(0.0004), p_cell(0.0312), p_cell(float("nan"))
     ('< .001', '0.031', '–')
     """
@@ -106,8 +91,6 @@ def p_cell(p: float) -> str:
 def counted(count: int, noun: str) -> str:
     """Count with its noun in the right number.
 
-    Examples
-    --------
     >>> counted(1, "stride"), counted(2, "stride")
     ('1 stride', '2 strides')
     """
@@ -117,8 +100,6 @@ def counted(count: int, noun: str) -> str:
 def listed(words: list[str]) -> str:
     """Words as they stand in a sentence.
 
-    Examples
-    --------
     >>> listed(["a", "b", "c"])
     'a, b and c'
     """

@@ -32,19 +32,11 @@ def response_bands(
     misses of device walking was in no block of nominal walking: its band covers less there, which is a finding. None
     where a training part is shorter than 16 s.
 
-    Parameters
-    ----------
-    refit : callable
-        Takes a model and samples, and gives the model as it is fitted to these.
-    nominal, exo : Samples
-        Training parts of both walks.
-    held : Samples
-        Held-out device walking, at which the models predict.
-
-    References
-    ----------
-    Barber, Candes, Ramdas and Tibshirani 2021, Predictive inference with the jackknife+ (CV+); by part of the stride is
-    our addition.
+    refit: takes a model and samples, and gives the model as it is fitted to these
+    nominal, exo: training parts of both walks
+    held: Held-out device walking, at which the models predict
+    Source: Barber, Candes, Ramdas and Tibshirani 2021, Predictive inference with the jackknife+ (CV+); by part of the
+        stride is our addition.
     """
     if min(each.time[-1] - each.time[0] for each in (nominal, exo)) < SHORTEST_S:
         return {}
@@ -69,8 +61,6 @@ def parted(samples: Samples, number: int) -> tuple[Samples, Samples]:
 def covered(measured: NDArray[np.float64], band: NDArray[np.float64]) -> NDArray[np.float64]:
     """Share of samples inside the band, (output,).
 
-    Examples
-    --------
     >>> covered(np.array([[1.0], [3.0]]), np.array([[[0.0], [0.0]], [[2.0], [2.0]]]))
     array([0.5])
     """

@@ -15,16 +15,9 @@ from gaitdisc.results.participant_response import BASELINES, MODELS
 def compare_baselines(responses: Sequence[ParticipantResponse], alpha: float = ALPHA) -> pd.DataFrame:
     """Compare the networks' R2 on held-out device walking with that of ridge regressions and of the filters' null.
 
-    Parameters
-    ----------
-    alpha : float
-        Of each family: the variables of one model and baseline.
-
-    Returns
-    -------
-    DataFrame
-        Columns `BASELINE_COLUMNS`: first is the baseline, second `network`; empty for fewer than six participants. A
-        network that is shown to be no better than its baseline in a variable earns nothing there.
+    alpha: of each family: the variables of one model and baseline
+    returns: columns `BASELINE_COLUMNS`: first is the baseline, second `network`; empty for fewer than six
+        participants. A network that is shown to be no better than its baseline in a variable earns nothing there
     """
     if len(responses) < FEWEST:
         return no_rows("baselines")

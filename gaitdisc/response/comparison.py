@@ -20,17 +20,11 @@ LEVEL = 0.95
 def compare_models(responses: Sequence[ParticipantResponse]) -> PairTests:
     """Compare Nominal, Augmented and Exo by their R2 on held-out device walking, in pairs, and Exo with R2 = 1.
 
-    Parameters
-    ----------
-    responses : sequence of ParticipantResponse
-        The participants; fewer than six are not tested, and the result says why.
-
-    References
-    ----------
-    Ebers 2023, section 4.2.3: Wilcoxon signed-rank tests, Holm-Sidak step-down corrections, alpha = 0.05. The family is
-    not said; all variables of a pair is the reading that gives the printed 0.013 and 0.042. Beside the source: other
-    families, effect sizes, intervals. That Exo is below R2 = 1 no measurement can contradict, for R2 is never above
-    1: its p is the smallest that n allows, and only the shift is of interest.
+    responses: the participants; fewer than six are not tested, and the result says why
+    Source: Ebers 2023, section 4.2.3: Wilcoxon signed-rank tests, Holm-Sidak step-down corrections, alpha = 0.05. The
+        family is not said; all variables of a pair is the reading that gives the printed 0.013 and 0.042. Beside the
+        source: other families, effect sizes, intervals. That Exo is below R2 = 1 no measurement can contradict, for R2
+        is never above 1: its p is the smallest that n allows, and only the shift is of interest.
     """
     models = {model: r2_by_participant(responses, model) for model in ("nominal", "augmented", "exo")}
     models["perfect"] = models["exo"].where(models["exo"].isna(), 1.0)
@@ -46,16 +40,10 @@ def compare_models(responses: Sequence[ParticipantResponse]) -> PairTests:
 def compare_columns(first: pd.DataFrame, second: pd.DataFrame, alpha: float = ALPHA) -> pd.DataFrame:
     """Test second against first in every column, participants paired, corrected over the columns.
 
-    Parameters
-    ----------
-    first, second : DataFrame (participant, variable)
-        With the same participants and variables; NaN where a number was not computed.
-
-    Returns
-    -------
-    DataFrame
-        One row a variable, the columns of `PairTests.tests` but first and second. A variable that fewer than six
-        participants have is in the table, but not tested and not of the family.
+    first, second DataFrame (participant, variable): with the same participants and variables; NaN where a number was
+        not computed
+    returns: one row a variable, the columns of `PairTests.tests` but first and second. A variable that fewer than six
+        participants have is in the table, but not tested and not of the family
     """
     table = pd.DataFrame([_row(variable, first[variable], second[variable]) for variable in first.columns])
     tested = table["p"].notna().to_numpy()
@@ -72,15 +60,8 @@ def compare_columns(first: pd.DataFrame, second: pd.DataFrame, alpha: float = AL
 def by_family(tests: pd.DataFrame, alpha: float = ALPHA) -> pd.DataFrame:
     """Tests of the three pairs of models, corrected under every family that the source may have meant.
 
-    Parameters
-    ----------
-    tests : DataFrame
-        first, second, variable, p.
-
-    Returns
-    -------
-    DataFrame
-        Columns `FAMILY_COLUMNS`.
+    tests: first, second, variable, p
+    returns: columns `FAMILY_COLUMNS`
     """
     chosen = tests[tests["p"].notna() & (tests["second"] != "perfect")]
     families = {
@@ -117,8 +98,6 @@ def r2_by_participant(responses: Sequence[ParticipantResponse], model: str, kind
 def too_few(participants: int) -> str:
     """Why so few participants are not tested.
 
-    Examples
-    --------
     >>> too_few(5)
     '5 participants are too few for a test: the smallest p is 0.0625, not below 0.05 even if all of them agree'
     """

@@ -30,19 +30,12 @@ def fit_data_quantity(
 ) -> DataQuantity:
     """Fit Nominal, Exo and Discrepancy to parts of the training part, and to all of it, and judge each alike.
 
-    Parameters
-    ----------
-    lengths_s : sequence of float
-        Lengths of the training part [s]; its whole length is always added.
-    part : str
-        `first` takes the beginning of the training part, from its first usable sample on, `last` its end, next to what
-        is held out. The text does not say which; the two differ where gait drifts.
-    whole : ParticipantResponse, optional
-        What the whole training part gave, fitted to the same walks with the same settings; it is then not fitted again.
-
-    References
-    ----------
-    Ebers 2023, section 4.2.4 and Fig. 4.4.
+    lengths_s: lengths of the training part [s]; its whole length is always added
+    part: `first` takes the beginning of the training part, from its first usable sample on, `last` its end, next to
+        what is held out. The text does not say which; the two differ where gait drifts
+    whole: what the whole training part gave, fitted to the same walks with the same settings; it is then not fitted
+        again
+    Source: Ebers 2023, section 4.2.4 and Fig. 4.4.
     """
     if part not in PARTS:
         raise SamplingError("the training part is taken from its first or last seconds", f"found {part!r}", "Name one.")
@@ -80,10 +73,7 @@ def _with_length(response: ParticipantResponse, length_s: float) -> pd.DataFrame
 def shortened(walk: Trajectory, settings: ResponseSettings, length_s: float, part: str) -> Trajectory:
     """Walk whose training part keeps so many seconds usable; the held-out part is untouched.
 
-    Parameters
-    ----------
-    length_s : float
-        Length that stays usable [s].
+    length_s: length that stays usable [s]
     """
     training, _ = held_out_part(walk, settings)
     count, keep = len(training.time), round(length_s * walk.rate_hz)

@@ -28,40 +28,27 @@ LEAST_HELD_OUT = 50
 class ResponseSettings:
     """What is predicted, on what it is judged, and how the models are fitted.
 
-    Parameters
-    ----------
-    held_out_s : float, optional
-        Length held out at the end of both walks [s]; without it, `held_out_share` of each.
-    held_out_share : float
-        Share held out; the dissertation has 12.5 %, 30 s of 240 s.
-    harmonics : int
-        Harmonics of percent stride in the ridge regression.
-
-    Examples
-    --------
     >>> ResponseSettings(("ankle_angle_r",)).training.seed
     0
     """
 
     outputs: tuple[str, ...]
+    # length held out at the end of both walks [s]; without it, `held_out_share` of each
     held_out_s: float | None = None
-    held_out_share: float = 0.125
+    held_out_share: float = 0.125  # share held out; the dissertation has 12.5 %, 30 s of 240 s
     training: TrainingSettings = field(default_factory=TrainingSettings)
-    harmonics: int = 8
+    harmonics: int = 8  # harmonics of percent stride in the ridge regression
 
 
 @dataclass(frozen=True, eq=False)
 class FittedResponse:
-    """The models of one participant, of every kind.
+    """The models of one participant, of every kind."""
 
-    Parameters
-    ----------
-    network, ridge, linear : ResponseModels
-        Networks, and beside them ridge regressions with phase harmonics, and on the networks' own inputs alone.
-    """
-
+    # networks, and beside them ridge regressions with phase harmonics, and on the networks' own inputs alone
     network: ResponseModels
+    # networks, and beside them ridge regressions with phase harmonics, and on the networks' own inputs alone
     ridge: ResponseModels
+    # networks, and beside them ridge regressions with phase harmonics, and on the networks' own inputs alone
     linear: ResponseModels
 
 
@@ -75,20 +62,12 @@ def fit_response(
 ) -> ParticipantResponse:
     """Fit all models to the first part of both walks and judge them on the held-out last part.
 
-    Parameters
-    ----------
-    nominal, exo : Trajectory
-        Whole walks of one participant without and with the device, with the same channels.
-    null_r2 : mapping of str to float, optional
-        R2 that noise reaches through the same filters, for each output (`gaitdisc.statistics.band_limit_null`).
-    banded : bool
-        Whether predictions get a band from refits on blocks.
-
-    References
-    ----------
-    Ebers 2023, Eqs. 4.1-4.5 and section 4.2.3. Beside the source: ridge regressions with phase harmonics and without,
-    and the null of the filters, stand beside every network, and the Nominal model is judged on held-out nominal
-    walking, too.
+    nominal, exo: whole walks of one participant without and with the device, with the same channels
+    null_r2: R2 that noise reaches through the same filters, for each output (`gaitdisc.statistics.band_limit_null`)
+    banded: whether predictions get a band from refits on blocks
+    Source: Ebers 2023, Eqs. 4.1-4.5 and section 4.2.3. Beside the source: ridge regressions with phase harmonics and
+        without, and the null of the filters, stand beside every network, and the Nominal model is judged on held-out
+        nominal walking, too.
     """
     _check_pair(nominal, exo)
     held_nominal, held_exo = (held_out_part(walk, settings)[1] for walk in (nominal, exo))
@@ -154,15 +133,8 @@ def held_out_samples(held_out: Trajectory, settings: ResponseSettings) -> Sample
 def residual_strides(held_out: Trajectory, samples: Samples, predicted: NDArray[np.float64]) -> NDArray[np.float64]:
     """Measured minus predicted over every stride that lies wholly in the held-out part.
 
-    Parameters
-    ----------
-    predicted : ndarray (sample, output) [unit/s2]
-        For these samples.
-
-    Returns
-    -------
-    ndarray (stride, phase, output) [unit/s2]
-        NaN where samples are missing.
+    predicted (sample, output) [unit/s2]: for these samples
+    returns (stride, phase, output) [unit/s2]: NaN where samples are missing
     """
     residual = np.full((len(held_out.time), len(samples.outputs)), np.nan)
     residual[np.searchsorted(held_out.time, samples.time)] = samples.y - predicted

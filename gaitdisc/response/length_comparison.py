@@ -14,21 +14,12 @@ from gaitdisc.results.over_participants import LENGTH_COLUMNS, WHOLE, no_rows
 def compare_lengths(quantities: Sequence[DataQuantity], alpha: float = ALPHA) -> pd.DataFrame:
     """Compare, at every training length, Augmented with Exo, and Exo with the Exo of the whole training part.
 
-    Parameters
-    ----------
-    alpha : float
-        Of each family: the variables at one length. One family of all lengths could show nothing at n = 11, for it
-        would hold 72 tests or more and at most 52 can.
-
-    Returns
-    -------
-    DataFrame
-        Columns `LENGTH_COLUMNS`, one row a length, comparison and variable; empty for fewer than six participants.
-        second is `exo` or `exo, whole training part`. A participant without a length is left out of it by name.
-
-    References
-    ----------
-    Ebers 2023, section 4.2.4, comparisons (i) and (ii). The family is not said there.
+    alpha: of each family: the variables at one length. One family of all lengths could show nothing at n = 11, for it
+        would hold 72 tests or more and at most 52 can
+    returns: columns `LENGTH_COLUMNS`, one row a length, comparison and variable; empty for fewer than six
+        participants. second is `exo` or `exo, whole training part`. A participant without a length is left out of it
+        by name
+    Source: Ebers 2023, section 4.2.4, comparisons (i) and (ii). The family is not said there.
     """
     if len(quantities) < FEWEST:
         return no_rows("lengths")

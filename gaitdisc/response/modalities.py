@@ -27,14 +27,9 @@ Fitted = Callable[[Samples], Model]
 def input_families(inputs: Sequence[str]) -> dict[str, tuple[str, ...]]:
     """Families of inputs that are left away, one at a time.
 
-    Returns
-    -------
-    dict of str to tuple of str
-        Name of the family -> its inputs: a kind of measurement; one joint or muscle, both sides, with its velocities.
-        Families that would leave nothing, and those equal to an earlier one, are not among them.
+    returns: name of the family -> its inputs: a kind of measurement; one joint or muscle, both sides, with its
+        velocities. Families that would leave nothing, and those equal to an earlier one, are not among them
 
-    Examples
-    --------
     >>> input_families(("knee_angle_r", "emg_sol_r", "emg_gas_r", "d(emg_sol_r)/dt", "phi"))["emg_sol"]
     ('emg_sol_r', 'd(emg_sol_r)/dt')
     """
@@ -71,16 +66,10 @@ def fit_without(
 
     The Nominal model keeps all of its inputs, so that what Augmented loses is what the Discrepancy model lost.
 
-    Returns
-    -------
-    DataFrame
-        Columns `VARIANT_COLUMNS`; variant is `ALL` or the name of a family.
-
-    References
-    ----------
-    Ebers 2023, section 6.2.2, asks which modalities are needed. A family's fall of R2 says what the other inputs cannot
-    replace, no more: joint angles and EMG of one walk go together, so that a family whose absence costs nothing may
-    carry the response as well as those that stand in for it.
+    returns: columns `VARIANT_COLUMNS`; variant is `ALL` or the name of a family
+    Source: Ebers 2023, section 6.2.2, asks which modalities are needed. A family's fall of R2 says what the other
+        inputs cannot replace, no more: joint angles and EMG of one walk go together, so that a family whose absence
+        costs nothing may carry the response as well as those that stand in for it.
     """
     progress = progress or (lambda _: None)
     training = [gait_samples(held_out_part(walk, settings)[0], settings.outputs)[0] for walk in (nominal, exo)]
@@ -110,17 +99,10 @@ def fit_without(
 def compare_modalities(people: Sequence[Variants], alpha: float = ALPHA) -> pd.DataFrame:
     """Test R2 without a family of inputs against R2 with all, over participants.
 
-    Parameters
-    ----------
-    people : sequence of Variants
-        Of the question `modalities`; fewer than six are not tested.
-    alpha : float
-        Of each family of tests: the variables of one model and one family of inputs.
-
-    Returns
-    -------
-    DataFrame
-        Columns `VARIANT_TEST_COLUMNS`; first is `all inputs`, second `without`, so that a negative shift is a fall.
+    people: of the question `modalities`; fewer than six are not tested
+    alpha: of each family of tests: the variables of one model and one family of inputs
+    returns: columns `VARIANT_TEST_COLUMNS`; first is `all inputs`, second `without`, so that a negative shift is a
+        fall
     """
     if len(people) < FEWEST:
         return pd.DataFrame(columns=pd.Index(VARIANT_TEST_COLUMNS))

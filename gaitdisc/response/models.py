@@ -16,41 +16,23 @@ from gaitdisc.regression.ridge import fit_ridge
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """A model fitted to samples, and how.
-
-    Parameters
-    ----------
-    decay : float
-        Weight decay of a network, penalty of a ridge regression.
-    epochs : int
-        Epochs trained; 0 where nothing is descended.
-    n_training, n_inner : int
-        Samples of the whole training part, and of the inner block that chose the decay.
-    seconds : float
-        Wall-clock time [s].
-    """
+    """A model fitted to samples, and how."""
 
     model: Model
-    decay: float
-    epochs: int
-    n_training: int
-    n_inner: int
-    seconds: float
+    decay: float  # weight decay of a network, penalty of a ridge regression
+    epochs: int  # epochs trained; 0 where nothing is descended
+    n_training: int  # samples of the whole training part, and of the inner block that chose the decay
+    n_inner: int  # samples of the whole training part, and of the inner block that chose the decay
+    seconds: float  # Wall-clock time [s]
 
 
 @dataclass(frozen=True, eq=False)
 class ResponseModels:
-    """The models of one participant.
+    """The models of one participant."""
 
-    Parameters
-    ----------
-    nominal, exo, discrepancy : Fit
-        Eqs. 4.2, 4.3 and 4.4; same inputs and outputs.
-    """
-
-    nominal: Fit
-    exo: Fit
-    discrepancy: Fit
+    nominal: Fit  # Eqs. 4.2, 4.3 and 4.4; same inputs and outputs
+    exo: Fit  # Eqs. 4.2, 4.3 and 4.4; same inputs and outputs
+    discrepancy: Fit  # Eqs. 4.2, 4.3 and 4.4; same inputs and outputs
 
     @property
     def augmented(self) -> Augmented:
@@ -73,10 +55,7 @@ def fit_models(
     The Discrepancy model learns what the Nominal model misses of device walking,
     xddot_exo - f(x_exo, xdot_exo, phi_exo) (Eq. 4.4).
 
-    Parameters
-    ----------
-    nominal, exo : Samples
-        Training parts of the walks without and with the device; same inputs and outputs.
+    nominal, exo: training parts of the walks without and with the device; same inputs and outputs
     """
     parts = [partial(_third, progress or (lambda _: None), done) for done in range(3)]
     f = _named("Nominal", fit, nominal, parts[0])

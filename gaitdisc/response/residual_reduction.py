@@ -24,21 +24,11 @@ def residual_reductions(responses: Sequence[ParticipantResponse]) -> pd.DataFram
     its size is the peak-to-peak value and the root mean square over the stride. The reduction is
     1 - size / size of the Nominal model's: 0 for the Nominal model itself, negative where a model makes it larger.
 
-    Parameters
-    ----------
-    responses : sequence of ParticipantResponse
-        The participants; one with fewer than five strides has no numbers.
-
-    Returns
-    -------
-    DataFrame
-        Columns `REDUCTION_COLUMNS`.
-
-    References
-    ----------
-    Ebers 2023, section 4.3: "the magnitude of this pattern was reduced by 52.8%", for the hip of one participant. How
-    the magnitude is measured is not said; both usual readings are given. An average over n strides keeps 1/n of the
-    variance between strides, so the reduction stays below 1 even where nothing is missed.
+    responses: the participants; one with fewer than five strides has no numbers
+    returns: columns `REDUCTION_COLUMNS`
+    Source: Ebers 2023, section 4.3: "the magnitude of this pattern was reduced by 52.8%", for the hip of one
+        participant. How the magnitude is measured is not said; both usual readings are given. An average over n
+        strides keeps 1/n of the variance between strides, so the reduction stays below 1 even where nothing is missed.
     """
     tables = [_of_one(response) for response in responses]
     if not tables:
@@ -49,18 +39,10 @@ def residual_reductions(responses: Sequence[ParticipantResponse]) -> pd.DataFram
 def compare_reductions(reductions: pd.DataFrame, alpha: float = ALPHA) -> pd.DataFrame:
     """Test the reductions against zero over participants, for each measure and model over the variables.
 
-    Parameters
-    ----------
-    reductions : DataFrame
-        Of `residual_reductions`.
-    alpha : float
-        Of each family: the variables of one measure and model.
-
-    Returns
-    -------
-    DataFrame
-        Columns `REDUCTION_TEST_COLUMNS`; shift, low and high are the Hodges-Lehmann reduction and its interval of 95 %.
-        Empty for fewer than six participants.
+    reductions: of `residual_reductions`
+    alpha: of each family: the variables of one measure and model
+    returns: columns `REDUCTION_TEST_COLUMNS`; shift, low and high are the Hodges-Lehmann reduction and its interval of
+        95 %. Empty for fewer than six participants
     """
     if reductions["participant"].nunique() < FEWEST:
         return no_rows("reduction_tests")
@@ -80,15 +62,8 @@ def compare_reductions(reductions: pd.DataFrame, alpha: float = ALPHA) -> pd.Dat
 def representative(reductions: pd.DataFrame, model: str = "augmented", measure: str = "rms") -> str:
     """Participant whose reduction, median over variables, is nearest to the median participant's.
 
-    Parameters
-    ----------
-    reductions : DataFrame
-        Of `residual_reductions`.
-
-    Returns
-    -------
-    str
-        Pseudonym; the first of several as near, empty where nobody has a number.
+    reductions: of `residual_reductions`
+    returns: pseudonym; the first of several as near, empty where nobody has a number
     """
     own = reductions[reductions["model"] == model]
     middle = own.groupby("participant", sort=False)[f"{measure}_reduction"].median().dropna()

@@ -18,22 +18,14 @@ PHASE = "phi"
 class DroppedSamples:
     """Samples of a trajectory that no model sees, and why.
 
-    Parameters
-    ----------
-    total, kept : int
-        Samples there are, and those that are used.
-    unusable : mapping of str to int
-        Channel -> samples within strides that are missing or not to be trusted; one sample may count for many channels.
-
-    Examples
-    --------
     >>> DroppedSamples(100, 80, 15, {"knee_angle_r": 5}, "P01 exo").finding().what
     '20 of 100 samples left away: 15 outside of strides, 5 of knee_angle_r not usable'
     """
 
-    total: int
-    kept: int
+    total: int  # samples there are, and those that are used
+    kept: int  # samples there are, and those that are used
     outside_strides: int
+    # channel -> samples within strides that are missing or not to be trusted; one sample may count for many channels
     unusable: Mapping[str, int]
     walk: str = ""
 
@@ -57,10 +49,7 @@ def gait_samples(trajectory: Trajectory, outputs: Sequence[str]) -> tuple[Sample
     from 0 to 100 and back to 0 in one step; sine and cosine in its place changed the mean R2 of a network by .0004 at
     most, up and down, on 60 s of running (ten angles), and are not offered.
 
-    Returns
-    -------
-    samples : Samples
-        Inputs `knee_angle_r`, ..., `d(knee_angle_r)/dt`, ..., `phi`; outputs `d2(knee_angle_r)/dt2`, ...
+    returns samples: inputs `knee_angle_r`, ..., `d(knee_angle_r)/dt`, ..., `phi`; outputs `d2(knee_angle_r)/dt2`, ..
     """
     walk = " ".join(part for part in (trajectory.subject, trajectory.condition) if part)
     _check_outputs(trajectory, outputs, walk or "the trajectory")

@@ -20,32 +20,20 @@ AS_STUDIED = "as the study has it"
 class Setting:
     """Filters and training length under which a study is fitted again.
 
-    Parameters
-    ----------
-    angles_hz, emg_hz : float
-        Low-pass of the joint angles and of the rectified EMG [Hz].
-    share : float
-        Share of the training part that is used, from its beginning; 1 for all of it.
-
-    Examples
-    --------
     >>> [setting.name for setting in settings_around(6.0, 10.0, emg=False)][:3]
     ['as the study has it', 'angles 4 Hz', 'angles 8 Hz']
     """
 
     name: str
-    angles_hz: float
-    emg_hz: float
-    share: float = 1.0
+    angles_hz: float  # Low-pass of the joint angles and of the rectified EMG [Hz]
+    emg_hz: float  # Low-pass of the joint angles and of the rectified EMG [Hz]
+    share: float = 1.0  # share of the training part that is used, from its beginning; 1 for all of it
 
 
 def settings_around(angles_hz: float, emg_hz: float, emg: bool = True) -> tuple[Setting, ...]:
     """Settings to try: the study's own, then one thing changed at a time.
 
-    Parameters
-    ----------
-    angles_hz, emg_hz : float
-        The study's low-pass of the joint angles and of the rectified EMG [Hz].
+    angles_hz, emg_hz: the study's low-pass of the joint angles and of the rectified EMG [Hz]
     """
     angles = [Setting(f"angles {hz:g} Hz", hz, emg_hz) for hz in ANGLES_HZ if hz != angles_hz]
     envelopes = [Setting(f"EMG {hz:g} Hz", angles_hz, hz) for hz in EMG_HZ if emg and hz != emg_hz]
@@ -59,17 +47,9 @@ def compare_settings(people: Sequence[Variants], alpha: float = ALPHA) -> pd.Dat
     R2 under two settings are not of the same thing, for the filter makes what is to be predicted as well; the order of
     the models under each setting can be compared, and how far each lies above the null of its filters.
 
-    Parameters
-    ----------
-    people : sequence of Variants
-        Of the question `sensitivity`; fewer than six are not tested.
-    alpha : float
-        Of each family of tests: the variables under one setting.
-
-    Returns
-    -------
-    DataFrame
-        Columns `VARIANT_TEST_COLUMNS`; model and second are `augmented`, first `nominal`.
+    people: of the question `sensitivity`; fewer than six are not tested
+    alpha: of each family of tests: the variables under one setting
+    returns: columns `VARIANT_TEST_COLUMNS`; model and second are `augmented`, first `nominal`
     """
     if len(people) < FEWEST:
         return pd.DataFrame(columns=pd.Index(VARIANT_TEST_COLUMNS))

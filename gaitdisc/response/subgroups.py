@@ -17,15 +17,8 @@ from gaitdisc.statistics.groups import FEWEST, Groups, find_groups
 def responder_table(responses: Sequence[ParticipantResponse], seed: int = 0) -> tuple[pd.DataFrame, str]:
     """Sub-group of each participant, and the verdict in a sentence that says who was looked at.
 
-    Parameters
-    ----------
-    responses : sequence of ParticipantResponse
-        The participants. Who lacks a point of the stride in an output is left out by name.
-
-    Returns
-    -------
-    table : DataFrame
-        Columns `RESPONDER_COLUMNS`; empty where there were too few, or outputs differ.
+    responses: the participants. Who lacks a point of the stride in an output is left out by name
+    returns table: columns `RESPONDER_COLUMNS`; empty where there were too few, or outputs differ
     """
     complete = [response for response in responses if _complete(response)]
     absent = [response.participant for response in responses if not _complete(response)]
@@ -52,10 +45,8 @@ def find_responders(responses: Sequence[ParticipantResponse], seed: int = 0) -> 
 def discrepancy_curves(responses: Sequence[ParticipantResponse]) -> NDArray[np.float64]:
     """Mean over strides of what the Nominal model leaves of device walking, one row a participant.
 
-    Returns
-    -------
-    ndarray (participant, output and phase) [1]
-        Every output over its root mean square of all participants, so that angles and EMG weigh alike.
+    returns (participant, output and phase) [1]: every output over its root mean square of all participants, so that
+        angles and EMG weigh alike
     """
     outputs = {response.outputs for response in responses}
     if len(outputs) != 1:

@@ -15,8 +15,6 @@ _RAD = re.compile(r"^rad(?=$|/s)")
 def shown_unit(unit: str) -> tuple[str, float]:
     """Return the unit in which a person reads a number, and the factor to it: degrees for an angle or its rates.
 
-    Examples
-    --------
     >>> shown_unit("N m/rad"), shown_unit("rad/s")[0], round(shown_unit("rad")[1], 3)
     (('N m/rad', 1.0), 'deg/s', 57.296)
     """
@@ -28,8 +26,6 @@ def shown_unit(unit: str) -> tuple[str, float]:
 def amount(value: float, step: float = math.nan) -> str:
     """Write a number with three digits, or with those that a step of it leaves worth writing.
 
-    Examples
-    --------
     >>> amount(0.0144), amount(285.9, 14), amount(2.003, 0.2), amount(-12345.6)
     ('0.0144', '286', '2.0', '−12346')
     """
@@ -47,8 +43,6 @@ def amount(value: float, step: float = math.nan) -> str:
 def with_unit(value: str, unit: str) -> str:
     """Put a unit behind a number.
 
-    Examples
-    --------
     >>> with_unit("286", "N m/rad"), with_unit("0.3", "")
     ('286 N m/rad', '0.3')
     """
@@ -58,8 +52,6 @@ def with_unit(value: str, unit: str) -> str:
 def estimate_text(estimate: Estimate) -> str:
     """Write an estimate with its interval.
 
-    Examples
-    --------
     >>> estimate_text(Estimate(286.0, 279.2, 292.8, "N m/rad"))
     '286 N m/rad (95 % 279-293)'
     >>> estimate_text(Estimate(-0.02, -0.03, -0.01, "rad"))
@@ -77,8 +69,6 @@ def estimate_text(estimate: Estimate) -> str:
 def brief_text(estimate: Estimate) -> str:
     """Write an estimate without its interval.
 
-    Examples
-    --------
     >>> brief_text(Estimate(0.035, 0.033, 0.037, "rad"))
     '2.0 deg'
     """

@@ -14,84 +14,51 @@ from gaitdisc.results.pooled_cycles import PooledCycles
 
 @dataclass(frozen=True)
 class Limits:
-    """Limits of a value in a reference.
+    """Limits of a value in a reference."""
 
-    Parameters
-    ----------
-    low, high : float
-        Prediction limits for one more healthy leg, corrected for all rules of the page.
-    mean, sd : float
-        Over the legs of the reference.
-    """
-
-    low: float
-    high: float
-    mean: float
-    sd: float
+    low: float  # prediction limits for one more healthy leg, corrected for all rules of the page
+    high: float  # prediction limits for one more healthy leg, corrected for all rules of the page
+    mean: float  # over the legs of the reference
+    sd: float  # over the legs of the reference
     people: int
 
 
 @dataclass(frozen=True)
 class Noted:
-    """A value of one leg that a rule looks at.
+    """A value of one leg that a rule looks at."""
 
-    Parameters
-    ----------
-    rule, words : str
-        Name of the rule, and what it calls a value that stands out; no words for one that does not.
-    excess : float
-        Distance from the reference's mean over that of the limit; beyond 1 outside.
-    """
-
-    rule: str
-    words: str
+    rule: str  # name of the rule, and what it calls a value that stands out; no words for one that does not
+    words: str  # name of the rule, and what it calls a value that stands out; no words for one that does not
     side: str
     value: float
     unit: str
     digits: int
     limits: Limits
     cycles: int
-    excess: float
+    excess: float  # distance from the reference's mean over that of the limit; beyond 1 outside
 
 
 @dataclass(frozen=True)
 class Score:
-    """A score of a leg or of both.
-
-    Parameters
-    ----------
-    low, high : float
-        Smallest and largest of single cycles; NaN where they are not computed one by one.
-    reference_mean, reference_sd : float
-        The same score of each control against the others.
-    """
+    """A score of a leg or of both."""
 
     value: float
-    low: float
-    high: float
+    low: float  # smallest and largest of single cycles; NaN where they are not computed one by one
+    high: float  # smallest and largest of single cycles; NaN where they are not computed one by one
     cycles: int
-    reference_mean: float
-    reference_sd: float
+    reference_mean: float  # the same score of each control against the others
+    reference_sd: float  # the same score of each control against the others
     people: int
 
 
 @dataclass(frozen=True)
 class Profile:
-    """Movement analysis profile and gait profile score.
+    """Movement analysis profile and gait profile score."""
 
-    Parameters
-    ----------
-    variables : mapping of (str, str) to Score
-        Variable and side -> rms difference to the reference's mean [deg].
-    legs : mapping of str to Score
-        Side -> gait profile score of the leg [deg].
-    both : Score or None
-        Gait profile score over fifteen curves; None where a leg or a curve is missing.
-    """
-
+    # mapping of (str, str) to Score, variable and side -> rms difference to the reference's mean [deg]
     variables: Mapping[tuple[str, str], Score]
-    legs: Mapping[str, Score]
-    both: Score | None
+    legs: Mapping[str, Score]  # side -> gait profile score of the leg [deg]
+    both: Score | None  # gait profile score over fifteen curves; None where a leg or a curve is missing
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,41 +72,24 @@ class Band:
 
 @dataclass(frozen=True, eq=False)
 class ClinicalReading:
-    """One person, session and condition, read beside a reference.
-
-    Parameters
-    ----------
-    light : str
-        `green`, `amber` or `red`.
-    reasons : tuple of str
-        Why it is amber or red.
-    numbers : tuple of Noted
-        Every value that a rule looks at, those that stand out first.
-    silent : str
-        Why nothing can be said to stand out; empty where the rules were applied.
-    deviation_index : mapping of str to float
-        Side -> GDI; empty with the reason in `no_index`.
-    consistency : mapping of (str, str) to float
-        Variable and side -> coefficient of multiple correlation of its cycles, NaN where it is not defined.
-    spatiotemporal : mapping of str to Limits
-        Spatiotemporal value -> mean and spread of the reference.
-    beside : tuple of str
-        Which controls of the reference the person is read beside, and what could not be allowed for.
-    """
+    """One person, session and condition, read beside a reference."""
 
     pooled: PooledCycles
     legs: Mapping[str, LegCurves]
-    light: str
-    reasons: tuple[str, ...]
-    numbers: tuple[Noted, ...]
-    silent: str
+    light: str  # `green`, `amber` or `red`
+    reasons: tuple[str, ...]  # why it is amber or red
+    numbers: tuple[Noted, ...]  # every value that a rule looks at, those that stand out first
+    silent: str  # why nothing can be said to stand out; empty where the rules were applied
     profile: Profile | None
     no_profile: str
-    deviation_index: Mapping[str, float]
+    deviation_index: Mapping[str, float]  # side -> GDI; empty with the reason in `no_index`
     no_index: str
+    # mapping of (str, str) to float, variable and side -> coefficient of multiple correlation of its cycles, NaN where
+    # it is not defined
     consistency: Mapping[tuple[str, str], float]
     bands: Mapping[str, Band]
-    spatiotemporal: Mapping[str, Limits]
+    spatiotemporal: Mapping[str, Limits]  # spatiotemporal value -> mean and spread of the reference
+    # which controls of the reference the person is read beside, and what could not be allowed for
     beside: tuple[str, ...] = ()
 
     @property
@@ -150,56 +100,32 @@ class ClinicalReading:
 
 @dataclass(frozen=True)
 class DifferingSpan:
-    """A stretch of the cycle in which two sets of cycles of a leg differ.
-
-    Parameters
-    ----------
-    first, last : int
-        [% of the cycle].
-    difference : float
-        Largest in the stretch, second minus first [the variable's unit].
-    p : float
-        Corrected for the whole cycle and all variables of the leg.
-    matters : bool
-        Whether the difference is as large as the smallest that matters.
-    """
+    """A stretch of the cycle in which two sets of cycles of a leg differ."""
 
     variable: str
     side: str
-    first: int
-    last: int
-    difference: float
-    p: float
-    matters: bool
+    first: int  # [% of the cycle]
+    last: int  # [% of the cycle]
+    difference: float  # largest in the stretch, second minus first [the variable's unit]
+    p: float  # corrected for the whole cycle and all variables of the leg
+    matters: bool  # whether the difference is as large as the smallest that matters
 
 
 @dataclass(frozen=True, eq=False)
 class Contrast:
-    """Two sessions or conditions of one person, one over the other.
-
-    Parameters
-    ----------
-    untested : mapping of str to str
-        Side -> why no test was done.
-    """
+    """Two sessions or conditions of one person, one over the other."""
 
     first: ClinicalReading
     second: ClinicalReading
     spans: tuple[DifferingSpan, ...]
-    untested: Mapping[str, str]
+    untested: Mapping[str, str]  # side -> why no test was done
     tested: Mapping[str, int]
 
 
 @dataclass(frozen=True, eq=False)
 class PersonSession:
-    """A person's session: its conditions, the first the one that page 1 shows, and what is compared.
+    """A person's session: its conditions, the first the one that page 1 shows, and what is compared."""
 
-    Parameters
-    ----------
-    title : str
-        Pseudonym, and session where there are sessions.
-    """
-
-    title: str
+    title: str  # pseudonym, and session where there are sessions
     readings: tuple[ClinicalReading, ...]
     contrasts: tuple[Contrast, ...] = ()

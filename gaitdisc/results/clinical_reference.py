@@ -21,49 +21,29 @@ DIGITS = 4
 
 @dataclass(frozen=True, eq=False)
 class ReferenceLeg:
-    """Mean cycle of one leg of one control.
+    """Mean cycle of one leg of one control."""
 
-    Parameters
-    ----------
-    person : int
-        Number of the control; no pseudonym is kept.
-    curves : mapping of str to ndarray (phase,)
-        Clinical variable -> mean over the leg's cycles on 101 points.
-    values : mapping of str to float
-        Spatiotemporal value -> mean over the leg's cycles.
-    leg_m, age_years : float and int, optional
-        Leg length [m] and age in whole years; None where they are not known.
-    """
-
-    person: int
+    person: int  # number of the control; no pseudonym is kept
     side: str
     cycles: int
     stance_percent: float
+    # each (phase,), clinical variable -> mean over the leg's cycles on 101 points
     curves: Mapping[str, NDArray[np.float64]]
-    values: Mapping[str, float]
-    leg_m: float | None = None
-    age_years: int | None = None
+    values: Mapping[str, float]  # spatiotemporal value -> mean over the leg's cycles
+    leg_m: float | None = None  # leg length [m] and age in whole years; None where they are not known
+    age_years: int | None = None  # leg length [m] and age in whole years; None where they are not known
 
 
 @dataclass(frozen=True, eq=False)
 class ClinicalReference:
-    """Controls by condition.
-
-    Parameters
-    ----------
-    legs : mapping of str to tuple of ReferenceLeg
-        Condition -> legs.
-    settings, versions : mapping
-        Filters and rules for strides they were processed with; what processed them.
-    published : tuple of PublishedGroup
-        Where it is no laboratory's own: groups of speed, of which there are no legs.
-    """
+    """Controls by condition."""
 
     title: str
-    legs: Mapping[str, tuple[ReferenceLeg, ...]]
-    settings: Mapping[str, object]
-    versions: Mapping[str, str]
+    legs: Mapping[str, tuple[ReferenceLeg, ...]]  # condition -> legs
+    settings: Mapping[str, object]  # filters and rules for strides they were processed with; what processed them
+    versions: Mapping[str, str]  # filters and rules for strides they were processed with; what processed them
     created: str
+    # where it is no laboratory's own: groups of speed, of which there are no legs
     published: tuple[PublishedGroup, ...] = ()
 
     def of(self, condition: str) -> tuple[ReferenceLeg, ...]:

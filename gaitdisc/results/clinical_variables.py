@@ -9,30 +9,18 @@ KINEMATICS, MOMENTS, POWERS, FORCES = "kinematics", "moments", "powers", "forces
 
 @dataclass(frozen=True)
 class ClinicalVariable:
-    """One curve of a leg.
-
-    Parameters
-    ----------
-    stem : str
-        Channel it is taken from; `{side}` stands for the leg.
-    signs : tuple of float
-        Of the left and of the right leg, by which the channel's values are multiplied.
-    up, down : str
-        What a positive and a negative value mean.
-    row, column : int
-        Place in the sheet of its kind.
-    """
+    """One curve of a leg."""
 
     name: str
     words: str
     kind: str
-    stem: str
-    signs: tuple[float, float]
+    stem: str  # channel it is taken from; `{side}` stands for the leg
+    signs: tuple[float, float]  # of the left and of the right leg, by which the channel's values are multiplied
     unit: str
-    up: str
-    down: str
-    row: int
-    column: int
+    up: str  # what a positive and a negative value mean
+    down: str  # what a positive and a negative value mean
+    row: int  # place in the sheet of its kind
+    column: int  # place in the sheet of its kind
 
     def channel(self, side: str) -> str:
         """Name of the channel for a leg."""

@@ -21,10 +21,7 @@ WORDS = ("reason", "foot_off_by")
 def save_cycles(pooled: PooledCycles, folder: Path, key: str) -> None:
     """Save the cycles of one person, session and condition: `cycles.json`, `cycles.csv`, `arrays.npz`.
 
-    Parameters
-    ----------
-    key : str
-        What they were computed from: a hash of files and settings.
+    key: what they were computed from: a hash of files and settings
     """
     save_unit(
         folder,
@@ -97,8 +94,6 @@ def load_pooled_cycles(folder: Path) -> PooledCycles:
 def cycles_name(subject: str, session: str, condition: str) -> str:
     """Folder name of pooled cycles, another one for every person, session and condition.
 
-    Examples
-    --------
     >>> cycles_name("P01", "", "turn"), cycles_name("P01", "after", "turn")
     ('P01-turn', 'P01-after___turn-c681ddd0')
     """

@@ -15,21 +15,13 @@ QUANTITY_COLUMNS = ("length_s", "n_training", *R2_COLUMNS)
 
 @dataclass(frozen=True, eq=False)
 class DataQuantity:
-    """R2 on the same held-out walking for every length of the training part.
-
-    Parameters
-    ----------
-    part : str
-        `first` or `last`: which seconds of the training part are taken.
-    table : DataFrame
-        length_s [s], n_training (samples of the device walk), and the columns of `ParticipantResponse.r2`.
-    left_away : mapping of float to str
-        Length [s] -> why there is no row of it: longer than the training part, or too short to fit.
-    """
+    """R2 on the same held-out walking for every length of the training part."""
 
     participant: str
-    part: str
+    part: str  # `first` or `last`: which seconds of the training part are taken
+    # length_s [s], n_training (samples of the device walk), and the columns of `ParticipantResponse.r2`
     table: pd.DataFrame
+    # length [s] -> why there is no row of it: longer than the training part, or too short to fit
     left_away: Mapping[float, str]
 
     def __post_init__(self) -> None:

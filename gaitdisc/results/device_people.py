@@ -16,15 +16,8 @@ NOTHING = "nothing named"
 def over_people(found: Mapping[str, Discovery]) -> pd.DataFrame:
     """One row for each number of each effect: in how many people it was named, its mean, 95 % interval, and who.
 
-    Parameters
-    ----------
-    found : mapping of str to Discovery
-        By participant.
-
-    Returns
-    -------
-    DataFrame
-        Columns `COLUMNS`; the interval is Student's over people, NaN of one person alone.
+    found: by participant
+    returns: columns `COLUMNS`; the interval is Student's over people, NaN of one person alone
     """
     own: dict[tuple[str, str, str, str], dict[str, float]] = {}
     for person, one in found.items():

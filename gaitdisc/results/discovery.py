@@ -41,103 +41,59 @@ class Estimate:
 
 @dataclass(frozen=True)
 class FoundEffect:
-    """One explanation of the gap.
+    """One explanation of the gap."""
 
-    Parameters
-    ----------
-    kind : str
-        What `place` is: `port`, `equation`, `parameter`, `input`, `observation`, `state`.
-    name : str
-        Name of the effect, of the catalogue.
-    term : str
-        For a missing term, its expression, in the unit of the place; else what was changed.
-    held_out : float
-        Share of the gap on held-out data that goes with all that was found.
-    bic : float
-        Fall of the Bayesian criterion from the simulation as read: of what was found, all of it together; of a rival,
-        with it in the place of what it rivals.
-    tied : bool
-        For a rival: these data cannot separate it from what was named.
-    small : bool
-        For a rival: it closes too little of the gap to be named, or not beyond chance.
-    bounds : tuple of float
-        Of a wrong parameter: the file's `low` and `high`, infinite where it has but one; empty where it has neither.
-    states : mapping of str to str
-        States that the effect brings along, and the time derivative of each.
-    reads_as : str
-        Of a term without a name that was read as an expression of few pieces: this expression, in a few digits.
-    reads_as_effect : str
-        The catalogue's effect that this expression is; empty where it is none.
-    """
-
-    kind: str
+    kind: str  # what `place` is: `port`, `equation`, `parameter`, `input`, `observation`, `state`
     place: str
-    name: str
-    term: str
+    name: str  # name of the effect, of the catalogue
+    term: str  # for a missing term, its expression, in the unit of the place; else what was changed
     estimates: Mapping[str, Estimate] = field(default_factory=dict)
-    held_out: float = float("nan")
+    held_out: float = float("nan")  # share of the gap on held-out data that goes with all that was found
+    # fall of the Bayesian criterion from the simulation as read: of what was found, all of it together; of a rival,
+    # with it in the place of what it rivals
     bic: float = float("nan")
-    tied: bool = False
-    small: bool = False
+    tied: bool = False  # for a rival: these data cannot separate it from what was named
+    small: bool = False  # for a rival: it closes too little of the gap to be named, or not beyond chance
+    # of a wrong parameter: the file's `low` and `high`, infinite where it has but one; empty where it has neither
     bounds: tuple[float, ...] = ()
+    # states that the effect brings along, and the time derivative of each
     states: Mapping[str, str] = field(default_factory=dict)
+    # of a term without a name that was read as an expression of few pieces: this expression, in a few digits
     reads_as: str = ""
-    reads_as_effect: str = ""
+    reads_as_effect: str = ""  # the catalogue's effect that this expression is; empty where it is none
 
 
 @dataclass(frozen=True)
 class Correction:
-    """A number of the file that moved within its own bounds; no finding.
-
-    Parameters
-    ----------
-    found : Estimate
-        What it was fitted to; the interval lies inside the bounds.
-    """
+    """A number of the file that moved within its own bounds; no finding."""
 
     parameter: str
     given: float
-    found: Estimate
+    found: Estimate  # what it was fitted to; the interval lies inside the bounds
 
 
 @dataclass(frozen=True)
 class Whereabouts:
-    """Where the gap arises.
-
-    Parameters
-    ----------
-    share_of_gap : float
-        Part of the gap's variance that pushes there account for.
-    phase : tuple of float
-        From and to, in shares of the stride; empty without a stride.
-    """
+    """Where the gap arises."""
 
     kind: str
     place: str
-    share_of_gap: float
-    phase: tuple[float, ...] = ()
+    share_of_gap: float  # part of the gap's variance that pushes there account for
+    phase: tuple[float, ...] = ()  # from and to, in shares of the stride; empty without a stride
     region: str = ""
 
 
 @dataclass(frozen=True)
 class GapSize:
-    """Size of the gap, root mean square over channels of error over the channel's standard deviation.
-
-    Parameters
-    ----------
-    noise_floor : float
-        What the sensors' noise alone would leave.
-    p : float
-        Chance of so clear a fall of the squared error without any effect (Wilcoxon's signed ranks over pieces of the
-        runs, one-sided). Where nothing is named: of what the data that were fitted spoke for most.
-    channels : mapping of str to tuple of float
-        For each channel: before, after, noise floor [the channel's unit].
-    """
+    """Size of the gap, root mean square over channels of error over the channel's standard deviation."""
 
     before: float
     after: float
-    noise_floor: float
+    noise_floor: float  # what the sensors' noise alone would leave
+    # chance of so clear a fall of the squared error without any effect (Wilcoxon's signed ranks over pieces of the
+    # runs, one-sided). Where nothing is named: of what the data that were fitted spoke for most
     p: float = float("nan")
+    # for each channel: before, after, noise floor [the channel's unit]
     channels: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
     pieces: int = 0
 
@@ -145,8 +101,6 @@ class GapSize:
     def unexplained(self) -> float:
         """Share of the variance above the noise floor that is left; 0 where nothing is.
 
-        Examples
-        --------
         >>> GapSize(before=3.0, after=1.0, noise_floor=1.0).unexplained
         0.0
         """
@@ -156,29 +110,15 @@ class GapSize:
 
 @dataclass(frozen=True)
 class Runs:
-    """Measured, simulated and augmented runs of one set of trials.
+    """Measured, simulated and augmented runs of one set of trials."""
 
-    Parameters
-    ----------
-    trial : ndarray of int (run,)
-        Number of the trial.
-    time : ndarray (run, sample)
-        [s].
-    phase : ndarray (run, sample) or empty
-        Share of the stride.
-    measured, simulated, augmented : ndarray (run, sample, channel)
-        [the channel's unit].
-    names : tuple of str
-        Of all trials of the measured data, by their number.
-    """
-
-    trial: NDArray[np.intp]
-    time: NDArray[np.float64]
-    phase: NDArray[np.float64]
-    measured: NDArray[np.float64]
-    simulated: NDArray[np.float64]
-    augmented: NDArray[np.float64]
-    names: tuple[str, ...] = ()
+    trial: NDArray[np.intp]  # (run,), number of the trial
+    time: NDArray[np.float64]  # (run, sample), [s]
+    phase: NDArray[np.float64]  # (run, sample) or empty, share of the stride
+    measured: NDArray[np.float64]  # (run, sample, channel), [the channel's unit]
+    simulated: NDArray[np.float64]  # (run, sample, channel), [the channel's unit]
+    augmented: NDArray[np.float64]  # (run, sample, channel), [the channel's unit]
+    names: tuple[str, ...] = ()  # of all trials of the measured data, by their number
 
     def table(self, channels: tuple[str, ...]) -> dict[str, NDArray[Any]]:
         """Return the runs as columns: run, trial, time, phase, and each channel three times."""

@@ -22,26 +22,14 @@ PART_WORDS = {
 
 @dataclass(frozen=True, eq=False)
 class PartAccuracy:
-    """Known and augmented model against the truth over one part of a record.
+    """Known and augmented model against the truth over one part of a record."""
 
-    Parameters
-    ----------
-    time : ndarray (sample,) [s]
-        Since the part's start.
-    truth, known, augmented : ndarray (sample, channel)
-        Noise-free; NaN from where a model diverged.
-    diverged_s : float or None
-        When the augmented model left every bound [s since the part's start].
-    begins_s : float
-        When the part begins in its record [s].
-    """
-
-    time: NDArray[np.float64]
-    truth: NDArray[np.float64]
-    known: NDArray[np.float64]
-    augmented: NDArray[np.float64]
-    diverged_s: float | None
-    begins_s: float = 0.0
+    time: NDArray[np.float64]  # (sample,) [s], since the part's start
+    truth: NDArray[np.float64]  # (sample, channel), Noise-free; NaN from where a model diverged
+    known: NDArray[np.float64]  # (sample, channel), Noise-free; NaN from where a model diverged
+    augmented: NDArray[np.float64]  # (sample, channel), Noise-free; NaN from where a model diverged
+    diverged_s: float | None  # when the augmented model left every bound [s since the part's start]
+    begins_s: float = 0.0  # when the part begins in its record [s]
 
     def __post_init__(self) -> None:
         """Freeze the numbers."""
@@ -51,10 +39,7 @@ class PartAccuracy:
     def rmse(self, model: str, until_s: float | None = None) -> NDArray[np.float64]:
         """Root mean square error, (channel,) [channel's unit]; NaN if the model diverged before.
 
-        Parameters
-        ----------
-        until_s : float, optional
-            Horizon [s]; the whole part where absent.
+        until_s: horizon [s]; the whole part where absent
         """
         last = len(self.time) if until_s is None else int(np.searchsorted(self.time, until_s + 1e-9, side="right"))
         return np.sqrt(np.mean((getattr(self, model)[:last] - self.truth[:last]) ** 2, axis=0))
@@ -62,10 +47,7 @@ class PartAccuracy:
     def accuracy(self, clipped: bool = False, until_s: float | None = None) -> NDArray[np.float64]:
         """100 (1 - RMSE augmented / RMSE known), (channel,) [%]; NaN if the augmented model diverged.
 
-        Parameters
-        ----------
-        until_s : float, optional
-            Horizon [s].
+        until_s: horizon [s]
         """
         known, augmented = self.rmse("known", until_s), self.rmse("augmented", until_s)
         with np.errstate(all="ignore"):
@@ -75,20 +57,14 @@ class PartAccuracy:
     def change(self, horizons_s: Sequence[float]) -> NDArray[np.float64]:
         """Median over channels of the percent change in RMSE within each horizon (Fig. 3.9), (horizon,) [%].
 
-        Parameters
-        ----------
-        horizons_s : sequence of float
-            [s].
+        horizons_s: [s]
         """
         return np.array([np.median(self.accuracy(until_s=each)) for each in horizons_s])
 
     def valid_s(self, model: str, tolerance: float = 0.4) -> float:
         """Time until the error first exceeds a share of the truth's standard deviation [s].
 
-        Parameters
-        ----------
-        tolerance : float
-            Root mean square over the channels of error over standard deviation.
+        tolerance: root mean square over the channels of error over standard deviation
         """
         error = (getattr(self, model) - self.truth) / self.truth.std(axis=0)
         beyond = ~(np.sqrt(np.mean(error**2, axis=1)) <= tolerance)
@@ -102,37 +78,24 @@ class PartAccuracy:
 
 @dataclass(frozen=True, eq=False)
 class DiscrepancyCell:
-    """What one method made of one error signal.
-
-    Parameters
-    ----------
-    noise : float
-        Share of each channel's standard deviation, or its unit in the published variant.
-    parts : dict of str to PartAccuracy
-        `reconstruction`: the training part, from the true first state. `oracle forecast`: from the noise-free true
-        state at the end of the training part, which no user has. `forecast`: from that state as it is estimated from
-        the noisy measurement. Empty where nothing was fitted.
-    fit_s, run_s : float [s]
-        Of a core, to fit, and to estimate the start and run the augmented model over all parts.
-    terms : str
-        What was found, for a method that says so.
-    units : tuple of str
-        Of the states, of which the channels are the first; empty where they have none.
-    """
+    """What one method made of one error signal."""
 
     system: str
     method: str
     approach: str
     variant: str
-    noise: float
+    noise: float  # share of each channel's standard deviation, or its unit in the published variant
     seed: int
     channels: tuple[str, ...]
+    # `reconstruction`: the training part, from the true first state. `oracle forecast`: from the noise-free true state
+    # at the end of the training part, which no user has. `forecast`: from that state as it is estimated from the noisy
+    # measurement. Empty where nothing was fitted
     parts: dict[str, PartAccuracy]
-    fit_s: float
-    run_s: float
-    terms: str = ""
+    fit_s: float  # [s], of a core, to fit, and to estimate the start and run the augmented model over all parts
+    run_s: float  # [s], of a core, to fit, and to estimate the start and run the augmented model over all parts
+    terms: str = ""  # what was found, for a method that says so
     refused: str = ""
-    units: tuple[str, ...] = ()
+    units: tuple[str, ...] = ()  # of the states, of which the channels are the first; empty where they have none
 
     @property
     def samples(self) -> int:

@@ -11,8 +11,6 @@ from gaitdisc.results.discovery import Estimate, FoundEffect
 def spoken(name: str) -> str:
     """Return an effect's name as it is said.
 
-    Examples
-    --------
     >>> spoken("one_sided_spring"), spoken("coulomb_friction")
     ('one-sided spring', 'Coulomb friction')
     """
@@ -22,8 +20,6 @@ def spoken(name: str) -> str:
 def at_place(kind: str, place: str) -> str:
     """Say where something enters.
 
-    Examples
-    --------
     >>> at_place("port", "ankle_moment"), at_place("equation", "v")
     ('at the ankle_moment port', 'in the equation of v')
     """
@@ -35,8 +31,6 @@ def at_place(kind: str, place: str) -> str:
 def outside_text(effect: FoundEffect, found: Estimate) -> str:
     """Say that a wrong parameter lies outside the bounds that the file gives it; nothing where it does not.
 
-    Examples
-    --------
     >>> wrong = FoundEffect("parameter", "g", "wrong_parameter", "", bounds=(9.79, 9.83))
     >>> outside_text(wrong, Estimate(17.0, 14.0, 20.0, "m/s^2")), outside_text(wrong, Estimate(9.8, 9.7, 9.9, "m/s^2"))
     ('outside its bounds, 9.79 to 9.83 m/s^2', '')

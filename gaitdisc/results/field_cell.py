@@ -23,18 +23,10 @@ REACH_SD = 4.0  # of the field's own standard deviation: how far the bins of err
 
 @dataclass(frozen=True, eq=False)
 class ErrorCounts:
-    """How often an error of each size was made, over all points and judged snapshots.
+    """How often an error of each size was made, over all points and judged snapshots."""
 
-    Parameters
-    ----------
-    edges : ndarray (bin + 1,) [unit]
-        Of the bins; the outer two bins take what lies beyond.
-    counts : ndarray (bin,)
-        Values in each.
-    """
-
-    edges: NDArray[np.float64]
-    counts: NDArray[np.int_]
+    edges: NDArray[np.float64]  # (bin + 1,) [unit], of the bins; the outer two bins take what lies beyond
+    counts: NDArray[np.int_]  # (bin,), values in each
 
     def __post_init__(self) -> None:
         """Freeze the numbers."""
@@ -44,23 +36,7 @@ class ErrorCounts:
 
 @dataclass(frozen=True, eq=False)
 class FieldCell:
-    """What one model told of one quantity of a field.
-
-    Parameters
-    ----------
-    relative_l2 : float
-        Norm of the error over the norm of the field about zero, of all judged values at once (Eq. 2.21); 1 for a model
-        that says 0.
-    rmse, bias, sd : float [unit]
-        Root mean square, mean and standard deviation of told minus measured.
-    r2 : float
-        1 - mean squared error over the mean squared distance from the training part's mean field; 0 for a model that
-        says that mean.
-    seconds : float [s]
-        Processor time of the fit.
-    run : int
-        Number of the run, where one cell was computed several times with other seeds.
-    """
+    """What one model told of one quantity of a field."""
 
     field: str
     quantity: str
@@ -68,15 +44,19 @@ class FieldCell:
     route: str
     split: str
     model: str
+    # norm of the error over the norm of the field about zero, of all judged values at once (Eq. 2.21); 1 for a model
+    # that says 0
     relative_l2: float
-    rmse: float
-    bias: float
-    sd: float
+    rmse: float  # [unit], root mean square, mean and standard deviation of told minus measured
+    bias: float  # [unit], root mean square, mean and standard deviation of told minus measured
+    sd: float  # [unit], root mean square, mean and standard deviation of told minus measured
+    # 1 - mean squared error over the mean squared distance from the training part's mean field; 0 for a model that says
+    # that mean
     r2: float
     fitted: int
     judged: int
-    seconds: float
-    run: int
+    seconds: float  # [s], processor time of the fit
+    run: int  # number of the run, where one cell was computed several times with other seeds
     errors: ErrorCounts
 
 
@@ -90,15 +70,9 @@ def field_cells_table(cells: Sequence[FieldCell]) -> pd.DataFrame:
 def error_counts(errors: NDArray[np.floating], sd: float) -> ErrorCounts:
     """Count errors by size.
 
-    Parameters
-    ----------
-    errors : ndarray, any shape [unit]
-        Told minus measured.
-    sd : float [unit]
-        Of the field; the bins reach four of it to each side.
+    errors , any shape [unit]: told minus measured
+    sd [unit]: of the field; the bins reach four of it to each side
 
-    Examples
-    --------
     >>> error_counts(np.array([0.0, 99.0]), 1.0).counts[[60, 120]].tolist()
     [1, 1]
     """
@@ -110,10 +84,7 @@ def error_counts(errors: NDArray[np.floating], sd: float) -> ErrorCounts:
 def save_cells(cells: Sequence[FieldCell], made_by: Mapping[str, Any], path: Path) -> None:
     """Keep cells, so that a study that was stopped goes on.
 
-    Parameters
-    ----------
-    path : Path
-        Of a JSON file; written whole or not at all.
+    path: of a JSON file; written whole or not at all
     """
     rows = [
         {**vars(cell), "errors": {"edges": cell.errors.edges.tolist(), "counts": cell.errors.counts.tolist()}}

@@ -24,26 +24,17 @@ ALONG_THE_PATH = ("pelvis_rotation", "foot_progression")  # angles about a strai
 
 @dataclass(frozen=True, eq=False)
 class LegCurves:
-    """Kept cycles of one leg.
-
-    Parameters
-    ----------
-    stance_percent : float
-        Mean foot off [% of the cycle]; NaN where none is known.
-    cycles : mapping of str to ndarray (cycle, phase)
-        Clinical variable -> curves on 101 points, in the variable's unit and sign; complete, but for the end of a
-        moment or power.
-    values : mapping of str to ndarray (cycle,)
-        Spatiotemporal value -> of the cycles in which it is known.
-    turned_deg : float
-        Mean turn of the pelvis from contact to contact; beyond TURNED_DEG angles about the line of walking are left.
-    """
+    """Kept cycles of one leg."""
 
     side: str
     count: int
-    stance_percent: float
+    stance_percent: float  # mean foot off [% of the cycle]; NaN where none is known
+    # each (cycle, phase), clinical variable -> curves on 101 points, in the variable's unit and sign; complete, but for
+    # the end of a moment or power
     cycles: Mapping[str, NDArray[np.float64]]
+    # each (cycle,), spatiotemporal value -> of the cycles in which it is known
     values: Mapping[str, NDArray[np.float64]]
+    # mean turn of the pelvis from contact to contact; beyond TURNED_DEG angles about the line of walking are left
     turned_deg: float = 0.0
 
     def mean(self, name: str) -> NDArray[np.float64]:

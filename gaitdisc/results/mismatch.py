@@ -28,87 +28,48 @@ CHANNEL_COLUMNS = (
 
 @dataclass(frozen=True)
 class Exchange:
-    """What was exchanged in the permutation test, and how often.
-
-    Parameters
-    ----------
-    first, second : int
-        Units of either walk; 1 for a walk that was taken as a curve without spread of its own.
-    strides_first, strides_second : int
-        Strides of either walk that the units hold.
-    exact : bool
-        Whether these are all that there are.
-    threshold : float
-        |t| that only `alpha` of them exceed anywhere in the stride and in any channel.
-    alpha : float
-        Of the whole family of points and channels.
-    """
+    """What was exchanged in the permutation test, and how often."""
 
     unit: str
-    first: int
-    second: int
-    strides_first: int
-    strides_second: int
+    first: int  # units of either walk; 1 for a walk that was taken as a curve without spread of its own
+    second: int  # units of either walk; 1 for a walk that was taken as a curve without spread of its own
+    strides_first: int  # strides of either walk that the units hold
+    strides_second: int  # strides of either walk that the units hold
     permutations: int
-    exact: bool
-    threshold: float
-    alpha: float
+    exact: bool  # whether these are all that there are
+    threshold: float  # |t| that only `alpha` of them exceed anywhere in the stride and in any channel
+    alpha: float  # of the whole family of points and channels
 
 
 @dataclass(frozen=True)
 class Alignment:
-    """Shift along the stride that the channels of two walks have in common.
+    """Shift along the stride that the channels of two walks have in common."""
 
-    Parameters
-    ----------
-    percent : float
-        By how much later the first walk's curves fit best, the median over channels [% stride].
-    applied : bool
-        Whether they were moved by it before anything was tested.
-    agreeing, channels : int
-        Channels whose own best shift lies within 2 % of the stride of it, and all.
-    """
-
-    percent: float = 0.0
-    applied: bool = False
-    agreeing: int = 0
-    channels: int = 0
+    percent: float = 0.0  # by how much later the first walk's curves fit best, the median over channels [% stride]
+    applied: bool = False  # whether they were moved by it before anything was tested
+    agreeing: int = 0  # channels whose own best shift lies within 2 % of the stride of it, and all
+    channels: int = 0  # channels whose own best shift lies within 2 % of the stride of it, and all
 
 
 @dataclass(frozen=True)
 class Smallest:
     """Smallest difference that is named: less matters to nobody, however sure it is.
 
-    Parameters
-    ----------
-    angle_deg : float
-        Of an angle [deg].
-    moment_n_m_per_kg : float
-        Of a moment per body mass [N m/kg].
-    share : float
-        Of body weight for a force where the weight is known; else, and for every other unit, of the range of the second
-        walk's mean curve.
-    body_weight_n : float, optional
-        Mass x 9.81 [N].
-
-    Examples
-    --------
     >>> Smallest().of("deg", 60.0), Smallest(body_weight_n=700.0).of("N", 800.0), Smallest().of("N", 800.0)
     (2.0, 35.0, 40.0)
     """
 
-    angle_deg: float = 2.0
-    moment_n_m_per_kg: float = 0.1
+    angle_deg: float = 2.0  # of an angle [deg]
+    moment_n_m_per_kg: float = 0.1  # of a moment per body mass [N m/kg]
+    # of body weight for a force where the weight is known; else, and for every other unit, of the range of the second
+    # walk's mean curve
     share: float = 0.05
-    body_weight_n: float | None = None
+    body_weight_n: float | None = None  # mass x 9.81 [N]
 
     def of(self, unit: str, reach: float) -> float:
         """Smallest difference of one channel that is named, in its unit.
 
-        Parameters
-        ----------
-        reach : float
-            Range of its mean curve [unit].
+        reach: range of its mean curve [unit]
         """
         if unit == "deg":
             return self.angle_deg

@@ -13,35 +13,22 @@ TOOLS = ("discover", "sindy", "dmd", "gp", "nn")
 
 @dataclass(frozen=True)
 class Naming:
-    """An answer about what a model lacks.
+    """An answer about what a model lacks."""
 
-    Parameters
-    ----------
-    case, hidden : str
-        What was recorded; what the known model lacks, empty where nothing is hidden.
-    answer : str
-        One of `ANSWERS`: the hidden effect and nothing else, it and another from which the data cannot tell it
-        (whichever stands first), more than it, something else, a curve without a name, that nothing is missing, or a
-        refusal.
-    amount : float
-        The effect's number over its true one; NaN where the hidden effect was not named.
-    accuracy : float
-        Median over channels of how much less RMSE the forecast has than that of the known model, both from the
-        noise-free true state, an oracle [%]; NaN where it diverged or was not run.
-    diverged_s : float or None
-        When the forecast left every bound [s since its start].
-    """
-
-    case: str
-    hidden: str
+    case: str  # what was recorded; what the known model lacks, empty where nothing is hidden
+    hidden: str  # what was recorded; what the known model lacks, empty where nothing is hidden
     tool: str
     noise: float
     seed: int
+    # one of `ANSWERS`: the hidden effect and nothing else, it and another from which the data cannot tell it (whichever
+    # stands first), more than it, something else, a curve without a name, that nothing is missing, or a refusal
     answer: str
     said: str
-    amount: float = float("nan")
+    amount: float = float("nan")  # the effect's number over its true one; NaN where the hidden effect was not named
+    # median over channels of how much less RMSE the forecast has than that of the known model, both from the noise-free
+    # true state, an oracle [%]; NaN where it diverged or was not run
     accuracy: float = float("nan")
-    diverged_s: float | None = None
+    diverged_s: float | None = None  # when the forecast left every bound [s since its start]
     seconds: float = float("nan")
 
     def __post_init__(self) -> None:
@@ -58,8 +45,6 @@ class Naming:
 def namings_table(namings: Sequence[Naming]) -> pd.DataFrame:
     """Return all answers, one row each.
 
-    Examples
-    --------
     >>> namings_table([Naming("free fall", "", "sindy", 0.0, 0, "nothing", "nothing")])["right"].tolist()
     [True]
     """

@@ -34,16 +34,10 @@ class DamagedError(SchemaError):
 
 @dataclass(frozen=True)
 class OnDisk(Generic[T]):
-    """Something made of the arrays of one file each time it is asked for.
-
-    Parameters
-    ----------
-    sha256 : str
-        Hash it had when it was saved.
-    """
+    """Something made of the arrays of one file each time it is asked for."""
 
     path: Path
-    sha256: str
+    sha256: str  # hash it had when it was saved
     made: Callable[[Arrays], T]
 
     def __call__(self) -> T:
@@ -53,16 +47,10 @@ class OnDisk(Generic[T]):
 
 @dataclass(frozen=True)
 class StoredArrays(Mapping[str, NDArray[np.float64]]):
-    """Arrays of one file by name, read when one of them is asked for.
-
-    Parameters
-    ----------
-    sha256 : str
-        Hash it had when it was saved; empty where there is no file, and no array.
-    """
+    """Arrays of one file by name, read when one of them is asked for."""
 
     path: Path
-    sha256: str
+    sha256: str  # hash it had when it was saved; empty where there is no file, and no array
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
         return self._read()[name]
@@ -84,8 +72,6 @@ class StoredArrays(Mapping[str, NDArray[np.float64]]):
 def may_lie_on_disk(*fields: str) -> Callable[[type[Kind]], type[Kind]]:
     """Let fields of a dataclass be given as `OnDisk`; who reads such a field gets its value, which is not kept.
 
-    Examples
-    --------
     >>> @may_lie_on_disk("curves")
     ... @dataclass(frozen=True)
     ... class Kept:

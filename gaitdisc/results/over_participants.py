@@ -29,37 +29,22 @@ TABLES = {
 
 @dataclass(frozen=True, eq=False)
 class OverParticipants:
-    """Comparisons over participants; a table without rows was not computed.
+    """Comparisons over participants; a table without rows was not computed."""
 
-    Parameters
-    ----------
-    lengths : DataFrame
-        Comparisons (i) and (ii) of section 4.2.4 at every training length, columns `LENGTH_COLUMNS`: second is `exo`
-        (against Augmented of that length) or `exo, whole training part` (against Exo of that length).
-    reductions : DataFrame
-        Stride-averaged residual of every participant, variable and model, columns `REDUCTION_COLUMNS`: peak_to_peak and
-        rms [unit], and by which share of the Nominal model's they are smaller [1].
-    reduction_tests : DataFrame
-        These shares against zero over participants, columns `REDUCTION_TEST_COLUMNS`; measure is `peak_to_peak` or
-        `rms`.
-    baselines : DataFrame
-        R2 of the network (second) against that of what needs no network (first: `ridge`, `linear`, `null`), columns
-        `BASELINE_COLUMNS`.
-    responders : DataFrame
-        Sub-group of each participant, 0 where there are none, columns `RESPONDER_COLUMNS`.
-    lengths_said : str
-        Why there is no test of the lengths; empty where there is one, or nothing was ablated.
-    responders_said : str
-        The verdict on sub-groups in a sentence.
-    """
-
+    # comparisons (i) and (ii) of section 4.2.4 at every training length, columns `LENGTH_COLUMNS`: second is `exo`
+    # (against Augmented of that length) or `exo, whole training part` (against Exo of that length)
     lengths: pd.DataFrame
+    # Stride-averaged residual of every participant, variable and model, columns `REDUCTION_COLUMNS`: peak_to_peak and
+    # rms [unit], and by which share of the Nominal model's they are smaller [1]
     reductions: pd.DataFrame
+    # these shares against zero over participants, columns `REDUCTION_TEST_COLUMNS`; measure is `peak_to_peak` or `rms`
     reduction_tests: pd.DataFrame
+    # R2 of the network (second) against that of what needs no network (first: `ridge`, `linear`, `null`), columns
+    # `BASELINE_COLUMNS`
     baselines: pd.DataFrame
-    responders: pd.DataFrame
-    lengths_said: str
-    responders_said: str
+    responders: pd.DataFrame  # Sub-group of each participant, 0 where there are none, columns `RESPONDER_COLUMNS`
+    lengths_said: str  # why there is no test of the lengths; empty where there is one, or nothing was ablated
+    responders_said: str  # the verdict on sub-groups in a sentence
 
     def __post_init__(self) -> None:
         """Check columns once."""

@@ -19,27 +19,19 @@ FAMILY_COLUMNS = ("family", "first", "second", "variable", "tests", "critical", 
 
 @dataclass(frozen=True, eq=False)
 class PairTests:
-    """Paired comparisons of the models' R2 on held-out device walking, over participants.
-
-    Parameters
-    ----------
-    too_few : str
-        Why there is no test; empty where there is one.
-    tests : DataFrame
-        One row a pair of models and variable, columns `TEST_COLUMNS`, corrected over the variables of the pair:
-        first and second model (`perfect` is R2 = 1), n (pairs ranked), zeros, ties, w, p (exact, two-sided), tests (in
-        the family), step_level, p_adjusted, different, medians of both, median of second minus first, Hodges-Lehmann
-        shift with low and high, rank_biserial, left_out (why participants are missing).
-    families : DataFrame
-        The same tests under every family of `FAMILIES`, columns `FAMILY_COLUMNS`: all variables of a pair, all tests of
-        the three pairs of models, the three pairs of a variable. critical: level at which the family stopped.
-    """
+    """Paired comparisons of the models' R2 on held-out device walking, over participants."""
 
     participants: int
     alpha: float
     level: float
-    too_few: str
+    too_few: str  # why there is no test; empty where there is one
+    # one row a pair of models and variable, columns `TEST_COLUMNS`, corrected over the variables of the pair: first and
+    # second model (`perfect` is R2 = 1), n (pairs ranked), zeros, ties, w, p (exact, two-sided), tests (in the family),
+    # step_level, p_adjusted, different, medians of both, median of second minus first, Hodges-Lehmann shift with low
+    # and high, rank_biserial, left_out (why participants are missing)
     tests: pd.DataFrame
+    # the same tests under every family of `FAMILIES`, columns `FAMILY_COLUMNS`: all variables of a pair, all tests of
+    # the three pairs of models, the three pairs of a variable. critical: level at which the family stopped
     families: pd.DataFrame
 
     def __post_init__(self) -> None:

@@ -23,64 +23,39 @@ FIT_COLUMNS = ("model", "kind", "decay", "epochs", "n_training", "n_inner")
 
 @dataclass(frozen=True, eq=False)
 class HeldOut:
-    """The held-out part of the device walk, measured and predicted.
+    """The held-out part of the device walk, measured and predicted."""
 
-    Parameters
-    ----------
-    time : ndarray (sample,) [s]
-        On the trial's clock.
-    phi : ndarray (sample,) [% stride]
-        Percent stride.
-    measured : ndarray (sample, output) [unit/s2]
-        Second derivatives of the measured variables.
-    predicted : mapping of str to ndarray (sample, output) [unit/s2]
-        Keys among `MODELS`: the networks' predictions.
-    bands : mapping of str to ndarray (bound, sample, output) [unit/s2]
-        Keys among `MODELS`: lower and upper bound of 90 % around what the networks predict; empty in older results.
-    """
-
-    time: NDArray[np.float64]
-    phi: NDArray[np.float64]
-    measured: NDArray[np.float64]
+    time: NDArray[np.float64]  # (sample,) [s], on the trial's clock
+    phi: NDArray[np.float64]  # (sample,) [% stride], percent stride
+    measured: NDArray[np.float64]  # (sample, output) [unit/s2], second derivatives of the measured variables
+    # each (sample, output) [unit/s2], keys among `MODELS`: the networks' predictions
     predicted: Mapping[str, NDArray[np.float64]]
+    # each (bound, sample, output) [unit/s2], keys among `MODELS`: lower and upper bound of 90 % around what the
+    # networks predict; empty in older results
     bands: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
 
 
 @may_lie_on_disk("held_out", "residuals")
 @dataclass(frozen=True, eq=False)
 class ParticipantResponse:
-    """Nominal, Exo, Discrepancy and Augmented for one participant (Eqs. 4.2-4.5), judged on held-out walking.
-
-    Parameters
-    ----------
-    inputs, outputs : tuple of str
-        Names of what goes in and what is predicted.
-    units : tuple of str
-        Unit of each output, a second derivative.
-    r2 : DataFrame
-        variable, model (of `MODELS`), kind (of `KINDS`: `network`; `ridge`, with harmonics of percent stride; `linear`,
-        ridge on the network's own inputs; `null`), walk (`nominal` or `exo`: the held-out walking that is predicted),
-        r2, n (samples).
-    fits : DataFrame
-        model (`nominal`, `exo`, `discrepancy`), kind, decay, epochs, n_training, n_inner.
-    held_out : HeldOut
-        Held-out device walking with the networks' predictions; of a response that was loaded it is read each time it
-        is looked at, as are the residuals.
-    residuals : mapping of str to ndarray (stride, phase, output) [unit/s2]
-        Measured minus predicted, every held-out stride of the device walk on 101 points; keys among `MODELS`.
-    held_out_s : float
-        Length of the held-out part [s].
-    """
+    """Nominal, Exo, Discrepancy and Augmented for one participant (Eqs. 4.2-4.5), judged on held-out walking."""
 
     participant: str
-    inputs: tuple[str, ...]
-    outputs: tuple[str, ...]
-    units: tuple[str, ...]
+    inputs: tuple[str, ...]  # names of what goes in and what is predicted
+    outputs: tuple[str, ...]  # names of what goes in and what is predicted
+    units: tuple[str, ...]  # unit of each output, a second derivative
+    # variable, model (of `MODELS`), kind (of `KINDS`: `network`; `ridge`, with harmonics of percent stride; `linear`,
+    # ridge on the network's own inputs; `null`), walk (`nominal` or `exo`: the held-out walking that is predicted), r2,
+    # n (samples)
     r2: pd.DataFrame
-    fits: pd.DataFrame
+    fits: pd.DataFrame  # model (`nominal`, `exo`, `discrepancy`), kind, decay, epochs, n_training, n_inner
+    # Held-out device walking with the networks' predictions; of a response that was loaded it is read each time it is
+    # looked at, as are the residuals
     held_out: HeldOut
+    # each (stride, phase, output) [unit/s2], measured minus predicted, every held-out stride of the device walk on 101
+    # points; keys among `MODELS`
     residuals: Mapping[str, NDArray[np.float64]]
-    held_out_s: float
+    held_out_s: float  # length of the held-out part [s]
 
     def __post_init__(self) -> None:
         """Check shapes once, before they are saved."""

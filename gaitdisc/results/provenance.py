@@ -21,34 +21,21 @@ DISTRIBUTIONS = ("numpy", "scipy", "torch", "pandas", "ezc3d")
 class Provenance:
     """Settings and circumstances of a result.
 
-    Parameters
-    ----------
-    settings : mapping
-        Every setting that could change a number, as written in the study with all defaults.
-    section : str
-        Part of the dissertation that the result follows.
-    created : str
-        Date and time, ISO 8601 with zone.
-
-    Examples
-    --------
     >>> Provenance({}, 0, {}, installed_versions(), "4.2", "2026-01-01T00:00:00+00:00").seed
     0
     """
 
-    settings: Mapping[str, Any]
+    settings: Mapping[str, Any]  # every setting that could change a number, as written in the study with all defaults
     seed: int
     files: Mapping[str, str]
     versions: Mapping[str, str]
-    section: str
-    created: str
+    section: str  # part of the dissertation that the result follows
+    created: str  # date and time, ISO 8601 with zone
 
 
 def made_now(settings: Mapping[str, Any], seed: int, files: Mapping[str, str], section: str) -> Provenance:
     """Return what a result rests on that is computed now, by what is installed here.
 
-    Examples
-    --------
     >>> made_now({}, 0, {}, "4.2").created[-6:]
     '+00:00'
     """

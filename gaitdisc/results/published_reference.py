@@ -21,16 +21,10 @@ FORM = f"a published reference is a CSV with {', '.join(COLUMNS)}, after a line 
 
 @dataclass(frozen=True, eq=False)
 class PublishedGroup:
-    """People of one group.
-
-    Parameters
-    ----------
-    speeds : tuple of (float, float)
-        Dimensionless, from and to; NaN where the table has none.
-    """
+    """People of one group."""
 
     name: str
-    speeds: tuple[float, float]
+    speeds: tuple[float, float]  # tuple of (float, float), dimensionless, from and to; NaN where the table has none
     people: int
     bands: dict[str, Band]
 

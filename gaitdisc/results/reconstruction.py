@@ -138,13 +138,8 @@ class OverPeople(NamedTuple):
 def mean_over_people(values: NDArray[np.float64]) -> OverPeople:
     """Mean, standard deviation, and half of the mean's 95 % interval (Student's t); the latter two from three people.
 
-    Parameters
-    ----------
-    values : ndarray (participant,)
-        One measure.
+    values (participant,): one measure
 
-    Examples
-    --------
     >>> [round(each, 3) for each in mean_over_people(np.array([1.0, 2.0, 3.0]))]
     [2.0, 1.0, 2.484]
     """
@@ -160,13 +155,8 @@ def mean_over_people(values: NDArray[np.float64]) -> OverPeople:
 def enough_sensors(found: pd.DataFrame) -> int:
     """Row of the smallest set of sensors that one more improves by less than a tenth.
 
-    Parameters
-    ----------
-    found : DataFrame
-        `search` of a reconstruction, one row a size.
+    found: `search` of a reconstruction, one row a size
 
-    Examples
-    --------
     >>> enough_sensors(pd.DataFrame({"loss": [1.0, 0.5, 0.49]}))
     1
     """

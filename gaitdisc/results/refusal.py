@@ -7,14 +7,8 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Refusal:
-    """A participant or a trial that is not in the tables, and why.
-
-    Parameters
-    ----------
-    condition : str
-        Condition of the trial, or empty where the participant as a whole is refused.
-    """
+    """A participant or a trial that is not in the tables, and why."""
 
     participant: str
-    condition: str
+    condition: str  # condition of the trial, or empty where the participant as a whole is refused
     reason: str

@@ -19,10 +19,7 @@ from gaitdisc.results.unit_folder import Keyed, load_unit, save_unit
 def save_response(response: ParticipantResponse, folder: Path, key: str) -> None:
     """Save the response of one participant.
 
-    Parameters
-    ----------
-    key : str
-        What it was computed from: a hash of files and settings.
+    key: what it was computed from: a hash of files and settings
     """
     held = response.held_out
     save_unit(
@@ -68,10 +65,7 @@ def load_response(folder: Path) -> Keyed[ParticipantResponse]:
 def save_quantity(quantity: DataQuantity, folder: Path, key: str) -> None:
     """Save what less data would have given for one participant.
 
-    Parameters
-    ----------
-    key : str
-        What it was computed from: a hash of files and settings.
+    key: what it was computed from: a hash of files and settings
     """
     left_away = [{"length_s": length, "reason": reason} for length, reason in quantity.left_away.items()]
     data = {"key": key, "participant": quantity.participant, "part": quantity.part, "left_away": left_away}
@@ -89,10 +83,7 @@ def load_quantity(folder: Path) -> Keyed[DataQuantity]:
 def save_refused(refusals: tuple[Refusal, ...], walks: tuple[str, ...], folder: Path, key: str) -> None:
     """Save why a participant was refused, so that a run that goes on does not read and process the walks again.
 
-    Parameters
-    ----------
-    key : str
-        What it was computed from: a hash of files and settings.
+    key: what it was computed from: a hash of files and settings
     """
     data = {"key": key, "refusals": [asdict(refusal) for refusal in refusals], "walks": list(walks)}
     save_unit(folder, "refused.json", data, {}, {})

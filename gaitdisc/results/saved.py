@@ -33,15 +33,8 @@ class Saved:
     def save(self, folder: Path | str) -> Path:
         """Save to a folder that `gaitdisc.load` reads.
 
-        Parameters
-        ----------
-        folder : path
-            Where; made if missing.
-
-        Returns
-        -------
-        Path
-            The folder.
+        folder: where; made if missing
+        returns: the folder
         """
         place = Path(folder)
         _function(self._by)(self, place)

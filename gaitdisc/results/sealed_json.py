@@ -37,8 +37,6 @@ def read_sealed(path: Path) -> dict[str, Any]:
 def sealed_text(data: Mapping[str, Any]) -> str:
     """Write JSON with a hash of its own, which covers everything else in it.
 
-    Examples
-    --------
     >>> sealed_text({"rate_hz": 100.0}) != sealed_text({"rate_hz": 999.0})
     True
     """

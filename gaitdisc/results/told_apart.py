@@ -52,8 +52,6 @@ BETWEEN = (
 def would_tell_apart(name: str, other: str) -> str:
     """Return which recording would separate two explanations.
 
-    Examples
-    --------
     >>> would_tell_apart("coulomb_friction", "viscous_damping")
     'the same movement at clearly different speeds'
     """

@@ -55,14 +55,9 @@ def save_unit(
 ) -> None:
     """Write tables and arrays, then the JSON file with their hashes: only then does the unit stand.
 
-    Parameters
-    ----------
-    name : str
-        Name of the JSON file, which is also its place in `results.schema.json`.
-    tables : mapping of str to DataFrame
-        File name -> table, written as CSV.
-    arrays : mapping of str to ndarray
-        Written as `arrays.npz`; no file where there are none.
+    name: name of the JSON file, which is also its place in `results.schema.json`
+    tables: file name -> table, written as CSV
+    arrays each ndarray: written as `arrays.npz`; no file where there are none
     """
     for file, table in tables.items():
         write_csv(table, folder / file)
@@ -80,17 +75,9 @@ def load_unit(
 ) -> Unit:
     """Read a unit, after its hashes were compared.
 
-    Parameters
-    ----------
-    columns : mapping of str to sequence of str, optional
-        Tables that the unit must have, and the columns that each must have.
-    words : sequence of str
-        Columns whose cells are words, also where they look like numbers.
-
-    Returns
-    -------
-    tables : dict of str to DataFrame
-        By file name.
+    columns: tables that the unit must have, and the columns that each must have
+    words: columns whose cells are words, also where they look like numbers
+    returns tables: by file name
     """
     data = read_json(folder / name)
     check_files(folder, data["sha256"])
@@ -107,10 +94,7 @@ def load_unit(
 def damaged_units(folder: Path) -> tuple[str, ...]:
     """Say which units below a folder are not as they were saved; nothing is changed.
 
-    Returns
-    -------
-    tuple of str
-        One line for each kind of damage, with the files; empty where all is whole.
+    returns: one line for each kind of damage, with the files; empty where all is whole
     """
     kinds: dict[str, list[str]] = {}
     for path in sorted(folder.rglob("*.json")):
@@ -130,12 +114,8 @@ def damaged_units(folder: Path) -> tuple[str, ...]:
 def with_words(table: pd.DataFrame, column: str) -> pd.DataFrame:
     """Table in which an empty word is an empty word again, and not the missing number that a CSV makes of it.
 
-    Parameters
-    ----------
-    table : DataFrame
-        From `load_unit`; changed in place.
-    column : str
-        Of words; where the table has none of that name, nothing is changed.
+    table: from `load_unit`; changed in place
+    column: of words; where the table has none of that name, nothing is changed
     """
     if column in table:
         table[column] = table[column].astype(object).fillna("").astype(str)
@@ -145,8 +125,6 @@ def with_words(table: pd.DataFrame, column: str) -> pd.DataFrame:
 def stored_finding(row: Mapping[str, Any]) -> Finding:
     """Return a finding as it was before JSON made lists of its spans.
 
-    Examples
-    --------
     >>> gap = {"severity": "warning", "kind": "gap", "file": "a.mot", "what": "0.1 s", "spoils": ""}
     >>> stored_finding(gap | {"spans": [[1.0, 1.1]]}).spans
     ((1.0, 1.1),)
@@ -157,10 +135,7 @@ def stored_finding(row: Mapping[str, Any]) -> Finding:
 def read_json(path: Path) -> dict[str, Any]:
     """Read a JSON file of a run, compare its own hash, and hold it against the schema.
 
-    Parameters
-    ----------
-    path : Path
-        `run.json`, `walk.json`, `response.json`, `tests.json` or another that the schema names.
+    path: `run.json`, `walk.json`, `response.json`, `tests.json` or another that the schema names
     """
     data = read_sealed(path)
     if data.get("format") != FORMAT:

@@ -13,10 +13,7 @@ from gaitdisc.results.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, Var
 def save_variants(variants: Variants, folder: Path, key: str) -> None:
     """Save the variants of one participant.
 
-    Parameters
-    ----------
-    key : str
-        What they were computed from: a hash of files and settings.
+    key: what they were computed from: a hash of files and settings
     """
     data = {
         "key": key,

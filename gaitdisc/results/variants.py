@@ -19,22 +19,13 @@ VARIANT_TEST_COLUMNS = ("variant", "model", *TEST_COLUMNS)
 
 @dataclass(frozen=True, eq=False)
 class Variants:
-    """R2 on held-out device walking of one participant, under every variant.
-
-    Parameters
-    ----------
-    question : str
-        Of `QUESTIONS`: `modalities`, inputs left away; `sensitivity`, filters and training lengths.
-    table : DataFrame
-        Columns `VARIANT_COLUMNS`: variant (in words), variable, model, kind, r2, n (held-out samples).
-    left_away : mapping of str to str
-        Variant -> why there is no row of it.
-    """
+    """R2 on held-out device walking of one participant, under every variant."""
 
     participant: str
-    question: str
+    question: str  # of `QUESTIONS`: `modalities`, inputs left away; `sensitivity`, filters and training lengths
+    # columns `VARIANT_COLUMNS`: variant (in words), variable, model, kind, r2, n (held-out samples)
     table: pd.DataFrame
-    left_away: Mapping[str, str]
+    left_away: Mapping[str, str]  # variant -> why there is no row of it
 
     def __post_init__(self) -> None:
         """Check question and columns once."""
@@ -50,27 +41,15 @@ class Variants:
 
 @dataclass(frozen=True, eq=False)
 class VariantRun(Saved, by="gaitdisc.results.variant_store:save_whole_variant_run"):
-    """The variants of a study, over its participants.
-
-    Parameters
-    ----------
-    exo : str
-        The study's word for the device walk.
-    people : tuple of Variants
-        Every participant whose models could be fitted.
-    tests : DataFrame
-        Columns `VARIANT_TEST_COLUMNS`; empty for fewer than six participants.
-    held_out_s : tuple of float
-        Shortest and longest held-out part [s].
-    """
+    """The variants of a study, over its participants."""
 
     title: str
-    exo: str
+    exo: str  # the study's word for the device walk
     question: str
-    people: tuple[Variants, ...]
-    tests: pd.DataFrame
+    people: tuple[Variants, ...]  # every participant whose models could be fitted
+    tests: pd.DataFrame  # columns `VARIANT_TEST_COLUMNS`; empty for fewer than six participants
     refusals: tuple[Refusal, ...]
-    held_out_s: tuple[float, float]
+    held_out_s: tuple[float, float]  # shortest and longest held-out part [s]
     renewed: tuple[str, ...] = ()
 
     def r2_table(self) -> pd.DataFrame:

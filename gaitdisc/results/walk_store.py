@@ -18,10 +18,7 @@ from gaitdisc.results.walk_summary import STRIDE_COLUMNS, WalkSummary
 def save_walk(walk: WalkSummary, folder: Path, key: str) -> None:
     """Save one walk.
 
-    Parameters
-    ----------
-    key : str
-        What the walk was computed from: a hash of files and settings.
+    key: what the walk was computed from: a hash of files and settings
     """
     save_unit(
         folder,
@@ -64,8 +61,6 @@ def load_walk(folder: Path) -> Keyed[WalkSummary]:
 def unit_name(subject: str, condition: str) -> str:
     """Folder name of a walk: letters, digits, `-` and `_` only, another one for every person and condition.
 
-    Examples
-    --------
     >>> unit_name("P01", "exo"), unit_name("P01", "no spring"), unit_name("P01", "no_spring")
     ('P01-exo', 'P01-no_spring-e4cfa24e', 'P01-no_spring')
     """

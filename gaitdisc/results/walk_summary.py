@@ -21,31 +21,19 @@ STRIDE_COLUMNS = ("side", "start_s", "end_s", "kept", "reason")
 @may_lie_on_disk("curves")
 @dataclass(frozen=True, eq=False)
 class WalkSummary:
-    """One walk of one person, small enough to keep.
+    """One walk of one person, small enough to keep."""
 
-    Parameters
-    ----------
-    subject, condition : str
-        Pseudonym; the study's word for the condition.
-    duration_s, rate_hz : float
-        Length and rate of the processed recording.
-    curves : ndarray (stride, phase, channel) [channel's unit]
-        Every kept stride on 101 points; of a walk that was loaded it is read each time it is looked at.
-    strides : DataFrame
-        One row a stride, kept or dropped: side, start_s, end_s, kept, reason.
-    findings : tuple of Finding
-        Everything the reader and the quality checks saw.
-    """
-
-    subject: str
-    condition: str
-    duration_s: float
-    rate_hz: float
+    subject: str  # pseudonym; the study's word for the condition
+    condition: str  # pseudonym; the study's word for the condition
+    duration_s: float  # length and rate of the processed recording
+    rate_hz: float  # length and rate of the processed recording
     detector: str
     channels: tuple[Channel, ...]
+    # (stride, phase, channel) [channel's unit], every kept stride on 101 points; of a walk that was loaded it is read
+    # each time it is looked at
     curves: NDArray[np.float64]
-    strides: pd.DataFrame
-    findings: tuple[Finding, ...]
+    strides: pd.DataFrame  # one row a stride, kept or dropped: side, start_s, end_s, kept, reason
+    findings: tuple[Finding, ...]  # everything the reader and the quality checks saw
     files: Mapping[str, str]
 
     def __post_init__(self) -> None:

@@ -22,22 +22,15 @@ TOLD = 3.0  # weight of what the model tells beside the readings, in standard de
 
 @dataclass(frozen=True, eq=False)
 class Corrected:
-    """A model with what is added for one person: linear in the readings, their history and the states told.
-
-    Parameters
-    ----------
-    mean : ndarray (column,)
-        Of readings and told states in the calibration strides, each scaled as in the model's training part.
-    weights : ndarray (column, state) [each state's unit]
-        Zero is the model of the population with the mean error of these strides taken off.
-    offset : ndarray (state,) [each state's unit]
-        Mean error in the calibration strides.
-    """
+    """A model with what is added for one person: linear in the readings, their history and the states told."""
 
     model: ScaledModel
+    # (column,), of readings and told states in the calibration strides, each scaled as in the model's training part
     mean: NDArray[np.float64]
+    # (column, state) [each state's unit], zero is the model of the population with the mean error of these strides
+    # taken off
     weights: NDArray[np.float64]
-    offset: NDArray[np.float64]
+    offset: NDArray[np.float64]  # (state,) [each state's unit], mean error in the calibration strides
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -67,25 +60,17 @@ class Corrected:
 
 @dataclass(frozen=True, eq=False)
 class FirstStrides:
-    """The first strides of a person, and what comes after them.
-
-    Parameters
-    ----------
-    rest : ndarray of bool (window,)
-        Which windows of all trials, stacked, come after these and share no reading with them.
-    """
+    """The first strides of a person, and what comes after them."""
 
     strides: Samples
+    # (window,), which windows of all trials, stacked, come after these and share no reading with them
     rest: NDArray[np.bool_]
 
 
 def first_strides(trials: Sequence[Samples], count: int, reach_s: float) -> FirstStrides:
     """Part the first strides of a person from the rest, with a gap as long as a window and 0.3 s.
 
-    Parameters
-    ----------
-    reach_s : float
-        From the first reading of a window to its last [s].
+    reach_s: from the first reading of a window to its last [s]
     """
     kept = [each for each in trials if len(each)]
     windows, stride = stacked(kept), stride_numbers(kept)
@@ -108,37 +93,23 @@ def calibrated(done: Reconstructor, strides: Samples, penalty: float = USUAL_PEN
     Minimises sum (y - f(x) - b - W h)^2 / windows + penalty sum W^2, where h holds the scaled readings with their
     history and, three times as heavy, the scaled states that the model f tells.
 
-    Parameters
-    ----------
-    penalty : float
-        From `rehearsed`; a large one takes off the mean error alone.
+    penalty: from `rehearsed`; a large one takes off the mean error alone
     """
     return _calibrated(done, strides, (penalty,))[0]
 
 
 @dataclass(frozen=True, eq=False)
 class Rehearsal:
-    """A calibration that was tried on another person.
+    """A calibration that was tried on another person."""
 
-    Parameters
-    ----------
-    penalty : float
-        One of `PENALTIES`, with which that person was told best.
-    missed : ndarray (window, state) [each state's unit]
-        Errors on that person's further strides.
-    """
-
-    penalty: float
-    missed: NDArray[np.float64]
+    penalty: float  # one of `PENALTIES`, with which that person was told best
+    missed: NDArray[np.float64]  # (window, state) [each state's unit], errors on that person's further strides
 
 
 def rehearsed(done: Reconstructor, trials: Sequence[Samples], count: int) -> Rehearsal:
     """Calibrate a model for a person to whom it was not fitted, and see which penalty serves best.
 
-    Parameters
-    ----------
-    trials : sequence of Samples
-        Windows of each trial of the person whom models are chosen by, never of the one they are judged on.
+    trials: windows of each trial of the person whom models are chosen by, never of the one they are judged on
     """
     parted = first_strides(trials, count, done.sensing.reach_s)
     rest = stacked([each for each in trials if len(each)]).rows(parted.rest)

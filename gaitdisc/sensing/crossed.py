@@ -44,15 +44,9 @@ def crossed_widths(
     in all). Ridge regression is therefore crossed over people; a network, which would take five times as long, gets its
     interval on the checked person, times what crossing changes for ridge regression on delays.
 
-    Parameters
-    ----------
-    missed : ndarray (window, state) [each state's unit]
-        Errors of the model on the checked person.
-
-    References
-    ----------
-    Barber, Candes, Ramdas and Tibshirani 2021, Predictive inference with the jackknife+ (CV+); here one interval for
-    all, about what the model of everybody tells.
+    missed (window, state) [each state's unit]: errors of the model on the checked person
+    Source: Barber, Candes, Ramdas and Tibshirani 2021, Predictive inference with the jackknife+ (CV+); here one
+        interval for all, about what the model of everybody tells.
     """
     if len(people_of((*parts.check, *parts.training))) < FEWEST:
         return half_widths(missed)

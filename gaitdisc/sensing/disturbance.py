@@ -25,13 +25,8 @@ Walks = Sequence[tuple[Recording, NDArray[np.float64]]]
 def noisy(recording: Recording, sensors: Sequence[str], share: float, seed: int = 0) -> Recording:
     """Add white noise to the readings of the sensors, and to nothing else.
 
-    Parameters
-    ----------
-    share : float
-        Standard deviation of the noise, by that of the sensor in this trial.
+    share: standard deviation of the noise, by that of the sensor in this trial
 
-    Examples
-    --------
     >>> from gaitdisc.channel import Channel
     >>> time = np.arange(4000) / 100
     >>> walk = Recording(time, np.sin(time)[:, None], (Channel("a", "signal", "V"),))
@@ -52,15 +47,8 @@ def against_noise(
 ) -> pd.DataFrame:
     """RMSE of every kind of model against noise, temporal split; fitted to and judged on the same noise.
 
-    Parameters
-    ----------
-    walks : sequence of (Recording, ndarray (time,) [% stride])
-        Of one person.
-
-    Returns
-    -------
-    DataFrame
-        disturbance (`noise`), level [share of the sensor's standard deviation], model, rmse_deg (angles).
+    walks sequence of (Recording, (time,) [% stride]): of one person
+    returns: disturbance (`noise`), level [share of the sensor's standard deviation], model, rmse_deg (angles)
     """
     rows = []
     for level in NOISES:
@@ -83,15 +71,8 @@ def against_missing(
     Readings are lost one by one, each sensor by itself. The sensor's last known reading stands in their place; the
     masked SHRED alone is told which are missing.
 
-    Parameters
-    ----------
-    walks : sequence of (Recording, ndarray (time,) [% stride])
-        Of one person.
-
-    Returns
-    -------
-    DataFrame
-        disturbance (`missing`), level [share of the readings], model, rmse_deg (angles).
+    walks sequence of (Recording, (time,) [% stride]): of one person
+    returns: disturbance (`missing`), level [share of the readings], model, rmse_deg (angles)
     """
     parts = _parts(walks, what, lambda walk, _: walk)
     fitted = {kind: fit_reconstructor(kind, what, parts.fitted(), parts.checked(), seed) for kind in kinds}

@@ -21,29 +21,16 @@ class Label(NamedTuple):
 
 @dataclass(frozen=True)
 class FieldTask:
-    """What is the same for every route and model of a study.
-
-    Parameters
-    ----------
-    lags : Lags
-        Readings of a window, snapshots from one to the next, and how far ahead the field is told.
-    energy : float
-        Share of the training snapshots' energy that the modes keep.
-    season : int
-        Snapshots of a year, whose mean course is a floor of its own; 0 where there is none.
-    positions : bool
-        Whether each sensor tells where it is.
-    departures : bool
-        Whether sensors read, and models tell, departures from the training part's mean at the place and time of year:
-        what a reading means then depends less on where the sensor is. The season is added to what is told.
-    """
+    """What is the same for every route and model of a study."""
 
     name: str
-    lags: Lags
+    lags: Lags  # readings of a window, snapshots from one to the next, and how far ahead the field is told
     rule: str = "temporal"
-    energy: float = ENERGY
-    season: int = 0
-    positions: bool = False
+    energy: float = ENERGY  # share of the training snapshots' energy that the modes keep
+    season: int = 0  # snapshots of a year, whose mean course is a floor of its own; 0 where there is none
+    positions: bool = False  # whether each sensor tells where it is
+    # whether sensors read, and models tell, departures from the training part's mean at the place and time of year:
+    # what a reading means then depends less on where the sensor is. The season is added to what is told
     departures: bool = False
     seed: int = 0
 

@@ -17,10 +17,7 @@ from gaitdisc.sensing.windows import Lags
 def reading_names(field: Field, route: Route, positions: bool = False) -> tuple[str, ...]:
     """Names of what one window holds for each of its times.
 
-    Parameters
-    ----------
-    positions : bool
-        Whether each sensor tells where it is, beside what it reads.
+    positions: whether each sensor tells where it is, beside what it reads
     """
     told = field.quantities + (tuple(axis.name for axis in field.axes) if positions else ())
     return tuple(f"{name} of sensor {k + 1}" for k in range(route.sensors) for name in told)
@@ -29,18 +26,10 @@ def reading_names(field: Field, route: Route, positions: bool = False) -> tuple[
 def field_windows(field: Field, route: Route, lags: Lags, positions: bool = False) -> Samples:
     """Every window along a field's whole time, still without outputs: those are modes of the part that is fitted.
 
-    Parameters
-    ----------
-    lags : Lags
-        Readings of a window, snapshots from one to the next, and from the last to the one that is told.
-    positions : bool
-        Whether each sensor's place stands beside its reading: what a path never seen in training needs.
-
-    Returns
-    -------
-    Samples
-        x (window, reading * sensor), oldest first; no outputs; time is the snapshot that is told, counted from 0: that
-        of the last reading, or `lags.ahead` later.
+    lags: readings of a window, snapshots from one to the next, and from the last to the one that is told
+    positions: whether each sensor's place stands beside its reading: what a path never seen in training needs
+    returns: x (window, reading * sensor), oldest first; no outputs; time is the snapshot that is told, counted from 0:
+        that of the last reading, or `lags.ahead` later
     """
     if len(field) <= lags.reach + lags.ahead:
         forth = f" and {lags.ahead} ahead" if lags.ahead else ""
@@ -73,9 +62,6 @@ def snapshots_of(windows: Samples) -> NDArray[np.intp]:
 def with_coefficients(windows: Samples, coefficients: NDArray[np.float64], names: Sequence[str]) -> Samples:
     """Windows with the modes' coefficients of their snapshots as outputs.
 
-    Parameters
-    ----------
-    coefficients : ndarray (snapshot, mode)
-        Of all snapshots of the field.
+    coefficients (snapshot, mode): of all snapshots of the field
     """
     return replace(windows, y=coefficients[snapshots_of(windows)], outputs=tuple(names))

@@ -23,15 +23,9 @@ POINTS, LEAST_FILLED = 100, 0.5
 def persistence(trials: Sequence[Samples], ahead_s: float) -> NDArray[np.float64]:
     """States as they were `ahead_s` before, (window, state); NaN where that time has no window.
 
-    Parameters
-    ----------
-    trials : sequence of Samples
-        Windows of each trial, in order of time; time and y are those of the state that is told.
-    ahead_s : float
-        From the last reading to that state [s].
+    trials: windows of each trial, in order of time; time and y are those of the state that is told
+    ahead_s: from the last reading to that state [s]
 
-    Examples
-    --------
     >>> t = np.arange(5) / 10
     >>> persistence([Samples(t[:, None], t[:, None], ("a",), ("a",), t, t)], 0.2).ravel().tolist()
     [nan, nan, 0.0, 0.1, 0.2]
@@ -47,18 +41,10 @@ def persistence(trials: Sequence[Samples], ahead_s: float) -> NDArray[np.float64
 
 @dataclass(frozen=True, eq=False)
 class PhaseAverage:
-    """The mean stride of a fitted part, as a forecast.
+    """The mean stride of a fitted part, as a forecast."""
 
-    Parameters
-    ----------
-    curve : ndarray (phase, state) [each state's unit]
-        Mean in each percent of the stride.
-    stride_s : float
-        Mean duration of a stride [s].
-    """
-
-    curve: NDArray[np.float64]
-    stride_s: float
+    curve: NDArray[np.float64]  # (phase, state) [each state's unit], mean in each percent of the stride
+    stride_s: float  # mean duration of a stride [s]
 
     def told(self, trials: Sequence[Samples], ahead_s: float) -> NDArray[np.float64]:
         """States (window, state) at the phase that is expected; NaN before the first contact.
@@ -66,10 +52,7 @@ class PhaseAverage:
         The phase is the time since the last contact that had happened when the forecast was made, by the mean duration
         of a stride: percent stride itself is known only when the stride is over.
 
-        Parameters
-        ----------
-        ahead_s : float
-            From the last reading to the state that is told [s].
+        ahead_s: from the last reading to the state that is told [s]
         """
         told = []
         for trial in trials:
@@ -112,8 +95,6 @@ def phase_average(trials: Sequence[Samples]) -> PhaseAverage:
 def contact_times(trial: Samples) -> NDArray[np.float64]:
     """Contacts that percent stride tells of, in order [s].
 
-    Examples
-    --------
     >>> t = np.arange(0.0, 3.0, 0.1)
     >>> s = Samples(t[:, None], t[:, None], ("a",), ("a",), t, 100 * ((t + 0.25) % 1.0))
     >>> contact_times(s).round(6).tolist()

@@ -25,19 +25,10 @@ def latent_sizes(
 ) -> pd.DataFrame:
     """Error of SHRED with recurrent layers of several sizes, beside what as many singular values leave.
 
-    Parameters
-    ----------
-    epochs : int
-        Passes over the training part; more where 1,000 steps need more.
-
-    Returns
-    -------
-    DataFrame
-        nodes, split, quantity, relative_l2, r2, energy_left: share of the training part's energy beyond so many modes.
-
-    References
-    ----------
-    Ebers 2023, section 5.2 and Fig. 5.1: both elbows are seen near 5, and a relation is conjectured.
+    epochs: passes over the training part; more where 1,000 steps need more
+    returns: nodes, split, quantity, relative_l2, r2, energy_left: share of the training part's energy beyond so many
+        modes
+    Source: Ebers 2023, section 5.2 and Fig. 5.1: both elbows are seen near 5, and a relation is conjectured.
     """
     from gaitdisc.networks.shred import Shred
     from gaitdisc.networks.trainer import train
@@ -76,8 +67,6 @@ def leading(values: NDArray[np.float64], count: int = 3) -> NDArray[np.float64]:
 
     The largest entry of each component's direction is positive, so that its sign does not rest on the decomposition.
 
-    Examples
-    --------
     >>> t = np.linspace(0, 2 * np.pi, 100, endpoint=False)
     >>> found = leading(np.column_stack([3 * np.sin(t), np.cos(t)]), 2)
     >>> bool(np.allclose(found, np.sqrt(2) * np.column_stack([np.sin(t), np.cos(t)])))

@@ -23,19 +23,11 @@ RUNS = (1, 3, 10)  # readings that go missing in a row, on average
 def missing_runs(share: NDArray[np.float64], run: NDArray[np.float64], length: int, seed: int = 0) -> NDArray[np.bool_]:
     """Draw which readings are missing, column by column: a Markov chain of two states.
 
-    Parameters
-    ----------
-    share : ndarray (column,)
-        Readings of the column that are missing, between 0 and below 1.
-    run : ndarray (column,)
-        Readings that are missing in a row, on average; at least 1, at which each is drawn alone if the share allows.
+    share (column,): readings of the column that are missing, between 0 and below 1
+    run (column,): readings that are missing in a row, on average; at least 1, at which each is drawn alone if the
+        share allows
+    returns (length, column)
 
-    Returns
-    -------
-    ndarray of bool (length, column)
-
-    Examples
-    --------
     >>> lost = missing_runs(np.array([0.0, 0.3]), np.array([5.0, 5.0]), 20_000)
     >>> lost.mean(axis=0).round(1).tolist()
     [0.0, 0.3]
@@ -54,12 +46,8 @@ def missing_runs(share: NDArray[np.float64], run: NDArray[np.float64], length: i
 def with_missing(recording: Recording, sensors: Sequence[str], share: float, run_s: float, seed: int = 0) -> Recording:
     """Take readings of the sensors away, each sensor by itself.
 
-    Parameters
-    ----------
-    share : float
-        Of each sensor's readings that are missing, from 0 to below 1.
-    run_s : float
-        Mean duration of a drop-out [s]; 0 for readings drawn one by one.
+    share: of each sensor's readings that are missing, from 0 to below 1
+    run_s: mean duration of a drop-out [s]; 0 for readings drawn one by one
     """
     shares, runs = np.full(len(sensors), share), np.full(len(sensors), max(1.0, run_s * recording.rate_hz))
     values = recording.values.copy()
@@ -72,12 +60,8 @@ def with_missing(recording: Recording, sensors: Sequence[str], share: float, run
 def filled(recording: Recording, sensors: Sequence[str], way: str, means: NDArray[np.float64]) -> Recording:
     """Put something in the place of missing readings.
 
-    Parameters
-    ----------
-    way : str
-        A word of `WAYS`; `last` takes the mean before a sensor's first reading.
-    means : ndarray (sensor,) [each sensor's unit]
-        Of the training part.
+    way: a word of `WAYS`; `last` takes the mean before a sensor's first reading
+    means (sensor,) [each sensor's unit]: of the training part
     """
     refuse_unknown_way(way)
     values = recording.values.copy()
@@ -105,10 +89,7 @@ def hidden(samples: Samples, sensors: int, seed: int = 0) -> Samples:
 
     Each sensor of such a window loses a share of its readings that is drawn between 0 and 0.6, singly or in runs.
 
-    Returns
-    -------
-    Samples
-        The same windows, NaN where a reading is hidden; the states are all there.
+    returns: the same windows, NaN where a reading is hidden; the states are all there
     """
     rng = np.random.default_rng(seed)
     chosen = np.arange(1, len(samples), 2)

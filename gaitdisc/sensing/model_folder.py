@@ -37,18 +37,11 @@ RATE_TOLERANCE = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class SensingModel:
-    """A reconstructor with the channels it was fitted to.
-
-    Parameters
-    ----------
-    channels : tuple of Channel
-        Of the sensors, then of the states.
-    half_widths : ndarray (state,) [each state's unit]
-        Half width of the 90 % interval, from the windows that the model was chosen by.
-    """
+    """A reconstructor with the channels it was fitted to."""
 
     reconstructor: Reconstructor
-    channels: tuple[Channel, ...]
+    channels: tuple[Channel, ...]  # of the sensors, then of the states
+    # (state,) [each state's unit], half width of the 90 % interval, from the windows that the model was chosen by
     half_widths: NDArray[np.float64]
 
     def __call__(self, recording: Recording, missing: str = "none") -> Recording:

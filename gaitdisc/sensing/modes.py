@@ -21,22 +21,14 @@ class Modes:
     The basis spans the leading proper orthogonal modes, and is turned within their span so that every coefficient has
     the same variance in training. A fit that scales each of its outputs, as all fits here do, then weighs errors by
     their energy; on the modes themselves it would take the last, faintest one for as important as the first.
-
-    Parameters
-    ----------
-    mean : ndarray (point, quantity) [each quantity's unit]
-        Of the training snapshots.
-    spread : ndarray (quantity,) [each quantity's unit]
-        Root mean square fluctuation over points and training snapshots; energies of quantities are compared by it.
-    basis : ndarray (point * quantity, mode)
-        Orthonormal.
-    energies : ndarray (snapshot,)
-        Share of the energy in each proper orthogonal mode, all of them, decreasing.
     """
 
-    mean: NDArray[np.float32]
+    mean: NDArray[np.float32]  # (point, quantity) [each quantity's unit], of the training snapshots
+    # (quantity,) [each quantity's unit], root mean square fluctuation over points and training snapshots; energies of
+    # quantities are compared by it
     spread: NDArray[np.float32]
-    basis: NDArray[np.float32]
+    basis: NDArray[np.float32]  # (point * quantity, mode), orthonormal
+    # (snapshot,), share of the energy in each proper orthogonal mode, all of them, decreasing
     energies: NDArray[np.float64]
 
     @property
@@ -52,10 +44,7 @@ class Modes:
     def coefficients(self, values: NDArray[np.floating]) -> NDArray[np.float64]:
         """Coefficients of snapshots, (snapshot, mode).
 
-        Parameters
-        ----------
-        values : ndarray (snapshot, point, quantity) [each quantity's unit]
-            Of the field.
+        values (snapshot, point, quantity) [each quantity's unit]: of the field
         """
         scaled = (values - self.mean) / self.spread
         return (scaled.reshape(len(values), -1) @ self.basis).astype(float)
@@ -63,10 +52,7 @@ class Modes:
     def fields(self, coefficients: NDArray[np.floating]) -> NDArray[np.float32]:
         """Snapshots from coefficients, (snapshot, point, quantity) [each quantity's unit].
 
-        Parameters
-        ----------
-        coefficients : ndarray (snapshot, mode)
-            As `coefficients` gives them.
+        coefficients (snapshot, mode): as `coefficients` gives them
         """
         scaled = coefficients.astype(np.float32) @ self.basis.T
         return scaled.reshape(len(coefficients), *self.mean.shape) * self.spread + self.mean
@@ -75,19 +61,10 @@ class Modes:
 def fit_modes(values: NDArray[np.floating], energy: float = ENERGY, most: int | None = None) -> Modes:
     """Proper orthogonal modes of training snapshots, by their products with each other (method of snapshots).
 
-    Parameters
-    ----------
-    values : ndarray (snapshot, point, quantity) [each quantity's unit]
-        Training snapshots only.
-    energy : float
-        Share of the energy that is kept, above 0, at most 1.
+    values (snapshot, point, quantity) [each quantity's unit]: training snapshots only
+    energy: share of the energy that is kept, above 0, at most 1
+    Source: Sirovich 1987, Turbulence and the dynamics of coherent structures (method of snapshots).
 
-    References
-    ----------
-    Sirovich 1987, Turbulence and the dynamics of coherent structures (method of snapshots).
-
-    Examples
-    --------
     >>> t = np.linspace(0, 6.28, 50)[:, None]
     >>> wave = (np.sin(t) * np.array([1.0, 2.0, 0.0]) + np.cos(t) * np.array([0.0, 0.0, 1.0]))[:, :, None]
     >>> modes = fit_modes(wave, 1.0)
@@ -125,22 +102,10 @@ def evening_rotation(variances: NDArray[np.float64]) -> NDArray[np.float64]:
     Each plane rotation sets one diagonal element of the covariance to the mean; there is one that does, as long as one
     element lies above the mean and one below.
 
-    Parameters
-    ----------
-    variances : ndarray (mode,)
-        Of the coefficients.
+    variances (mode,): of the coefficients
+    returns (mode, mode): orthogonal; its columns are the new coefficients' weights
+    Source: Horn 1954, Doubly stochastic matrices and the diagonal of a rotation matrix.
 
-    Returns
-    -------
-    ndarray (mode, mode)
-        Orthogonal; its columns are the new coefficients' weights.
-
-    References
-    ----------
-    Horn 1954, Doubly stochastic matrices and the diagonal of a rotation matrix.
-
-    Examples
-    --------
     >>> turn = evening_rotation(np.array([5.0, 3.0, 1.0]))
     >>> np.diag(turn.T @ np.diag([5.0, 3.0, 1.0]) @ turn).round(6)
     array([3., 3., 3.])

@@ -32,12 +32,8 @@ def write_onnx(model: SensingModel, path: Path) -> None:
     and sensors side by side, in the sensors' units; NaN where a model takes missing readings. Its output `states`
     (window, state) is in the states' units. Names, units, rate and lags stand in the file's metadata.
 
-    Parameters
-    ----------
-    model : SensingModel
-        What to write; ridge regression in double precision, networks in single, as they are computed here.
-    path : Path
-        Of an `.onnx` file; written whole or not at all.
+    model: what to write; ridge regression in double precision, networks in single, as they are computed here
+    path: of an `.onnx` file; written whole or not at all
     """
     helper, checker = _onnx()
     from gaitdisc.networks.ensemble import Ensemble

@@ -33,42 +33,25 @@ from gaitdisc.statistics.r2 import r2
 
 @dataclass(frozen=True)
 class Fits:
-    """What is fitted for a person, and how.
-
-    Parameters
-    ----------
-    device : str
-        That networks are fitted on: `cpu`, `cuda`, or `auto`, the GPU where there is one.
-    calibration : int
-        Strides of the test part, its first ones, on which models named `..., calibrated` are corrected for the person;
-        windows that share a reading with them are not judged, whether a model is calibrated or not. 0 for none.
-    """
+    """What is fitted for a person, and how."""
 
     kinds: tuple[str, ...] = tuple(KINDS)
     seed: int = 0
-    device: str = "auto"
+    device: str = "auto"  # that networks are fitted on: `cpu`, `cuda`, or `auto`, the GPU where there is one
+    # strides of the test part, its first ones, on which models named `..., calibrated` are corrected for the person;
+    # windows that share a reading with them are not judged, whether a model is calibrated or not. 0 for none
     calibration: int = 0
 
 
 @dataclass(frozen=True, eq=False)
 class PersonReconstruction:
-    """Every kind of model, fitted and judged for one person.
+    """Every kind of model, fitted and judged for one person."""
 
-    Parameters
-    ----------
-    participant : str
-        Pseudonym of the person on whom the models are judged.
-    errors, summary, curves : DataFrame
-        As in `gaitdisc.results.reconstruction.Reconstruction`.
-    fitted : tuple of SensingModel
-        The models, with the intervals that the check part gives.
-    """
-
-    participant: str
-    errors: pd.DataFrame
-    summary: pd.DataFrame
-    curves: pd.DataFrame
-    fitted: tuple[SensingModel, ...]
+    participant: str  # pseudonym of the person on whom the models are judged
+    errors: pd.DataFrame  # as in `gaitdisc.results.reconstruction.Reconstruction`
+    summary: pd.DataFrame  # as in `gaitdisc.results.reconstruction.Reconstruction`
+    curves: pd.DataFrame  # as in `gaitdisc.results.reconstruction.Reconstruction`
+    fitted: tuple[SensingModel, ...]  # the models, with the intervals that the check part gives
 
     def model(self, kind: str) -> SensingModel:
         """Return the model of one kind."""
@@ -84,10 +67,7 @@ def reconstruct(
 ) -> PersonReconstruction:
     """Fit every kind of model and judge it on the test part; a forecast has its two baselines beside it.
 
-    Parameters
-    ----------
-    channels : sequence of Channel
-        Of the sensors, then of the states, in the order of `what`.
+    channels: of the sensors, then of the states, in the order of `what`
     """
     fits = fits or Fits()
     test, own = parts.judged(), channels[len(what.sensors) :]

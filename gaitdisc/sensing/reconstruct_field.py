@@ -24,34 +24,19 @@ MEAN, SEASON, CEILING = "mean (no sensor)", "season (no sensor)", "POD ceiling"
 
 @dataclass(frozen=True, eq=False)
 class Targets:
-    """What is told of a field, the same for every route of a task.
+    """What is told of a field, the same for every route of a task."""
 
-    Parameters
-    ----------
-    read : Field
-        What sensors read: the field itself, or its departures.
-    coefficients : ndarray (snapshot, mode)
-        Of all snapshots.
-    mean : ndarray (point, quantity) [each quantity's unit]
-        Of the training part's snapshots.
-    departures : bool
-        Whether modes and readings are of departures from the season.
-    """
-
-    read: Field
+    read: Field  # what sensors read: the field itself, or its departures
     modes: Modes
-    coefficients: NDArray[np.float64]
-    mean: NDArray[np.float32]
+    coefficients: NDArray[np.float64]  # (snapshot, mode), of all snapshots
+    mean: NDArray[np.float32]  # (point, quantity) [each quantity's unit], of the training part's snapshots
     season: Season
-    departures: bool
+    departures: bool  # whether modes and readings are of departures from the season
 
     def fields(self, coefficients: NDArray[np.float64], windows: Samples) -> NDArray[np.float32]:
         """Field at each window, (window, point, quantity) [each quantity's unit].
 
-        Parameters
-        ----------
-        coefficients : ndarray (window, mode)
-            Told.
+        coefficients (window, mode): told
         """
         told = self.modes.fields(coefficients)
         return told + self.season.at(snapshots_of(windows)) if self.departures else told
@@ -86,10 +71,7 @@ def targets_of(field: Field, task: FieldTask) -> Targets:
 def prepare(field: Field, route: Route, task: FieldTask, targets: Targets | None = None) -> Prepared:
     """Cut windows, part them, and set what they are to tell beside them.
 
-    Parameters
-    ----------
-    targets : Targets, optional
-        From `targets_of` with the same field and task; computed without.
+    targets: from `targets_of` with the same field and task; computed without
     """
     told = targets or targets_of(field, task)
     parts = _parts(told.read, route, task)
@@ -114,13 +96,9 @@ def reconstruct_field(
 ) -> list[FieldCell]:
     """Fit every kind of model and judge it on the test part, in the field's own unit at every point.
 
-    Parameters
-    ----------
-    floors : bool
-        Whether what needs no sensor is judged too (the training part's mean, its mean season), and the ceiling: the
-        test part projected onto the training part's modes, which no model that tells those modes can beat.
-    targets : Targets, optional
-        From `targets_of` with the same field and task; computed without.
+    floors: whether what needs no sensor is judged too (the training part's mean, its mean season), and the ceiling:
+        the test part projected onto the training part's modes, which no model that tells those modes can beat
+    targets: from `targets_of` with the same field and task; computed without
     """
     ready = prepare(field, route, task, targets)
     cells = []
@@ -138,12 +116,8 @@ def field_cells(
 ) -> list[FieldCell]:
     """Judge what was told of the test part, a cell for each quantity.
 
-    Parameters
-    ----------
-    told : ndarray (window, point, quantity) [each quantity's unit]
-        The field at each window of the test part.
-    seconds : float [s]
-        Processor time of the fit.
+    told (window, point, quantity) [each quantity's unit]: the field at each window of the test part
+    seconds [s]: processor time of the fit
     """
     rows, cells = snapshots_of(ready.test), []
     for k, quantity in enumerate(field.quantities):

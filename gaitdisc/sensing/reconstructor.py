@@ -61,19 +61,12 @@ class ScaledModel(Model, Protocol):
 class Sensing:
     """What is read, and what is to be told from it.
 
-    Parameters
-    ----------
-    states : tuple of str
-        Channels that are told; none of them is a sensor, unless the future is told.
-
-    Examples
-    --------
     >>> sensing(("knee_angle_r", "hip_flexion_r"), ("knee_angle_r",), Lags(), 100.0).states
     ('hip_flexion_r',)
     """
 
     sensors: tuple[str, ...]
-    states: tuple[str, ...]
+    states: tuple[str, ...]  # channels that are told; none of them is a sensor, unless the future is told
     lags: Lags
     rate_hz: float
 
@@ -85,12 +78,8 @@ class Sensing:
     def windows(self, recording: Recording, phi: NDArray[np.float64], missing: bool = False) -> Samples:
         """Windows of a recording, which must have the rate and the units that the sensing was made for.
 
-        Parameters
-        ----------
-        phi : ndarray (time,) [% stride]
-            Percent stride of its samples.
-        missing : bool
-            Whether windows are kept whose readings are missing in part (NaN).
+        phi (time,) [% stride]: percent stride of its samples
+        missing: whether windows are kept whose readings are missing in part (NaN)
         """
         return windows_of(recording, self.sensors, self.states, self.lags, phi, missing)
 
@@ -98,10 +87,7 @@ class Sensing:
 def sensing(all_states: tuple[str, ...], sensors: tuple[str, ...], lags: Lags, rate_hz: float) -> Sensing:
     """Tell every state that is not measured by a sensor, or the future of every state.
 
-    Parameters
-    ----------
-    sensors : tuple of str
-        Channels that are read; they may be among the states.
+    sensors: channels that are read; they may be among the states
     """
     states = all_states if lags.ahead else tuple(name for name in all_states if name not in sensors)
     if not sensors or len(set(sensors)) < len(sensors):
@@ -121,24 +107,14 @@ def sensing(all_states: tuple[str, ...], sensors: tuple[str, ...], lags: Lags, r
 
 @dataclass(frozen=True, eq=False)
 class Reconstructor:
-    """A fitted model that tells states from windows.
-
-    Parameters
-    ----------
-    model : ScaledModel
-        Takes the present readings where the kind is without history, whole windows otherwise.
-    seconds : float
-        Processor time of the fit [s].
-    device : str
-        Where it was fitted: `cpu` or `cuda`.
-    """
+    """A fitted model that tells states from windows."""
 
     kind: str
     sensing: Sensing
-    model: ScaledModel
+    model: ScaledModel  # takes the present readings where the kind is without history, whole windows otherwise
     n_fitted: int
-    seconds: float
-    device: str = "cpu"
+    seconds: float  # processor time of the fit [s]
+    device: str = "cpu"  # where it was fitted: `cpu` or `cuda`
 
     @property
     def sensor_means(self) -> NDArray[np.float64]:
@@ -154,13 +130,8 @@ class Reconstructor:
 def fitting_device(kinds: Sequence[str], wanted: str) -> str:
     """Device that kinds of models are fitted on: `cpu` or `cuda`; ridge regression always takes the CPU.
 
-    Parameters
-    ----------
-    wanted : str
-        `cpu`, `cuda`, or `auto`: the GPU where there is one.
+    wanted: `cpu`, `cuda`, or `auto`: the GPU where there is one
 
-    Examples
-    --------
     >>> fitting_device(("delay ridge",), "auto")
     'cpu'
     """
@@ -176,12 +147,8 @@ def fit_reconstructor(
 ) -> Reconstructor:
     """Fit one kind of model; scales, penalties and the epoch whose weights stay are chosen without the judged part.
 
-    Parameters
-    ----------
-    training, check : Samples
-        Windows to fit, and windows to choose by; readings may be missing for the kind that is told of it.
-    device : str
-        That a network is fitted on: `cpu`, `cuda`, or `auto`, the GPU where there is one.
+    training, check: windows to fit, and windows to choose by; readings may be missing for the kind that is told of it
+    device: that a network is fitted on: `cpu`, `cuda`, or `auto`, the GPU where there is one
     """
     if kind not in (*KINDS, *ON_REQUEST):
         known = ", ".join((*KINDS, *ON_REQUEST))

@@ -13,14 +13,10 @@ from gaitdisc.recording.arrays import read_only
 
 @dataclass(frozen=True, eq=False)
 class Season:
-    """Mean field of every time of the year.
+    """Mean field of every time of the year."""
 
-    Parameters
-    ----------
-    course : ndarray (time of the year, point, quantity) [each quantity's unit]
-        One time of the year where the field has no season: its mean.
-    """
-
+    # (time of the year, point, quantity) [each quantity's unit], one time of the year where the field has no season:
+    # its mean
     course: NDArray[np.float32]
 
     def __post_init__(self) -> None:
@@ -30,10 +26,7 @@ class Season:
     def at(self, snapshots: NDArray[np.intp]) -> NDArray[np.float32]:
         """Mean field at the time of year of snapshots, (snapshot, point, quantity) [each quantity's unit].
 
-        Parameters
-        ----------
-        snapshots : ndarray of int (snapshot,)
-            Counted from 0.
+        snapshots (snapshot,): counted from 0
         """
         return self.course[snapshots % len(self.course)]
 
@@ -45,15 +38,9 @@ class Season:
 def season_of(field: Field, snapshots: NDArray[np.intp], period: int) -> Season:
     """Mean of every time of the year over some snapshots; their mean of all where a time of year is not among them.
 
-    Parameters
-    ----------
-    snapshots : ndarray of int (snapshot,)
-        Of the training part.
-    period : int
-        Snapshots of a year; 0 where there is no season.
+    snapshots (snapshot,): of the training part
+    period: snapshots of a year; 0 where there is no season
 
-    Examples
-    --------
     >>> from gaitdisc.recording import Axis
     >>> values = np.array([1.0, 5.0, 3.0, 7.0])[:, None, None]
     >>> line = Field(np.arange(4.0), values, (Axis("x", np.zeros(1)),), np.ones(1, bool), ("h",), ("m",))

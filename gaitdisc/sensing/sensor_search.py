@@ -31,23 +31,11 @@ def search_sensors(people: Sequence[Parts], channels: Sequence[Channel], most: i
     Sets are chosen on the check parts; the judged parts have no say, their error stands beside the choice. Each set
     costs no pass over the windows: the mean products of all channels' histories are computed once for each person.
 
-    Parameters
-    ----------
-    people : sequence of Parts
-        Windows in which every candidate is read, and every state told: candidates and states are the same channels.
-
-    Returns
-    -------
-    DataFrame
-        One row a size: `sensors` (how many), `names` (of the best set, joined by ", "), `loss` (mean squared error of
-        all angles on the check parts, sensors counted as exact [deg2]; of the scaled states where there is no angle),
-        `rmse_deg` (on the judged parts, angles that no sensor measures; mean over people), `fits` and `seconds`
-        (regressions and processor time for this size).
-
-    Examples
-    --------
-    >>> search_sensors([parts], channels, 2)["names"].tolist()  # doctest: +SKIP
-    ['knee_angle_l', 'hip_adduction_r, knee_angle_l']
+    people: windows in which every candidate is read, and every state told: candidates and states are the same channels
+    returns: one row a size: `sensors` (how many), `names` (of the best set, joined by ", "), `loss` (mean squared
+        error of all angles on the check parts, sensors counted as exact [deg2]; of the scaled states where there is no
+        angle), `rmse_deg` (on the judged parts, angles that no sensor measures; mean over people), `fits` and
+        `seconds` (regressions and processor time for this size)
     """
     if most < 1 or len(channels) < 2:
         raise ChannelError(

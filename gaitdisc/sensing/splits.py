@@ -27,20 +27,12 @@ RULES = {
 
 @dataclass(frozen=True, eq=False)
 class Parts:
-    """Windows of the three parts, trial by trial.
+    """Windows of the three parts, trial by trial."""
 
-    Parameters
-    ----------
-    training, check, test : tuple of Samples
-        One a trial that has windows in that part.
-    rule : str
-        How they were parted, a word of `RULES` or a sentence.
-    """
-
-    training: tuple[Samples, ...]
-    check: tuple[Samples, ...]
-    test: tuple[Samples, ...]
-    rule: str
+    training: tuple[Samples, ...]  # one a trial that has windows in that part
+    check: tuple[Samples, ...]  # one a trial that has windows in that part
+    test: tuple[Samples, ...]  # one a trial that has windows in that part
+    rule: str  # how they were parted, a word of `RULES` or a sentence
 
     def __post_init__(self) -> None:
         """Refuse a split that leaves a part empty."""
@@ -71,13 +63,8 @@ def split_within(trials: Sequence[Samples], rule: str, reach_s: float, seed: int
     From the last window of one part to the first of the next lie at least `reach_s` plus 0.3 s, so that no two windows
     of different parts share a reading, and the filter carries nothing over. The random rule alone leaves no gap.
 
-    Parameters
-    ----------
-    reach_s : float
-        From the first reading of a window to its last [s].
+    reach_s: from the first reading of a window to its last [s]
 
-    Examples
-    --------
     >>> t = np.arange(6000) / 100
     >>> parts = split_within([Samples(t[:, None], t[:, None], ("a",), ("b",), t, t)], "temporal", 1.0)
     >>> parts.fitted().time[[0, -1]].round(1).tolist(), parts.checked().time[[0, -1]].round(1).tolist()
@@ -94,10 +81,7 @@ def split_within(trials: Sequence[Samples], rule: str, reach_s: float, seed: int
 def split_by_subject(people: Sequence[Sequence[Samples]], judged: int) -> Parts:
     """Leave one person out: the next one in the list is what models are chosen by, all others are fitted.
 
-    Parameters
-    ----------
-    people : sequence of sequence of Samples
-        Windows of each trial of each person; at least three people.
+    people: windows of each trial of each person; at least three people
     """
     if len(people) < 3:
         raise SamplingError(
@@ -113,10 +97,7 @@ def split_by_subject(people: Sequence[Sequence[Samples]], judged: int) -> Parts:
 def split_by_trial(trials: Sequence[Samples], judged: Sequence[int], reach_s: float) -> Parts:
     """Leave whole trials out, such as those of another condition; the last 15 % of each other trial are checked.
 
-    Parameters
-    ----------
-    reach_s : float
-        From the first reading of a window to its last [s].
+    reach_s: from the first reading of a window to its last [s]
     """
     others = [each for k, each in enumerate(trials) if k not in judged]
     labels = [_apart(each.time, np.where(_share(each.time) < 0.85, TRAINING, CHECK), reach_s) for each in others]

@@ -20,19 +20,11 @@ COLUMNS = ("state", "unit", "rmse", "low", "high", "relative_l2", "r2")
 
 @dataclass(frozen=True, eq=False)
 class Judged:
-    """What was measured and what was told, window by window, with the stride that each belongs to.
-
-    Parameters
-    ----------
-    stride : ndarray of int (window,)
-        Number of the stride, -1 outside of strides.
-    told : ndarray (window, state)
-        What a model says.
-    """
+    """What was measured and what was told, window by window, with the stride that each belongs to."""
 
     windows: Samples
-    stride: NDArray[np.int_]
-    told: NDArray[np.float64]
+    stride: NDArray[np.int_]  # (window,), number of the stride, -1 outside of strides
+    told: NDArray[np.float64]  # (window, state), what a model says
 
     @property
     def strides(self) -> int:
@@ -43,8 +35,6 @@ class Judged:
 def stride_numbers(trials: Sequence[Samples]) -> NDArray[np.int_]:
     """Number of the stride of each window, counted through all trials.
 
-    Examples
-    --------
     >>> phi = np.array([90.0, 5.0, 50.0, 2.0, np.nan])
     >>> s = Samples(phi[:, None], phi[:, None], ("a",), ("b",), np.arange(5.0), phi)
     >>> stride_numbers([s]).tolist()
@@ -67,12 +57,9 @@ def stride_numbers(trials: Sequence[Samples]) -> NDArray[np.int_]:
 def state_errors(judged: Judged, channels: Sequence[Channel], seed: int = 0) -> pd.DataFrame:
     """Error of every state: RMSE in its unit, relative L2, and R2.
 
-    Returns
-    -------
-    DataFrame
-        `COLUMNS`: state, unit, rmse [unit], low and high (95 % interval of the RMSE, strides drawn with replacement;
-        NaN with fewer than three strides), relative_l2 [1] (norm of the error by norm of the measured values about
-        zero, Eq. 2.21, which the dissertation calls MSE), r2 [1] about the mean of the judged part.
+    returns: `COLUMNS`: state, unit, rmse [unit], low and high (95 % interval of the RMSE, strides drawn with
+        replacement; NaN with fewer than three strides), relative_l2 [1] (norm of the error by norm of the measured
+        values about zero, Eq. 2.21, which the dissertation calls MSE), r2 [1] about the mean of the judged part
     """
     measured, error = judged.windows.y, judged.told - judged.windows.y
     low, high = _interval(error**2, judged.stride, seed)
@@ -94,8 +81,6 @@ def state_errors(judged: Judged, channels: Sequence[Channel], seed: int = 0) -> 
 def angle_columns(channels: Sequence[Channel]) -> list[int]:
     """Columns that are angles.
 
-    Examples
-    --------
     >>> angle_columns([Channel("pelvis_tx", "translation", "m"), Channel("knee_angle_r", "angle", "deg", "r")])
     [1]
     """
@@ -105,16 +90,11 @@ def angle_columns(channels: Sequence[Channel]) -> list[int]:
 def angles_error(judged: Judged, channels: Sequence[Channel], sensors: NDArray[np.float64]) -> dict[str, float]:
     """One number for all angles that no sensor measures, by each of the three names.
 
-    Parameters
-    ----------
-    sensors : ndarray (window, sensor) [deg]
-        Readings of those sensors that are angles: they belong to the state, and their error is none.
-
-    Returns
-    -------
-    dict
-        `rmse_deg` (root of the mean square over windows and angles), `relative_l2`, `r2` (median of the angles), and
-        `relative_l2_whole`, in which the sensors count as states without error, as in Table 5.2. NaN without angles.
+    sensors (window, sensor) [deg]: readings of those sensors that are angles: they belong to the state, and their
+        error is none
+    returns: `rmse_deg` (root of the mean square over windows and angles), `relative_l2`, `r2` (median of the angles),
+        and `relative_l2_whole`, in which the sensors count as states without error, as in Table 5.2. NaN without
+        angles
     """
     angles = angle_columns(channels)
     if not angles:
@@ -133,10 +113,7 @@ def angles_error(judged: Judged, channels: Sequence[Channel], sensors: NDArray[n
 def phase_curves(judged: Judged, states: Sequence[str], points: int = 51) -> pd.DataFrame:
     """Mean and spread over the stride of what was measured and what was told.
 
-    Returns
-    -------
-    DataFrame
-        state, percent, measured, measured_sd, reconstructed, rmse (of the windows in the bin).
+    returns: state, percent, measured, measured_sd, reconstructed, rmse (of the windows in the bin)
     """
     inside = judged.stride >= 0
     phi, y, told = judged.windows.phi[inside], judged.windows.y[inside], judged.told[inside]

@@ -30,9 +30,6 @@ class Stream:
 
     Examples
     --------
-    >>> stream = Stream(reconstructor)  # doctest: +SKIP
-    >>> stream.update([12.1, 30.4, -3.3])  # doctest: +SKIP
-    array([...])
     """
 
     def __init__(self, reconstructor: Reconstructor, missing: str = "none") -> None:
@@ -48,10 +45,8 @@ class Stream:
         NaN until the history is full, and while it holds a missing reading that the model needs: unless the stream was
         told what to put in its place, a value that was never measured is not made up.
 
-        Parameters
-        ----------
-        reading : array_like (sensor,) [each sensor's unit]
-            In the order of the sensors; NaN where a sensor dropped out. One call a sample, at the model's rate.
+        reading array_like (sensor,) [each sensor's unit]: in the order of the sensors; NaN where a sensor dropped out.
+            One call a sample, at the model's rate
         """
         new = np.asarray(reading, float)
         if new.shape != (len(self._sensors),):

@@ -27,15 +27,8 @@ def unseen_path(
     error is stated: for a model fitted on one path, on many, and on many with each sensor's place fed in beside its
     reading. The times judged are those of the split, and were not fitted on any path.
 
-    Parameters
-    ----------
-    routes : sequence of Route
-        To fit on, at least two, each with as many sensors as `unseen`.
-
-    Returns
-    -------
-    list of FieldCell
-        `route` says on which path it was judged, and how the model was fitted.
+    routes: to fit on, at least two, each with as many sensors as `unseen`
+    returns: `route` says on which path it was judged, and how the model was fitted
     """
     if len(routes) < 2 or {route.sensors for route in routes} != {unseen.sensors}:
         counts = ", ".join(str(route.sensors) for route in routes) or "none"

@@ -16,23 +16,13 @@ from gaitdisc.recording import Recording, Samples
 class Lags:
     """How far back a window reaches, and how densely.
 
-    Parameters
-    ----------
-    count : int
-        Readings of each sensor in a window, the present one included.
-    spacing : int
-        Samples from one reading to the next; 6 Hz kinematics at 100 Hz lose nothing at 4.
-    ahead : int
-        Samples from the last reading to the state that is told: 0 tells the present, more of them forecast.
-
-    Examples
-    --------
     >>> Lags(25, 4).reach
     96
     """
 
-    count: int = 25
-    spacing: int = 4
+    count: int = 25  # readings of each sensor in a window, the present one included
+    spacing: int = 4  # samples from one reading to the next; 6 Hz kinematics at 100 Hz lose nothing at 4
+    # samples from the last reading to the state that is told: 0 tells the present, more of them forecast
     ahead: int = 0
 
     def __post_init__(self) -> None:
@@ -64,23 +54,13 @@ def windows_of(
 ) -> Samples:
     """Every window of one recording; none reaches beyond its start, nor over a missing value unless that is asked for.
 
-    Parameters
-    ----------
-    sensors, states : sequence of str
-        Channels that are read, and channels that are to be told.
-    phi : ndarray (time,) [% stride]
-        Percent stride of every sample of the recording.
-    missing : bool
-        Whether windows are kept whose readings are missing in part (NaN); the states must be there.
+    sensors, states: channels that are read, and channels that are to be told
+    phi (time,) [% stride]: percent stride of every sample of the recording
+    missing: whether windows are kept whose readings are missing in part (NaN); the states must be there
+    returns: x (window, reading * sensor), oldest reading first, sensors side by side; y, time and phi those of the
+        state that is told, at the last reading or `lags.ahead` samples later. Windows that lack a value are not among
+        them
 
-    Returns
-    -------
-    Samples
-        x (window, reading * sensor), oldest reading first, sensors side by side; y, time and phi those of the state
-        that is told, at the last reading or `lags.ahead` samples later. Windows that lack a value are not among them.
-
-    Examples
-    --------
     >>> from gaitdisc.channel import Channel
     >>> pair = (Channel("a", "signal", "V"), Channel("b", "signal", "V"))
     >>> r = Recording(np.arange(4) / 10, np.column_stack([np.arange(4), 10 * np.arange(4)]), pair)

@@ -31,8 +31,6 @@ def effective_cutoff_hz(cutoff_hz: float, rate_hz: float, order: int = 4, kind: 
     Each pass has |H|^2 = 1 / (1 + w^(2n)) with w = tan(pi f / rate) / tan(pi fc / rate); both together pass half of the
     power where w^(2n) = sqrt(2) - 1 (low-pass; its inverse for a high-pass).
 
-    Examples
-    --------
     >>> round(effective_cutoff_hz(6.0, 100.0), 2)
     5.39
     """
@@ -64,8 +62,6 @@ def highpassed(
 def needed_samples(cutoff_hz: float, rate_hz: float, order: int = 4) -> int:
     """Shortest run that is filtered: longer than the padding, which is one period of the cut-off.
 
-    Examples
-    --------
     >>> needed_samples(6.0, 100.0)
     18
     """
@@ -77,10 +73,7 @@ def short_run_findings(
 ) -> list[Finding]:
     """Say which stretches between gaps are too short to filter.
 
-    Parameters
-    ----------
-    max_gap_s : float
-        Longest gap that is bridged [s].
+    max_gap_s: longest gap that is bridged [s]
     """
     bridged = filled(recording, None, max_gap_s)
     need = needed_samples(cutoff_hz, recording.rate_hz, order)

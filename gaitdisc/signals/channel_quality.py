@@ -27,10 +27,8 @@ def channel_findings(recording: Recording) -> list[Finding]:
     - jump: a second difference ten times as large as its 95th percentile (in clean trials the largest is two to seven
       times): swapped markers, or inverse kinematics that lost its way for a frame.
 
-    Parameters
-    ----------
-    recording : Recording
-        As read, not filtered. EMG has rules of its own (`emg_findings`); its channels are looked at for gaps only.
+    recording: as read, not filtered. EMG has rules of its own (`emg_findings`); its channels are looked at for gaps
+        only
     """
     findings = gap_findings(recording)
     recording = unwrapped(recording)
@@ -64,13 +62,8 @@ def channel_findings(recording: Recording) -> list[Finding]:
 def frozen(x: NDArray[np.float64], rate_hz: float) -> NDArray[np.bool_]:
     """Mark where the same value is repeated for 0.1 s or longer.
 
-    Parameters
-    ----------
-    x : ndarray (time,)
-        One channel.
+    x (time,): one channel
 
-    Examples
-    --------
     >>> int(frozen(np.r_[np.arange(10.0), np.full(15, 9.0), np.arange(9.0)], 100.0).sum())
     16
     """
@@ -84,13 +77,8 @@ def frozen(x: NDArray[np.float64], rate_hz: float) -> NDArray[np.bool_]:
 def clipped(x: NDArray[np.float64], rests_at_zero: bool = False) -> NDArray[np.bool_]:
     """Mark where the largest or the smallest value is met, if it is met too often to be chance.
 
-    Parameters
-    ----------
-    x : ndarray (time,)
-        One channel.
+    x (time,): one channel
 
-    Examples
-    --------
     >>> t = np.arange(1000) / 100
     >>> bool(clipped(np.sin(6 * t)).any()), bool(clipped(np.minimum(np.sin(6 * t), 0.9)).any())
     (False, True)
@@ -109,13 +97,8 @@ def clipped(x: NDArray[np.float64], rests_at_zero: bool = False) -> NDArray[np.b
 def jumping(x: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Mark the samples beside an implausible second difference.
 
-    Parameters
-    ----------
-    x : ndarray (time,)
-        One channel, not filtered.
+    x (time,): one channel, not filtered
 
-    Examples
-    --------
     >>> x = np.sin(np.arange(1000) / 15)
     >>> x[500] += 1
     >>> np.flatnonzero(jumping(x)).tolist()

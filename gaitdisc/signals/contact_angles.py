@@ -36,10 +36,7 @@ def angle_contacts(kinematics: Recording, sides: tuple[str, ...] = ("r", "l")) -
     peak is found in the 55 % of a period before, and contact is put at the knee's minimum in the 42 % after that. Where
     there is no knee, the hip's own peak stands instead. The module says what percent of the stride both stand for.
 
-    Parameters
-    ----------
-    kinematics : Recording
-        `hip_flexion_<side>` and, for the better mark, `knee_angle_<side>`, flexion positive [deg].
+    kinematics: `hip_flexion_<side>` and, for the better mark, `knee_angle_<side>`, flexion positive [deg]
     """
     found = {}
     for side in sides:

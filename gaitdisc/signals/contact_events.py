@@ -14,8 +14,6 @@ CONTACT, OFF = "initial contact", "foot off"
 def event_contacts(trial: Trial) -> dict[str, Contacts]:
     """Contacts of both feet from the events of a trial.
 
-    Examples
-    --------
     >>> from gaitdisc.recording import Event
     >>> event_contacts(Trial("w", {}, (Event("initial contact", "r", 1.0),)))["r"].time
     array([1.])

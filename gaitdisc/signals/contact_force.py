@@ -23,8 +23,6 @@ SHORTEST_S = 0.1  # neither stance nor swing is shorter; what is, is chatter
 def rise_of(body_weight_n: float | None) -> float:
     """Force above which a foot is on the ground [N]: 50 N, or a tenth of a light body's weight, at least 20 N.
 
-    Examples
-    --------
     >>> rise_of(None), rise_of(64 * 9.81), round(rise_of(30 * 9.81), 2), rise_of(15 * 9.81)
     (50.0, 50.0, 29.43, 20.0)
     """
@@ -39,20 +37,10 @@ def loaded(force_n: NDArray[np.float64], rate_hz: float, rise_n: float = RISE_N)
     A loading begins above `rise_n` and ends below 20 N. What is loaded for less than 0.1 s is chatter and
     counts as unloaded; what is then unloaded for less than 0.1 s counts as loaded.
 
-    Parameters
-    ----------
-    force_n : ndarray (time,) [N]
-        Positive upwards on the foot; NaN counts as unloaded.
-    rise_n : float
-        Force above which a foot is on the ground [N].
+    force_n (time,) [N]: positive upwards on the foot; NaN counts as unloaded
+    rise_n: force above which a foot is on the ground [N]
+    returns (loading, 2) [sample]: first sample above `rise_n`, and the one after the last above 20 N
 
-    Returns
-    -------
-    ndarray (loading, 2) [sample]
-        First sample above `rise_n`, and the one after the last above 20 N.
-
-    Examples
-    --------
     >>> f = np.r_[np.zeros(30), 40, 0, np.full(60, 700.0), np.zeros(30)]
     >>> loaded(f, 100.0).tolist()
     [[32, 92]]
@@ -79,17 +67,9 @@ def force_contacts(
     Contact is where the force rises above 50 N, or less under a light body (`rise_of`), to a fraction
     of a sample, after the foot has been off (`loaded`). A loading that the recording begins with gives no contact.
 
-    Parameters
-    ----------
-    forces : Recording
-        Channels of quantity `vertical_force` [N].
-    sides : mapping of str to str, optional
-        Channel to `r` or `l`; by default the channels' own sides.
-
-    Returns
-    -------
-    dict of str to Contacts
-        For each side with a channel, with foot off.
+    forces: channels of quantity `vertical_force` [N]
+    sides: channel to `r` or `l`; by default the channels' own sides
+    returns: for each side with a channel, with foot off
     """
     if sides is None:
         sides = {c.name: c.side for c in forces.channels if c.quantity == "vertical_force" and c.side}
@@ -121,17 +101,9 @@ def plate_contacts(
 ) -> dict[str, Contacts]:
     """Contacts from plates that either foot may hit: the foot that lands is the one whose heel is in front.
 
-    Parameters
-    ----------
-    forces : Recording
-        Channels of quantity `vertical_force` [N], one a plate.
-    heels : mapping of str to str
-        Side (`r`, `l`) to the name of its heel marker.
-
-    Returns
-    -------
-    dict of str to Contacts
-        Both sides; empty where no plate was hit by that foot.
+    forces: channels of quantity `vertical_force` [N], one a plate
+    heels: side (`r`, `l`) to the name of its heel marker
+    returns: both sides; empty where no plate was hit by that foot
     """
     times: dict[str, list[float]] = {"r": [], "l": []}
     offs: dict[str, list[float]] = {"r": [], "l": []}

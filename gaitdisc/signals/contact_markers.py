@@ -24,25 +24,14 @@ def marker_contacts(
 ) -> dict[str, Contacts]:
     """Contacts of both feet: where the heel is farthest in front of the pelvis.
 
-    Parameters
-    ----------
-    markers : Recording
-        Channels `<marker>.x`, `<marker>.y`, `<marker>.z` [m].
-    heels : mapping of str to str
-        Side (`r`, `l`) to the name of its heel marker.
-    direction : Direction, optional
-        Direction of walking; inferred (`walking_direction`) and said in the note where it is not given.
-
-    Returns
-    -------
-    dict of str to Contacts
-        For each side in `heels`; foot off (heel farthest behind the pelvis) is not given, since the toe leaves later.
-
-    References
-    ----------
-    Zeni, Richards, Higginson (2008), Gait & Posture 27, 710-714. Differs: the direction need not be an axis of the
-    laboratory, and in a turn each step has its own; peaks need half of the usual swing, so that a stop gives none; the
-    peak is placed between samples by a parabola; gaps above 0.1 s give no contact.
+    markers: channels `<marker>.x`, `<marker>.y`, `<marker>.z` [m]
+    heels: side (`r`, `l`) to the name of its heel marker
+    direction: direction of walking; inferred (`walking_direction`) and said in the note where it is not given
+    returns: for each side in `heels`; foot off (heel farthest behind the pelvis) is not given, since the toe leaves
+        later
+    Source: Zeni, Richards, Higginson (2008), Gait & Posture 27, 710-714. Differs: the direction need not be an axis of
+        the laboratory, and in a turn each step has its own; peaks need half of the usual swing, so that a stop gives
+        none; the peak is placed between samples by a parabola; gaps above 0.1 s give no contact.
     """
     direction = direction or walking_direction(markers, heels, pelvis)
     needed = {f"{name}.{axis}" for name in [*heels.values(), *pelvis] for axis in "xyz"}

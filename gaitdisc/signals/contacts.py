@@ -77,21 +77,11 @@ class Contacts:
 
 @dataclass(frozen=True, eq=False)
 class Agreement:
-    """Two detectors on the same walk.
+    """Two detectors on the same walk."""
 
-    Parameters
-    ----------
-    difference_s : ndarray (pair,) [s]
-        Second minus first, of each matched pair.
-    missed : ndarray [s]
-        Contacts of the first that the second does not see, within the span of both.
-    extra : ndarray [s]
-        Contacts of the second that the first does not see, within the span of both.
-    """
-
-    difference_s: NDArray[np.float64]
-    missed: NDArray[np.float64]
-    extra: NDArray[np.float64]
+    difference_s: NDArray[np.float64]  # (pair,) [s], second minus first, of each matched pair
+    missed: NDArray[np.float64]  # [s], contacts of the first that the second does not see, within the span of both
+    extra: NDArray[np.float64]  # [s], contacts of the second that the first does not see, within the span of both
 
     @property
     def median_ms(self) -> float:
@@ -116,19 +106,10 @@ class Agreement:
 def compared(first: Contacts, second: Contacts, within_s: float = MATCH_S) -> Agreement:
     """Match the contacts of two detectors, nearest to nearest.
 
-    Parameters
-    ----------
-    within_s : float
-        Farther apart is no pair [s].
+    within_s: farther apart is no pair [s]
+    returns: contacts before the first or after the last of the other detector (by more than `within_s`) count as
+        neither missed nor extra: a plate sees two steps of a walk
 
-    Returns
-    -------
-    Agreement
-        Contacts before the first or after the last of the other detector (by more than `within_s`) count as neither
-        missed nor extra: a plate sees two steps of a walk.
-
-    Examples
-    --------
     >>> a = Contacts(np.array([1.0, 2.0, 3.0]), "r", "force")
     >>> b = Contacts(np.array([1.02, 3.02]), "r", "markers")
     >>> compared(a, b).line()
@@ -157,14 +138,9 @@ def compared(first: Contacts, second: Contacts, within_s: float = MATCH_S) -> Ag
 def order_findings(right: Contacts, left: Contacts, file: str = "") -> list[Finding]:
     """Find where right and left contacts do not alternate.
 
-    Returns
-    -------
-    list of Finding
-        One warning for each side, with the spans between two contacts of one foot that have none of the other between
-        them: a missed contact, or a foot that stepped on the other belt.
+    returns: one warning for each side, with the spans between two contacts of one foot that have none of the other
+        between them: a missed contact, or a foot that stepped on the other belt
 
-    Examples
-    --------
     >>> r = Contacts(np.array([0.0, 1.0, 2.0, 3.0]), "r", "force")
     >>> print(order_findings(r, Contacts(np.array([0.5, 2.5]), "l", "force"))[0].what)
     1 of 3 strides of side r without one contact of side l inside: at 1.00 s

@@ -26,23 +26,12 @@ REACH = len(FIRST) // 2
 def differentiated(values: NDArray[np.float64], rate_hz: float, order: int = 1) -> NDArray[np.float64]:
     """First or second time derivative by five-point central differences.
 
-    Parameters
-    ----------
-    values : ndarray (time, channel) [unit]
-        Filtered; the difference quotient passes on what noise is left.
+    values (time, channel) [unit]: filtered; the difference quotient passes on what noise is left
+    returns (time, channel) [unit/s or unit/s2]: NaN at the first and last two samples and within two samples of a
+        missing one: no one-sided guess
+    Source: Fornberg (1988), Math. Comp. 51, 699-706: weights of fourth order on five points. Errors: (w/rate)^4 / 30
+        and (w/rate)^4 / 90 of a sine of angular frequency w.
 
-    Returns
-    -------
-    ndarray (time, channel) [unit/s or unit/s2]
-        NaN at the first and last two samples and within two samples of a missing one: no one-sided guess.
-
-    References
-    ----------
-    Fornberg (1988), Math. Comp. 51, 699-706: weights of fourth order on five points. Errors: (w/rate)^4 / 30 and
-    (w/rate)^4 / 90 of a sine of angular frequency w.
-
-    Examples
-    --------
     >>> t = np.arange(7) / 10
     >>> differentiated(t[:, None] ** 2, 10.0, order=2).round(6).ravel()
     array([nan, nan,  2.,  2.,  2., nan, nan])
@@ -72,20 +61,10 @@ def differentiated_recording(recording: Recording, order: int = 1) -> Recording:
 def trajectory(filtered: Recording, strides: Strides) -> Trajectory:
     """State, velocity, acceleration and percent stride of a filtered recording.
 
-    Parameters
-    ----------
-    strides : Strides
-        Strides of the leg that percent stride is counted by.
-
-    Returns
-    -------
-    Trajectory
-        `usable` where x, xdot and xddot are there and none of the five samples they rest on is suspect: not in filled
-        gaps, not at the filter's edges, not on plateaus. phi is NaN outside of the strides.
-
-    References
-    ----------
-    Ebers (2023), Eqs. 4.1-4.4. Differs: the operator, which the text does not state, and the marks.
+    strides: strides of the leg that percent stride is counted by
+    returns: `usable` where x, xdot and xddot are there and none of the five samples they rest on is suspect: not in
+        filled gaps, not at the filter's edges, not on plateaus. phi is NaN outside of the strides
+    Source: Ebers (2023), Eqs. 4.1-4.4. Differs: the operator, which the text does not state, and the marks.
     """
     x, rate = filtered.values, filtered.rate_hz
     goes_on = unwrapped(filtered).values

@@ -18,32 +18,19 @@ LEAST_SPEED = 0.3  # m/s of the pelvis in the laboratory: slower is a treadmill,
 
 @dataclass(frozen=True, eq=False)
 class Direction:
-    """Forwards and upwards in the laboratory's axes.
+    """Forwards and upwards in the laboratory's axes."""
 
-    Parameters
-    ----------
-    forward, up : ndarray (3,)
-        Unit vectors; forward is the mean one where walking turns.
-    how : str
-        `given`, or what they were inferred from.
-    headings : ndarray (time, 3), optional
-        Forward at each sample of the markers, where it follows the path of the pelvis.
-    """
-
-    forward: NDArray[np.float64]
-    up: NDArray[np.float64]
-    how: str
+    forward: NDArray[np.float64]  # (3,), unit vectors; forward is the mean one where walking turns
+    up: NDArray[np.float64]  # (3,), unit vectors; forward is the mean one where walking turns
+    how: str  # `given`, or what they were inferred from
+    # (time, 3), forward at each sample of the markers, where it follows the path of the pelvis
     headings: NDArray[np.float64] | None = None
 
     def ahead(self, positions: NDArray[np.float64], sample: int | None = None) -> NDArray[np.float64]:
         """How far forward positions lie, (time,) [m].
 
-        Parameters
-        ----------
-        positions : ndarray (time, 3) [m]
-            On the time base of the markers; relative to the pelvis where walking turns.
-        sample : int, optional
-            Keep the direction of this sample throughout, as one step needs it; by default each sample has its own.
+        positions (time, 3) [m]: on the time base of the markers; relative to the pelvis where walking turns
+        sample: keep the direction of this sample throughout, as one step needs it; by default each sample has its own
         """
         if self.headings is None:
             return positions @ self.forward
@@ -60,10 +47,7 @@ def marker_position(markers: Recording, name: str) -> NDArray[np.float64]:
 def pelvis_position(markers: Recording, pelvis: Sequence[str]) -> NDArray[np.float64]:
     """Mean position of the pelvis markers, (time, 3) [m]; NaN where one of them is missing.
 
-    Parameters
-    ----------
-    pelvis : sequence of str
-        Names of the pelvis markers; the two or four at the iliac spines, or one at the sacrum.
+    pelvis: names of the pelvis markers; the two or four at the iliac spines, or one at the sacrum
     """
     if not pelvis:
         raise ChannelError(
@@ -80,10 +64,7 @@ def walking_direction(markers: Recording, heels: Mapping[str, str], pelvis: Sequ
     On a treadmill, the line along which the heels swing most is the walking line; on it the foot swings forwards faster
     than it goes backwards in stance, so velocity relative to the pelvis is skewed towards forward.
 
-    Parameters
-    ----------
-    heels : mapping of str to str
-        Side (`r`, `l`) to the name of its heel marker.
+    heels: side (`r`, `l`) to the name of its heel marker
     """
     centre = pelvis_position(markers, pelvis)
     swings = [marker_position(markers, name) - centre for name in heels.values()]
@@ -163,8 +144,6 @@ def _shown(forward: NDArray[np.float64]) -> str:
 def given_direction(forward: Sequence[float], up: Sequence[float] = (0.0, 0.0, 1.0)) -> Direction:
     """Direction that the laboratory states.
 
-    Examples
-    --------
     >>> given_direction((0, -2, 0)).forward.tolist()
     [0.0, -1.0, 0.0]
     """

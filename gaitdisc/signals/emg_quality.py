@@ -26,16 +26,10 @@ FEWEST_AT_RAIL = 3
 
 @dataclass(frozen=True)
 class AmplifierRange:
-    """Largest voltage that an amplifier can give.
-
-    Parameters
-    ----------
-    how : str
-        `given`, or what it was inferred from.
-    """
+    """Largest voltage that an amplifier can give."""
 
     volts: float
-    how: str
+    how: str  # `given`, or what it was inferred from
 
 
 def amplifier_range(emg: Recording, given_v: float | None = None) -> AmplifierRange:
@@ -45,15 +39,9 @@ def amplifier_range(emg: Recording, given_v: float | None = None) -> AmplifierRa
     one channel, exactly); 32768 times the quantisation step, which quiet channels show; the smallest usual range
     (1.25, 2.5, 5, 10 V) that holds the largest value.
 
-    Parameters
-    ----------
-    emg : Recording
-        Raw EMG, as digitised [V].
-    given_v : float, optional
-        Range that the laboratory states [V].
+    emg: raw EMG, as digitised [V]
+    given_v: range that the laboratory states [V]
 
-    Examples
-    --------
     >>> from gaitdisc.channel import Channel
     >>> clipped = np.clip(np.random.default_rng(0).normal(size=(999, 1)), -1.25, 1.25)
     >>> amplifier_range(Recording(np.arange(999) / 1000, clipped, (Channel("emg_sol_r", "emg", "V", "r"),))).how
@@ -88,17 +76,9 @@ def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
     The limits were set on the 14 files of young_straight_and_turn, whose manifest lists the live channels; dead ones
     have bursts of at most 3.3, live ones of that size at least 3.5.
 
-    Parameters
-    ----------
-    emg : Recording
-        Raw EMG, as digitised [V].
-    range_v : float, optional
-        Range of the amplifier; inferred (`amplifier_range`) and said where it is not given.
-
-    Returns
-    -------
-    list of Finding
-        `refused` for dead and unplugged channels: leave them out. `warning` for clipped ones.
+    emg: raw EMG, as digitised [V]
+    range_v: range of the amplifier; inferred (`amplifier_range`) and said where it is not given
+    returns: `refused` for dead and unplugged channels: leave them out. `warning` for clipped ones
     """
     limit = amplifier_range(emg, range_v)
     findings = []
@@ -132,19 +112,10 @@ def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
 def burst_ratio(x: NDArray[np.float64], rate_hz: float) -> float:
     """How far bursts rise above the rest: 99th percentile of the envelope over its median.
 
-    Parameters
-    ----------
-    x : ndarray (time,) [V]
-        Raw EMG of one channel.
+    x (time,) [V]: raw EMG of one channel
+    returns: 0 where less than a second was recorded, which shows no burst; infinite where the rate (80 Hz or below)
+        allows no envelope, so that nothing is refused for it
 
-    Returns
-    -------
-    float
-        0 where less than a second was recorded, which shows no burst; infinite where the rate (80 Hz or below) allows
-        no envelope, so that nothing is refused for it.
-
-    Examples
-    --------
     >>> noise = np.random.default_rng(0).normal(size=4000)
     >>> bursts = noise * np.where(np.arange(4000) % 1000 < 250, 10, 1)
     >>> round(burst_ratio(noise, 1000.0), 1), round(burst_ratio(bursts, 1000.0), 1)
@@ -164,12 +135,8 @@ def burst_ratio(x: NDArray[np.float64], rate_hz: float) -> float:
 def live_channels(emg: Recording, range_v: float | None = None) -> tuple[str, ...]:
     """Names of the channels that carry a muscle's signal, in order.
 
-    Parameters
-    ----------
-    emg : Recording
-        Raw EMG, as digitised [V].
-    range_v : float, optional
-        Range of the amplifier [V].
+    emg: raw EMG, as digitised [V]
+    range_v: range of the amplifier [V]
     """
     lost = {finding.channel for finding in emg_findings(emg, range_v) if finding.severity == "refused"}
     empty = {name for name in emg.names if not np.isfinite(emg[name]).any()}

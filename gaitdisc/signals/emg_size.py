@@ -29,12 +29,8 @@ def other_unit_findings(
 ) -> list[Finding]:
     """Say that EMG of a trial is so much weaker or stronger than that of another that one states a wrong unit.
 
-    Parameters
-    ----------
-    own, others : mapping of str to float
-        Of `emg_sizes`; the channels in common are judged.
-    usual : (float, float)
-        Least and largest ratio that needs no other unit.
+    own, others: of `emg_sizes`; the channels in common are judged
+    usual (float, float): least and largest ratio that needs no other unit
     """
     common = sorted(set(own) & set(others))
     if len(common) < FEWEST:

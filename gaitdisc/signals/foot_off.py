@@ -19,15 +19,9 @@ SMOOTH_HZ = 10.0
 def stance_windows(contacts: NDArray[np.float64], stride_s: float) -> list[tuple[float, float]]:
     """Spans in which a foot leaves the ground, one for each contact and one for the stance before the first [s].
 
-    Parameters
-    ----------
-    contacts : ndarray (contact,) [s]
-        Of one foot.
-    stride_s : float
-        Usual stride, for the contact that is the last [s].
+    contacts (contact,) [s]: of one foot
+    stride_s: usual stride, for the contact that is the last [s]
 
-    Examples
-    --------
     >>> stance_windows(np.array([1.0, 2.0]), 1.0)
     [(0.25, 0.85), (1.25, 1.85), (2.25, 2.85)]
     """
@@ -43,18 +37,11 @@ def marker_foot_off(
 ) -> NDArray[np.float64]:
     """Times at which a toe is farthest behind the pelvis, one for each window that has such a time [s].
 
-    Parameters
-    ----------
-    markers : Recording
-        Channels `<marker>.x`, `<marker>.y`, `<marker>.z` [m].
-    toe : str
-        Marker at the toes; one at the heel leaves earlier.
-    windows : sequence of (float, float)
-        From `stance_windows` [s].
-
-    References
-    ----------
-    Zeni, Richards, Higginson (2008), Gait & Posture 27, 710-714. Differs: in a turn each step has its own direction.
+    markers: channels `<marker>.x`, `<marker>.y`, `<marker>.z` [m]
+    toe: marker at the toes; one at the heel leaves earlier
+    windows sequence of (float, float): from `stance_windows` [s]
+    Source: Zeni, Richards, Higginson (2008), Gait & Posture 27, 710-714. Differs: in a turn each step has its own
+        direction.
     """
     needed = {f"{name}.{axis}" for name in (toe, *pelvis) for axis in "xyz"}
     bridged = filled(markers.selected([name for name in markers.names if name in needed]))
@@ -72,12 +59,8 @@ def marker_foot_off(
 def angle_foot_off(kinematics: Recording, ankle: str, windows: Sequence[tuple[float, float]]) -> NDArray[np.float64]:
     """Times at which an ankle is most plantarflexed, one for each window that has such a time [s].
 
-    Parameters
-    ----------
-    kinematics : Recording
-        With the ankle, dorsiflexion positive [deg].
-    windows : sequence of (float, float)
-        From `stance_windows` [s].
+    kinematics: with the ankle, dorsiflexion positive [deg]
+    windows sequence of (float, float): from `stance_windows` [s]
     """
     smooth = lowpassed(kinematics.selected([ankle]), min(SMOOTH_HZ, 0.4 * kinematics.rate_hz))
     found = []

@@ -19,17 +19,9 @@ FEWEST_SWINGS = 5
 def swing_baseline(force_n: NDArray[np.float64], rate_hz: float) -> NDArray[np.float64]:
     """Force in the middle half of every unloaded phase: its sample and its median.
 
-    Parameters
-    ----------
-    force_n : ndarray (time,) [N]
-        Vertical force of one plate, of either sign.
+    force_n (time,) [N]: vertical force of one plate, of either sign
+    returns (swing, 2) [sample, N]
 
-    Returns
-    -------
-    ndarray (swing, 2) [sample, N]
-
-    Examples
-    --------
     >>> step = np.r_[np.full(60, 700.0), np.full(40, 3.0)]
     >>> swing_baseline(np.tile(step, 3), 100.0).tolist()
     [[80.0, 3.0], [180.0, 3.0]]
@@ -54,15 +46,8 @@ def drift_findings(forces: Recording) -> list[Finding]:
     The drift is the Theil-Sen slope of the swing baseline times the length of the trial, so single swings with the
     other foot on the belt do not count.
 
-    Parameters
-    ----------
-    forces : Recording
-        Channels of quantity `vertical_force` [N]; others are passed over.
-
-    Returns
-    -------
-    list of Finding
-        A warning for an offset above 10 N or a drift above 5 N; a note where fewer than five swings tell.
+    forces: channels of quantity `vertical_force` [N]; others are passed over
+    returns: a warning for an offset above 10 N or a drift above 5 N; a note where fewer than five swings tell
     """
     findings = []
     for channel in forces.channels:

@@ -20,12 +20,8 @@ FEWEST_TEMPLATE_STRIDES = 5
 def gap_spans(recording: Recording, name: str) -> tuple[tuple[float, float], ...]:
     """Spans without a value in one channel.
 
-    Returns
-    -------
-    tuple of (float, float) [s]
+    returns tuple of (float, float) [s]
 
-    Examples
-    --------
     >>> from gaitdisc.channel import Channel
     >>> x = np.array([[0.0], [np.nan], [np.nan], [1.0]])
     >>> gap_spans(Recording(np.arange(4) / 100, x, (Channel("knee_angle_r", "angle", "deg", "r"),)), "knee_angle_r")
@@ -47,12 +43,8 @@ def filled(
     that nothing, and the samples within 0.15 s of the gap are marked suspect. Never a straight line alone. The limits
     come from measured errors of the acceleration (docs/derivatives.md). Gaps at either end stay open.
 
-    Parameters
-    ----------
-    strides : Strides, optional
-        Strides of one leg, for the template; at least 5 of them must be without a gap in the channel.
-    max_spline_s, max_template_s : float
-        Longest gap for the spline and for the template [s].
+    strides: strides of one leg, for the template; at least 5 of them must be without a gap in the channel
+    max_spline_s, max_template_s: longest gap for the spline and for the template [s]
     """
     given, recording = recording, unwrapped(recording)
     values, marks = np.array(recording.values), np.zeros(recording.values.shape, bool)
@@ -83,16 +75,9 @@ def filled(
 def gap_findings(recording: Recording, max_gap_s: float = MAX_SPLINE_S) -> list[Finding]:
     """Say which channels have gaps, and which of these can be filled.
 
-    Parameters
-    ----------
-    max_gap_s : float
-        Longest gap that is filled [s].
-
-    Returns
-    -------
-    list of Finding
-        A note where all gaps are short, a warning where some are not or the channel is empty; one for the three
-        coordinates of a marker.
+    max_gap_s: longest gap that is filled [s]
+    returns: a note where all gaps are short, a warning where some are not or the channel is empty; one for the three
+        coordinates of a marker
     """
     findings = []
     for channel in recording.channels:

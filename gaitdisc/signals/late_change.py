@@ -30,28 +30,15 @@ CHANGE_SD = 2.5  # what slow drift alone does not reach: 2.0 in 34 walks of the 
 
 @dataclass(frozen=True)
 class LateChange:
-    """Most likely change point of a trial.
+    """Most likely change point of a trial."""
 
-    Parameters
-    ----------
-    time : float
-        Start of the first stride after it [s].
-    p : float
-        How often a stationary series of the same dependence gives as large a statistic.
-    size_sd : float
-        Shift between the parts in stride-to-stride standard deviations: the root of the sum over principal components,
-        each shift over its standard deviation within the parts.
-    shifts : dict of str to float
-        Root mean square shift of the mean curve of each channel [channel's unit].
-    dependence : float
-        Largest lag-one correlation from stride to stride that was found.
-    """
-
-    time: float
-    p: float
+    time: float  # start of the first stride after it [s]
+    p: float  # how often a stationary series of the same dependence gives as large a statistic
+    # shift between the parts in stride-to-stride standard deviations: the root of the sum over principal components,
+    # each shift over its standard deviation within the parts
     size_sd: float
-    shifts: dict[str, float]
-    dependence: float
+    shifts: dict[str, float]  # root mean square shift of the mean curve of each channel [channel's unit]
+    dependence: float  # largest lag-one correlation from stride to stride that was found
 
 
 def late_change(recording: Recording, strides: Strides, seed: int = 0) -> LateChange:
@@ -64,18 +51,14 @@ def late_change(recording: Recording, strides: Strides, seed: int = 0) -> LateCh
     stationary autoregressive series of the same length and dependence, treated alike. Outlying strides are left out
     first.
 
-    Notes
-    -----
     Measured on 300 made-up stationary trials each of 40, 100 and 224 strides, dependence 0 to 0.8: p is 0.05 or less in
     1 to 5 % of them, 0.01 or less in at most 1.3 %. A shift of 1.5 to 2 standard deviations in three of six angles over
     the last fifth has p of 0.01 or less in every trial of 224 strides (four minutes); of 100 strides in all where
     strides depend little on each other (0.3 or less: 93 to 100 %) and in 15 to 48 % at 0.6; of 40 strides only where
     they do not depend on each other at all (75 to 97 %).
 
-    References
-    ----------
-    Ebers (2023), section 4.2.4, excludes by judgement. The statistic is Hotelling's with a long-run variance; the
-    simulated null replaces asymptotics that fail for 50 to 250 dependent strides.
+    Source: Ebers (2023), section 4.2.4, excludes by judgement. The statistic is Hotelling's with a long-run variance;
+        the simulated null replaces asymptotics that fail for 50 to 250 dependent strides.
     """
     kept = without_outlying(recording, strides)
     curves = kept.normalised(recording)
@@ -110,13 +93,10 @@ def late_change(recording: Recording, strides: Strides, seed: int = 0) -> LateCh
 def late_change_findings(recording: Recording, strides: Strides, alpha: float = ALPHA, seed: int = 0) -> list[Finding]:
     """Say whether gait changes late in a trial.
 
-    Returns
-    -------
-    list of Finding
-        A warning where p is `alpha` or less and the shift is one stride-to-stride standard deviation or more, a note
-        where the trial has too few strides to tell. Its kind is `late change` from 2.5 standard deviations on, `drift`
-        below: people drift slowly, by more than series that forget from stride to stride would, and p says that they
-        do (docs/results.md), but it is the same gait.
+    returns: a warning where p is `alpha` or less and the shift is one stride-to-stride standard deviation or more, a
+        note where the trial has too few strides to tell. Its kind is `late change` from 2.5 standard deviations on,
+        `drift` below: people drift slowly, by more than series that forget from stride to stride would, and p says
+        that they do (docs/results.md), but it is the same gait
     """
     file = recording.source.file
     try:

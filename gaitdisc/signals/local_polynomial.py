@@ -13,24 +13,12 @@ def savgol_filter(
 ) -> NDArray[np.float64]:
     """Smoothed signal or a derivative of it, from a polynomial fitted around each sample.
 
-    Parameters
-    ----------
-    values : ndarray (sample,)
-        Evenly sampled, finite, `width` samples or more.
-    step : float
-        Between two samples [s].
+    values (sample,): evenly sampled, finite, `width` samples or more
+    step: between two samples [s]
+    returns (sample,): within half a width of an end, the polynomial of the first or last `width` samples
+    Source: Savitzky, Golay 1964, Analytical Chemistry 36, 1627; the same numbers as `scipy.signal.savgol_filter` to
+        rounding.
 
-    Returns
-    -------
-    ndarray (sample,)
-        Within half a width of an end, the polynomial of the first or last `width` samples.
-
-    References
-    ----------
-    Savitzky, Golay 1964, Analytical Chemistry 36, 1627; the same numbers as `scipy.signal.savgol_filter` to rounding.
-
-    Examples
-    --------
     >>> time = np.arange(6) * 0.1
     >>> savgol_filter(time**3, 5, 3, 1, 0.1)[1:].round(3)
     array([0.03, 0.12, 0.27, 0.48, 0.75])

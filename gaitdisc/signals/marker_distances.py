@@ -30,15 +30,8 @@ FEWEST = 4  # distances: fewer show nothing
 def segment_distances(markers: Recording) -> dict[tuple[str, str], float]:
     """Median distance between markers that lie on one segment [m].
 
-    Parameters
-    ----------
-    markers : Recording
-        Channels `<marker>.x`, `<marker>.y`, `<marker>.z` [m].
-
-    Returns
-    -------
-    dict of (str, str) to float
-        Two markers -> distance; those that are never seen together are not there.
+    markers: channels `<marker>.x`, `<marker>.y`, `<marker>.z` [m]
+    returns dict of (str, str) to float: two markers -> distance; those that are never seen together are not there
     """
     there = {name.rsplit(".", 1)[0] for name in markers.names}
     found = {}
@@ -53,10 +46,7 @@ def segment_distances(markers: Recording) -> dict[tuple[str, str], float]:
 def person_findings(static: Recording, walk: Recording, file: str) -> list[Finding]:
     """Say that a static trial is another person's, or that its markers were moved.
 
-    Returns
-    -------
-    list of Finding
-        One warning, or none where the distances agree or fewer than four are there.
+    returns: one warning, or none where the distances agree or fewer than four are there
     """
     standing, walking = segment_distances(static), segment_distances(walk)
     both = [pair for pair in standing if pair in walking and min(standing[pair], walking[pair]) > 0]

@@ -20,21 +20,11 @@ def stride_period(
     repeated stride gives 1 at every multiple of its period. The shortest lag whose peak comes within 0.1 of the highest
     one is the period.
 
-    Parameters
-    ----------
-    x : ndarray (time,)
-        NaN allowed; lags use the pairs that are there.
-    shortest_s, longest_s : float
-        Range searched [s].
+    x (time,): NaN allowed; lags use the pairs that are there
+    shortest_s, longest_s: range searched [s]
+    returns period_s, regularity: NaN and 0 where nothing repeats or the recording is shorter than 1.7 strides.
+        Regularity is the correlation at the period, -1 to 1
 
-    Returns
-    -------
-    period_s, regularity : float
-        NaN and 0 where nothing repeats or the recording is shorter than 1.7 strides. Regularity is the
-        correlation at the period, -1 to 1.
-
-    Examples
-    --------
     >>> t = np.arange(1000) / 100
     >>> period, regularity = stride_period(np.sin(2 * np.pi * t) + 0.5 * np.sin(4 * np.pi * t), 100.0)
     >>> round(period, 2), round(regularity, 2)

@@ -23,19 +23,11 @@ NO_MODEL = "ezc3d"  # reader of files whose angles come from segments, not from 
 
 @dataclass(frozen=True, eq=False)
 class Plateau:
-    """A limit at which one angle stops.
-
-    Parameters
-    ----------
-    limit : float
-        Value at the plateau [deg].
-    marks : ndarray of bool (time,)
-        Samples on it.
-    """
+    """A limit at which one angle stops."""
 
     channel: str
-    limit: float
-    marks: NDArray[np.bool_]
+    limit: float  # value at the plateau [deg]
+    marks: NDArray[np.bool_]  # (time,), samples on it
 
 
 def plateaus(kinematics: Recording) -> list[Plateau]:
@@ -50,18 +42,9 @@ def plateaus(kinematics: Recording) -> list[Plateau]:
     peaks of C3D files that pass (1) to (3) 11 to 28 %. Angles of a C3D file come from no model with limits: none is
     looked for.
 
-    Parameters
-    ----------
-    kinematics : Recording
-        Joint angles [deg], not filtered or filtered.
+    kinematics: joint angles [deg], not filtered or filtered
+    returns: one a channel and limit; constant channels have none
 
-    Returns
-    -------
-    list of Plateau
-        One a channel and limit; constant channels have none.
-
-    Examples
-    --------
     >>> from gaitdisc.channel import Channel
     >>> t, rng = np.arange(2000) / 100, np.random.default_rng(0)
     >>> hip = 30 * np.cos(2 * np.pi * t) * (1 + 0.03 * np.repeat(rng.normal(size=20), 100))
@@ -90,10 +73,7 @@ def plateaus(kinematics: Recording) -> list[Plateau]:
 def plateau_findings(kinematics: Recording) -> list[Finding]:
     """Say which angles stop at a limit of the model, where, and for how much of the time.
 
-    Parameters
-    ----------
-    kinematics : Recording
-        Joint angles [deg].
+    kinematics: joint angles [deg]
     """
     return [
         Finding(
@@ -114,10 +94,7 @@ def plateau_findings(kinematics: Recording) -> list[Finding]:
 def plateau_marked(kinematics: Recording) -> Recording:
     """Mark what lies on a plateau, or within 0.05 s of one, as suspect.
 
-    Parameters
-    ----------
-    kinematics : Recording
-        Joint angles [deg]; mark before filtering, so that the limits are still sharp.
+    kinematics: joint angles [deg]; mark before filtering, so that the limits are still sharp
     """
     marks = np.zeros(kinematics.values.shape, bool)
     beside = round(BESIDE_S * kinematics.rate_hz)

@@ -37,18 +37,10 @@ CLEARLY = 60.0  # by which the log likelihood must be better with the filter tha
 
 @dataclass(frozen=True)
 class Spectrum:
-    """Power of a channel over frequency.
+    """Power of a channel over frequency."""
 
-    Parameters
-    ----------
-    frequency : ndarray (line,)
-        As a share of the rate.
-    power : ndarray (line,)
-        [the channel's unit squared].
-    """
-
-    frequency: NDArray[np.float64]
-    power: NDArray[np.float64]
+    frequency: NDArray[np.float64]  # (line,), as a share of the rate
+    power: NDArray[np.float64]  # (line,), [the channel's unit squared]
     windows: int
 
     def lines(self, kept: slice) -> Spectrum:
@@ -58,21 +50,12 @@ class Spectrum:
 
 @dataclass(frozen=True)
 class RecordedFilter:
-    """A filter that was found in a record: a Butterworth low-pass of order 2, forwards and back.
-
-    Parameters
-    ----------
-    gained : float
-        Log likelihood with it less that without it.
-    likelihood : float
-        Log likelihood with it, of the same lines whatever the signal is taken to be like.
-    signal : float
-        Power of the signal over that of the noise at the cut-off: where it is far above 1, the number is rough.
-    """
+    """A filter that was found in a record: a Butterworth low-pass of order 2, forwards and back."""
 
     cutoff_hz: float
-    gained: float
-    likelihood: float
+    gained: float  # log likelihood with it less that without it
+    likelihood: float  # log likelihood with it, of the same lines whatever the signal is taken to be like
+    # power of the signal over that of the noise at the cut-off: where it is far above 1, the number is rough
     signal: float
 
 
@@ -81,24 +64,12 @@ def recorded_filter(
 ) -> RecordedFilter | None:
     """Find the zero-lag low-pass that a channel went through.
 
-    Parameters
-    ----------
-    trials : sequence of ndarray (sample,)
-        One channel of each trial, evenly sampled; NaN where nothing was measured.
-    like : sequence of ndarray (sample,), optional
-        The same channel as a simulation has it, before any filter: the signal's spectrum is like that of these.
+    trials each (sample,): one channel of each trial, evenly sampled; NaN where nothing was measured
+    like each (sample,): the same channel as a simulation has it, before any filter: the signal's spectrum is like that
+        of these
+    returns: none where the spectrum shows none, or one of order 4
+    Source: Welch (1967), IEEE Trans. Audio Electroacoust. 15:70-73. Whittle (1953), Ark. Mat. 2:423-434.
 
-    Returns
-    -------
-    RecordedFilter or None
-        None where the spectrum shows none, or one of order 4.
-
-    References
-    ----------
-    Welch (1967), IEEE Trans. Audio Electroacoust. 15:70-73. Whittle (1953), Ark. Mat. 2:423-434.
-
-    Examples
-    --------
     >>> from scipy.signal import butter, sosfiltfilt
     >>> raw = np.sin(2 * np.pi * np.arange(4000) / 100) + np.random.default_rng(0).normal(0, 0.05, 4000)
     >>> low = sosfiltfilt(butter(2, 6.0, fs=100.0, output="sos"), raw)
@@ -127,10 +98,7 @@ def recorded_filter(
 def spectrum_of(trials: Sequence[NDArray[np.float64]]) -> Spectrum | None:
     """Power spectrum of a channel, averaged over windows that overlap by half; None where all trials are too short.
 
-    Parameters
-    ----------
-    trials : sequence of ndarray (sample,)
-        NaN where nothing was measured: a window takes the longest stretch without any.
+    trials each (sample,): NaN where nothing was measured: a window takes the longest stretch without any
     """
     stretches = [stretch for trial in trials for stretch in _whole_stretches(trial)]
     length = min(max((len(one) for one in stretches), default=0), WINDOW)

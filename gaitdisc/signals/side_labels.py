@@ -37,15 +37,8 @@ def marker_side_findings(markers: Recording) -> list[Finding]:
     Up, back and front make left and right: where the spines at the back are behind those in front and the pelvis is
     above the feet, the right spine is to the right. The median over the trial is looked at, whichever way one walks.
 
-    Parameters
-    ----------
-    markers : Recording
-        Channels `<marker>.x`, `<marker>.y`, `<marker>.z` [m].
-
-    Returns
-    -------
-    list of Finding
-        One warning, or none where the sides are right or the markers of the pelvis are not there.
+    markers: channels `<marker>.x`, `<marker>.y`, `<marker>.z` [m]
+    returns: one warning, or none where the sides are right or the markers of the pelvis are not there
     """
     there = {name.rsplit(".", 1)[0] for name in markers.names}
     pelvis = next((names for names in PELVIS if set(names) <= there), None)
@@ -85,15 +78,8 @@ def marker_side_findings(markers: Recording) -> list[Finding]:
 def sway_findings(kinematics: Recording, strides: Sequence[Strides]) -> list[Finding]:
     """Say that left and right of all angles are exchanged: the pelvis sways towards the foot that stands alone.
 
-    Parameters
-    ----------
-    kinematics : Recording
-        With `pelvis_tx`, `pelvis_tz` [m] and `pelvis_rotation` [deg] as OpenSim has them, y up.
-
-    Returns
-    -------
-    list of Finding
-        One warning where four of five strides of each foot sway to the other side, by 5 mm or more in the middle.
+    kinematics: with `pelvis_tx`, `pelvis_tz` [m] and `pelvis_rotation` [deg] as OpenSim has them, y up
+    returns: one warning where four of five strides of each foot sway to the other side, by 5 mm or more in the middle
     """
     if not strides or not {"pelvis_tx", "pelvis_tz", "pelvis_rotation"} <= set(kinematics.names):
         return []
@@ -122,17 +108,9 @@ def sway_findings(kinematics: Recording, strides: Sequence[Strides]) -> list[Fin
 def load_findings(kinematics: Recording, forces: Recording) -> list[Finding]:
     """Say that the force of one foot goes with the knee of the other: a knee is bent least while its foot stands.
 
-    Parameters
-    ----------
-    kinematics : Recording
-        With both knees, flexion positive [deg].
-    forces : Recording
-        Vertical forces that name their foot [N].
-
-    Returns
-    -------
-    list of Finding
-        One warning where both knees bend more under load than in the air, by 5 deg or more.
+    kinematics: with both knees, flexion positive [deg]
+    forces: vertical forces that name their foot [N]
+    returns: one warning where both knees bend more under load than in the air, by 5 deg or more
     """
     found: dict[str, float] = {}
     for channel in forces.channels:

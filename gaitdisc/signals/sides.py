@@ -14,10 +14,7 @@ FEWEST_DEG = 5.0
 def knee_peak_percent(kinematics: Recording, strides: Strides, knee: str) -> float:
     """Percent stride at which the mean curve of a knee is most flexed.
 
-    Parameters
-    ----------
-    kinematics : Recording
-        With the knee's flexion [deg].
+    kinematics: with the knee's flexion [deg]
     """
     curves = strides.normalised(kinematics.selected([knee]))[:, :, 0]
     curves = curves[np.isfinite(curves).all(axis=1)]
@@ -35,15 +32,8 @@ def verify_sides(kinematics: Recording, strides: Strides) -> float:
     the contacts come from these very angles the check holds by itself; a swap of everything cannot be seen. Verify
     that the trial is walking first (`verify_walking`).
 
-    Parameters
-    ----------
-    kinematics : Recording
-        With both knees, flexion positive [deg].
-
-    Returns
-    -------
-    float
-        Percent stride of the knee's peak; NaN where no stride has the knee.
+    kinematics: with both knees, flexion positive [deg]
+    returns: percent stride of the knee's peak; NaN where no stride has the knee
     """
     own, other = (f"knee_angle_{side}" for side in (strides.side, "l" if strides.side == "r" else "r"))
     at = knee_peak_percent(kinematics, strides, own)

@@ -27,13 +27,9 @@ def spikes(recording: Recording) -> NDArray[np.bool_]:
     hundred exceeds: a stumble is fast too, but has samples on its way. Within 0.03 s of an end or of a gap nothing is
     judged. A heading is looked at as it goes on.
 
-    References
-    ----------
-    Hampel 1974, J. Am. Stat. Assoc. 69, 383; Pearson 2002, IEEE Trans. Control Syst. Technol. 10, 55. Differs: the
-    scale is that of the whole channel, not of the window, for a smooth channel has none in a window.
+    Source: Hampel 1974, J. Am. Stat. Assoc. 69, 383; Pearson 2002, IEEE Trans. Control Syst. Technol. 10, 55. Differs:
+        the scale is that of the whole channel, not of the window, for a smooth channel has none in a window.
 
-    Examples
-    --------
     >>> from gaitdisc.channel import Channel
     >>> x = 30 * np.sin(np.arange(500) / 15)
     >>> x[200] += 15

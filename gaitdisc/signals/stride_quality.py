@@ -21,8 +21,6 @@ def stride_distances(recording: Recording, strides: Strides) -> NDArray[np.float
 
     The root mean square over the stride; the median curve is not moved by the strides that are looked for.
 
-    Examples
-    --------
     >>> from gaitdisc.channel import Channel
     >>> t = np.arange(500) / 100
     >>> x = np.sin(2 * np.pi * t) + 3 * ((t > 2) & (t < 3))
@@ -93,10 +91,7 @@ def without_outlying(recording: Recording, strides: Strides, fewest_channels: in
     An accident, a stumble say, spoils one to three strides. Four or more in a row are another way of walking: they
     stay, and `late_change` judges them.
 
-    Parameters
-    ----------
-    fewest_channels : int
-        In how many channels a stride must be outlying to be dropped.
+    fewest_channels: in how many channels a stride must be outlying to be dropped
     """
     far, distance = outlying(recording, strides), stride_distances(recording, strides)
     out = far.sum(axis=1) >= fewest_channels

@@ -25,15 +25,9 @@ def cut_strides(
     false contact, a stumble); strides in which a channel has a gap that cannot be filled, or which the recording does
     not cover.
 
-    Parameters
-    ----------
-    recording : Recording, optional
-        What will be analysed in the strides; channels without any value do not count.
-    min_s, max_s : float
-        Limits of a stride's duration [s].
+    recording: what will be analysed in the strides; channels without any value do not count
+    min_s, max_s: limits of a stride's duration [s]
 
-    Examples
-    --------
     >>> strides = cut_strides(Contacts(np.array([0.0, 1.0, 2.0, 3.1, 5.2, 6.2]), "r", "force"))
     >>> len(strides), strides.dropped[0].reason
     (4, '2.10 s differs from the median stride of 1.00 s by more than 15 % and 6 robust sd: a contact was missed')
@@ -63,15 +57,9 @@ def cut_strides(
 def duration_reasons(duration: np.ndarray, min_s: float, max_s: float) -> list[str]:
     """Why strides of such durations are left out: a sentence for each, empty where it is kept.
 
-    Parameters
-    ----------
-    duration : ndarray (stride,) [s]
-        Of one foot, or of several trials of one person.
-    min_s, max_s : float
-        Limits of a stride's duration [s].
+    duration (stride,) [s]: of one foot, or of several trials of one person
+    min_s, max_s: limits of a stride's duration [s]
 
-    Examples
-    --------
     >>> duration_reasons(np.array([1.0, 0.2]), 0.4, 2.5)
     ['', '0.20 s is shorter than 0.4 s: a contact too many']
     """
@@ -99,12 +87,8 @@ def duration_reasons(duration: np.ndarray, min_s: float, max_s: float) -> list[s
 def gap_reasons(start: np.ndarray, end: np.ndarray, recording: Recording) -> list[str]:
     """Why strides are left out for what a recording lacks in them: a sentence for each, empty where it lacks nothing.
 
-    Parameters
-    ----------
-    start, end : ndarray (stride,) [s]
-        Initial contacts.
-    recording : Recording
-        Channels without any value do not count; gaps of up to 0.1 s are bridged.
+    start, end (stride,) [s]: initial contacts
+    recording: channels without any value do not count; gaps of up to 0.1 s are bridged
     """
     missing = ~np.isfinite(filled(recording).values)
     columns = np.flatnonzero(~missing.all(axis=0))

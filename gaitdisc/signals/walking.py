@@ -18,35 +18,21 @@ LEAST_KNEE_DEG = 25.0
 
 @dataclass(frozen=True)
 class Walking:
-    """How steadily somebody walks.
-
-    Parameters
-    ----------
-    stride_s : float
-        Median duration [s].
-    coverage : float
-        Share of the time between first and last sample that strides cover.
-    regularity : float
-        Median over hips and knees of the correlation with the same angle one stride later; NaN where the recording is
-        shorter than four strides.
-    knee_deg : float
-        Excursion of the knee, 5th to 95th percentile; NaN without a knee.
-    """
+    """How steadily somebody walks."""
 
     strides: int
-    stride_s: float
-    coverage: float
+    stride_s: float  # median duration [s]
+    coverage: float  # share of the time between first and last sample that strides cover
+    # median over hips and knees of the correlation with the same angle one stride later; NaN where the recording is
+    # shorter than four strides
     regularity: float
-    knee_deg: float
+    knee_deg: float  # excursion of the knee, 5th to 95th percentile; NaN without a knee
 
 
 def measured_walking(kinematics: Recording, strides: Strides) -> Walking:
     """Measure how steadily somebody walks.
 
-    Parameters
-    ----------
-    kinematics : Recording
-        With hip and knee flexion [deg].
+    kinematics: with hip and knee flexion [deg]
     """
     hips_and_knees = [
         n for n in kinematics.names if n in {f"{j}_{s}" for j in ("hip_flexion", "knee_angle") for s in "rl"}
@@ -76,12 +62,9 @@ def verify_walking(
     and bend both knees by 25 deg or more. On treadmill_walk_ik the twelve walks, each with a stumble, have 0.82 to 0.98
     and cover 84 to 96 %; the two range-of-motion trials 0.58 and 0.64 and cover below 20 %.
 
-    Parameters
-    ----------
-    kinematics : Recording
-        With hip and knee flexion [deg].
-    least_coverage : float
-        Share of the trial that strides must cover; 0 for walks over ground that begin and end within the trial.
+    kinematics: with hip and knee flexion [deg]
+    least_coverage: share of the trial that strides must cover; 0 for walks over ground that begin and end within the
+        trial
     """
     found = measured_walking(kinematics, strides)
     fails = []

@@ -16,14 +16,9 @@ def leaf_columns(
 ) -> list[NDArray[np.float64]]:
     """Values of time, states, inputs and parameters in the order in which a program takes them.
 
-    Parameters
-    ----------
-    t : ndarray (point,)
-        Time [s].
-    x, u : ndarray (point, state), (point, input)
-        States and inputs.
-    values : ndarray (parameter,) or (point, parameter)
-        Parameters.
+    t (point,): time [s]
+    x, u (point, state), (point, input): states and inputs
+    values (parameter,) or (point, parameter): parameters
     """
     return [np.asarray(t, float), *np.asarray(x, float).T, *np.asarray(u, float).T, *np.asarray(values, float).T]
 
@@ -36,14 +31,9 @@ def at_points(
 ) -> NDArray[np.float64]:
     """Outputs of a program at many points, (output, point).
 
-    Parameters
-    ----------
-    columns : sequence of ndarray (point,) or ()
-        Values of its leaves; one number serves all points.
-    late : ndarray (point, delay), optional
-        Delayed signals, where the program has any.
-    points : int, optional
-        How many; the length of the first column by default.
+    columns each (point,) or (): values of its leaves; one number serves all points
+    late (point, delay): delayed signals, where the program has any
+    points: how many; the length of the first column by default
     """
     if program.delays and (late is None or np.shape(late)[-1] != len(program.delays)):
         raise SimulationError(
@@ -71,10 +61,7 @@ class PointTable:
     def fill(self, first: int, columns: Sequence[NDArray[np.float64]]) -> None:
         """Put values in place of those of some leaves; what the program does not read is passed over.
 
-        Parameters
-        ----------
-        columns : sequence of ndarray (point,) or ()
-            Their values; one number serves all points.
+        columns each (point,) or (): their values; one number serves all points
         """
         for leaf, column in enumerate(columns, first):
             if self._used[leaf]:

@@ -15,8 +15,6 @@ _FOLDER = Path(__file__).parent / "systems"
 def bundled_names() -> tuple[str, ...]:
     """Names of the simulations that come with the package.
 
-    Examples
-    --------
     >>> "lorenz" in bundled_names()
     True
     """

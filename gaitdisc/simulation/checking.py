@@ -157,10 +157,7 @@ def _check_text(text: str, known: tuple[str, ...], simulation: Simulation, place
 def check_expression(text: str, known: tuple[str, ...], simulation: Simulation) -> Tree:
     """Tree of an expression whose names all have values.
 
-    Parameters
-    ----------
-    simulation : Simulation
-        Whose states and inputs may be delayed, by its parameters.
+    simulation: whose states and inputs may be delayed, by its parameters
     """
     tree, named, late = _parts_of(text)
     unknown = next((name for name in named if name not in known), None)

@@ -20,24 +20,16 @@ SUBSTEPS = 5  # Runge-Kutta steps for each sample
 
 @dataclass(frozen=True, eq=False)
 class Compiled:
-    """A simulation that is ready to run.
-
-    Parameters
-    ----------
-    defaults : ndarray (parameter,)
-        The parameters' own values.
-    right_hand_side, observation : Program
-        Derivatives of the states, and the observed channels.
-    """
+    """A simulation that is ready to run."""
 
     simulation: Simulation
     states: tuple[str, ...]
     inputs: tuple[str, ...]
     parameters: tuple[str, ...]
     observed: tuple[str, ...]
-    defaults: NDArray[np.float64]
-    right_hand_side: Program
-    observation: Program
+    defaults: NDArray[np.float64]  # (parameter,), the parameters' own values
+    right_hand_side: Program  # derivatives of the states, and the observed channels
+    observation: Program  # derivatives of the states, and the observed channels
 
     def run(
         self,
@@ -50,18 +42,11 @@ class Compiled:
     ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         """States along each row, by Runge-Kutta of order 4.
 
-        Parameters
-        ----------
-        past : ndarray (trial, sample, state), optional
-            Measured states, the first ones or all, for delays that reach before a row's start; held at the start where
-            absent or NaN.
-
-        Returns
-        -------
-        states : ndarray (row, steps + 1, state)
-            NaN beyond the trial's end, and from where a row diverged (a state beyond 1e6, or not a number).
-        ok : ndarray of bool (row,)
-            False where a row diverged.
+        past (trial, sample, state): measured states, the first ones or all, for delays that reach before a row's
+            start; held at the start where absent or NaN
+        returns states (row, steps + 1, state): NaN beyond the trial's end, and from where a row diverged (a state
+            beyond 1e6, or not a number)
+        returns ok (row,): false where a row diverged
         """
         from gaitdisc.simulation.machine import BLOCK, integrate
 
@@ -87,18 +72,11 @@ class Compiled:
     ) -> NDArray[np.float64]:
         """Right-hand side at many points.
 
-        Parameters
-        ----------
-        t : ndarray (point,)
-            Time [s].
-        x : ndarray (point, state)
-            States.
-        u : ndarray (point, input)
-            Inputs.
-        values : ndarray (parameter,) or (point, parameter), optional
-            Parameters; the simulation's own where absent.
-        late : ndarray (point, delay), optional
-            Delayed signals, in the order of `right_hand_side.delays`.
+        t (point,): time [s]
+        x (point, state): states
+        u (point, input): inputs
+        values (parameter,) or (point, parameter): parameters; the simulation's own where absent
+        late (point, delay): delayed signals, in the order of `right_hand_side.delays`
         """
         values = self.defaults if values is None else np.asarray(values, float)
         return at_points(self.right_hand_side, leaf_columns(t, x, u, values), late).T
@@ -112,16 +90,9 @@ class Compiled:
     ) -> NDArray[np.float64]:
         """Observed channels along rows that were run.
 
-        Parameters
-        ----------
-        states : ndarray (row, step, state)
-            From `run`.
-        past : ndarray (trial, sample, state), optional
-            As for `run`.
-
-        Returns
-        -------
-        ndarray (row, step, observed)
+        states (row, step, state): from `run`
+        past (trial, sample, state): as for `run`
+        returns (row, step, observed)
         """
         place, _, values = self._rows(drive, rows)
         count, steps, n = states.shape

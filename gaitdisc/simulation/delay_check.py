@@ -20,10 +20,7 @@ def refuse_delays(simulation: Simulation | PythonSimulation, shortest_s: float =
 
     An input is known in full, so that a negative delay of one is a signal that was recorded late.
 
-    Parameters
-    ----------
-    shortest_s : float
-        Length of the shortest trial [s].
+    shortest_s: length of the shortest trial [s]
     """
     values = simulation.values()
     inputs = tuple(each.name for each in simulation.inputs)
@@ -39,10 +36,7 @@ def refuse_delays_of(
 ) -> None:
     """Refuse such delays of one expression; those whose seconds have names without a value are passed over.
 
-    Parameters
-    ----------
-    shortest_s : float
-        Length of the shortest trial [s].
+    shortest_s: length of the shortest trial [s]
     """
     for call in delays(tree):
         signal, ago = call.arguments

@@ -11,19 +11,11 @@ def delayed_in_series(
 ) -> NDArray[np.float64]:
     """Signal some seconds ago, linear between its samples and held at the first.
 
-    Parameters
-    ----------
-    signal : ndarray (sample,)
-        Consecutive samples.
-    seconds : ndarray (sample,) or ()
-        How long ago [s].
-    rate : float
-        Samples a second [Hz].
-    wraps : bool
-        Whether it goes from just below 1 to 0 without passing what lies between.
+    signal (sample,): consecutive samples
+    seconds (sample,) or (): how long ago [s]
+    rate: samples a second [Hz]
+    wraps: whether it goes from just below 1 to 0 without passing what lies between
 
-    Examples
-    --------
     >>> delayed_in_series(np.arange(4.0), np.array(0.15), 10.0).tolist()
     [0.0, 0.0, 0.5, 1.5]
     """
@@ -36,14 +28,9 @@ def linear_in_rows(
 ) -> NDArray[np.float64]:
     """Values between the samples of series, (row, step).
 
-    Parameters
-    ----------
-    series : ndarray (trial, sample)
-        Signals.
-    which : ndarray (row,)
-        Trial of each row.
-    at : ndarray (row, step)
-        Places, in samples, inside the trial.
+    series (trial, sample): signals
+    which (row,): trial of each row
+    at (row, step): places, in samples, inside the trial
     """
     k = np.minimum(at.astype(int), series.shape[1] - 2) if series.shape[1] > 1 else np.zeros(at.shape, int)
     value, after = series[which[:, None], k], series[which[:, None], np.minimum(k + 1, series.shape[1] - 1)]
@@ -57,15 +44,9 @@ def linear_in_rows(
 def cubic_in_rows(series: NDArray[np.float64], at: NDArray[np.float64]) -> NDArray[np.float64]:
     """Values between the samples of series by the polynomial through four of them, (row, step).
 
-    Parameters
-    ----------
-    series : ndarray (row, sample)
-        Signals; linear where they have fewer than four samples.
-    at : ndarray (row, step)
-        Places, in samples, inside the row.
+    series (row, sample): signals; linear where they have fewer than four samples
+    at (row, step): places, in samples, inside the row
 
-    Examples
-    --------
     >>> cubic_in_rows(np.arange(5.0)[None] ** 3, np.array([[1.5]])).tolist()
     [[3.375]]
     """
@@ -89,16 +70,10 @@ def before_rows(
 ) -> NDArray[np.float64]:
     """Measured state before each row began, joined to the row's own start, (row, step).
 
-    Parameters
-    ----------
-    past : ndarray (trial, sample)
-        Measured state; where it is NaN the start counts.
-    place : ndarray (row, 2)
-        Trial and first sample of each row.
-    position : ndarray (row, step)
-        Places, in samples, counted from each row's start.
-    start : ndarray (row,)
-        State at the start.
+    past (trial, sample): measured state; where it is NaN the start counts
+    place (row, 2): trial and first sample of each row
+    position (row, step): places, in samples, counted from each row's start
+    start (row,): state at the start
     """
     begin = place[:, 1, None]
     at = np.clip(begin + position, 0, begin)

@@ -17,26 +17,14 @@ _NUDGE = 1e-2  # of a parameter, to see what drives the rate
 
 @dataclass(frozen=True)
 class Divergence:
-    """The last that is known of a row.
+    """The last that is known of a row."""
 
-    Parameters
-    ----------
-    row, trial : int
-        Numbers of the row and of its trial.
-    time : float
-        Of its last finite sample [s].
-    state : str
-        That changes fastest there, relative to its size.
-    parameter : str
-        That the state's rate depends on most there; empty where it depends on none.
-    """
-
-    row: int
-    trial: int
-    time: float
-    state: str
+    row: int  # numbers of the row and of its trial
+    trial: int  # numbers of the row and of its trial
+    time: float  # of its last finite sample [s]
+    state: str  # that changes fastest there, relative to its size
     value: float
-    parameter: str
+    parameter: str  # that the state's rate depends on most there; empty where it depends on none
 
 
 def divergences(
@@ -44,12 +32,8 @@ def divergences(
 ) -> tuple[Divergence, ...]:
     """Where each row that did not stay finite was last seen.
 
-    Parameters
-    ----------
-    states : ndarray (row, step, state)
-        From `Compiled.run`.
-    ok : ndarray of bool (row,)
-        From `Compiled.run`.
+    states (row, step, state): from `Compiled.run`
+    ok (row,): from `Compiled.run`
     """
     return tuple(_divergence(compiled, drive, rows, states, int(row)) for row in np.flatnonzero(~ok))
 

@@ -16,27 +16,15 @@ from gaitdisc.recording.arrays import read_only
 class Drive:
     """What drives a simulation, trial by trial, at one rate.
 
-    Parameters
-    ----------
-    rate : float
-        Samples a second [Hz].
-    time0 : ndarray (trial,)
-        Time of each trial's first sample [s].
-    inputs : ndarray (trial, sample, input)
-        In the order of the simulation's inputs; zero beyond a trial's end.
-    samples : ndarray of int (trial,)
-        Length of each trial.
-
-    Examples
-    --------
     >>> Drive.of([np.zeros((300, 1)), np.zeros((200, 1))], 100.0).samples.tolist()
     [300, 200]
     """
 
-    rate: float
-    time0: NDArray[np.float64]
+    rate: float  # samples a second [Hz]
+    time0: NDArray[np.float64]  # (trial,), time of each trial's first sample [s]
+    # (trial, sample, input), in the order of the simulation's inputs; zero beyond a trial's end
     inputs: NDArray[np.float64]
-    samples: NDArray[np.int64]
+    samples: NDArray[np.int64]  # (trial,), length of each trial
 
     def __post_init__(self) -> None:
         """Freeze the arrays and refuse shapes that do not fit."""
@@ -57,14 +45,9 @@ class Drive:
     def of(cls, trials: Sequence[ArrayLike], rate: float, time0: ArrayLike = 0.0) -> Drive:
         """Drive of a list of trials.
 
-        Parameters
-        ----------
-        trials : sequence of ndarray (sample, input)
-            Inputs of each trial; (sample, 0) where the simulation has none.
-        rate : float
-            Samples a second [Hz].
-        time0 : float or ndarray (trial,)
-            Time of each first sample [s].
+        trials each (sample, input): inputs of each trial; (sample, 0) where the simulation has none
+        rate: samples a second [Hz]
+        time0 float or (trial,): time of each first sample [s]
         """
         arrays = [np.asarray(trial, float) for trial in trials]
         samples = np.array([len(each) for each in arrays])
@@ -76,21 +59,10 @@ class Drive:
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """Stretches of trials to run, each from its own state and with its own parameters.
+    """Stretches of trials to run, each from its own state and with its own parameters."""
 
-    Parameters
-    ----------
-    trial : ndarray of int (row,)
-        Number of the trial.
-    begin : ndarray of int (row,)
-        Sample that each starts at.
-    starts : ndarray (row, state)
-        State there.
-    values : ndarray (row, parameter) or (parameter,), optional
-        Parameters; the simulation's own where absent.
-    """
-
-    trial: NDArray[np.int64]
-    begin: NDArray[np.int64]
-    starts: NDArray[np.float64]
+    trial: NDArray[np.int64]  # (row,), number of the trial
+    begin: NDArray[np.int64]  # (row,), sample that each starts at
+    starts: NDArray[np.float64]  # (row, state), state there
+    # (row, parameter) or (parameter,), parameters; the simulation's own where absent
     values: NDArray[np.float64] | None = None

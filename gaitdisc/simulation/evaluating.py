@@ -21,45 +21,26 @@ from gaitdisc.simulation.simulation import Simulation
 
 @dataclass(frozen=True, eq=False)
 class Points:
-    """Where expressions are evaluated.
+    """Where expressions are evaluated."""
 
-    Parameters
-    ----------
-    t : ndarray (point,)
-        Time [s].
-    x : ndarray (point, state)
-        States.
-    u : ndarray (point, input)
-        Inputs.
-    values : ndarray (parameter,) or (point, parameter), optional
-        Parameters; the simulation's own where absent.
-    extras : mapping of str to float or ndarray (point,)
-        Further names, and their values.
-    rate : float
-        Samples a second [Hz] where the points are consecutive samples of one trial, so that delays have a value;
-        0 where they are not.
-    """
-
-    t: ArrayLike
-    x: NDArray[np.float64]
-    u: NDArray[np.float64]
+    t: ArrayLike  # (point,), time [s]
+    x: NDArray[np.float64]  # (point, state), states
+    u: NDArray[np.float64]  # (point, input), inputs
+    # (parameter,) or (point, parameter), parameters; the simulation's own where absent
     values: NDArray[np.float64] | None = None
+    # mapping of str to float or (point,), further names, and their values
     extras: Mapping[str, float | NDArray[np.float64]] = field(default_factory=dict)
+    # samples a second [Hz] where the points are consecutive samples of one trial, so that delays have a value; 0 where
+    # they are not
     rate: float = 0.0
 
 
 def evaluate(simulation: Simulation, expression: str, points: Points) -> NDArray[np.float64]:
     """Value of one expression at each point, (point,).
 
-    Parameters
-    ----------
-    simulation : Simulation
-        Whose names may stand in it: states, inputs, parameters, ports, definitions, `t`.
-    expression : str
-        As in a simulation file; also the extras of the points.
+    simulation: whose names may stand in it: states, inputs, parameters, ports, definitions, `t`
+    expression: as in a simulation file; also the extras of the points
 
-    Examples
-    --------
     >>> from gaitdisc.simulation.parts import State
     >>> decay = Simulation("decay", (State("x"),), equations=(("x", "-x"),))
     >>> points = Points(np.zeros(2), np.array([[1.0], [3.0]]), np.empty((2, 0)), extras={"gain": 2})

@@ -20,19 +20,13 @@ SLOW_HZ = 0.5  # rates below are rare where time is in seconds, and what millise
 
 @dataclass(frozen=True, eq=False)
 class TrialColumns:
-    """What one trial gives before it is checked.
-
-    Parameters
-    ----------
-    time : ndarray (sample,) [s]
-        As measured.
-    inputs, observed : ndarray (sample, input), (sample, channel)
-        Columns that the simulation needs; NaN where a cell is empty.
-    """
+    """What one trial gives before it is checked."""
 
     name: str
-    time: NDArray[np.float64]
+    time: NDArray[np.float64]  # (sample,) [s], as measured
+    # (sample, input), (sample, channel), columns that the simulation needs; NaN where a cell is empty
     inputs: NDArray[np.float64]
+    # (sample, input), (sample, channel), columns that the simulation needs; NaN where a cell is empty
     observed: NDArray[np.float64]
 
 
@@ -41,17 +35,9 @@ def on_even_time(
 ) -> tuple[TrialColumns, float, list[Finding]]:
     """Put one trial on an even time base.
 
-    Parameters
-    ----------
-    inputs : tuple of str
-        Names of its inputs; one called `phase` wraps at 1.
-
-    Returns
-    -------
-    trial : TrialColumns
-        At even times; rows that were missing are NaN in the observed channels, and bridged in the inputs.
-    rate : float
-        Samples a second [Hz].
+    inputs: names of its inputs; one called `phase` wraps at 1
+    returns trial: at even times; rows that were missing are NaN in the observed channels, and bridged in the inputs
+    returns rate: samples a second [Hz]
     """
     where = f"{source}, trial {trial.name!r}"
     _refuse_short(trial, where)
@@ -77,10 +63,7 @@ def on_even_time(
 def clock_findings(trials: list[TrialColumns], rate: float, source: str) -> list[Finding]:
     """Note times that look like milliseconds.
 
-    Parameters
-    ----------
-    rate : float
-        Samples a second [Hz].
+    rate: samples a second [Hz]
     """
     whole = all(np.array_equal(trial.time, np.rint(trial.time)) for trial in trials)
     if rate >= SLOW_HZ or not whole:

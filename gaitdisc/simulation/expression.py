@@ -55,28 +55,16 @@ class Number:
 
 @dataclass(frozen=True, slots=True)
 class Name:
-    """A name that the simulation gives a value to.
+    """A name that the simulation gives a value to."""
 
-    Parameters
-    ----------
-    name : str
-        State, input, parameter, port, definition or `t`.
-    """
-
-    name: str
+    name: str  # state, input, parameter, port, definition or `t`
 
 
 @dataclass(frozen=True, slots=True)
 class Operation:
-    """An operation on other expressions.
+    """An operation on other expressions."""
 
-    Parameters
-    ----------
-    symbol : str
-        `+ - * / **`, `neg`, or a function's name.
-    """
-
-    symbol: str
+    symbol: str  # `+ - * / **`, `neg`, or a function's name
     arguments: tuple[Tree, ...]
 
 
@@ -87,13 +75,8 @@ Tree = Number | Name | Operation
 def parsed(text: str) -> Tree:
     """Tree of an expression.
 
-    Parameters
-    ----------
-    text : str
-        Numbers, names, `+ - * / **`, parentheses, and the functions of a simulation file.
+    text: numbers, names, `+ - * / **`, parentheses, and the functions of a simulation file
 
-    Examples
-    --------
     >>> parsed("-k*x")
     Operation(symbol='*', arguments=(Operation(symbol='neg', arguments=(Name(name='k'),)), Name(name='x')))
     """
@@ -125,8 +108,6 @@ def parsed(text: str) -> Tree:
 def names(tree: Tree) -> Iterator[str]:
     """Names in an expression, each as often as it stands there.
 
-    Examples
-    --------
     >>> sorted(set(names(parsed("-k*max(0, x - x0) + k"))))
     ['k', 'x', 'x0']
     """
@@ -140,8 +121,6 @@ def names(tree: Tree) -> Iterator[str]:
 def delays(tree: Tree) -> Iterator[Operation]:
     """Every `delay(signal, seconds)` of an expression.
 
-    Examples
-    --------
     >>> [each.arguments[0].name for each in delays(parsed("1 - 2*delay(v, 0.1)"))]
     ['v']
     """
@@ -155,8 +134,6 @@ def delays(tree: Tree) -> Iterator[Operation]:
 def unknown_name(text: str, name: str, known: tuple[str, ...]) -> SimulationError:
     """Refusal of a name that has no value, with the nearest one that has.
 
-    Examples
-    --------
     >>> unknown_name("b*omgea", "omgea", ("omega", "b")).remedy
     "Did you mean 'omega'? Known here: omega, b."
     """

@@ -20,18 +20,12 @@ BOUND = 1e6  # a state beyond has diverged
 def evaluate_blocks(code, constants, columns, spread, into):
     """Values of a program at many points.
 
-    Parameters
-    ----------
-    code : ndarray of uint64 (operation, 4)
-        From `Program.placed`.
-    constants : ndarray (constant,)
-        Of the program.
-    columns : ndarray (leaf and delay, point)
-        Values of the leaves; of those that have one value for all points the first counts.
-    spread : ndarray of int (register,)
-        For each register of the program: 0 one value for all points, 1 a value for each, 2 not read or not a leaf.
-    into : ndarray (output, point)
-        Changed in place.
+    code of uint64 (operation, 4): from `Program.placed`
+    constants (constant,): of the program
+    columns (leaf and delay, point): values of the leaves; of those that have one value for all points the first counts
+    spread (register,): for each register of the program: 0 one value for all points, 1 a value for each, 2 not read or
+        not a leaf
+    into (output, point): changed in place
     """
     leaves, points = columns.shape[0], into.shape[1]
     registers, outputs = np.zeros((spread.size, BLOCK)), np.empty((into.shape[0], BLOCK))
@@ -54,10 +48,7 @@ def evaluate_blocks(code, constants, columns, spread, into):
 def integrate(program, drive, rows, plan, past, into):
     """Integrate any number of rows, block after block.
 
-    Parameters
-    ----------
-    program, drive, rows, plan, past, into : tuple or ndarray
-        As for `integrate_block`.
+    program, drive, rows, plan, past, into tuple or ndarray: as for `integrate_block`
     """
     place, starts, values, seconds = rows
     found, ok = into
@@ -72,18 +63,11 @@ def integrate(program, drive, rows, plan, past, into):
 def integrate_block(program, drive, rows, plan, past, into):
     """Integrate up to `BLOCK` rows; what lies beyond a trial's end or a divergence stays as it was in `into`.
 
-    Parameters
-    ----------
-    program : tuple
-        Code, operations of its setup, constants, delays (delay, 2) as input or state and column, registers.
-    drive : tuple
-        Rate [Hz], first times (trial,), inputs (trial, sample, input), samples (trial,), which inputs wrap (input,).
-    rows : tuple
-        Place (row, 2) as trial and first sample, starts (row, state), values (row, parameter), seconds (row, delay).
-    past : ndarray (trial, sample, state)
-        Measured states before the rows begin; of no trials where there are none.
-    into : tuple
-        States (row, sample, state), whether each row stayed finite (row,).
+    program: code, operations of its setup, constants, delays (delay, 2) as input or state and column, registers
+    drive: rate [Hz], first times (trial,), inputs (trial, sample, input), samples (trial,), which inputs wrap (input,)
+    rows: place (row, 2) as trial and first sample, starts (row, state), values (row, parameter), seconds (row, delay)
+    past (trial, sample, state): measured states before the rows begin; of no trials where there are none
+    into: states (row, sample, state), whether each row stayed finite (row,)
     """
     code, setup, _, delays, _ = program
     rate, _, inputs, samples, wraps = drive

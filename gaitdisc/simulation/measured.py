@@ -19,27 +19,16 @@ from gaitdisc.simulation.even_time import SHORTEST, TrialColumns, clock_findings
 class Measured:
     """Trials at one rate.
 
-    Parameters
-    ----------
-    observed : ndarray (trial, sample, channel)
-        Measured channels; NaN beyond a trial's end.
-    channels : tuple of str
-        Names of the observed channels, in the order of the simulation's observations.
-    findings : tuple of Finding
-        What a user must know of them.
-
-    Examples
-    --------
     >>> drive = Drive.of([np.empty((30, 0))] * 2, 100.0)
     >>> Measured(drive, np.zeros((2, 30, 1)), ("1", "2"), ("x",)).selected([1]).trials
     ('2',)
     """
 
     drive: Drive
-    observed: NDArray[np.float64]
+    observed: NDArray[np.float64]  # (trial, sample, channel), measured channels; NaN beyond a trial's end
     trials: tuple[str, ...]
-    channels: tuple[str, ...]
-    findings: tuple[Finding, ...] = ()
+    channels: tuple[str, ...]  # names of the observed channels, in the order of the simulation's observations
+    findings: tuple[Finding, ...] = ()  # what a user must know of them
     source: str = ""
 
     def __post_init__(self) -> None:

@@ -31,11 +31,6 @@ def read_measured(path: Path | str, simulation: Simulation) -> Measured:
 
     Without a column `trial` the table is one trial. Of observations that the simulation file does not list (each state
     under its own name) those are taken that the table has.
-
-    Examples
-    --------
-    >>> read_measured("walk.csv", read_simulation("ankle.toml")).channels  # doctest: +SKIP
-    ('theta',)
     """
     path = Path(path)
     return measured_of_table(_table(path), simulation, path.name)
@@ -44,10 +39,7 @@ def read_measured(path: Path | str, simulation: Simulation) -> Measured:
 def measured_of_table(table: pd.DataFrame, simulation: Simulation, source: str) -> Measured:
     """Trials of a table that is already read, as `read_measured` has them.
 
-    Parameters
-    ----------
-    table : DataFrame
-        Columns `trial`, `time` [s], each input and each observed channel [the simulation's units].
+    table: columns `trial`, `time` [s], each input and each observed channel [the simulation's units]
     """
     columns = [str(column).strip() for column in table.columns]
     _refuse_doubled(columns, source)
@@ -75,15 +67,7 @@ def measured_of_table(table: pd.DataFrame, simulation: Simulation, source: str) 
 def measured_of_recordings(recordings: Sequence[Recording], simulation: Simulation) -> Measured:
     """Trials of recordings, one each, converted to the simulation's units.
 
-    Parameters
-    ----------
-    recordings : sequence of Recording
-        With a channel for each input and each observation, at one rate.
-
-    Examples
-    --------
-    >>> measured_of_recordings([walk], simulation).rate  # doctest: +SKIP
-    100.0
+    recordings: with a channel for each input and each observation, at one rate
     """
     inputs = tuple(each.name for each in simulation.inputs)
     findings: dict[str, Finding] = {}

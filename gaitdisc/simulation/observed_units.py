@@ -17,8 +17,6 @@ ROUNDED = 2e-3  # of a factor between units, as people write it: 57.3
 def refuse_units(simulation: Simulation) -> None:
     """Refuse an observation whose unit is not that of its expression; one of unknown units is passed over.
 
-    Examples
-    --------
     >>> from gaitdisc.simulation.parts import State
     >>> ankle = Simulation("ankle", (State("theta", "rad"),), equations=(("theta", "-theta"),))
     >>> refuse_units(ankle.with_sensor(Sensor("theta", "deg")))  # doctest: +ELLIPSIS

@@ -27,12 +27,8 @@ _FAR = 1e5  # beyond, the library reduces the angle
 def exponential(x):
     """e^x, with x held at 700 at most.
 
-    References
-    ----------
-    Moshier, Cephes Mathematical Library, `exp`: Cody-Waite reduction and a rational function.
+    Source: Moshier, Cephes Mathematical Library, `exp`: Cody-Waite reduction and a rational function.
 
-    Examples
-    --------
     >>> round(exponential(1.0), 12), exponential(-1e9)
     (2.718281828459, 0.0)
     """
@@ -55,12 +51,8 @@ def exponential(x):
 def hyperbolic_tangent(x):
     """Tanh x.
 
-    References
-    ----------
-    Moshier, Cephes Mathematical Library, `tanh`.
+    Source: Moshier, Cephes Mathematical Library, `tanh`.
 
-    Examples
-    --------
     >>> round(hyperbolic_tangent(0.5), 12)
     0.46211715726
     """
@@ -77,17 +69,9 @@ def hyperbolic_tangent(x):
 def sine(x, quarter):
     """Sine of x + quarter quarter turns, for |x| up to 1e5.
 
-    Parameters
-    ----------
-    x : float
-        Angle [rad].
+    x: angle [rad]
+    Source: Cody and Waite 1980 for the reduction; Sun Microsystems 1993, fdlibm, for the two polynomials.
 
-    References
-    ----------
-    Cody and Waite 1980 for the reduction; Sun Microsystems 1993, fdlibm, for the two polynomials.
-
-    Examples
-    --------
     >>> round(sine(1.0, 0), 12), round(sine(1.0, 1), 12)
     (0.841470984808, 0.540302305868)
     """
@@ -115,12 +99,8 @@ def execute(code, registers, outputs, width):  # noqa: PLR0912 a branch for each
     Registers and outputs lie one after the other, `BLOCK` rows each, and the code holds where each begins: with
     unsigned places into flat memory the compiler makes the tightest loops.
 
-    Parameters
-    ----------
-    code : ndarray of uint64 (operation, 4)
-        Operation, then the first place of what is written and of what is read.
-    registers, outputs : ndarray (register * BLOCK,), (output * BLOCK,)
-        Changed in place.
+    code of uint64 (operation, 4): operation, then the first place of what is written and of what is read
+    registers, outputs (register * BLOCK,), (output * BLOCK,): changed in place
     """
     for i in range(code.shape[0]):
         op, z, a, b = code[i, 0], code[i, 1], code[i, 2], code[i, 3]

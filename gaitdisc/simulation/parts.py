@@ -7,36 +7,23 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class State:
-    """One component of the state vector.
-
-    Parameters
-    ----------
-    initial : float, optional
-        Where it starts [unit]; estimated from each trial's first samples where absent.
-    """
+    """One component of the state vector."""
 
     name: str
     unit: str = "1"
     meaning: str = ""
-    initial: float | None = None
+    initial: float | None = None  # where it starts [unit]; estimated from each trial's first samples where absent
 
 
 @dataclass(frozen=True)
 class Input:
-    """A measured signal that drives the simulation.
+    """A measured signal that drives the simulation."""
 
-    Parameters
-    ----------
-    name, unit, meaning : str
-        As in the file. One called `phase` of unit `1` is the share of the stride and wraps at 1.
-    computed : bool
-        Whether an engine computed it along the record (gaitdisc/engines): then it is part of the equations, and no
-        explanation of a gap changes it.
-    """
-
-    name: str
-    unit: str = "1"
-    meaning: str = ""
+    name: str  # as in the file. One called `phase` of unit `1` is the share of the stride and wraps at 1
+    unit: str = "1"  # as in the file. One called `phase` of unit `1` is the share of the stride and wraps at 1
+    meaning: str = ""  # as in the file. One called `phase` of unit `1` is the share of the stride and wraps at 1
+    # whether an engine computed it along the record (gaitdisc/engines): then it is part of the equations, and no
+    # explanation of a gap changes it
     computed: bool = False
 
     @property
@@ -47,21 +34,13 @@ class Input:
 
 @dataclass(frozen=True)
 class Parameter:
-    """A number of the model.
-
-    Parameters
-    ----------
-    value : float
-        [unit].
-    low, high : float, optional
-        What the user would believe [unit].
-    """
+    """A number of the model."""
 
     name: str
-    value: float
+    value: float  # [unit]
     unit: str = "1"
-    low: float | None = None
-    high: float | None = None
+    low: float | None = None  # what the user would believe [unit]
+    high: float | None = None  # what the user would believe [unit]
     meaning: str = ""
 
 
@@ -107,25 +86,15 @@ class Term:
 class Sensor:
     """How one observed channel was recorded.
 
-    Parameters
-    ----------
-    unit : str
-        Of the column; empty where it follows from the expression.
-    sd : float, optional
-        Standard deviation of the sensor's noise, before any filter [unit].
-    lowpass : float, optional
-        Cut-off of the zero-lag low-pass that the record went through [Hz]: Butterworth of order 2, forwards and back;
-        the -3 dB frequency of one pass.
-
-    Examples
-    --------
     >>> Sensor("ankle_angle_r", "deg", sd=0.3).known, Sensor("theta").known
     (True, False)
     """
 
     channel: str
-    unit: str = ""
-    sd: float | None = None
+    unit: str = ""  # of the column; empty where it follows from the expression
+    sd: float | None = None  # standard deviation of the sensor's noise, before any filter [unit]
+    # Cut-off of the zero-lag low-pass that the record went through [Hz]: Butterworth of order 2, forwards and back; the
+    # -3 dB frequency of one pass
     lowpass: float | None = None
 
     @property

@@ -25,27 +25,13 @@ _COMMUTES = frozenset(["+", "*", "max", "min"])
 
 @dataclass(frozen=True, eq=False)
 class Program:
-    """Register operations.
+    """Register operations."""
 
-    Parameters
-    ----------
-    leaves : tuple of str
-        Names whose values the first registers hold, in order.
-    delays : tuple of (str, tree)
-        Signal and seconds of what the next registers hold.
-    constants : ndarray (constant,)
-        What the registers after those hold.
-    code : ndarray (operation, 4)
-        Operation, register (or output) written, registers read.
-    setup : int
-        How many operations at the head depend on parameters alone.
-    """
-
-    leaves: tuple[str, ...]
-    delays: tuple[tuple[str, Tree], ...]
-    constants: NDArray[np.float64]
-    code: NDArray[np.int64]
-    setup: int
+    leaves: tuple[str, ...]  # names whose values the first registers hold, in order
+    delays: tuple[tuple[str, Tree], ...]  # tuple of (str, tree), signal and seconds of what the next registers hold
+    constants: NDArray[np.float64]  # (constant,), what the registers after those hold
+    code: NDArray[np.int64]  # (operation, 4), operation, register (or output) written, registers read
+    setup: int  # how many operations at the head depend on parameters alone
     registers: int
     outputs: int
 
@@ -68,15 +54,9 @@ def compiled_program(
 ) -> Program:
     """Program of some expressions.
 
-    Parameters
-    ----------
-    fixed : sequence of str
-        Those of them that do not change during a run.
-    definitions : mapping of str to tree, optional
-        Further names, in order, each in terms of leaves and of those before.
+    fixed: those of them that do not change during a run
+    definitions: further names, in order, each in terms of leaves and of those before
 
-    Examples
-    --------
     >>> from gaitdisc.simulation.expression import parsed
     >>> program = compiled_program([parsed("k*x + sin(k*x)")], ["x", "k"])
     >>> len(program.code)  # one product, one sine, one sum, one store

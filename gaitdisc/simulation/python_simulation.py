@@ -23,18 +23,6 @@ class PythonSimulation:
 
     It goes wherever a `Simulation` goes: `compile_simulation` gives what runs it, rows side by side in NumPy.
 
-    Parameters
-    ----------
-    rates : callable
-        Takes t (row,), x (row, state), u (row, input), values (row, parameter), ports (row, port) and gives the
-        derivatives (row, state). Parameters that are added later follow the model's own.
-    replaced : tuple of (str, str)
-        Inputs that are replaced by an expression of the measured ones.
-    manner : str
-        How the function is called and why so, for a person; nothing where there is nothing to say.
-
-    Examples
-    --------
     >>> def falling(t, x, u, values, ports):
     ...     return -values[:, :1] + ports
     >>> ball = python_simulation("ball", falling, [State("v")], parameters=[Parameter("g", 9.81)], ports=[Port("drag")])
@@ -42,9 +30,13 @@ class PythonSimulation:
     'drag'
     """
 
-    rates: RightHandSide = field(hash=False)  # an object that computes may have no hash
+    # an object that computes may have no hash; takes t (row,), x (row, state), u (row, input), values (row, parameter),
+    # ports (row, port) and gives the derivatives (row, state). Parameters that are added later follow the model's own
+    rates: RightHandSide = field(hash=False)
     parts: Simulation
+    # tuple of (str, str), inputs that are replaced by an expression of the measured ones
     replaced: Lines = field(default=())
+    # how the function is called and why so, for a person; nothing where there is nothing to say
     manner: str = field(default="", compare=False)
 
     @property
@@ -183,10 +175,7 @@ def python_simulation(
 ) -> PythonSimulation:
     """Simulation of a Python function.
 
-    Parameters
-    ----------
-    observations : sequence of (str, str)
-        Measured column and expression; by default each state under its own name.
+    observations sequence of (str, str): measured column and expression; by default each state under its own name
     """
     equations = any_equations(states, (*inputs, *parameters, *ports))
     parts = Simulation(
@@ -210,16 +199,10 @@ def called(
 ) -> NDArray[np.float64]:
     """Derivatives by the function, with what was added to the equations.
 
-    Parameters
-    ----------
-    t : ndarray (row,)
-        Time [s].
-    x : ndarray (row, state)
-        States.
-    fed : ndarray (row, feed)
-        Ports, sums of the equations' effects, inputs: the observations of `PythonSimulation.feeds`.
-    values : ndarray (row, parameter)
-        Parameters.
+    t (row,): time [s]
+    x (row, state): states
+    fed (row, feed): ports, sums of the equations' effects, inputs: the observations of `PythonSimulation.feeds`
+    values (row, parameter): parameters
     """
     ports, states = len(simulation.ports), len(simulation.states)
     own = np.asarray(simulation.rates(np.asarray(t, float), x, fed[:, ports + states :], values, fed[:, :ports]))

@@ -14,8 +14,6 @@ def substituted(tree: Tree, by: Mapping[str, Tree], signals: Collection[str] = (
 
     A delayed signal that is replaced becomes its replacement that many seconds ago.
 
-    Examples
-    --------
     >>> from gaitdisc.simulation.expression import parsed
     >>> written(substituted(parsed("k*tau + delay(tau, d)"), {"tau": parsed("g*tau")}, ["tau"]))
     'k*(g*tau) + g*delay(tau, d)'
@@ -33,8 +31,6 @@ def substituted(tree: Tree, by: Mapping[str, Tree], signals: Collection[str] = (
 def written(tree: Tree) -> str:
     """Text of an expression, with no more parentheses than it needs.
 
-    Examples
-    --------
     >>> from gaitdisc.simulation.expression import parsed
     >>> written(parsed("-(a + b)*(c**-(2)) - ((d))"))
     '-(a + b)*c**-2 - d'

@@ -18,13 +18,8 @@ from gaitdisc.simulation.simulation import Simulation
 def compile_simulation(simulation: Simulation | PythonSimulation) -> Compiled:
     """Simulation made ready to run; the same one again costs nothing.
 
-    Parameters
-    ----------
-    simulation : Simulation or PythonSimulation
-        With its effects, which are part of the right-hand side.
+    simulation: with its effects, which are part of the right-hand side
 
-    Examples
-    --------
     >>> from gaitdisc.simulation.parts import State
     >>> compile_simulation(Simulation("decay", (State("x"),), equations=(("x", "-x"),))).states
     ('x',)

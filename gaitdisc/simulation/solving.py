@@ -27,19 +27,10 @@ def solve(
 ) -> NDArray[np.float64]:
     """States of one trial by an adaptive Runge-Kutta method of order 8, (sample, state).
 
-    Parameters
-    ----------
-    time : ndarray (sample,)
-        Increasing [s].
-    inputs : mapping of str to ndarray (sample,)
-        Linear between the samples; each sample is a corner that a step ends at.
+    time (sample,): increasing [s]
+    inputs each (sample,): linear between the samples; each sample is a corner that a step ends at
+    Source: Hairer, Norsett, Wanner 1993, Solving Ordinary Differential Equations I: DOP853, as scipy has it.
 
-    References
-    ----------
-    Hairer, Norsett, Wanner 1993, Solving Ordinary Differential Equations I: DOP853, as scipy has it.
-
-    Examples
-    --------
     >>> from gaitdisc.simulation.parts import State
     >>> decay = Simulation("decay", (State("x"),), equations=(("x", "-x"),))
     >>> round(float(solve(decay, [0.0, 1.0], {}, {"x": 1.0})[-1, 0]), 9)

@@ -141,15 +141,9 @@ class Condition(Quantity):
 def traced_equations(function: Callable[..., Any], arguments: Callable[[Callable[[str], Quantity]], Any]) -> list[Tree]:
     """Expressions of what a function returns.
 
-    Parameters
-    ----------
-    arguments : callable
-        Given what makes a quantity of a name, returns the function's arguments (a tuple) and keywords (a mapping).
-
-    Raises
-    ------
-    NotTraced
-        If the function does something that is no arithmetic, or is too long.
+    arguments: given what makes a quantity of a name, returns the function's arguments (a tuple) and keywords (a
+        mapping)
+    raises NotTraced if the function does something that is no arithmetic, or is too long
     """
     own = function if isinstance(function, FunctionType | MethodType | functools.partial) else function.__call__
     on_quantities = _Surroundings().replaced(own if isinstance(own, MethodType) else function)
@@ -195,8 +189,6 @@ def traced_equations(function: Callable[..., Any], arguments: Callable[[Callable
 def flat(returned: Any) -> list[Any]:
     """What a function returned, one number (or array of points) a derivative.
 
-    Examples
-    --------
     >>> flat([1.0, np.array([2.0])]), flat(np.array([3.0, 4.0])), flat(5.0)
     ([1.0, 2.0], [3.0, 4.0], [5.0])
     """

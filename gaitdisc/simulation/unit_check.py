@@ -19,8 +19,6 @@ def unit_findings(simulation: Simulation) -> tuple[Finding, ...]:
     A number without a name may carry any unit, and so does what it multiplies; an angle counts as a pure number. Of a
     simulation in which nothing but 1 is given as a unit (a plain function, say) there is nothing to tell.
 
-    Examples
-    --------
     >>> from gaitdisc.simulation.simulation_file import simulation_of
     >>> text = '[states.x]\nunit = "m"\n[parameters.f]\nvalue = 1\nunit = "N"\n[equations]\nx = "f"\n'
     >>> print(unit_findings(simulation_of(text))[0].what)

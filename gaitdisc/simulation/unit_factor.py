@@ -41,18 +41,9 @@ _PART = re.compile(r"([A-Za-z%]+|1)(?:\^?(-?\d{1,2}))?\Z")
 def unit_factor(unit: str, to: str) -> float | None:
     """Factor from one unit to another.
 
-    Parameters
-    ----------
-    unit, to : str
-        Products of base units with powers; what stands after a stroke divides.
+    unit, to: products of base units with powers; what stands after a stroke divides
+    returns: none where a unit is unknown; NaN where both are known and measure different things
 
-    Returns
-    -------
-    float or None
-        None where a unit is unknown; NaN where both are known and measure different things.
-
-    Examples
-    --------
     >>> round(unit_factor("deg/s", "rad/s"), 6), unit_factor("N mm", "N m"), unit_factor("furlong", "m")
     (0.017453, 0.001, None)
     >>> unit_factor("N m", "W s")
@@ -84,8 +75,6 @@ def _parsed(unit: str) -> tuple[float, Dimension] | None:
 def dimension_of(unit: str) -> Dimension | None:
     """Powers of kg, m, s and V in a unit, an angle counting as a pure number; None where the unit is unknown.
 
-    Examples
-    --------
     >>> dimension_of("N m s/rad") == dimension_of("kg m^2/s")
     True
     """

@@ -29,16 +29,10 @@ def simulate_null(filtered: Filtered, samples: int, walks: int = 40, seed: int =
     The spectrum of a low-passed signal ties x'' to x, whatever was measured: a flat band has corr^2(x, x'') = 5/9. A
     model of gait has learned something only where its R2 is above this.
 
-    Parameters
-    ----------
-    filtered : callable
-        Takes white noise (sample, walk) and gives x, x', x'' of any one length, filtered and differentiated as the
-        measurement was: 6 Hz low-pass for angles; high-pass, rectify, low-pass for EMG.
-    samples : int
-        Length of a walk of noise, at the rate that `filtered` takes.
+    filtered: takes white noise (sample, walk) and gives x, x', x'' of any one length, filtered and differentiated as
+        the measurement was: 6 Hz low-pass for angles; high-pass, rectify, low-pass for EMG
+    samples: length of a walk of noise, at the rate that `filtered` takes
 
-    Examples
-    --------
     >>> def oscillation(noise):
     ...     t = np.linspace(0, 50, len(noise))[:, None] + noise[:1]
     ...     return np.sin(t), np.cos(t), -np.sin(t)
@@ -59,15 +53,9 @@ def analytic_null(frequency_hz: NDArray[np.float64], gain: NDArray[np.float64]) 
     m_k is the k-th moment of the power that the filter lets through; x' adds nothing, for it does not correlate with
     x'' in stationary noise.
 
-    Parameters
-    ----------
-    frequency_hz : ndarray (frequency,) [Hz]
-        Rising, from 0 to where nothing passes.
-    gain : ndarray (frequency,)
-        Amplitude gain of the whole filter: of both passes where it runs forward and back.
+    frequency_hz (frequency,) [Hz]: rising, from 0 to where nothing passes
+    gain (frequency,): amplitude gain of the whole filter: of both passes where it runs forward and back
 
-    Examples
-    --------
     >>> f = np.linspace(0, 6, 1001)
     >>> round(analytic_null(f, np.ones_like(f)), 4)  # flat: 5/9
     0.5556

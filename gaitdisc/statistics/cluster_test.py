@@ -22,58 +22,28 @@ Statistic = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 @dataclass(frozen=True)
 class Cluster:
-    """A stretch of the stride in which two sets of curves differ.
-
-    Parameters
-    ----------
-    sign : int
-        1 where the first set lies above, -1 where it lies below.
-    mass : float
-        Integral of |t| above the threshold over the points.
-    p : float
-        Share of permutations with a cluster of that mass or more anywhere in the stride and in any channel.
-    """
+    """A stretch of the stride in which two sets of curves differ."""
 
     channel: int
     first: int
     last: int
-    sign: int
-    mass: float
-    p: float
+    sign: int  # 1 where the first set lies above, -1 where it lies below
+    mass: float  # integral of |t| above the threshold over the points
+    p: float  # share of permutations with a cluster of that mass or more anywhere in the stride and in any channel
 
 
 @dataclass(frozen=True, eq=False)
 class ClusterTest:
-    """A permutation test of curves, all points and channels corrected together.
+    """A permutation test of curves, all points and channels corrected together."""
 
-    Parameters
-    ----------
-    t : ndarray (phase, channel)
-        Statistic of the curves as they are.
-    standard_error : ndarray (phase, channel) [each channel's unit]
-        Of the difference.
-    threshold : float
-        |t| that only alpha of the permutations exceed anywhere.
-    p : ndarray (channel,)
-        Of the channel's largest |t|, corrected for all points and channels.
-    clusters : tuple of Cluster
-        Stretches beyond the threshold, by channel and point.
-    permutations : int
-        How many, the curves as they are among them.
-    exact : bool
-        Whether these are all that there are.
-    alpha : float
-        Chance of a point beyond the threshold anywhere where nothing differs.
-    """
-
-    t: NDArray[np.float64]
-    standard_error: NDArray[np.float64]
-    threshold: float
-    p: NDArray[np.float64]
-    clusters: tuple[Cluster, ...]
-    permutations: int
-    exact: bool
-    alpha: float
+    t: NDArray[np.float64]  # (phase, channel), statistic of the curves as they are
+    standard_error: NDArray[np.float64]  # (phase, channel) [each channel's unit], of the difference
+    threshold: float  # |t| that only alpha of the permutations exceed anywhere
+    p: NDArray[np.float64]  # (channel,), of the channel's largest |t|, corrected for all points and channels
+    clusters: tuple[Cluster, ...]  # stretches beyond the threshold, by channel and point
+    permutations: int  # how many, the curves as they are among them
+    exact: bool  # whether these are all that there are
+    alpha: float  # chance of a point beyond the threshold anywhere where nothing differs
 
 
 def one_sample_test(
@@ -86,20 +56,12 @@ def one_sample_test(
     Under the null the sign of a unit's curve as a whole is by chance, which keeps what binds its points and channels
     together. Student's t at every point; the threshold is that of the largest |t| over points and channels.
 
-    Parameters
-    ----------
-    curves : ndarray (unit, phase, channel) [each channel's unit]
-        Complete; units are exchangeable: people, strides, or blocks of strides.
-    worth : ndarray (channel,), optional
-        Independent units that one unit is worth, at most 1; t is divided by the root of its inverse.
+    curves (unit, phase, channel) [each channel's unit]: complete; units are exchangeable: people, strides, or blocks
+        of strides
+    worth (channel,): independent units that one unit is worth, at most 1; t is divided by the root of its inverse
+    Source: Nichols and Holmes 2002 (largest statistic); Pataky, Vanrenterghem and Robinson 2015 (curves; spm1d).
+        Differs from spm1d: one threshold for both signs, and channels are corrected together.
 
-    References
-    ----------
-    Nichols and Holmes 2002 (largest statistic); Pataky, Vanrenterghem and Robinson 2015 (curves; spm1d). Differs from
-    spm1d: one threshold for both signs, and channels are corrected together.
-
-    Examples
-    --------
     >>> curves = np.random.default_rng(0).normal(0.0, 1.0, (20, 101, 1))
     >>> curves[:, 40:60] += 3.0
     >>> [(found.first, found.last) for found in one_sample_test(curves).clusters]
@@ -133,20 +95,12 @@ def two_sample_test(
     between the sets, because a simulation spreads less than people do: with three times the spread in one of two sets
     of 8 to 20 units, exchange raised a false alarm in .05 to .59 of 300 draws, signs in .04 to .07.
 
-    Parameters
-    ----------
-    first, second : ndarray (unit, phase, channel) [each channel's unit]
-        Complete; units are exchangeable: people, strides, or blocks of strides.
-    worth : ndarray (channel,), optional
-        Independent units that one unit is worth, at most 1; t is divided by the root of its inverse.
+    first, second (unit, phase, channel) [each channel's unit]: complete; units are exchangeable: people, strides, or
+        blocks of strides
+    worth (channel,): independent units that one unit is worth, at most 1; t is divided by the root of its inverse
+    Source: As `one_sample_test`; signs of departures: Liu 1988, Winkler et al. 2014. spm1d's permutation test
+        exchanges units and pools the variances.
 
-    References
-    ----------
-    As `one_sample_test`; signs of departures: Liu 1988, Winkler et al. 2014. spm1d's permutation test exchanges units
-    and pools the variances.
-
-    Examples
-    --------
     >>> first, second = np.random.default_rng(0).normal(0.0, 1.0, (2, 20, 101, 1))
     >>> first[:, 40:60] -= 4.0
     >>> [(found.first, found.last, found.sign) for found in two_sample_test(first, second).clusters]

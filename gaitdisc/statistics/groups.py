@@ -19,26 +19,13 @@ SHARE_KEPT = 0.8
 
 @dataclass(frozen=True, eq=False)
 class Groups:
-    """Sub-groups of participants.
+    """Sub-groups of participants."""
 
-    Parameters
-    ----------
-    count : int
-        How many sub-groups; 0 where none can be told from one cloud.
-    labels : ndarray of int (participant,)
-        Sub-group of each participant, 1 to the count; all 0 where there is none.
-    silhouette : float
-        Largest mean silhouette over the numbers of groups tried, -1 to 1.
-    p : float
-        Share of normal clouds of the same covariance that part as well, or better.
-    stability : float
-        Mean adjusted Rand index between these groups and those found among four fifths of the participants.
-    """
-
-    count: int
-    labels: NDArray[np.intp]
-    silhouette: float
-    p: float
+    count: int  # how many sub-groups; 0 where none can be told from one cloud
+    labels: NDArray[np.intp]  # (participant,), Sub-group of each participant, 1 to the count; all 0 where there is none
+    silhouette: float  # largest mean silhouette over the numbers of groups tried, -1 to 1
+    p: float  # share of normal clouds of the same covariance that part as well, or better
+    # mean adjusted Rand index between these groups and those found among four fifths of the participants
     stability: float
     why: str
 
@@ -53,20 +40,11 @@ def find_groups(
     when a fifth of the participants is left out. It is strict: of 150 clouds of twelve participants and eight features
     none was cut; two groups of six were found in 0, 10 and 75 % of 60 draws where they lay 4, 6 and 8 sd apart.
 
-    Parameters
-    ----------
-    features : ndarray (participant, feature)
-        In comparable units; complete.
-    most : int
-        Largest number of sub-groups tried; none smaller than two participants is.
+    features (participant, feature): in comparable units; complete
+    most: largest number of sub-groups tried; none smaller than two participants is
+    Source: Ward 1963; Rousseeuw 1987 (silhouette); Liu et al. 2008 (clouds of the same covariance); Hubert and Arabie
+        1985 (adjusted Rand index). Ebers 2023, section 6.2 asks the question.
 
-    References
-    ----------
-    Ward 1963; Rousseeuw 1987 (silhouette); Liu et al. 2008 (clouds of the same covariance); Hubert and Arabie 1985
-    (adjusted Rand index). Ebers 2023, section 6.2 asks the question.
-
-    Examples
-    --------
     >>> rng = np.random.default_rng(0)
     >>> apart = rng.standard_normal((12, 3)) + 12.0 * (np.arange(12) % 2)[:, None]
     >>> find_groups(apart).count, find_groups(rng.standard_normal((12, 3))).count
@@ -98,15 +76,8 @@ def find_groups(
 def best_cut(features: NDArray[np.float64], most: int = 4) -> tuple[NDArray[np.intp], float]:
     """Cut into two to `most` groups by Ward's method that has the largest mean silhouette.
 
-    Parameters
-    ----------
-    features : ndarray (participant, feature)
-        Complete.
-
-    Returns
-    -------
-    labels : ndarray of int (participant,)
-        From 1; all 1 where no cut leaves two in every group.
+    features (participant, feature): complete
+    returns labels (participant,): from 1; all 1 where no cut leaves two in every group
     """
     between = pdist(features)
     tree = linkage(between, "ward")
@@ -125,15 +96,9 @@ def best_cut(features: NDArray[np.float64], most: int = 4) -> tuple[NDArray[np.i
 def mean_silhouette(distances: NDArray[np.float64], labels: NDArray[np.intp]) -> float:
     """Mean over participants of (b - a) / max(a, b): a to the own group, b to the nearest other.
 
-    Parameters
-    ----------
-    distances : ndarray (participant, participant)
-        Symmetric.
-    labels : ndarray of int (participant,)
-        Two groups or more, each of two or more.
+    distances (participant, participant): symmetric
+    labels (participant,): two groups or more, each of two or more
 
-    Examples
-    --------
     >>> x = np.array([0.0, 1.0, 10.0, 11.0])
     >>> round(mean_silhouette(np.abs(x[:, None] - x), np.array([1, 1, 2, 2])), 3)
     0.9
@@ -153,13 +118,8 @@ def mean_silhouette(distances: NDArray[np.float64], labels: NDArray[np.intp]) ->
 def adjusted_rand(first: NDArray[np.intp], second: NDArray[np.intp]) -> float:
     """Agreement of two groupings: 1 the same, 0 as by chance.
 
-    Parameters
-    ----------
-    first, second : ndarray of int (participant,)
-        Labels; their names do not matter.
+    first, second (participant,): labels; their names do not matter
 
-    Examples
-    --------
     >>> adjusted_rand(np.array([1, 1, 2, 2]), np.array([2, 2, 1, 1]))
     1.0
     """

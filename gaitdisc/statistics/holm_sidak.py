@@ -13,34 +13,20 @@ from gaitdisc.errors import ComparisonError
 
 @dataclass(frozen=True, eq=False)
 class StepDown:
-    """One family of tests, corrected.
+    """One family of tests, corrected."""
 
-    Parameters
-    ----------
-    adjusted : ndarray (test,)
-        Adjusted p, in the order of the tests; the test is rejected where it is alpha at most.
-    level : ndarray (test,)
-        Level that the test's own p was held against: that of its step.
-    rejected : ndarray of bool (test,)
-        Whether the test says that there is a difference.
-    alpha : float
-        Chance of one false alarm or more in the whole family.
-    critical : float
-        Level of the step at which the procedure stopped; alpha where it went to the end. The dissertation prints it.
-    """
-
+    # (test,), adjusted p, in the order of the tests; the test is rejected where it is alpha at most
     adjusted: NDArray[np.float64]
-    level: NDArray[np.float64]
-    rejected: NDArray[np.bool_]
-    alpha: float
+    level: NDArray[np.float64]  # (test,), level that the test's own p was held against: that of its step
+    rejected: NDArray[np.bool_]  # (test,), whether the test says that there is a difference
+    alpha: float  # chance of one false alarm or more in the whole family
+    # level of the step at which the procedure stopped; alpha where it went to the end. The dissertation prints it
     critical: float
 
 
 def step_levels(tests: int, alpha: float = 0.05) -> NDArray[np.float64]:
     """Levels of the steps, 1 - (1 - alpha)^(1/k) with k = m, m - 1, ..., 1 tests left: the smallest p meets the first.
 
-    Examples
-    --------
     >>> step_levels(8).round(4)
     array([0.0064, 0.0073, 0.0085, 0.0102, 0.0127, 0.017 , 0.0253, 0.05  ])
     """
@@ -50,13 +36,8 @@ def step_levels(tests: int, alpha: float = 0.05) -> NDArray[np.float64]:
 def largest_family(p: float, alpha: float = 0.05) -> int:
     """Most tests a family may have so that one test with this p can still be rejected.
 
-    Parameters
-    ----------
-    p : float
-        For example the smallest that the number of participants allows.
+    p: for example the smallest that the number of participants allows
 
-    Examples
-    --------
     >>> largest_family(2 / 2**11), largest_family(2 / 2**8)
     (52, 6)
     """
@@ -126,8 +107,6 @@ def holm_sidak(p: ArrayLike, alpha: float = 0.05) -> StepDown:
 def holm_sidak_by(p: ArrayLike, families: Sequence[str], alpha: float = 0.05) -> dict[str, StepDown]:
     """Correct several families, each by itself, in the order in which they come.
 
-    Examples
-    --------
     >>> found = holm_sidak_by([0.01, 0.02, 0.03], ["a", "b", "a"])
     >>> [family.adjusted.round(4).tolist() for family in found.values()]
     [[0.0199, 0.03], [0.02]]

@@ -12,18 +12,10 @@ from gaitdisc.errors import ComparisonError
 
 @dataclass(frozen=True)
 class PermutationPlan:
-    """How a permutation test is run.
+    """How a permutation test is run."""
 
-    Parameters
-    ----------
-    alpha : float
-        Chance of a false alarm anywhere in the stride and in any channel.
-    permutations : int
-        Most of them; where there are no more, all are taken.
-    """
-
-    alpha: float = 0.05
-    permutations: int = 2000
+    alpha: float = 0.05  # chance of a false alarm anywhere in the stride and in any channel
+    permutations: int = 2000  # most of them; where there are no more, all are taken
     seed: int = 0
 
 
@@ -33,13 +25,8 @@ USUAL = PermutationPlan()
 def sign_flips(n: int, plan: PermutationPlan) -> tuple[NDArray[np.float64], bool]:
     """Signs of every permutation but that of the units as they are.
 
-    Returns
-    -------
-    signs : ndarray (permutation, unit)
-        1 or -1; with all signs turned |t| is the same, so the first unit keeps its own.
+    returns signs (permutation, unit): 1 or -1; with all signs turned |t| is the same, so the first unit keeps its own
 
-    Examples
-    --------
     >>> signs, exact = sign_flips(6, PermutationPlan())
     >>> signs.shape, exact
     ((31, 6), True)

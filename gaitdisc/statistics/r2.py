@@ -49,13 +49,8 @@ def r2(measured: NDArray[np.float64], predicted: NDArray[np.float64]) -> NDArray
 def why_no_r2(measured: NDArray[np.float64], predicted: NDArray[np.float64]) -> tuple[str, ...]:
     """Reason for every column why it has no coefficient of determination; empty where it has one.
 
-    Parameters
-    ----------
-    measured, predicted : ndarray (sample, column) [each column's unit]
-        As for `r2`.
+    measured, predicted (sample, column) [each column's unit]: as for `r2`
 
-    Examples
-    --------
     >>> why_no_r2(np.full((3, 1), 0.5), np.zeros((3, 1)))
     ('the measured part does not vary: 0.5 in all 3 samples',)
     """

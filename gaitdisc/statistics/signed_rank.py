@@ -14,42 +14,20 @@ from gaitdisc.errors import ComparisonError, ShapeError
 
 @dataclass(frozen=True)
 class SignedRank:
-    """One test of pairs.
+    """One test of pairs."""
 
-    Parameters
-    ----------
-    n : int
-        Pairs whose differences were ranked: neither left out nor zero.
-    zeros : int
-        Pairs without a difference; they were dropped from the ranking.
-    ties : bool
-        Some differences are equally large; p is that of their mean ranks.
-    w : float
-        The smaller of the two sums of ranks.
-    rank_biserial : float
-        (W+ - W-) / (W+ + W-): -1 every pair falls, 1 every pair rises; NaN where no pair differs.
-    median : float
-        Of the differences, zeros among them [the numbers' unit].
-    shift, low, high : float
-        Hodges-Lehmann shift and its interval [the numbers' unit]; infinite where so few pairs have none.
-    level : float
-        Asked of the interval; what it holds is at least that.
-    left_out : tuple of str
-        Reasons of the pairs that were left out, one each.
-    """
-
-    n: int
-    zeros: int
-    ties: bool
-    w: float
+    n: int  # pairs whose differences were ranked: neither left out nor zero
+    zeros: int  # pairs without a difference; they were dropped from the ranking
+    ties: bool  # some differences are equally large; p is that of their mean ranks
+    w: float  # the smaller of the two sums of ranks
     p: float
-    rank_biserial: float
-    median: float
-    shift: float
-    low: float
-    high: float
-    level: float
-    left_out: tuple[str, ...]
+    rank_biserial: float  # (W+ - W-) / (W+ + W-): -1 every pair falls, 1 every pair rises; NaN where no pair differs
+    median: float  # of the differences, zeros among them [the numbers' unit]
+    shift: float  # Hodges-Lehmann shift and its interval [the numbers' unit]; infinite where so few pairs have none
+    low: float  # Hodges-Lehmann shift and its interval [the numbers' unit]; infinite where so few pairs have none
+    high: float  # Hodges-Lehmann shift and its interval [the numbers' unit]; infinite where so few pairs have none
+    level: float  # asked of the interval; what it holds is at least that
+    left_out: tuple[str, ...]  # reasons of the pairs that were left out, one each
 
 
 def signed_rank(
@@ -122,13 +100,8 @@ def exact_p(differences: NDArray[np.float64]) -> float:
     Without equal differences it is scipy's exact distribution. With them scipy's is not exact (it ranks as if there
     were none), so the distribution of the mean ranks is summed here. 1 where no pair differs.
 
-    Parameters
-    ----------
-    differences : ndarray (pair,)
-        Complete; zeros are dropped.
+    differences (pair,): complete; zeros are dropped
 
-    Examples
-    --------
     >>> round(exact_p(np.arange(1.0, 12)), 6)
     0.000977
     """
@@ -146,8 +119,6 @@ def exact_p(differences: NDArray[np.float64]) -> float:
 def smallest_p(n: int) -> float:
     """Smallest two-sided p that n pairs can give: all n differences of one sign.
 
-    Examples
-    --------
     >>> smallest_p(11), smallest_p(5)
     (0.0009765625, 0.0625)
     """
@@ -161,18 +132,10 @@ def shift_interval(differences: NDArray[np.float64], level: float = 0.95) -> tup
     for the question whether there is a shift, not for that how large it is. With equal differences the interval is
     wider than it need be, never narrower.
 
-    Parameters
-    ----------
-    differences : ndarray (pair,)
-        Complete.
+    differences (pair,): complete
+    returns shift, low, high: in the differences' unit; low and high infinite where even all signs alike are no
+        evidence at this level
 
-    Returns
-    -------
-    shift, low, high : float
-        In the differences' unit; low and high infinite where even all signs alike are no evidence at this level.
-
-    Examples
-    --------
     >>> shift_interval(np.array([1.0, 2.0, 4.0]))
     (2.25, -inf, inf)
     """
@@ -216,10 +179,7 @@ def _differences(
 def sums_of_ranks(ranks: NDArray[np.intp]) -> NDArray[np.float64]:
     """Share of the 2^n signs that give each sum of positive ranks, 0 to all of them.
 
-    Parameters
-    ----------
-    ranks : ndarray of int (pair,)
-        Whole numbers; mean ranks doubled.
+    ranks (pair,): whole numbers; mean ranks doubled
     """
     shares = np.zeros(int(ranks.sum()) + 1)
     shares[0] = 1.0

@@ -14,14 +14,8 @@ LEFT_OVER = 0.15  # correlation of neighbouring blocks that is left to `block_wo
 def stride_correlation(curves: NDArray[np.float64]) -> NDArray[np.float64]:
     """Correlation of successive strides, pooled over the stride, (channel,), 0 to 1.
 
-    Parameters
-    ----------
-    curves : ndarray (stride, phase, channel)
-        In order of time, complete.
-
-    References
-    ----------
-    Corrected for its bias in short series as in `effective_strides` (Kendall 1954).
+    curves (stride, phase, channel): in order of time, complete
+    Source: Corrected for its bias in short series as in `effective_strides` (Kendall 1954).
     """
     share = effective_strides(curves) / len(curves)
     return (1.0 - share) / (1.0 + share)
@@ -33,8 +27,6 @@ def block_length(correlation: float, strides: int) -> int:
     Strides are taken for a first-order autoregression. The shortest block is taken whose mean correlates with that of
     its neighbour by 0.15 or less, but eight blocks are kept.
 
-    Examples
-    --------
     >>> block_length(0.0, 80), block_length(0.3, 80), block_length(0.6, 80), block_length(0.6, 24)
     (1, 3, 8, 3)
     """
@@ -53,13 +45,8 @@ def block_worth(correlation: NDArray[np.float64], length: int) -> NDArray[np.flo
     The variance that its strides have between blocks, over that which the mean of a long series has times the number of
     blocks: (1 + 2 sum (1 - j/k) rho^j) (1 - rho) / (1 + rho) for k strides in a block.
 
-    Parameters
-    ----------
-    correlation : ndarray (channel,)
-        Of successive strides.
+    correlation (channel,): of successive strides
 
-    Examples
-    --------
     >>> block_worth(np.array([0.0, 0.6]), 1), block_worth(np.array([0.6]), 8).round(2)
     (array([1.  , 0.25]), array([0.77]))
     """
@@ -69,15 +56,9 @@ def block_worth(correlation: NDArray[np.float64], length: int) -> NDArray[np.flo
 def block_means(curves: NDArray[np.float64], length: int) -> NDArray[np.float64]:
     """Mean curves of blocks of consecutive strides, (block, phase, channel) [each channel's unit].
 
-    Parameters
-    ----------
-    curves : ndarray (stride, phase, channel) [each channel's unit]
-        In order of time, complete.
-    length : int
-        Strides in a block; strides that are left over lengthen the first blocks by one.
+    curves (stride, phase, channel) [each channel's unit]: in order of time, complete
+    length: strides in a block; strides that are left over lengthen the first blocks by one
 
-    Examples
-    --------
     >>> block_means(np.arange(10.0)[:, None, None] * np.ones((1, 101, 1)), 5)[:, 0, 0]
     array([2., 7.])
     """

@@ -22,15 +22,9 @@ def strides_of_phase(time: NDArray[np.float64], phi: NDArray[np.float64], side: 
     Percent stride rises evenly from one initial contact to the next, so that two samples of a stride tell its start and
     end. A stride that begins before the first sample or ends after the last is left out.
 
-    Parameters
-    ----------
-    time : ndarray (time,) [s]
-        Even.
-    phi : ndarray (time,) [% stride]
-        As `Strides.phi` gives it; NaN outside of strides.
+    time (time,) [s]: even
+    phi (time,) [% stride]: as `Strides.phi` gives it; NaN outside of strides
 
-    Examples
-    --------
     >>> t = np.arange(0, 3, 0.01)
     >>> walked = Strides(np.array([-0.5, 0.5, 1.6]), np.array([0.5, 1.6, 2.7]), "r", "force")
     >>> found = strides_of_phase(t, walked.phi(t))
@@ -57,12 +51,8 @@ def strides_of_phase(time: NDArray[np.float64], phi: NDArray[np.float64], side: 
 def stride_curves(time: NDArray[np.float64], values: NDArray[np.float64], strides: Strides) -> NDArray[np.float64]:
     """Curve of every stride on 101 points, (stride, phase, column) [each column's unit]; NaN where a sample is missing.
 
-    Parameters
-    ----------
-    time : ndarray (time,) [s]
-        Even.
-    values : ndarray (time, column) [each column's unit]
-        NaN where missing.
+    time (time,) [s]: even
+    values (time, column) [each column's unit]: NaN where missing
     """
     points = strides.start[:, None] + strides.duration_s[:, None] * PERCENT / 100.0
     return interpolated(time, values, points)
@@ -70,26 +60,20 @@ def stride_curves(time: NDArray[np.float64], values: NDArray[np.float64], stride
 
 @dataclass(frozen=True, eq=False)
 class StrideMean:
-    """Mean of curves over strides, with its interval at every point of the stride.
+    """Mean of curves over strides, with its interval at every point of the stride."""
 
-    Parameters
-    ----------
-    mean, low, high : ndarray (phase, column) [each column's unit]
-        Mean over strides, and the ends of its interval; NaN where fewer than five strides have a value.
-    strides : ndarray of int (phase, column)
-        Strides with a value.
-    effective : ndarray (column,)
-        How many independent strides they are worth.
-    level : float
-        Of the interval, at each point by itself: the curve as a whole leaves it more often.
-    """
-
+    # (phase, column) [each column's unit], mean over strides, and the ends of its interval; NaN where fewer than five
+    # strides have a value
     mean: NDArray[np.float64]
+    # (phase, column) [each column's unit], mean over strides, and the ends of its interval; NaN where fewer than five
+    # strides have a value
     low: NDArray[np.float64]
+    # (phase, column) [each column's unit], mean over strides, and the ends of its interval; NaN where fewer than five
+    # strides have a value
     high: NDArray[np.float64]
-    strides: NDArray[np.intp]
-    effective: NDArray[np.float64]
-    level: float
+    strides: NDArray[np.intp]  # (phase, column), strides with a value
+    effective: NDArray[np.float64]  # (column,), how many independent strides they are worth
+    level: float  # of the interval, at each point by itself: the curve as a whole leaves it more often
 
     @property
     def rms(self) -> NDArray[np.float64]:
@@ -121,18 +105,11 @@ def mean_over_strides(curves: NDArray[np.float64], level: float = 0.95) -> Strid
     .97 of 1,500 simulated walks, one for independent strides in .95, .86, .66, circular blocks of 3 strides in .90,
     .85, .75 of 200.
 
-    Parameters
-    ----------
-    curves : ndarray (stride, phase, column) [each column's unit]
-        In order of time; NaN where missing.
+    curves (stride, phase, column) [each column's unit]: in order of time; NaN where missing
+    Source: Effective number: Bayley and Hammersley 1946, for a first-order autoregression. Bias of the lag-1
+        correlation, -(1 + 4 rho) / n: Kendall 1954. The dissertation (section 4.2.3) shows the mean without an
+        interval.
 
-    References
-    ----------
-    Effective number: Bayley and Hammersley 1946, for a first-order autoregression. Bias of the lag-1 correlation,
-    -(1 + 4 rho) / n: Kendall 1954. The dissertation (section 4.2.3) shows the mean without an interval.
-
-    Examples
-    --------
     >>> curves = np.random.default_rng(0).normal(2.0, 1.0, (400, 101, 1))
     >>> found = mean_over_strides(curves)
     >>> bool(np.mean((found.low < 2) & (2 < found.high)) > 0.85)
@@ -160,10 +137,7 @@ def mean_over_strides(curves: NDArray[np.float64], level: float = 0.95) -> Strid
 def effective_strides(curves: NDArray[np.float64]) -> NDArray[np.float64]:
     """How many independent strides a series of strides is worth, (column,), at most as many as there are.
 
-    Parameters
-    ----------
-    curves : ndarray (stride, phase, column)
-        In order of time; NaN where missing.
+    curves (stride, phase, column): in order of time; NaN where missing
     """
     n = len(curves)
     there = np.isfinite(curves)

@@ -17,19 +17,12 @@ LEAST_NODES = 8
 class Box:
     """A cube with so many nodes along each side, in the half of all wavenumbers that a real field needs.
 
-    Parameters
-    ----------
-    nodes : int
-        Along each side; even, at least 8.
-
-    Examples
-    --------
     >>> box = Box(8)
     >>> box.k.shape, box.largest
     ((3, 8, 8, 5), 2)
     """
 
-    nodes: int
+    nodes: int  # along each side; even, at least 8
 
     def __post_init__(self) -> None:
         """Refuse a box that is too coarse."""
@@ -77,10 +70,7 @@ class Box:
     def to_modes(self, velocity: NDArray[np.floating]) -> NDArray[np.complexfloating]:
         """Fourier coefficients of a velocity, (3, x, y, z), as amplitudes: not times the number of nodes.
 
-        Parameters
-        ----------
-        velocity : ndarray (3, x, y, z)
-            At the nodes.
+        velocity (3, x, y, z): at the nodes
         """
         from scipy.fft import rfftn
 
@@ -89,10 +79,7 @@ class Box:
     def to_nodes(self, modes: NDArray[np.complexfloating]) -> NDArray[np.floating]:
         """Values at the nodes, (3, x, y, z).
 
-        Parameters
-        ----------
-        modes : ndarray (3, x, y, z)
-            From `to_modes`.
+        modes (3, x, y, z): from `to_modes`
         """
         from scipy.fft import irfftn
 
@@ -101,10 +88,7 @@ class Box:
     def projected(self, modes: NDArray[np.complexfloating]) -> NDArray[np.complexfloating]:
         """Take away the part that is a gradient, and the modes that are not computed: what is left has no divergence.
 
-        Parameters
-        ----------
-        modes : ndarray (3, x, y, z)
-            Of any vector field.
+        modes (3, x, y, z): of any vector field
         """
         along = (self.k * modes).sum(axis=0) * self.inverse
         return np.where(self.kept, modes - self.k * along, 0)
@@ -112,9 +96,6 @@ class Box:
     def energy(self, modes: NDArray[np.complexfloating]) -> NDArray[np.float32]:
         """Kinetic energy per mass in every mode, (x, y, z), such that the sum is the mean over the box.
 
-        Parameters
-        ----------
-        modes : ndarray (3, x, y, z)
-            Of a velocity.
+        modes (3, x, y, z): of a velocity
         """
         return 0.5 * self.weight * (modes.real**2 + modes.imag**2).sum(axis=0)

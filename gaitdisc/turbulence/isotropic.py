@@ -27,24 +27,14 @@ RESOLVED = 1.3  # largest wavenumber times Kolmogorov's length that the viscosit
 
 @dataclass(frozen=True)
 class FlowSettings:
-    """How a flow is made and what of it is kept.
-
-    Parameters
-    ----------
-    cut : int
-        Nodes of the cube that is kept along each side, from a corner.
-    every : int
-        Steps from one snapshot to the next.
-    power : float
-        Energy put in per mass and time.
-    """
+    """How a flow is made and what of it is kept."""
 
     nodes: int = 48
-    cut: int = 40
+    cut: int = 40  # nodes of the cube that is kept along each side, from a corner
     snapshots: int = 1257
-    every: int = 2
+    every: int = 2  # steps from one snapshot to the next
     spin_up: int = 1500
-    power: float = 0.1
+    power: float = 0.1  # energy put in per mass and time
     seed: int = 0
 
     def __post_init__(self) -> None:
@@ -71,8 +61,6 @@ class FlowSettings:
 def first_velocity(box: Box, energy: float, seed: int) -> NDArray[np.complexfloating]:
     """Random velocity without divergence, most of it in the largest scales.
 
-    Examples
-    --------
     >>> box = Box(16)
     >>> float(box.energy(first_velocity(box, 0.5, 0)).sum().round(4))
     0.5
@@ -87,17 +75,10 @@ def record_turbulence(
 ) -> tuple[Field, pd.DataFrame]:
     """Compute a flow, or go on with one that was interrupted, and give what is kept of it.
 
-    Parameters
-    ----------
-    folder : Path
-        Where snapshots and state lie. What is there of the same settings is not computed again.
-
-    Returns
-    -------
-    field : Field
-        `u`, the velocity along x, at the nodes of the cut; time in units of the box. Without unit.
-    numbers : DataFrame
-        snapshot, energy, dissipation, re_lambda, kmax_eta, integral_length, turnover, and the spectrum as e_1, e_2, ...
+    folder: where snapshots and state lie. What is there of the same settings is not computed again
+    returns field: `u`, the velocity along x, at the nodes of the cut; time in units of the box. Without unit
+    returns numbers: snapshot, energy, dissipation, re_lambda, kmax_eta, integral_length, turnover, and the spectrum as
+        e_1, e_2, ..
     """
     folder.mkdir(parents=True, exist_ok=True)
     box = Box(settings.nodes)

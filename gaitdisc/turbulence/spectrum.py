@@ -12,34 +12,21 @@ from gaitdisc.turbulence.box import Box
 
 @dataclass(frozen=True)
 class FlowNumbers:
-    """Numbers of one instant, per mass, in units of box and time.
-
-    Parameters
-    ----------
-    kmax_eta : float
-        Largest wavenumber times Kolmogorov's length: 1 or more resolves the dissipation.
-    integral_length, turnover : float
-        Longitudinal integral length, and its time: length over root mean square velocity.
-    """
+    """Numbers of one instant, per mass, in units of box and time."""
 
     energy: float
     dissipation: float
     re_lambda: float
-    kmax_eta: float
-    integral_length: float
-    turnover: float
+    kmax_eta: float  # largest wavenumber times Kolmogorov's length: 1 or more resolves the dissipation
+    integral_length: float  # Longitudinal integral length, and its time: length over root mean square velocity
+    turnover: float  # Longitudinal integral length, and its time: length over root mean square velocity
 
 
 def energy_spectrum(box: Box, u: NDArray[np.complexfloating]) -> NDArray[np.float64]:
     """Energy in shells of unit width around each whole wavenumber from 0; the sum is the energy.
 
-    Parameters
-    ----------
-    u : ndarray (3, x, y, z)
-        Modes of a velocity.
+    u (3, x, y, z): modes of a velocity
 
-    Examples
-    --------
     >>> box = Box(8)
     >>> x = 2 * np.pi * np.arange(8) / 8
     >>> shear = np.zeros((3, 8, 8, 8))
@@ -54,15 +41,9 @@ def energy_spectrum(box: Box, u: NDArray[np.complexfloating]) -> NDArray[np.floa
 def flow_numbers(box: Box, u: NDArray[np.complexfloating], viscosity: float) -> FlowNumbers:
     """Energy, dissipation, and what follows from them for isotropic turbulence.
 
-    Parameters
-    ----------
-    u : ndarray (3, x, y, z)
-        Modes of a velocity without divergence.
-
-    References
-    ----------
-    Pope 2000, Turbulent flows, section 6: lambda^2 = 15 viscosity u'^2 / dissipation, eta = (viscosity^3 /
-    dissipation)^(1/4), L = pi / (2 u'^2) times the integral of E(k) / k.
+    u (3, x, y, z): modes of a velocity without divergence
+    Source: Pope 2000, Turbulent flows, section 6: lambda^2 = 15 viscosity u'^2 / dissipation, eta = (viscosity^3 /
+        dissipation)^(1/4), L = pi / (2 u'^2) times the integral of E(k) / k.
     """
     each = box.energy(u).astype(float)
     energy = float(each.sum())

@@ -23,22 +23,14 @@ class Stepper:
     wavenumbers. The force is along the velocity of the modes up to `FORCED`, as large as gives the wanted power
     whatever the flow does.
 
-    Parameters
-    ----------
-    viscosity : float
-        Kinematic, in units of box and time.
-    power : float
-        Energy per mass and time that the force puts in; 0 lets the flow decay.
-
-    References
-    ----------
-    Rogallo 1981, Numerical experiments in homogeneous turbulence (integrating factor); Lamorgese, Caughey and Pope 2005
-    (deterministic forcing of constant power). The database's solver holds the energy of two shells instead.
+    Source: Rogallo 1981, Numerical experiments in homogeneous turbulence (integrating factor); Lamorgese, Caughey and
+        Pope 2005 (deterministic forcing of constant power). The database's solver holds the energy of two shells
+        instead.
     """
 
     box: Box
-    viscosity: float
-    power: float
+    viscosity: float  # kinematic, in units of box and time
+    power: float  # energy per mass and time that the force puts in; 0 lets the flow decay
     dt: float
 
     @cached_property
@@ -52,10 +44,7 @@ class Stepper:
     def step(self, u: Modes) -> Modes:
         """Return the velocity one step later.
 
-        Parameters
-        ----------
-        u : ndarray (3, x, y, z)
-            Modes of a velocity without divergence.
+        u (3, x, y, z): modes of a velocity without divergence
         """
         first = self.rates(u)
         ahead = self._damping * (u + self.dt * first)
@@ -72,10 +61,7 @@ class Stepper:
     def rates(self, u: Modes) -> Modes:
         """Rate of the velocity without viscosity: advection and force.
 
-        Parameters
-        ----------
-        u : ndarray (3, x, y, z)
-            Modes of a velocity without divergence.
+        u (3, x, y, z): modes of a velocity without divergence
         """
         box = self.box
         velocity, vorticity = box.to_nodes(u), box.to_nodes(_curl(box, u))

@@ -28,10 +28,7 @@ def write_index(
 ) -> Path:
     """Write `index.html`: one row a person, session and condition, those without a result first.
 
-    Parameters
-    ----------
-    sessions : sequence of (PersonSession, str)
-        With the name of each one's page, empty where none could be written.
+    sessions sequence of (PersonSession, str): with the name of each one's page, empty where none could be written
     """
     rows = [_row(reading, one, name, say) for one, name in sessions for reading in one.readings]
     known = {reading.pooled.subject for one, _ in sessions for reading in one.readings}

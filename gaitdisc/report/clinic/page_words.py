@@ -31,8 +31,6 @@ LARGEST_BYTES = 2**20
 class PageWords:
     """Words of a page, each in the other language where the table has it.
 
-    Examples
-    --------
     >>> say = PageWords({"knee flexion": "Knieflexion", "step length": "Schrittlänge"})
     >>> say("knee flexion"), say("step length [m]"), say("cadence")
     ('Knieflexion', 'Schrittlänge [m]', 'cadence')

@@ -21,50 +21,32 @@ BAR = 5  # height of a bar below the curves
 
 @dataclass(frozen=True, eq=False)
 class Line:
-    """A curve of a panel.
-
-    Parameters
-    ----------
-    look : str
-        `mean`, `single` (one cycle, faint) or `before` (thin, of the first of two).
-    """
+    """A curve of a panel."""
 
     side: str
     values: NDArray[np.float64]
-    look: str = "mean"
+    look: str = "mean"  # `mean`, `single` (one cycle, faint) or `before` (thin, of the first of two)
 
 
 @dataclass(frozen=True, eq=False)
 class Panel:
-    """What a panel shows.
-
-    Parameters
-    ----------
-    note : str
-        Counts and scores, beside the title.
-    foot_off : tuple of (str, float)
-        Side and [% of the cycle].
-    normal : tuple of (int, int)
-        When a muscle is active in normal walking [% of the cycle].
-    differs : tuple of (int, int, bool)
-        Where two sets of cycles differ, and whether that is as large as what matters.
-    row, column : int
-        Place in the sheet.
-    """
+    """What a panel shows."""
 
     name: str
     title: str
     unit: str
     up: str
     down: str
-    note: str
+    note: str  # counts and scores, beside the title
     lines: tuple[Line, ...]
     band: Band | None = None
-    foot_off: tuple[tuple[str, float], ...] = ()
+    foot_off: tuple[tuple[str, float], ...] = ()  # tuple of (str, float), side and [% of the cycle]
+    # tuple of (int, int), when a muscle is active in normal walking [% of the cycle]
     normal: tuple[tuple[int, int], ...] = ()
+    # tuple of (int, int, bool), where two sets of cycles differ, and whether that is as large as what matters
     differs: tuple[tuple[int, int, bool], ...] = ()
-    row: int = 0
-    column: int = 0
+    row: int = 0  # place in the sheet
+    column: int = 0  # place in the sheet
 
     @property
     def alt(self) -> str:
@@ -96,8 +78,6 @@ class Panel:
 def ticks(low: float, high: float, most: int = 4) -> list[float]:
     """Round numbers between two values, at most so many.
 
-    Examples
-    --------
     >>> ticks(-4.2, 61.0)
     [0.0, 20.0, 40.0, 60.0]
     """

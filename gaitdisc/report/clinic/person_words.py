@@ -19,8 +19,6 @@ MOST_SPANS = 6
 def noted_sentences(noted: Sequence[Noted], say: Callable[[str], str] = str) -> list[str]:
     """One sentence a rule and direction, the farthest first, both legs in one; at most six.
 
-    Examples
-    --------
     >>> noted_sentences([])
     []
     """
@@ -75,8 +73,6 @@ def quality_sentence(reading: ClinicalReading) -> str:
 def score_words(score: Score, unit: str = "deg") -> str:
     """Score with the range of single cycles and the reference's own.
 
-    Examples
-    --------
     >>> score_words(Score(7.2, 6.5, 8.1, 4, 5.1, 1.0, 20))
     '7.2 deg (4 cycles 6.5 to 8.1; reference 5.1 ± 1.0, 20 people)'
     """
