@@ -15,14 +15,9 @@ LOOKS = 5  # in the time for which a file has to stand still
 class WatchedFolder:
     """Which recordings of a folder stand still, looked at by the clock; no service of the system is needed.
 
-    Parameters
-    ----------
-    without : Path
-        A folder inside of it that is left out: that of the run.
-    still_s : float
-        For how long size and time of a file have to be the same [s].
-    clock, sleep : callable
-        Seconds that only increase, and a pause.
+    without: a folder inside of it that is left out: that of the run
+    still_s: for how long size and time of a file have to be the same [s]
+    clock, sleep: seconds that only increase, and a pause
     """
 
     def __init__(

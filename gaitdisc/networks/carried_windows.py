@@ -61,13 +61,7 @@ class CarriedWindows:
 
     A reading that is NaN makes every window NaN that holds it, unless the network was made for that (`masked`).
 
-    Parameters
-    ----------
-    count, spacing : int
-        Readings of a window, and samples from one to the next.
-
-    Examples
-    --------
+    count, spacing: readings of a window, and samples from one to the next
     """
 
     def __init__(self, network: TrainedNetwork, count: int, spacing: int) -> None:

@@ -11,18 +11,10 @@ class FeedForward(nn.Module):
 
     The radial basis is that of a feed-forward layer: n is an inner product, not a distance to a centre.
 
-    Parameters
-    ----------
-    nodes : int
-        Nodes of either hidden layer; the dissertation has 64.
+    nodes: nodes of either hidden layer; the dissertation has 64
+    Source: Ebers 2023, section 4.2.2: "each layer had 64 nodes". We read 49-64-64-8, with 7,880 parameters; a third
+        layer of 64 linear nodes before the eight outputs would describe the same functions.
 
-    References
-    ----------
-    Ebers 2023, section 4.2.2: "each layer had 64 nodes". We read 49-64-64-8, with 7,880 parameters; a third layer of
-    64 linear nodes before the eight outputs would describe the same functions.
-
-    Examples
-    --------
     >>> sum(weights.numel() for weights in FeedForward(49, 8).parameters())
     7880
     """

@@ -18,10 +18,7 @@ class FusedSteps:
     Same weights to start from, same order of samples, same steps as `TorchSteps`: the two differ by rounding. Nothing
     is dispatched between two matrix products, and what lies between them is one pass over memory.
 
-    Parameters
-    ----------
-    part, check : pair of Tensor ((sample, input), (sample, output))
-        Scaled samples to descend on, and to judge by.
+    part, check pair of Tensor ((sample, input), (sample, output)): scaled samples to descend on, and to judge by
     """
 
     arithmetic = "fused"

@@ -9,17 +9,9 @@ from torch import Tensor, nn
 class ShallowDecoder(nn.Module):
     """Two layers of rectified linear nodes, and a linear one.
 
-    Parameters
-    ----------
-    first, second : int
-        Nodes of the hidden layers; the code of SHRED has 350 and 400.
+    first, second: nodes of the hidden layers; the code of SHRED has 350 and 400
+    Source: Erichson et al. 2020, Shallow neural networks for fluid flow reconstruction with limited sensors.
 
-    References
-    ----------
-    Erichson et al. 2020, Shallow neural networks for fluid flow reconstruction with limited sensors.
-
-    Examples
-    --------
     >>> ShallowDecoder(3, 18)(torch.zeros(2, 3)).shape
     torch.Size([2, 18])
     """

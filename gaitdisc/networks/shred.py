@@ -17,27 +17,15 @@ AT_ONCE = 8192  # windows that are read side by side; more need more memory and 
 class Shred(nn.Module):
     """GRU or LSTM over a window, its last hidden state decoded.
 
-    Parameters
-    ----------
-    inputs, outputs : int
-        Numbers of a window (readings times sensors, oldest first), and states.
-    sensors : int
-        Sensors; `inputs` is a multiple of it.
-    layers : int
-        Recurrent layers; the dissertation's code has two of 64.
-    decoder : (int, int)
-        Nodes of the decoder's hidden layers.
-    masked : bool
-        Whether readings may be missing (NaN): the network then reads 0, the mean, in their place, and beside every
-        reading whether it is missing.
+    inputs, outputs: numbers of a window (readings times sensors, oldest first), and states
+    sensors: sensors; `inputs` is a multiple of it
+    layers: recurrent layers; the dissertation's code has two of 64
+    decoder (int, int): nodes of the decoder's hidden layers
+    masked: whether readings may be missing (NaN): the network then reads 0, the mean, in their place, and beside every
+        reading whether it is missing
+    Source: Williams, Zahn and Kutz 2024, Sensing with shallow recurrent decoder networks. Its code has two LSTM layers
+        of 64 and a decoder of 350 and 400; one GRU layer is the default here, since it learns faster and errs no more.
 
-    References
-    ----------
-    Williams, Zahn and Kutz 2024, Sensing with shallow recurrent decoder networks. Its code has two LSTM layers of 64
-    and a decoder of 350 and 400; one GRU layer is the default here, since it learns faster and errs no more.
-
-    Examples
-    --------
     >>> Shred(75, 18, 3)(torch.zeros(2, 75)).shape
     torch.Size([2, 18])
     """

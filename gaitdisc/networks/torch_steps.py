@@ -18,16 +18,10 @@ class TorchSteps:
 
     Decay acts on weight matrices only.
 
-    Parameters
-    ----------
-    part, check : pair of Tensor ((sample, input), (sample, output))
-        Scaled samples to descend on, and to judge by; on the device of the network.
-    precision : str
-        Of the matrix products: `float32` or `bfloat16`; weights stay float32.
-
-    References
-    ----------
-    Loshchilov and Hutter 2019, Decoupled weight decay regularization.
+    part, check pair of Tensor ((sample, input), (sample, output)): scaled samples to descend on, and to judge by; on
+        the device of the network
+    precision: of the matrix products: `float32` or `bfloat16`; weights stay float32
+    Source: Loshchilov and Hutter 2019, Decoupled weight decay regularization.
     """
 
     arithmetic = "torch"

@@ -22,14 +22,8 @@ class Stream:
     A recurrent network carries the states of the windows under way from one reading to the next
     (`gaitdisc.networks.carried_windows`); every other model reads the last readings, which are kept.
 
-    Parameters
-    ----------
-    missing : str
-        A word of `gaitdisc.sensing.missing.WAYS`: what stands for a reading that is missing, unless the model was
-        fitted to be told of it.
-
-    Examples
-    --------
+    missing: a word of `gaitdisc.sensing.missing.WAYS`: what stands for a reading that is missing, unless the model was
+        fitted to be told of it
     """
 
     def __init__(self, reconstructor: Reconstructor, missing: str = "none") -> None:

@@ -19,10 +19,8 @@ from gaitdisc.simulation.python_simulation import PythonSimulation, called
 class PythonCompiled(Compiled):
     """A `PythonSimulation` that is ready to run; it runs and observes as `Compiled` does.
 
-    Parameters
-    ----------
-    simulation, states, inputs, parameters, observed, defaults, right_hand_side, observation : as for `Compiled`
-        The right-hand side gives what the function is fed with.
+    simulation, states, inputs, parameters, observed, defaults, right_hand_side, observation: the right-hand side gives
+        what the function is fed with
     """
 
     model: PythonSimulation

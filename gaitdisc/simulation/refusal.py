@@ -8,13 +8,8 @@ from gaitdisc.errors import SchemaError
 class SimulationError(SchemaError):
     """A simulation cannot be what it claims to be.
 
-    Parameters
-    ----------
-    place : tuple of str
-        Section and key of the simulation file, `("equations", "omega")`; empty where the whole file is meant.
+    place: section and key of the simulation file, `("equations", "omega")`; empty where the whole file is meant
 
-    Examples
-    --------
     >>> SimulationError("every name is known", "'omgea' is not", "Write 'omega'.").at("equations", "omega").place
     ('equations', 'omega')
     """
