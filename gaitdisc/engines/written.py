@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.engines.engine import ByHand, Engine, Motion
-from gaitdisc.engines.mapping import REPLACED
+from gaitdisc.engines.mapping import REPLACED, read_mapping
 from gaitdisc.engines.model_file import read_model
-from gaitdisc.errors import GaitdiscError
+from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.parts import Term
 from gaitdisc.simulation.simulation import Simulation
@@ -31,11 +31,13 @@ class WrittenModel:
     engine: Engine  # that reads it
     text: str  # the user's own, with insertions; the same where nothing has a native form
     notes: tuple[str, ...]  # what was written in, with its deviation, and what was not
+    absent: tuple[str, ...]  # what stands in the mapping alone
 
 
 def written_model(engine: Engine, augmented: Simulation) -> WrittenModel:
     """Write effects and changed parameters into a model's text, as far as they have a form there."""
     text, notes, current = engine.path.read_text(encoding="utf-8"), [], engine
+    absent: list[str] = []
     forces: tuple[Term, ...] = ()
     values: dict[str, float] = {}
     before = {one.name: one.value for one in engine.parameters}
@@ -52,6 +54,7 @@ def written_model(engine: Engine, augmented: Simulation) -> WrittenModel:
         if tried is None or read is None or deviation > SAME:
             said = "has no form in the model's own file" if tried is None else _said(deviation)
             notes.append(f"{what} {said}: it stands in augmented.toml alone")
+            absent.append(what)
             continue
         text, current, forces, values = tried, read, *wanted[1:]
         notes.append(
@@ -60,7 +63,21 @@ def written_model(engine: Engine, augmented: Simulation) -> WrittenModel:
     for name, expression in augmented.definitions:
         control = name.removeprefix(REPLACED)
         notes.append(f"{control}, as {expression}, has no form in the model's file: it stands in augmented.toml alone")
-    return WrittenModel(current, text, tuple(notes))
+        absent.append(f"{control} as {expression}")
+    return WrittenModel(current, text, tuple(notes), tuple(absent))
+
+
+def whole_model(path: Path | str) -> tuple[Simulation, Engine]:
+    """Mapping of a model, and the engine of the model with all that the mapping says: other numbers, and effects."""
+    mapping, engine = read_mapping(path)
+    written = written_model(engine, mapping)
+    if written.absent:
+        raise SchemaError(
+            f"{engine.called} runs what stands in the model's own file",
+            f"{Path(path).name} has besides: {'; '.join(written.absent)}",
+            "Take it out of the mapping, or write it into the model by hand.",
+        )
+    return mapping, written.engine
 
 
 def _said(deviation: float) -> str:

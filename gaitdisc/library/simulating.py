@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.channel import Channel, side_of
+from gaitdisc.engines.engine import Engine, Motion
+from gaitdisc.engines.mapping import names_engine
+from gaitdisc.engines.written import whole_model
 from gaitdisc.errors import ShapeError, UnitError
 from gaitdisc.library.models import ModelLike, model_of
 from gaitdisc.recording import Recording, Source
 from gaitdisc.recording.strides import interpolated
 from gaitdisc.simulation.divergence import refuse_divergence
 from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.simulation.evaluating import Points, evaluate_many
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
@@ -29,12 +36,13 @@ def simulate(
     inputs: Recording | pd.DataFrame | Mapping[str, ArrayLike] | None = None,
     start: Mapping[str, float] | Sequence[float] | None = None,
 ) -> Recording:
-    """Run a simulation (Runge-Kutta of order 4, five steps a sample) and observe it.
+    """Run a simulation (Runge-Kutta of order 4, five steps a sample; a model of an engine by its own) and observe it.
 
     Parameters
     ----------
     model : path, Simulation or callable
-        A simulation file, what `read_simulation` gave, or a Python function (`simulation_from_function`).
+        A simulation file, what `read_simulation` gave, or a Python function (`simulation_from_function`); a model of
+        MuJoCo or OpenSim, or the mapping of one, which its engine runs.
     time : array_like (time,) [s]
         Evenly spaced, increasing.
     inputs : Recording, DataFrame or mapping of str to array_like (time,), optional
@@ -66,24 +74,64 @@ def simulate(
     >>> round(float(ball["height"][-1]), 3)
     5.095
     """
-    simulation = model_of(model)
+    engine = None
+    if isinstance(model, Path | str) and names_engine(model):
+        simulation, engine = whole_model(model)
+    else:
+        simulation = model_of(model)
     time = np.asarray(time, float)
     base = Recording(time, np.empty((len(time), 0)), ())  # refuses a time that is not even
     if len(time) < 2:
         raise ShapeError("a simulation runs over two times or more", f"found {len(time)}", "Give a longer time.")
-    driven = _driven(simulation, time, inputs)
+    driven, begun = _driven(simulation, time, inputs), _start(simulation, start)
+    states, seen = (_run if engine is None else partial(_run_by, engine))(simulation, time, driven, begun)
+    for parts, values in ((simulation.states, states), (simulation.inputs, driven)):
+        seen |= {part.name: column for part, column in zip(parts, values.T, strict=True) if part.name not in seen}
+    channels = tuple(_channel(name, simulation) for name in seen)
+    return Recording(base.time, np.column_stack([*seen.values()]), channels, source=Source(reader="simulation"))
+
+
+def _run(
+    simulation: Simulation, time: NDArray[np.float64], driven: NDArray[np.float64], start: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], dict[str, NDArray[np.float64]]]:
+    """States (time, state) and observed channels (time,)."""
     machine = compile_simulation(simulation)
-    drive = Drive.of([driven], (len(time) - 1) / float(time[-1] - time[0]), float(time[0]))
-    rows = Rows(np.zeros(1, np.int64), np.zeros(1, np.int64), _start(simulation, start)[None])
+    drive = Drive.of([driven], _rate(time), float(time[0]))
+    rows = Rows(np.zeros(1, np.int64), np.zeros(1, np.int64), start[None])
     states, ok = machine.run(drive, rows, len(time) - 1)
     if not ok.all():
         refuse_divergence(machine, drive, rows, states, ok)
-    seen = machine.observe(drive, rows, states)[0]
-    columns = dict(zip(machine.observed, seen.T, strict=True))
-    for names, values in ((machine.states, states[0]), (machine.inputs, driven)):
-        columns |= {name: column for name, column in zip(names, values.T, strict=True) if name not in columns}
-    channels = tuple(_channel(name, simulation) for name in columns)
-    return Recording(base.time, np.column_stack([*columns.values()]), channels, source=Source(reader="simulation"))
+    return states[0], dict(zip(machine.observed, machine.observe(drive, rows, states)[0].T, strict=True))
+
+
+def _run_by(
+    engine: Engine,
+    simulation: Simulation,
+    time: NDArray[np.float64],
+    driven: NDArray[np.float64],
+    start: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], dict[str, NDArray[np.float64]]]:
+    """States (time, state) by an engine's own integrator, and observed channels (time,)."""
+    count, rate = len(engine.coordinates), _rate(time)
+    q, v = start[None, :count], start[None, count:]
+    acting = engine.acting(driven, rate, np.repeat(q, len(time), axis=0))[:1]
+    states = engine.run(Motion(q, v, acting), driven[None], rate)[0]
+    lost = np.flatnonzero(~np.isfinite(states).all(axis=1))
+    if lost.size:
+        raise SimulationError(
+            f"{engine.called} runs {engine.path.name} to the end",
+            f"it has no numbers from t = {time[lost[0]]:.6g} s on",
+            "Begin at another state, or look at the inputs there.",
+        )
+    channels = dict(simulation.observations)
+    points = Points(time, states, driven, rate=rate)
+    plain = replace(simulation, model="", effects=(), definitions=())
+    observed = evaluate_many(plain, [*channels.values()], points)
+    return states, {name: np.broadcast_to(each, time.shape) for name, each in zip(channels, observed, strict=True)}
+
+
+def _rate(time: NDArray[np.float64]) -> float:
+    return (len(time) - 1) / float(time[-1] - time[0])
 
 
 def _driven(simulation: Simulation, time: NDArray[np.float64], inputs: Any) -> NDArray[np.float64]:

@@ -3,11 +3,15 @@
 import numpy as np
 import pandas as pd
 import pytest
+from scipy.integrate import solve_ivp
 
 import gaitdisc as gd
 from gaitdisc.channel import Channel
-from gaitdisc.errors import SamplingError, ShapeError
+from gaitdisc.engines.mapping import write_mapping
+from gaitdisc.engines.model_file import read_model
+from gaitdisc.errors import SamplingError, SchemaError, ShapeError
 from gaitdisc.simulation.refusal import SimulationError
+from gaitdisc.simulation.writing import write_simulation
 
 TIME = np.linspace(1.0, 3.0, 201)
 
@@ -72,3 +76,45 @@ def test_time_that_is_uneven_or_one_sample_is_refused():
 def test_a_simulation_that_leaves_all_bounds_names_state_and_time():
     with pytest.raises(SimulationError, match="x"):
         gd.simulate(lambda x: x**2, np.linspace(0.0, 3.0, 301), start=[1.0])
+
+
+@pytest.fixture
+def engine_pendulum(tmp_path):
+    """Mapping of a pendulum of MuJoCo in degrees: 2 kg at 0.4 m, 0.05 kg m2, a motor with gear 5."""
+    pytest.importorskip("mujoco", reason="MuJoCo is not installed: pip install 'gaitdisc[mujoco]'")
+    (tmp_path / "pendulum.xml").write_text(
+        '<mujoco><option timestep="0.0005" integrator="RK4"/><worldbody><body><joint name="pivot" axis="0 -1 0"/>'
+        '<inertial pos="0 0 -0.4" mass="2" diaginertia="0.05 0.05 0.001"/></body></worldbody>'
+        '<actuator><motor name="drive" joint="pivot" gear="5"/></actuator></mujoco>'
+    )
+    write_mapping(read_model(tmp_path / "pendulum.xml"), tmp_path / "pendulum.toml", degrees=True)
+    return tmp_path / "pendulum.toml"
+
+
+def swing(stiffness, time, drive):
+    """Angle [deg] of that pendulum with a spring, by scipy."""
+
+    def rates(t, x):
+        moment = -2 * 9.81 * 0.4 * np.sin(x[0]) - stiffness * x[0] + 5 * np.interp(t, time, drive)
+        return x[1], moment / (0.05 + 2 * 0.4**2)
+
+    return np.rad2deg(solve_ivp(rates, time[[0, -1]], [0.3, 0.0], t_eval=time, rtol=1e-10, atol=1e-12).y[0])
+
+
+def test_an_engine_runs_its_model_and_what_the_mapping_adds(engine_pendulum):
+    time, start = np.linspace(0.0, 2.0, 401), {"pivot": 0.3, "pivot_speed": 0.0}
+    drive = 0.2 * np.sin(3 * time)
+    run = gd.simulate(engine_pendulum, time, {"drive": drive}, start)
+    np.testing.assert_allclose(run["pivot"], swing(0.0, time, drive), atol=0.05)  # a control is held over a sample
+    assert next((one.name, one.unit) for one in run.channels) == ("pivot", "deg")
+    mapping = gd.read_simulation(engine_pendulum)
+    write_simulation(
+        mapping.with_effect(gd.Term("pivot_moment", "port", "linear_stiffness", "-6*pivot")), engine_pendulum
+    )
+    stiff = gd.simulate(engine_pendulum, time, {"drive": drive}, start)
+    np.testing.assert_allclose(stiff["pivot"], swing(6.0, time, drive), atol=0.05)
+    write_simulation(mapping.with_effect(gd.Term("pivot_moment", "port", "push", "-6*sin(t)")), engine_pendulum)
+    with pytest.raises(
+        SchemaError, match=r"pendulum.toml has besides: .* at pivot_moment.*write it into the model by hand"
+    ):
+        gd.simulate(engine_pendulum, time, {"drive": drive}, start)
