@@ -20,6 +20,7 @@ from gaitdisc.simulation.simulation_file import LARGEST, read_simulation
 from gaitdisc.simulation.writing import write_simulation
 
 REPLACED = "replaced_"  # begins the definition that a control is replaced by
+MOST = 60  # coordinates and controls: with a port and some numbers each, what a search can tell apart
 SAME = 1e-5  # by which a number of the mapping may differ from the model's, as a share: numbers in files are rounded
 
 
@@ -29,6 +30,12 @@ def drafted(engine: Engine, degrees: bool = False) -> Simulation:
     degrees: whether the columns of angles are in degrees
     """
     found = engine.coordinates
+    if len(found) + len(engine.controls) > MOST:
+        raise SchemaError(
+            f"a model has at most {MOST} free coordinates and controls together",
+            f"{engine.path.name} has {len(found)} and {len(engine.controls)}",
+            "Lock the joints (MuJoCo: take them out of their bodies) that your record does not show.",
+        )
     states = [State(one.name, one.unit, f"coordinate {one.called}") for one in found]
     states += [State(one.speed, f"{one.unit}/s") for one in found]
     parameters = [one for one in engine.parameters if one.name in engine.offered]

@@ -2,20 +2,29 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.engines.engine import ByHand, Coordinate, Motion, refuse_absent
 from gaitdisc.engines.mujoco_text import with_effect, with_value
+from gaitdisc.engines.part_names import part_name
 from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.simulation.parts import Input, Parameter
 
 JOINT_UNITS = {"stiffness": ("N m/rad", "N/m"), "damping": ("N m s/rad", "N s/m"), "frictionloss": ("N m", "N")}
+
+
+class _Place(NamedTuple):
+    """Where a number of the model stands."""
+
+    array: Any  # of the engine
+    index: Any  # in it
+    unit: str
+    part: tuple[str, int]  # kind and number of the part that has it
 
 
 class MujocoModel:
@@ -40,12 +49,13 @@ class MujocoModel:
             ) from None
         self._data: Any = self._mujoco.MjData(self._model)
         self._refuse_other_joints()
+        self._names: dict[tuple[str, int], str] = {}
         self.coordinates = tuple(self._coordinate(number) for number in range(self._model.njnt))
-        self.controls = tuple(Input(self._name("actuator", k), "1", "actuator") for k in range(self._model.nu))
+        self.controls = tuple(Input(name, "1", "actuator") for name in self._control_names())
         self._places = self._places_of_parameters()
         self.parameters = tuple(
             Parameter(name, float(np.linalg.norm(array[index])), unit)
-            for name, (array, index, unit) in self._places.items()
+            for name, (array, index, unit, _) in self._places.items()
         )
         self.offered = tuple(one.name for one in self.parameters if one.value and "gear" not in one.name)
         self._stateful = self._model.actuator_actadr >= 0
@@ -142,11 +152,7 @@ class MujocoModel:
 
     def text_with_value(self, text: str, name: str, value: float) -> str | None:
         """Text of the model with another value of a parameter."""
-        kinds = (("body", "_mass"), ("actuator", "_gear"), ("actuator", "_force"))
-        kind = next((kind for kind, ending in kinds if name.endswith(ending)), "joint")
-        counts = {"body": self._model.nbody, "actuator": self._model.nu, "joint": self._model.njnt}
-        part = name.rpartition("_")[0]
-        number = next((k for k in range(counts[kind]) if self._name(kind, k) == part), 0)
+        kind, number = self._places[name].part
         return with_value(text, name, value, (kind, self._called(kind, number)))
 
     def text_with_effect(self, text: str, effect: ByHand) -> str | None:
@@ -160,8 +166,23 @@ class MujocoModel:
         return max(int(np.ceil(round(1.0 / (rate * self._model.opt.timestep), 6))), 1)
 
     def _name(self, kind: str, number: int) -> str:
-        """Name of a part as it may stand in an expression."""
-        return re.sub(r"\W", "_", self._called(kind, number)) or f"{kind}_{number + 1}"
+        """Name of a part as it may stand in an expression, unlike those of its kind."""
+        if (kind, number) not in self._names:
+            taken = {name for (other, _), name in self._names.items() if other == kind}
+            called = self._called(kind, number) or f"{kind}_{number + 1}"
+            self._names[kind, number] = part_name(called, kind, taken)
+        return self._names[kind, number]
+
+    def _control_names(self) -> list[str]:
+        """Names of the controls, unlike all others: a motor is often called as the joint that it drives."""
+        taken = {"gravity", *(f"{self._name('body', body)}_mass" for body in range(1, self._model.nbody))}
+        for one in self.coordinates:
+            taken |= {one.name, one.speed, one.port, *(f"{one.name}_{word}" for word in JOINT_UNITS)}
+        found: list[str] = []
+        for number in range(self._model.nu):
+            called = self._called("actuator", number) or f"control_{number + 1}"
+            found.append(part_name(called, "control", taken.union(found)))
+        return found
 
     def _called(self, kind: str, number: int) -> str:
         found = self._mujoco.mj_id2name(self._model, getattr(self._mujoco.mjtObj, f"mjOBJ_{kind.upper()}"), number)
@@ -197,15 +218,15 @@ class MujocoModel:
             self._name("joint", number), "rad" if turns else "m", called, float(limits[0]), float(limits[1])
         )
 
-    def _places_of_parameters(self) -> dict[str, tuple[Any, Any, str]]:
-        """For each number that may be changed by name: the array that holds it, where, and its unit."""
+    def _places_of_parameters(self) -> dict[str, _Place]:
+        """Every number that may be changed by name."""
         model = self._model
-        places: dict[str, tuple[Any, Any, str]] = {}
+        places: dict[str, _Place] = {}
         if np.any(model.opt.gravity):
-            places["gravity"] = (model.opt.gravity, slice(None), "m/s^2")
+            places["gravity"] = _Place(model.opt.gravity, slice(None), "m/s^2", ("body", 0))
         for body in range(1, model.nbody):
             if model.body_dofnum[model.body_rootid[body]] or model.body_weldid[body]:
-                places[f"{self._name('body', body)}_mass"] = (model.body_mass, body, "kg")
+                places[f"{self._name('body', body)}_mass"] = _Place(model.body_mass, body, "kg", ("body", body))
         for number, one in enumerate(self.coordinates):
             slides = int(one.unit == "m")
             dof = model.jnt_dofadr[number]
@@ -214,20 +235,20 @@ class MujocoModel:
                 ("damping", model.dof_damping, dof),
                 ("frictionloss", model.dof_frictionloss, dof),
             ):
-                places[f"{one.name}_{word}"] = (array, index, JOINT_UNITS[word][slides])
+                places[f"{one.name}_{word}"] = _Place(array, index, JOINT_UNITS[word][slides], ("joint", number))
         for number, one in enumerate(self.controls):
             if model.actuator_gaintype[number] == int(self._mujoco.mjtGain.mjGAIN_MUSCLE):
                 if model.actuator_gainprm[number, 2] > 0:
-                    places[f"{one.name}_force"] = (model.actuator_gainprm, (number, 2), "N")
+                    places[f"{one.name}_force"] = _Place(model.actuator_gainprm, (number, 2), "N", ("actuator", number))
             else:
-                places[f"{one.name}_gear"] = (model.actuator_gear, (number, 0), "1")
+                places[f"{one.name}_gear"] = _Place(model.actuator_gear, (number, 0), "1", ("actuator", number))
         return places
 
     def _changed(self, values: Mapping[str, float]) -> list[tuple[Any, Any, Any]]:
         """Put other values in, and give what stood there before."""
         kept = []
         for name, value in values.items():
-            array, index, _ = self._places[name]
+            array, index, *_ = self._places[name]
             before = np.array(array[index], float)
             size = float(np.linalg.norm(before))
             if size == value:
