@@ -21,6 +21,7 @@ from gaitdisc.simulation.writing import write_simulation
 
 REPLACED = "replaced_"  # begins the definition that a control is replaced by
 MOST = 60  # coordinates and controls: with a port and some numbers each, what a search can tell apart
+SPUN = 8 * np.pi  # [rad], four turns: what turns freely may go round a few times
 SAME = 1e-5  # by which a number of the mapping may differ from the model's, as a share: numbers in files are rounded
 
 
@@ -134,7 +135,7 @@ def refuse_other_units(mapping: Simulation, engine: Engine, largest: dict[str, f
     largest: largest size of each coordinate in the record [rad, m]
     """
     for one in engine.coordinates:
-        limit = 2 * np.pi if not np.isfinite(one.high) else 1.5 * max(abs(one.low), abs(one.high))
+        limit = SPUN if not np.isfinite(one.high) else 1.5 * max(abs(one.low), abs(one.high))
         if one.unit == "rad" and largest[one.name] > limit:
             columns = [name for name, text in mapping.observations if one.name in text] or [one.name]
             raise SchemaError(
