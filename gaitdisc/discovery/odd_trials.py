@@ -1,8 +1,8 @@
 """Odd trials: one whose sign is turned, or that is shifted in time, against its inputs and its other channels.
 
 The simulation as read is run from each trial, its start free every period. However wrong it is, a record with its sign
-turned or its time shifted goes with it worse still. A trial that goes with it much better so, while the others go
-worse, was recorded otherwise than they were.
+turned or its time shifted goes with it worse still. A trial that goes with it much better so (shifted, about as well as
+the others do), while the others go worse, was recorded otherwise than they were.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ SIGN = "the sign of "
 FEWEST_OTHERS = 2
 BETTER = 2.0  # times smaller the error of a trial has to be once it is changed
 WORSE = 1.3  # times greater the error of the others (median) has to be if they are changed alike
+LIKE_OTHERS = 1.8  # times the error of the others (median) that a trial has at most once shifted: many shifts are tried
 PROMISING = 0.5  # of the mean square, to first order, that a shift has to leave at most for it to be tried
 SHIFTS_TRIED = 3  # of each trial
 SMALLEST_SHIFT = 2  # samples
@@ -97,7 +98,8 @@ def odd_trials(inquiry: Inquiry) -> tuple[Odd, ...]:
         for trial in range(count):
             then, now = (float(np.median(np.delete(each, trial))) for each in (before, after))
             errors = (float(before[trial]), float(after[trial]), then, now)
-            if BETTER * errors[1] < errors[0] and errors[3] > WORSE * errors[2]:
+            likely = change.words.startswith(SIGN) or errors[1] < LIKE_OTHERS * errors[2]
+            if BETTER * errors[1] < errors[0] and errors[3] > WORSE * errors[2] and likely:
                 found.setdefault(trial, []).append(Odd(trial, change.words, change.channel, errors))
     clear = count - len(found) >= max(FEWEST_OTHERS, len(found) + 1)
     return tuple(_either(found[trial]) for trial in sorted(found)) if clear else ()

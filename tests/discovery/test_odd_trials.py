@@ -11,6 +11,9 @@ from gaitdisc.discovery.inquiry import begin_inquiry
 from gaitdisc.discovery.odd_trials import agreeing_trials, odd_trials, shifted
 from gaitdisc.report.discovery_page import write_discovery_report
 from gaitdisc.results.discovery_folder import save_discovery
+from gaitdisc.simulation.drive import Drive, Rows
+from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.running import compile_simulation
 
 
 @pytest.fixture(scope="module")
@@ -72,6 +75,19 @@ CLEAN = {
 def test_trials_that_were_recorded_alike_draw_no_finding(case, seed):
     given, truth, how = CLEAN[case]
     assert found_in(given, record(truth, seed, how)) == []
+
+
+def test_an_effect_that_shows_in_one_trial_alone_is_no_shift_of_it():
+    """A mass that creeps through a thick fluid, as a model of another laboratory has it, meets a spring in one trial."""
+    thick, rng, time = {"m": 0.3, "k": 0.0, "c": 1.0}, np.random.default_rng(5), np.arange(200) / 50
+    waves = [[(rng.uniform(0.015, 0.05), rng.uniform(0, 6), f) for f in rng.uniform(0.3, 2, 3)] for _ in range(4)]
+    pushes = [sum(a * np.sin(2 * np.pi * f * time + b) for a, b, f in each)[:, None] for each in waves]
+    drive = Drive.of(pushes, 50.0, np.zeros(4))
+    rows = Rows(np.arange(4), np.zeros(4, int), np.column_stack([rng.uniform(-0.3, 0.3, 4), np.zeros(4)]))
+    truth = compile_simulation(with_load("-max(0, x - 0.1)").with_values(thick))
+    x = truth.run(drive, rows, 199)[0][..., :1] + 0.001 * rng.normal(size=(4, 200, 1))
+    assert (x.max(axis=(1, 2)) > 0.1).sum() < 3
+    assert found_in(mass().with_values(thick), Measured(drive, x, ("1", "2", "3", "4"), ("x",))) == []
 
 
 def test_it_is_left_out_and_said_in_the_answer_and_the_report(cubic, tmp_path):
