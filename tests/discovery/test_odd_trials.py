@@ -78,7 +78,7 @@ def test_trials_that_were_recorded_alike_draw_no_finding(case, seed):
 
 
 def test_an_effect_that_shows_in_one_trial_alone_is_no_shift_of_it():
-    """A mass that creeps through a thick fluid, as a model of another laboratory has it, meets a spring in one trial."""
+    """A mass that creeps through a thick fluid meets a spring in one trial."""
     thick, rng, time = {"m": 0.3, "k": 0.0, "c": 1.0}, np.random.default_rng(5), np.arange(200) / 50
     waves = [[(rng.uniform(0.015, 0.05), rng.uniform(0, 6), f) for f in rng.uniform(0.3, 2, 3)] for _ in range(4)]
     pushes = [sum(a * np.sin(2 * np.pi * f * time + b) for a, b, f in each)[:, None] for each in waves]
