@@ -170,7 +170,7 @@ def recorded(case: Case, noise_deg: float, rng: np.random.Generator, folder: Pat
         u = np.column_stack([case.model.offset + _sines(rng, t, size) for size in case.model.sizes])
         u = np.maximum(u, 0.0) if case.model.offset else u
         start = rng.uniform(-0.2, 0.2, (1, count))
-        begun = Motion(start, np.zeros_like(start), engine.acting(u, RATE_HZ, np.repeat(start, len(t), axis=0))[:1])
+        begun = Motion(start, np.zeros_like(start), u[:1])
         angles = np.rad2deg(engine.run(begun, u[None], RATE_HZ)[0, :, :count])
         seen = sosfiltfilt(low_pass, angles + noise_deg / passed * rng.normal(size=angles.shape), axis=0)
         if case.kind == "offset":

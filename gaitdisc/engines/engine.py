@@ -51,6 +51,13 @@ class Motion:
     v: NDArray[np.float64]  # (point, coordinate), coordinates and speeds [rad, m; 1/s]
     # (point, control), what acts through each control: its activation where it has one, else the control
     u: NDArray[np.float64]
+    z: NDArray[np.float64] | None = (
+        None  # (point, fibre) [m], lengths of the muscles' fibres; in equilibrium where absent
+    )
+
+    def at(self, points: NDArray[np.intp]) -> Motion:
+        """Return some of its points."""
+        return Motion(self.q[points], self.v[points], self.u[points], None if self.z is None else self.z[points])
 
 
 @dataclass(frozen=True)
@@ -82,8 +89,18 @@ class Engine(Protocol):
         """Coordinate on which a parameter's unit is a force, and that force over its names; None where it is more."""
         ...
 
-    def acting(self, controls: NDArray[np.float64], rate: float, q: NDArray[np.float64]) -> NDArray[np.float64]:
-        """What acts through each control along a trial (sample, control): activations computed from excitations."""
+    def rates(self, at: Motion, values: Mapping[str, float]) -> NDArray[np.float64]:
+        """Accelerations, then the speeds of the fibres (point, coordinate + fibre)."""
+        ...
+
+    def along(
+        self, q: NDArray[np.float64], v: NDArray[np.float64], controls: NDArray[np.float64], rate: float
+    ) -> Motion:
+        """Return a prescribed motion (sample, coordinate) with the muscle states that the engine computes along it."""
+        ...
+
+    def near(self, known: Motion, q: NDArray[np.float64], v: NDArray[np.float64]) -> Motion:
+        """Return other coordinates and speeds near a known motion, with the fibres that go with them."""
         ...
 
     def run(self, start: Motion, controls: NDArray[np.float64], rate: float) -> NDArray[np.float64]:

@@ -13,6 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import median_filter
 
 from gaitdisc.engines.engine import Engine, Motion
 from gaitdisc.engines.mapping import REPLACED
@@ -23,6 +24,8 @@ from gaitdisc.simulation.simulation import Simulation
 
 NUDGE = 1e-4  # of a state's or a parameter's size
 LONGEST = 64  # characters of a name
+SLOWEST, FASTEST = 10.0, 300.0  # [1/s] at which a fibre settles at least, and a speed at most
+JUMP = 7  # samples
 STILL = 1e-9  # of a column's size, below which it is one number
 
 
@@ -45,11 +48,12 @@ def expanded(
     motions = []
     for trial, samples in enumerate(drive.samples):
         along = states[trial, :samples]
-        u = engine.acting(drive.inputs[trial, :samples], drive.rate, along[:, :count])
-        motions.append(Motion(along[:, :count], along[:, count:], u))
-    at = Motion(*(np.concatenate([getattr(one, name) for one in motions]) for name in ("q", "v", "u")))
+        motions.append(engine.along(along[:, :count], along[:, count:], drive.inputs[trial, :samples], drive.rate))
+    parts = ("q", "v", "u") if motions[0].z is None else ("q", "v", "u", "z")
+    at = Motion(*(np.concatenate([getattr(one, name) for one in motions]) for name in parts))
     columns = _Columns(engine)
-    _expand(columns, simulation, at, own)
+    paths = [np.gradient(one.v, 1 / drive.rate, axis=0) for one in motions]
+    _expand(columns, simulation, at, np.concatenate(paths), own)
     computed = columns.values
     inputs = (*simulation.inputs, *(Input(name, "", "computed along the record", True) for name in computed))
     ends = np.cumsum(drive.samples)[:-1]
@@ -71,6 +75,7 @@ class _Columns:
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
         self.values: dict[str, NDArray[np.float64]] = {}
+        self.slowed: NDArray[np.float64] | None = None  # (point, coordinate, coordinate)
         self._terms: dict[str, list[str]] = {one.speed: [] for one in engine.coordinates}
 
     @property
@@ -84,6 +89,8 @@ class _Columns:
 
         name: what follows the speed's name in that of the column
         """
+        if self.slowed is not None:
+            column = np.einsum("pij,pj->pi", self.slowed, column)
         size = max(float(np.abs(column).max()), 1e-12)
         for number, one in enumerate(self.engine.coordinates):
             own, word = column[:, number], f"{one.speed}_{name}"
@@ -98,13 +105,23 @@ class _Columns:
             self._terms[one.speed].append(f"{word}*{factor}" if factor else word)
 
 
-def _expand(columns: _Columns, simulation: Simulation, at: Motion, values: Mapping[str, float]) -> None:
+def _expand(
+    columns: _Columns,
+    simulation: Simulation,
+    at: Motion,
+    accelerations: NDArray[np.float64],
+    values: Mapping[str, float],
+) -> None:
     """Accelerations to first order in states and controls; forces, and parameters that act as such, exactly."""
     engine = columns.engine
     base = engine.accelerations(at, values)
     rest = base.copy()
-    for name, along, ahead, behind, size in _nudged(engine, at, "qvu"):
-        slope = (engine.accelerations(ahead, values) - engine.accelerations(behind, values)) / (2 * size)
+    slopes, moves = _slopes(engine, at, values)
+    if at.z is not None:
+        damping = -np.stack([slopes[one.speed][0] for one in engine.coordinates], axis=2)
+        columns.slowed, heavier = _slowed(damping)
+        rest += np.einsum("pij,pj->pi", heavier, accelerations)
+    for name, (slope, along) in slopes.items():
         columns.add(f"by_{name}", slope, name)
         rest -= slope * along[:, None]
     columns.add("rate", rest)
@@ -122,21 +139,84 @@ def _expand(columns: _Columns, simulation: Simulation, at: Motion, values: Mappi
             columns.add(f"by_{one.port}", changed, acting[0] if len(acting) == 1 else f"({' + '.join(acting)})")
     for name in simulation.values():
         if engine.as_force(name) is None:
-            _expand_parameter(columns, name, at, values)
+            _expand_parameter(columns, name, at, values, moves)
 
 
-def _expand_parameter(columns: _Columns, name: str, at: Motion, values: Mapping[str, float]) -> None:
+def _slopes(
+    engine: Engine, at: Motion, values: Mapping[str, float]
+) -> tuple[dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]], dict[str, NDArray[np.float64]]]:
+    """Slopes of the accelerations by each coordinate, speed and control, with these; and how far each moves a fibre."""
+    count, found = len(engine.coordinates), {}
+    for name, along, ahead, behind, size in _nudged(engine, at, "qvuz"):
+        slope = (engine.rates(ahead, values) - engine.rates(behind, values)) / (2 * size)
+        found[name] = _without_jumps(at, slope), along
+    fibres = [found.pop(name)[0] for name in _fibres(at)]
+    moves = _following(engine, {name: slope[:, count:] for name, (slope, _) in found.items()}, fibres)
+    for name, (slope, along) in found.items():
+        by_fibres = sum(fibre[:, :count] * moves[name][:, [k]] for k, fibre in enumerate(fibres))
+        found[name] = slope[:, :count] + by_fibres, along
+    return found, moves
+
+
+def _fibres(at: Motion) -> list[str]:
+    """Names of the states of fibres."""
+    return [] if at.z is None else [f"fibre_{number}" for number in range(at.z.shape[1])]
+
+
+def _following(
+    engine: Engine, speeds: Mapping[str, NDArray[np.float64]], fibres: list[NDArray[np.float64]]
+) -> dict[str, NDArray[np.float64]]:
+    """How far each fibre (point, fibre) moves with a coordinate, speed or control to which it has settled.
+
+    A fibre settles within milliseconds: its length is that at which its speed is the one with which that length moves.
+    """
+    count, found = len(engine.coordinates), {}
+    back = [np.minimum(fibre[:, count + number], -SLOWEST) for number, fibre in enumerate(fibres)]
+    settling = np.stack(back, axis=1) if back else np.empty((1, 0))
+    for one in engine.coordinates:
+        found[one.name] = -speeds[one.name] / settling
+        found[one.speed] = (found[one.name] - speeds[one.speed]) / settling
+    return found | {one.name: -speeds[one.name] / settling for one in engine.controls}
+
+
+def _slowed(damping: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Factor of accelerations by which no speed settles faster than a run can follow, and its inverse less one.
+
+    A light body that muscles hold (a foot) would settle within a millisecond; it is made as heavy as it may be without
+    a change of slow motion, as it acts on the deviation from the recorded motion alone.
+    """
+    rates, ways = np.linalg.eig(damping)
+    heavy = np.maximum(np.real(rates) / FASTEST, 1.0)
+    inverse = np.linalg.inv(ways)
+    factor, more = (np.real(ways @ (each[..., None] * inverse)) for each in (1.0 / heavy, heavy - 1.0))
+    return factor, more
+
+
+def _without_jumps(at: Motion, slope: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Slopes without those of a few samples: a muscle's path jumps where it comes off a surface."""
+    return slope if at.z is None else median_filter(slope, (JUMP, 1), mode="nearest")
+
+
+def _expand_parameter(
+    columns: _Columns,
+    name: str,
+    at: Motion,
+    values: Mapping[str, float],
+    moves: Mapping[str, NDArray[np.float64]],
+) -> None:
     """What a parameter changes, to first order in it and in the coordinates."""
     size = NUDGE * max(abs(values[name]), 1e-2)
     far, near = ({**values, name: values[name] + each} for each in (size, -size))
 
     def slope(there: Motion) -> NDArray[np.float64]:
-        return (columns.engine.accelerations(there, far) - columns.engine.accelerations(there, near)) / (2 * size)
+        found = columns.engine.accelerations(there, far) - columns.engine.accelerations(there, near)
+        return _without_jumps(at, found / (2 * size))
 
     away = f"({name} - {values[name]!r})"
-    rest = slope(at)
-    for other, along, ahead, behind, step in _nudged(columns.engine, at, "q"):
-        mixed = (slope(ahead) - slope(behind)) / (2 * step)
+    here = rest = slope(at)
+    for other, along, ahead, _, step in _nudged(columns.engine, at, "q"):
+        there = ahead if at.z is None else replace(ahead, z=at.z + step * moves[other])
+        mixed = (slope(there) - here) / step
         columns.add(f"by_{name}_and_{other}", mixed, f"{other}*{away}")
         rest = rest - mixed * along[:, None]
     columns.add(f"by_{name}", rest, away)
@@ -145,11 +225,12 @@ def _expand_parameter(columns: _Columns, name: str, at: Motion, values: Mapping[
 def _nudged(
     engine: Engine, at: Motion, fields: str
 ) -> Iterator[tuple[str, NDArray[np.float64], Motion, Motion, float]]:
-    """Yield each coordinate, speed and control with the motion a little to either side."""
+    """Yield each coordinate, speed, control and fibre with the motion a little to either side."""
     names = {
         "q": [one.name for one in engine.coordinates],
         "v": [one.speed for one in engine.coordinates],
         "u": [one.name for one in engine.controls],
+        "z": _fibres(at),
     }
     for field in fields:
         whole = getattr(at, field)

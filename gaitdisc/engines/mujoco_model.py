@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -101,17 +102,19 @@ class MujocoModel:
         }
         return number, forms[word]
 
-    def acting(self, controls: NDArray[np.float64], rate: float, q: NDArray[np.float64]) -> NDArray[np.float64]:
-        """What acts through each control along a trial (sample, control).
+    rates = accelerations  # no fibre has a state of its own
+
+    def along(
+        self, q: NDArray[np.float64], v: NDArray[np.float64], controls: NDArray[np.float64], rate: float
+    ) -> Motion:
+        """Return a prescribed motion with what acts through each control.
 
         The activation of an actuator that has one is integrated by MuJoCo from its control; it begins in equilibrium
         with the first one.
-
-        q (sample, coordinate): the measured motion, which is prescribed
         """
         found = np.array(controls, float)
         if not self._stateful.any():
-            return found
+            return Motion(q, v, found)
         model, data, steps = self._model, self._data, self._steps(rate)
         h, acts = 1.0 / (rate * steps), model.actuator_actadr[self._stateful]
         data.qvel[:] = 0.0
@@ -124,7 +127,11 @@ class MujocoModel:
                 data.ctrl[:] = controls[sample] + (after - controls[sample]) * step / steps
                 self._mujoco.mj_forward(model, data)
                 data.act[:] += h * data.act_dot
-        return found
+        return Motion(q, v, found)
+
+    def near(self, known: Motion, q: NDArray[np.float64], v: NDArray[np.float64]) -> Motion:
+        """Return other coordinates and speeds near a known motion."""
+        return replace(known, q=q, v=v)
 
     def run(self, start: Motion, controls: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
         """Coordinates, then speeds (run, sample, state), by MuJoCo's own integrator.

@@ -5,10 +5,10 @@ from __future__ import annotations
 import atexit
 import os
 import pickle
-import re
 import subprocess
 import sys
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.engines.engine import ByHand, Coordinate, Motion, refuse_absent
 from gaitdisc.engines.opensim_text import with_effect, with_value
+from gaitdisc.engines.part_names import part_name
 from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.simulation.parts import Input, Parameter
 
@@ -24,7 +25,7 @@ WORKER = Path(__file__).with_name("opensim_worker.py")
 
 
 class OpensimModel:
-    """A model of OpenSim whose coordinates are driven by actuators without muscles' states."""
+    """A model of OpenSim, with muscles or without."""
 
     called = "OpenSim"
 
@@ -33,38 +34,63 @@ class OpensimModel:
         self._process: subprocess.Popen[bytes] | None = None
         told = self._ask("described")
         self._refuse_what_has_no_place(told)
-        self.coordinates = tuple(
-            Coordinate(_name(name), "rad" if turns else "m", name, low, high)
+        taken: set[str] = set()
+        found = [
+            Coordinate(_free(name, "coordinate", taken), "rad" if turns else "m", name, low, high)
             for name, turns, low, high in told["coordinates"]
+        ]
+        self.coordinates = tuple(found)
+        self._called = {_free(name, "number", taken): name for name, *_ in told["parameters"]}
+        taken |= {each for one in found for each in (one.speed, one.port)}
+        self.controls = tuple(Input(_free(name, "control", taken), "1", kind) for name, kind in told["controls"])
+        self.parameters = tuple(
+            Parameter(name, value, unit)
+            for name, (_, value, unit, _) in zip(self._called, told["parameters"], strict=True)
         )
-        self.controls = tuple(Input(_name(name), "1", kind) for name, kind in told["controls"])
-        self.parameters = tuple(Parameter(_name(name), value, unit) for name, value, unit in told["parameters"])
-        self._called = {_name(name): name for name, _, _ in told["parameters"]}
+        self._muscles: bool = told["muscles"]
+        moving = {name for name, value, _, moves in told["parameters"] if value and moves}
         self.offered = tuple(
-            one.name for one in self.parameters if one.value and not one.name.endswith("optimal_force")
+            name for name, called in self._called.items() if called in moving and not called.endswith("optimal_force")
         )
 
     def accelerations(
         self, at: Motion, values: Mapping[str, float], forces: NDArray[np.float64] | None = None
     ) -> NDArray[np.float64]:
         """Accelerations (point, coordinate), with other values of some parameters."""
+        return self._rates(at, values, forces)[:, : len(self.coordinates)]
+
+    def rates(self, at: Motion, values: Mapping[str, float]) -> NDArray[np.float64]:
+        """Accelerations, then the speeds of the fibres (point, coordinate + fibre)."""
+        return self._rates(at, values, None)
+
+    def _rates(
+        self, at: Motion, values: Mapping[str, float], forces: NDArray[np.float64] | None
+    ) -> NDArray[np.float64]:
         own = {one.name: one.value for one in self.parameters}
         changed = {self._called[name]: value for name, value in values.items() if value != own[name]}
         push = np.zeros_like(at.q) if forces is None else forces
-        return self._ask("accelerations", at.q, at.v, at.u, changed, push)
+        return self._ask("rates", at.q, at.v, at.u, at.z, changed, push)
 
     def as_force(self, parameter: str) -> tuple[int, str] | None:
         """None: masses, gravity and optimal forces are more."""
         del parameter
 
-    def acting(self, controls: NDArray[np.float64], rate: float, q: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The controls themselves: these actuators have no state."""
-        del rate, q
-        return np.array(controls, float)
+    def along(
+        self, q: NDArray[np.float64], v: NDArray[np.float64], controls: NDArray[np.float64], rate: float
+    ) -> Motion:
+        """Return a prescribed motion with the muscles' states, which OpenSim alone integrates from the excitations."""
+        return Motion(q, v, *self._ask("along", q, v, controls, rate)) if self._muscles else Motion(q, v, controls)
+
+    def near(self, known: Motion, q: NDArray[np.float64], v: NDArray[np.float64]) -> Motion:
+        """Return other coordinates and speeds near a known motion; fibres move as their lengths at rest do."""
+        if known.z is None:
+            return replace(known, q=q, v=v)
+        before, after = (self._ask("equilibria", each, known.u) for each in (known.q, q))
+        return Motion(q, v, known.u, known.z + after - before)
 
     def run(self, start: Motion, controls: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
         """Coordinates, then speeds (run, sample, state), by OpenSim's Manager (adaptive steps)."""
-        return self._ask("run", start.q, start.v, controls, rate)
+        return self._ask("run", start.q, start.v, start.u, start.z, controls, rate)
 
     def text_with_value(self, text: str, name: str, value: float) -> str | None:
         """Text of the model with another value of a parameter."""
@@ -116,17 +142,17 @@ class OpensimModel:
         return answer
 
     def _refuse_what_has_no_place(self, told: Mapping[str, Any]) -> None:
-        if told["muscles"]:
+        if told["others"]:
             raise SchemaError(
-                "each actuator acts on a coordinate without a state of its own",
-                f"{self.path.name}: {told['muscles'][0]!r} and {len(told['muscles']) - 1} more have states (muscles)",
-                "Drive the model by coordinate actuators: joint moments in the place of muscles.",
+                "each actuator is a muscle, or acts on a coordinate without a state of its own",
+                f"{self.path.name}: {told['others'][0]!r} has states and is no muscle",
+                "Drive the model by muscles or by coordinate actuators.",
             )
         if told["dependent"]:
             raise SchemaError(
                 "every unlocked coordinate of the model is free",
-                f"{self.path.name}: {told['dependent'][0]!r} depends on another by a constraint",
-                "Take the constraint out, or lock the coordinate.",
+                f"{self.path.name}: {told['dependent'][0]!r} depends on another by a constraint that is no coupler",
+                "Write it as a CoordinateCouplerConstraint, take it out, or lock the coordinate.",
             )
         if not told["coordinates"]:
             raise SchemaError(
@@ -136,6 +162,8 @@ class OpensimModel:
             )
 
 
-def _name(called: str) -> str:
-    """Name of a part as it may stand in an expression."""
-    return re.sub(r"\W", "_", called)
+def _free(called: str, kind: str, taken: set[str]) -> str:
+    """Name of a part, which is taken from then on."""
+    name = part_name(called, kind, taken)
+    taken.add(name)
+    return name

@@ -52,7 +52,9 @@ def with_value(text: str, name: str, value: float) -> str | None:
     kind, part, word = ("Body", name.removesuffix("_mass"), "mass")
     if name.endswith("_optimal_force"):
         kind, part, word = "CoordinateActuator", name.removesuffix("_optimal_force"), "optimal_force"
-    found = re.search(rf"<{kind} name={re.escape(quoteattr(part))}>.*?</{kind}>", text, re.DOTALL)
+    if name.endswith("_max_isometric_force"):  # of a muscle of any kind
+        kind, part, word = r"\w*Muscle", name.removesuffix("_max_isometric_force"), "max_isometric_force"
+    found = re.search(rf"<({kind}) name={re.escape(quoteattr(part))}>.*?</\1>", text, re.DOTALL)
     own = re.search(rf"(<{word}>)([^<]*)(</{word}>)", found[0]) if found else None
     if found is None or own is None:
         return None

@@ -12,13 +12,18 @@ import numpy as np
 PORT = "force_by_hand_on_"
 ROTATIONAL = 1
 KEPT = 12  # models with other values that are kept ready
-ACCURACY = 1e-7
+ACCURACY = {False: 1e-7, True: 1e-5}  # of runs, without and with muscles: fibres take short steps
+ACCURACY_ALONG = 1e-5  # of muscles along a prescribed motion
+BEFORE, STEPS = 0.1, 10  # [s] in which a prescribed motion sets out from rest, and in how many steps
+REST = 0.01  # activation of a muscle at rest, below which those of OpenSim do not go
 
 
 class _Ready:
     """A model with its state: an actuator of unit force stands on every free coordinate."""
 
-    def __init__(self, osim: Any, path: str, values: dict[str, float], profiles: Any = None) -> None:
+    def __init__(
+        self, osim: Any, path: str, values: dict[str, float], profiles: Any = None, motion: Any = None
+    ) -> None:
         self.osim, self.model = osim, osim.Model(path)
         controllers = self.model.getControllerSet()
         for k in range(controllers.getSize()):
@@ -29,7 +34,8 @@ class _Ready:
         every = self.model.getCoordinateSet()
         names = [every.get(k).getName() for k in range(every.getSize())]
         self.locked = [name for name in names if every.get(name).getDefaultLocked()]
-        free = [name for name in names if name not in self.locked]
+        self.couplers = _couplers(self.model, osim)
+        free = [name for name in names if name not in self.locked and name not in self.couplers]
         for name in free:
             force = osim.CoordinateActuator(name)
             force.setName(PORT + name)
@@ -37,13 +43,13 @@ class _Ready:
             self.model.addForce(force)
         if profiles is not None:
             self._driven(*profiles)
+        if motion is not None:
+            self._prescribed(free, *motion)
         self.state = state = self.model.initSystem()
         every = self.model.getCoordinateSet()
         self.free = [every.get(name) for name in free]
         self.dependent = [one.getName() for one in self.free if one.isDependent(state)]
-        self.muscles = [
-            one.getName() for one in self.model.getActuators() if one.getNumStateVariables() > 0 and _named(self, one)
-        ]
+        self.activations, self.fibres, self.others = self._states_of_muscles()
 
     def _driven(self, time: Any, controls: Any) -> None:
         """Controls along time, linear between samples."""
@@ -57,24 +63,98 @@ class _Ready:
             controller.prescribeControlForActuator(name, line)
         self.model.addController(controller)
 
+    def _prescribed(self, free: list[str], time: Any, q: Any) -> None:
+        """Coordinates along time, smooth between samples."""
+        for number, name in enumerate(free):
+            line = self.osim.SimmSpline()
+            for t, value in zip(time, q[:, number], strict=True):
+                line.addPoint(float(t), float(value))
+            coordinate = self.model.getCoordinateSet().get(name)
+            coordinate.setPrescribedFunction(line)
+            coordinate.setDefaultIsPrescribed(True)
+
+    def _states_of_muscles(self) -> tuple[dict[int, int], list[int], list[str]]:
+        """Place of each actuator's activation, and of the muscles' other states; actuators with yet other states."""
+        activations, fibres, others = {}, [], []
+        for number, name in enumerate(self.actuators):
+            one = self.model.getActuators().get(name)
+            paths = [one.getStateVariableNames().get(k) for k in range(one.getNumStateVariables())]
+            if paths and self.osim.Muscle.safeDownCast(one) is None:
+                others.append(name)
+                continue
+            for path in paths:
+                before = self.model.getStateVariableValue(self.state, path)
+                self.model.setStateVariableValue(self.state, path, 0.0123)
+                place = int(np.argmin(np.abs(self.state.getZ().to_numpy() - 0.0123)))
+                self.model.setStateVariableValue(self.state, path, before)
+                if path.endswith("/activation"):
+                    activations[number] = place
+                else:
+                    fibres.append(place)
+        return activations, fibres, others
+
     def placed(self, q: Any, v: Any) -> None:
         for one, position, speed in zip(self.free, q, v, strict=True):
             one.setValue(self.state, float(position), False)
             one.setSpeedValue(self.state, float(speed))
+        every = self.model.getCoordinateSet()
+        for name, (others, function, scale) in self.couplers.items():
+            leading = [every.get(other) for other in others]
+            where = self.osim.Vector(len(others), 0.0)
+            for k, one in enumerate(leading):
+                where.set(k, one.getValue(self.state))
+            speeds = [one.getSpeedValue(self.state) for one in leading]
+            slopes = [_slope(function, where, k) for k in range(len(others))]
+            every.get(name).setValue(self.state, scale * function.calcValue(where), False)
+            every.get(name).setSpeedValue(self.state, scale * float(np.dot(slopes, speeds)))
 
-    def acceleration(self, controls: Any) -> list[float]:
-        """Accelerations under the controls of the model's own actuators, then forces on the coordinates."""
+    def tensed(self, u: Any, z: Any = None) -> None:
+        """Put activations in, and lengths of fibres: without them those of the equilibrium."""
+        states = self.state.updZ()
+        for number, place in self.activations.items():
+            states.set(place, max(float(u[number]), REST))
+        if z is None and self.fibres:
+            self.model.equilibrateMuscles(self.state)
+        for place, length in zip(self.fibres, [] if z is None else z, strict=z is not None):
+            states.set(place, float(length))
+
+    def rates(self, controls: Any) -> list[float]:
+        """Accelerations and fibres' speeds under the controls of the model's own actuators, then of the ports."""
         given = self.osim.Vector(len(controls), 0.0)
         for k, value in enumerate(controls):
             given.set(k, float(value))
         self.model.realizeVelocity(self.state)
         self.model.setControls(self.state, given)
         self.model.realizeAcceleration(self.state)
-        return [one.getAccelerationValue(self.state) for one in self.free]
+        found = [one.getAccelerationValue(self.state) for one in self.free]
+        return [*found, *self.state.getZDot().to_numpy()[self.fibres]] if self.fibres else found
 
 
-def _named(ready: _Ready, actuator: Any) -> bool:
-    return actuator.getName() in ready.actuators
+def _couplers(model: Any, osim: Any) -> dict[str, tuple[list[str], Any, float]]:
+    """Coordinates that follow others by a function: these others, the function, and its scale."""
+    found = {}
+    constraints = model.getConstraintSet()
+    for k in range(constraints.getSize()):
+        one = osim.CoordinateCouplerConstraint.safeDownCast(constraints.get(k))
+        if one is not None and one.get_isEnforced():
+            names = one.getIndependentCoordinateNames()
+            leading = [names.get(number) for number in range(names.getSize())]
+            found[one.getDependentCoordinateName()] = (
+                leading,
+                one.getFunction(),
+                float(one.getPropertyByName("scale_factor").toString()),
+            )
+    return found
+
+
+def _slope(function: Any, where: Any, number: int, step: float = 1e-5) -> float:
+    """Slope of a function of several coordinates by one of them."""
+    here, values = where.get(number), []
+    for side in (step, -step):
+        where.set(number, here + side)
+        values.append(function.calcValue(where))
+    where.set(number, here)
+    return (values[0] - values[1]) / (2 * step)
 
 
 def _set(model: Any, osim: Any, name: str, value: float) -> None:
@@ -93,9 +173,12 @@ def _set(model: Any, osim: Any, name: str, value: float) -> None:
         scaled = [float(each.get(k) * share) for each in (moments, products) for k in range(3)]
         body.setInertia(osim.Inertia(*scaled))
         return
-    osim.CoordinateActuator.safeDownCast(model.getForceSet().get(name.removesuffix("_optimal_force"))).setOptimalForce(
-        float(value)
-    )
+    if name.endswith("_max_isometric_force"):
+        part = name.removesuffix("_max_isometric_force")
+        osim.Muscle.safeDownCast(model.getForceSet().get(part)).setMaxIsometricForce(float(value))
+        return
+    part = name.removesuffix("_optimal_force")
+    osim.CoordinateActuator.safeDownCast(model.getForceSet().get(part)).setOptimalForce(float(value))
 
 
 class _Answers:
@@ -127,19 +210,64 @@ class _Answers:
             if actuator.getConcreteClassName() == "CoordinateActuator":
                 own = self.osim.CoordinateActuator.safeDownCast(actuator)
                 parameters.append((f"{name}_optimal_force", own.getOptimalForce(), "N m"))
+            muscle = self.osim.Muscle.safeDownCast(actuator)
+            if muscle is not None:
+                parameters.append((f"{name}_max_isometric_force", muscle.getMaxIsometricForce(), "N"))
         coordinates = [(each.getName(), each.getMotionType() == ROTATIONAL, *_range(each)) for each in one.free]
-        told = {"coordinates": coordinates, "controls": controls, "parameters": parameters}
-        return told | {"muscles": one.muscles, "dependent": one.dependent, "locked": one.locked}
+        told = {"coordinates": coordinates, "controls": controls, "muscles": bool(one.activations or one.fibres)}
+        told["parameters"] = [(*each, self._moves(each[0], each[1])) for each in parameters]
+        return told | {"others": one.others, "dependent": one.dependent, "locked": one.locked}
 
-    def accelerations(self, q: Any, v: Any, u: Any, values: dict[str, float], forces: Any) -> Any:
+    def _moves(self, name: str, value: float) -> bool:
+        """Whether another value changes an acceleration in one posture."""
+        found = []
+        for values in ({}, {name: 1.1 * value}):
+            one = self.with_values(values)
+            one.placed([each.getDefaultValue() + 0.1 for each in one.free], [0.5] * len(one.free))
+            controls = [0.1] * len(one.actuators)
+            one.tensed(controls)
+            found.append(one.rates([*controls, *[0.0] * len(one.free)])[: len(one.free)])
+        return not np.allclose(*found, rtol=1e-9, atol=0.0)
+
+    def rates(self, q: Any, v: Any, u: Any, z: Any, values: dict[str, float], forces: Any) -> Any:
         one = self.with_values(values)
-        found = np.empty_like(q)
+        found = np.empty((len(q), q.shape[1] + len(one.fibres)))
         for point in range(len(q)):
             one.placed(q[point], v[point])
-            found[point] = one.acceleration([*u[point], *forces[point]])
+            one.tensed(u[point], None if z is None else z[point])
+            found[point] = one.rates([*u[point], *forces[point]])
         return found
 
-    def run(self, q: Any, v: Any, controls: Any, rate: float) -> Any:
+    def equilibria(self, q: Any, u: Any) -> Any:
+        """Lengths of fibres at rest (point, fibre)."""
+        one = self.with_values({})
+        found = np.empty((len(q), len(one.fibres)))
+        for point in range(len(q)):
+            one.placed(q[point], np.zeros_like(q[point]))
+            one.tensed(u[point])
+            found[point] = one.state.getZ().to_numpy()[one.fibres]
+        return found
+
+    def along(self, q: Any, v: Any, controls: Any, rate: float) -> Any:
+        """Activations in the place of excitations, and lengths of fibres, along a motion that sets out from rest."""
+        time = np.arange(len(q)) / rate
+        early = BEFORE * np.arange(-STEPS, 0)[:, None] / STEPS
+        whole = np.concatenate([q[0] + v[0] * (early + early**2 / (2 * BEFORE)), q])
+        motion = np.concatenate([early[:, 0], time]), whole
+        one = _Ready(self.osim, self.path, {}, (time, controls), motion)
+        one.state.setTime(-BEFORE)
+        one.placed(whole[0], np.zeros_like(whole[0]))
+        one.tensed(controls[0])
+        manager = self.osim.Manager(one.model)
+        manager.setIntegratorAccuracy(ACCURACY_ALONG)
+        manager.initialize(one.state)
+        found = np.array([manager.integrate(float(t)).getZ().to_numpy().copy() for t in time])
+        u = np.array(controls, float)
+        for number, place in one.activations.items():
+            u[:, number] = found[:, place]
+        return u, found[:, one.fibres]
+
+    def run(self, q: Any, v: Any, u: Any, z: Any, controls: Any, rate: float) -> Any:
         found = np.empty((*controls.shape[:2], 2 * q.shape[1]))
         ready: dict[bytes, _Ready] = {}
         time = np.arange(controls.shape[1]) / rate
@@ -148,8 +276,9 @@ class _Answers:
             ready[driven.tobytes()] = one
             one.state.setTime(0.0)
             one.placed(q[run], v[run])
+            one.tensed(u[run], None if z is None else z[run])
             manager = self.osim.Manager(one.model)
-            manager.setIntegratorAccuracy(ACCURACY)
+            manager.setIntegratorAccuracy(ACCURACY[bool(one.activations)])
             manager.initialize(one.state)
             found[run, 0] = [*q[run], *v[run]]
             for sample in range(1, len(time)):

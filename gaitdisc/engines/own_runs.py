@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.engines.engine import Engine, Motion
+from gaitdisc.engines.engine import Engine
 from gaitdisc.results.discovery import Runs
 from gaitdisc.simulation.evaluating import Points, evaluate_many
 from gaitdisc.simulation.measured import Measured
@@ -81,25 +81,23 @@ def _left(
 ) -> NDArray[np.float64]:
     """Root mean square of what is left in each channel, starts found by Gauss-Newton."""
     n = len(engine.coordinates)
-    acting = {
-        trial: engine.acting(
-            measured.drive.inputs[trial, : measured.samples[trial]], measured.rate, states[trial, :, :n]
-        )
-        for trial in {one.trial for one in stretches}
-    }
+    recorded = {}
+    for trial in {one.trial for one in stretches}:
+        along, driven = (each[trial, : measured.samples[trial]] for each in (states, measured.drive.inputs))
+        recorded[trial] = engine.along(along[:, :n], along[:, n:], driven, measured.rate)
     size = np.nanstd(measured.observed, axis=(0, 1))
     total, count = 0.0, 0
     for one in stretches:
         controls = measured.drive.inputs[one.trial, one.first : one.end]
         seen = measured.observed[one.trial, one.first : one.end]
-        known = np.isfinite(seen)
+        there = np.isfinite(seen)
 
-        def residual(starts: NDArray[np.float64], one: _Stretch = one, controls=controls, seen=seen, known=known):
-            u = np.repeat(acting[one.trial][one.first][None], len(starts), axis=0)
+        def residual(starts: NDArray[np.float64], one: _Stretch = one, controls=controls, seen=seen, there=there):
+            known = recorded[one.trial].at(np.full(len(starts), one.first))
             driven = np.repeat(controls[None], len(starts), axis=0)
-            run = engine.run(Motion(starts[:, :n], starts[:, n:], u), driven, measured.rate)
+            run = engine.run(engine.near(known, starts[:, :n], starts[:, n:]), driven, measured.rate)
             t = measured.time(one.trial)[one.first : one.end]
-            return np.where(known, seen - np.stack([_observed(mapping, measured, t, x, controls) for x in run]), 0.0)
+            return np.where(there, seen - np.stack([_observed(mapping, measured, t, x, controls) for x in run]), 0.0)
 
         start = states[one.trial, one.first].copy()
         left = residual(start[None])[0]
@@ -116,7 +114,7 @@ def _left(
             start, left = start + move, tried
             if gain < 1e-4 * ((left / size) ** 2).sum():
                 break
-        total, count = total + (left**2).sum(axis=0), count + known.sum(axis=0)
+        total, count = total + (left**2).sum(axis=0), count + there.sum(axis=0)
     return np.sqrt(np.asarray(total) / count)
 
 

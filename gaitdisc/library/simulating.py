@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.channel import Channel, side_of
-from gaitdisc.engines.engine import Engine, Motion
+from gaitdisc.engines.engine import Engine
 from gaitdisc.engines.mapping import names_engine
 from gaitdisc.engines.written import whole_model
 from gaitdisc.errors import ShapeError, UnitError
@@ -114,8 +114,8 @@ def _run_by(
     """States (time, state) by an engine's own integrator, and observed channels (time,)."""
     count, rate = len(engine.coordinates), _rate(time)
     q, v = start[None, :count], start[None, count:]
-    acting = engine.acting(driven, rate, np.repeat(q, len(time), axis=0))[:1]
-    states = engine.run(Motion(q, v, acting), driven[None], rate)[0]
+    held = engine.along(np.repeat(q, 2, axis=0), np.zeros((2, count)), driven[:2], rate).at(np.zeros(1, np.intp))
+    states = engine.run(engine.near(held, q, v), driven[None], rate)[0]
     lost = np.flatnonzero(~np.isfinite(states).all(axis=1))
     if lost.size:
         raise SimulationError(

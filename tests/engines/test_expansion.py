@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from gaitdisc.engines.engine import Motion
-from gaitdisc.engines.expansion import expanded
+from gaitdisc.engines.expansion import FASTEST, _slowed, expanded
 from gaitdisc.engines.mapping import drafted, with_input_changed
 from gaitdisc.engines.model_file import read_model
 from gaitdisc.simulation.drive import Drive, Rows
@@ -51,3 +51,43 @@ def test_runs_near_the_record_are_those_of_the_engine(pendulum):
     around, other = expanded(drafted(model), model, measured, whole, {"rod_mass": 2.02})
     again = compile_simulation(replace(around, parameters=around.with_values({"rod_mass": 2.02}).parameters))
     assert np.allclose(again.rates(*point[:2], other.drive.inputs[:, 70])[:, 1:], wanted, rtol=1e-9)
+
+
+def test_a_run_beside_the_record_is_that_of_the_muscles_whose_fibres_follow(elbow):
+    """Started 2 degrees and 0.3 rad/s off, it comes back as OpenSim's does: stiffness and damping of the fibres."""
+    model, t = read_model(elbow), np.arange(70) / RATE
+    u = np.column_stack([0.2 + 0.15 * np.sin(9 * t), 0.2 + 0.1 * np.cos(7 * t)])
+    begun = Motion(np.array([[0.2]]), np.zeros((1, 1)), u[:1])
+    whole = model.run(begun, u[None], RATE)
+    measured = Measured(Drive.of([u], RATE), whole[:, :, :1], ("1",), ("elbow",))
+    mapping = drafted(model)
+    quick = replace(mapping, parameters=mapping.parameters[:1], equations=_rest(mapping))
+    linear, driven = expanded(quick, model, measured, whole)
+    first, count = 15, 40
+    along = model.along(whole[0, :, :1], whole[0, :, 1:], u, RATE).at(np.array([first]))
+    off = whole[0, [first]] + np.array([[0.035, 0.3]])
+    runs = [
+        model.run(model.near(along, each[:, :1], each[:, 1:]), u[None, first : first + count + 1], RATE)[0]
+        for each in (off, whole[0, [first]])
+    ]
+    machine = compile_simulation(linear)
+    found = [
+        machine.run(driven.drive, Rows(np.zeros(1, int), np.array([first]), each), count)[0][0]
+        for each in (off, whole[0, [first]])
+    ]
+    wanted, moved = runs[0][:, 0] - runs[1][:, 0], found[0][:, 0] - found[1][:, 0]
+    assert np.sqrt(np.mean((moved - wanted) ** 2)) < 0.2 * np.sqrt(np.mean(wanted**2))
+
+
+def _rest(mapping):
+    """Equations that name the first parameter alone."""
+    named = " + ".join([one.name for one in (*mapping.inputs, *mapping.parameters[:1], *mapping.ports)])
+    return tuple((one.name, named) for one in mapping.states)
+
+
+def test_what_is_too_fast_for_a_run_is_made_heavier_and_comes_to_rest_at_the_same_place():
+    damping = np.array([[[1200.0, 30.0], [10.0, 20.0]]])
+    factor, more = _slowed(damping)
+    assert np.allclose(factor @ (more + np.eye(2)), np.eye(2))
+    before, after = (np.sort(np.linalg.eigvals(each[0]).real) for each in (damping, factor @ damping))
+    assert np.isclose(after[1], FASTEST) and np.isclose(before[0], after[0])

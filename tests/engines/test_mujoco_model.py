@@ -52,7 +52,8 @@ def test_an_activation_lags_as_its_actuator_says(pendulum):
     lagging = '<general name="drive" joint="pivot" dyntype="filter" dynprm="0.05"/>'
     pendulum.write_text(PENDULUM.replace(f'<motor name="drive" joint="pivot" gear="{GEAR}"/>', lagging))
     controls = np.repeat([[0.0], [1.0]], [10, 90], axis=0)
-    acting = read_model(pendulum).acting(controls, 100.0, np.zeros((100, 1)))[:, 0]
+    rest = np.zeros((100, 1))
+    acting = read_model(pendulum).along(rest, rest, controls, 100.0).u[:, 0]
     assert acting[:9].max() == 0.0
     after = np.arange(5, 80) / 100
     assert np.allclose(acting[15:90], 1 - np.exp(-(after + 0.005) / 0.05), atol=0.01)  # the step is a ramp of 10 ms

@@ -13,6 +13,8 @@ from gaitdisc.engines.opensim_text import with_effect
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.simulation.parts import Term
 
+from .conftest import ELBOW, WHEEL
+
 FILE = Path(__file__).parents[2] / "studies" / "systems" / "double_pendulum.osim"
 AT = Motion(
     np.array([[0.3, -0.2], [0.1, 0.4]]), np.array([[1.0, -2.0], [0.5, 0.7]]), np.array([[0.1, 0.2], [0.0, -0.1]])
@@ -93,9 +95,62 @@ def test_what_opensim_cannot_read_is_refused(needs_opensim, tmp_path, change, wo
         read_model(path)
 
 
-def test_muscles_are_refused_in_words(needs_opensim):
-    arm = Path(__file__).parents[3] / "shared" / "data" / "opensim_gait10dof" / "subject01.osim"
-    if not arm.is_file():
-        pytest.skip("the recordings of shared/data are not here")
-    with pytest.raises(GaitdiscError, match=r"17 more have states \(muscles\)"):
-        read_model(arm)
+@pytest.fixture(scope="module")
+def arm(elbow):
+    return read_model(elbow)
+
+
+def test_muscles_are_controls_and_a_coordinate_that_follows_is_no_state(arm):
+    assert [one.name for one in arm.coordinates] == ["elbow"]
+    assert [one.name for one in arm.controls] == ["flexor", "extensor"]
+    assert arm.offered == (
+        "gravity", "forearm_mass", "wheel_mass", "flexor_max_isometric_force", "extensor_max_isometric_force"
+    )  # fmt: skip
+
+
+def test_what_follows_by_a_belt_turns_with_it(arm):
+    """A moment on the elbow turns its inertia about the hinge and, twice as far, the wheel."""
+    at = Motion(np.array([[0.2]]), np.array([[1.0]]), np.full((1, 2), 0.1), np.full((1, 2), 0.13))
+    push = arm.accelerations(at, {}, np.ones((1, 1))) - arm.accelerations(at, {})
+    assert push[0, 0] == pytest.approx(1 / (0.02 + 1.5 * 0.15**2 + 4 * WHEEL), rel=1e-6)
+
+
+def test_a_muscles_force_is_in_proportion_to_its_largest_and_its_fibres_do_not_know_it(arm):
+    at = Motion(np.array([[0.2]]), np.array([[1.0]]), np.full((1, 2), 0.3), np.full((1, 2), 0.115))
+    one, two, three = (arm.rates(at, {"flexor_max_isometric_force": each})[0] for each in (300.0, 600.0, 900.0))
+    assert three[0] - two[0] == pytest.approx(two[0] - one[0], rel=1e-9)
+    assert abs(two[0] - one[0]) > 1.0 and np.allclose(one[1:], three[1:], rtol=1e-9)
+
+
+def test_muscles_along_a_prescribed_motion_are_those_of_the_run_that_made_it(arm):
+    t = np.arange(60) / 100
+    u = np.column_stack([0.2 + 0.15 * np.sin(9 * t), 0.2 + 0.1 * np.cos(7 * t)])
+    run = arm.run(Motion(np.array([[0.2]]), np.zeros((1, 1)), u[:1]), u[None], 100.0)[0]
+    along = arm.along(run[:, :1], run[:, 1:], u, 100.0)
+    wanted = np.gradient(run[:, 1], t)[9:-1]  # by then the run has forgotten that it began with fibres at rest
+    assert np.abs(arm.accelerations(along, {})[9:-1, 0] - wanted).max() < 0.05 * np.abs(wanted).max()
+    assert np.abs(along.u[10:] - u[10:]).max() > 0.005  # an activation is not its excitation
+
+
+def test_fibres_near_a_known_motion_move_as_those_at_rest(arm):
+    known = Motion(np.array([[0.2]]), np.zeros((1, 1)), np.full((1, 2), 0.2), np.array([[0.130, 0.125]]))
+    near = arm.near(known, np.array([[0.25]]), np.zeros((1, 1)))
+    moved = near.z - known.z
+    assert moved[0, 0] * moved[0, 1] < 0 and np.abs(moved).min() > 3e-4 and np.abs(moved).max() < 0.03 * 0.05 * 1.5
+
+
+def test_a_weaker_muscle_in_the_file_is_the_value_by_hand(arm, tmp_path):
+    path = tmp_path / "weak.osim"
+    path.write_text(arm.text_with_value(ELBOW, "flexor_max_isometric_force", 420.0))
+    at = Motion(np.array([[0.2]]), np.array([[1.0]]), np.full((1, 2), 0.3))
+    found = read_model(path).accelerations(at, {})
+    assert np.allclose(found, arm.accelerations(at, {"flexor_max_isometric_force": 420.0}), rtol=1e-12)
+    assert abs(found - arm.accelerations(at, {})).max() > 1.0
+
+
+def test_a_coordinate_bound_otherwise_and_a_state_that_is_no_muscles_are_refused(elbow, tmp_path):
+    motor = '<ActivationCoordinateActuator name="motor"><coordinate>elbow</coordinate></ActivationCoordinateActuator>'
+    path = tmp_path / "motor.osim"
+    path.write_text(ELBOW.replace("</objects></ForceSet>", f"{motor}</objects></ForceSet>"))
+    with pytest.raises(GaitdiscError, match=r"'motor' has states and is no muscle"):
+        read_model(path)

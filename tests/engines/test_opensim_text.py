@@ -7,7 +7,7 @@ from gaitdisc.simulation.parts import Term
 
 TEXT = """<OpenSimDocument Version="40600"><Model name="arm"><gravity>0 -9.81 0</gravity>
 <BodySet><objects><Body name="shank"><mass>4.0</mass><inertia>0.1 0.01 0.1 0 0 0</inertia></Body></objects></BodySet>
-<ForceSet name="forceset"><objects><Muscle name="m"><PathPointSet><objects/></PathPointSet></Muscle>
+<ForceSet name="forceset"><objects><ThelenMuscle name="m"><PathPointSet><objects/></PathPointSet><max_isometric_force>500</max_isometric_force></ThelenMuscle>
 <CoordinateActuator name="knee_motor"><optimal_force>15</optimal_force></CoordinateActuator></objects></ForceSet>
 </Model></OpenSimDocument>"""
 NAMES = ("knee", "knee_speed")
@@ -43,4 +43,6 @@ def test_numbers_of_the_model():
     said = with_value(TEXT, "gravity", 8.0)
     vector = [float(word) for word in said.split("<gravity>")[1].split("</gravity>")[0].split()]
     assert np.allclose(vector, [0.0, -8.0, 0.0])
+    assert "<max_isometric_force>350.0</" in with_value(TEXT, "m_max_isometric_force", 350.0)
+    assert with_value(TEXT, "n_max_isometric_force", 350.0) is None
     assert with_value(TEXT, "foot_mass", 1.0) is None
