@@ -25,6 +25,7 @@ class OwnRuns:
 
     errors: Mapping[str, tuple[float, float, str]]  # for each channel: root mean square before and after, and its unit
     engine: str  # its name
+    share: float  # of the error before, over all channels by their spread, that is left after
 
     @property
     def said(self) -> str:
@@ -47,22 +48,25 @@ class _Stretch:
 
 def own_runs(
     engines: tuple[Engine, Engine],
-    mapping: Simulation,
+    mappings: tuple[Simulation, Simulation],
     measured: Measured,
     runs: Runs,
     states: NDArray[np.float64],
 ) -> OwnRuns:
     """Run two models over the held-out runs, each from the start that suits it best.
 
-    engines: the model as read, and with what was found
+    engines, mappings: the model as read, and with what was found
     runs: Held-out runs, which say where
     states (trial, sample, state): smoothed: where the search for each start begins
     """
     stretches = _stretches(measured, runs)
-    left = [_left(engine, mapping, measured, stretches, states) for engine in engines]
-    units = [mapping.sensor(name).unit for name in measured.channels]
+    both = zip(engines, mappings, strict=True)
+    left = [_left(engine, mapping, measured, stretches, states) for engine, mapping in both]
+    units = [mappings[0].sensor(name).unit for name in measured.channels]
     rows = zip(*(each.tolist() for each in left), units, strict=True)
-    return OwnRuns(dict(zip(measured.channels, rows, strict=True)), engines[0].called)
+    before, after = (np.linalg.norm(each / np.nanstd(measured.observed, axis=(0, 1))) for each in left)
+    share = float(after / before) if before else 1.0
+    return OwnRuns(dict(zip(measured.channels, rows, strict=True)), engines[0].called, share)
 
 
 def _stretches(measured: Measured, runs: Runs) -> list[_Stretch]:

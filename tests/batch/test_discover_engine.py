@@ -6,11 +6,10 @@ from importlib.util import find_spec
 import numpy as np
 import pandas as pd
 import pytest
+from manufactured_discovery import manufactured
 from typer.testing import CliRunner
 
 from gaitdisc.cli import app
-
-pytestmark = pytest.mark.skipif(find_spec("mujoco") is None, reason="MuJoCo is not installed: gaitdisc[mujoco]")
 
 PENDULUM = """<mujoco model="pendulum">
   <option timestep="0.001"/>
@@ -33,6 +32,8 @@ SPRING = (
 @pytest.fixture(scope="module")
 def lab(tmp_path_factory):
     """Return a folder with a model, the truth, and four trials of it in degrees."""
+    if find_spec("mujoco") is None:
+        pytest.skip("MuJoCo is not installed: gaitdisc[mujoco]")
     from gaitdisc.engines.engine import Motion
     from gaitdisc.engines.model_file import read_model
 
@@ -99,6 +100,39 @@ def test_what_was_found_goes_into_the_mapping(lab):
     changed = in_mapping(mapping, answer, found)
     assert changed.model == "pendulum.xml" and changed.effects == (term,) and changed.values()["rod_mass"] == 2.1
     assert changed.definitions == (("replaced_drive", "delay(drive, 0.04)"),)
+
+
+def test_what_the_engine_itself_does_not_bear_out_is_taken_back():
+    from gaitdisc.batch.discover_engine import unconfirmed
+    from gaitdisc.engines.own_runs import OwnRuns
+
+    said = manufactured()
+    found = unconfirmed(said, OwnRuns({"theta": (0.01, 0.01, "rad")}, "MuJoCo", 1.0))
+    assert (found.verdict, found.effects, found.where) == ("no_gap", (), ())
+    assert found.rivals == (*said.effects, *said.rivals)
+    assert found.held_out.after == said.held_out.before == found.held_out.before
+    words = "miss the record as much with as without the one-sided spring at the ankle_moment port"
+    assert f"Nothing is named: MuJoCo's own runs over what was held out {words}" in found.sentence
+    np.testing.assert_array_equal(found.runs.augmented, found.runs.simulated)
+
+
+@pytest.mark.slow
+def test_half_a_step_of_a_coarse_integrator_is_no_late_sensor(tmp_path):
+    pytest.importorskip("mujoco", reason="MuJoCo is not installed: gaitdisc[mujoco]")
+    from gaitdisc import discover
+    from gaitdisc.engines.engine import Motion
+    from gaitdisc.engines.model_file import read_model
+
+    (tmp_path / "coarse.xml").write_text(PENDULUM.replace('timestep="0.001"', 'timestep="0.02"'))
+    model, rng, t = read_model(tmp_path / "coarse.xml"), np.random.default_rng(5), np.arange(300) / 50
+    tables = []
+    for trial in range(1, 5):
+        drive = sum(0.3 * np.sin(2 * np.pi * f * t + rng.uniform(0, 6)) for f in rng.uniform(0.4, 2.0, 3))
+        start = Motion(rng.uniform(-0.3, 0.3, (1, 1)), np.zeros((1, 1)), np.zeros((1, 1)))
+        pivot = model.run(start, drive[None, :, None], 50.0)[0, :, 0] + 0.001 * rng.normal(size=len(t))
+        tables.append(pd.DataFrame({"trial": trial, "time": t, "drive": drive, "pivot": pivot}))
+    found, _ = discover(tmp_path / "coarse.xml", pd.concat(tables))
+    assert found.verdict == "no_gap" and "MuJoCo's own runs" in found.sentence
 
 
 @pytest.mark.slow
