@@ -14,7 +14,7 @@ from gaitdisc.channel import nearest_word, side_of
 from gaitdisc.errors import ChannelError
 from gaitdisc.library.walks import recording_of
 from gaitdisc.recording import Recording, Strides
-from gaitdisc.report.own_axes import axes_or_new
+from gaitdisc.report.panels import axes_or_new
 
 if TYPE_CHECKING:
     import pandas as pd

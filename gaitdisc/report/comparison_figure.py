@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from gaitdisc.report.box import draw_box
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import MODELS
-from gaitdisc.report.panels import Room, in_style, legend, panels, sheets
+from gaitdisc.report.panels import Room, draw_box, in_style, legend, panels, sheets
 from gaitdisc.report.r2_figure import LOWEST, r2_numbers
 from gaitdisc.report.r2_summary import held_out_text, variables
 from gaitdisc.report.wording import MODEL_WORDS, counted, label, number

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from gaitdisc.report.block import Block, SavedBlock, save_block
 from gaitdisc.report.cycles_figure import cycles_figures
 from gaitdisc.report.cycles_tables import (
     all_cycles,
@@ -17,11 +16,9 @@ from gaitdisc.report.cycles_tables import (
     spatiotemporal_table,
 )
 from gaitdisc.report.figure import LARGEST_INLINE_SVG, file_names, save_figures
-from gaitdisc.report.page import write_page
-from gaitdisc.report.provenance_tables import provenance_tables
+from gaitdisc.report.page import Block, SavedBlock, drawn_side_by_side, save_block, write_page
 from gaitdisc.report.run_tables import findings_table, refusals_table
-from gaitdisc.report.side_by_side import drawn_side_by_side
-from gaitdisc.report.table import save_table, save_tables
+from gaitdisc.report.table import provenance_tables, save_table, save_tables
 from gaitdisc.report.wording import SIDE_WORDS, counted, listed
 from gaitdisc.results import PooledCycles, ResponseRun
 

@@ -17,8 +17,7 @@ from gaitdisc.report.discovery_tables import (
 )
 from gaitdisc.report.figure import save_figures
 from gaitdisc.report.page import write_page
-from gaitdisc.report.provenance_tables import provenance_tables
-from gaitdisc.report.table import save_tables
+from gaitdisc.report.table import provenance_tables, save_tables
 from gaitdisc.results.discovery import Discovery
 
 VERDICTS = {

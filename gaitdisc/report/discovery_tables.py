@@ -8,8 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from gaitdisc.report.seen_tables import seen_table
-from gaitdisc.report.table import Table
+from gaitdisc.report.table import Table, seen_table
 from gaitdisc.report.wording import NONE, counted, p_cell
 from gaitdisc.results.amounts import amount, estimate_text, shown_unit, with_unit
 from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect

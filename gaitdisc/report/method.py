@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from gaitdisc.report.provenance_tables import flattened
 from gaitdisc.report.r2_summary import held_out_text
+from gaitdisc.report.table import flattened
 from gaitdisc.results import ResponseRun
 
 _FILTER_WORDS = ("filter", "cutoff", "low_pass", "high_pass", "lowpass", "highpass", "order", "envelope", "band")

@@ -11,10 +11,9 @@ import pandas as pd
 from gaitdisc.channel import side_of
 from gaitdisc.report.curves_figure import sides_together
 from gaitdisc.report.figure import Figure
-from gaitdisc.report.gap_wording import spoken
 from gaitdisc.report.palette import SIDES, WITHOUT_DEVICE
 from gaitdisc.report.panels import Room, in_style, legend, panels_for, sheets
-from gaitdisc.report.wording import counted, label, unit_text, upwards
+from gaitdisc.report.wording import counted, label, spoken, unit_text, upwards
 from gaitdisc.results.mismatch import Mismatch
 
 if TYPE_CHECKING:

@@ -9,8 +9,7 @@ from gaitdisc.report.mismatch_figure import mismatch_figures
 from gaitdisc.report.mismatch_sentences import method_sentences, mismatch_sentences
 from gaitdisc.report.mismatch_tables import channels_table, findings_of, regions_table
 from gaitdisc.report.page import write_page
-from gaitdisc.report.provenance_tables import provenance_tables
-from gaitdisc.report.table import save_table, save_tables
+from gaitdisc.report.table import provenance_tables, save_table, save_tables
 from gaitdisc.results.mismatch import Mismatch
 
 

@@ -5,11 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from gaitdisc.report.gap_wording import amount, spoken, with_unit
-from gaitdisc.report.seen_tables import seen_table
-from gaitdisc.report.table import Table
-from gaitdisc.report.terminal import plain
-from gaitdisc.report.wording import NONE, counted, p_cell
+from gaitdisc.report.table import Table, seen_table
+from gaitdisc.report.wording import NONE, amount, counted, p_cell, plain, spoken, with_unit
 from gaitdisc.results.mismatch import Mismatch
 
 if TYPE_CHECKING:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TypeVar
 
 from gaitdisc.report.baseline_table import baseline_sentences, baseline_table
-from gaitdisc.report.block import Block
 from gaitdisc.report.length_table import length_sentences, length_table
+from gaitdisc.report.page import Block
 from gaitdisc.report.quantity_figure import quantity_figure, quantity_sentences
 from gaitdisc.report.reduction_figure import reduction_figure, reduction_sentences, reduction_table
 from gaitdisc.report.table import Table

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from gaitdisc.report.box import draw_box
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import MODELS, NULL
-from gaitdisc.report.panels import Room, in_style, legend, panels, sheets
+from gaitdisc.report.panels import Room, draw_box, in_style, legend, panels, sheets
 from gaitdisc.report.r2_summary import R2_TABLE, held_out_text, r2_by_variable, variables
 from gaitdisc.report.wording import MODEL_WORDS, counted, label, number
 from gaitdisc.results import ResponseRun

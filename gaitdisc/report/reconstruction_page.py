@@ -6,7 +6,6 @@ from pathlib import Path
 
 from gaitdisc.report.figure import file_names, save_figures
 from gaitdisc.report.page import write_page
-from gaitdisc.report.provenance_tables import provenance_tables
 from gaitdisc.report.reconstruction_figure import reconstruction_figures
 from gaitdisc.report.reconstruction_tables import (
     models_table,
@@ -15,8 +14,7 @@ from gaitdisc.report.reconstruction_tables import (
     states_table,
 )
 from gaitdisc.report.search_table import search_table
-from gaitdisc.report.seen_tables import left_out_table, seen_table
-from gaitdisc.report.table import save_tables
+from gaitdisc.report.table import left_out_table, provenance_tables, save_tables, seen_table
 from gaitdisc.results.reconstruction import Reconstruction
 
 MOST_DRAWN = 4  # participants whose curves stand in the page; the numbers of all are in errors.csv and curves.csv

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from gaitdisc.report.search_table import search_sentences
 from gaitdisc.report.table import Table
-from gaitdisc.report.terminal import plain
-from gaitdisc.report.wording import counted, label, listed, number
+from gaitdisc.report.wording import counted, label, listed, number, plain
 from gaitdisc.results.reconstruction import CALIBRATED, FLOORS, Reconstruction
 
 if TYPE_CHECKING:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from gaitdisc.report.block import save_block
 from gaitdisc.report.comparison_figure import comparison_figures
 from gaitdisc.report.comparison_tables import comparison_sentences, comparison_tables
 from gaitdisc.report.curves_figure import curves_figures
@@ -14,16 +13,14 @@ from gaitdisc.report.figure import LARGEST_INLINE_SVG, Figure, SavedFigure, file
 from gaitdisc.report.held_out_figure import held_out_figures
 from gaitdisc.report.method import method_sentences
 from gaitdisc.report.over_blocks import over_blocks
-from gaitdisc.report.page import write_page
-from gaitdisc.report.provenance_tables import provenance_tables
+from gaitdisc.report.page import drawn_side_by_side, save_block, write_page
 from gaitdisc.report.r2_figure import r2_figures
 from gaitdisc.report.r2_tables import not_computed, participants_table, r2_table, study_r2_table
 from gaitdisc.report.residual_figure import residual_figures
 from gaitdisc.report.run_tables import dropped_table, findings_table, fits_table, refusals_table, walks_table
 from gaitdisc.report.sentences import participant_sentences, study_sentences
-from gaitdisc.report.side_by_side import drawn_side_by_side
 from gaitdisc.report.strides_figure import strides_figure
-from gaitdisc.report.table import Table, save_table, save_tables
+from gaitdisc.report.table import Table, provenance_tables, save_table, save_tables
 from gaitdisc.results import ResponseRun
 
 INLINE_BYTES = 4_000_000  # of all figures together, about; beyond it they are shown as pictures

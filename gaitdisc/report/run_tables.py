@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import pandas as pd
 
-from gaitdisc.report.seen_tables import left_out_table
 from gaitdisc.report.strides_figure import reason_kind, stride_numbers
-from gaitdisc.report.table import Table
+from gaitdisc.report.table import Table, left_out_table
 from gaitdisc.report.wording import LIGHTS, MODEL_WORDS, SIDE_WORDS
 from gaitdisc.results import ResponseRun
 

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from gaitdisc.report.box import draw_box
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import RECONSTRUCTED
-from gaitdisc.report.panels import Room, decades, in_style, legend, panels
+from gaitdisc.report.panels import Room, decades, draw_box, in_style, legend, panels
 from gaitdisc.report.wording import counted, listed, unit_text
 
 if TYPE_CHECKING:

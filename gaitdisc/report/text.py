@@ -14,8 +14,7 @@ from gaitdisc.report.r2_summary import (
     r2_by_variable,
     sample_counts,
 )
-from gaitdisc.report.terminal import plain
-from gaitdisc.report.wording import counted, number
+from gaitdisc.report.wording import counted, number, plain
 from gaitdisc.results import ResponseRun
 
 if TYPE_CHECKING:

@@ -104,7 +104,7 @@ def test_walks_without_a_response_are_still_shown(run_maker, refusal, tmp_path):
 
 @pytest.mark.usefixtures("unpainted")
 def test_several_participants_are_folded_and_none_is_lost(run_maker, tmp_path, monkeypatch):
-    monkeypatch.setattr("gaitdisc.report.side_by_side.MOST_PROCESSES", 1)
+    monkeypatch.setattr("gaitdisc.report.page.MOST_PROCESSES", 1)
     text = write_report(run_maker(3, outputs=("hip_flexion_r",)), tmp_path).read_text(encoding="utf-8")
     assert text.count("<summary>Tables and figures of P0") == 3
     assert "3 participants were analysed" in text
@@ -132,7 +132,7 @@ def test_the_paired_tests_have_their_section_and_the_same_bytes(tested_maker, tm
     """Without the figures of each participant, which are drawn and compared above."""
     none = {subject: [] for subject in ("held_out", "residual", "curves", "strides")}
     brief = partial(response_page.Section, sentences=[], r2=None, reasons=[], dropped=None, figures=none)
-    monkeypatch.setattr("gaitdisc.report.side_by_side.MOST_PROCESSES", 1)
+    monkeypatch.setattr("gaitdisc.report.page.MOST_PROCESSES", 1)
     monkeypatch.setattr(response_page, "_section", lambda _, person, name, *__: brief(person, f"participant-{name}"))
     run = tested_maker(6, ("hip_flexion_r",))
     text = write_report(run, tmp_path / "a").read_text(encoding="utf-8")
@@ -171,7 +171,7 @@ def test_participants_drawn_side_by_side_are_those_drawn_alone(run_maker, tmp_pa
 @pytest.mark.usefixtures("unpainted")
 def test_a_process_that_is_killed_while_it_draws_costs_its_time_alone(run_maker, tmp_path, monkeypatch):
     run = run_maker(3, outputs=("hip_flexion_r",))
-    monkeypatch.setattr("gaitdisc.report.side_by_side.os.cpu_count", lambda: 2)
+    monkeypatch.setattr("gaitdisc.report.page.os.cpu_count", lambda: 2)
     here, drawn = os.getpid(), response_page._section
 
     def killed_elsewhere(*given):

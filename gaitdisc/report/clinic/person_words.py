@@ -6,8 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from gaitdisc.report.gap_wording import p_words
-from gaitdisc.report.wording import SIDE_WORDS, counted, number, unit_text
+from gaitdisc.report.wording import SIDE_WORDS, counted, number, p_words, unit_text
 from gaitdisc.results.clinical_reading import ClinicalReading, Contrast, DifferingSpan, Noted, Score
 from gaitdisc.results.clinical_variables import BY_NAME
 from gaitdisc.results.leg_curves import FEET
