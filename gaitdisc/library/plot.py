@@ -60,7 +60,7 @@ def recording(
     >>> gd.plot.recording(walk, "knee_angle_r").get_xlabel()
     'time [s]'
     """
-    from gaitdisc.report.recording_figure import draw_recording
+    from gaitdisc.report.curves import draw_recording
 
     recording = recording_of(recording)
     names = [channels] if isinstance(channels, str) else list(channels or recording.names[:4])
@@ -141,7 +141,7 @@ def curves(run: ResponseRun, channel: str, participant: str | None = None, ax: A
     >>> import gaitdisc as gd
     >>> gd.plot.curves(gd.load("run"), "ankle_angle_r")  # doctest: +SKIP
     """
-    from gaitdisc.report.curves_figure import curve_numbers, draw_walks, walks_key
+    from gaitdisc.report.curves import curve_numbers, draw_walks, walks_key
     from gaitdisc.report.palette import SIDES
     from gaitdisc.report.wording import label, unit_text
 
@@ -173,7 +173,7 @@ def r2(run: ResponseRun, ax: Axes | None = None) -> Axes:
     >>> import gaitdisc as gd
     >>> gd.plot.r2(gd.load("run"))  # doctest: +SKIP
     """
-    from gaitdisc.report.r2_figure import draw_r2, r2_key, r2_numbers
+    from gaitdisc.report.r2 import draw_r2, r2_key, r2_numbers
 
     numbers, axes = r2_numbers(run), axes_or_new(ax)
     draw_r2(axes, numbers)

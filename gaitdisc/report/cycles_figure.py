@@ -9,7 +9,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gaitdisc.recording import PERCENT
-from gaitdisc.report.curves_figure import sides_together
+from gaitdisc.report.curves import sides_together
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import SIDES
 from gaitdisc.report.panels import Room, in_style, legend, panels_for, sheets

@@ -11,7 +11,7 @@ from gaitdisc.channel import side_of
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import MEASURED, MODELS, SIDES
 from gaitdisc.report.panels import Room, in_style, legend, panels_for, sheets
-from gaitdisc.report.r2_summary import r2_by_variable
+from gaitdisc.report.r2 import r2_by_variable
 from gaitdisc.report.wording import MODEL_WORDS, counted, label, number, unit_text, upwards
 from gaitdisc.results import ParticipantResponse
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from gaitdisc.report.r2_summary import held_out_text
+from gaitdisc.report.r2 import held_out_text
 from gaitdisc.report.table import flattened
 from gaitdisc.results import ResponseRun
 

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.channel import side_of
-from gaitdisc.report.curves_figure import sides_together
+from gaitdisc.report.curves import sides_together
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import SIDES, WITHOUT_DEVICE
 from gaitdisc.report.panels import Room, in_style, legend, panels_for, sheets

@@ -10,8 +10,7 @@ import pandas as pd
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import MODELS
 from gaitdisc.report.panels import Room, in_style, legend, panels
-from gaitdisc.report.r2_figure import LOWEST
-from gaitdisc.report.r2_summary import held_out_text
+from gaitdisc.report.r2 import LOWEST, held_out_text
 from gaitdisc.report.wording import MODEL_WORDS, counted, number
 from gaitdisc.results import DataQuantity, ResponseRun
 

@@ -5,17 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from gaitdisc.report.comparison_figure import comparison_figures
-from gaitdisc.report.comparison_tables import comparison_sentences, comparison_tables
-from gaitdisc.report.curves_figure import curves_figures
+from gaitdisc.report.curves import curves_figures
 from gaitdisc.report.cycles_page import save_cycle_tables, saved_cycle_blocks, write_cycles_page
 from gaitdisc.report.figure import LARGEST_INLINE_SVG, Figure, SavedFigure, file_names, save_figures
 from gaitdisc.report.held_out_figure import held_out_figures
 from gaitdisc.report.method import method_sentences
 from gaitdisc.report.over_blocks import over_blocks
 from gaitdisc.report.page import drawn_side_by_side, save_block, write_page
-from gaitdisc.report.r2_figure import r2_figures
-from gaitdisc.report.r2_tables import not_computed, participants_table, r2_table, study_r2_table
+from gaitdisc.report.pair_tests import comparison_figures, comparison_sentences, comparison_tables
+from gaitdisc.report.r2 import not_computed, participants_table, r2_figures, r2_table, study_r2_table
 from gaitdisc.report.residual_figure import residual_figures
 from gaitdisc.report.run_tables import dropped_table, findings_table, fits_table, refusals_table, walks_table
 from gaitdisc.report.sentences import participant_sentences, study_sentences

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from gaitdisc.report.curves_figure import WALKS, walk_of
+from gaitdisc.report.curves import WALKS, walk_of
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import DROPPED, KEPT, SIDES
 from gaitdisc.report.panels import Room, in_style, legend, panels

@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import pytest
 
-from gaitdisc.report.r2_tables import study_r2_table
+from gaitdisc.report.r2 import study_r2_table
 from gaitdisc.report.run_tables import dropped_table, findings_table, fits_table, refusals_table, walks_table
 
 OUTPUTS = ("hip_flexion_r", "ankle_angle_l")

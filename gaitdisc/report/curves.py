@@ -1,14 +1,15 @@
-"""Walking curves: mean and spread over the stride of both walks, channel by channel."""
+"""Curves of walks over the stride, and channels of a recording over time."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 
 from gaitdisc.channel import side_of
-from gaitdisc.recording import PERCENT
+from gaitdisc.recording import PERCENT, Recording
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import SIDES, WITHOUT_DEVICE
 from gaitdisc.report.panels import Room, in_style, legend, panels_for, sheets
@@ -172,3 +173,17 @@ def _alt(run: ResponseRun, participant: str, numbers: pd.DataFrame) -> str:
         f"Mean walking curves of {participant}, {counted(numbers['channel'].nunique(), 'channel')}, {run.nominal} "
         f"and {run.exo}. With the device: {'; '.join(ranges)}."
     )
+
+
+def draw_recording(axes: Axes, recording: Recording, names: Sequence[str]) -> None:
+    """Draw channels over time; what stands but is not to be trusted is drawn over in grey."""
+    chosen = recording.selected(names)
+    for column, channel in enumerate(chosen.channels):
+        values = chosen.values[:, column]
+        axes.plot(chosen.time, values, linewidth=1.0, label=label(channel.name))
+        doubtful = np.where(np.asarray(chosen.suspect)[:, column], values, np.nan)
+        axes.plot(chosen.time, doubtful, color="#999999", linewidth=2.4, alpha=0.6)
+    axes.set_xlabel("time [s]")
+    units = list(dict.fromkeys(unit_text(channel.unit) for channel in chosen.channels))
+    axes.set_ylabel(f"[{', '.join(units)}]")
+    axes.legend(frameon=False)

@@ -2,8 +2,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
-from gaitdisc.report.curves_figure import curve_numbers, curves_figures, sides_together, walk_of
+from gaitdisc.channel import Channel
+from gaitdisc.recording import Recording
+from gaitdisc.report.curves import curve_numbers, curves_figures, draw_recording, sides_together, walk_of
 from gaitdisc.report.palette import SIDES
 
 OUTPUTS = ("hip_flexion_r", "ankle_angle_l", "pelvis_tilt")
@@ -68,3 +71,13 @@ def test_a_walk_without_strides(run_maker, empty):
     run = run_maker(outputs=OUTPUTS)
     run = replace(run, walks=tuple(replace(walk, curves=empty) for walk in run.walks))
     assert len(curves_figures(run, "P01", "P01")) == (1 if len(empty) else 0)
+
+
+def test_every_channel_has_its_line_and_the_axis_every_unit():
+    channels = (Channel("knee_angle_r", "angle", "deg", "r"), Channel("pelvis_tx", "translation", "m"))
+    axes = Figure().subplots()
+    draw_recording(
+        axes, Recording(np.arange(3.0), np.arange(6.0).reshape(3, 2), channels), ["pelvis_tx", "knee_angle_r"]
+    )
+    np.testing.assert_array_equal(axes.lines[0].get_ydata(), [1.0, 3.0, 5.0])
+    assert axes.get_ylabel() == "[m, deg]"
