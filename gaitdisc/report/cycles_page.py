@@ -17,8 +17,8 @@ from gaitdisc.report.cycles_tables import (
 )
 from gaitdisc.report.figure import LARGEST_INLINE_SVG, file_names, save_figures
 from gaitdisc.report.page import Block, SavedBlock, drawn_side_by_side, save_block, write_page
-from gaitdisc.report.run_tables import findings_table, refusals_table
 from gaitdisc.report.table import provenance_tables, save_table, save_tables
+from gaitdisc.report.walks import findings_table, refusals_table
 from gaitdisc.report.wording import SIDE_WORDS, counted, listed
 from gaitdisc.results import PooledCycles, ResponseRun
 

@@ -15,10 +15,9 @@ from gaitdisc.report.page import drawn_side_by_side, save_block, write_page
 from gaitdisc.report.pair_tests import comparison_figures, comparison_sentences, comparison_tables
 from gaitdisc.report.r2 import not_computed, participants_table, r2_figures, r2_table, study_r2_table
 from gaitdisc.report.residual_figure import residual_figures
-from gaitdisc.report.run_tables import dropped_table, findings_table, fits_table, refusals_table, walks_table
 from gaitdisc.report.sentences import participant_sentences, study_sentences
-from gaitdisc.report.strides_figure import strides_figure
 from gaitdisc.report.table import Table, provenance_tables, save_table, save_tables
+from gaitdisc.report.walks import dropped_table, findings_table, fits_table, refusals_table, strides_figure, walks_table
 from gaitdisc.results import ResponseRun
 
 INLINE_BYTES = 4_000_000  # of all figures together, about; beyond it they are shown as pictures
