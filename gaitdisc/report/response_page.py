@@ -8,13 +8,12 @@ from pathlib import Path
 from gaitdisc.report.curves import curves_figures
 from gaitdisc.report.cycles_page import save_cycle_tables, saved_cycle_blocks, write_cycles_page
 from gaitdisc.report.figure import LARGEST_INLINE_SVG, Figure, SavedFigure, file_names, save_figures
-from gaitdisc.report.held_out_figure import held_out_figures
+from gaitdisc.report.held_out import held_out_figures, residual_figures
 from gaitdisc.report.method import method_sentences
 from gaitdisc.report.over_blocks import over_blocks
 from gaitdisc.report.page import drawn_side_by_side, save_block, write_page
 from gaitdisc.report.pair_tests import comparison_figures, comparison_sentences, comparison_tables
 from gaitdisc.report.r2 import not_computed, participants_table, r2_figures, r2_table, study_r2_table
-from gaitdisc.report.residual_figure import residual_figures
 from gaitdisc.report.sentences import participant_sentences, study_sentences
 from gaitdisc.report.table import Table, provenance_tables, save_table, save_tables
 from gaitdisc.report.walks import dropped_table, findings_table, fits_table, refusals_table, strides_figure, walks_table
