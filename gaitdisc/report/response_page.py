@@ -10,7 +10,7 @@ from gaitdisc.report.cycles_page import save_cycle_tables, saved_cycle_blocks, w
 from gaitdisc.report.figure import LARGEST_INLINE_SVG, Figure, SavedFigure, file_names, save_figures
 from gaitdisc.report.held_out import held_out_figures, residual_figures
 from gaitdisc.report.method import method_sentences
-from gaitdisc.report.over_blocks import over_blocks
+from gaitdisc.report.over_participants import over_blocks
 from gaitdisc.report.page import drawn_side_by_side, save_block, write_page
 from gaitdisc.report.pair_tests import comparison_figures, comparison_sentences, comparison_tables
 from gaitdisc.report.r2 import not_computed, participants_table, r2_figures, r2_table, study_r2_table

@@ -1,22 +1,73 @@
-"""By how much Augmented and Exo make the stride-averaged residual smaller, over participants (after Fig. 4.3)."""
+"""What the participants say together: residuals, baselines, training lengths, sub-groups, each a part of the page."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 import pandas as pd
 
 from gaitdisc.report.figure import Figure
+from gaitdisc.report.length_table import length_sentences, length_table
+from gaitdisc.report.page import Block
 from gaitdisc.report.palette import MODELS
 from gaitdisc.report.panels import Room, in_style, legend, panels
+from gaitdisc.report.quantity_figure import quantity_figure, quantity_sentences
 from gaitdisc.report.r2 import held_out_text
 from gaitdisc.report.table import Table
-from gaitdisc.report.wording import MODEL_WORDS, counted, label, number
+from gaitdisc.report.wording import MODEL_WORDS, counted, label, listed, number
 from gaitdisc.results import ResponseRun
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+Item = TypeVar("Item")
+
+
+def over_blocks(run: ResponseRun) -> list[Block]:
+    """Parts of the page that have something to say, in their order."""
+    blocks = [
+        Block("reduced", "What the models leave over the stride", tuple(reduction_sentences(run)),
+              _there(reduction_figure(run)), _there(reduction_table(run))),
+        Block("baselines", "Where a network is worth its trouble", tuple(baseline_sentences(run)),
+              (), _there(baseline_table(run))),
+        Block("quantity", "How much data is enough", (*quantity_sentences(run), *length_sentences(run)),
+              _there(quantity_figure(run)), _there(length_table(run))),
+        Block("responders", "Sub-groups of responders", responder_sentences(run), (), _there(responder_table(run))),
+    ]  # fmt: skip
+    return [block for block in blocks if block.sentences]
+
+
+def responder_sentences(run: ResponseRun) -> tuple[str, ...]:
+    """Verdict on sub-groups, and what `none` is worth; empty for one participant."""
+    if run.over is None or len(run.responses) < 2:
+        return ()
+    verdict = f"{run.over.responders_said}."
+    if len(run.over.responders) and not run.over.responders["group"].any():
+        return (
+            verdict,
+            "That none is found is no proof of one kind: so few people show only kinds that differ grossly.",
+        )
+    return (verdict,)
+
+
+def responder_table(run: ResponseRun) -> Table | None:
+    """Sub-group of each participant; None where there are none."""
+    if run.over is None or not len(run.over.responders) or not run.over.responders["group"].any():
+        return None
+    found = run.over.responders
+    rows = tuple((str(group), ", ".join(map(str, own["participant"]))) for group, own in found.groupby("group"))
+    caption = (
+        f"Sub-groups by the shape over the stride of what the Nominal model leaves on the device walk, all outputs "
+        f"together, n = {len(found)}."
+    )
+    return Table("responders", caption, ("group", "participants"), rows, found)
+
+
+def _there(thing: Item | None) -> tuple[Item, ...]:
+    return () if thing is None else (thing,)
+
 
 MEASURES = {"peak_to_peak": "peak to peak", "rms": "root mean square"}
 OFFSETS = {"augmented": -0.18, "exo": 0.18}
@@ -144,3 +195,61 @@ def _caption(run: ResponseRun) -> str:
 
 def _alt(run: ResponseRun) -> str:
     return " ".join(reduction_sentences(run))
+
+
+BASELINE_WORDS = {
+    "ridge": "ridge with phase harmonics",
+    "linear": "ridge on the network’s inputs",
+    "null": "the null of the filters",
+}
+_COLUMNS = ("variable", "model", "n", *(f"against {words}" for words in BASELINE_WORDS.values()))
+
+
+def baseline_table(run: ResponseRun) -> Table | None:
+    """R2 of the network minus that of each baseline, one row a variable and model; None where nothing was tested."""
+    if run.over is None or not len(run.over.baselines):
+        return None
+    tests = run.over.baselines
+    rows = []
+    for (variable, model), found in tests.groupby(["variable", "model"], sort=False):
+        cells = [_cell_baseline(found[found["first"] == kind].iloc[0]) for kind in BASELINE_WORDS]
+        rows.append((label(str(variable)), MODEL_WORDS[str(model)], str(int(found["n"].max())), *cells))
+    order = list(dict.fromkeys(tests["variable"]))
+    rows.sort(key=lambda row: [label(str(variable)) for variable in order].index(row[0]))
+    caption = (
+        f"R² [1] of the network minus R² of what needs no network, on the held-out device walk, n = "
+        f"{counted(len(run.responses), 'participant')}: Hodges-Lehmann shift [95 % interval, not corrected]; higher or "
+        f"lower: exact two-sided signed rank, Holm-Sidak over the variables of one model and baseline, alpha = 0.05. "
+        f"The ridge regression of the other tables is the one with phase harmonics."
+    )
+    groups = (("", 3), ("network minus baseline", 3))
+    return Table("baselines", caption, _COLUMNS, tuple(rows), tests, groups)
+
+
+def baseline_sentences(run: ResponseRun) -> list[str]:
+    """Name the variables in which no network is shown to be better than a baseline."""
+    if run.over is None or not len(run.over.baselines):
+        return []
+    tests = run.over.baselines
+    said = []
+    for model in dict.fromkeys(tests["model"]):
+        parts = []
+        for kind, words in BASELINE_WORDS.items():
+            rows = tests[(tests["model"] == model) & (tests["first"] == kind) & tests["p"].notna()]
+            beaten = rows["different"].astype(bool) & (rows["rank_biserial"] > 0)
+            names = [label(str(variable)) for variable in rows.loc[~beaten, "variable"]]
+            if names:
+                which = f"any of {counted(len(rows), 'variable')}" if len(names) == len(rows) else "; ".join(names)
+                parts.append(f"{words} (in {which})")
+        network = f"The {MODEL_WORDS[str(model)]} network"
+        said.append(
+            f"{network} is not shown to beat {listed(parts)}." if parts else f"{network} beats every baseline in all."
+        )
+    return said
+
+
+def _cell_baseline(row: pd.Series) -> str:
+    if not math.isfinite(row["p"]):
+        return "not tested"
+    verdict = ("higher" if row["rank_biserial"] > 0 else "lower") if row["different"] else "not shown"
+    return f"{number(row['shift'], 3)} {verdict}\n[{number(row['low'], 3)}, {number(row['high'], 3)}]"
