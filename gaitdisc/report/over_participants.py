@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 import pandas as pd
 
+from gaitdisc.report.data_quantity import length_sentences, length_table, quantity_figure, quantity_sentences
 from gaitdisc.report.figure import Figure
-from gaitdisc.report.length_table import length_sentences, length_table
 from gaitdisc.report.page import Block
 from gaitdisc.report.palette import MODELS
 from gaitdisc.report.panels import Room, in_style, legend, panels
-from gaitdisc.report.quantity_figure import quantity_figure, quantity_sentences
 from gaitdisc.report.r2 import held_out_text
 from gaitdisc.report.table import Table
 from gaitdisc.report.wording import MODEL_WORDS, counted, label, listed, number
