@@ -17,7 +17,7 @@ PAGES = {  # what a result is, what draws its page, and the folder of the page i
     "Discovery": ("discovery_page:write_discovery_report", ""),
     "Mismatch": ("mismatch_page:write_mismatch_report", ""),
     "Reconstruction": ("reconstruction_page:write_reconstruction_report", ""),
-    "VariantRun": ("variants_page:write_variants", ""),
+    "VariantRun": ("variants:write_variants", ""),
 }
 
 

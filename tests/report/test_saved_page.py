@@ -16,7 +16,7 @@ from gaitdisc.report.mismatch_page import write_mismatch_report
 from gaitdisc.report.reconstruction_page import write_reconstruction_report
 from gaitdisc.report.response_page import write_report
 from gaitdisc.report.saved_page import PAGES, draw_saved
-from gaitdisc.report.variants_page import write_variants
+from gaitdisc.report.variants import write_variants
 from gaitdisc.results.saved import READERS, Saved
 from gaitdisc.results.sealed_json import read_sealed, sealed_text
 from gaitdisc.results.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, VariantRun, Variants
