@@ -99,7 +99,7 @@ def cycles(recording: Recording | pd.DataFrame, strides: Strides, channel: str, 
     >>> gd.plot.cycles(walk.stream("kinematics"), gd.cycles(walk), "knee_angle_r").get_xlabel()
     'stride [%]'
     """
-    from gaitdisc.report.cycles_figure import draw_cycles
+    from gaitdisc.report.cycles_page import draw_cycles
     from gaitdisc.report.wording import label, unit_text
 
     one = recording_of(recording).selected([channel])

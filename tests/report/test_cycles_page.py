@@ -2,17 +2,22 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pandas as pd
 import pytest
 from made_cycles import made_cycles
 
 from gaitdisc.recording import Finding
-from gaitdisc.report.cycles_page import cycles_sentences, person_block, saved_cycle_blocks, write_cycles_page
+from gaitdisc.report.cycles_page import (
+    cycles_figures,
+    cycles_sentences,
+    person_block,
+    saved_cycle_blocks,
+    write_cycles_page,
+)
 from gaitdisc.report.response_page import write_report
 from gaitdisc.results import Refusal, ResponseRun
 from gaitdisc.results.provenance import made_now
-
-pytestmark = pytest.mark.usefixtures("unpainted")
 
 
 def _run(*cycles, exo="", unfitted=()):
@@ -22,6 +27,7 @@ def _run(*cycles, exo="", unfitted=()):
     )
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_a_run_of_cycles_has_its_own_page_and_tidy_tables(tmp_path):
     run = _run(made_cycles(), made_cycles("P02", condition="turn"))
     page = write_report(run, tmp_path).read_text()
@@ -34,6 +40,7 @@ def test_a_run_of_cycles_has_its_own_page_and_tidy_tables(tmp_path):
     assert set(pd.read_csv(tmp_path / "tables" / "spatiotemporal.csv")["value"]) >= {"stance_percent", "speed_m_per_s"}
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_a_page_of_computed_angles_says_how_and_others_do_not(tmp_path):
     plain, computed = made_cycles(), made_cycles("P02")
     residual = Finding("note", "residual", "P02 walk, file 1", "markers lie 2.0 mm from where the static", "")
@@ -44,6 +51,7 @@ def test_a_page_of_computed_angles_says_how_and_others_do_not(tmp_path):
     assert said in page and "markers lie 2.0 mm" in page
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_the_offset_and_few_cycles_are_said():
     moved = made_cycles(detectors={"markers": 1}, contact_offset_s=0.06, offset_steps=1, each=2)
     said = " ".join(cycles_sentences(_run(moved)))
@@ -53,6 +61,7 @@ def test_the_offset_and_few_cycles_are_said():
     assert cycles_sentences(_run(made_cycles(each=0))) == ["No cycle could be kept: see “Left out”."]
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_why_no_models_are_fitted_is_said(tmp_path):
     why = Refusal("P01", "", "a comparison needs one trial of 'walk' and one of 'exo'; P01 has 2 of 'walk'. Correct.")
     first = saved_cycle_blocks(_run(made_cycles(), exo="exo", unfitted=(why,)), tmp_path)[0]
@@ -60,6 +69,7 @@ def test_why_no_models_are_fitted_is_said(tmp_path):
     assert "compares no device" in saved_cycle_blocks(_run(made_cycles()), tmp_path)[0].sentences[0]
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_one_part_a_person_with_a_figure_for_each_session_and_condition(tmp_path):
     run = _run(made_cycles(session="before"), made_cycles(session="after"), made_cycles("P02"))
     blocks = saved_cycle_blocks(run, tmp_path)
@@ -70,3 +80,21 @@ def test_one_part_a_person_with_a_figure_for_each_session_and_condition(tmp_path
     )
     assert saved_cycle_blocks(_run(), tmp_path) == []
     assert write_cycles_page(run, tmp_path).is_file()
+
+
+def test_both_feet_lie_over_each_other_with_every_cycle_and_foot_off():
+    (figure,) = cycles_figures(made_cycles(each=4), "P01-walk")
+    shown = [axes for axes in figure.drawn.axes if axes.get_visible()]
+    titles = [axes.get_title() for axes in shown]
+    assert titles[0] == "knee angle" and titles[-1].startswith("EMG")
+    knee = shown[0]
+    curves = [line for line in knee.lines if len(line.get_xdata()) == 101]
+    assert len(curves) == 2 * (4 + 1)  # four cycles and their mean, of each foot
+    assert any(np.allclose(line.get_xdata(), 60.0) for line in knee.lines if len(line.get_xdata()) == 2)
+    assert "4 cycles left and 4 cycles right, pooled over 2 trials" in figure.caption
+    assert "one plate" not in figure.caption and "a plate carried this foot alone: 1 left, 1 right" in figure.caption
+    assert figure.alt.startswith("Mean cycles of P01, walk: ")
+
+
+def test_without_a_kept_cycle_nothing_is_drawn():
+    assert cycles_figures(made_cycles(each=0), "x") == []
