@@ -42,9 +42,8 @@ def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
     from rich.console import Console
 
     from gaitdisc.batch.compare_recordings import compare_files
-    from gaitdisc.report.mismatch_page import write_mismatch_report
+    from gaitdisc.report.mismatch_page import mismatch_text, write_mismatch_report
     from gaitdisc.report.mismatch_sentences import mismatch_sentences
-    from gaitdisc.report.mismatch_tables import mismatch_text
     from gaitdisc.results.mismatch import Smallest
     from gaitdisc.results.mismatch_folder import save_mismatch
 

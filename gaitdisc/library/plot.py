@@ -265,7 +265,7 @@ def mismatch(found: Mismatch, channel: str, gap: bool = False, ax: Axes | None =
     >>> import gaitdisc as gd
     >>> gd.plot.mismatch(gd.load("compare"), "ankle_angle_r", gap=True)  # doctest: +SKIP
     """
-    from gaitdisc.report.mismatch_figure import draw_both, draw_gap, mismatch_key, mismatch_numbers
+    from gaitdisc.report.mismatch_page import draw_both, draw_gap, mismatch_key, mismatch_numbers
     from gaitdisc.report.palette import SIDES
     from gaitdisc.report.wording import label, unit_text
 
