@@ -81,7 +81,7 @@ def kept_words(run_folder: Path) -> PageWords:
 
 def page_of_run(run: ResponseRun, run_folder: Path) -> Path:
     """Page of a run with pages of its people and their index, drawn where they are not those of this very run."""
-    from gaitdisc.report.kept_page import page_of
+    from gaitdisc.report.saved_page import page_of
 
     return page_of(run_folder, lambda: _drawn(run, run_folder))
 

@@ -91,7 +91,7 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
 def _tell(done: Reconstruction) -> None:
     from rich.console import Console
 
-    from gaitdisc.report.reconstruction_tables import reconstruction_sentences, reconstruction_text
+    from gaitdisc.report.reconstruction_page import reconstruction_sentences, reconstruction_text
 
     typer.echo(" ".join(reconstruction_sentences(done)))
     Console().print(reconstruction_text(done))

@@ -310,7 +310,7 @@ def reconstruction(done: Reconstruction, state: str, participant: str | None = N
     >>> import gaitdisc as gd
     >>> gd.plot.reconstruction(gd.load("reconstruct"), "knee_angle_l")  # doctest: +SKIP
     """
-    from gaitdisc.report.reconstruction_figure import draw_state, shown_curves, states_key
+    from gaitdisc.report.reconstruction_page import draw_state, shown_curves, states_key
     from gaitdisc.report.wording import label, unit_text
 
     numbers = shown_curves(done, participant or _first(done.participants))

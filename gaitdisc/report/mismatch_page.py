@@ -1,4 +1,4 @@
-"""The page of a mismatch: both walks over the stride, the gap between them, and tables of where each channel differs."""
+"""The page of a mismatch: both walks over the stride, the gap between them, and tables of where channels differ."""
 
 from __future__ import annotations
 

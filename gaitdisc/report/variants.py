@@ -256,7 +256,7 @@ def sensitivity_sentences(run: VariantRun) -> tuple[str, ...]:
     return tuple(said)
 
 
-HEADINGS_PAGE = {
+TITLES = {
     "modalities": "Which inputs carry the response",
     "sensitivity": "Other cut-offs and training lengths",
 }
@@ -270,7 +270,7 @@ def write_variants(run: VariantRun, folder: Path) -> Path:
     save_table(run.r2_table(), folder / "tables" / "r2.csv")
     shown = {
         "run": run,
-        "heading": HEADINGS_PAGE[run.question],
+        "heading": TITLES[run.question],
         "sentences": variant_sentences(run),
         "figures": save_figures([figure] if figure else [], folder),
         "tables": tables,

@@ -19,6 +19,8 @@ from gaitdisc.report.response_page import write_report
 from gaitdisc.results import Refusal, ResponseRun
 from gaitdisc.results.provenance import made_now
 
+pytestmark = pytest.mark.usefixtures("unpainted")
+
 
 def _run(*cycles, exo="", unfitted=()):
     refusals = tuple(refusal for one in cycles for refusal in one.refusals)
@@ -27,7 +29,6 @@ def _run(*cycles, exo="", unfitted=()):
     )
 
 
-@pytest.mark.usefixtures("unpainted")
 def test_a_run_of_cycles_has_its_own_page_and_tidy_tables(tmp_path):
     run = _run(made_cycles(), made_cycles("P02", condition="turn"))
     page = write_report(run, tmp_path).read_text()
@@ -40,7 +41,6 @@ def test_a_run_of_cycles_has_its_own_page_and_tidy_tables(tmp_path):
     assert set(pd.read_csv(tmp_path / "tables" / "spatiotemporal.csv")["value"]) >= {"stance_percent", "speed_m_per_s"}
 
 
-@pytest.mark.usefixtures("unpainted")
 def test_a_page_of_computed_angles_says_how_and_others_do_not(tmp_path):
     plain, computed = made_cycles(), made_cycles("P02")
     residual = Finding("note", "residual", "P02 walk, file 1", "markers lie 2.0 mm from where the static", "")
@@ -51,7 +51,6 @@ def test_a_page_of_computed_angles_says_how_and_others_do_not(tmp_path):
     assert said in page and "markers lie 2.0 mm" in page
 
 
-@pytest.mark.usefixtures("unpainted")
 def test_the_offset_and_few_cycles_are_said():
     moved = made_cycles(detectors={"markers": 1}, contact_offset_s=0.06, offset_steps=1, each=2)
     said = " ".join(cycles_sentences(_run(moved)))
@@ -61,7 +60,6 @@ def test_the_offset_and_few_cycles_are_said():
     assert cycles_sentences(_run(made_cycles(each=0))) == ["No cycle could be kept: see “Left out”."]
 
 
-@pytest.mark.usefixtures("unpainted")
 def test_why_no_models_are_fitted_is_said(tmp_path):
     why = Refusal("P01", "", "a comparison needs one trial of 'walk' and one of 'exo'; P01 has 2 of 'walk'. Correct.")
     first = saved_cycle_blocks(_run(made_cycles(), exo="exo", unfitted=(why,)), tmp_path)[0]
@@ -69,7 +67,6 @@ def test_why_no_models_are_fitted_is_said(tmp_path):
     assert "compares no device" in saved_cycle_blocks(_run(made_cycles()), tmp_path)[0].sentences[0]
 
 
-@pytest.mark.usefixtures("unpainted")
 def test_one_part_a_person_with_a_figure_for_each_session_and_condition(tmp_path):
     run = _run(made_cycles(session="before"), made_cycles(session="after"), made_cycles("P02"))
     blocks = saved_cycle_blocks(run, tmp_path)

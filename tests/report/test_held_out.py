@@ -115,7 +115,7 @@ def test_what_is_drawn_is_the_csv(response_residual):
         assert band.y1 == pytest.approx(curves["high"].max())
 
 
-def test_words_residual(response_residual):
+def test_words_of_the_residuals(response_residual):
     [figure] = residual_figures(response_residual, "P01")
     for wanted in ("n = 8 strides", "split: last 7.5 s held out", "95 % interval"):
         assert wanted in figure.caption
