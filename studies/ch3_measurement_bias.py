@@ -27,7 +27,7 @@ from gaitdisc.discrepancy.kalman import Uncertainty, linear_kalman, unscented_ka
 from gaitdisc.discrepancy.methods import MethodSettings
 from gaitdisc.discrepancy.record import Conditions, Record, recorded
 from gaitdisc.discrepancy.system import System, system_of
-from gaitdisc.report.discrepancy_tables import statements_table
+from gaitdisc.report.discrepancy import statements_table
 from gaitdisc.report.page import Block
 
 SEEDS = (0, 1, 2)
