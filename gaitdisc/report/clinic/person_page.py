@@ -10,7 +10,6 @@ from typing import Any
 
 from markupsafe import Markup
 
-from gaitdisc.report.clinic.page_words import ENGLISH, PageWords
 from gaitdisc.report.clinic.panel import Panel, svg
 from gaitdisc.report.clinic.person_panels import (
     MOST_SINGLE,
@@ -21,13 +20,15 @@ from gaitdisc.report.clinic.person_panels import (
     sheet,
 )
 from gaitdisc.report.clinic.person_tables import files_table, numbers_table, profile_table, values_table
-from gaitdisc.report.clinic.person_words import (
+from gaitdisc.report.clinic.profile_chart import profile_svg
+from gaitdisc.report.clinic.words import (
+    ENGLISH,
+    PageWords,
     contrast_sentences,
     outstanding_sentences,
     quality_sentence,
     score_sentences,
 )
-from gaitdisc.report.clinic.profile_chart import profile_svg
 from gaitdisc.report.figure import file_names
 from gaitdisc.report.page import page_text
 from gaitdisc.report.table import Table, save_table, words_table
