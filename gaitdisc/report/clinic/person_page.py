@@ -10,14 +10,15 @@ from typing import Any
 
 from markupsafe import Markup
 
-from gaitdisc.report.clinic.panel import Panel, svg
-from gaitdisc.report.clinic.person_panels import (
+from gaitdisc.report.clinic.panels import (
     MOST_SINGLE,
+    Panel,
     consistency_sheet,
     contrast_sheet,
     emg_sheet,
     panel_numbers,
     sheet,
+    svg,
 )
 from gaitdisc.report.clinic.person_tables import files_table, numbers_table, profile_table, values_table
 from gaitdisc.report.clinic.profile_chart import profile_svg

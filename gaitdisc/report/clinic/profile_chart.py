@@ -7,7 +7,7 @@ from html import escape
 
 import numpy as np
 
-from gaitdisc.report.clinic.panel import ticks
+from gaitdisc.report.clinic.panels import ticks
 from gaitdisc.report.palette import SIDES
 from gaitdisc.report.wording import SIDE_WORDS, number
 from gaitdisc.results.clinical_reading import Profile, Score

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from gaitdisc.errors import SchemaError
-from gaitdisc.report.clinic.panel import Panel
+from gaitdisc.report.clinic.panels import Panel
 from gaitdisc.report.cycles_tables import VALUES
 from gaitdisc.report.table import Table
 from gaitdisc.report.wording import SIDE_WORDS, counted, number, p_words, unit_text
