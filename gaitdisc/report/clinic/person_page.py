@@ -20,8 +20,7 @@ from gaitdisc.report.clinic.panels import (
     sheet,
     svg,
 )
-from gaitdisc.report.clinic.person_tables import files_table, numbers_table, profile_table, values_table
-from gaitdisc.report.clinic.profile_chart import profile_svg
+from gaitdisc.report.clinic.values import files_table, numbers_table, profile_svg, profile_table, values_table
 from gaitdisc.report.clinic.words import (
     ENGLISH,
     PageWords,

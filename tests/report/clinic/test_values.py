@@ -1,9 +1,19 @@
 from __future__ import annotations
 
+import xml.etree.ElementTree as ET
+
 from made_clinic import made_controls, made_person
 
 from gaitdisc.clinic.reading import read_beside
-from gaitdisc.report.clinic.person_tables import files_table, numbers_table, profile_table, values_table
+from gaitdisc.report.clinic.values import (
+    LEFT,
+    RIGHT,
+    files_table,
+    numbers_table,
+    profile_svg,
+    profile_table,
+    values_table,
+)
 
 
 def test_values_of_both_legs_beside_the_reference_with_asymmetry():
@@ -26,3 +36,14 @@ def test_all_that_stands_out_and_the_profile_have_their_numbers():
     assert len(profile.rows) == 9 and len(profile.numbers) == 18
     assert profile_table(read_beside(made_person(), None)) is None
     assert files_table([reading]).rows == (("P01 walk, file 1", 64 * "a"),)
+
+
+def test_bars_are_as_long_as_their_scores():
+    profile = read_beside(made_person(changed={"knee_angle_l": -30.0}), made_controls(6)).profile
+    root = ET.fromstring(profile_svg(profile))
+    bars = [float(one.attrib["width"]) for one in root.iter() if "fill-opacity" in one.attrib]
+    scores = [score.value for score in (*profile.variables.values(), *profile.legs.values())]
+    assert len(bars) == len(scores) == 20
+    assert abs(max(bars) / min(bars) - max(scores) / min(scores)) < 0.05 * max(scores) / min(scores)
+    assert max(bars) < RIGHT - LEFT
+    assert "knee flexion left" in root.attrib["aria-label"]
