@@ -1,4 +1,4 @@
-"""Chapter 3: errors of known and augmented models, accuracy against noise and horizon, cost, and every cell in a table."""
+"""Chapter 3: errors of known and augmented models, accuracy against noise and horizon, cost, every cell in a table."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Words of the pages: sentences of what stands out and how good it is; and all words in another language, from a table."""
+"""Words of the pages: what stands out, how good it is, and every word in another language, from a table."""
 
 from __future__ import annotations
 
@@ -92,18 +92,18 @@ def read_words(path: Path, english: Sequence[str]) -> PageWords:
             form, f"{path.name} begins with {first}", "gaitdisc report CLINIC --language NEW.csv writes one."
         )
     known, other = set(english), {}
-    for number, row in enumerate(rows[1:], 2):
+    for line, row in enumerate(rows[1:], 2):
         word, said = (*(cell.strip() for cell in row[:2]), "", "")[:2]
         if word and word not in known:
             raise SchemaError(
                 "each word is one of the pages",
-                f"{path.name}, line {number}: {word[:60]!r} is none",
+                f"{path.name}, line {line}: {word[:60]!r} is none",
                 "Delete the line.",
             )
         if said and word.count("{}") != said.count("{}"):
             raise SchemaError(
                 "a sentence keeps its place for a number, {}",
-                f"{path.name}, line {number}: {said[:60]!r}",
+                f"{path.name}, line {line}: {said[:60]!r}",
                 f"Write {{}} as often as in {word!r}.",
             )
         other |= {word: said} if said else {}
