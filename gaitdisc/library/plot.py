@@ -355,7 +355,7 @@ def latent(model: Reconstructor, x: ArrayLike, percent: ArrayLike, ax: Axes | No
     >>> import gaitdisc as gd
     >>> gd.plot.latent(gd.load("model"), readings, percent)  # doctest: +SKIP
     """
-    from gaitdisc.report.latent_course_figure import LATENT, course_numbers, draw_course
+    from gaitdisc.report.curves import LATENT, course_numbers, draw_course
     from gaitdisc.sensing.latent_size import latent_states, leading
 
     windows = model.windows(x, percent)
