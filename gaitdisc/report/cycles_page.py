@@ -21,7 +21,7 @@ from gaitdisc.report.cycles_tables import (
     overview_table,
     spatiotemporal_table,
 )
-from gaitdisc.report.figure import LARGEST_INLINE_SVG, Figure, file_names, save_figures
+from gaitdisc.report.figure import Figure, file_names, largest_inline, save_figures
 from gaitdisc.report.page import Block, SavedBlock, drawn_side_by_side, save_block, write_page
 from gaitdisc.report.palette import SIDES
 from gaitdisc.report.panels import Room, in_style, legend, panels_for, sheets
@@ -29,12 +29,12 @@ from gaitdisc.report.table import provenance_tables, save_table, save_tables
 from gaitdisc.report.walks import findings_table, refusals_table
 from gaitdisc.report.wording import SIDE_WORDS, counted, label, listed, sideless, unit_text, upwards
 from gaitdisc.results import PooledCycles, ResponseRun
+from gaitdisc.results.leg_curves import FEET
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
-INLINE_BYTES = 4_000_000  # of all figures together, about; beyond it they are shown as pictures
 MOST_HERE = 2  # people whose figures are drawn one after the other
 FEW = 3  # cycles of a foot below which no spread is spoken of
 METHOD = (
@@ -145,7 +145,7 @@ def person_block(sets: Sequence[PooledCycles], name: str) -> Block:
 def _saved(sets: Sequence[PooledCycles], name: str, folder: Path, count: int) -> SavedBlock:
     block = person_block(sets, name)
     save_tables(block.tables, folder)
-    figures = save_figures(block.figures, folder, min(LARGEST_INLINE_SVG, INLINE_BYTES // max(1, count)))
+    figures = save_figures(block.figures, folder, largest_inline(count))
     return SavedBlock(block.anchor, block.heading, block.sentences, tuple(figures), block.tables)
 
 
@@ -169,7 +169,6 @@ def _person(sets: Sequence[PooledCycles]) -> str:
 
 COLUMNS, MOST_PANELS = 4, 20
 MOST_FAINT = 25  # cycles that are drawn one by one
-FEET = ("l", "r")
 
 
 @in_style

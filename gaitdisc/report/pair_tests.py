@@ -12,7 +12,7 @@ import pandas as pd
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import MODELS
 from gaitdisc.report.panels import Room, draw_box, in_style, legend, panels, sheets
-from gaitdisc.report.r2 import LOWEST, held_out_text, r2_numbers, variables
+from gaitdisc.report.r2 import held_out_text, lowest_drawn, r2_numbers, variables
 from gaitdisc.report.table import Table
 from gaitdisc.report.wording import MODEL_WORDS, counted, label, listed, number
 from gaitdisc.results import PairTests, ResponseRun
@@ -225,7 +225,7 @@ def comparison_figures(run: ResponseRun) -> list[Figure]:
 def _figure(run: ResponseRun, tests: PairTests, numbers: pd.DataFrame, name: str) -> Figure:
     names = list(dict.fromkeys(numbers["variable"]))
     drawn, [[axes]] = panels(1, 1, HEIGHT, Room(left=0.6, bottom=0.75))
-    low = _lowest(numbers)
+    low = lowest_drawn(numbers)
     step = 0.05 * (1 - low)
     for place, variable in enumerate(names):
         _draw_boxes(axes, numbers[numbers["variable"] == variable], place)
@@ -271,11 +271,6 @@ def _key() -> list:
         for model, look in MODELS.items()
     ]
     return [*models, Line2D([], [], color="#111111", linewidth=0.9, label="different")]
-
-
-def _lowest(numbers: pd.DataFrame) -> float:
-    lowest = float(numbers["r2"].min())
-    return max(LOWEST, float(np.floor(10 * (lowest - 0.02)) / 10)) if np.isfinite(lowest) else 0.0
 
 
 def _caption(run: ResponseRun, tests: PairTests, numbers: pd.DataFrame, low: float) -> str:

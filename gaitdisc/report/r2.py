@@ -158,7 +158,7 @@ def r2_numbers(run: ResponseRun) -> pd.DataFrame:
 
 def _figure(run: ResponseRun, numbers: pd.DataFrame, name: str) -> Figure:
     names = list(dict.fromkeys(numbers["variable"]))
-    low = _limit(numbers)
+    low = lowest_drawn(numbers)
     row_in = LABELLED_ROW_IN if numbers["r2"].min() < low else ROW_IN
     drawn, [[axes]] = panels(1, 1, row_in * len(names) + 0.1, Room(left=1.75, right=0.25, top=0.45))
     draw_r2(axes, numbers)
@@ -172,7 +172,7 @@ def draw_r2(axes: Axes, numbers: pd.DataFrame) -> None:
 
     numbers: of `r2_numbers`
     """
-    names, low = list(dict.fromkeys(numbers["variable"])), _limit(numbers)
+    names, low = list(dict.fromkeys(numbers["variable"])), lowest_drawn(numbers)
     for row, variable in enumerate(names):
         _draw_variable(axes, numbers[numbers["variable"] == variable], row, low)
     axes.set_yticks(range(len(names)), [label(variable) for variable in names])
@@ -234,7 +234,8 @@ def r2_key(people: int, null: bool) -> list[Line2D]:
     ]
 
 
-def _limit(numbers: pd.DataFrame) -> float:
+def lowest_drawn(numbers: pd.DataFrame) -> float:
+    """Lower end of the axis of R2: `LOWEST`, or the tenth below the lowest value."""
     lowest = float(numbers["r2"].min())
     if not np.isfinite(lowest):
         return 0.0

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from gaitdisc.report.curves import curves_figures
 from gaitdisc.report.cycles_page import save_cycle_tables, saved_cycle_blocks, write_cycles_page
-from gaitdisc.report.figure import LARGEST_INLINE_SVG, Figure, SavedFigure, file_names, save_figures
+from gaitdisc.report.figure import Figure, SavedFigure, file_names, largest_inline, save_figures
 from gaitdisc.report.held_out import held_out_figures, residual_figures
 from gaitdisc.report.over_participants import over_blocks
 from gaitdisc.report.page import drawn_side_by_side, save_block, write_page
@@ -19,7 +19,6 @@ from gaitdisc.report.table import Table, flattened, provenance_tables, save_tabl
 from gaitdisc.report.walks import dropped_table, findings_table, fits_table, refusals_table, strides_figure, walks_table
 from gaitdisc.results import ResponseRun
 
-INLINE_BYTES = 4_000_000  # of all figures together, about; beyond it they are shown as pictures
 FIGURES_A_PERSON = 5
 MOST_OPEN = 2  # with more participants than this, the first screen is brief and their sections are folded
 
@@ -81,7 +80,7 @@ def write_report(run: ResponseRun, folder: Path) -> Path:
 
 def _sections(run: ResponseRun, names: dict[str, str], folder: Path) -> list[Section]:
     """Drawing takes seconds a participant: with more than two of them they are drawn side by side."""
-    limit = min(LARGEST_INLINE_SVG, INLINE_BYTES // (FIGURES_A_PERSON * max(1, len(run.responses))))
+    limit = largest_inline(FIGURES_A_PERSON * len(run.responses))
     alone = [(_of_one(run, person), person, name, folder, limit) for person, name in names.items()]
     return drawn_side_by_side(_section, alone, MOST_OPEN)
 
