@@ -14,10 +14,17 @@ from gaitdisc.report.figure import save_figures
 from gaitdisc.report.page import write_page
 from gaitdisc.report.table import Table, provenance_tables, save_tables, seen_table
 from gaitdisc.report.wording import NONE, counted, p_cell
-from gaitdisc.results.amounts import amount, estimate_text, shown_unit, with_unit
 from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect
-from gaitdisc.results.effect_words import at_place, outside_text, spoken
-from gaitdisc.results.told_apart import would_tell_apart
+from gaitdisc.results.effect_words import (
+    amount,
+    at_place,
+    estimate_text,
+    outside_text,
+    shown_unit,
+    spoken,
+    with_unit,
+    would_tell_apart,
+)
 
 
 def estimates_table(discovery: Discovery) -> Table:

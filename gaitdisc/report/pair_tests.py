@@ -16,7 +16,7 @@ from gaitdisc.report.r2 import held_out_text, lowest_drawn, r2_numbers, variable
 from gaitdisc.report.table import Table
 from gaitdisc.report.wording import MODEL_WORDS, counted, label, listed, number
 from gaitdisc.results import PairTests, ResponseRun
-from gaitdisc.results.pair_test import FAMILIES, PAIRS
+from gaitdisc.results.over_participants import FAMILIES, PAIRS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from gaitdisc.results.over_participants import TABLES, OverParticipants
-from gaitdisc.results.pair_test import FAMILY_COLUMNS, TEST_COLUMNS, PairTests
+from gaitdisc.results.over_participants import FAMILY_COLUMNS, TABLES, TEST_COLUMNS, OverParticipants, PairTests
 from gaitdisc.results.unit_folder import load_unit, save_unit, with_words
 
 

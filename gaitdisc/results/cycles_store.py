@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.results.on_disk import Arrays
 from gaitdisc.results.pooled_cycles import CYCLE_COLUMNS, PooledCycles
-from gaitdisc.results.refusal import Refusal
+from gaitdisc.results.provenance import Refusal
 from gaitdisc.results.unit_folder import NO_KEY, Keyed, load_unit, save_unit, stored_finding, with_words
 from gaitdisc.results.walk_store import unit_name
 

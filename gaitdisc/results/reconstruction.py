@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.notebook import html_of
 from gaitdisc.recording import Finding
-from gaitdisc.results.provenance import Provenance
-from gaitdisc.results.refusal import Refusal
+from gaitdisc.results.provenance import Provenance, Refusal
 from gaitdisc.results.saved import Saved
 from gaitdisc.results.unit_folder import load_unit, save_unit, stored_finding
 

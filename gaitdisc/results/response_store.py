@@ -9,10 +9,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.results.data_quantity import QUANTITY_COLUMNS, DataQuantity
 from gaitdisc.results.on_disk import Arrays
-from gaitdisc.results.participant_response import FIT_COLUMNS, R2_COLUMNS, HeldOut, ParticipantResponse
-from gaitdisc.results.refusal import Refusal
+from gaitdisc.results.participant_response import (
+    FIT_COLUMNS,
+    QUANTITY_COLUMNS,
+    R2_COLUMNS,
+    DataQuantity,
+    HeldOut,
+    ParticipantResponse,
+)
+from gaitdisc.results.provenance import Refusal
 from gaitdisc.results.unit_folder import Keyed, load_unit, save_unit
 
 

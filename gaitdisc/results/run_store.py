@@ -24,8 +24,7 @@ from typing import Any
 from gaitdisc.errors import SchemaError
 from gaitdisc.results.comparison_store import load_over, load_tests, save_over, save_tests
 from gaitdisc.results.cycles_store import cycles_name, load_cycles, save_cycles
-from gaitdisc.results.provenance import Provenance
-from gaitdisc.results.refusal import Refusal
+from gaitdisc.results.provenance import Provenance, Refusal
 from gaitdisc.results.response_run import ResponseRun
 from gaitdisc.results.response_store import load_quantity, load_response, save_quantity, save_response
 from gaitdisc.results.sealed_json import read_sealed, sealed_text

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from pathlib import Path
 
-from gaitdisc.results.refusal import Refusal
+from gaitdisc.results.provenance import Refusal
 from gaitdisc.results.unit_folder import NO_KEY, Keyed, load_unit, save_unit, with_words
 from gaitdisc.results.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, VariantRun, Variants
 

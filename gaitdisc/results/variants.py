@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import pandas as pd
 
 from gaitdisc.errors import SchemaError
-from gaitdisc.results.pair_test import TEST_COLUMNS
-from gaitdisc.results.refusal import Refusal
+from gaitdisc.results.over_participants import TEST_COLUMNS
+from gaitdisc.results.provenance import Refusal
 from gaitdisc.results.saved import Saved
 
 QUESTIONS = ("modalities", "sensitivity")

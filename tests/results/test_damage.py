@@ -15,8 +15,8 @@ from resealed import resealed
 from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.results import DataQuantity, OverParticipants, Refusal
 from gaitdisc.results.comparison_store import load_over, load_tests, save_over
-from gaitdisc.results.data_quantity import QUANTITY_COLUMNS
 from gaitdisc.results.over_participants import TABLES, no_rows
+from gaitdisc.results.participant_response import QUANTITY_COLUMNS
 from gaitdisc.results.response_store import (
     load_quantity,
     load_refused,

@@ -15,8 +15,7 @@ from gaitdisc.report.palette import SIDES
 from gaitdisc.report.wording import SIDE_WORDS, label, number, sideless
 from gaitdisc.results import PooledCycles
 from gaitdisc.results.clinical_reading import Band, ClinicalReading, Contrast
-from gaitdisc.results.clinical_variables import BY_NAME, KINEMATICS, VARIABLES, ClinicalVariable
-from gaitdisc.results.emg_timing import NORMAL
+from gaitdisc.results.clinical_variables import BY_NAME, KINEMATICS, NORMAL, VARIABLES, ClinicalVariable
 from gaitdisc.results.leg_curves import FEET
 
 WIDTH, HEIGHT = 240, 165
