@@ -48,7 +48,7 @@ SPATIOTEMPORAL = CYCLE_COLUMNS[CYCLE_COLUMNS.index("stride_s") :]
 
 @may_lie_on_disk("curves")
 @dataclass(frozen=True, eq=False)
-class PooledCycles(Saved, by="gaitdisc.results.cycles_store:save_pooled_cycles"):
+class PooledCycles(Saved, by="gaitdisc.results.stores:CYCLES.save"):
     """Cycles of one person in one session under one condition.
 
     Parameters

@@ -40,7 +40,7 @@ class Variants:
 
 
 @dataclass(frozen=True, eq=False)
-class VariantRun(Saved, by="gaitdisc.results.variant_store:save_whole_variant_run"):
+class VariantRun(Saved, by="gaitdisc.results.stores:save_whole_variant_run"):
     """The variants of a study, over its participants."""
 
     title: str

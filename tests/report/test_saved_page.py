@@ -20,11 +20,11 @@ from gaitdisc.report.response_page import write_report
 from gaitdisc.report.saved_page import PAGES, draw_saved, page_of
 from gaitdisc.report.variants import write_variants
 from gaitdisc.results import ResponseRun
-from gaitdisc.results.cycles_store import save_cycles
 from gaitdisc.results.provenance import made_now
 from gaitdisc.results.run_store import save_run
 from gaitdisc.results.saved import READERS, Saved
 from gaitdisc.results.sealed_json import read_sealed, sealed_text
+from gaitdisc.results.stores import CYCLES
 from gaitdisc.results.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, VariantRun, Variants
 
 pytestmark = pytest.mark.usefixtures("unpainted")
@@ -106,7 +106,7 @@ def test_a_folder_without_a_result_is_refused_with_what_it_holds(tmp_path):
 @pytest.fixture
 def folder(tmp_path):
     one = made_cycles()
-    save_cycles(one, tmp_path / "cycles" / "P01-walk", "key")
+    CYCLES.save(one, tmp_path / "cycles" / "P01-walk", "key")
     _save(tmp_path, one)
     return tmp_path
 
@@ -141,7 +141,7 @@ def test_whatever_is_changed_is_drawn_anew(folder, change):
     if change == "title":
         _save(folder, made_cycles(), "another")
     elif change == "unit":
-        save_cycles(made_cycles(each=3), folder / "cycles" / "P01-walk", "other")
+        CYCLES.save(made_cycles(each=3), folder / "cycles" / "P01-walk", "other")
     elif change == "page":
         (folder / "report" / "report.html").write_text("edited")
     elif change == "figure":

@@ -6,7 +6,7 @@ import pytest
 
 from gaitdisc.errors import SchemaError, ShapeError
 from gaitdisc.results.participant_response import QUANTITY_COLUMNS, DataQuantity
-from gaitdisc.results.response_store import load_quantity, save_quantity
+from gaitdisc.results.stores import QUANTITY
 
 
 def test_r2_of(response):
@@ -39,8 +39,8 @@ def test_medians_over_variables(quantity):
 
 
 def test_it_comes_back_as_it_was(quantity, tmp_path):
-    save_quantity(quantity, tmp_path, "key")
-    loaded, key = load_quantity(tmp_path)
+    QUANTITY.save(quantity, tmp_path, "key")
+    loaded, key = QUANTITY.load_keyed(tmp_path)
     assert (loaded.participant, loaded.part, loaded.left_away, key) == ("P01", "first", {500.0: "too long"}, "key")
     pd.testing.assert_frame_equal(loaded.table, quantity.table, check_dtype=False)
 
