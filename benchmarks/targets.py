@@ -32,7 +32,7 @@ from sensing_walks import DATA, SENSORS
 from gaitdisc.batch.demonstration import write_demonstration
 from gaitdisc.batch.reconstruct_study import ReconstructionSettings, reconstruct_study
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
-from gaitdisc.report.reconstruction_tables import reconstruction_sentences
+from gaitdisc.report.reconstruction_page import reconstruction_sentences
 from gaitdisc.sensing.reconstructor import KINDS
 
 RIDGES = ("linear", "delay ridge", "fourier ridge")

@@ -32,9 +32,8 @@ from gaitdisc.discrepancy.grid import NOISES
 from gaitdisc.discrepancy.local_field import local_cell, recorded_field
 from gaitdisc.discrepancy.methods import Method, MethodSettings
 from gaitdisc.discrepancy.record import Conditions, Record, recorded
-from gaitdisc.report.block import Block
-from gaitdisc.report.discrepancy_figure import field_figure
-from gaitdisc.report.discrepancy_tables import grid_table, statements_table
+from gaitdisc.report.discrepancy import field_figure, grid_table, statements_table
+from gaitdisc.report.page import Block
 from gaitdisc.results.discrepancy_cell import DiscrepancyCell
 
 SEEDS = (0, 1, 2)

@@ -50,7 +50,7 @@ from gaitdisc.discrepancy.record import Conditions, recorded
 from gaitdisc.discrepancy.record_noise import NOISE_KINDS
 from gaitdisc.discrepancy.system import System
 from gaitdisc.regression.gaussian_process import fit_gaussian_process
-from gaitdisc.report.discrepancy_figure import METHOD_WORDS
+from gaitdisc.report.discrepancy import METHOD_WORDS
 from gaitdisc.report.table import as_markdown, save_table, words_table
 from gaitdisc.results.discrepancy_cell import FORECAST, PartAccuracy
 

@@ -25,7 +25,7 @@ from gaitdisc.discrepancy.error_signal import APPROACHES
 from gaitdisc.discrepancy.grid import ALL_METHODS, NOISES, grid
 from gaitdisc.discrepancy.record import Conditions
 from gaitdisc.discrepancy.system import System, system_of
-from gaitdisc.report.block import Block
+from gaitdisc.report.page import Block
 from gaitdisc.report.table import Table
 from gaitdisc.results.discrepancy_cell import FORECAST, ORACLE, PART_WORDS
 

@@ -27,8 +27,8 @@ from gaitdisc.discrepancy.kalman import Uncertainty, linear_kalman, unscented_ka
 from gaitdisc.discrepancy.methods import MethodSettings
 from gaitdisc.discrepancy.record import Conditions, Record, recorded
 from gaitdisc.discrepancy.system import System, system_of
-from gaitdisc.report.block import Block
-from gaitdisc.report.discrepancy_tables import statements_table
+from gaitdisc.report.discrepancy import statements_table
+from gaitdisc.report.page import Block
 
 SEEDS = (0, 1, 2)
 FIGURES = {"state": "Fig. 3.13", "noise": "Fig. 3.13"}

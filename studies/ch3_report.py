@@ -10,16 +10,16 @@ from ch3_statements import Cells, Stated, answered, of_figures
 
 from gaitdisc.discrepancy.recommend import measured_cells
 from gaitdisc.discrepancy.system import System
-from gaitdisc.report.block import Block
-from gaitdisc.report.blocks_page import write_blocks, write_markdown
-from gaitdisc.report.discrepancy_figure import (
+from gaitdisc.report.discrepancy import (
     accuracy_figure,
     cost_figure,
     error_figure,
+    grid_table,
     horizon_figure,
+    statements_table,
     system_figure,
 )
-from gaitdisc.report.discrepancy_tables import grid_table, statements_table
+from gaitdisc.report.page import Block, write_blocks, write_markdown
 from gaitdisc.report.table import Table, save_table
 from gaitdisc.results.discrepancy_cell import RECONSTRUCTION
 

@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from gaitdisc.report.discrepancy_figure import METHOD_WORDS
-from gaitdisc.report.discrepancy_tables import spread_words
+from gaitdisc.report.discrepancy import METHOD_WORDS, spread_words
 from gaitdisc.results.discrepancy_cell import FORECAST, ORACLE, RECONSTRUCTION, DiscrepancyCell
 
 Cells = Mapping[str, tuple[DiscrepancyCell, ...]]

@@ -23,8 +23,7 @@ import pandas as pd
 
 import gaitdisc as gd
 from gaitdisc.discrepancy.recommend import FOUND, STARTS, WANTS, recommend
-from gaitdisc.report.discrepancy_figure import METHOD_WORDS
-from gaitdisc.report.discrepancy_tables import spread_words
+from gaitdisc.report.discrepancy import METHOD_WORDS, spread_words
 from gaitdisc.report.table import as_markdown, words_table
 from gaitdisc.results.discrepancy_cell import FORECAST, ORACLE, RECONSTRUCTION
 from gaitdisc.statistics.signed_rank import exact_p

@@ -31,9 +31,8 @@ from gaitdisc.discrepancy.methods import Method
 from gaitdisc.discrepancy.record import Conditions, recorded
 from gaitdisc.discrepancy.shaken_rates import ShakenRates
 from gaitdisc.discrepancy.system import system_of
-from gaitdisc.report.block import Block
-from gaitdisc.report.naming_figure import naming_figure
-from gaitdisc.report.naming_table import naming_table
+from gaitdisc.report.naming import naming_figure, naming_table
+from gaitdisc.report.page import Block
 from gaitdisc.results.naming import Naming
 
 SEEDS = (0, 1, 2)

@@ -11,8 +11,7 @@ from command_line import SHARED
 import gaitdisc as gd
 from gaitdisc.ingest.monthly_fields import read_navy_winds, read_sst_pacific
 from gaitdisc.ingest.sea_surface import read_oisst, read_sst_mat
-from gaitdisc.report.block import Block
-from gaitdisc.report.blocks_page import write_blocks, write_markdown
+from gaitdisc.report.page import Block, write_blocks, write_markdown
 from gaitdisc.report.table import Table
 from gaitdisc.results.field_cell import FieldCell
 from gaitdisc.sensing.field_task import FieldTask

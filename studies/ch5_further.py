@@ -41,8 +41,8 @@ import gaitdisc as gd
 from gaitdisc.batch.reconstruct_study import ReconstructionSettings
 from gaitdisc.batch.sensed_walks import SensedWalk, sensed_walks
 from gaitdisc.regression.sindy import fit_sindy
+from gaitdisc.report.curves import LATENT, MODES, course_numbers, latent_course_figure
 from gaitdisc.report.figure import save_figures
-from gaitdisc.report.latent_course_figure import LATENT, MODES, course_numbers, latent_course_figure
 from gaitdisc.sensing.forecast import persistence, phase_average
 from gaitdisc.sensing.latent_size import latent_states, leading
 from gaitdisc.sensing.reconstruct_field import reconstruct_field

@@ -18,7 +18,6 @@ from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Quality, Study
 from gaitdisc.ingest.study_file import load_study
 from gaitdisc.report.reconstruction_page import write_reconstruction_report
-from gaitdisc.results.reconstruction import save_reconstruction
 
 SENSORS = {
     "3 random": ("pelvis_rotation", "pelvis_tz", "hip_adduction_r"),
@@ -61,7 +60,7 @@ def cell(study: Study, sensors: str, settings: ReconstructionSettings, folder: P
     """Summary and errors of one sensor set in one data set, with their report; what is in the folder is not redone."""
     if not (folder / "report.html").exists():
         done, _ = reconstruct_study(study, SENSORS[sensors], settings)
-        save_reconstruction(done, folder)
+        done.save(folder)
         write_reconstruction_report(done, folder)
     return {name: pd.read_csv(folder / f"{name}.csv").assign(sensors=sensors) for name in ("summary", "errors")}
 

@@ -33,10 +33,9 @@ import pandas as pd
 from ch5_fields import Result, fields, maps_told, on_departures, unseen_walks, written
 
 import gaitdisc as gd
-from gaitdisc.report.block import Block
-from gaitdisc.report.field_errors_figure import histograms_figure, latent_figure
-from gaitdisc.report.field_maps_figure import maps_figure, routes_figure
-from gaitdisc.report.field_table import field_table
+from gaitdisc.report.field_errors import field_table, histograms_figure, latent_figure
+from gaitdisc.report.field_maps import maps_figure, routes_figure
+from gaitdisc.report.page import Block
 from gaitdisc.results.field_cell import FieldCell
 from gaitdisc.sensing.latent_size import latent_sizes
 from gaitdisc.sensing.reconstruct_field import reconstruct_field, targets_of

@@ -32,11 +32,9 @@ from dataclasses import asdict, replace
 
 from ch5_fields import Result, middle_of, written
 
-from gaitdisc.report.block import Block
-from gaitdisc.report.field_errors_figure import boxes_figure, histograms_figure
-from gaitdisc.report.field_maps_figure import maps_figure
-from gaitdisc.report.field_table import medians_table
-from gaitdisc.report.turbulence_figure import flow_figure
+from gaitdisc.report.field_errors import boxes_figure, histograms_figure, medians_table
+from gaitdisc.report.field_maps import flow_figure, maps_figure
+from gaitdisc.report.page import Block
 from gaitdisc.results.field_cell import FieldCell, load_cells, save_cells
 from gaitdisc.sensing.field_task import FieldTask
 from gaitdisc.sensing.reconstruct_field import CEILING, prepare, reconstruct_field, targets_of

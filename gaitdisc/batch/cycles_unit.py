@@ -15,7 +15,7 @@ from gaitdisc.ingest.study import Participant, PlannedTrial, Study
 from gaitdisc.ingest.trial_sets import functional_trial, static_trial, trial_sets
 from gaitdisc.recording import Trial
 from gaitdisc.results import PooledCycles
-from gaitdisc.results.cycles_store import cycles_name, load_cycles, save_cycles
+from gaitdisc.results.stores import CYCLES, cycles_name
 
 
 def computed_cycles(study: Study, participant: Participant, folder: Path) -> tuple[PooledCycles, ...]:
@@ -45,8 +45,8 @@ def computed_cycles(study: Study, participant: Participant, folder: Path) -> tup
     if unread:  # they may be readable another time, so that this stands for no key
         key = ""
     for pooled, place in zip(found, places, strict=True):
-        save_cycles(pooled, place, key)
-    return tuple(load_cycles(place).result for place in places)
+        CYCLES.save(pooled, place, key)
+    return tuple(CYCLES.load(place) for place in places)
 
 
 def cycles_key(study: Study, participant: Participant) -> str:
@@ -70,7 +70,7 @@ def _public(pooled: PooledCycles, words: PublicWords) -> PooledCycles:
 
 def _stored(places: list[Path], key: str) -> tuple[PooledCycles, ...] | None:
     try:
-        found = [load_cycles(place) for place in places]
+        found = [CYCLES.load_keyed(place) for place in places]
     except SchemaError:
         return None
     return tuple(pooled for pooled, _ in found) if all(stored == key for _, stored in found) else None

@@ -16,8 +16,7 @@ from gaitdisc.ingest.trial_sets import not_compared, refused_participant
 from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.processing.walk import Walk
 from gaitdisc.results import ParticipantResponse, PooledCycles, Refusal, WalkSummary
-from gaitdisc.results.response_store import load_refused, load_response, save_refused, save_response
-from gaitdisc.results.walk_store import load_walk, save_walk, unit_name
+from gaitdisc.results.stores import RESPONSE, WALK, Refused, load_refused, save_refused, unit_name
 
 if TYPE_CHECKING:
     from gaitdisc.response.fit_response import ResponseSettings
@@ -80,7 +79,7 @@ def _compared_unit(study: Study, participant: Participant, folder: Path, progres
 
     walks, errors = walks_and_errors(study, participant)
     for word, walk in walks.items():
-        save_walk(walk.summary(), _walk_folder(folder, participant, word), keys[word])
+        WALK.save(walk.summary(), _walk_folder(folder, participant, word), keys[word])
     if not errors:
         progress(SHARE_OF_PROCESSING)
         try:
@@ -88,11 +87,11 @@ def _compared_unit(study: Study, participant: Participant, folder: Path, progres
         except GaitdiscError as error:
             errors[""] = error
         else:
-            save_response(response, folder / "responses" / participant.id, response_key(keys))
+            RESPONSE.save(response, folder / "responses" / participant.id, response_key(keys))
             return _stored(participant, keys, folder) or ParticipantUnit(_loaded(walks, participant, folder), response)
     refusals = tuple(Refusal(participant.id, word, str(error)) for word, error in errors.items())
     if not any(isinstance(error, ReadError) for error in errors.values()):  # that may be readable another time
-        save_refused(refusals, tuple(walks), folder / "refused" / participant.id, response_key(keys))
+        save_refused(Refused(refusals, tuple(walks), response_key(keys)), folder / "refused" / participant.id)
     return ParticipantUnit(_loaded(walks, participant, folder), None, refusals, response_key(keys))
 
 
@@ -131,7 +130,7 @@ def _stored(participant: Participant, keys: Mapping[str, str], folder: Path) -> 
     except SchemaError:
         pass  # nobody was refused, or not for what is there now
     try:
-        response, stored_key = load_response(folder / "responses" / participant.id)
+        response, stored_key = RESPONSE.load_keyed(folder / "responses" / participant.id)
         walks = _with_keys(participant, tuple(keys), keys, folder)
     except SchemaError:
         return None
@@ -142,7 +141,7 @@ def _with_keys(
     participant: Participant, words: tuple[str, ...], keys: Mapping[str, str], folder: Path
 ) -> tuple[WalkSummary, ...]:
     """Walks of these conditions, if they rest on the files and settings of the keys."""
-    walks = [(load_walk(_walk_folder(folder, participant, word)), keys.get(word)) for word in words]
+    walks = [(WALK.load_keyed(_walk_folder(folder, participant, word)), keys.get(word)) for word in words]
     for (walk, stored_key), key in walks:
         if stored_key != key:
             raise SchemaError(
@@ -154,7 +153,7 @@ def _with_keys(
 
 
 def _loaded(walks: Mapping[str, Walk], participant: Participant, folder: Path) -> tuple[WalkSummary, ...]:
-    return tuple(load_walk(_walk_folder(folder, participant, word)).result for word in walks)
+    return tuple(WALK.load(_walk_folder(folder, participant, word)) for word in walks)
 
 
 def _walk_folder(folder: Path, participant: Participant, word: str) -> Path:

@@ -12,7 +12,7 @@ from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.ingest.study import Participant, Study
 from gaitdisc.response.data_quantity import fit_data_quantity
 from gaitdisc.results import DataQuantity, ParticipantResponse, Refusal
-from gaitdisc.results.response_store import load_quantity, load_response, save_quantity
+from gaitdisc.results.stores import QUANTITY, RESPONSE
 
 
 def computed_quantity(
@@ -40,14 +40,14 @@ def computed_quantity(
         quantity = fit_data_quantity(nominal, exo, response_settings(study), lengths_s, part, progress, whole)
     except GaitdiscError as error:
         return Refusal(participant.id, "", str(error))
-    save_quantity(quantity, _folder(folder, participant), key)
+    QUANTITY.save(quantity, _folder(folder, participant), key)
     return stored_quantity(participant, folder, key) or quantity
 
 
 def stored_quantity(participant: Participant, folder: Path, key: str) -> DataQuantity | None:
     """Load what an earlier `ablate` computed from the same files and settings, if it is there and whole."""
     try:
-        quantity, stored_key = load_quantity(_folder(folder, participant))
+        quantity, stored_key = QUANTITY.load_keyed(_folder(folder, participant))
     except SchemaError:
         return None
     return quantity if stored_key == key else None
@@ -56,7 +56,7 @@ def stored_quantity(participant: Participant, folder: Path, key: str) -> DataQua
 def _whole(participant: Participant, folder: Path, key: str) -> ParticipantResponse | None:
     """What the run has of the whole training part, if it rests on the same files and settings."""
     try:
-        response, stored_key = load_response(folder / "responses" / participant.id)
+        response, stored_key = RESPONSE.load_keyed(folder / "responses" / participant.id)
     except SchemaError:
         return None
     return response if stored_key == key else None

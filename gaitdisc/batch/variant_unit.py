@@ -25,7 +25,7 @@ from gaitdisc.response.fit_response import ResponseSettings, fit_response, held_
 from gaitdisc.response.modalities import fit_without
 from gaitdisc.response.sensitivity import Setting, settings_around
 from gaitdisc.results import Refusal
-from gaitdisc.results.variant_store import load_variants, save_variants
+from gaitdisc.results.stores import VARIANTS
 from gaitdisc.results.variants import VARIANT_COLUMNS, Variants
 
 Progress = Callable[[float], None]
@@ -38,7 +38,7 @@ def computed_variants(
     place = folder / question / "people" / participant.id
     key = _key(study, participant, question)
     try:
-        stored, stored_key = load_variants(place)
+        stored, stored_key = VARIANTS.load_keyed(place)
         if stored_key == key:
             return stored
     except SchemaError:
@@ -49,7 +49,7 @@ def computed_variants(
         else _sensitivity(study, participant, progress)
     )
     if isinstance(found, Variants):
-        save_variants(found, place, key)
+        VARIANTS.save(found, place, key)
     return found
 
 

@@ -15,7 +15,7 @@ from gaitdisc.ingest.study import Study
 from gaitdisc.response.modalities import compare_modalities
 from gaitdisc.response.sensitivity import compare_settings
 from gaitdisc.results import Refusal, ResponseRun
-from gaitdisc.results.variant_store import save_variant_run
+from gaitdisc.results.stores import save_variant_run
 from gaitdisc.results.variants import QUESTIONS, VariantRun, Variants
 
 

@@ -8,10 +8,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gaitdisc.results.clinical_reference import ReferenceLeg
+from gaitdisc.results.clinical_reference import PublishedGroup, ReferenceLeg
 from gaitdisc.results.clinical_variables import BY_NAME, MOMENTS, POWERS
 from gaitdisc.results.leg_curves import LegCurves
-from gaitdisc.results.published_reference import PublishedGroup
 
 GRAVITY = 9.81
 FEWEST = 10  # people of a group

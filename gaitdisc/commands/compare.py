@@ -42,11 +42,9 @@ def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
     from rich.console import Console
 
     from gaitdisc.batch.compare_recordings import compare_files
-    from gaitdisc.report.mismatch_page import write_mismatch_report
+    from gaitdisc.report.mismatch_page import mismatch_text, write_mismatch_report
     from gaitdisc.report.mismatch_sentences import mismatch_sentences
-    from gaitdisc.report.mismatch_tables import mismatch_text
     from gaitdisc.results.mismatch import Smallest
-    from gaitdisc.results.mismatch_folder import save_mismatch
 
     channels = tuple(channel or ())
     smallest = Smallest(smallest_angle, smallest_moment, smallest_share, body_weight)
@@ -57,7 +55,7 @@ def compare(  # noqa: PLR0913, PLR0917 these are the options of a command
     else:
         mismatch, folder = compare_files(first, second, channels, cutoff, detector, smallest), Path("compare")
     folder = out or folder
-    save_mismatch(mismatch, folder)
+    mismatch.save(folder)
     page = write_mismatch_report(mismatch, folder)
     typer.echo(" ".join(mismatch_sentences(mismatch)))
     Console().print(mismatch_text(mismatch))

@@ -12,7 +12,7 @@ def doctor() -> None:
     import shutil
 
     from gaitdisc.batch.installation import Check, checks
-    from gaitdisc.report.fonts import fonts_found
+    from gaitdisc.report.panels import fonts_found
 
     found = list(checks())
     fonts = fonts_found()

@@ -51,7 +51,7 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     from gaitdisc.ingest.study_file import load_study
     from gaitdisc.report.figure import file_names
     from gaitdisc.report.reconstruction_page import write_reconstruction_report
-    from gaitdisc.results.reconstruction import enough_sensors, save_reconstruction
+    from gaitdisc.results.reconstruction import enough_sensors
     from gaitdisc.sensing.model_folder import save_model
     from gaitdisc.sensing.reconstructor import KINDS
 
@@ -76,7 +76,7 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
         loaded, names, settings, lambda who, _: None if quiet else typer.echo(f"  {who}", err=True)
     )
     done = replace(done, search=found)
-    save_reconstruction(done, folder)
+    done.save(folder)
     page = write_reconstruction_report(done, folder)
     places = file_names([person.participant for person in people])
     for person in people:
@@ -91,7 +91,7 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
 def _tell(done: Reconstruction) -> None:
     from rich.console import Console
 
-    from gaitdisc.report.reconstruction_tables import reconstruction_sentences, reconstruction_text
+    from gaitdisc.report.reconstruction_page import reconstruction_sentences, reconstruction_text
 
     typer.echo(" ".join(reconstruction_sentences(done)))
     Console().print(reconstruction_text(done))

@@ -29,7 +29,7 @@ def report_on(work: Callable[[Told], ResponseRun], study: Study, folder: Path, q
     if done.responses:
         from rich.console import Console
 
-        from gaitdisc.report.text import r2_text
+        from gaitdisc.report.sentences import r2_text
 
         Console().print(r2_text(done))
     for quantity in done.quantities:

@@ -15,7 +15,7 @@ def vary(place: Path, out: Path | None, question: str, workers: tuple[int, str],
     from gaitdisc.batch.vary_study import vary_study
     from gaitdisc.batch.workers import Workers
     from gaitdisc.ingest.study_file import load_study
-    from gaitdisc.report.variants_page import variant_sentences, write_variants
+    from gaitdisc.report.variants import variant_sentences, write_variants
 
     study = load_study(place)
     folder, started, side_by_side = out or study.folder / "run", time.perf_counter(), Workers(*workers)

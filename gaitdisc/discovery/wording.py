@@ -10,10 +10,18 @@ from gaitdisc.discovery.account import Part
 from gaitdisc.discovery.borne_out import LEVEL
 from gaitdisc.discovery.gap_share import AGREES, MODEL_ERROR
 from gaitdisc.discovery.held_out import WORTH_ASKING
-from gaitdisc.results.amounts import amount, brief_text, estimate_text, shown_unit, with_unit
 from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, GapSize, Whereabouts
-from gaitdisc.results.effect_words import at_place, outside_text, spoken
-from gaitdisc.results.told_apart import would_tell_apart
+from gaitdisc.results.effect_words import (
+    amount,
+    at_place,
+    brief_text,
+    estimate_text,
+    outside_text,
+    shown_unit,
+    spoken,
+    with_unit,
+    would_tell_apart,
+)
 from gaitdisc.simulation.simulation import Simulation
 
 FEW = 12  # pieces of held-out data

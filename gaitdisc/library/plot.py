@@ -14,7 +14,7 @@ from gaitdisc.channel import nearest_word, side_of
 from gaitdisc.errors import ChannelError
 from gaitdisc.library.walks import recording_of
 from gaitdisc.recording import Recording, Strides
-from gaitdisc.report.own_axes import axes_or_new
+from gaitdisc.report.panels import axes_or_new
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -60,7 +60,7 @@ def recording(
     >>> gd.plot.recording(walk, "knee_angle_r").get_xlabel()
     'time [s]'
     """
-    from gaitdisc.report.recording_figure import draw_recording
+    from gaitdisc.report.curves import draw_recording
 
     recording = recording_of(recording)
     names = [channels] if isinstance(channels, str) else list(channels or recording.names[:4])
@@ -99,7 +99,7 @@ def cycles(recording: Recording | pd.DataFrame, strides: Strides, channel: str, 
     >>> gd.plot.cycles(walk.stream("kinematics"), gd.cycles(walk), "knee_angle_r").get_xlabel()
     'stride [%]'
     """
-    from gaitdisc.report.cycles_figure import draw_cycles
+    from gaitdisc.report.cycles_page import draw_cycles
     from gaitdisc.report.wording import label, unit_text
 
     one = recording_of(recording).selected([channel])
@@ -141,7 +141,7 @@ def curves(run: ResponseRun, channel: str, participant: str | None = None, ax: A
     >>> import gaitdisc as gd
     >>> gd.plot.curves(gd.load("run"), "ankle_angle_r")  # doctest: +SKIP
     """
-    from gaitdisc.report.curves_figure import curve_numbers, draw_walks, walks_key
+    from gaitdisc.report.curves import curve_numbers, draw_walks, walks_key
     from gaitdisc.report.palette import SIDES
     from gaitdisc.report.wording import label, unit_text
 
@@ -173,7 +173,7 @@ def r2(run: ResponseRun, ax: Axes | None = None) -> Axes:
     >>> import gaitdisc as gd
     >>> gd.plot.r2(gd.load("run"))  # doctest: +SKIP
     """
-    from gaitdisc.report.r2_figure import draw_r2, r2_key, r2_numbers
+    from gaitdisc.report.r2 import draw_r2, r2_key, r2_numbers
 
     numbers, axes = r2_numbers(run), axes_or_new(ax)
     draw_r2(axes, numbers)
@@ -265,7 +265,7 @@ def mismatch(found: Mismatch, channel: str, gap: bool = False, ax: Axes | None =
     >>> import gaitdisc as gd
     >>> gd.plot.mismatch(gd.load("compare"), "ankle_angle_r", gap=True)  # doctest: +SKIP
     """
-    from gaitdisc.report.mismatch_figure import draw_both, draw_gap, mismatch_key, mismatch_numbers
+    from gaitdisc.report.mismatch_page import draw_both, draw_gap, mismatch_key, mismatch_numbers
     from gaitdisc.report.palette import SIDES
     from gaitdisc.report.wording import label, unit_text
 
@@ -310,7 +310,7 @@ def reconstruction(done: Reconstruction, state: str, participant: str | None = N
     >>> import gaitdisc as gd
     >>> gd.plot.reconstruction(gd.load("reconstruct"), "knee_angle_l")  # doctest: +SKIP
     """
-    from gaitdisc.report.reconstruction_figure import draw_state, shown_curves, states_key
+    from gaitdisc.report.reconstruction_page import draw_state, shown_curves, states_key
     from gaitdisc.report.wording import label, unit_text
 
     numbers = shown_curves(done, participant or _first(done.participants))
@@ -355,7 +355,7 @@ def latent(model: Reconstructor, x: ArrayLike, percent: ArrayLike, ax: Axes | No
     >>> import gaitdisc as gd
     >>> gd.plot.latent(gd.load("model"), readings, percent)  # doctest: +SKIP
     """
-    from gaitdisc.report.latent_course_figure import LATENT, course_numbers, draw_course
+    from gaitdisc.report.curves import LATENT, course_numbers, draw_course
     from gaitdisc.sensing.latent_size import latent_states, leading
 
     windows = model.windows(x, percent)

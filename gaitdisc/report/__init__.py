@@ -5,12 +5,11 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from gaitdisc.report.response_page import write_report
-    from gaitdisc.report.sentences import participant_sentences, study_sentences
-    from gaitdisc.report.text import r2_text
+    from gaitdisc.report.sentences import participant_sentences, r2_text, study_sentences
 
 _HOME = {
     "participant_sentences": "sentences",
-    "r2_text": "text",
+    "r2_text": "sentences",
     "study_sentences": "sentences",
     "write_report": "response_page",
 }

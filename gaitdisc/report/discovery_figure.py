@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import MEASURED, MODELS
 from gaitdisc.report.panels import Room, in_style, legend, lines_of, panels, panels_for
-from gaitdisc.results.amounts import shown_unit
 from gaitdisc.results.discovery import Discovery
+from gaitdisc.results.effect_words import shown_unit
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

@@ -2,24 +2,218 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+import pandas as pd
+
 from gaitdisc.report.discovery_figure import discovery_figures
-from gaitdisc.report.discovery_tables import (
-    corrections_table,
-    data_findings,
-    estimates_table,
-    gap_table,
-    models_table,
-    rivals_table,
-    trials_table,
-    where_table,
-)
 from gaitdisc.report.figure import save_figures
 from gaitdisc.report.page import write_page
-from gaitdisc.report.provenance_tables import provenance_tables
-from gaitdisc.report.table import save_tables
-from gaitdisc.results.discovery import Discovery
+from gaitdisc.report.table import Table, provenance_tables, save_tables, seen_table
+from gaitdisc.report.wording import NONE, counted, p_cell
+from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect
+from gaitdisc.results.effect_words import (
+    amount,
+    at_place,
+    estimate_text,
+    outside_text,
+    shown_unit,
+    spoken,
+    with_unit,
+    would_tell_apart,
+)
+
+
+def estimates_table(discovery: Discovery) -> Table:
+    """Every number of what was found, with its interval."""
+    rows, records = [], []
+    for effect in discovery.effects:
+        for name, one in effect.estimates.items():
+            number, unit = name.replace("_", " "), "" if one.unit == "1" else one.unit
+            size = (one.high - one.low) / 2
+            written = (f"{amount(each, size)} {unit}".strip() for each in (one.value, one.low, one.high))
+            rows.append((spoken(effect.name), effect.place, number, *written, _degrees(one)))
+            records.append(
+                (effect.name, effect.kind, effect.place, name, one.value, one.low, one.high, one.unit, effect.term)
+            )
+    caption = "What was found, in the units of the simulation file; low and high: 95 % interval."
+    headings = ("effect", "place", "number", "value", "low", "high", "in degrees")
+    if not any(row[-1] for row in rows):
+        headings, rows = headings[:-1], [row[:-1] for row in rows]
+    columns = ("effect", "kind", "place", "number", "value", "low", "high", "unit", "term")
+    return Table("estimates", caption, headings, tuple(rows), _frame(records, columns))
+
+
+def gap_table(discovery: Discovery) -> Table:
+    """How far the gap shrank, channel by channel, on what was fitted and on what was held out."""
+    rows, records = [], []
+    for data, size in (("held out", discovery.held_out), ("fitted", discovery.train)):
+        for channel, unit in zip(discovery.channels, discovery.units, strict=True):
+            if channel not in size.channels:
+                continue
+            shown, factor = shown_unit(unit)
+            before, after, floor = size.channels[channel]
+            told = [f"{amount(factor * one, factor * floor / 10)} {shown}".strip() for one in (before, after, floor)]
+            rows.append((data, channel, *told, _percent(closed_share(before, after, floor)), p_cell(size.p)))
+            records.append((data, channel, before, after, floor, unit, closed_share(before, after, floor), size.p))
+    held, fitted = (counted(size.pieces, "piece") for size in (discovery.held_out, discovery.train))
+    caption = (
+        f"Root mean square of measured minus simulated, before{_before(discovery)} and after, and what noise alone "
+        "would leave. Closed: of the squared gap above the noise. p: one-sided signed-rank test (Wilcoxon) of the "
+        "squared errors before and after, for all channels of those data together, over pieces of the runs (held out: "
+        f"{held}, fitted: {fitted})."
+        f"{_unproven(discovery)}"
+    )
+    headings = ("data", "channel", "before", "after", "noise floor", "closed", "p")
+    columns = ("data", "channel", "before", "after", "noise_floor", "unit", "closed", "p")
+    return Table("gap", caption, headings, tuple(rows), _frame(records, columns))
+
+
+def models_table(discovery: Discovery) -> Table:
+    """Held-out error of the models of chapter 4, of a device walk, with the named effect among them."""
+    channel, unit = (discovery.channels[-1], discovery.units[-1]) if discovery.channels else ("", "")
+    told = tuple((name, with_unit(amount(one, 0.1), unit)) for name, one in discovery.beside.items())
+    caption = (
+        f"Root mean square error of {channel} on the held-out strides. Nominal: calibrated on the Nominal walk. "
+        "Augmented: Nominal, and a plain regression of what it leaves. Exo: calibrated on the device walk itself. Both "
+        "learn from the device walk's other strides."
+    )
+    return Table("models", caption, ("model", channel), told, _frame(list(discovery.beside.items()), ("model", unit)))
+
+
+def trials_table(discovery: Discovery) -> Table:
+    """Root mean square error of each held-out trial, before and after, channel by channel."""
+    runs, rows, records = discovery.runs, [], []
+    errors = [(runs.measured - one) ** 2 for one in (runs.simulated, runs.augmented)]
+    for number in np.unique(runs.trial):
+        name = runs.names[number] if runs.names else str(number + 1)
+        for place, (channel, unit) in enumerate(zip(discovery.channels, discovery.units, strict=True)):
+            shown, factor = shown_unit(unit)
+            of_trial = (one[runs.trial == number][:, :, place] for one in errors)
+            before, after = (float(np.sqrt(np.nanmean(one))) for one in of_trial)
+            told = (f"{amount(factor * one, factor * before / 20)} {shown}".strip() for one in (before, after))
+            rows.append((name, channel, *told))
+            records.append((name, channel, before, after, unit))
+    caption = (
+        "Root mean square of measured minus simulated, before and after, trial by trial of what was held out "
+        f"({counted(len(runs.trial), 'run')}, each from its own start)."
+    )
+    columns = ("trial", "channel", "before", "after", "unit")
+    return Table("trials", caption, columns[:-1], tuple(rows), _frame(records, columns))
+
+
+def _before(discovery: Discovery) -> str:
+    return " (as read, numbers with bounds fitted within these)" if discovery.corrections else ""
+
+
+def _unproven(discovery: Discovery) -> str:
+    """Say whose p stands there, where nothing is named."""
+    if discovery.effects or not discovery.rivals or not discovery.held_out.pieces:
+        return ""
+    first = discovery.rivals[0]
+    return f" Where nothing is named, p is that of {spoken(first.name)} {at_place(first.kind, first.place)}."
+
+
+def where_table(discovery: Discovery) -> Table:
+    """Where the gap arises: place, share, part of the stride, region of the states."""
+    rows, records = [], []
+    for one in discovery.where:
+        phase = f"{100 * one.phase[0]:.0f} to {100 * one.phase[1]:.0f} %" if one.phase else NONE
+        rows.append((at_place(one.kind, one.place), _percent(one.share_of_gap), phase, one.region or NONE))
+        begin, end = one.phase or (math.nan, math.nan)
+        records.append((one.kind, one.place, one.share_of_gap, begin, end, one.region))
+    caption = "Where the gap arises. Share: of the mean squared gap that goes when the effect is added there."
+    columns = ("kind", "place", "share_of_gap", "phase_from", "phase_to", "region")
+    return Table(
+        "where", caption, ("place", "share of the gap", "stride", "region"), tuple(rows), _frame(records, columns)
+    )
+
+
+def corrections_table(discovery: Discovery) -> Table:
+    """Numbers of the file that moved within their own bounds."""
+    rows, records = [], []
+    for one in discovery.corrections:
+        found, unit = one.found, "" if one.found.unit == "1" else one.found.unit
+        size = (found.high - found.low) / 2
+        written = (f"{amount(each, size)} {unit}".strip() for each in (found.value, found.low, found.high))
+        rows.append((one.parameter, f"{one.given:.6g} {unit}".strip(), *written))
+        records.append((one.parameter, one.given, found.value, found.low, found.high, found.unit))
+    caption = (
+        "Numbers of the file that moved within the bounds that it gives them. They are no finding: every explanation "
+        "was fitted with them, and the simulation before as well. Low and high: 95 % interval."
+    )
+    headings = ("parameter", "in the file", "fitted", "low", "high")
+    columns = ("parameter", "from", "to", "low", "high", "unit")
+    return Table("corrections", caption, headings, tuple(rows), _frame(records, columns))
+
+
+def rivals_table(discovery: Discovery) -> Table:
+    """What else was weighed, best first, and what would distinguish it from what was named."""
+    rows, records = [], []
+    named = discovery.effects[0].name if discovery.effects else ""
+    for one in discovery.rivals:
+        apart = would_tell_apart(named, one.name) if named else NONE
+        rows.append(
+            (
+                spoken(one.name),
+                at_place(one.kind, one.place),
+                _numbers(one),
+                _bic(one.bic),
+                "small" if one.small else "yes" if one.tied else "no",
+                apart,
+            )
+        )
+        records.append((one.name, one.kind, one.place, one.bic, one.tied, one.small, apart))
+    own = ", ".join(_bic(one.bic) for one in discovery.effects[:1])
+    caption = (
+        f"What else was weighed, {counted(len(rows), 'rival')}, best first. Evidence: fall of the Bayesian criterion "
+        f"from the simulation as read{f' (what was named: {own})' if own else ''}; the larger the better. "
+        "Tied: these data cannot distinguish it from what was named; small: it closes too little to be named."
+    )
+    headings = ("rival", "place", "its numbers", "evidence", "tied", "what would distinguish them")
+    columns = ("rival", "kind", "place", "evidence", "tied", "small", "what_would_distinguish_them")
+    return Table("rivals", caption, headings, tuple(rows), _frame(records, columns))
+
+
+def data_findings(discovery: Discovery) -> Table:
+    """What was seen in the files on the way."""
+    return seen_table(discovery.findings, f"Seen in the files, n = {len(discovery.findings)}.")
+
+
+def closed_share(before: float, after: float, floor: float) -> float:
+    """Return which share of the squared gap above the noise is closed; NaN where there is none.
+
+    >>> closed_share(2.0, 1.0, 1.0), round(closed_share(3.0, 1.5, 1.0), 2)
+    (1.0, 0.84)
+    """
+    there = before**2 - floor**2
+    return (before**2 - after**2) / there if there > 0.02 * floor**2 else math.nan
+
+
+def _degrees(one: Estimate) -> str:
+    return estimate_text(one) if shown_unit(one.unit)[1] != 1.0 else ""
+
+
+def _numbers(one: FoundEffect) -> str:
+    told = [f"{name.replace('_', ' ')} {estimate_text(each)}" for name, each in one.estimates.items()]
+    outside = [text for each in one.estimates.values() if (text := outside_text(one, each))]
+    return ", ".join([*told[:2], *outside]) + (f", and {len(told) - 2} more" if len(told) > 2 else "")
+
+
+def _bic(value: float) -> str:
+    return f"{value:.0f}".replace("-", "−") if math.isfinite(value) else NONE
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.0f} %".replace("-", "−") if math.isfinite(share) else NONE
+
+
+def _frame(records: Sequence[tuple[object, ...]], columns: Sequence[str]) -> pd.DataFrame:
+    return pd.DataFrame([*records], columns=pd.Index(columns))
+
 
 VERDICTS = {
     "no_gap": "no gap: nothing is added to the simulation",

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     import matplotlib.figure
 
 LARGEST_INLINE_SVG = 600_000  # bytes; a larger figure is shown as a picture, its SVG lies beside the report
+INLINE_BYTES = 4_000_000  # of all figures of a page together, about; beyond it they are shown as pictures
 PNG_DOTS_PER_INCH = 150
 PNG_COLOURS = 96
 
@@ -61,6 +62,11 @@ def save_figure(figure: Figure, folder: Path, inline_bytes: int = LARGEST_INLINE
     kind, content = ("svg+xml", svg) if len(svg) <= max(inline_bytes, len(png)) else ("png", png)
     data = f"data:image/{kind};base64,{base64.b64encode(content).decode('ascii')}"
     return SavedFigure(figure.name, figure.caption, figure.alt, data, 96 * figure.drawn.get_figwidth())
+
+
+def largest_inline(figures: int) -> int:
+    """Largest SVG [bytes] that is shown in a page of so many figures."""
+    return min(LARGEST_INLINE_SVG, INLINE_BYTES // max(1, figures))
 
 
 def save_figures(figures: Iterable[Figure], folder: Path, inline_bytes: int = LARGEST_INLINE_SVG) -> list[SavedFigure]:

@@ -6,8 +6,17 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from gaitdisc.report.gap_wording import amount, direction_words, p_words, region_words, spoken, with_unit
-from gaitdisc.report.wording import counted, listed, number
+from gaitdisc.report.wording import (
+    amount,
+    counted,
+    direction_words,
+    listed,
+    number,
+    p_words,
+    region_words,
+    spoken,
+    with_unit,
+)
 from gaitdisc.results.mismatch import Exchange, Mismatch
 
 MOST_NAMED = 3

@@ -1,13 +1,18 @@
-"""A page of the report: one file that needs nothing but itself, made of a template and what it shows."""
+"""A page of the report: blocks of sentences, figures and tables in a template; one file that needs nothing else."""
 
 from __future__ import annotations
 
+import os
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import gaitdisc
+from gaitdisc.report.figure import Figure, SavedFigure, save_figures
+from gaitdisc.report.table import Table, as_markdown, save_tables
 from gaitdisc.whole_file import write_whole
 
 if TYPE_CHECKING:
@@ -45,3 +50,71 @@ def _templates() -> jinja2.Environment:
 def _bound(text: str) -> str:
     """Bind numbers to their units, so that no line breaks between them."""
     return re.sub(r"(?<=\d) (?=(?:s|%|Hz)(?!\w))", "\u00a0", text)
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """One part, as it is computed."""
+
+    anchor: str
+    heading: str
+    sentences: tuple[str, ...]  # what the figures and tables say; a block without any is not shown
+    figures: tuple[Figure, ...] = ()
+    tables: tuple[Table, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class SavedBlock:
+    """One part, with its figures and tables on disk."""
+
+    anchor: str
+    heading: str
+    sentences: tuple[str, ...]
+    figures: tuple[SavedFigure, ...]
+    tables: tuple[Table, ...]
+
+
+def save_block(block: Block, folder: Path) -> SavedBlock:
+    """Write the figures and tables of a part."""
+    figures = tuple(save_figures(block.figures, folder))
+    save_tables(block.tables, folder)
+    return SavedBlock(block.anchor, block.heading, block.sentences, figures, block.tables)
+
+
+def write_blocks(title: str, about: str, blocks: Sequence[Block], folder: Path) -> Path:
+    """Write a page of blocks: `report.html`, `figures/` and `tables/`."""
+    saved = [save_block(block, folder) for block in blocks]
+    return write_page("blocks", {"title": title, "about": about, "blocks": saved}, folder)
+
+
+def write_markdown(blocks: Sequence[Block], folder: Path) -> Path:
+    """Write all tables of a page once more as Markdown, each under the heading of its block: `tables.md`."""
+    text = "\n\n".join(f"{block.heading}\n\n{as_markdown(table)}" for block in blocks for table in block.tables)
+    return write_whole(folder / "tables.md", text + "\n")
+
+
+Result = TypeVar("Result")
+MOST_PROCESSES = 4  # that draw; each holds some 400 MB
+
+
+def drawn_side_by_side(draw: Callable[..., Result], each: Sequence[tuple[Any, ...]], alone: int) -> list[Result]:
+    """Draw for each of many, in processes where there are more than so many.
+
+    draw: can be sent to another process, as its arguments and what it gives
+    alone: up to so many are drawn here, one after the other
+
+    >>> drawn_side_by_side(max, [(1, 2), (4, 3)], 2)
+    [2, 4]
+    """
+    processes = min(os.cpu_count() or 1, MOST_PROCESSES, len(each))
+    if len(each) <= alone or processes < 2:
+        return [draw(*arguments) for arguments in each]
+    from joblib import Parallel, delayed
+
+    try:
+        drawn: Any = Parallel(n_jobs=processes, backend="loky", inner_max_num_threads=1)(
+            delayed(draw)(*arguments) for arguments in each
+        )
+    except BrokenProcessPool:  # killed, mostly for its memory: one after the other takes the least
+        return [draw(*arguments) for arguments in each]
+    return list(drawn)

@@ -5,9 +5,10 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Literal, ParamSpec, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gaitdisc.report.palette import Look
 
@@ -151,3 +152,47 @@ def sheets(items: Sequence[Item], most: int, name: str) -> dict[str, list[Item]]
     count = -(-len(items) // most)
     parts = [[items[i] for i in part] for part in np.array_split(np.arange(len(items)), count)]
     return {f"{name}-{i}": part for i, part in enumerate(parts, 1)} if count > 1 else {name: parts[0]}
+
+
+def draw_box(
+    axes: Axes,
+    values: NDArray[np.float64],
+    place: float,
+    colour: str,
+    orientation: Literal["vertical", "horizontal"] = "vertical",
+) -> None:
+    """Draw a box whose whiskers reach the smallest and the largest value.
+
+    values (participant,): finite
+    """
+    line = {"color": colour, "linewidth": 0.9}
+    axes.boxplot(
+        [values],
+        positions=[place],
+        orientation=orientation,
+        widths=0.2,
+        whis=(0, 100),
+        showfliers=False,
+        manage_ticks=False,
+        boxprops=line,
+        whiskerprops=line,
+        capprops=line,
+        medianprops={"color": colour, "linewidth": 2.0},
+    )
+
+
+def axes_or_new(axes: Axes | None) -> Axes:
+    """Axes that were given, or those of a new figure of pyplot, which a notebook shows."""
+    if axes is not None:
+        return axes
+    import matplotlib.pyplot as plt
+
+    return plt.subplots(layout="constrained")[1]
+
+
+def fonts_found() -> list[str]:
+    """Of the fonts that figures are drawn with, those that are here."""
+    from matplotlib import font_manager
+
+    known = {font.name for font in font_manager.fontManager.ttflist}
+    return [name for name in STYLE["font.sans-serif"] if name in known]

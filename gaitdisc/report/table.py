@@ -1,13 +1,18 @@
-"""A table of the report: the cells as they are read, and the numbers behind them, which lie beside the page."""
+"""A table of the report, as read and as numbers beside the page; and the tables that every page ends with."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
+from gaitdisc.recording import Finding
+from gaitdisc.results import Refusal
+from gaitdisc.results.provenance import Provenance
 from gaitdisc.spreadsheet import write_csv
 
 
@@ -61,3 +66,66 @@ def as_markdown(table: Table) -> str:
     return "\n".join(
         [*rows, *("| " + " | ".join(cell.replace("\n", " ") for cell in row) + " |" for row in table.rows)]
     )
+
+
+def seen_table(findings: Sequence[Finding], caption: str, what: str = "what") -> Table:
+    """What was seen in the files, in the order given.
+
+    >>> seen_table([Finding("note", "unit", "a.c3d", "mm taken as m", "")], "Seen, n = 1.").rows
+    (('note', 'a.c3d', '', 'unit: mm taken as m', ''),)
+    """
+    rows = [(f.severity, f.file, f.channel, f"{f.kind}: {f.what}", f.spoils) for f in findings]
+    return words_table("findings", caption, ("severity", "file", "channel", what, "spoils"), rows)
+
+
+def left_out_table(refusals: Sequence[Refusal], name: str, caption: str) -> Table:
+    """Everybody and everything left out, with the reason.
+
+    >>> left_out_table([Refusal("P01", "", "no file")], "left-out", "Left out, n = 1.").rows
+    (('P01', 'all', 'no file'),)
+    """
+    rows = [(refusal.participant, refusal.condition or "all", refusal.reason) for refusal in refusals]
+    return words_table(name, caption, ("participant", "walk", "reason"), rows)
+
+
+def provenance_tables(made: Provenance) -> dict[str, Table]:
+    """Tables `settings`, `versions` and `files` of a result."""
+    files = sorted(made.files.items())
+    return {
+        "settings": words_table(
+            "settings", "Settings, with all defaults.", ("setting", "value"), flattened(made.settings)
+        ),
+        "versions": words_table("versions", "Circumstances.", ("what", "value"), provenance_rows(made)),
+        "files": words_table("files", f"Files read, n = {len(files)}, with their SHA-256.", ("file", "SHA-256"), files),
+    }
+
+
+def flattened(settings: Mapping[str, Any], prefix: str = "") -> list[tuple[str, str]]:
+    """Settings as rows of dotted name and value; of files the name alone, without the folders of this machine.
+
+    >>> flattened({"seed": 1, "filters": {"cutoff_hz": 6.0}})
+    [('seed', '1'), ('filters.cutoff_hz', '6.0')]
+    """
+    rows: list[tuple[str, str]] = []
+    for key, value in settings.items():
+        name = f"{prefix}{key}"
+        if isinstance(value, Mapping):
+            rows.extend(flattened(value, f"{name}."))
+        elif isinstance(value, list | tuple) and any(isinstance(item, Mapping) for item in value):
+            rows.extend(flattened({str(number + 1): item for number, item in enumerate(value)}, f"{name}."))
+        elif isinstance(value, list | tuple):
+            items = [re.split(r"[\\/]", str(item))[-1] if key == "files" else str(item) for item in value]
+            rows.append((name, ", ".join(items)))
+        else:
+            rows.append((name, str(value)))
+    return rows
+
+
+def provenance_rows(provenance: Provenance) -> list[tuple[str, str]]:
+    """Circumstances of the run: section, date, seed, versions."""
+    return [
+        ("follows section", provenance.section),
+        ("computed", provenance.created),
+        ("seed", str(provenance.seed)),
+        *((f"version of {name}", value) for name, value in provenance.versions.items()),
+    ]

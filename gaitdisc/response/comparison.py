@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.results import PairTests, ParticipantResponse
-from gaitdisc.results.pair_test import FAMILIES, FAMILY_COLUMNS, PAIRS, TEST_COLUMNS
+from gaitdisc.results.over_participants import FAMILIES, FAMILY_COLUMNS, PAIRS, TEST_COLUMNS
 from gaitdisc.statistics.holm_sidak import holm_sidak, holm_sidak_by
 from gaitdisc.statistics.signed_rank import signed_rank, smallest_p
 

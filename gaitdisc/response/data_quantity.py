@@ -13,7 +13,7 @@ from gaitdisc.errors import SamplingError, TrainingError
 from gaitdisc.recording import Trajectory
 from gaitdisc.response.fit_response import ResponseSettings, fit_response, held_out_part
 from gaitdisc.results import ParticipantResponse
-from gaitdisc.results.data_quantity import QUANTITY_COLUMNS, DataQuantity
+from gaitdisc.results.participant_response import QUANTITY_COLUMNS, DataQuantity
 
 LENGTHS_S = (1.0, 10.0, 20.0, 30.0, 45.0, 60.0, 90.0, 120.0, 180.0)
 PARTS = ("first", "last")

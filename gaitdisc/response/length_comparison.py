@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import pandas as pd
 
 from gaitdisc.response.comparison import ALPHA, FEWEST, compare_columns, too_few
-from gaitdisc.results.data_quantity import DataQuantity
 from gaitdisc.results.over_participants import LENGTH_COLUMNS, WHOLE, no_rows
+from gaitdisc.results.participant_response import DataQuantity
 
 
 def compare_lengths(quantities: Sequence[DataQuantity], alpha: float = ALPHA) -> pd.DataFrame:

@@ -4,25 +4,22 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from gaitdisc.results.data_quantity import DataQuantity
-    from gaitdisc.results.over_participants import OverParticipants
-    from gaitdisc.results.pair_test import PairTests
-    from gaitdisc.results.participant_response import HeldOut, ParticipantResponse
+    from gaitdisc.results.over_participants import OverParticipants, PairTests
+    from gaitdisc.results.participant_response import DataQuantity, HeldOut, ParticipantResponse
     from gaitdisc.results.pooled_cycles import PooledCycles
-    from gaitdisc.results.provenance import Provenance
-    from gaitdisc.results.refusal import Refusal
+    from gaitdisc.results.provenance import Provenance, Refusal
     from gaitdisc.results.response_run import ResponseRun
     from gaitdisc.results.walk_summary import WalkSummary
 
 _HOME = {
-    "DataQuantity": "data_quantity",
+    "DataQuantity": "participant_response",
     "HeldOut": "participant_response",
     "OverParticipants": "over_participants",
-    "PairTests": "pair_test",
+    "PairTests": "over_participants",
     "ParticipantResponse": "participant_response",
     "PooledCycles": "pooled_cycles",
     "Provenance": "provenance",
-    "Refusal": "refusal",
+    "Refusal": "provenance",
     "ResponseRun": "response_run",
     "WalkSummary": "walk_summary",
 }

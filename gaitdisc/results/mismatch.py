@@ -79,7 +79,7 @@ class Smallest:
 
 
 @dataclass(frozen=True, eq=False)
-class Mismatch(Saved, by="gaitdisc.results.mismatch_folder:save_mismatch"):
+class Mismatch(Saved, by="gaitdisc.results.stores:MISMATCH.save"):
     """First minus second, over the stride.
 
     Parameters

@@ -14,7 +14,7 @@ from gaitdisc.errors import ShapeError
 from gaitdisc.recording import PERCENT, Finding
 from gaitdisc.recording.arrays import read_only
 from gaitdisc.results.on_disk import lies_on_disk, may_lie_on_disk
-from gaitdisc.results.refusal import Refusal
+from gaitdisc.results.provenance import Refusal
 from gaitdisc.results.saved import Saved
 
 CYCLE_COLUMNS = (
@@ -48,7 +48,7 @@ SPATIOTEMPORAL = CYCLE_COLUMNS[CYCLE_COLUMNS.index("stride_s") :]
 
 @may_lie_on_disk("curves")
 @dataclass(frozen=True, eq=False)
-class PooledCycles(Saved, by="gaitdisc.results.cycles_store:save_pooled_cycles"):
+class PooledCycles(Saved, by="gaitdisc.results.stores:CYCLES.save"):
     """Cycles of one person in one session under one condition.
 
     Parameters

@@ -1,4 +1,4 @@
-"""What a result rests on: settings, seed, files by hash, versions."""
+"""What a result rests on, and who or what is left out of it."""
 
 from __future__ import annotations
 
@@ -64,3 +64,12 @@ def code_sha256() -> str:
         if package / "studies" not in path.parents:  # in a wheel they lie in the package, in a checkout beside it
             digest.update(path.read_bytes())
     return digest.hexdigest()
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """A participant or a trial that is not in the tables, and why."""
+
+    participant: str
+    condition: str  # condition of the trial, or empty where the participant as a whole is refused
+    reason: str

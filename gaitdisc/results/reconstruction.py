@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
-from pathlib import Path
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -14,18 +13,9 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel
 from gaitdisc.notebook import html_of
 from gaitdisc.recording import Finding
-from gaitdisc.results.provenance import Provenance
-from gaitdisc.results.refusal import Refusal
+from gaitdisc.results.provenance import Provenance, Refusal
 from gaitdisc.results.saved import Saved
-from gaitdisc.results.unit_folder import load_unit, save_unit, stored_finding
 
-NAME = "reconstruction.json"
-TABLES = {
-    "errors.csv": ("participant", "model", "state", "unit", "rmse"),
-    "summary.csv": ("participant", "model", "strides", "check_loss"),
-    "curves.csv": ("participant", "model", "state", "percent", "measured", "measured_sd"),
-}
-WORDS = ("participant", "model", "state", "unit")
 NEAR = 1.02  # of the least error on the check part: a cheaper model that is within this is recommended instead
 WORTH = 0.1  # of the root mean squared error, which one more sensor must take off
 CALIBRATED = "{}, calibrated"  # name of a model that is corrected for the person who is judged
@@ -38,7 +28,7 @@ MEASURES = ("rmse_deg", "relative_l2", "r2", "relative_l2_whole", "check_loss", 
 
 
 @dataclass(frozen=True, eq=False)
-class Reconstruction(Saved, by="gaitdisc.results.reconstruction:save_reconstruction"):
+class Reconstruction(Saved, by="gaitdisc.results.stores:RECONSTRUCTION.save"):
     """All that a report of a reconstruction needs.
 
     Parameters
@@ -163,46 +153,6 @@ def enough_sensors(found: pd.DataFrame) -> int:
     root = np.sqrt(found["loss"].to_numpy(float))
     worth = root[1:] < (1 - WORTH) * root[:-1]
     return int(np.argmin(worth)) if not worth.all() else len(root) - 1
-
-
-def save_reconstruction(done: Reconstruction, folder: Path) -> None:
-    """Save a reconstruction: `reconstruction.json` and its tables as CSV, every file hashed."""
-    data = {
-        "title": done.title,
-        "sensors": [asdict(channel) for channel in done.sensors],
-        "states": [asdict(channel) for channel in done.states],
-        "split": done.split,
-        "history": done.history,
-        "models": dict(done.models),
-        "recommended": done.recommended,
-        "refusals": [asdict(refusal) for refusal in done.refusals],
-        "findings": [asdict(finding) for finding in done.findings],
-        "provenance": asdict(done.provenance),
-    }
-    tables = {"errors.csv": done.errors, "summary.csv": done.summary, "curves.csv": done.curves}
-    if done.search is not None:
-        tables["search.csv"] = done.search
-    save_unit(folder, NAME, data, tables, {})
-
-
-def load_reconstruction(folder: Path) -> Reconstruction:
-    """Load a reconstruction."""
-    data, tables, _ = load_unit(folder, NAME, TABLES, WORDS)
-    return Reconstruction(
-        title=data["title"],
-        sensors=tuple(Channel(**channel) for channel in data["sensors"]),
-        states=tuple(Channel(**channel) for channel in data["states"]),
-        split=data["split"],
-        history=data["history"],
-        models=data["models"],
-        errors=tables["errors.csv"],
-        summary=tables["summary.csv"],
-        curves=tables["curves.csv"],
-        refusals=tuple(Refusal(**refusal) for refusal in data["refusals"]),
-        findings=tuple(map(stored_finding, data["findings"])),
-        provenance=Provenance(**data["provenance"]),
-        search=tables.get("search.csv"),
-    )
 
 
 def _over(rows: pd.DataFrame) -> pd.Series:

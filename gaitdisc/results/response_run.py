@@ -7,13 +7,10 @@ from dataclasses import dataclass
 import pandas as pd
 
 from gaitdisc.notebook import html_of
-from gaitdisc.results.data_quantity import DataQuantity
-from gaitdisc.results.over_participants import OverParticipants
-from gaitdisc.results.pair_test import PairTests
-from gaitdisc.results.participant_response import ParticipantResponse
+from gaitdisc.results.over_participants import OverParticipants, PairTests
+from gaitdisc.results.participant_response import DataQuantity, ParticipantResponse
 from gaitdisc.results.pooled_cycles import PooledCycles
-from gaitdisc.results.provenance import Provenance
-from gaitdisc.results.refusal import Refusal
+from gaitdisc.results.provenance import Provenance, Refusal
 from gaitdisc.results.saved import Saved
 from gaitdisc.results.walk_summary import WalkSummary
 

@@ -22,37 +22,33 @@ from pathlib import Path
 from typing import Any
 
 from gaitdisc.errors import SchemaError
-from gaitdisc.results.comparison_store import load_over, load_tests, save_over, save_tests
-from gaitdisc.results.cycles_store import cycles_name, load_cycles, save_cycles
-from gaitdisc.results.provenance import Provenance
-from gaitdisc.results.refusal import Refusal
+from gaitdisc.results.provenance import Provenance, Refusal
 from gaitdisc.results.response_run import ResponseRun
-from gaitdisc.results.response_store import load_quantity, load_response, save_quantity, save_response
 from gaitdisc.results.sealed_json import read_sealed, sealed_text
-from gaitdisc.results.unit_folder import FORMAT, NO_KEY, read_json
-from gaitdisc.results.walk_store import load_walk, save_walk, unit_name
+from gaitdisc.results.stores import CYCLES, OVER, QUANTITY, RESPONSE, TESTS, WALK, cycles_name, unit_name
+from gaitdisc.results.unit_folder import FORMAT, read_json
 from gaitdisc.whole_file import write_whole
 
 
 def save_run(run: ResponseRun, folder: Path) -> None:
     """Save what a run is, beside the units that were saved as they were computed."""
     if run.tests is not None:
-        save_tests(run.tests, folder / "tests")
+        TESTS.save(run.tests, folder / "tests")
     if run.over is not None:
-        save_over(run.over, folder / "over")
+        OVER.save(run.over, folder / "over")
     write_whole(folder / "run.json", sealed_text(_described(run)))
 
 
 def save_whole_run(run: ResponseRun, folder: Path) -> None:
     """Save a run with all its units, as it is in memory; `gaitdisc run` in that folder computes the units anew."""
     for walk in run.walks:
-        save_walk(walk, folder / "walks" / unit_name(walk.subject, walk.condition), NO_KEY)
+        WALK.save(walk, folder / "walks" / unit_name(walk.subject, walk.condition))
     for response in run.responses:
-        save_response(response, folder / "responses" / response.participant, NO_KEY)
+        RESPONSE.save(response, folder / "responses" / response.participant)
     for quantity in run.quantities:
-        save_quantity(quantity, folder / "quantities" / quantity.participant, NO_KEY)
+        QUANTITY.save(quantity, folder / "quantities" / quantity.participant)
     for cycles in run.cycles:
-        save_cycles(cycles, folder / "cycles" / cycles_name(cycles.subject, cycles.session, cycles.condition), NO_KEY)
+        CYCLES.save(cycles, folder / "cycles" / cycles_name(cycles.subject, cycles.session, cycles.condition))
     save_run(run, folder)
 
 
@@ -94,14 +90,14 @@ def load_run(folder: Path) -> ResponseRun:
         data["title"],
         data["conditions"]["nominal"],
         data["conditions"]["exo"],
-        tuple(load_walk(folder / "walks" / name).result for name in data["walks"]),
-        tuple(load_response(folder / "responses" / name).result for name in data["responses"]),
+        tuple(WALK.load(folder / "walks" / name) for name in data["walks"]),
+        tuple(RESPONSE.load(folder / "responses" / name) for name in data["responses"]),
         tuple(Refusal(**refusal) for refusal in data["refusals"]),
         Provenance(**data["provenance"]),
-        load_tests(folder / "tests") if data.get("tests") else None,
-        tuple(load_quantity(folder / "quantities" / name).result for name in data.get("quantities", ())),
-        load_over(folder / "over") if data.get("over") else None,
+        TESTS.load(folder / "tests") if data.get("tests") else None,
+        tuple(QUANTITY.load(folder / "quantities" / name) for name in data.get("quantities", ())),
+        OVER.load(folder / "over") if data.get("over") else None,
         (),
-        tuple(load_cycles(folder / "cycles" / name).result for name in data.get("cycles", ())),
+        tuple(CYCLES.load(folder / "cycles" / name) for name in data.get("cycles", ())),
         tuple(Refusal(**refusal) for refusal in data.get("unfitted", ())),
     )

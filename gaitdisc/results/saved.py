@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from importlib import import_module
+from operator import attrgetter
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -13,10 +14,10 @@ HERE = "gaitdisc.results"
 READERS = {  # the JSON file of each kind, and what reads its folder
     "run.json": f"{HERE}.run_store:load_run",
     "discovery.json": f"{HERE}.discovery_folder:load_discovery",
-    "reconstruction.json": f"{HERE}.reconstruction:load_reconstruction",
-    "mismatch.json": f"{HERE}.mismatch_folder:load_mismatch",
-    "variant_run.json": f"{HERE}.variant_store:load_variant_run",
-    "cycles.json": f"{HERE}.cycles_store:load_pooled_cycles",
+    "reconstruction.json": f"{HERE}.stores:RECONSTRUCTION.load",
+    "mismatch.json": f"{HERE}.stores:MISMATCH.load",
+    "variant_run.json": f"{HERE}.stores:load_variant_run",
+    "cycles.json": f"{HERE}.stores:CYCLES.load",
 }
 SHOWN = 6  # files of a folder that holds no result
 
@@ -55,6 +56,6 @@ def load_saved(folder: Path, readers: Mapping[str, str] = READERS) -> Any:
 
 
 def _function(place: str) -> Callable[..., Any]:
-    """What stands at `module:function`, loaded now: a result that is not saved loads no store."""
+    """What stands at `module:name` or `module:name.method`, loaded now: a result that is not saved loads no store."""
     module, _, name = place.partition(":")
-    return getattr(import_module(module), name)
+    return attrgetter(name)(import_module(module))

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import pandas as pd
 
 from gaitdisc.errors import SchemaError
-from gaitdisc.results.pair_test import TEST_COLUMNS
-from gaitdisc.results.refusal import Refusal
+from gaitdisc.results.over_participants import TEST_COLUMNS
+from gaitdisc.results.provenance import Refusal
 from gaitdisc.results.saved import Saved
 
 QUESTIONS = ("modalities", "sensitivity")
@@ -40,7 +40,7 @@ class Variants:
 
 
 @dataclass(frozen=True, eq=False)
-class VariantRun(Saved, by="gaitdisc.results.variant_store:save_whole_variant_run"):
+class VariantRun(Saved, by="gaitdisc.results.stores:save_whole_variant_run"):
     """The variants of a study, over its participants."""
 
     title: str

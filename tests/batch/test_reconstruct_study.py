@@ -8,7 +8,7 @@ import torch
 from gaitdisc.batch.demonstration import write_demonstration
 from gaitdisc.batch.reconstruct_study import ReconstructionSettings, reconstruct_study
 from gaitdisc.errors import SamplingError, SchemaError, TrainingError
-from gaitdisc.report.reconstruction_tables import reconstruction_sentences
+from gaitdisc.report.reconstruction_page import reconstruction_sentences
 
 KINDS = ("linear", "delay ridge")
 

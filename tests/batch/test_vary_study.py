@@ -3,7 +3,7 @@ import pytest
 from gaitdisc.batch.vary_study import vary_study
 from gaitdisc.batch.workers import Workers
 from gaitdisc.errors import SchemaError
-from gaitdisc.results.variant_store import load_variant_run
+from gaitdisc.results.stores import load_variant_run
 
 pytestmark = pytest.mark.usefixtures("trained_briefly")
 

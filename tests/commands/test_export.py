@@ -11,9 +11,9 @@ from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.recording import Samples
 from gaitdisc.results import ResponseRun
-from gaitdisc.results.cycles_store import cycles_name, save_cycles
 from gaitdisc.results.provenance import made_now
 from gaitdisc.results.run_store import save_run
+from gaitdisc.results.stores import CYCLES, cycles_name
 from gaitdisc.sensing.model_folder import SensingModel, save_model
 from gaitdisc.sensing.reconstructor import Sensing, fit_reconstructor
 from gaitdisc.sensing.windows import Lags
@@ -49,7 +49,7 @@ def test_a_saved_model_as_onnx(tmp_path):
 @pytest.mark.parametrize("ending", ["csv", "parquet"])
 def test_cycles_of_a_run_as_tidy_tables(tmp_path, ending):
     one = made_cycles(each=3, out=1)
-    save_cycles(one, tmp_path / "run" / "cycles" / "P01-walk", "key")
+    CYCLES.save(one, tmp_path / "run" / "cycles" / "P01-walk", "key")
     made = made_now({}, 0, {}, "4.2")
     save_run(ResponseRun("t", "walk", "", (), (), (), made, cycles=(one,)), tmp_path / "run")
     words = ["export", str(tmp_path / "run"), "--out", str(tmp_path / "out")]
@@ -65,7 +65,7 @@ def test_cycles_of_a_run_as_tidy_tables(tmp_path, ending):
 
 def test_mean_cycles_of_a_run_as_mot_and_back(tmp_path):
     one = made_cycles(each=3, out=1, session="visit 1")
-    save_cycles(one, tmp_path / "run" / "cycles" / cycles_name("P01", "visit 1", "walk"), "key")
+    CYCLES.save(one, tmp_path / "run" / "cycles" / cycles_name("P01", "visit 1", "walk"), "key")
     save_run(ResponseRun("t", "walk", "", (), (), (), made_now({}, 0, {}, "4.2"), cycles=(one,)), tmp_path / "run")
     done = CliRunner().invoke(app, ["export", str(tmp_path / "run"), "--out", str(tmp_path / "out"), "--mot"])
     assert done.exit_code == 0, done.output

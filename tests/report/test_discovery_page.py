@@ -1,11 +1,121 @@
+import math
 import re
+from dataclasses import replace
 
+import numpy as np
 import pandas as pd
 import pytest
-from manufactured_discovery import manufactured
+from manufactured_discovery import CUBIC, manufactured
 
-from gaitdisc.report.discovery_page import VERDICTS, write_discovery_report
+from gaitdisc.report.discovery_page import (
+    VERDICTS,
+    closed_share,
+    corrections_table,
+    data_findings,
+    estimates_table,
+    gap_table,
+    models_table,
+    rivals_table,
+    trials_table,
+    where_table,
+    write_discovery_report,
+)
 from gaitdisc.results import discovery as noun
+from gaitdisc.results.discovery import Correction, Estimate, FoundEffect, GapSize
+
+
+def test_an_angle_is_told_in_degrees_too():
+    rows = estimates_table(manufactured()).rows
+    assert rows[0][2:] == ("stiffness", "286 N m/rad", "279 N m/rad", "293 N m/rad", "")
+    assert rows[1][-1] == "2.0 deg (95 % 1.9-2.1)"
+
+
+def test_where_no_number_is_an_angle_no_column_is_in_degrees():
+    found = manufactured()
+    (effect,) = found.effects
+    table = estimates_table(
+        replace(found, effects=(replace(effect, estimates={"stiffness": effect.estimates["stiffness"]}),))
+    )
+    assert table.columns[-1] == "high"
+    assert table.rows[0][2:] == ("stiffness", "286 N m/rad", "279 N m/rad", "293 N m/rad")
+
+
+def test_the_gap_is_told_for_both_parts_of_the_data():
+    table = gap_table(manufactured())
+    assert [row[0] for row in table.rows] == ["held out", "fitted"]
+    assert table.rows[0][2:] == ("3.09 deg", "0.60 deg", "0.50 deg", "99 %", "0.010")
+    assert table.numbers["before"].iloc[0] == 0.054
+
+
+@pytest.mark.parametrize(("sizes", "closed"), [((2.0, 1.0, 1.0), 1.0), ((2.0, 2.0, 1.0), 0.0)])
+def test_closed_is_of_the_squared_gap_above_the_noise(sizes, closed):
+    assert closed_share(*sizes) == closed
+
+
+def test_where_nothing_stands_above_the_noise_nothing_is_closed():
+    assert math.isnan(closed_share(1.0, 1.0, 1.0))
+
+
+def test_where_has_share_stride_and_region():
+    assert where_table(manufactured()).rows == (("at the ankle_moment port", "97 %", "12 to 55 %", "theta > 0.035"),)
+
+
+def test_a_rival_is_told_with_what_would_tell_it_apart():
+    table = rivals_table(manufactured(rivals=(replace(CUBIC, tied=True),)))
+    assert table.rows[0][0] == "cubic stiffness"
+    assert table.rows[0][3:] == ("640", "yes", "movement through a wider range, to both sides of rest")
+    assert "(what was named: 812)" in table.caption
+
+
+def test_findings_are_told():
+    assert data_findings(manufactured()).rows[0][0] == "warning"
+
+
+def test_what_moved_within_its_bounds_has_a_table_of_its_own():
+    moved = Correction("inertia", 0.110, Estimate(0.1126, 0.1118, 0.1134, "kg m^2"))
+    table = corrections_table(manufactured(corrections=(moved,)))
+    assert table.rows == (("inertia", "0.11 kg m^2", "0.1126 kg m^2", "0.1118 kg m^2", "0.1134 kg m^2"),)
+    assert "no finding" in table.caption
+    assert corrections_table(manufactured()).rows == ()
+
+
+def test_a_rival_outside_its_bounds_is_said_to_lie_there():
+    found = {"value": Estimate(1.817, 1.7, 1.9, "N m/rad")}
+    rival = FoundEffect("parameter", "strength", "wrong_parameter", "", found, bounds=(0.3, 1.7))
+    (row,) = rivals_table(manufactured(rivals=(rival,))).rows
+    assert row[2].endswith(", outside its bounds, 0.3 to 1.7 N m/rad")
+
+
+def test_the_test_says_on_how_many_pieces_and_of_what_where_nothing_is_named():
+    size = GapSize(1, 1, 1, 0.34, {"theta": (0.054, 0.054, 0.0087)}, 9)
+    table = gap_table(manufactured(verdict="no_gap", effects=(), held_out=size))
+    assert "over pieces of the runs (held out: 9 pieces" in table.caption
+    assert table.caption.endswith("Where nothing is named, p is that of cubic stiffness at the ankle_moment port.")
+    assert "Where nothing is named" not in gap_table(manufactured()).caption
+
+
+def test_every_held_out_trial_has_its_errors():
+    found = manufactured()
+    table = trials_table(found)
+    assert set(table.numbers["trial"]) == {found.runs.names[one] if found.runs.names else str(one + 1)
+                                           for one in found.runs.trial}  # fmt: skip
+    first = found.runs.trial == found.runs.trial[0]
+    before = np.sqrt(np.mean((found.runs.measured[first] - found.runs.simulated[first])[..., 0] ** 2))
+    assert table.numbers["before"].iloc[0] == pytest.approx(before)
+
+
+def test_a_small_rival_is_said_to_be_small():
+    small = FoundEffect("port", "load", "constant_load", "0.1", small=True)
+    table = rivals_table(manufactured(rivals=(small,)))
+    assert table.rows[0][4] == "small"
+    assert table.numbers["small"].tolist() == [True]
+
+
+def test_the_models_of_chapter_4_stand_beside_the_named_effect_in_the_channels_unit():
+    table = models_table(replace(manufactured(), beside={"Nominal": 21.4, "Nominal + named effect": 3.2}))
+    assert [row[0] for row in table.rows] == ["Nominal", "Nominal + named effect"]
+    assert table.rows[0][1].startswith("21.4 ")
+    assert models_table(manufactured()).rows == ()
 
 
 def test_the_answer_comes_first_and_the_page_needs_nothing_else(tmp_path):

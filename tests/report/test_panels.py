@@ -1,6 +1,11 @@
+import matplotlib as mpl
+import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
-from gaitdisc.report.panels import WIDTH, Room, decades, in_style, panels, sheets
+from gaitdisc.report.panels import WIDTH, Room, axes_or_new, decades, draw_box, fonts_found, in_style, panels, sheets
+
+mpl.use("Agg")
 
 
 def test_panels_have_their_size_and_do_not_overlap():
@@ -30,8 +35,28 @@ def test_sheets_are_of_nearly_equal_length():
 
 
 def test_the_users_own_style_does_not_leak_in_or_out():
-    import matplotlib as mpl
-
     with mpl.rc_context({"lines.linewidth": 17.0}):
         assert in_style(lambda: mpl.rcParams["lines.linewidth"])() == mpl.rcParamsDefault["lines.linewidth"]
         assert mpl.rcParams["lines.linewidth"] == 17.0
+
+
+@pytest.mark.parametrize("orientation", ["vertical", "horizontal"])
+def test_the_box_spans_the_quartiles_and_its_whiskers_everything(orientation):
+    _, [[axes]] = panels(1, 1, 1.0, Room())
+    draw_box(axes, np.array([0.0, 1.0, 2.0, 3.0, 9.0]), 5.0, "#123456", orientation)
+    ends = [line.get_xydata()[:, 1 if orientation == "vertical" else 0] for line in axes.lines]
+    assert {tuple(sorted({float(x) for x in end})) for end in ends} >= {(1.0, 3.0), (0.0, 1.0), (3.0, 9.0), (2.0,)}
+    assert {line.get_color() for line in axes.lines} == {"#123456"}
+
+
+def test_own_axes_are_given_back_and_new_ones_are_pyplots():
+    import matplotlib.pyplot as plt
+
+    own = Figure().subplots()
+    assert axes_or_new(own) is own
+    assert axes_or_new(None) is plt.gca()
+    plt.close("all")
+
+
+def test_the_font_that_matplotlib_brings_is_found():
+    assert "DejaVu Sans" in fonts_found()

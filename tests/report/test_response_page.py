@@ -10,7 +10,9 @@ import pandas as pd
 import pytest
 
 from gaitdisc.errors import GaitdiscError
+from gaitdisc.recording import Finding
 from gaitdisc.report import response_page, write_report
+from gaitdisc.report.response_page import method_sentences
 from gaitdisc.results import Refusal
 
 OUTPUTS = ("hip_flexion_r", "ankle_angle_l")
@@ -104,7 +106,7 @@ def test_walks_without_a_response_are_still_shown(run_maker, refusal, tmp_path):
 
 @pytest.mark.usefixtures("unpainted")
 def test_several_participants_are_folded_and_none_is_lost(run_maker, tmp_path, monkeypatch):
-    monkeypatch.setattr("gaitdisc.report.side_by_side.MOST_PROCESSES", 1)
+    monkeypatch.setattr("gaitdisc.report.page.MOST_PROCESSES", 1)
     text = write_report(run_maker(3, outputs=("hip_flexion_r",)), tmp_path).read_text(encoding="utf-8")
     assert text.count("<summary>Tables and figures of P0") == 3
     assert "3 participants were analysed" in text
@@ -132,7 +134,7 @@ def test_the_paired_tests_have_their_section_and_the_same_bytes(tested_maker, tm
     """Without the figures of each participant, which are drawn and compared above."""
     none = {subject: [] for subject in ("held_out", "residual", "curves", "strides")}
     brief = partial(response_page.Section, sentences=[], r2=None, reasons=[], dropped=None, figures=none)
-    monkeypatch.setattr("gaitdisc.report.side_by_side.MOST_PROCESSES", 1)
+    monkeypatch.setattr("gaitdisc.report.page.MOST_PROCESSES", 1)
     monkeypatch.setattr(response_page, "_section", lambda _, person, name, *__: brief(person, f"participant-{name}"))
     run = tested_maker(6, ("hip_flexion_r",))
     text = write_report(run, tmp_path / "a").read_text(encoding="utf-8")
@@ -171,7 +173,7 @@ def test_participants_drawn_side_by_side_are_those_drawn_alone(run_maker, tmp_pa
 @pytest.mark.usefixtures("unpainted")
 def test_a_process_that_is_killed_while_it_draws_costs_its_time_alone(run_maker, tmp_path, monkeypatch):
     run = run_maker(3, outputs=("hip_flexion_r",))
-    monkeypatch.setattr("gaitdisc.report.side_by_side.os.cpu_count", lambda: 2)
+    monkeypatch.setattr("gaitdisc.report.page.os.cpu_count", lambda: 2)
     here, drawn = os.getpid(), response_page._section
 
     def killed_elsewhere(*given):
@@ -182,3 +184,39 @@ def test_a_process_that_is_killed_while_it_draws_costs_its_time_alone(run_maker,
     monkeypatch.setattr(response_page, "_section", killed_elsewhere)
     text = response_page.write_report(run, tmp_path).read_text(encoding="utf-8")
     assert text.count('class="participant"') == 3
+
+
+def test_five_sentences_name_the_equations(run):
+    sentences = method_sentences(run)
+    assert len(sentences) == 5
+    text = " ".join(sentences)
+    assert all(f"Eq. 4.{i}" in text for i in (1, 2, 3, 4, 5))
+    assert "last 7.5 s of each walk" in text
+    assert "natural" in text
+    assert "spring" in text
+
+
+def test_walks_whose_angles_are_of_markers_are_counted(run):
+    first, *others = run.walks
+    said = Finding("note", "marker set", "P01 natural, file 1", "plug_in_gait: ...", "")
+    some = replace(run, walks=(replace(first, findings=(*first.findings, said)), *others))
+    sentences = method_sentences(some)
+    assert len(sentences) == 6
+    assert sentences[0].startswith(f"Joint angles of 1 of {len(run.walks)} walks are computed from markers")
+
+
+def test_the_filter_is_said_in_words(run, run_maker):
+    # 5.39 Hz: where two passes of order 4 at 6 Hz and 100 samples/s have lost half of the power
+    last = method_sentences(run)[-1]
+    assert "order 4 a pass, forwards and backwards, so without lag, 6 Hz at −3 dB of one pass" in last
+    assert "both passes: 5.39 Hz at 100 samples/s" in last
+    assert "EMG" not in last
+    with_emg = run_maker(outputs=("emg_sol_r",))
+    assert "EMG was high-passed at 40 Hz, rectified, and low-passed at 10 Hz" in method_sentences(with_emg)[-1]
+
+
+def test_other_settings_are_said_as_they_are(run):
+    other = replace(run, provenance=replace(run.provenance, settings={"low_pass_hz": 6, "seed": 1}))
+    assert method_sentences(other)[-1].startswith("Filters as the settings state them: low_pass_hz = 6. ")
+    none = replace(run, provenance=replace(run.provenance, settings={}))
+    assert method_sentences(none)[-1].startswith("The settings of the run name no filter. ")

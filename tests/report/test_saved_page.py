@@ -1,5 +1,7 @@
 """Every result that is saved is drawn again from its folder: the same page as of the result in memory."""
 
+from __future__ import annotations
+
 import json
 
 import pandas as pd
@@ -15,10 +17,14 @@ from gaitdisc.report.discovery_page import write_discovery_report
 from gaitdisc.report.mismatch_page import write_mismatch_report
 from gaitdisc.report.reconstruction_page import write_reconstruction_report
 from gaitdisc.report.response_page import write_report
-from gaitdisc.report.saved_page import PAGES, draw_saved
-from gaitdisc.report.variants_page import write_variants
+from gaitdisc.report.saved_page import PAGES, draw_saved, page_of
+from gaitdisc.report.variants import write_variants
+from gaitdisc.results import ResponseRun
+from gaitdisc.results.provenance import made_now
+from gaitdisc.results.run_store import save_run
 from gaitdisc.results.saved import READERS, Saved
 from gaitdisc.results.sealed_json import read_sealed, sealed_text
+from gaitdisc.results.stores import CYCLES
 from gaitdisc.results.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, VariantRun, Variants
 
 pytestmark = pytest.mark.usefixtures("unpainted")
@@ -95,3 +101,52 @@ def test_a_folder_without_a_result_is_refused_with_what_it_holds(tmp_path):
     (tmp_path / "discovery.json").write_text(json.dumps({"verdict": "no_gap"}))
     with pytest.raises(SchemaError, match="without a hash of its own"):
         draw_saved(tmp_path)
+
+
+@pytest.fixture
+def folder(tmp_path):
+    one = made_cycles()
+    CYCLES.save(one, tmp_path / "cycles" / "P01-walk", "key")
+    _save(tmp_path, one)
+    return tmp_path
+
+
+def _save(folder, one, title="t"):
+    save_run(ResponseRun(title, "walk", "", (), (), (), made_now({}, 0, {}, "4.2"), cycles=(one,)), folder)
+
+
+def _drawing(folder, drawn):
+    def draw():
+        drawn.append(1)
+        (folder / "report" / "figures").mkdir(parents=True, exist_ok=True)
+        (folder / "report" / "figures" / "a.svg").write_text("<svg/>")
+        page = folder / "report" / "report.html"
+        page.write_text("page")
+        return page
+
+    return draw
+
+
+def test_a_page_of_the_same_run_is_not_drawn_again(folder):
+    drawn: list[int] = []
+    first = page_of(folder, _drawing(folder, drawn))
+    _save(folder, made_cycles())  # another time of making, the same run
+    assert page_of(folder, _drawing(folder, drawn)) == first and len(drawn) == 1
+
+
+@pytest.mark.parametrize("change", ["title", "unit", "page", "figure", "seal"])
+def test_whatever_is_changed_is_drawn_anew(folder, change):
+    drawn: list[int] = []
+    page_of(folder, _drawing(folder, drawn))
+    if change == "title":
+        _save(folder, made_cycles(), "another")
+    elif change == "unit":
+        CYCLES.save(made_cycles(each=3), folder / "cycles" / "P01-walk", "other")
+    elif change == "page":
+        (folder / "report" / "report.html").write_text("edited")
+    elif change == "figure":
+        (folder / "report" / "figures" / "a.svg").unlink()
+    else:
+        (folder / "report" / "drawn.json").write_text("{}")
+    page_of(folder, _drawing(folder, drawn))
+    assert len(drawn) == 2

@@ -1,6 +1,8 @@
 import pytest
+from rich.console import Console
+from rich.table import Table
 
-from gaitdisc.report.wording import counted, label, listed, number, sideless, unit_text, upwards
+from gaitdisc.report.wording import counted, direction_words, label, listed, number, plain, sideless, unit_text, upwards
 
 
 def test_sides_of_known_and_unknown_channels():
@@ -39,3 +41,27 @@ def test_counts_lists_and_units():
     assert (counted(0, "stride"), counted(1, "stride")) == ("0 strides", "1 stride")
     assert (listed(["a"]), listed(["a", "b"])) == ("a", "a and b")
     assert unit_text("V/s2") == "V/s²"
+
+
+@pytest.mark.parametrize(
+    ("name", "gap", "unit", "words"),
+    [
+        ("knee_angle_l", 3.0, "deg", "the left knee is up to 3.0 deg more flexed"),
+        ("hip_rotation_r", -2.0, "deg", "the right hip is up to 2.0 deg more externally rotated"),
+        ("emg_sol_r", 0.00012, "V", "right EMG soleus is up to 0.00012 V higher"),
+        ("ankle_angle_r_moment", -12.0, "N m", "right ankle angle moment is up to 12.0 N m lower"),
+    ],
+)
+def test_directions(name, gap, unit, words):
+    assert direction_words(name, gap, unit) == words
+
+
+def test_words_are_printed_letter_by_letter():
+    console = Console(width=80, force_terminal=False)
+    table = Table(caption=plain("[/c]"))
+    table.add_column(plain("[b]h"))
+    table.add_row(plain("xo[/b] :smile:"))
+    with console.capture() as capture:
+        console.print(table)
+        console.print(plain("[exo]"))
+    assert all(words in capture.get() for words in ("[b]h", "[/c]", "xo[/b] :smile:", "[exo]"))

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from gaitdisc.response.comparison import by_family, compare_columns, compare_models, too_few
-from gaitdisc.results.pair_test import PAIRS
+from gaitdisc.results.over_participants import PAIRS
 
 VARIABLES = ("hip", "knee", "ankle", "HAM", "RF", "VAS", "GAS", "SOL")
 

@@ -3,8 +3,8 @@ import pandas as pd
 import pytest
 
 from gaitdisc.response.length_comparison import compare_lengths, why_no_lengths
-from gaitdisc.results.data_quantity import QUANTITY_COLUMNS, DataQuantity
 from gaitdisc.results.over_participants import LENGTH_COLUMNS, WHOLE
+from gaitdisc.results.participant_response import QUANTITY_COLUMNS, DataQuantity
 
 VARIABLES = ("hip", "knee")
 

@@ -9,7 +9,7 @@ import pytest
 from gaitdisc.channel import Channel
 from gaitdisc.recording import Finding
 from gaitdisc.results import HeldOut, PairTests, ParticipantResponse, Provenance, Refusal, ResponseRun, WalkSummary
-from gaitdisc.results.pair_test import FAMILY_COLUMNS, TEST_COLUMNS
+from gaitdisc.results.over_participants import FAMILY_COLUMNS, TEST_COLUMNS
 
 
 @pytest.fixture

@@ -1,14 +1,62 @@
+"""A published reference as a table; a made one, whose numbers are known."""
+
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from made_clinic import made_controls
+from made_clinic import SOURCE, made_controls, made_person, published_table, written_table
 
+from gaitdisc.clinic.reading import read_beside
 from gaitdisc.errors import SchemaError
-from gaitdisc.results.clinical_reference import FILE, load_reference, save_reference
+from gaitdisc.results.clinical_reference import FILE, load_reference, read_published, save_reference
 from gaitdisc.results.sealed_json import sealed_text
+
+
+def test_every_second_percent_becomes_a_band_on_101_points(tmp_path):
+    source, (slow, free) = read_published(written_table(tmp_path, published_table()))
+    assert source == SOURCE[2:] and (slow.name, slow.speeds, slow.people) == ("slow", (0.2, 0.36), 40)
+    np.testing.assert_allclose(free.bands["knee_flexion"].mean, 0.1 * np.arange(101))
+    np.testing.assert_allclose(free.bands["knee_flexion"].sd, 2.5)
+    assert free.bands["knee_flexion"].people == 83
+
+
+def test_a_person_is_beside_the_group_of_the_own_speed_with_scores_and_without_limits(tmp_path):
+    reference = load_reference(written_table(tmp_path, published_table()))
+    grown = read_beside(replace(made_person(), leg_m=0.9), reference)  # 1.215 m/s: 0.41
+    assert (
+        "“free”, the nearest in speed: 83 people, dimensionless speed 0.36 to 0.50; this person's is 0.41"
+        in grown.beside[1]
+    )
+    assert grown.beside[0] == f"Published: {SOURCE[2:]}."
+    assert grown.profile is not None and grown.profile.both.people == 83
+    assert "no single legs to take limits from" in grown.silent and grown.numbers == ()
+    unknown = read_beside(made_person(), reference)
+    assert "its group “free”, 83 people; no group goes by the speed" in unknown.beside[1]
+    slow = read_beside(replace(made_person(), leg_m=2.5), reference)
+    np.testing.assert_allclose(slow.bands["hip_flexion"].mean, 0.1 * np.arange(101) - 5.0)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (published_table().replace(SOURCE + "\n", ""), "has no source"),
+        (published_table().replace(",sd\n", ",spread\n"), "has no column sd"),
+        (published_table().replace("knee_flexion", "knee"), "slow knee: a variable is one of pelvis_tilt"),
+        (published_table(lambda row: "" if ",98," in row or ",100," in row else row), "found 49 from 0 to 96 %"),
+        (published_table().replace("2.5\n", "-2.5\n"), "with mean and sd"),
+    ],
+)
+def test_another_form_is_refused_with_its_place(tmp_path, text, words):
+    with pytest.raises(SchemaError, match=words):
+        load_reference(written_table(tmp_path, text))
+
+
+def test_it_is_kept_as_its_table_and_saved_as_no_legs(tmp_path):
+    with pytest.raises(SchemaError, match="Keep its table"):
+        save_reference(load_reference(written_table(tmp_path, published_table())), tmp_path / "run")
 
 
 def test_a_reference_is_one_file_that_is_read_as_it_was_saved(tmp_path):

@@ -14,35 +14,38 @@ from resealed import resealed
 
 from gaitdisc.errors import GaitdiscError, SchemaError
 from gaitdisc.results import DataQuantity, OverParticipants, Refusal
-from gaitdisc.results.comparison_store import load_over, load_tests, save_over
-from gaitdisc.results.data_quantity import QUANTITY_COLUMNS
 from gaitdisc.results.over_participants import TABLES, no_rows
-from gaitdisc.results.response_store import (
-    load_quantity,
-    load_refused,
-    load_response,
-    save_quantity,
-    save_refused,
-    save_response,
-)
+from gaitdisc.results.participant_response import QUANTITY_COLUMNS
 from gaitdisc.results.run_store import load_run, save_run
+from gaitdisc.results.stores import (
+    OVER,
+    QUANTITY,
+    RESPONSE,
+    TESTS,
+    VARIANTS,
+    WALK,
+    Refused,
+    load_refused,
+    load_variant_run,
+    save_refused,
+    save_variant_run,
+    unit_name,
+)
 from gaitdisc.results.unit_folder import damaged_units
-from gaitdisc.results.variant_store import load_variant_run, load_variants, save_variant_run, save_variants
 from gaitdisc.results.variants import VARIANT_COLUMNS, VARIANT_TEST_COLUMNS, VariantRun, Variants
-from gaitdisc.results.walk_store import load_walk, save_walk, unit_name
 
 SEED, MUTATIONS = 11, 20
 DEEP = "[" * 20_000
 OTHER = (None, True, -1, 1e308, "x", [], {}, [[]], {"x": []})
 LOAD = {
-    "walks/P01-exo": load_walk,
-    "responses/P01": load_response,
+    "walks/P01-exo": WALK.load_keyed,
+    "responses/P01": RESPONSE.load_keyed,
     "refused/P02": load_refused,
-    "quantities/P01": load_quantity,
-    "modalities/people/P01": load_variants,
+    "quantities/P01": QUANTITY.load_keyed,
+    "modalities/people/P01": VARIANTS.load_keyed,
     "modalities": load_variant_run,
-    "tests": load_tests,
-    "over": load_over,
+    "tests": TESTS.load,
+    "over": OVER.load,
     ".": load_run,
 }
 
@@ -63,13 +66,13 @@ def folder(everything, run, pair_tests, tmp_path):
         variants = Variants("P01", "modalities", few, {"without EMG": "none"})
         no_tests = pd.DataFrame(columns=list(VARIANT_TEST_COLUMNS))
         varied = VariantRun("t", "exo", "modalities", (variants,), no_tests, (Refusal("P02", "", "short"),), (7.0, 8.0))
-        save_walk(run.walks[0], everything / "walks" / unit_name("P01", "exo"), "key")
-        save_response(run.responses[0], everything / "responses" / "P01", "key")
-        save_refused((Refusal("P02", "exo", "short"),), ("exo",), everything / "refused" / "P02", "key")
-        save_quantity(quantity, everything / "quantities" / "P01", "key")
-        save_variants(variants, everything / "modalities" / "people" / "P01", "key")
+        WALK.save(run.walks[0], everything / "walks" / unit_name("P01", "exo"), "key")
+        RESPONSE.save(run.responses[0], everything / "responses" / "P01", "key")
+        save_refused(Refused((Refusal("P02", "exo", "short"),), ("exo",), "key"), everything / "refused" / "P02")
+        QUANTITY.save(quantity, everything / "quantities" / "P01", "key")
+        VARIANTS.save(variants, everything / "modalities" / "people" / "P01", "key")
         save_variant_run(varied, everything / "modalities")
-        save_over(over, everything / "over")
+        OVER.save(over, everything / "over")
         save_run(replace(run, tests=pair_tests, over=over, quantities=(quantity,)), everything)
     return shutil.copytree(everything, tmp_path / "run")
 
@@ -177,11 +180,11 @@ def test_a_pipe_in_the_place_of_a_file_is_not_waited_for(folder):
     (folder / "over" / "over.json").unlink()
     os.mkfifo(folder / "over" / "over.json")
     with pytest.raises(SchemaError, match=r"over\.json is missing"):
-        load_over(folder / "over")
+        OVER.load(folder / "over")
 
 
 def test_arrays_that_change_after_the_unit_was_loaded_are_refused(folder):
-    walk, _ = load_walk(folder / "walks" / "P01-exo")
+    walk, _ = WALK.load_keyed(folder / "walks" / "P01-exo")
     np.savez(folder / "walks" / "P01-exo" / "arrays.npz", curves=np.zeros((4, 101, 2)))
     with pytest.raises(SchemaError, match=r"arrays\.npz is changed since it was saved"):
         _ = walk.curves

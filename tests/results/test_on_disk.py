@@ -6,13 +6,13 @@ import pytest
 from gaitdisc.errors import SchemaError
 from gaitdisc.results import on_disk
 from gaitdisc.results.on_disk import lies_on_disk
-from gaitdisc.results.response_store import load_response, save_response
+from gaitdisc.results.stores import RESPONSE
 
 
 @pytest.fixture
 def stored(response, tmp_path):
-    save_response(response, tmp_path, "key")
-    return load_response(tmp_path)[0]
+    RESPONSE.save(response, tmp_path, "key")
+    return RESPONSE.load(tmp_path)
 
 
 def test_arrays_are_read_when_they_are_looked_at(response, stored, monkeypatch):
@@ -32,8 +32,8 @@ def test_a_response_that_goes_to_another_process_takes_no_arrays_along(response,
 
 
 def test_arrays_that_changed_or_went_since_the_run_was_loaded_are_told(response, tmp_path):
-    save_response(response, tmp_path, "key")
-    changed, gone = load_response(tmp_path)[0], load_response(tmp_path)[0]
+    RESPONSE.save(response, tmp_path, "key")
+    changed, gone = RESPONSE.load(tmp_path), RESPONSE.load(tmp_path)
     on_disk._arrays.cache_clear()
     (tmp_path / "arrays.npz").write_bytes(b"other")
     with pytest.raises(SchemaError, match=r"arrays.npz is changed since it was saved.*gaitdisc run"):

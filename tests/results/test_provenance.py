@@ -1,5 +1,6 @@
 from datetime import UTC, datetime, timedelta
 
+from gaitdisc.results import Refusal
 from gaitdisc.results.provenance import code_sha256, installed_versions, made_now
 
 
@@ -20,3 +21,8 @@ def test_what_is_made_now_says_when_and_by_what():
     )
     assert made.versions == installed_versions()
     assert timedelta(0) <= datetime.now(UTC) - datetime.fromisoformat(made.created) < timedelta(minutes=1)
+
+
+def test_a_refusal_is_a_participant_a_walk_and_a_reason():
+    assert Refusal("P01", "", "why").reason == "why"
+    assert Refusal("P01", "walk 2", "why") != Refusal("P01", "walk 3", "why")

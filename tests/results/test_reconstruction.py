@@ -12,10 +12,9 @@ from gaitdisc.results.reconstruction import (
     MEASURES,
     Reconstruction,
     enough_sensors,
-    load_reconstruction,
     mean_over_people,
-    save_reconstruction,
 )
+from gaitdisc.results.stores import RECONSTRUCTION
 
 
 @pytest.fixture
@@ -63,7 +62,7 @@ def test_the_cheaper_model_is_recommended_where_it_errs_no_more_than_two_percent
 
 
 def test_it_is_saved_with_its_tables(done, tmp_path):
-    save_reconstruction(done, tmp_path)
+    done.save(tmp_path)
     kept = json.loads((tmp_path / "reconstruction.json").read_text())
     assert kept["recommended"] == "fourier ridge"
     assert set(kept["sha256"]) == {"errors.csv", "summary.csv", "curves.csv"}
@@ -82,7 +81,7 @@ def test_a_calibrated_model_does_not_decide_which_is_recommended(done):
 
 
 def test_a_search_is_saved_with_the_rest(done, tmp_path):
-    save_reconstruction(replace(done, search=pd.DataFrame({"sensors": [1], "names": ["a"]})), tmp_path)
+    replace(done, search=pd.DataFrame({"sensors": [1], "names": ["a"]})).save(tmp_path)
     assert (tmp_path / "search.csv").read_text().splitlines() == ["sensors,names", "1,a"]
 
 
@@ -109,7 +108,7 @@ def test_it_comes_back_with_names_that_look_like_numbers(done, tmp_path):
         curves=done.errors.assign(percent=0.0, measured=1.0, measured_sd=0.1, unit="1"),
     )
     named.save(tmp_path)
-    again = load_reconstruction(tmp_path)
+    again = RECONSTRUCTION.load(tmp_path)
     assert again.participants == named.participants == ("007", "P02", "P03")
     for table in ("errors", "summary", "curves"):
         pd.testing.assert_frame_equal(getattr(again, table), getattr(named, table))
@@ -122,4 +121,4 @@ def test_a_table_that_was_changed_is_refused(done, tmp_path):
     replace(done, curves=done.errors.assign(percent=0.0, measured=1.0, measured_sd=0.1)).save(tmp_path)
     (tmp_path / "errors.csv").write_text((tmp_path / "errors.csv").read_text().replace("2.0", "1.0"))
     with pytest.raises(SchemaError, match=r"errors.csv.*changed since it was saved"):
-        load_reconstruction(tmp_path)
+        RECONSTRUCTION.load(tmp_path)

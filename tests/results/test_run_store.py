@@ -5,14 +5,13 @@ import pytest
 from resealed import resealed
 
 from gaitdisc.errors import SchemaError
-from gaitdisc.results.response_store import save_response
 from gaitdisc.results.run_store import created_before, load_run, save_run
-from gaitdisc.results.walk_store import save_walk, unit_name
+from gaitdisc.results.stores import RESPONSE, WALK, unit_name
 
 
 def test_a_run_comes_back_as_it_was(run, tmp_path):
-    save_walk(run.walks[0], tmp_path / "walks" / unit_name("P01", "exo"), "key")
-    save_response(run.responses[0], tmp_path / "responses" / "P01", "key")
+    WALK.save(run.walks[0], tmp_path / "walks" / unit_name("P01", "exo"), "key")
+    RESPONSE.save(run.responses[0], tmp_path / "responses" / "P01", "key")
     save_run(run, tmp_path)
     loaded = load_run(tmp_path)
     assert (loaded.title, loaded.refusals, loaded.provenance) == (run.title, run.refusals, run.provenance)
@@ -21,8 +20,8 @@ def test_a_run_comes_back_as_it_was(run, tmp_path):
 
 @pytest.fixture
 def saved(run, pair_tests, tmp_path):
-    save_walk(run.walks[0], tmp_path / "walks" / unit_name("P01", "exo"), "key")
-    save_response(run.responses[0], tmp_path / "responses" / "P01", "key")
+    WALK.save(run.walks[0], tmp_path / "walks" / unit_name("P01", "exo"), "key")
+    RESPONSE.save(run.responses[0], tmp_path / "responses" / "P01", "key")
     save_run(replace(run, tests=pair_tests), tmp_path)
     return tmp_path
 

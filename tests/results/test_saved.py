@@ -2,6 +2,7 @@
 
 import sys
 from importlib import import_module
+from operator import attrgetter
 from types import ModuleType
 
 import pytest
@@ -26,7 +27,7 @@ def test_a_result_is_saved_by_what_its_class_names_and_gives_the_folder(tmp_path
 def test_what_reads_and_what_saves_a_kind_is_there():
     for place in (*READERS.values(), *(kind._by for kind in Saved.__subclasses__() if kind is not Kept)):
         module, _, name = place.partition(":")
-        assert callable(getattr(import_module(module), name)), place
+        assert callable(attrgetter(name)(import_module(module))), place
 
 
 def test_no_result_is_refused(tmp_path):

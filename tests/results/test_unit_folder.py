@@ -6,38 +6,38 @@ from resealed import resealed
 
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Finding
-from gaitdisc.results.response_store import load_response, save_response
 from gaitdisc.results.run_store import load_run
+from gaitdisc.results.stores import RESPONSE
 from gaitdisc.results.unit_folder import stored_finding
 
 
 @pytest.mark.parametrize("file", ["r2.csv", "arrays.npz"])
 def test_a_flipped_byte_is_told(response, tmp_path, file):
-    save_response(response, tmp_path, "key")
+    RESPONSE.save(response, tmp_path, "key")
     content = bytearray((tmp_path / file).read_bytes())
     content[len(content) // 2] ^= 1
     (tmp_path / file).write_bytes(bytes(content))
     with pytest.raises(SchemaError, match=rf"{file} is changed since it was saved.*gaitdisc run"):
-        load_response(tmp_path)
+        RESPONSE.load_keyed(tmp_path)
 
 
 def test_a_missing_file_and_another_format(response, tmp_path):
     with pytest.raises(SchemaError, match=r"run.json is missing"):
         load_run(tmp_path)
-    save_response(response, tmp_path, "key")
+    RESPONSE.save(response, tmp_path, "key")
     resealed(tmp_path / "response.json", lambda data: data.update(format=99))
     with pytest.raises(SchemaError, match="of format 99, not 1"):
-        load_response(tmp_path)
+        RESPONSE.load_keyed(tmp_path)
     (tmp_path / "response.json").write_text("{")
     with pytest.raises(SchemaError, match="not readable as JSON"):
-        load_response(tmp_path)
+        RESPONSE.load_keyed(tmp_path)
 
 
 def test_a_field_that_does_not_fit_the_schema_is_named(response, tmp_path):
-    save_response(response, tmp_path, "key")
+    RESPONSE.save(response, tmp_path, "key")
     resealed(tmp_path / "response.json", lambda data: data.update(held_out_s=-1))
     with pytest.raises(SchemaError, match=r"at \$.held_out_s: -1"):
-        load_response(tmp_path)
+        RESPONSE.load_keyed(tmp_path)
 
 
 def test_a_finding_comes_back_as_it_was():

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from gaitdisc.report.clinic.page_words import ENGLISH, PageWords
-from gaitdisc.report.clinic.person_words import noted_sentences
+from gaitdisc.report.clinic.words import ENGLISH, PageWords, noted_sentences
 from gaitdisc.report.page import page_text
 from gaitdisc.report.table import save_tables, words_table
 from gaitdisc.report.wording import NONE, counted, number

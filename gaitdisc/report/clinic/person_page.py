@@ -10,24 +10,25 @@ from typing import Any
 
 from markupsafe import Markup
 
-from gaitdisc.report.clinic.page_words import ENGLISH, PageWords
-from gaitdisc.report.clinic.panel import Panel, svg
-from gaitdisc.report.clinic.person_panels import (
+from gaitdisc.report.clinic.panels import (
     MOST_SINGLE,
+    Panel,
     consistency_sheet,
     contrast_sheet,
     emg_sheet,
     panel_numbers,
     sheet,
+    svg,
 )
-from gaitdisc.report.clinic.person_tables import files_table, numbers_table, profile_table, values_table
-from gaitdisc.report.clinic.person_words import (
+from gaitdisc.report.clinic.values import files_table, numbers_table, profile_svg, profile_table, values_table
+from gaitdisc.report.clinic.words import (
+    ENGLISH,
+    PageWords,
     contrast_sentences,
     outstanding_sentences,
     quality_sentence,
     score_sentences,
 )
-from gaitdisc.report.clinic.profile_chart import profile_svg
 from gaitdisc.report.figure import file_names
 from gaitdisc.report.page import page_text
 from gaitdisc.report.table import Table, save_table, words_table

@@ -8,12 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaitdisc.recording import PERCENT
-from gaitdisc.report.clinic.page_words import ENGLISH, PageWords
-from gaitdisc.report.clinic.panel import Panel
+from gaitdisc.report.clinic.panels import Panel, consistency_sheet, emg_sheet, sheet
 from gaitdisc.report.clinic.person_page import CONSISTENCY, EMG, MOMENT_SIGNS, band_words
-from gaitdisc.report.clinic.person_panels import consistency_sheet, emg_sheet, sheet
-from gaitdisc.report.clinic.person_tables import values_table
-from gaitdisc.report.clinic.person_words import outstanding_sentences, quality_sentence, score_sentences
+from gaitdisc.report.clinic.values import values_table
+from gaitdisc.report.clinic.words import ENGLISH, PageWords, outstanding_sentences, quality_sentence, score_sentences
 from gaitdisc.report.palette import SIDES
 from gaitdisc.report.panels import in_style
 from gaitdisc.results import Provenance

@@ -1,0 +1,169 @@
+"""Values and scores of a person beside the reference: tables, files, and the movement analysis profile as bars."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from html import escape
+
+import numpy as np
+import pandas as pd
+
+from gaitdisc.report.clinic.panels import ticks
+from gaitdisc.report.cycles_tables import VALUES
+from gaitdisc.report.palette import SIDES
+from gaitdisc.report.table import Table, words_table
+from gaitdisc.report.wording import NONE, SIDE_WORDS, number, unit_text
+from gaitdisc.results.clinical_reading import ClinicalReading, Profile, Score
+from gaitdisc.results.clinical_variables import BY_NAME, PROFILE
+from gaitdisc.results.leg_curves import FEET
+
+
+def values_table(reading: ClinicalReading) -> Table:
+    """Spatiotemporal values of both legs, of the reference, and their asymmetry."""
+    rows, records = [], []
+    for value, (words, unit, digits) in VALUES.items():
+        each = {side: leg.values[value] for side, leg in reading.legs.items() if value in leg.values}
+        if not each:
+            continue
+        means = {side: float(own.mean()) for side, own in each.items()}
+        uneven = _asymmetry(means)
+        limits = reading.spatiotemporal.get(value)
+        cells = [_cell(each.get(side), digits) for side in FEET]
+        own = f"{number(limits.mean, digits)} ± {limits.sd:.{digits}f}" if limits else NONE
+        rows.append((f"{words} [{unit}]", *cells, own, NONE if uneven is None else f"{number(uneven, 0)} %"))
+        record = {"value": value, "unit": unit, "asymmetry_percent": uneven}
+        for side, own_values in each.items():
+            spread = float(own_values.std(ddof=1)) if len(own_values) > 1 else np.nan
+            record |= {f"mean_{side}": means[side], f"sd_{side}": spread, f"n_{side}": len(own_values)}
+        if limits:
+            record |= {"reference_mean": limits.mean, "reference_sd": limits.sd, "reference_people": limits.people}
+        records.append(record)
+    people = max((one.people for one in reading.spatiotemporal.values()), default=0)
+    known = f"reference mean ± standard deviation over legs, {people} people" if people else "no reference"
+    caption = f"Mean ± standard deviation (cycles); {known}; asymmetry: left less right over their mean."
+    columns = ("value", "left", "right", "reference", "asymmetry")
+    return Table("spatiotemporal", caption, columns, tuple(rows), pd.DataFrame(records))
+
+
+def numbers_table(reading: ClinicalReading) -> Table:
+    """Every value that a rule looks at beside its limits, those that stand out first."""
+    rows, records = [], []
+    for one in reading.numbers:
+        unit, limits = unit_text(one.unit), one.limits
+        rows.append((
+            one.rule, SIDE_WORDS[one.side], f"{number(one.value, one.digits)} {unit}",
+            f"{number(limits.low, one.digits)} to {number(limits.high, one.digits)}",
+            f"{number(limits.mean, one.digits)} ± {number(limits.sd, max(one.digits, 1))}", str(limits.people),
+            str(one.cycles), one.words or NONE,
+        ))  # fmt: skip
+        records.append({
+            "rule": one.rule, "words": one.words, "side": one.side, "value": one.value, "unit": one.unit,
+            "low": limits.low, "high": limits.high, "reference_mean": limits.mean, "reference_sd": limits.sd,
+            "people": limits.people, "cycles": one.cycles,
+        })  # fmt: skip
+    caption = (
+        f"All values that the rules look at, n = {len(rows)}; {len(reading.noted)} stand out. Limits: within them all "
+        f"values of one more healthy person lie, with probability .95."
+    )
+    columns = ("value of", "side", "value", "limits", "reference", "people", "cycles", "stands out")
+    return Table("outstanding", caption, columns, tuple(rows), pd.DataFrame(records))
+
+
+def profile_table(reading: ClinicalReading) -> Table | None:
+    """Movement analysis profile: variable scores of both legs beside the reference's own."""
+    profile = reading.profile
+    if profile is None:
+        return None
+    rows, records = [], []
+    for name in PROFILE:
+        scores = {side: profile.variables[name, side] for side in FEET if (name, side) in profile.variables}
+        some = next(iter(scores.values()))
+        own = f"{number(some.reference_mean, 1)} ± {number(some.reference_sd, 1)}"
+        cells = [number(scores[side].value, 1) if side in scores else NONE for side in FEET]
+        rows.append((BY_NAME[name].words, *cells, own if np.isfinite(some.reference_mean) else NONE))
+        for side, score in scores.items():
+            records.append({"variable": name, "side": side, "score_deg": score.value, "low": score.low,
+                            "high": score.high, "cycles": score.cycles, "reference_mean": score.reference_mean,
+                            "reference_sd": score.reference_sd, "people": score.people})  # fmt: skip
+    caption = "Movement analysis profile: root mean square difference to the reference's mean curve [deg] (Baker 2009)."
+    return Table("profile", caption, ("curve", "left", "right", "reference"), tuple(rows), pd.DataFrame(records))
+
+
+def files_table(readings: list[ClinicalReading]) -> Table:
+    """Files by hash."""
+    files = {name: sha for reading in readings for name, sha in reading.pooled.files.items()}
+    rows = list(files.items())
+    return words_table("files", f"Files, n = {len(rows)}.", ("file", "SHA-256"), rows)
+
+
+def _asymmetry(means: dict[str, float]) -> float | None:
+    if set(means) != set(FEET):
+        return None
+    middle = (means["l"] + means["r"]) / 2
+    return 100 * (means["l"] - means["r"]) / middle if means["l"] * means["r"] > 0 else None
+
+
+def _cell(values: np.ndarray | None, digits: int) -> str:
+    if values is None or not len(values):
+        return NONE
+    spread = f" ± {float(values.std(ddof=1)):.{digits}f}" if len(values) > 1 else ""
+    return f"{number(float(values.mean()), digits)}{spread} ({len(values)})"
+
+
+WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 240, 365, 104, 232, 6, 346
+
+
+def profile_svg(profile: Profile, say: Callable[[str], str] = str) -> str:
+    """Bars of a profile; left above right, the reference's mean and spread behind."""
+    rows: list[tuple[str, dict[str, Score]]] = [
+        (BY_NAME[n].words, {s: profile.variables[n, s] for s in FEET if (n, s) in profile.variables}) for n in PROFILE
+    ]
+    rows.append(("gait profile score", dict(profile.legs)))
+    top = max(_reach(score) for _, scores in rows for score in scores.values())
+    height = (BOTTOM - TOP) / len(rows)
+
+    def x(value: float) -> float:
+        return LEFT + value / top * (RIGHT - LEFT)
+
+    alt = "; ".join(
+        f"{say(words)} {', '.join(f'{say(SIDE_WORDS[s])} {number(one.value, 1)}' for s, one in scores.items())}"
+        for words, scores in rows
+    )
+    parts = [f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="Scores [deg]: {escape(alt, quote=True)}">']
+    for place in ticks(0.0, top):
+        parts.append(f'<path class="zero" d="M{x(place):.1f} {TOP}V{BOTTOM}"/>')
+        parts.append(f'<text x="{x(place):.1f}" y="{BOTTOM + 12}" text-anchor="middle">{number(place, 0)}</text>')
+    for k, (words, scores) in enumerate(rows):
+        at = TOP + k * height
+        parts.append(
+            f'<text x="{LEFT - 4}" y="{at + height / 2 + 3:.1f}" text-anchor="end">{escape(say(words))}</text>'
+        )
+        parts += _bars(scores, at, height, x)
+    return "".join([*parts, "</svg>"])
+
+
+def _bars(scores: dict[str, Score], at: float, height: float, x) -> list[str]:
+    parts: list[str] = []
+    if not scores:
+        return parts
+    some = next(iter(scores.values()))
+    if np.isfinite(some.reference_mean):
+        low, high = max(0.0, some.reference_mean - some.reference_sd), some.reference_mean + some.reference_sd
+        parts.append(
+            f'<rect class="band" x="{x(low):.1f}" y="{at + 2:.1f}" width="{x(high) - x(low):.1f}" '
+            f'height="{height - 4:.1f}"/>'
+            f'<path class="axis" d="M{x(some.reference_mean):.1f} {at + 2:.1f}v{height - 4:.1f}"/>'
+        )
+    for k, side in enumerate(side for side in FEET if side in scores):
+        thick = (height - 8) / 2
+        y = at + 4 + k * thick
+        parts.append(
+            f'<rect x="{LEFT}" y="{y:.1f}" width="{x(scores[side].value) - LEFT:.1f}" height="{thick - 1.5:.1f}" '
+            f'fill="{SIDES[side].colour}" fill-opacity="{1.0 if side == "l" else 0.55}" stroke="{SIDES[side].colour}"/>'
+        )
+    return parts
+
+
+def _reach(score: Score) -> float:
+    own = score.reference_mean + score.reference_sd
+    return 1.08 * max(score.value, own if np.isfinite(own) else 0.0, 1e-6)

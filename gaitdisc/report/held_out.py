@@ -1,0 +1,303 @@
+"""The held-out walk: measured against predicted in its last seconds, and what each model leaves over the stride."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from gaitdisc.channel import side_of
+from gaitdisc.recording import PERCENT
+from gaitdisc.recording.arrays import mean_where_known
+from gaitdisc.report.figure import Figure
+from gaitdisc.report.palette import MEASURED, MODELS, SIDES
+from gaitdisc.report.panels import Room, in_style, legend, panels, panels_for, sheets
+from gaitdisc.report.r2 import r2_by_variable
+from gaitdisc.report.wording import MODEL_WORDS, counted, label, number, unit_text, upwards
+from gaitdisc.results import ParticipantResponse
+from gaitdisc.statistics.stride_residuals import LEAST_STRIDES, StrideMean, mean_over_strides
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+WINDOW_S = 4.0
+_DRAWN = ("nominal", "augmented")
+_BANDED, _BOUNDS = "augmented", ("low", "high")
+
+
+@in_style
+def held_out_figures(response: ParticipantResponse, name: str) -> list[Figure]:
+    """Measured against predicted in the last seconds of the held-out device walk, one panel an output."""
+    numbers = held_out_numbers(response)
+    if not len(numbers):
+        return []
+    parts = sheets(response.outputs, 12, f"held-out-{name}")
+    return [_figure(response, numbers[numbers["variable"].isin(part)], sheet) for sheet, part in parts.items()]
+
+
+def held_out_numbers(response: ParticipantResponse) -> pd.DataFrame:
+    """Measured and predicted second derivatives of the last `WINDOW_S` seconds.
+
+    returns: variable, unit, time_s, percent, measured, nominal, augmented; augmented_low, augmented_high where there
+        is a band
+    """
+    held = response.held_out
+    shown = held.time >= (held.time[-1] - WINDOW_S if len(held.time) else 0.0)
+    tables = [
+        pd.DataFrame(
+            {
+                "variable": variable,
+                "unit": response.units[column],
+                "time_s": held.time[shown],
+                "percent": held.phi[shown],
+                "measured": held.measured[shown, column],
+                **{m: held.predicted[m][shown, column] for m in _DRAWN if m in held.predicted},
+                **{
+                    f"{_BANDED}_{word}": held.bands[_BANDED][bound][shown, column]
+                    for bound, word in enumerate(_BOUNDS)
+                    if _BANDED in held.bands
+                },
+            }
+        )
+        for column, variable in enumerate(response.outputs)
+    ]
+    return pd.concat(tables, ignore_index=True)
+
+
+def _figure(response: ParticipantResponse, numbers: pd.DataFrame, name: str) -> Figure:
+    groups = list(numbers.groupby("variable", sort=False))
+    drawn, cells = panels_for(len(groups), 2, 1.05, Room(left=0.82, across=0.82, top=0.5))
+    r2 = r2_by_variable(response)
+    for axes, (variable, rows) in zip(cells, groups, strict=True):
+        _draw(axes, rows)
+        axes.set_title(_title(str(variable), r2), loc="left", color=SIDES[side_of(str(variable))].colour)
+        up = upwards(str(variable))
+        axes.set_ylabel(f"[{unit_text(str(rows['unit'].iloc[0]))}]" + (f"\n↑ {up}" if up else ""))
+        axes.set_xlim(rows["time_s"].iloc[0], rows["time_s"].iloc[-1])
+    for axes in cells[-2:]:
+        axes.set_xlabel("time in the trial [s]")
+    legend(drawn, cells[0].get_lines())
+    return Figure(name, _caption(response, groups[0][1]), _alt(response, len(groups), r2), numbers, drawn)
+
+
+def _draw(axes: Axes, rows: pd.DataFrame) -> None:
+    rows = _broken(rows)
+    time, measured = rows["time_s"], rows["measured"]
+    low, high = (f"{_BANDED}_{word}" for word in _BOUNDS)
+    if low in rows:
+        axes.fill_between(time, rows[low], rows[high], color=MODELS[_BANDED].colour, alpha=0.25, linewidth=0)
+    axes.plot(time, measured, color=MEASURED.colour, linewidth=1.4, label="measured")
+    for model in _DRAWN:
+        if model not in rows:
+            continue
+        look = MODELS[model]
+        axes.fill_between(
+            time, measured, rows[model], color=look.colour, alpha=0.3 if model == "nominal" else 0.5, linewidth=0
+        )
+        axes.plot(time, rows[model], color=look.colour, linestyle=look.line, linewidth=0.9, label=MODEL_WORDS[model])
+
+
+def _broken(rows: pd.DataFrame) -> pd.DataFrame:
+    # samples that were left away are not bridged by a line
+    time = rows["time_s"].to_numpy()
+    step = np.diff(time)
+    after = np.flatnonzero(step > 1.5 * np.median(step)) if len(step) else np.array([], int)
+    if not len(after):
+        return rows
+    holes = rows.iloc[after].copy()
+    holes["time_s"] += float(np.median(step))
+    holes[[str(name) for name in rows if name not in ("variable", "unit", "time_s", "percent")]] = np.nan
+    return pd.concat([rows, holes]).sort_values("time_s", kind="stable")
+
+
+def _title(variable: str, r2: pd.DataFrame) -> str:
+    nominal, augmented = (float(r2[f"{model}_on_exo"].loc[variable]) for model in _DRAWN)
+    if not (np.isfinite(nominal) and np.isfinite(augmented)):
+        return label(variable)
+    return f"{label(variable)}: R² {number(nominal)} → {number(augmented)}"
+
+
+def _caption(response: ParticipantResponse, rows: pd.DataFrame) -> str:
+    models, held = listed_models(rows), f"last {response.held_out_s:.4g} s held out, seen by no model"
+    return (
+        f"{response.participant}: the last {WINDOW_S:g} s of the held-out device walk, n = "
+        f"{counted(len(rows), 'sample')} drawn of {len(response.held_out.time)}; split: {held}. "
+        f"Black: measured second derivative; {models}; shaded: the gap that each leaves to "
+        f"the measurement. {_band_words(response)}R² (Nominal → Augmented) is over all held-out samples. Each panel "
+        f"has its unit; titles in red: left; in blue: right."
+    )
+
+
+def _band_words(response: ParticipantResponse) -> str:
+    """What the bands hold of all held-out samples, in the mean over variables."""
+    held = response.held_out
+    if _BANDED not in held.bands:
+        return ""
+    inside = {m: 100 * np.mean((b[0] <= held.measured) & (held.measured <= b[1])) for m, b in held.bands.items()}
+    said = ", ".join(f"{value:.0f} % for {MODEL_WORDS[model]}" for model, value in inside.items())
+    return f"Pale green: 90 % band of Augmented, from refits on blocks; measured inside such a band: {said}. "
+
+
+def listed_models(rows: pd.DataFrame) -> str:
+    """Legend of the models in words.
+
+    rows: with a column for each model that is drawn
+    """
+    looks = {"nominal": "orange, dashed: Nominal", "augmented": "green, solid: Augmented"}
+    return "; ".join(words for model, words in looks.items() if model in rows)
+
+
+def _alt(response: ParticipantResponse, count: int, r2: pd.DataFrame) -> str:
+    return (
+        f"Measured and predicted accelerations of {response.participant} in {counted(count, 'panel')}; median R² "
+        f"{number(r2['nominal_on_exo'].median())} for Nominal and {number(r2['augmented_on_exo'].median())} "
+        f"for Augmented."
+    )
+
+
+CONFIDENCE = 0.95
+MOST_VECTOR_POINTS = 6_000  # faint strides beyond this are drawn as pixels, or the page grows by megabytes
+
+
+@in_style
+def residual_figures(response: ParticipantResponse, name: str) -> list[Figure]:
+    """Measured minus predicted over 0-100 % of the stride: one row an output, one column a model."""
+    models = [model for model in MODELS if model in response.residuals]
+    if not models or not len(response.residuals[models[0]]):
+        return []
+    numbers = residual_numbers(response)
+    parts = sheets(response.outputs, 6, f"residual-{name}")
+    return [_residual_figure(response, numbers[numbers["variable"].isin(part)], sheet) for sheet, part in parts.items()]
+
+
+def residual_numbers(response: ParticipantResponse) -> pd.DataFrame:
+    """Mean residual with its interval, and every stride, point by point.
+
+    returns: variable, unit, model, percent, n (strides with a value there), mean, low, high, stride_1, stride_2, ..
+    """
+    means = {model: mean_interval(response.residuals[model]) for model in MODELS if model in response.residuals}
+    tables = []
+    for column, variable in enumerate(response.outputs):
+        for model, found in means.items():
+            strides = response.residuals[model][:, :, column]
+            table = pd.DataFrame(
+                {
+                    "variable": variable,
+                    "unit": response.units[column],
+                    "model": model,
+                    "percent": PERCENT,
+                    "n": found.strides[:, column],
+                    "mean": found.mean[:, column],
+                    "low": found.low[:, column],
+                    "high": found.high[:, column],
+                }
+            )
+            each = pd.DataFrame(strides.T, columns=pd.Index([f"stride_{i + 1}" for i in range(len(strides))]))
+            tables.append(pd.concat([table, each], axis=1))
+    return pd.concat(tables, ignore_index=True)
+
+
+def mean_interval(residuals: NDArray[np.float64]) -> StrideMean:
+    """Mean over strides with its interval; with too few strides for an interval, the mean alone.
+
+    residuals (stride, phase, output) [unit/s2]: in order of time; NaN where a stride has no value
+
+    >>> found = mean_interval(np.ones((2, 101, 1)))
+    >>> float(found.mean[0, 0]), float(found.low[0, 0])
+    (1.0, nan)
+    """
+    if len(residuals) >= LEAST_STRIDES:
+        return mean_over_strides(residuals, CONFIDENCE)
+    mean, count = mean_where_known(residuals), np.isfinite(residuals).sum(axis=0)
+    none = np.full_like(mean, np.nan)
+    return StrideMean(mean, none, none, count, np.full(mean.shape[1], float(len(residuals))), CONFIDENCE)
+
+
+def _residual_figure(response: ParticipantResponse, numbers: pd.DataFrame, name: str) -> Figure:
+    names = list(dict.fromkeys(numbers["variable"]))
+    models = list(dict.fromkeys(numbers["model"]))
+    drawn, grid = panels(len(names), len(models), 0.95, Room(across=0.25, down=0.33, top=0.5))
+    each = [column for column in numbers.columns if column.startswith("stride_")]
+    as_pixels = len(numbers) * len(each) > MOST_VECTOR_POINTS
+    for row, (variable, of_variable) in enumerate(numbers.groupby("variable", sort=False)):
+        low, high = _limits(of_variable, each)
+        for column, (model, curves) in enumerate(of_variable.groupby("model", sort=False)):
+            axes = grid[row][column]
+            _draw_residual(axes, curves, each, str(model), as_pixels)
+            axes.set_ylim(low, high)
+            axes.set_xlim(0, 100)
+            axes.set_xticks([0, 25, 50, 75, 100])
+            axes.tick_params(labelleft=column == 0)
+            if row == len(names) - 1:
+                axes.set_xlabel("stride [%]")
+            else:
+                axes.tick_params(labelbottom=False)
+        grid[row][0].set_ylabel(f"[{unit_text(str(of_variable['unit'].iloc[0]))}]")
+        grid[row][0].set_title(_residual_title(str(variable)), loc="left", color=SIDES[side_of(str(variable))].colour)
+    for column, model in enumerate(models):
+        x = grid[0][column].get_position()
+        drawn.text(
+            (x.x0 + x.x1) / 2,
+            1 - 0.05 / drawn.get_figheight(),
+            f"measured − {MODEL_WORDS[model]}",
+            ha="center",
+            va="top",
+            fontsize=9,
+            fontweight="bold",
+            color=MODELS[model].colour,
+        )
+    return Figure(name, _residual_caption(response, numbers), _residual_alt(response, numbers), numbers, drawn)
+
+
+def _draw_residual(axes: Axes, curves: pd.DataFrame, each: list[str], model: str, as_pixels: bool) -> None:
+    look = MODELS[model]
+    percent = curves["percent"].to_numpy()
+    faint = axes.plot(percent, curves[each].to_numpy(), color=look.colour, alpha=0.28, linewidth=0.5, zorder=1)
+    for line in faint:
+        line.set_rasterized(as_pixels)
+    axes.axhline(0.0, color="#888888", linewidth=0.6, zorder=0)
+    axes.fill_between(percent, curves["low"], curves["high"], color=look.colour, alpha=0.35, linewidth=0, zorder=2)
+    axes.plot(percent, curves["mean"], color="#111111", linewidth=1.2, zorder=3)
+
+
+def _limits(numbers: pd.DataFrame, each: list[str]) -> tuple[float, float]:
+    values = numbers[["mean", *each]].to_numpy()
+    values = values[np.isfinite(values)]
+    reach = 1.05 * float(np.max(np.abs(values))) if len(values) else 1.0
+    return -(reach or 1.0), reach or 1.0
+
+
+def _residual_title(variable: str) -> str:
+    up = upwards(variable)
+    return f"{label(variable)} (up: towards {up})" if up else label(variable)
+
+
+def _residual_caption(response: ParticipantResponse, numbers: pd.DataFrame) -> str:
+    count = len([column for column in numbers.columns if column.startswith("stride_")])
+    interval = (
+        f"shaded: its {100 * CONFIDENCE:.0f} % interval at each point by itself (Student's t over strides, allowing "
+        f"for the likeness of neighbouring strides)"
+        if count >= LEAST_STRIDES
+        else f"no interval, which needs {LEAST_STRIDES} whole strides"
+    )
+    return (
+        f"{response.participant}: residual of the second derivative, measured minus predicted, over the stride of the "
+        f"held-out device walk, n = {counted(count, 'stride')}; split: last {response.held_out_s:.4g} s held out. "
+        f"Black: mean; {interval}; faint: every stride. A model that misses nothing leaves a mean of zero. Rows share "
+        f"one scale; each row has its unit. Titles in red: left; in blue: right."
+    )
+
+
+def _residual_alt(response: ParticipantResponse, numbers: pd.DataFrame) -> str:
+    start = (
+        f"Residuals over the stride of {response.participant}, {counted(numbers['variable'].nunique(), 'variable')}. "
+    )
+    if not numbers["low"].notna().any():
+        return f"{start}Too few strides for an interval of the mean."
+    parts = [
+        f"{MODEL_WORDS[str(model)]} {100 * ((curves['low'] > 0) | (curves['high'] < 0)).mean():.0f} %"
+        for model, curves in numbers.groupby("model", sort=False)
+    ]
+    return f"{start}Share of the stride where the interval of the mean excludes zero: {', '.join(parts)}."

@@ -1,0 +1,254 @@
+"""What the participants say together: residuals, baselines, training lengths, sub-groups, each a part of the page."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+import pandas as pd
+
+from gaitdisc.report.data_quantity import length_sentences, length_table, quantity_figure, quantity_sentences
+from gaitdisc.report.figure import Figure
+from gaitdisc.report.page import Block
+from gaitdisc.report.palette import MODELS
+from gaitdisc.report.panels import Room, in_style, legend, panels
+from gaitdisc.report.r2 import held_out_text
+from gaitdisc.report.table import Table
+from gaitdisc.report.wording import MODEL_WORDS, counted, label, listed, number
+from gaitdisc.results import ResponseRun
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Item = TypeVar("Item")
+
+
+def over_blocks(run: ResponseRun) -> list[Block]:
+    """Parts of the page that have something to say, in their order."""
+    blocks = [
+        Block("reduced", "What the models leave over the stride", tuple(reduction_sentences(run)),
+              _there(reduction_figure(run)), _there(reduction_table(run))),
+        Block("baselines", "Where a network is worth its trouble", tuple(baseline_sentences(run)),
+              (), _there(baseline_table(run))),
+        Block("quantity", "How much data is enough", (*quantity_sentences(run), *length_sentences(run)),
+              _there(quantity_figure(run)), _there(length_table(run))),
+        Block("responders", "Sub-groups of responders", responder_sentences(run), (), _there(responder_table(run))),
+    ]  # fmt: skip
+    return [block for block in blocks if block.sentences]
+
+
+def responder_sentences(run: ResponseRun) -> tuple[str, ...]:
+    """Verdict on sub-groups, and what `none` is worth; empty for one participant."""
+    if run.over is None or len(run.responses) < 2:
+        return ()
+    verdict = f"{run.over.responders_said}."
+    if len(run.over.responders) and not run.over.responders["group"].any():
+        return (
+            verdict,
+            "That none is found is no proof of one kind: so few people show only kinds that differ grossly.",
+        )
+    return (verdict,)
+
+
+def responder_table(run: ResponseRun) -> Table | None:
+    """Sub-group of each participant; None where there are none."""
+    if run.over is None or not len(run.over.responders) or not run.over.responders["group"].any():
+        return None
+    found = run.over.responders
+    rows = tuple((str(group), ", ".join(map(str, own["participant"]))) for group, own in found.groupby("group"))
+    caption = (
+        f"Sub-groups by the shape over the stride of what the Nominal model leaves on the device walk, all outputs "
+        f"together, n = {len(found)}."
+    )
+    return Table("responders", caption, ("group", "participants"), rows, found)
+
+
+def _there(thing: Item | None) -> tuple[Item, ...]:
+    return () if thing is None else (thing,)
+
+
+MEASURES = {"peak_to_peak": "peak to peak", "rms": "root mean square"}
+OFFSETS = {"augmented": -0.18, "exo": 0.18}
+LOWEST = -100.0  # percent; what a model makes more than twice as large stands at the edge
+
+
+@in_style
+def reduction_figure(run: ResponseRun) -> Figure | None:
+    """Reduction of the stride-averaged residual against Nominal, one row a variable; None without numbers."""
+    if run.over is None or not run.over.reductions["rms_reduction"].notna().any():
+        return None
+    reductions, tests = run.over.reductions, run.over.reduction_tests
+    names = list(dict.fromkeys(reductions["variable"]))
+    drawn, [row] = panels(1, 2, 0.34 * len(names) + 0.2, Room(left=1.75, across=0.3, top=0.6))
+    for axes, (measure, words) in zip(row, MEASURES.items(), strict=True):
+        for place, variable in enumerate(names):
+            _draw(axes, reductions[reductions["variable"] == variable], _of(tests, measure, variable), place, measure)
+        low = max(LOWEST, 100 * float(np.nanmin(reductions[f"{measure}_reduction"])) - 5)
+        axes.set_xlim(min(low, 0.0), 100)
+        axes.axvline(0.0, color="#bbbbbb", linewidth=0.8, zorder=0)
+        axes.set_ylim(len(names) - 0.5, -0.5)
+        axes.set_yticks(range(len(names)), [label(variable) for variable in names])
+        axes.tick_params(labelleft=axes is row[0])
+        axes.set_xlabel("smaller than Nominal’s by [%]")
+        axes.set_title(words)
+    legend(drawn, _key(len(tests) > 0))
+    return Figure("reduction", _caption(run), _alt(run), reductions, drawn)
+
+
+def reduction_table(run: ResponseRun) -> Table | None:
+    """Reduction of every variable: over participants with its interval, or of the only ones; None without numbers."""
+    if run.over is None or not run.over.reductions["rms_reduction"].notna().any():
+        return None
+    reductions, tests = run.over.reductions, run.over.reduction_tests
+    rows = []
+    for variable in dict.fromkeys(reductions["variable"]):
+        own = reductions[(reductions["variable"] == variable) & (reductions["model"] != "nominal")]
+        cells = [_cell(own, tests, variable, measure, model) for measure in MEASURES for model in OFFSETS]
+        n = int(own.loc[own["model"] == "augmented", "rms_reduction"].notna().sum())
+        rows.append((label(str(variable)), str(n), *cells))
+    interval = (
+        "Hodges-Lehmann [95 % interval, not corrected]; *: differs from 0, exact two-sided signed rank, Holm-Sidak "
+        "over the variables, alpha = 0.05"
+        if len(tests)
+        else "median over participants, no test with so few"
+    )
+    caption = (
+        f"By how much the stride-averaged residual on the held-out device walk is smaller than the Nominal model’s "
+        f"[%], n = {counted(reductions['participant'].nunique(), 'participant')}: {interval}. Negative: larger."
+    )
+    groups = (("", 2), *((words, 2) for words in MEASURES.values()))
+    columns = ("variable", "n", *(MODEL_WORDS[model] for _ in MEASURES for model in OFFSETS))
+    numbers = tests if len(tests) else reductions
+    return Table("reduction", caption, columns, tuple(rows), numbers, groups)
+
+
+def reduction_sentences(run: ResponseRun) -> list[str]:
+    """Range of the reductions by Augmented over the variables, for each measure."""
+    if run.over is None:
+        return []
+    own = run.over.reductions[run.over.reductions["model"] == "augmented"]
+    said = []
+    for measure, words in MEASURES.items():
+        medians = own.groupby("variable", sort=False)[f"{measure}_reduction"].median().dropna()
+        if len(medians):
+            least, most = (label(str(name)) for name in (medians.idxmin(), medians.idxmax()))
+            said.append(
+                f"Measured as {words}, the Augmented model makes the stride-averaged residual smaller by "
+                f"{100 * medians.min():.0f} % ({least}) to {100 * medians.max():.0f} % ({most}), medians over "
+                f"{counted(own['participant'].nunique(), 'participant')}."
+            )
+    return said
+
+
+def _draw(axes: Axes, rows: pd.DataFrame, tests: pd.DataFrame, place: int, measure: str) -> None:
+    for model, offset in OFFSETS.items():
+        look, y = MODELS[model], place + offset
+        values = 100 * rows.loc[rows["model"] == model, f"{measure}_reduction"].dropna().to_numpy()
+        axes.plot(np.maximum(values, LOWEST), np.full(len(values), y), look.mark, color=look.colour, ms=2.6, mew=0,
+                  alpha=0.6)  # fmt: skip
+        found = tests[tests["second"] == model]
+        if len(found) and np.isfinite(found["shift"].iloc[0]):
+            middle, low, high = (max(100 * float(found[key].iloc[0]), LOWEST) for key in ("shift", "low", "high"))
+            axes.hlines(y, low, high, color=look.colour, linewidth=1.4)
+            axes.plot([middle], [y], "|", color="#111111", ms=8, mew=1.6)
+
+
+def _of(tests: pd.DataFrame, measure: str, variable: str) -> pd.DataFrame:
+    return tests[(tests["measure"] == measure) & (tests["variable"] == variable)]
+
+
+def _cell(own: pd.DataFrame, tests: pd.DataFrame, variable: str, measure: str, model: str) -> str:
+    found = _of(tests, measure, variable)
+    found = found[found["second"] == model]
+    if len(found) and np.isfinite(found["shift"].iloc[0]):
+        test = found.iloc[0]
+        star = "*" if test["different"] else ""
+        middle, low, high = (number(100 * float(test[key]), 0) for key in ("shift", "low", "high"))
+        return f"{middle}{star}\n[{low}, {high}]"
+    return number(100 * float(own.loc[own["model"] == model, f"{measure}_reduction"].median()), 0)
+
+
+def _key(tested: bool) -> list:
+    from matplotlib.lines import Line2D
+
+    marks = [
+        Line2D([], [], marker=MODELS[m].mark, color=MODELS[m].colour, linestyle="", ms=4, mew=0, label=MODEL_WORDS[m])
+        for m in OFFSETS
+    ]
+    middle = Line2D([], [], marker="|", color="#111111", ms=8, mew=1.6, linewidth=1.4, label="estimate, 95 % interval")
+    return [*marks, middle] if tested else marks
+
+
+def _caption(run: ResponseRun) -> str:
+    over = run.over
+    people = 0 if over is None else over.reductions["participant"].nunique()
+    return (
+        f"Residual (measured minus predicted second derivative) averaged over the held-out strides of the device walk "
+        f"({run.exo}): 1 − its size / its size under the Nominal model, measured from peak to peak and as root mean "
+        f"square over the stride; n = {counted(people, 'participant')}; split: last {held_out_text(run)} s held out. "
+        f"Marks: participants; values below {number(LOWEST, 0)} % stand at the edge. After Fig. 4.3 of the "
+        f"dissertation, which gives one number: 52.8 %, hip, one participant, the measure not said."
+    )
+
+
+def _alt(run: ResponseRun) -> str:
+    return " ".join(reduction_sentences(run))
+
+
+BASELINE_WORDS = {
+    "ridge": "ridge with phase harmonics",
+    "linear": "ridge on the network’s inputs",
+    "null": "the null of the filters",
+}
+_COLUMNS = ("variable", "model", "n", *(f"against {words}" for words in BASELINE_WORDS.values()))
+
+
+def baseline_table(run: ResponseRun) -> Table | None:
+    """R2 of the network minus that of each baseline, one row a variable and model; None where nothing was tested."""
+    if run.over is None or not len(run.over.baselines):
+        return None
+    tests = run.over.baselines
+    rows = []
+    for (variable, model), found in tests.groupby(["variable", "model"], sort=False):
+        cells = [_cell_baseline(found[found["first"] == kind].iloc[0]) for kind in BASELINE_WORDS]
+        rows.append((label(str(variable)), MODEL_WORDS[str(model)], str(int(found["n"].max())), *cells))
+    order = list(dict.fromkeys(tests["variable"]))
+    rows.sort(key=lambda row: [label(str(variable)) for variable in order].index(row[0]))
+    caption = (
+        f"R² [1] of the network minus R² of what needs no network, on the held-out device walk, n = "
+        f"{counted(len(run.responses), 'participant')}: Hodges-Lehmann shift [95 % interval, not corrected]; higher or "
+        f"lower: exact two-sided signed rank, Holm-Sidak over the variables of one model and baseline, alpha = 0.05. "
+        f"The ridge regression of the other tables is the one with phase harmonics."
+    )
+    groups = (("", 3), ("network minus baseline", 3))
+    return Table("baselines", caption, _COLUMNS, tuple(rows), tests, groups)
+
+
+def baseline_sentences(run: ResponseRun) -> list[str]:
+    """Name the variables in which no network is shown to be better than a baseline."""
+    if run.over is None or not len(run.over.baselines):
+        return []
+    tests = run.over.baselines
+    said = []
+    for model in dict.fromkeys(tests["model"]):
+        parts = []
+        for kind, words in BASELINE_WORDS.items():
+            rows = tests[(tests["model"] == model) & (tests["first"] == kind) & tests["p"].notna()]
+            beaten = rows["different"].astype(bool) & (rows["rank_biserial"] > 0)
+            names = [label(str(variable)) for variable in rows.loc[~beaten, "variable"]]
+            if names:
+                which = f"any of {counted(len(rows), 'variable')}" if len(names) == len(rows) else "; ".join(names)
+                parts.append(f"{words} (in {which})")
+        network = f"The {MODEL_WORDS[str(model)]} network"
+        said.append(
+            f"{network} is not shown to beat {listed(parts)}." if parts else f"{network} beats every baseline in all."
+        )
+    return said
+
+
+def _cell_baseline(row: pd.Series) -> str:
+    if not math.isfinite(row["p"]):
+        return "not tested"
+    verdict = ("higher" if row["rank_biserial"] > 0 else "lower") if row["different"] else "not shown"
+    return f"{number(row['shift'], 3)} {verdict}\n[{number(row['low'], 3)}, {number(row['high'], 3)}]"

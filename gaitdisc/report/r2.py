@@ -1,0 +1,373 @@
+"""R2 of every variable: Nominal, Augmented and Exo, network and ridge, and what noise alone would reach."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from gaitdisc.report.figure import Figure
+from gaitdisc.report.palette import MODELS, NULL
+from gaitdisc.report.panels import Room, draw_box, in_style, legend, panels, sheets
+from gaitdisc.report.table import Table
+from gaitdisc.report.wording import MODEL_WORDS, counted, label, number, unit_text
+from gaitdisc.results import ParticipantResponse, ResponseRun
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+
+
+@dataclass(frozen=True)
+class R2Column:
+    """One column of the table."""
+
+    key: str
+    model: str  # as in the response's table; the null belongs to no model
+    kind: str  # as in the response's table; the null belongs to no model
+    walk: str  # as in the response's table; the null belongs to no model
+
+    @property
+    def title(self) -> str:
+        """Words above the column."""
+        if self.kind == "null":
+            return "null"
+        return MODEL_WORDS[self.model] + (", no device" if self.walk == "nominal" else "")
+
+
+_JUDGED = (("nominal", "nominal"), ("nominal", "exo"), ("augmented", "exo"), ("exo", "exo"))
+R2_TABLE = (
+    *(R2Column(f"{model}_on_{walk}", model, "network", walk) for model, walk in _JUDGED),
+    *(R2Column(f"ridge_{model}_on_{walk}", model, "ridge", walk) for model, walk in _JUDGED),
+    *(R2Column(f"linear_{model}_on_exo", model, "linear", "exo") for model in ("nominal", "augmented", "exo")),
+    R2Column("null_on_exo", "", "null", "exo"),
+)
+
+
+def r2_by_variable(response: ParticipantResponse) -> pd.DataFrame:
+    """R2 of one participant, (variable, column of `R2_TABLE`); NaN where it was not computed.
+
+    response: holds one row for each variable, model, kind and walk
+    """
+    known = response.r2
+    found = {
+        (variable, "" if kind == "null" else model, kind, walk): r2
+        for variable, model, kind, walk, r2 in zip(
+            *(known[name] for name in ("variable", "model", "kind", "walk", "r2")), strict=True
+        )
+    }
+    columns = {
+        column.key: [found.get((v, column.model, column.kind, column.walk), np.nan) for v in response.outputs]
+        for column in R2_TABLE
+    }
+    return pd.DataFrame(columns, index=pd.Index(response.outputs, name="variable"), dtype=float)
+
+
+def medians(table: pd.DataFrame) -> pd.Series:
+    """Median of each column over the variables that were computed.
+
+    table: of `r2_by_variable`
+    """
+    return table.median(axis=0, skipna=True)
+
+
+def participant_medians(run: ResponseRun) -> pd.DataFrame:
+    """Median over variables of every participant, (participant, column of `R2_TABLE`)."""
+    names = pd.Index([response.participant for response in run.responses], name="participant")
+    rows = [medians(r2_by_variable(response)) for response in run.responses]
+    return pd.DataFrame(rows, columns=pd.Index([c.key for c in R2_TABLE])).set_axis(names, axis=0)
+
+
+def quartiles_over_participants(run: ResponseRun) -> pd.DataFrame:
+    """Median, quartiles and number of participants of every variable and column, one row each.
+
+    returns: variable, column, median, q1, q3, n (participants that have the number)
+    """
+    rows = []
+    tables = [r2_by_variable(response) for response in run.responses]
+    for variable in variables(run):
+        for column in R2_TABLE:
+            values = np.array([t.loc[variable, column.key] for t in tables if variable in t.index], float)
+            values = values[np.isfinite(values)]
+            q1, median, q3 = np.quantile(values, [0.25, 0.5, 0.75]) if len(values) else (np.nan,) * 3
+            rows.append((variable, column.key, median, q1, q3, len(values)))
+    return pd.DataFrame(rows, columns=pd.Index(["variable", "column", "median", "q1", "q3", "n"]))
+
+
+def variables(run: ResponseRun) -> tuple[str, ...]:
+    """Outputs of all participants, each once, in the order of the first who has it."""
+    return tuple(dict.fromkeys(name for response in run.responses for name in response.outputs))
+
+
+def sample_counts(response: ParticipantResponse, walk: str = "exo") -> str:
+    """Held-out samples behind the numbers of one walk: one number, or the range where variables differ."""
+    counts = response.r2.loc[(response.r2["walk"] == walk) & (response.r2["kind"] == "network"), "n"]
+    if not len(counts):
+        return "0"
+    low, high = int(counts.min()), int(counts.max())
+    return f"{low}" if low == high else f"{low}-{high}"
+
+
+def held_out_text(run: ResponseRun) -> str:
+    """Length of the held-out part in words [s]: one number, the few that there are, or their range."""
+    seconds = sorted({f"{response.held_out_s:.4g}" for response in run.responses}, key=float)
+    return " or ".join(seconds) if len(seconds) < 4 else f"{seconds[0]} to {seconds[-1]}"
+
+
+LOWEST = -0.25  # R2 below this is drawn as an arrow at the edge, with its value
+FEWEST_FOR_BOXES = 5
+MOST_VALUES = 3  # that are written one by one
+ROW_IN, LABELLED_ROW_IN = 0.36, 0.5  # a row's height; three lines of labels need more
+_OFFSETS = {"nominal": -0.24, "augmented": 0.0, "exo": 0.24}
+
+
+@in_style
+def r2_figures(run: ResponseRun) -> list[Figure]:
+    """R2 on the held-out device walk, one row a variable; points for one participant, boxes for several."""
+    numbers = r2_numbers(run)
+    parts = sheets(variables(run), 12, "r2")
+    return [_figure(run, numbers[numbers["variable"].isin(part)], name) for name, part in parts.items()]
+
+
+def r2_numbers(run: ResponseRun) -> pd.DataFrame:
+    """R2 of every participant and variable on the held-out device walk.
+
+    returns: participant, variable, model (empty for the null), kind, r2
+    """
+    tables = []
+    for response in run.responses:
+        table = r2_by_variable(response)
+        for column in R2_TABLE:
+            if column.walk == "exo" and column.kind != "linear":
+                tables.append(
+                    pd.DataFrame(
+                        {
+                            "participant": response.participant,
+                            "variable": table.index,
+                            "model": column.model,
+                            "kind": column.kind,
+                            "r2": table[column.key].to_numpy(),
+                        }
+                    )
+                )
+    columns = pd.Index(["participant", "variable", "model", "kind", "r2"])
+    return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=columns)
+
+
+def _figure(run: ResponseRun, numbers: pd.DataFrame, name: str) -> Figure:
+    names = list(dict.fromkeys(numbers["variable"]))
+    low = lowest_drawn(numbers)
+    row_in = LABELLED_ROW_IN if numbers["r2"].min() < low else ROW_IN
+    drawn, [[axes]] = panels(1, 1, row_in * len(names) + 0.1, Room(left=1.75, right=0.25, top=0.45))
+    draw_r2(axes, numbers)
+    null = _has_null(numbers)
+    legend(drawn, r2_key(len(run.responses), null))
+    return Figure(name, _caption(run, low, null), _alt(run, numbers), numbers, drawn)
+
+
+def draw_r2(axes: Axes, numbers: pd.DataFrame) -> None:
+    """Draw R2 of every variable, a row each.
+
+    numbers: of `r2_numbers`
+    """
+    names, low = list(dict.fromkeys(numbers["variable"])), lowest_drawn(numbers)
+    for row, variable in enumerate(names):
+        _draw_variable(axes, numbers[numbers["variable"] == variable], row, low)
+    axes.set_yticks(range(len(names)), [label(variable) for variable in names])
+    axes.set_ylim(len(names) - 0.5, -0.5)
+    axes.set_xlim(low, 1.0)
+    axes.set_xlabel("R² on the held-out device walk [1]; 1: all of the variance, 0: no better than the mean")
+    for edge in np.arange(len(names) - 1) + 0.5:
+        axes.axhline(edge, color="#e4e4e4", linewidth=0.6, zorder=0)
+    if low < 0:
+        axes.axvline(0.0, color="#bbbbbb", linewidth=0.8, zorder=0)
+
+
+def _has_null(numbers: pd.DataFrame) -> bool:
+    return bool(numbers.loc[numbers["kind"] == "null", "r2"].notna().any())
+
+
+def _draw_variable(axes: Axes, rows: pd.DataFrame, row: int, low: float) -> None:
+    null = rows.loc[rows["kind"] == "null", "r2"].median()
+    if np.isfinite(null):
+        axes.vlines(max(null, low), row - 0.42, row + 0.42, color=NULL.colour, linestyle=NULL.line, linewidth=1.1)
+    for model, offset in _OFFSETS.items():
+        look, y = MODELS[model], row + offset
+        of_model = rows[rows["model"] == model]
+        network = of_model.loc[of_model["kind"] == "network", "r2"].dropna().to_numpy()
+        ridge = of_model.loc[of_model["kind"] == "ridge", "r2"].dropna().to_numpy()
+        if len(ridge):
+            middle = float(np.median(ridge))
+            axes.plot([max(middle, low)], [y], look.mark, mfc="none", mec=look.colour, mew=1.1, ms=6.5, clip_on=False)
+        if len(network) >= FEWEST_FOR_BOXES:
+            draw_box(axes, network, y, look.colour, "horizontal")
+        small = 2.2 if len(network) >= FEWEST_FOR_BOXES else 4.6
+        shown = np.maximum(network, low)
+        axes.plot(shown, np.full(len(shown), y), look.mark, color=look.colour, ms=small, mew=0, clip_on=False, zorder=3)
+        if below := _below(network, low):
+            axes.annotate(f"◂ {below}", (low, y), (5, 0), textcoords="offset points", va="center", fontsize=6)
+
+
+def _below(values: np.ndarray, low: float) -> str:
+    """One label for all values of a row that lie left of the axis."""
+    left = np.sort(values[values < low])
+    if len(left) > MOST_VALUES:
+        return f"{len(left)} values, {number(left[0])} to {number(left[-1])}"
+    return ", ".join(number(value) for value in left)
+
+
+def r2_key(people: int, null: bool) -> list[Line2D]:
+    """Handles of the legend."""
+    from matplotlib.lines import Line2D
+
+    models = [
+        Line2D([], [], marker=look.mark, color=look.colour, linestyle="", ms=5, mew=0, label=MODEL_WORDS[model])
+        for model, look in MODELS.items()
+    ]
+    hollow = "ridge" if people == 1 else "ridge, median"
+    return [
+        *models,
+        Line2D([], [], marker="o", mfc="none", mec="#333333", linestyle="", ms=6.5, label=hollow),
+        *([Line2D([], [], color=NULL.colour, linestyle=NULL.line, label="band-limited noise")] if null else []),
+    ]
+
+
+def lowest_drawn(numbers: pd.DataFrame) -> float:
+    """Lower end of the axis of R2: `LOWEST`, or the tenth below the lowest value."""
+    lowest = float(numbers["r2"].min())
+    if not np.isfinite(lowest):
+        return 0.0
+    return max(LOWEST, float(np.floor(10 * (lowest - 0.02)) / 10))
+
+
+def _caption(run: ResponseRun, low: float, null: bool) -> str:
+    people = len(run.responses)
+    marks = (
+        "Filled marks: networks; hollow marks of the same shape: ridge regression with phase harmonics"
+        if people == 1
+        else f"Small filled marks: networks, one a participant, with a box of quartiles from {FEWEST_FOR_BOXES} "
+        "participants on (thick line: median, whiskers: all); hollow marks: median of ridge regression with phase "
+        "harmonics"
+    )
+    samples = _samples(run)
+    noise = "dashed: what band-limited noise alone would reach" if null else "what noise would reach was not computed"
+    edge = f" R² below {number(low)} stands at the left edge with its value." if low == LOWEST else ""
+    start = f" The axis starts at {number(low, 1)}." if low > 0 else ""
+    return (
+        f"R² [1] of the second derivative of each variable on the held-out device walk ({run.exo}), "
+        f"n = {counted(people, 'participant')}{samples}; split: last {held_out_text(run)} s of the walk held "
+        f"out. {marks}; {noise}.{start}{edge}"
+    )
+
+
+def _samples(run: ResponseRun) -> str:
+    counts = run.r2_table()
+    counts = counts.loc[(counts["walk"] == "exo") & (counts["kind"] == "network"), "n"]
+    if not len(counts):
+        return ""
+    low, high = int(counts.min()), int(counts.max())
+    return f", {low} samples" if low == high else f", {low} to {high} samples each"
+
+
+def _alt(run: ResponseRun, numbers: pd.DataFrame) -> str:
+    network = numbers[numbers["kind"] == "network"]
+    parts = [
+        f"{MODEL_WORDS[str(model)]} from {number(values.min())} to {number(values.max())}"
+        for model, values in network.groupby("model", sort=False)["r2"]
+    ]
+    count = numbers["variable"].nunique()
+    return f"R² of {counted(count, 'variable')} on the held-out device walk of {run.title}: {'; '.join(parts)}."
+
+
+_R2_GROUPS = (("", 1), ("network", 4), ("ridge, phase harmonics", 4), ("ridge, inputs alone", 3), ("noise", 1))
+
+
+def r2_table(response: ParticipantResponse, name: str) -> Table:
+    """R2 of one participant: rows variables, columns models, with the median below."""
+    table = r2_by_variable(response)
+    units = dict(zip(response.outputs, response.units, strict=True))
+    rows = [
+        (f"{label(str(v))} [{unit_text(units[str(v)])}]", *(number(x, 3) for x in values.to_numpy()))
+        for v, values in table.iterrows()
+    ]
+    rows.append(("median", *(number(x, 3) for x in medians(table).to_numpy())))
+    samples, without = sample_counts(response), sample_counts(response, "nominal")
+    caption = (
+        f"{response.participant}: R² [1] of the second derivative of each variable (its unit in brackets) on held-out "
+        f"device walking, but for the columns that say “no device”; n = {samples} samples of the device walk and "
+        f"{without} of the walk without; split: last {response.held_out_s:.4g} s of each walk held out, seen by no "
+        f"model. Ridge: with harmonics of percent stride beside the network’s inputs, and on these inputs alone. Null: "
+        f"what band-limited noise alone would reach."
+    )
+    numbers = table.reset_index()
+    numbers.insert(1, "unit", list(response.units))
+    columns = ("variable", *(column.title for column in R2_TABLE))
+    return Table(f"r2-{name}", caption, columns, tuple(rows), numbers, _R2_GROUPS, summary=True)
+
+
+def study_r2_table(run: ResponseRun) -> Table:
+    """R2 over participants: median and quartiles of every variable, with the median participant below."""
+    long = quartiles_over_participants(run)
+    rows = []
+    for variable in variables(run):
+        of_variable = long[long["variable"] == variable].set_index("column")
+        by_column = of_variable[["median", "q1", "q3"]].T
+        cells = [_quartiles(*by_column[column.key]) for column in R2_TABLE]
+        rows.append((label(variable), str(int(of_variable["n"].max())), *cells))
+    people = participant_medians(run)
+    over = people.quantile([0.5, 0.25, 0.75])
+    cells = [_quartiles(*over[column.key]) for column in R2_TABLE]
+    rows.append(("median over variables", str(len(people)), *cells))
+    caption = (
+        f"R² [1] of the second derivative of each variable on held-out walking, median [quartiles] over participants, "
+        f"n = {counted(len(people), 'participant')} (column n: those who have the variable); split: last "
+        f"{held_out_text(run)} s of each walk held out."
+    )
+    groups = (("", 2), *_R2_GROUPS[1:])
+    columns = ("variable", "n", *(column.title for column in R2_TABLE))
+    return Table("r2-study", caption, columns, tuple(rows), long, groups, summary=True)
+
+
+def participants_table(run: ResponseRun) -> Table:
+    """Median over variables of every participant, with the median participant below."""
+    people = participant_medians(run)
+    counts = [sample_counts(response) for response in run.responses]
+    rows = [
+        (str(person), n, *(number(x, 3) for x in values.to_numpy()))
+        for n, (person, values) in zip(counts, people.iterrows(), strict=True)
+    ]
+    rows.append(("median", "", *(number(x, 3) for x in medians(people).to_numpy())))
+    numbers = people.reset_index()
+    numbers.insert(1, "samples", counts)
+    caption = (
+        f"R² [1] on held-out walking, median over variables of each participant, n = "
+        f"{counted(len(people), 'participant')} (column n: held-out samples of the device walk); split: last "
+        f"{held_out_text(run)} s of each walk held out, seen by no model."
+    )
+    columns = ("participant", "n", *(column.title for column in R2_TABLE))
+    return Table("participants", caption, columns, tuple(rows), numbers, (("", 2), *_R2_GROUPS[1:]), summary=True)
+
+
+def not_computed(run: ResponseRun, response: ParticipantResponse) -> list[str]:
+    """Reasons for the numbers that stand as `not computed`, as far as they are known."""
+    table = r2_by_variable(response).drop(columns="null_on_exo")
+    reasons = []
+    findings = [f for walk in run.walks if walk.subject == response.participant for f in walk.findings]
+    for variable in table.index[table.isna().any(axis=1)]:
+        rows = response.r2[response.r2["variable"] == variable]
+        seen = [finding.line() for finding in findings if finding.channel == variable]
+        if seen:
+            reasons.append(f"{label(variable)}: {'; '.join(seen)}")
+        elif len(rows) and (rows["n"] == 0).all():
+            reasons.append(f"{label(variable)}: no usable sample in the held-out part (n = 0)")
+        else:
+            reasons.append(f"{label(variable)}: the run holds no number and no reason for it")
+    return reasons
+
+
+def _quartiles(middle: float, q1: float, q3: float) -> str:
+    if pd.isna(middle):
+        return number(middle, 3)
+    return f"{number(middle, 3)}\n[{number(q1, 3)}, {number(q3, 3)}]"

@@ -1,0 +1,292 @@
+"""A page for a question beside the study: which inputs carry the response, or does a cut-off decide it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from gaitdisc.report.figure import Figure, save_figures
+from gaitdisc.report.page import write_page
+from gaitdisc.report.palette import MODELS
+from gaitdisc.report.panels import Room, in_style, legend, panels
+from gaitdisc.report.table import Table, save_table, save_tables
+from gaitdisc.report.wording import MODEL_WORDS, counted, label, listed, number
+from gaitdisc.results.variants import VariantRun
+
+ALL = "all inputs"
+GROUPS = {"angles": "joint angles predicted", "EMG": "EMG predicted"}
+SHOWN = ("augmented", "exo")
+ROW = 0.19  # inch
+FARTHEST = 1.0  # a fall beyond it is drawn at the edge
+
+
+@in_style
+def modalities_figure(run: VariantRun) -> Figure | None:
+    """Fall of R2, median over the variables of a group, by family of inputs; None where nobody has numbers."""
+    numbers = falls(run)
+    if not len(numbers):
+        return None
+    groups = [group for group in GROUPS if group in set(numbers["variables"])]
+    families = list(dict.fromkeys(numbers["without"]))
+    drawn, [row] = panels(1, len(groups), ROW * (len(families) + 1), Room(left=2.0, bottom=0.5))
+    for axes, group in zip(row, groups, strict=True):
+        own = numbers[numbers["variables"] == group]
+        for model, offset in zip(SHOWN, (-0.17, 0.17), strict=True):
+            look = MODELS[model]
+            for place, family in enumerate(families):
+                values = own.loc[(own["without"] == family) & (own["model"] == model), "fall"].to_numpy()
+                values = np.minimum(values, FARTHEST)
+                axes.plot(values, np.full(len(values), place + offset), look.mark, color=look.colour, ms=2, alpha=0.45)
+                axes.plot(np.median(values), place + offset, look.mark, color=look.colour, ms=5)
+        axes.axvline(0, color="#444444", linewidth=0.7, zorder=0)
+        axes.set_yticks(range(len(families)), [family_words(name) for name in families] if axes is row[0] else [])
+        axes.set_ylim(len(families) - 0.4, -0.6)
+        axes.set_xscale("symlog", linthresh=0.01)
+        axes.set_xlim(min(-0.02, float(own["fall"].min()) * 1.1), FARTHEST)
+        ticks = [tick for tick in (-0.1, -0.01, 0.0, 0.01, 0.1, 1.0) if axes.get_xlim()[0] <= tick]
+        axes.set_xticks(ticks, [f"{tick:g}".replace("-", "\u2212") for tick in ticks])
+        axes.minorticks_off()
+        axes.set_xlabel("fall of R² [1]")
+        axes.set_title(GROUPS[group])
+    legend(drawn, _key())
+    return Figure("modalities", _caption(run), _alt(numbers), numbers, drawn)
+
+
+def falls(run: VariantRun) -> pd.DataFrame:
+    """Fall of R2 without each family of inputs, median over the variables of a group; networks only.
+
+    returns: variables (`angles` or `EMG`), without, model, participant, fall
+    """
+    table = run.r2_table()
+    table = table[table["kind"] == "network"]
+    table = table.assign(variables=np.where(table["variable"].str.startswith("emg_"), "EMG", "angles"))
+    keys = ["variables", "model", "participant", "variable"]
+    whole = table[table["variant"] == ALL].set_index(keys)["r2"]
+    others = table[table["variant"] != ALL]
+    fall = whole.reindex(pd.MultiIndex.from_frame(others[keys])).to_numpy() - others["r2"].to_numpy()
+    grouped = others.assign(fall=fall).groupby(["variables", "variant", "model", "participant"], sort=False)["fall"]
+    return grouped.median().reset_index().rename(columns={"variant": "without"})
+
+
+def modalities_table(run: VariantRun) -> Table:
+    """Shift of R2 of the Augmented model without each family, by variable; a star where it is shown to differ."""
+    own = run.tests[run.tests["model"] == "augmented"]
+    variables = list(dict.fromkeys(own["variable"]))
+    rows = []
+    for family, tested in own.groupby("variant", sort=False):
+        shifts = dict(zip(tested["variable"], tested["shift"].to_numpy(float), strict=True))
+        stars = dict(zip(tested["variable"], tested["different"].to_numpy(bool), strict=True))
+        shown = [number(shifts[name], 3) + ("*" if stars[name] else "") for name in variables]
+        rows.append((family_words(str(family)), *shown))
+    caption = (
+        f"Hodges-Lehmann shift of R² [1] of the Augmented model on the held-out device walk ({run.exo}) when the "
+        f"Discrepancy model lacks a family of inputs, n = {counted(len(run.people), 'participant')}; negative: "
+        "R² falls. Star: exact two-sided signed rank test, Holm-Sidak over the variables of a row, alpha = 0.05. The "
+        "CSV has both models, W, p, adjusted p and intervals."
+    )
+    return Table("modalities", caption, ("without", *map(label, variables)), tuple(rows), run.tests)
+
+
+def modalities_sentences(run: VariantRun) -> tuple[str, ...]:
+    """What the others cannot replace, and what the numbers cannot say."""
+    numbers = falls(run)
+    if not len(numbers):
+        return ("Nobody's models could be fitted.",)
+    said = []
+    for group, words in (("angles", "joint angles"), ("EMG", "EMG")):
+        own = numbers[(numbers["variables"] == group) & (numbers["model"] == "augmented")]
+        if not len(own):
+            continue
+        middle = own.groupby("without", sort=False)["fall"].median().sort_values(ascending=False, kind="stable")
+        most = [
+            f"{family_words(str(name))} ({number(fall, 3)})"
+            for name, fall in zip(middle.index[:3], middle.to_numpy(float), strict=False)
+        ]
+        said.append(f"Of {words}, the Augmented model loses most R² (medians) without {listed(most)}.")
+    said.append(
+        "A fall says what the other inputs cannot replace. Joint angles and EMG of one walk go together, so a family "
+        "whose absence costs nothing may carry the response as well as those that stand in for it; the falls of two "
+        "families do not add up."
+    )
+    return tuple(said)
+
+
+def family_words(family: str) -> str:
+    """Name of a family of inputs as it is read.
+
+    >>> family_words("emg_sol"), family_words("knee_angle"), family_words("EMG velocities")
+    ('EMG soleus', 'knee angle', 'EMG velocities')
+    """
+    return label(f"{family}_r").removesuffix(", right") if "_" in family else family
+
+
+def _key() -> list:
+    from matplotlib.lines import Line2D
+
+    looks = [(MODEL_WORDS[model], MODELS[model]) for model in SHOWN]
+    return [
+        Line2D([], [], color=look.colour, marker=look.mark, linestyle="", ms=5, label=f"{word}, median")
+        for word, look in looks
+    ]
+
+
+def _caption(run: VariantRun) -> str:
+    low, high = run.held_out_s
+    held = f"{low:.1f}" + (f" to {high:.1f}" if high - low >= 0.05 else "")
+    return (
+        f"Fall of R² [1] on the held-out device walk ({run.exo}) when a family of inputs (both sides; a joint or "
+        f"muscle with its velocity) is left away, median over variables; n = "
+        f"{counted(len(run.people), 'participant')}; split: last {held} s of the walk held out. Augmented: only the "
+        "Discrepancy model lacks the inputs. Small marks: participants. Linear within 0.01, logarithmic beyond. "
+        "Networks only. For section 6.2.2 of the dissertation."
+    )
+
+
+def _alt(numbers: pd.DataFrame) -> str:
+    own = numbers[numbers["model"] == "augmented"].groupby("without", sort=False)["fall"].median()
+    return f"Fall of R² without each of {len(own)} families of inputs; the largest is without {own.idxmax()}."
+
+
+HEADINGS = ("Nominal", "Augmented", "Exo", "null")
+
+
+def setting_medians(run: VariantRun) -> pd.DataFrame:
+    """Median over participants of the median over variables, for each setting, group of variables and model.
+
+    returns: variant, variables (`angles`, `EMG`), participants, and a column for each of Nominal, Augmented, Exo, the
+        ridge regression's Augmented and the null
+    """
+    table = run.r2_table()
+    table = table.assign(variables=np.where(table["variable"].str.startswith("emg_"), "EMG", "angles"))
+    keys = ["variant", "variables", "model", "kind"]
+    people = table.groupby([*keys, "participant"], sort=False)["r2"].median().reset_index()
+    over = people.pivot_table(index=keys[:2], columns=keys[2:], values="r2", aggfunc="median", sort=False)
+    count = people.groupby(keys[:2], sort=False)["participant"].nunique()
+    wanted = {
+        "nominal": ("nominal", "network"),
+        "augmented": ("augmented", "network"),
+        "exo": ("exo", "network"),
+        "ridge_augmented": ("augmented", "ridge"),
+        "null": ("nominal", "null"),
+    }
+    found = pd.DataFrame(
+        {name: over[key] if key in over.columns else np.nan for name, key in wanted.items()}, index=over.index
+    )
+    return found.assign(participants=count.reindex(found.index)).reset_index()
+
+
+def orders(run: VariantRun) -> pd.DataFrame:
+    """In how many participants Nominal < Augmented holds, and in how many variables the two are shown to differ.
+
+    returns: variant, participants, holds, variables, different (NaN where nothing was tested)
+    """
+    table = run.r2_table()
+    table = table[table["kind"] == "network"]
+    middle = table.pivot_table(
+        index=["variant", "participant"], columns="model", values="r2", aggfunc="median", sort=False
+    )
+    holds = (middle["nominal"] < middle["augmented"]).groupby(level="variant", sort=False)
+    found = holds.agg(participants="count", holds="sum")
+    higher = run.tests[run.tests["different"].astype(bool) & (run.tests["shift"] > 0)]
+    found["variables"] = table["variable"].nunique()
+    found["different"] = higher.groupby("variant").size().reindex(found.index).fillna(0) if len(run.tests) else np.nan
+    return found.reset_index()
+
+
+def sensitivity_table(run: VariantRun) -> Table:
+    """Medians under every setting, and whether Nominal < Augmented holds."""
+    medians, held = setting_medians(run), orders(run)
+    counts = held[["holds", "participants", "different", "variables"]].to_numpy(float)
+    order = dict(zip(held["variant"].astype(str), counts, strict=True))
+    groups = [group for group in ("angles", "EMG") if group in set(medians["variables"])]
+    rows = []
+    for variant, own in medians.groupby("variant", sort=False):
+        cells = [
+            number(float(own.loc[own["variables"] == group, column].median()))
+            for group in groups
+            for column in ("nominal", "augmented", "exo", "null")
+        ]
+        holds, people, different, variables = order[str(variant)]
+        shown = "not tested" if np.isnan(different) else f"{different:.0f} of {variables:.0f}"
+        rows.append((str(variant), *cells, f"{holds:.0f} of {people:.0f}", shown))
+    caption = (
+        f"R² [1] on the held-out device walk ({run.exo}), medians over participants of medians over variables, "
+        f"n = {counted(len(run.people), 'participant')}; one setting changed at a time. R² of two settings are not of "
+        "the same thing, for the filter makes what is predicted as well: compare the models, and each with its null. "
+        "People: in whom Nominal < Augmented in the median over variables; variables: in which Augmented is shown to "
+        "be higher (exact signed rank, Holm-Sidak over the variables of a setting, alpha = 0.05)."
+    )
+    heads = (("", 1), *((group, len(HEADINGS)) for group in groups), ("Nominal < Augmented", 2))
+    columns = ("setting", *(HEADINGS * len(groups)), "people", "variables")
+    return Table(
+        "sensitivity",
+        caption,
+        columns,
+        tuple(rows),
+        medians.merge(held.drop(columns=["participants", "variables"]), on="variant"),
+        heads,
+    )
+
+
+def sensitivity_sentences(run: VariantRun) -> tuple[str, ...]:
+    """Whether the order of the models holds under every setting, and what was left away."""
+    if not run.people:
+        return ("Nobody's models could be fitted.",)
+    medians = setting_medians(run)
+    failing = medians[~(medians["nominal"] < medians["augmented"])]
+    cases = counted(len(medians), "case")
+    said = [
+        f"In the medians, Nominal < Augmented holds in all of {cases} (a setting and a group of variables)."
+        if not len(failing)
+        else f"In the medians, Nominal < Augmented fails in {len(failing)} of {cases}: "
+        + ", ".join(f"{row.variant} ({row.variables})" for row in failing.itertuples())
+        + "."
+    ]
+    low = medians[medians["augmented"] <= medians["null"]]
+    if len(low):
+        where = ", ".join(f"{row.variant} ({row.variables})" for row in low.itertuples())
+        said.append(f"Augmented does not rise above what noise reaches through the same filters in: {where}.")
+    lost = sorted({name for each in run.people for name in each.left_away})
+    for name in lost:
+        whom = [each for each in run.people if name in each.left_away]
+        who, why = ", ".join(each.participant for each in whom), whom[0].left_away[name]
+        said.append(f"{name} is left away for {who}: {why}")
+    return tuple(said)
+
+
+TITLES = {
+    "modalities": "Which inputs carry the response",
+    "sensitivity": "Other cut-offs and training lengths",
+}
+
+
+def write_variants(run: VariantRun, folder: Path) -> Path:
+    """Write `report.html`, `figures/` and `tables/` of one question; the same bytes for the same run."""
+    figure = modalities_figure(run) if run.question == "modalities" else None
+    tables = variant_tables(run)
+    save_tables(tables, folder)
+    save_table(run.r2_table(), folder / "tables" / "r2.csv")
+    shown = {
+        "run": run,
+        "heading": TITLES[run.question],
+        "sentences": variant_sentences(run),
+        "figures": save_figures([figure] if figure else [], folder),
+        "tables": tables,
+    }
+    return write_page("variants", shown, folder)
+
+
+def variant_tables(run: VariantRun) -> list[Table]:
+    """Tables of a question; none where nobody has numbers."""
+    if not run.people:
+        return []
+    if run.question == "sensitivity":
+        return [sensitivity_table(run)]
+    return [modalities_table(run)] if len(run.tests) else []
+
+
+def variant_sentences(run: VariantRun) -> tuple[str, ...]:
+    """Sentences of a question."""
+    return modalities_sentences(run) if run.question == "modalities" else sensitivity_sentences(run)

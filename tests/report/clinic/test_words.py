@@ -1,0 +1,148 @@
+"""Words of the pages in another language, from a table that somebody filled in."""
+
+from __future__ import annotations
+
+import csv
+
+import pytest
+from made_clinic import PROVENANCE, made_controls, made_person, made_run
+
+from gaitdisc.clinic.contrast import contrast_of
+from gaitdisc.clinic.reading import read_beside
+from gaitdisc.clinic.rules import rule_words
+from gaitdisc.errors import SchemaError
+from gaitdisc.recording import PERCENT
+from gaitdisc.report.clinic.index_page import write_index
+from gaitdisc.report.clinic.person_page import write_person_page
+from gaitdisc.report.clinic.words import (
+    MOST,
+    PageWords,
+    contrast_sentences,
+    english_words,
+    noted_sentences,
+    outstanding_sentences,
+    quality_sentence,
+    read_words,
+    score_sentences,
+    write_words,
+)
+from gaitdisc.results.clinical_reading import Limits, Noted, PersonSession
+
+ENGLISH = english_words(rule_words())
+
+
+def doubled(word):
+    """A language in which each word is told from its English."""
+    return f"§{word}§"
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory):
+    """English, and in a language that has every word."""
+    folder = tmp_path_factory.mktemp("pages")
+    reference = made_controls(6)
+    person = made_person(changed={"knee_angle_l": -60.0})
+    session = PersonSession("P01", (read_beside(person, reference),))
+    found = {}
+    for name, say in (("en", PageWords()), ("other", PageWords({word: doubled(word) for word in ENGLISH}))):
+        page = write_person_page(session, "P01", reference, PROVENANCE, folder / name, say)
+        index = write_index(made_run(person), [(session, "P01")], reference, folder / name, say)
+        found[name] = page.read_text(encoding="utf-8"), index.read_text(encoding="utf-8")
+    return folder, found
+
+
+@pytest.mark.parametrize(
+    "word",
+    ["en", "What stands out", "Kinematics", "knee flexion", "dorsiflexion", "step length", "asymmetry", "limits",
+     "reduced knee flexion in swing", "left", "gait profile score", "Appendix: every cycle"],
+)  # fmt: skip
+def test_headings_sign_words_and_what_stands_out_are_in_the_other_language(pages, word):
+    _, found = pages
+    (english, _), (other, _) = found["en"], found["other"]
+    assert word in english.replace("Reduced", "reduced") and doubled(word) in other.replace("§Reduced", "§reduced")
+
+
+def test_the_index_has_them_too_and_the_numbers_beside_stay(pages):
+    folder, found = pages
+    _, index = found["other"]
+    assert doubled("state") in index and doubled("green") in index and "§reduced knee flexion" in index.lower()
+    for path in (folder / "en").rglob("*.csv"):
+        if path.name != "people.csv":  # the words that are read
+            assert path.read_bytes() == (folder / "other" / path.relative_to(folder / "en")).read_bytes()
+
+
+def test_every_word_of_rules_is_in_the_table_and_a_filled_one_comes_back(tmp_path):
+    path = write_words(tmp_path / "de.csv", ENGLISH)
+    with path.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.reader(file))
+    assert rows[0] == ["English", "other"] and [word for word, _ in rows[1:]] == ENGLISH and "short steps" in ENGLISH
+    path.write_text("English;other\nknee flexion;Kniebeugung, <b>\nstep length;\n", encoding="utf-8-sig")
+    words = read_words(path, ENGLISH)
+    assert words("knee flexion [deg]") == "Kniebeugung, <b> [deg]" and words("step length") == "step length"
+    assert read_words(write_words(path, ENGLISH, words), ENGLISH) == words
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("knee,Knie\n", "de.csv begins with knee, Knie"),
+        ("English,other\n\nelbow,Ellbogen\n", "de.csv, line 3: 'elbow' is none"),
+        ("English,other\nNone of {} values lies beyond the limits of the reference.,Nichts.\n", "as often as in"),
+    ],
+)
+def test_another_table_is_refused_with_its_line(tmp_path, text, said):
+    (tmp_path / "de.csv").write_text(text, encoding="utf-8")
+    with pytest.raises(SchemaError, match=said):
+        read_words(tmp_path / "de.csv", ENGLISH)
+
+
+def test_a_table_that_is_no_text_is_refused(tmp_path):
+    (tmp_path / "de.csv").write_bytes(b"\xff\xfe\x00E")
+    with pytest.raises(SchemaError, match="Save it as CSV in UTF-8"):
+        read_words(tmp_path / "de.csv", ENGLISH)
+
+
+LIMITS = Limits(52.0, 66.0, 59.0, 3.6, 18)
+
+
+def _noted(side, value, rule="knee", excess=2.0):
+    return Noted(rule, "reduced knee flexion in swing", side, value, "deg", 0, LIMITS, 5, excess)
+
+
+def test_a_sentence_has_number_limits_side_and_cycles():
+    assert noted_sentences([_noted("l", 38.0)]) == [
+        "Reduced knee flexion in swing: left 38 deg (5 cycles); limits 52 to 66 deg, reference 59 ± 3.6 deg, 18 people."
+    ]
+
+
+def test_both_sides_are_one_sentence_and_there_are_at_most_six():
+    both = noted_sentences([_noted("r", 40.0), _noted("l", 38.0)])
+    assert len(both) == 1 and "left 38 deg (5 cycles), right 40 deg (5 cycles)" in both[0]
+    assert len(noted_sentences([_noted("l", 38.0, rule=str(k)) for k in range(9)])) == MOST == 6
+
+
+def test_nothing_that_stands_out_and_why_nothing_can_be_said():
+    few = outstanding_sentences(read_beside(made_person(), made_controls(6)))
+    assert few[0].endswith("With 6 controls the limits are wide: smaller differences may be there.")
+    assert "there is no reference" in outstanding_sentences(read_beside(made_person(), None))[0]
+
+
+def test_quality_and_scores_are_said_with_counts():
+    reading = read_beside(made_person(each=2), made_controls(6))
+    assert quality_sentence(reading).startswith(
+        "2 left and 2 right cycles of 2 trials over ground, 2 on a plate. amber:"
+    )
+    said = " ".join(score_sentences(reading))
+    assert "Gait profile score: both" in said and "6 people" in said and "No gait deviation index: its 15" in said
+    assert "No gait profile score: there is no reference" in score_sentences(read_beside(made_person(), None))[0]
+
+
+def test_a_difference_is_said_with_place_p_and_counts():
+    bump = 15.0 * ((PERCENT >= 65) & (PERCENT <= 80))
+    before = read_beside(made_person(session="before", each=8, spread=0.0), None)
+    after = read_beside(made_person(session="after", each=8, spread=0.0, seed=1, changed={"knee_angle_l": bump}), None)
+    said, *_ = contrast_sentences(contrast_of(before, after))
+    assert said.startswith("Knee flexion, left: 15 deg more (flexion) in after walk than in before walk, at 65 to 80 %")
+    assert said.endswith("8 and 8 cycles.")
+    few = contrast_sentences(contrast_of(*(read_beside(made_person(session=w, each=2), None) for w in ("a", "b"))))
+    assert few[0].startswith("Left: not tested. a permutation test")
