@@ -24,18 +24,18 @@ import numpy as np
 from ch3_report import Result, written
 
 import gaitdisc as gd
-from gaitdisc.discrepancy.augmented_run import with_learned_rates
-from gaitdisc.discrepancy.burgers import burgers, places
-from gaitdisc.discrepancy.cell import cell_of, learned_model
-from gaitdisc.discrepancy.error_signal import APPROACHES
-from gaitdisc.discrepancy.grid import NOISES
-from gaitdisc.discrepancy.local_field import local_cell, recorded_field
-from gaitdisc.discrepancy.methods import Method, MethodSettings
-from gaitdisc.discrepancy.record import Conditions, Record, recorded
+from gaitdisc.chapters.discrepancy.augmented_run import with_learned_rates
+from gaitdisc.chapters.discrepancy.burgers import burgers, places
+from gaitdisc.chapters.discrepancy.cell import cell_of, learned_model
+from gaitdisc.chapters.discrepancy.discrepancy_cell import DiscrepancyCell
+from gaitdisc.chapters.discrepancy.error_signal import APPROACHES
+from gaitdisc.chapters.discrepancy.grid import NOISES
+from gaitdisc.chapters.discrepancy.local_field import local_cell, recorded_field
+from gaitdisc.chapters.discrepancy.methods import Method, MethodSettings
+from gaitdisc.chapters.discrepancy.record import Conditions, Record, recorded
+from gaitdisc.chapters.pages.discrepancy_figure import field_figure
+from gaitdisc.chapters.pages.discrepancy_tables import grid_table, statements_table
 from gaitdisc.report.block import Block
-from gaitdisc.report.discrepancy_figure import field_figure
-from gaitdisc.report.discrepancy_tables import grid_table, statements_table
-from gaitdisc.results.discrepancy_cell import DiscrepancyCell
 
 SEEDS = (0, 1, 2)
 AT_EACH_POINT: tuple[Method, ...] = ("sindy", "gp", "nn")

@@ -40,19 +40,19 @@ import numpy as np
 import pandas as pd
 from ch3_tables import LYAPUNOV_PER_S, said_of
 
-from gaitdisc.discrepancy.augmented_run import with_learned_rates
-from gaitdisc.discrepancy.cell import cell_of, learned_model
-from gaitdisc.discrepancy.error_signal import error_samples
-from gaitdisc.discrepancy.filtered_start import filtered_start
-from gaitdisc.discrepancy.forecast_start import forecast_start
-from gaitdisc.discrepancy.methods import MethodSettings
-from gaitdisc.discrepancy.record import Conditions, recorded
-from gaitdisc.discrepancy.record_noise import NOISE_KINDS
-from gaitdisc.discrepancy.system import System
-from gaitdisc.regression.gaussian_process import fit_gaussian_process
-from gaitdisc.report.discrepancy_figure import METHOD_WORDS
+from gaitdisc.chapters.discrepancy.augmented_run import with_learned_rates
+from gaitdisc.chapters.discrepancy.cell import cell_of, learned_model
+from gaitdisc.chapters.discrepancy.discrepancy_cell import FORECAST, PartAccuracy
+from gaitdisc.chapters.discrepancy.error_signal import error_samples
+from gaitdisc.chapters.discrepancy.filtered_start import filtered_start
+from gaitdisc.chapters.discrepancy.forecast_start import forecast_start
+from gaitdisc.chapters.discrepancy.methods import MethodSettings
+from gaitdisc.chapters.discrepancy.record import Conditions, recorded
+from gaitdisc.chapters.discrepancy.record_noise import NOISE_KINDS
+from gaitdisc.chapters.discrepancy.system import System
+from gaitdisc.chapters.pages.discrepancy_figure import METHOD_WORDS
+from gaitdisc.chapters.regression.gaussian_process import fit_gaussian_process
 from gaitdisc.report.table import as_markdown, save_table, words_table
-from gaitdisc.results.discrepancy_cell import FORECAST, PartAccuracy
 
 CELLS = Path(__file__).with_name("ch3_further.csv")
 NOISES = (0.01, 0.1)

@@ -21,13 +21,13 @@ import pandas as pd
 from ch3_report import Cells, Result, blocks_of, written
 
 import gaitdisc as gd
-from gaitdisc.discrepancy.error_signal import APPROACHES
-from gaitdisc.discrepancy.grid import ALL_METHODS, NOISES, grid
-from gaitdisc.discrepancy.record import Conditions
-from gaitdisc.discrepancy.system import System, system_of
+from gaitdisc.chapters.discrepancy.discrepancy_cell import FORECAST, ORACLE, PART_WORDS
+from gaitdisc.chapters.discrepancy.error_signal import APPROACHES
+from gaitdisc.chapters.discrepancy.grid import ALL_METHODS, NOISES, grid
+from gaitdisc.chapters.discrepancy.record import Conditions
+from gaitdisc.chapters.discrepancy.system import System, system_of
 from gaitdisc.report.block import Block
 from gaitdisc.report.table import Table
-from gaitdisc.results.discrepancy_cell import FORECAST, ORACLE, PART_WORDS
 
 SEEDS = (0, 1, 2)
 LYAPUNOV_PER_S = 0.906  # largest exponent: Sprott 2003, Chaos and Time-Series Analysis

@@ -8,20 +8,20 @@ from pathlib import Path
 
 from ch3_statements import Cells, Stated, answered, of_figures
 
-from gaitdisc.discrepancy.recommend import measured_cells
-from gaitdisc.discrepancy.system import System
-from gaitdisc.report.block import Block
-from gaitdisc.report.blocks_page import write_blocks, write_markdown
-from gaitdisc.report.discrepancy_figure import (
+from gaitdisc.chapters.discrepancy.discrepancy_cell import RECONSTRUCTION
+from gaitdisc.chapters.discrepancy.recommend import measured_cells
+from gaitdisc.chapters.discrepancy.system import System
+from gaitdisc.chapters.pages.blocks_page import write_blocks, write_markdown
+from gaitdisc.chapters.pages.discrepancy_figure import (
     accuracy_figure,
     cost_figure,
     error_figure,
     horizon_figure,
     system_figure,
 )
-from gaitdisc.report.discrepancy_tables import grid_table, statements_table
+from gaitdisc.chapters.pages.discrepancy_tables import grid_table, statements_table
+from gaitdisc.report.block import Block
 from gaitdisc.report.table import Table, save_table
-from gaitdisc.results.discrepancy_cell import RECONSTRUCTION
 
 ARTEFACT = (
     "As published, SINDy's map for the residual is integrated as if it gave a rate, from zero, and added; the map "

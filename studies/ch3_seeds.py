@@ -38,14 +38,14 @@ import numpy as np
 import pandas as pd
 from ch3_tables import CELLS, measured, sets_tables
 
-from gaitdisc.discrepancy.cell import cell_of
-from gaitdisc.discrepancy.error_signal import Approach
-from gaitdisc.discrepancy.methods import Method, MethodSettings
-from gaitdisc.discrepancy.recommend import FOUND, evidence_of
-from gaitdisc.discrepancy.record import Conditions, recorded
-from gaitdisc.discrepancy.system import System
+from gaitdisc.chapters.discrepancy.cell import cell_of
+from gaitdisc.chapters.discrepancy.discrepancy_cell import METHODS, DiscrepancyCell
+from gaitdisc.chapters.discrepancy.error_signal import Approach
+from gaitdisc.chapters.discrepancy.methods import Method, MethodSettings
+from gaitdisc.chapters.discrepancy.recommend import FOUND, evidence_of
+from gaitdisc.chapters.discrepancy.record import Conditions, recorded
+from gaitdisc.chapters.discrepancy.system import System
 from gaitdisc.report.table import save_table
-from gaitdisc.results.discrepancy_cell import METHODS, DiscrepancyCell
 
 NOISES = (0.0, 0.001, 0.01, 0.1)
 FOUR: tuple[Method, ...] = ("sindy", "dmd", "gp", "nn")

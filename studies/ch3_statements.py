@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from gaitdisc.report.discrepancy_figure import METHOD_WORDS
-from gaitdisc.report.discrepancy_tables import spread_words
-from gaitdisc.results.discrepancy_cell import FORECAST, ORACLE, RECONSTRUCTION, DiscrepancyCell
+from gaitdisc.chapters.discrepancy.discrepancy_cell import FORECAST, ORACLE, RECONSTRUCTION, DiscrepancyCell
+from gaitdisc.chapters.pages.discrepancy_figure import METHOD_WORDS
+from gaitdisc.chapters.pages.discrepancy_tables import spread_words
 
 Cells = Mapping[str, tuple[DiscrepancyCell, ...]]
 Stated = tuple[str, str, str, float]  # where, statement, approach, noise

@@ -22,11 +22,11 @@ import numpy as np
 import pandas as pd
 
 import gaitdisc as gd
-from gaitdisc.discrepancy.recommend import FOUND, STARTS, WANTS, recommend
-from gaitdisc.report.discrepancy_figure import METHOD_WORDS
-from gaitdisc.report.discrepancy_tables import spread_words
+from gaitdisc.chapters.discrepancy.discrepancy_cell import FORECAST, ORACLE, RECONSTRUCTION
+from gaitdisc.chapters.discrepancy.recommend import FOUND, STARTS, WANTS, recommend
+from gaitdisc.chapters.pages.discrepancy_figure import METHOD_WORDS
+from gaitdisc.chapters.pages.discrepancy_tables import spread_words
 from gaitdisc.report.table import as_markdown, words_table
-from gaitdisc.results.discrepancy_cell import FORECAST, ORACLE, RECONSTRUCTION
 from gaitdisc.statistics.signed_rank import exact_p
 
 CELLS = Path(__file__).with_name("ch3_cells.csv")

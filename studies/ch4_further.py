@@ -41,15 +41,15 @@ from real_people import ANGLES
 from torch import nn
 
 import gaitdisc as gd
+from gaitdisc.chapters.regression.gaussian_process import fit_gaussian_process
+from gaitdisc.chapters.regression.kernels import KernelKind
+from gaitdisc.chapters.regression.sindy import fit_sindy
 from gaitdisc.ingest.study import Models
 from gaitdisc.networks.feedforward import FeedForward
 from gaitdisc.networks.trainer import train
 from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.processing.process import processed
 from gaitdisc.regression.fourier_ridge import fit_fourier_ridge
-from gaitdisc.regression.gaussian_process import fit_gaussian_process
-from gaitdisc.regression.kernels import KernelKind
-from gaitdisc.regression.sindy import fit_sindy
 from gaitdisc.response.band import Refit, covered, response_bands
 from gaitdisc.response.fit_response import ResponseSettings, held_out_part
 from gaitdisc.response.models import ResponseModels, fit_linear, fit_models, fit_network, refitted_network

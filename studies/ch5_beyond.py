@@ -47,7 +47,7 @@ from gaitdisc.networks.trainer import train
 from gaitdisc.networks.training_settings import TrainingSettings
 from gaitdisc.sensing.calibration import calibrated, first_strides
 from gaitdisc.sensing.intervals import coverage, half_widths
-from gaitdisc.sensing.latent_size import latent_states
+from gaitdisc.sensing.latent_states import latent_states
 from gaitdisc.sensing.reconstructor import ENSEMBLE, WITHOUT_NETWORK, Sensing, fit_reconstructor
 from gaitdisc.sensing.splits import split_by_trial
 from gaitdisc.sensing.windows import Lags, stacked

@@ -40,14 +40,14 @@ from real_people import real_people, turning
 import gaitdisc as gd
 from gaitdisc.batch.reconstruct_study import ReconstructionSettings
 from gaitdisc.batch.sensed_walks import SensedWalk, sensed_walks
-from gaitdisc.regression.sindy import fit_sindy
+from gaitdisc.chapters.fields.reconstruct_field import reconstruct_field
+from gaitdisc.chapters.fields.routes import fixed_at_random
+from gaitdisc.chapters.regression.sindy import fit_sindy
 from gaitdisc.report.figure import save_figures
 from gaitdisc.report.latent_course_figure import LATENT, MODES, course_numbers, latent_course_figure
 from gaitdisc.sensing.forecast import persistence, phase_average
-from gaitdisc.sensing.latent_size import latent_states, leading
-from gaitdisc.sensing.reconstruct_field import reconstruct_field
+from gaitdisc.sensing.latent_states import latent_states, leading
 from gaitdisc.sensing.reconstructor import KINDS, OF_TEXT, WITHOUT_NETWORK, Reconstructor, Sensing, fit_reconstructor
-from gaitdisc.sensing.routes import fixed_at_random
 from gaitdisc.sensing.splits import RANDOM, Parts, split_by_subject, split_within
 from gaitdisc.sensing.windows import Lags
 

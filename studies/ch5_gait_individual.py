@@ -45,12 +45,12 @@ from ch5_gait import (
 
 from gaitdisc.batch.reconstruct_study import ReconstructionSettings
 from gaitdisc.batch.sensed_walks import sensed_walks
+from gaitdisc.chapters.pages.blocks_page import write_blocks
+from gaitdisc.chapters.pages.disturbance_figure import disturbance_figure
+from gaitdisc.chapters.pages.sensor_sets_figure import sensor_sets_figure
+from gaitdisc.chapters.pages.sensor_sets_table import sensor_sets_table
 from gaitdisc.ingest.study import Study
 from gaitdisc.report.block import Block
-from gaitdisc.report.blocks_page import write_blocks
-from gaitdisc.report.disturbance_figure import disturbance_figure
-from gaitdisc.report.sensor_sets_figure import sensor_sets_figure
-from gaitdisc.report.sensor_sets_table import sensor_sets_table
 from gaitdisc.report.table import save_table
 from gaitdisc.sensing.disturbance import against_missing, against_noise
 from gaitdisc.sensing.reconstructor import KINDS, MASKED, sensing

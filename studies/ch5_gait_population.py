@@ -31,10 +31,10 @@ import pandas as pd
 from ch5_gait import DATA, NOTHING_PRINTED, PELVIS, SENSORS, Result, cell, cohort, exotendon, first_person, printed
 
 from gaitdisc.batch.reconstruct_study import CONDITION, SUBJECT, ReconstructionSettings
+from gaitdisc.chapters.pages.blocks_page import write_blocks
+from gaitdisc.chapters.pages.sensor_sets_figure import sensor_sets_figure
+from gaitdisc.chapters.pages.sensor_sets_table import sensor_sets_table
 from gaitdisc.report.block import Block
-from gaitdisc.report.blocks_page import write_blocks
-from gaitdisc.report.sensor_sets_figure import sensor_sets_figure
-from gaitdisc.report.sensor_sets_table import sensor_sets_table
 from gaitdisc.results.reconstruction import CALIBRATED
 from gaitdisc.sensing.reconstructor import KINDS
 

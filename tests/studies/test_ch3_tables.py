@@ -5,10 +5,10 @@ from ch3_seeds import cell_sets, gathered, rows_of
 from ch3_tables import CELLS, measured, printed, set_table
 from printed_numbers import apart, blocks, pages
 
-from gaitdisc.discrepancy.cell import cell_of
-from gaitdisc.discrepancy.recommend import FOUND, evidence_of
-from gaitdisc.discrepancy.record import recorded
-from gaitdisc.results.discrepancy_cell import FORECAST, ORACLE, PARTS
+from gaitdisc.chapters.discrepancy.cell import cell_of
+from gaitdisc.chapters.discrepancy.discrepancy_cell import FORECAST, ORACLE, PARTS
+from gaitdisc.chapters.discrepancy.recommend import FOUND, evidence_of
+from gaitdisc.chapters.discrepancy.record import recorded
 
 OURS = [
     (page.name, block.commands[-1].split()[-1], block.written)

@@ -1,0 +1,1 @@
+"""Fields over time from a few sensors: their files, sensors that stand or travel, modes, errors."""
