@@ -33,9 +33,9 @@ from gaitdisc.chapters.discrepancy.grid import NOISES
 from gaitdisc.chapters.discrepancy.local_field import local_cell, recorded_field
 from gaitdisc.chapters.discrepancy.methods import Method, MethodSettings
 from gaitdisc.chapters.discrepancy.record import Conditions, Record, recorded
+from gaitdisc.chapters.pages import Block
 from gaitdisc.chapters.pages.discrepancy_figure import field_figure
 from gaitdisc.chapters.pages.discrepancy_tables import grid_table, statements_table
-from gaitdisc.report.block import Block
 
 SEEDS = (0, 1, 2)
 AT_EACH_POINT: tuple[Method, ...] = ("sindy", "gp", "nn")

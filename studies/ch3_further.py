@@ -38,7 +38,7 @@ import ch3_lorenz
 import ch3_van_der_pol
 import numpy as np
 import pandas as pd
-from ch3_tables import LYAPUNOV_PER_S, said_of
+from ch3_cells import LYAPUNOV_PER_S, said_of
 
 from gaitdisc.chapters.discrepancy.augmented_run import with_learned_rates
 from gaitdisc.chapters.discrepancy.cell import cell_of, learned_model
@@ -50,9 +50,9 @@ from gaitdisc.chapters.discrepancy.methods import MethodSettings
 from gaitdisc.chapters.discrepancy.record import Conditions, recorded
 from gaitdisc.chapters.discrepancy.record_noise import NOISE_KINDS
 from gaitdisc.chapters.discrepancy.system import System
+from gaitdisc.chapters.pages import as_markdown, save_table, words_table
 from gaitdisc.chapters.pages.discrepancy_figure import METHOD_WORDS
 from gaitdisc.chapters.regression.gaussian_process import fit_gaussian_process
-from gaitdisc.report.table import as_markdown, save_table, words_table
 
 CELLS = Path(__file__).with_name("ch3_further.csv")
 NOISES = (0.01, 0.1)

@@ -27,8 +27,8 @@ from gaitdisc.chapters.discrepancy.kalman import Uncertainty, linear_kalman, uns
 from gaitdisc.chapters.discrepancy.methods import MethodSettings
 from gaitdisc.chapters.discrepancy.record import Conditions, Record, recorded
 from gaitdisc.chapters.discrepancy.system import System, system_of
+from gaitdisc.chapters.pages import Block
 from gaitdisc.chapters.pages.discrepancy_tables import statements_table
-from gaitdisc.report.block import Block
 
 SEEDS = (0, 1, 2)
 FIGURES = {"state": "Fig. 3.13", "noise": "Fig. 3.13"}

@@ -11,7 +11,7 @@ from ch3_statements import Cells, Stated, answered, of_figures
 from gaitdisc.chapters.discrepancy.discrepancy_cell import RECONSTRUCTION
 from gaitdisc.chapters.discrepancy.recommend import measured_cells
 from gaitdisc.chapters.discrepancy.system import System
-from gaitdisc.chapters.pages.blocks_page import write_blocks, write_markdown
+from gaitdisc.chapters.pages import Block, Table, save_table, write_blocks, write_markdown
 from gaitdisc.chapters.pages.discrepancy_figure import (
     accuracy_figure,
     cost_figure,
@@ -20,8 +20,6 @@ from gaitdisc.chapters.pages.discrepancy_figure import (
     system_figure,
 )
 from gaitdisc.chapters.pages.discrepancy_tables import grid_table, statements_table
-from gaitdisc.report.block import Block
-from gaitdisc.report.table import Table, save_table
 
 ARTEFACT = (
     "As published, SINDy's map for the residual is integrated as if it gave a rate, from zero, and added; the map "

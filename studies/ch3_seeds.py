@@ -36,7 +36,7 @@ import ch3_measurement_bias
 import ch3_van_der_pol
 import numpy as np
 import pandas as pd
-from ch3_tables import CELLS, measured, sets_tables
+from ch3_cells import CELLS, measured, sets_tables
 
 from gaitdisc.chapters.discrepancy.cell import cell_of
 from gaitdisc.chapters.discrepancy.discrepancy_cell import METHODS, DiscrepancyCell
@@ -45,7 +45,7 @@ from gaitdisc.chapters.discrepancy.methods import Method, MethodSettings
 from gaitdisc.chapters.discrepancy.recommend import FOUND, evidence_of
 from gaitdisc.chapters.discrepancy.record import Conditions, recorded
 from gaitdisc.chapters.discrepancy.system import System
-from gaitdisc.report.table import save_table
+from gaitdisc.chapters.pages import save_table
 
 NOISES = (0.0, 0.001, 0.01, 0.1)
 FOUR: tuple[Method, ...] = ("sindy", "dmd", "gp", "nn")

@@ -32,9 +32,9 @@ from gaitdisc.chapters.discrepancy.naming import Naming
 from gaitdisc.chapters.discrepancy.record import Conditions, recorded
 from gaitdisc.chapters.discrepancy.shaken_rates import ShakenRates
 from gaitdisc.chapters.discrepancy.system import system_of
+from gaitdisc.chapters.pages import Block
 from gaitdisc.chapters.pages.naming_figure import naming_figure
 from gaitdisc.chapters.pages.naming_table import naming_table
-from gaitdisc.report.block import Block
 
 SEEDS = (0, 1, 2)
 NAMING: tuple[Method, ...] = ("sindy",)

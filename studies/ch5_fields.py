@@ -9,6 +9,7 @@ from pathlib import Path
 from command_line import SHARED
 
 import gaitdisc as gd
+from gaitdisc.chapters.fields import Lags, fit_reconstructor
 from gaitdisc.chapters.fields.field_cell import FieldCell
 from gaitdisc.chapters.fields.field_task import FieldTask
 from gaitdisc.chapters.fields.field_windows import snapshots_of
@@ -17,11 +18,7 @@ from gaitdisc.chapters.fields.reconstruct_field import prepare, reconstruct_fiel
 from gaitdisc.chapters.fields.routes import Route, fixed_at_random, random_walk
 from gaitdisc.chapters.fields.sea_surface import read_oisst, read_sst_mat
 from gaitdisc.chapters.fields.unseen_path import unseen_path
-from gaitdisc.chapters.pages.blocks_page import write_blocks, write_markdown
-from gaitdisc.report.block import Block
-from gaitdisc.report.table import Table
-from gaitdisc.sensing.reconstructor import fit_reconstructor
-from gaitdisc.sensing.windows import Lags
+from gaitdisc.chapters.pages import Block, Table, write_blocks, write_markdown
 
 FIELDS = SHARED / "fields"
 WALKS = 12  # fitted, before one that never was

@@ -113,7 +113,7 @@ def population(quick: bool) -> Iterator[Number]:
     """Each person by models of the others; the next in the list is who they are chosen by."""
     people = real_people()
     what = Sensing(SAGITTAL, tuple(n for n in people[0].recordings[0].names if n not in SAGITTAL), Lags(13, 4), 100.0)
-    windows = [person.windows(what) for person in people]
+    windows = [person.windows(what.windows) for person in people]
     for place, person in enumerate(people):
         parts = split_by_subject(windows, place)
         judged, fitted = parts.judged(), parts.fitted()
@@ -184,7 +184,7 @@ def turns(quick: bool) -> Iterator[Number]:
     children = turning()
     for ahead_s in (0.1, 0.2) if quick else (0.1, 0.2, 0.3):
         what = Sensing(SAGITTAL, children[0].recordings[0].names, Lags(8, 4, round(100 * ahead_s)), 100.0)
-        windows = [child.windows(what) for child in children]
+        windows = [child.windows(what.windows) for child in children]
         for place, child in enumerate(children):
             parts = split_by_subject(windows, place)
             for way, trial in zip(("straight", "turn"), windows[place], strict=True):

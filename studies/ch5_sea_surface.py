@@ -33,16 +33,15 @@ import pandas as pd
 from ch5_fields import Result, fields, maps_told, on_departures, unseen_walks, written
 
 import gaitdisc as gd
+from gaitdisc.chapters.fields import KINDS, RANDOM
 from gaitdisc.chapters.fields.field_cell import FieldCell
 from gaitdisc.chapters.fields.latent_size import latent_sizes
 from gaitdisc.chapters.fields.reconstruct_field import reconstruct_field, targets_of
 from gaitdisc.chapters.fields.routes import Route, circuit, fixed_at_random, joined
+from gaitdisc.chapters.pages import Block
 from gaitdisc.chapters.pages.field_errors_figure import histograms_figure, latent_figure
 from gaitdisc.chapters.pages.field_maps_figure import maps_figure, routes_figure
 from gaitdisc.chapters.pages.field_table import field_table
-from gaitdisc.report.block import Block
-from gaitdisc.sensing.reconstructor import KINDS
-from gaitdisc.sensing.splits import RANDOM
 
 SPLITS = (RANDOM, "temporal")
 WRITTEN_DOWN = tomllib.loads(Path(__file__).with_name("ch5_fields.toml").read_text(encoding="utf-8"))

@@ -32,18 +32,17 @@ from dataclasses import asdict, replace
 
 from ch5_fields import Result, middle_of, written
 
+from gaitdisc.chapters.fields import RANDOM, Lags
 from gaitdisc.chapters.fields.field_cell import FieldCell, load_cells, save_cells
 from gaitdisc.chapters.fields.field_task import FieldTask
 from gaitdisc.chapters.fields.reconstruct_field import CEILING, prepare, reconstruct_field, targets_of
 from gaitdisc.chapters.fields.routes import Route, fixed, fixed_at_random, random_walk
+from gaitdisc.chapters.pages import Block
 from gaitdisc.chapters.pages.field_errors_figure import boxes_figure, histograms_figure
 from gaitdisc.chapters.pages.field_maps_figure import maps_figure
 from gaitdisc.chapters.pages.field_table import medians_table
 from gaitdisc.chapters.pages.turbulence_figure import flow_figure
 from gaitdisc.chapters.turbulence.isotropic import FlowSettings, record_turbulence
-from gaitdisc.report.block import Block
-from gaitdisc.sensing.splits import RANDOM
-from gaitdisc.sensing.windows import Lags
 
 SPLITS = (RANDOM, "temporal")
 MODELS = 8  # of each kind of sensor; the dissertation trains 100

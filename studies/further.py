@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from gaitdisc.report.table import as_markdown, save_table, words_table
+from gaitdisc.chapters.pages import as_markdown, save_table, words_table
 
 
 class Number(NamedTuple):

@@ -23,7 +23,6 @@ from pathlib import Path
 import numpy as np
 
 import gaitdisc as gd
-from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.c3d_measures import read_body_measures
 from gaitdisc.kinematics.calibration import calibrated
 from gaitdisc.kinematics.marker_set import JOINTS, MarkerSet
@@ -59,7 +58,7 @@ class Person:
 def people(data: Path, names: tuple[str, ...]) -> list[Person]:
     """Static trial, straight walk, turn and measures of each."""
     found = []
-    with C3DReader() as reader:
+    with gd.C3DReader() as reader:
         for name in names:
             walks = data / "gait" / "young_straight_and_turn" / name
             [static] = [*(data / "gait" / "young_static").glob(f"{name}/*.c3d"), *walks.glob("static/*.c3d")]

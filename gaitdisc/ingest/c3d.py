@@ -71,6 +71,8 @@ class C3DReader:
 
         Parameters
         ----------
+        path : Path or str
+            The C3D file.
         channels : mapping of str to str, optional
             The study's own names, see `LabelMap`: label, description, `#<n>` for the n-th analog channel or
             `<label>.x` -> name, or `name [unit]`.

@@ -1,8 +1,9 @@
 import numpy as np
 import pandas as pd
 import pytest
+from ch3_cells import CELLS, measured, set_table
 from ch3_seeds import cell_sets, gathered, rows_of
-from ch3_tables import CELLS, measured, printed, set_table
+from ch3_tables import printed
 from printed_numbers import apart, blocks, pages
 
 from gaitdisc.chapters.discrepancy.cell import cell_of

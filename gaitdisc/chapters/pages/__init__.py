@@ -1,1 +1,7 @@
-"""Tables and figures of the pages that the studies of the chapters write."""
+"""Tables and figures of the pages that the studies of the chapters write, and the parts that every page is made of."""
+
+from gaitdisc.chapters.pages.blocks_page import write_blocks, write_markdown
+from gaitdisc.report.block import Block
+from gaitdisc.report.table import Table, as_markdown, save_table, words_table
+
+__all__ = ["Block", "Table", "as_markdown", "save_table", "words_table", "write_blocks", "write_markdown"]
