@@ -12,16 +12,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from command_line import QUICK, SHARED, argument, command_line
+from command_line import KEPT, QUICK, SHARED, argument, command_line
 
 GIVEN = command_line(
     __name__,
     __doc__,
-    argument(
-        "folder",
-        "where recordings, results and the pages go; what is there is not computed again",
-        Path("ch5_population"),
-    ),
+    argument("folder", KEPT, Path("ch5_population")),
     argument("data", "folder of the real gait recordings", SHARED / "gait"),
     QUICK,
     argument("--without-networks", "ridge regressions alone", False),

@@ -12,16 +12,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from command_line import QUICK, argument, command_line
+from command_line import KEPT, QUICK, argument, command_line
 
 GIVEN = command_line(
     __name__,
     __doc__,
-    argument(
-        "folder",
-        "where recordings, results and the pages go; what is there is not computed again",
-        Path("ch5_turbulence"),
-    ),
+    argument("folder", KEPT, Path("ch5_turbulence")),
     QUICK,
     argument("--models", "of each kind of sensor", 8),
     argument("--nodes", "of the box, along one side", 48),

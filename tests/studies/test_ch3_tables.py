@@ -1,10 +1,12 @@
 import numpy as np
 import pandas as pd
 import pytest
+from ch3_cell_sets import cell_sets
 from ch3_cells import CELLS, measured, set_table
-from ch3_seeds import cell_sets, gathered, rows_of
+from ch3_seeds import gathered, rows_of
 from ch3_tables import printed
-from printed_numbers import apart, blocks, pages
+from printed_blocks import apart, blocks
+from printed_numbers import pages
 
 from gaitdisc.chapters.discrepancy.cell import cell_of
 from gaitdisc.chapters.discrepancy.discrepancy_cell import FORECAST, ORACLE, PARTS
