@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pandas as pd
+from markdown_table import markdown_table
 
 from gaitdisc.chapters.discrepancy.discrepancy_cell import FORECAST, ORACLE, RECONSTRUCTION
 from gaitdisc.chapters.discrepancy.recommend import STARTS
-from gaitdisc.chapters.pages import as_markdown, words_table
 from gaitdisc.chapters.pages.discrepancy_figure import METHOD_WORDS
 from gaitdisc.chapters.pages.discrepancy_tables import spread_words
 
@@ -44,7 +44,7 @@ def set_table(table: pd.DataFrame, name: str, number: str) -> str:
             said = [said_of(found[found["noise"] == noise], column, factor) for noise in noises]
             rows.append((METHOD_WORDS[method], START_WORDS[part], n, *said))
     headings = ("method", "start", "n", *(f"{noise:.1%} noise" for noise in noises))
-    return as_markdown(words_table(name, "", headings, rows))
+    return markdown_table(" | ".join(headings), rows)
 
 
 def said_of(found: pd.DataFrame, column: str, factor: float = 1.0) -> str:

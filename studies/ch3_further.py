@@ -35,8 +35,9 @@ import warnings
 import pandas as pd
 from ch3_cells import said_of
 from ch3_further_numbers import numbers
+from markdown_table import markdown_table
 
-from gaitdisc.chapters.pages import as_markdown, save_table, words_table
+from gaitdisc.chapters.pages import save_table
 
 CELLS = Path(__file__).with_name("ch3_further.csv")
 HEADINGS = {
@@ -89,7 +90,7 @@ def printed(table: pd.DataFrame, name: str) -> str:
             said.append(said_of(some[here], "value"))
         rows.append((row, str(some[some["row"] == row].groupby(["system", "noise"]).size().max()), *said))
     headings = (HEADINGS[name], "n", *(f"{system}, {100 * noise:g} % noise" for system, noise in columns))
-    return as_markdown(words_table(name, "", headings, rows))
+    return markdown_table(" | ".join(headings), rows)
 
 
 if __name__ == "__main__":

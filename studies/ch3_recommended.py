@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pandas as pd
+from markdown_table import markdown_table
 
 from gaitdisc.chapters.discrepancy.discrepancy_cell import FORECAST, ORACLE
 from gaitdisc.chapters.discrepancy.recommend import FOUND, STARTS, WANTS, recommend
-from gaitdisc.chapters.pages import as_markdown, words_table
 from gaitdisc.chapters.pages.discrepancy_figure import METHOD_WORDS
 from gaitdisc.chapters.pages.discrepancy_tables import spread_words
 
@@ -40,7 +40,7 @@ def recommended_table() -> str:
             )
         record = "chaotic (Lorenz)" if chaotic else "a limit cycle (Van der Pol)"
         rows.append((record, f"{noise:.1%}", f"{step:g} s", f"{samples:,}", *said))
-    return as_markdown(words_table("recommended", "", ("record", "noise", "step", "samples", *WANTS), rows))
+    return markdown_table(" | ".join(("record", "noise", "step", "samples", *WANTS)), rows)
 
 
 def evidence_table() -> str:
@@ -57,4 +57,4 @@ def evidence_table() -> str:
         "system", "method", "noise", "step [s]", "samples", "start", "forecast [%]", "valid [s]", "processor time [s]",
         "diverged", "seeds",
     )  # fmt: skip
-    return as_markdown(words_table("evidence", "", headings, rows))
+    return markdown_table(" | ".join(headings), rows)

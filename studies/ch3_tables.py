@@ -21,10 +21,10 @@ import numpy as np
 import pandas as pd
 from ch3_cells import NUMBERS, START_WORDS, measured, set_table, sets_tables
 from ch3_recommended import evidence_table, recommended_table
+from markdown_table import markdown_table
 
 import gaitdisc as gd
 from gaitdisc.chapters.discrepancy.discrepancy_cell import FORECAST, ORACLE
-from gaitdisc.chapters.pages import as_markdown, words_table
 from gaitdisc.chapters.pages.discrepancy_figure import METHOD_WORDS
 
 IN_README = ("sindy", "dmd", "gp", "nn")
@@ -43,7 +43,7 @@ def readme_table(table: pd.DataFrame) -> str:
             said.append(f"{one:.1f} ({other:.1f})")
         rows.append((METHOD_WORDS[method], *said))
     words = ["no noise" if noise == 0 else f"{100 * noise:g} %" for noise in noises]
-    return as_markdown(words_table("readme", "", ("Van der Pol with a hidden cubic spring", *words), rows))
+    return markdown_table(" | ".join(("Van der Pol with a hidden cubic spring", *words)), rows)
 
 
 def rankings(table: pd.DataFrame) -> str:

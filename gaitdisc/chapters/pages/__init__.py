@@ -2,6 +2,6 @@
 
 from gaitdisc.chapters.pages.blocks_page import write_blocks, write_markdown
 from gaitdisc.report.block import Block
-from gaitdisc.report.table import Table, as_markdown, save_table, words_table
+from gaitdisc.report.table import Table, save_table
 
-__all__ = ["Block", "Table", "as_markdown", "save_table", "words_table", "write_blocks", "write_markdown"]
+__all__ = ["Block", "Table", "save_table", "write_blocks", "write_markdown"]
