@@ -38,12 +38,12 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
 
-from gaitdisc.sensing.field_task import FieldTask
-from gaitdisc.sensing.reconstruct_field import prepare
-from gaitdisc.sensing.routes import fixed_at_random
+from gaitdisc.chapters.fields.field_task import FieldTask
+from gaitdisc.chapters.fields.reconstruct_field import prepare
+from gaitdisc.chapters.fields.routes import fixed_at_random
+from gaitdisc.chapters.turbulence.isotropic import FlowSettings, record_turbulence
 from gaitdisc.sensing.splits import RANDOM
 from gaitdisc.sensing.windows import Lags
-from gaitdisc.turbulence.isotropic import FlowSettings, record_turbulence
 
 FLOW = FlowSettings(nodes=50, cut=50, snapshots=600, spin_up=800)
 LAGS = {"ours": Lags(13, 8), "text": Lags(100, 1)}

@@ -31,13 +31,13 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from gaitdisc.discrepancy.augmented_run import with_learned_rates
-from gaitdisc.discrepancy.cell import learned_model, part
-from gaitdisc.discrepancy.methods import MethodSettings
-from gaitdisc.discrepancy.record import Conditions, Record, recorded
-from gaitdisc.discrepancy.system import Rates, System, system_of
+from gaitdisc.chapters.discrepancy.augmented_run import with_learned_rates
+from gaitdisc.chapters.discrepancy.cell import learned_model, part
+from gaitdisc.chapters.discrepancy.discrepancy_cell import ORACLE
+from gaitdisc.chapters.discrepancy.methods import MethodSettings
+from gaitdisc.chapters.discrepancy.record import Conditions, Record, recorded
+from gaitdisc.chapters.discrepancy.system import Rates, System, system_of
 from gaitdisc.model import Model
-from gaitdisc.results.discrepancy_cell import ORACLE
 from gaitdisc.simulation.bundled import bundled
 from gaitdisc.simulation.parts import Term
 

@@ -8,6 +8,7 @@ TYPE_CHECKING = False  # typing itself takes longer to load than all else here; 
 if TYPE_CHECKING:
     from gaitdisc.channel import Channel as Channel
     from gaitdisc.errors import GaitdiscError as GaitdiscError
+    from gaitdisc.ingest.c3d import C3DReader as C3DReader
     from gaitdisc.ingest.reading import read_trial as read
     from gaitdisc.library import plot as plot
     from gaitdisc.library.checking import check as check
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from gaitdisc.library.response import fit_response as fit_response
     from gaitdisc.library.simulating import simulate as simulate
     from gaitdisc.library.steps import contacts as contacts
+    from gaitdisc.library.steps import contacts_by_detector as contacts_by_detector
     from gaitdisc.library.steps import cycles as cycles
     from gaitdisc.processing.inspection import Inspection as Inspection
     from gaitdisc.recording.field import Axis as Axis
@@ -59,6 +61,7 @@ __version__ = "0.1.0"
 # name -> module, and the name there; in the order of the reference
 _HOME = {
     "read": ("ingest.reading", "read_trial"),
+    "C3DReader": ("ingest.c3d", "C3DReader"),
     "check": ("library.checking", "check"),
     "example_files": ("library.examples", "example_files"),
     "example_walks": ("library.examples", "example_walks"),
@@ -78,6 +81,7 @@ _HOME = {
     "envelope": ("library.filters", "envelope"),
     "differentiate": ("library.filters", "differentiate"),
     "contacts": ("library.steps", "contacts"),
+    "contacts_by_detector": ("library.steps", "contacts_by_detector"),
     "Contacts": ("signals.contacts", "Contacts"),
     "cycles": ("library.steps", "cycles"),
     "angles": ("library.joints", "angles"),
@@ -108,6 +112,7 @@ _HOME = {
 }
 __all__ = [
     "Axis",
+    "C3DReader",
     "Channel",
     "Contacts",
     "Discovery",
@@ -132,6 +137,7 @@ __all__ = [
     "check",
     "compare",
     "contacts",
+    "contacts_by_detector",
     "cycles",
     "differentiate",
     "discover",

@@ -24,17 +24,17 @@ import numpy as np
 from ch3_report import Result, written
 
 import gaitdisc as gd
-from gaitdisc.discrepancy.augmented_run import with_learned_rates
-from gaitdisc.discrepancy.burgers import burgers, places
-from gaitdisc.discrepancy.cell import cell_of, learned_model
-from gaitdisc.discrepancy.error_signal import APPROACHES
-from gaitdisc.discrepancy.grid import NOISES
-from gaitdisc.discrepancy.local_field import local_cell, recorded_field
-from gaitdisc.discrepancy.methods import Method, MethodSettings
-from gaitdisc.discrepancy.record import Conditions, Record, recorded
-from gaitdisc.report.discrepancy import field_figure, grid_table, statements_table
-from gaitdisc.report.page import Block
-from gaitdisc.results.discrepancy_cell import DiscrepancyCell
+from gaitdisc.chapters.discrepancy.augmented_run import with_learned_rates
+from gaitdisc.chapters.discrepancy.burgers import burgers, places
+from gaitdisc.chapters.discrepancy.cell import cell_of, learned_model
+from gaitdisc.chapters.discrepancy.discrepancy_cell import DiscrepancyCell
+from gaitdisc.chapters.discrepancy.error_signal import APPROACHES
+from gaitdisc.chapters.discrepancy.grid import NOISES
+from gaitdisc.chapters.discrepancy.local_field import local_cell, recorded_field
+from gaitdisc.chapters.discrepancy.methods import Method, MethodSettings
+from gaitdisc.chapters.discrepancy.record import Conditions, Record, recorded
+from gaitdisc.chapters.pages import Block
+from gaitdisc.chapters.pages.discrepancy import field_figure, grid_table, statements_table
 
 SEEDS = (0, 1, 2)
 AT_EACH_POINT: tuple[Method, ...] = ("sindy", "gp", "nn")

@@ -31,33 +31,15 @@ GIVEN = command_line(
 )  # before the slow imports
 
 import warnings
-from collections.abc import Callable, Iterator
-from typing import NamedTuple
 
-import ch3_lorenz
-import ch3_van_der_pol
-import numpy as np
 import pandas as pd
-from ch3_tables import LYAPUNOV_PER_S, said_of
+from ch3_cells import said_of
+from ch3_further_numbers import numbers
+from markdown_table import markdown_table
 
-from gaitdisc.discrepancy.augmented_run import with_learned_rates
-from gaitdisc.discrepancy.cell import cell_of, learned_model
-from gaitdisc.discrepancy.error_signal import error_samples
-from gaitdisc.discrepancy.filtered_start import filtered_start
-from gaitdisc.discrepancy.forecast_start import forecast_start
-from gaitdisc.discrepancy.methods import MethodSettings
-from gaitdisc.discrepancy.record import Conditions, recorded
-from gaitdisc.discrepancy.record_noise import NOISE_KINDS
-from gaitdisc.discrepancy.system import System
-from gaitdisc.regression.gaussian_process import fit_gaussian_process
-from gaitdisc.report.discrepancy import METHOD_WORDS
-from gaitdisc.report.table import as_markdown, save_table, words_table
-from gaitdisc.results.discrepancy_cell import FORECAST, PartAccuracy
+from gaitdisc.chapters.pages import save_table
 
 CELLS = Path(__file__).with_name("ch3_further.csv")
-NOISES = (0.01, 0.1)
-SACRIFICED_S = 5.0
-SIDES = 1.96  # standard deviations of a normal law's 95 %
 HEADINGS = {
     "methods": "forecast [% less RMSE], of Lorenz valid time [Lyapunov times]",
     "noise": "forecast [% less RMSE], of Lorenz valid time [Lyapunov times]",
@@ -65,112 +47,6 @@ HEADINGS = {
     "trajectories": "forecast from 5 s on [% less RMSE], state approach",
     "variance": "missing rate within 1.96 SD of the Gaussian process [%]",
 }
-
-
-class Number(NamedTuple):
-    """One number of a table: its row, its column's system and noise, and how it is computed from a seed."""
-
-    table: str
-    row: str
-    system: str
-    noise: float
-    computed: Callable[[int], float]
-
-
-def systems() -> dict[str, System]:
-    """The text's oscillator, and Lorenz."""
-    return {"Van der Pol": ch3_van_der_pol.systems()["text"], "Lorenz": ch3_lorenz.system()}
-
-
-def score(part: PartAccuracy, system: str) -> float:
-    """What a forecast is judged by."""
-    if system == "Lorenz":
-        return LYAPUNOV_PER_S * part.valid_s("augmented")
-    return float(np.median(part.accuracy()))
-
-
-def numbers(tables: list[str]) -> Iterator[Number]:
-    """Every number of the tables."""
-    for name, system in systems().items():
-        for noise in NOISES:
-            if "methods" in tables:
-                for method in ("sindy", "esindy", "wsindy", "dmd", "exactdmd", "gp", "gpm"):
-                    yield Number("methods", METHOD_WORDS[method], name, noise, of_method(system, name, noise, method))
-            if "variance" in tables:
-                yield Number("variance", "Gaussian process", name, noise, of_variance(system, noise))
-        if "noise" in tables:
-            for kind in NOISE_KINDS:
-                for method in ("sindy", "gp"):
-                    row = f"{METHOD_WORDS[method]}, {kind.replace('_', ' ')}"
-                    yield Number("noise", row, name, 0.01, of_method(system, name, 0.01, method, kind=kind))
-    for noise in NOISES:
-        for start in ("windows", "unscented", "ensemble", "true state (oracle)") if "filters" in tables else ():
-            yield Number("filters", start, "Lorenz", noise, of_filter(systems()["Lorenz"], noise, start))
-    for count, sacrificed in ((1, 0.0), (4, 0.0), (8, 0.0), (1, SACRIFICED_S)) if "trajectories" in tables else ():
-        for method in ("sindy", "gp"):
-            row = f"{METHOD_WORDS[method]}, {count} start{'s' * (count > 1)}"
-            row += ", first 5 s of the forecast learned from" * bool(sacrificed)
-            made = {"trajectories": count, "sacrificed_s": sacrificed}
-            yield Number("trajectories", row, "Van der Pol", 0.01, of_trajectories(method, made))
-
-
-def of_method(system: System, name: str, noise: float, method, **made) -> Callable[[int], float]:
-    """Forecast from the estimated start with learned rates."""
-
-    def computed(seed: int) -> float:
-        record = recorded(system, Conditions(noise, seed, **made))
-        found = cell_of(record, method, "dynamics")
-        return score(found.parts[FORECAST], name) if found.parts else float("nan")
-
-    return computed
-
-
-def of_trajectories(method, made: dict) -> Callable[[int], float]:
-    """Forecast with a learned residual, judged after what may be sacrificed."""
-
-    def computed(seed: int) -> float:
-        record = recorded(systems()["Van der Pol"], Conditions(0.01, seed, **made))
-        part = cell_of(record, method, "state").parts[FORECAST]
-        later = part.time >= SACRIFICED_S
-        kept = {each: getattr(part, each)[later] for each in ("time", "truth", "known", "augmented")}
-        return float(np.median(PartAccuracy(**kept, diverged_s=part.diverged_s).accuracy()))
-
-    return computed
-
-
-def of_filter(system: System, noise: float, start: str) -> Callable[[int], float]:
-    """Valid time of SINDy's forecast from a start."""
-
-    def computed(seed: int) -> float:
-        record = recorded(system, Conditions(noise, seed))
-        learned = learned_model(record, "sindy", "dynamics", MethodSettings())
-        begins = {
-            "windows": lambda: forecast_start(record, learned, "dynamics"),
-            "unscented": lambda: filtered_start(record, learned, "unscented"),
-            "ensemble": lambda: filtered_start(record, learned, "ensemble"),
-            "true state (oracle)": lambda: record.start(forecast=True),
-        }[start]()
-        at = record.time[record.split - 1 :]
-        run = with_learned_rates(system.known, learned, begins, at).values
-        known = system.known.run(begins[None], record.conditions.dt_s, len(at) - 1)[0]
-        return score(PartAccuracy(at - at[0], record.target(forecast=True), known, run, None), "Lorenz")
-
-    return computed
-
-
-def of_variance(system: System, noise: float) -> Callable[[int], float]:
-    """Share of the true missing rate, along the true forecast, within the Gaussian process' own interval."""
-
-    def computed(seed: int) -> float:
-        record = recorded(system, Conditions(noise, seed))
-        found = fit_gaussian_process(error_samples(record, "dynamics"), variance=True)
-        states = record.truth[record.split :: 10]
-        missing = system.true(states) - system.known(states)
-        which = np.abs(missing).max(axis=0) > 0  # the equation that lacks something
-        inside = np.abs(found(states) - missing) <= SIDES * found.sd(states)
-        return 100 * float(inside[:, which].mean())
-
-    return computed
 
 
 def compute(folder: Path, tables: list[str], seeds: int) -> None:
@@ -214,7 +90,7 @@ def printed(table: pd.DataFrame, name: str) -> str:
             said.append(said_of(some[here], "value"))
         rows.append((row, str(some[some["row"] == row].groupby(["system", "noise"]).size().max()), *said))
     headings = (HEADINGS[name], "n", *(f"{system}, {100 * noise:g} % noise" for system, noise in columns))
-    return as_markdown(words_table(name, "", headings, rows))
+    return markdown_table(" | ".join(headings), rows)
 
 
 if __name__ == "__main__":

@@ -18,19 +18,18 @@ GIVEN = command_line(
 
 import numpy as np
 import pandas as pd
+from ch3_cells import LYAPUNOV_PER_S
 from ch3_report import Cells, Result, blocks_of, written
 
 import gaitdisc as gd
-from gaitdisc.discrepancy.error_signal import APPROACHES
-from gaitdisc.discrepancy.grid import ALL_METHODS, NOISES, grid
-from gaitdisc.discrepancy.record import Conditions
-from gaitdisc.discrepancy.system import System, system_of
-from gaitdisc.report.page import Block
-from gaitdisc.report.table import Table
-from gaitdisc.results.discrepancy_cell import FORECAST, ORACLE, PART_WORDS
+from gaitdisc.chapters.discrepancy.discrepancy_cell import FORECAST, ORACLE, PART_WORDS
+from gaitdisc.chapters.discrepancy.error_signal import APPROACHES
+from gaitdisc.chapters.discrepancy.grid import ALL_METHODS, NOISES, grid
+from gaitdisc.chapters.discrepancy.record import Conditions
+from gaitdisc.chapters.discrepancy.system import System, system_of
+from gaitdisc.chapters.pages import Block, Table
 
 SEEDS = (0, 1, 2)
-LYAPUNOV_PER_S = 0.906  # largest exponent: Sprott 2003, Chaos and Time-Series Analysis
 FINE_DT_S, FINE_S, SHORT_S = 0.001, 20.0, 10.0  # of the short record 601 samples are learned from
 FIGURES = {
     "system": "Fig. 3.6", "dynamics": "Fig. 3.7", "state": "Fig. 3.8", "horizon": "Fig. 3.9", "noise": "Fig. 3.10",

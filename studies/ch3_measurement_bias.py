@@ -22,13 +22,13 @@ from ch3_report import Result, blocks_of, written
 from numpy.typing import NDArray
 
 import gaitdisc as gd
-from gaitdisc.discrepancy.grid import ALL_METHODS, NOISES, grid
-from gaitdisc.discrepancy.kalman import Uncertainty, linear_kalman, unscented_kalman
-from gaitdisc.discrepancy.methods import MethodSettings
-from gaitdisc.discrepancy.record import Conditions, Record, recorded
-from gaitdisc.discrepancy.system import System, system_of
-from gaitdisc.report.discrepancy import statements_table
-from gaitdisc.report.page import Block
+from gaitdisc.chapters.discrepancy.grid import ALL_METHODS, NOISES, grid
+from gaitdisc.chapters.discrepancy.kalman import Uncertainty, linear_kalman, unscented_kalman
+from gaitdisc.chapters.discrepancy.methods import MethodSettings
+from gaitdisc.chapters.discrepancy.record import Conditions, Record, recorded
+from gaitdisc.chapters.discrepancy.system import System, system_of
+from gaitdisc.chapters.pages import Block
+from gaitdisc.chapters.pages.discrepancy import statements_table
 
 SEEDS = (0, 1, 2)
 FIGURES = {"state": "Fig. 3.13", "noise": "Fig. 3.13"}

@@ -8,9 +8,11 @@ from pathlib import Path
 
 from ch3_statements import Cells, Stated, answered, of_figures
 
-from gaitdisc.discrepancy.recommend import measured_cells
-from gaitdisc.discrepancy.system import System
-from gaitdisc.report.discrepancy import (
+from gaitdisc.chapters.discrepancy.discrepancy_cell import RECONSTRUCTION
+from gaitdisc.chapters.discrepancy.recommend import measured_cells
+from gaitdisc.chapters.discrepancy.system import System
+from gaitdisc.chapters.pages import Block, Table, save_table, write_blocks, write_markdown
+from gaitdisc.chapters.pages.discrepancy import (
     accuracy_figure,
     cost_figure,
     error_figure,
@@ -19,9 +21,6 @@ from gaitdisc.report.discrepancy import (
     statements_table,
     system_figure,
 )
-from gaitdisc.report.page import Block, write_blocks, write_markdown
-from gaitdisc.report.table import Table, save_table
-from gaitdisc.results.discrepancy_cell import RECONSTRUCTION
 
 ARTEFACT = (
     "As published, SINDy's map for the residual is integrated as if it gave a rate, from zero, and added; the map "

@@ -14,12 +14,11 @@ from pathlib import Path
 
 from command_line import QUICK, argument, command_line
 
-SEEDS = 12
 GIVEN = command_line(
     __name__,
     __doc__,
     argument("folder", "a file for each cell that was computed", type=Path),
-    argument("--seeds", "noise seeds 0 to one less than this", SEEDS),
+    argument("--seeds", "noise seeds 0 to one less than this", 12),
     argument("--sets", "names of sets, all where absent", nargs="+"),
     argument("--noises", "shares of each channel's standard deviation, all where absent", nargs="+", type=float),
     argument("--keep", "compute nothing; write studies/ch3_cells.csv and what `recommend` answers from", False),
@@ -29,80 +28,19 @@ GIVEN = command_line(
 import sys
 import warnings
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
-import ch3_lorenz
-import ch3_measurement_bias
-import ch3_van_der_pol
 import numpy as np
 import pandas as pd
-from ch3_tables import CELLS, measured, sets_tables
+from ch3_cell_sets import CellSet, cell_sets, chosen_sets
+from ch3_cells import CELLS, measured, sets_tables
 
-from gaitdisc.discrepancy.cell import cell_of
-from gaitdisc.discrepancy.error_signal import Approach
-from gaitdisc.discrepancy.methods import Method, MethodSettings
-from gaitdisc.discrepancy.recommend import FOUND, evidence_of
-from gaitdisc.discrepancy.record import Conditions, recorded
-from gaitdisc.discrepancy.system import System
-from gaitdisc.report.table import save_table
-from gaitdisc.results.discrepancy_cell import METHODS, DiscrepancyCell
-
-NOISES = (0.0, 0.001, 0.01, 0.1)
-FOUR: tuple[Method, ...] = ("sindy", "dmd", "gp", "nn")
-LONG, SHORT = 50.0, 10.0
-
-
-@dataclass(frozen=True, eq=False)
-class CellSet:
-    """Cells that stand in one table.
-
-    Parameters
-    ----------
-    noises : tuple of float
-        As shares of each channel's standard deviation.
-    """
-
-    system: System
-    conditions: Conditions
-    approach: Approach = "dynamics"
-    methods: tuple[Method, ...] = FOUR
-    noises: tuple[float, ...] = NOISES
-    seeds: int = SEEDS
-    settings: MethodSettings | None = None
-
-
-def cell_sets() -> dict[str, CellSet]:
-    """Every set by its name, in the order in which they are computed."""
-    pol, mass = ch3_van_der_pol.systems(), ch3_measurement_bias.systems()
-    text, code, lorenz = pol["text"], pol["code"], ch3_lorenz.system()
-    long, short, swing = Conditions(duration_s=LONG), Conditions(duration_s=SHORT), Conditions(duration_s=20.0)
-    fine = Conditions(dt_s=ch3_lorenz.FINE_DT_S, duration_s=ch3_lorenz.FINE_S)
-    bias = {"approach": "state", "settings": ch3_measurement_bias.SETTINGS}
-    found = {
-        "van_der_pol_text": CellSet(text, long),
-        "lorenz": CellSet(lorenz, long),
-        "van_der_pol_code": CellSet(code, long),
-        "van_der_pol_text_short": CellSet(text, short, noises=NOISES[1:]),
-        "lorenz_short": CellSet(lorenz, short, noises=NOISES[1:]),
-        "lorenz_fine": CellSet(lorenz, fine, methods=("sindy", "gp", "nn"), noises=NOISES[:1]),
-        "mass_code": CellSet(mass["code"], swing, **bias),
-        "mass_text": CellSet(mass["text"], swing, **bias),
-        "van_der_pol_text_state": CellSet(text, long, "state"),
-        "van_der_pol_code_state": CellSet(code, long, "state"),
-        "lorenz_state": CellSet(lorenz, long, "state"),
-    }
-    return found | {
-        f"{name}_bopdmd": replace(found[name], methods=("bopdmd",), seeds=3)
-        for name in ("van_der_pol_text", "van_der_pol_code", "lorenz", "mass_code", "mass_text")
-    }
-
-
-def chosen_sets(names: list[str] | None, noises: list[float] | None) -> dict[str, CellSet]:
-    """Sets of these names, at these noises; all where absent."""
-    sets = cell_sets()
-    found = {name: sets[name] for name in names or sets}
-    some = set(noises or NOISES)
-    return {name: replace(one, noises=tuple(n for n in one.noises if n in some)) for name, one in found.items()}
+from gaitdisc.chapters.discrepancy.cell import cell_of
+from gaitdisc.chapters.discrepancy.discrepancy_cell import METHODS, DiscrepancyCell
+from gaitdisc.chapters.discrepancy.methods import Method
+from gaitdisc.chapters.discrepancy.recommend import FOUND, evidence_of
+from gaitdisc.chapters.discrepancy.record import recorded
+from gaitdisc.chapters.pages import save_table
 
 
 def compute(folder: Path, sets: dict[str, CellSet], seeds: int) -> None:

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from gaitdisc.report.discrepancy import METHOD_WORDS, spread_words
-from gaitdisc.results.discrepancy_cell import FORECAST, ORACLE, RECONSTRUCTION, DiscrepancyCell
+from gaitdisc.chapters.discrepancy.discrepancy_cell import FORECAST, ORACLE, RECONSTRUCTION, DiscrepancyCell
+from gaitdisc.chapters.pages.discrepancy import METHOD_WORDS, spread_words
 
 Cells = Mapping[str, tuple[DiscrepancyCell, ...]]
 Stated = tuple[str, str, str, float]  # where, statement, approach, noise

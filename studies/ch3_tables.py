@@ -10,7 +10,6 @@ TABLE is `readme`, `recommended`, `evidence`, `rankings`, or a set of `ch3_seeds
 from __future__ import annotations
 
 from itertools import combinations
-from pathlib import Path
 
 from command_line import argument, command_line
 
@@ -20,65 +19,16 @@ GIVEN = command_line(
 
 import numpy as np
 import pandas as pd
+from ch3_cells import NUMBERS, START_WORDS, measured, set_table, sets_tables
+from ch3_recommended import evidence_table, recommended_table
+from markdown_table import markdown_table
 
 import gaitdisc as gd
-from gaitdisc.discrepancy.recommend import FOUND, STARTS, WANTS, recommend
-from gaitdisc.report.discrepancy import METHOD_WORDS, spread_words
-from gaitdisc.report.table import as_markdown, words_table
-from gaitdisc.results.discrepancy_cell import FORECAST, ORACLE, RECONSTRUCTION
-from gaitdisc.statistics.signed_rank import exact_p
+from gaitdisc.chapters.discrepancy.discrepancy_cell import FORECAST, ORACLE
+from gaitdisc.chapters.pages.discrepancy import METHOD_WORDS
 
-CELLS = Path(__file__).with_name("ch3_cells.csv")
-LYAPUNOV_PER_S = 0.906  # of the Lorenz system: Sprott 2003
 IN_README = ("sindy", "dmd", "gp", "nn")
-START_WORDS = {**STARTS, RECONSTRUCTION: "reconstruction, true start"}
-NUMBERS = {
-    "forecast": ("accuracy", 1.0, (FORECAST, ORACLE)),
-    "parts": ("accuracy", 1.0, (RECONSTRUCTION, FORECAST, ORACLE)),
-    "valid": ("valid_s", LYAPUNOV_PER_S, (FORECAST, ORACLE)),
-    "jump": ("to_jump", 1.0, (FORECAST, ORACLE)),
-}
 RANKED = {"van_der_pol_text": "forecast", "van_der_pol_code": "forecast", "lorenz": "valid"}
-RECORDS = (
-    *((False, noise, 0.01, 3001) for noise in (0.0, 0.001, 0.01, 0.1)),
-    *((False, noise, 0.01, 601) for noise in (0.001, 0.01, 0.1)),
-    *((True, noise, 0.01, 3001) for noise in (0.0, 0.001, 0.01, 0.1)),
-    *((True, noise, 0.01, 601) for noise in (0.001, 0.01, 0.1)),
-    (True, 0.0, 0.001, 12001),
-)  # chaotic, noise, step [s], samples
-
-
-def measured() -> pd.DataFrame:
-    """Every cell that is kept, a row a part."""
-    return pd.read_csv(CELLS)
-
-
-def set_table(table: pd.DataFrame, name: str, number: str) -> str:
-    """One number of a set: a row a method and start, a column a noise; median and range over the n seeds with noise.
-
-    Where the noises have unlike numbers of seeds, n names each in the order of the columns.
-    """
-    column, factor, parts = NUMBERS[number]
-    of_set = table[table["set"] == name]
-    noises, rows = sorted(of_set["noise"].unique()), []
-    for method in [each for each in METHOD_WORDS if each in set(of_set["method"])]:
-        for part in parts:
-            found = of_set[(of_set["method"] == method) & (of_set["part"] == part)]
-            counts = found[found["noise"] > 0].groupby("noise")["seed"].nunique()
-            n = ", ".join(map(str, counts if len(set(counts)) > 1 else counts[:1])) or "1"
-            said = [said_of(found[found["noise"] == noise], column, factor) for noise in noises]
-            rows.append((METHOD_WORDS[method], START_WORDS[part], n, *said))
-    headings = ("method", "start", "n", *(f"{noise:.1%} noise" for noise in noises))
-    return as_markdown(words_table(name, "", headings, rows))
-
-
-def said_of(found: pd.DataFrame, column: str, factor: float = 1.0) -> str:
-    """Median and range of a number over the seeds, or in how many of them the run diverged."""
-    if not len(found):
-        return ""
-    lost = int(found[column].isna().sum())  # it left every bound before the end of what is judged
-    among = f" in {lost} of {len(found)}" * (len(found) > 1)
-    return f"diverged{among}" if lost else spread_words(factor * found[column].to_numpy(float))
 
 
 def readme_table(table: pd.DataFrame) -> str:
@@ -93,47 +43,7 @@ def readme_table(table: pd.DataFrame) -> str:
             said.append(f"{one:.1f} ({other:.1f})")
         rows.append((METHOD_WORDS[method], *said))
     words = ["no noise" if noise == 0 else f"{100 * noise:g} %" for noise in noises]
-    return as_markdown(words_table("readme", "", ("Van der Pol with a hidden cubic spring", *words), rows))
-
-
-def recommended_table() -> str:
-    """What `recommend` answers: forecast and valid time from the estimated start, then from the true state."""
-    rows = []
-    for chaotic, noise, step, samples in RECORDS:
-        said = []
-        for want in WANTS:
-            found = recommend(noise, samples, want, chaotic, step)
-            some = found.evidence[found.evidence["method"] == found.method]
-            worst = some[some["start"] == STARTS[FORECAST]].tail(1)
-            if not len(worst):
-                said.append("none")
-                continue
-            same = some[(some["system"] == worst["system"].iloc[0]) & (some["start"] == STARTS[ORACLE])].iloc[0]
-            one = worst.iloc[0]
-            said.append(
-                f"{METHOD_WORDS[found.method]} ({one['accuracy']:.1f} %, {one['valid_s']:.1f} s; "
-                f"oracle {same['accuracy']:.1f} %, {same['valid_s']:.1f} s; n = {one['seeds']:.0f})"
-            )
-        record = "chaotic (Lorenz)" if chaotic else "a limit cycle (Van der Pol)"
-        rows.append((record, f"{noise:.1%}", f"{step:g} s", f"{samples:,}", *said))
-    return as_markdown(words_table("recommended", "", ("record", "noise", "step", "samples", *WANTS), rows))
-
-
-def evidence_table() -> str:
-    """What `recommend` answers from."""
-    rows = []
-    for one in pd.read_csv(FOUND).itertuples(index=False):
-        spread = [one.accuracy] if one.seeds == 1 else [one.least, one.accuracy, one.greatest]
-        accuracy = spread_words(np.array(spread, float))
-        rows.append((
-            one.system, METHOD_WORDS[str(one.method)], f"{one.noise:.1%}", f"{one.dt_s:g}", f"{one.samples:,}",
-            one.start, accuracy, f"{one.valid_s:.1f}", f"{one.seconds:.1f}", f"{one.diverged:.0%}", f"{one.seeds}",
-        ))  # fmt: skip
-    headings = (
-        "system", "method", "noise", "step [s]", "samples", "start", "forecast [%]", "valid [s]", "processor time [s]",
-        "diverged", "seeds",
-    )  # fmt: skip
-    return as_markdown(words_table("evidence", "", headings, rows))
+    return markdown_table(" | ".join(("Van der Pol with a hidden cubic spring", *words)), rows)
 
 
 def rankings(table: pd.DataFrame) -> str:
@@ -148,7 +58,8 @@ def rankings(table: pd.DataFrame) -> str:
                 ahead = factor * (by_seed.loc[:, one] - by_seed.loc[:, other]).dropna().to_numpy()
                 what = f"{name}, {noise:.1%} noise, {START_WORDS[part]}: {METHOD_WORDS[one]} against"
                 size = f"{np.median(ahead):+.2g} {'Lyapunov times' if number == 'valid' else 'points'}"
-                pairs.append((exact_p(ahead), f"{what} {METHOD_WORDS[other]} {size} in the median, n = {len(ahead)}"))
+                p = gd.signed_rank(0 * ahead, ahead).p
+                pairs.append((p, f"{what} {METHOD_WORDS[other]} {size} in the median, n = {len(ahead)}"))
     corrected = gd.holm_sidak([p for p, _ in pairs])
     sure = [
         f"{said}, p = {p:.3g} ({p_corrected:.2g} corrected)"
@@ -157,18 +68,6 @@ def rankings(table: pd.DataFrame) -> str:
     ]
     counted = f"{len(pairs)} pairs; beyond chance (signed rank, Holm-Sidak) differ {len(sure)}"
     return "\n".join(f"- {line}" for line in (counted, *sure))
-
-
-def sets_tables(table: pd.DataFrame) -> str:
-    """Every number of every set of a table of cells, under its name."""
-    said = []
-    for name in dict.fromkeys(table["set"]):
-        chaotic = str(name).startswith("lorenz")
-        for number in ("forecast", "valid", "jump") if chaotic else ("forecast",):
-            unit = {"forecast": "less RMSE than the known model [%]", "valid": "valid [Lyapunov times]"}
-            said.append(f"## {name}: {unit.get(number, 'the same until the first jump [%]')}\n")
-            said.append(set_table(table, str(name), number))
-    return "\n".join(said)
 
 
 def every_table(table: pd.DataFrame) -> str:

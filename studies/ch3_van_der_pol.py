@@ -21,11 +21,11 @@ GIVEN = command_line(
 from ch3_report import Result, blocks_of, written
 
 import gaitdisc as gd
-from gaitdisc.discrepancy.error_signal import APPROACHES
-from gaitdisc.discrepancy.grid import ALL_METHODS, NOISES, grid
-from gaitdisc.discrepancy.record import Conditions
-from gaitdisc.discrepancy.system import System, system_of
-from gaitdisc.results.discrepancy_cell import DiscrepancyCell
+from gaitdisc.chapters.discrepancy.discrepancy_cell import DiscrepancyCell
+from gaitdisc.chapters.discrepancy.error_signal import APPROACHES
+from gaitdisc.chapters.discrepancy.grid import ALL_METHODS, NOISES, grid
+from gaitdisc.chapters.discrepancy.record import Conditions
+from gaitdisc.chapters.discrepancy.system import System, system_of
 
 SEEDS = (0, 1, 2)
 SHORT_S = 10.0  # of which 601 samples are learned from

@@ -23,17 +23,17 @@ import numpy as np
 from ch3_report import Result, written
 
 import gaitdisc as gd
-from gaitdisc.batch.discover_answer import discover_answer
-from gaitdisc.discrepancy.grid import NOISES
-from gaitdisc.discrepancy.hidden_effect import HiddenEffect, method_answer
-from gaitdisc.discrepancy.known_rates import KnownRates
-from gaitdisc.discrepancy.methods import Method
-from gaitdisc.discrepancy.record import Conditions, recorded
-from gaitdisc.discrepancy.shaken_rates import ShakenRates
-from gaitdisc.discrepancy.system import system_of
-from gaitdisc.report.naming import naming_figure, naming_table
-from gaitdisc.report.page import Block
-from gaitdisc.results.naming import Naming
+from gaitdisc.chapters.discrepancy.discover_answer import discover_answer
+from gaitdisc.chapters.discrepancy.grid import NOISES
+from gaitdisc.chapters.discrepancy.hidden_effect import HiddenEffect, method_answer
+from gaitdisc.chapters.discrepancy.known_rates import KnownRates
+from gaitdisc.chapters.discrepancy.methods import Method
+from gaitdisc.chapters.discrepancy.naming import Naming
+from gaitdisc.chapters.discrepancy.record import Conditions, recorded
+from gaitdisc.chapters.discrepancy.shaken_rates import ShakenRates
+from gaitdisc.chapters.discrepancy.system import system_of
+from gaitdisc.chapters.pages import Block
+from gaitdisc.chapters.pages.naming import naming_figure, naming_table
 
 SEEDS = (0, 1, 2)
 NAMING: tuple[Method, ...] = ("sindy",)

@@ -12,12 +12,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from command_line import QUICK, argument, command_line
+from command_line import KEPT, QUICK, argument, command_line
 
 GIVEN = command_line(
     __name__,
     __doc__,
-    argument("folder", "where recordings, results and the pages go; what is there is not computed again", Path("ch4")),
+    argument("folder", KEPT, Path("ch4")),
     QUICK,
 )  # before the slow imports
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import pandas as pd
 
@@ -18,8 +18,8 @@ ANGLES, EMG = OUTPUTS[:3], OUTPUTS[3:]
 def medians(run: gd.ResponseRun, model: str, walk: str = "exo") -> pd.Series:
     """Median over participants of the network's R2, one number a variable."""
     rows = run.r2_table()
-    chosen = rows[(rows["model"] == model) & (rows["walk"] == walk) & (rows["kind"] == "network")]
-    return chosen.groupby("variable")["r2"].median().reindex(OUTPUTS)
+    rows = rows[(rows["model"] == model) & (rows["walk"] == walk) & (rows["kind"] == "network")]
+    return rows.groupby("variable")["r2"].median().reindex(OUTPUTS)
 
 
 def _range(values: pd.Series, factor: float = 1.0, digits: int = 3) -> str:
@@ -36,10 +36,8 @@ def _named(rows: pd.DataFrame) -> str:
 
 
 def _gain(run: gd.ResponseRun) -> str:
-    responses = run.responses
-    return _range(
-        (r2_by_participant(responses, "augmented") - r2_by_participant(responses, "nominal")).median(), 100, 1
-    )
+    augmented, nominal = (r2_by_participant(run.responses, model) for model in ("augmented", "nominal"))
+    return _range((augmented - nominal).median(), 100, 1)
 
 
 def _over_nominal(run: gd.ResponseRun) -> str:
@@ -56,23 +54,19 @@ def _hip(run: gd.ResponseRun) -> str:
     return f"{'; '.join(both)} ({person})"
 
 
-def _reduced(run: gd.ResponseRun) -> pd.DataFrame:
+def _reduced(run: gd.ResponseRun, names: Sequence[str]) -> pd.DataFrame:
     rows = run.over.reduction_tests if run.over else pd.DataFrame()
-    return rows[rows["second"] == "augmented"] if len(rows) else rows
+    return rows[(rows["second"] == "augmented") & rows["variable"].isin(names)] if len(rows) else rows
 
 
 def _hip_all(run: gd.ResponseRun) -> str:
-    rows = _reduced(run)
-    rows = rows[rows["variable"] == ANGLES[0]] if len(rows) else rows
-    found = [
-        [f"{100 * float(x):.0f}" for x in row] for row in rows.reindex(columns=["shift", "low", "high"]).to_numpy()
-    ]
-    return "; ".join(f"{middle} [{low}, {high}]" for middle, low, high in found)
+    found = 100 * _reduced(run, ANGLES[:1]).reindex(columns=["shift", "low", "high"]).to_numpy(float)
+    return "; ".join(f"{middle:.0f} [{low:.0f}, {high:.0f}]" for middle, low, high in found)
 
 
 def _emg_reduced(run: gd.ResponseRun) -> str:
-    rows = _reduced(run)
-    rows = rows[(rows["measure"] == "rms") & rows["variable"].isin(EMG)] if len(rows) else rows
+    rows = _reduced(run, EMG)
+    rows = rows[rows["measure"] == "rms"] if len(rows) else rows
     return _named(rows[rows["different"].astype(bool) & (rows["shift"] > 0)]) if len(rows) else "not tested"
 
 
@@ -82,28 +76,23 @@ def _below_exo_by(run: gd.ResponseRun) -> str:
 
 
 def _at_one_second(run: gd.ResponseRun) -> str:
-    table = pd.DataFrame(
-        [quantity.medians().loc[1.0] for quantity in run.quantities if 1.0 in quantity.medians().index]
-    )
-    return (
-        ", ".join(f"{table[model].median():.2f}" for model in ("nominal", "augmented", "exo")) if len(table) else "none"
-    )
+    rows = [medians.loc[1.0] for quantity in run.quantities if 1.0 in (medians := quantity.medians()).index]
+    models, table = ("nominal", "augmented", "exo"), pd.DataFrame(rows)
+    return ", ".join(f"{table[model].median():.2f}" for model in models) if len(table) else "none"
 
 
 def _lengths(run: gd.ResponseRun) -> str:
     rows = run.over.lengths if run.over else pd.DataFrame()
     if not len(rows):
         return "not tested"
-    rows = rows[(rows["second"] == "exo") & rows["different"].astype(bool)]
-    counts = rows.groupby("length_s").size()
+    counts = rows[(rows["second"] == "exo") & rows["different"].astype(bool)].groupby("length_s").size()
     return "; ".join(f"{length:g} ({count} variables)" for length, count in counts.items()) or "none"
 
 
 def _enough(run: gd.ResponseRun) -> str:
     if run.over is None or not len(run.over.lengths):
         return "not tested"
-    found = run.over.enough_length()
-    return f"{found:g}" if found else "not even 180"
+    return f"{found:g}" if (found := run.over.enough_length()) else "not even 180"
 
 
 OURS: dict[str, Callable[[gd.ResponseRun], str]] = {

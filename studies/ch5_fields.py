@@ -9,18 +9,16 @@ from pathlib import Path
 from command_line import SHARED
 
 import gaitdisc as gd
-from gaitdisc.ingest.monthly_fields import read_navy_winds, read_sst_pacific
-from gaitdisc.ingest.sea_surface import read_oisst, read_sst_mat
-from gaitdisc.report.page import Block, write_blocks, write_markdown
-from gaitdisc.report.table import Table
-from gaitdisc.results.field_cell import FieldCell
-from gaitdisc.sensing.field_task import FieldTask
-from gaitdisc.sensing.field_windows import snapshots_of
-from gaitdisc.sensing.reconstruct_field import prepare, reconstruct_field, targets_of
-from gaitdisc.sensing.reconstructor import fit_reconstructor
-from gaitdisc.sensing.routes import Route, fixed_at_random, random_walk
-from gaitdisc.sensing.unseen_path import unseen_path
-from gaitdisc.sensing.windows import Lags
+from gaitdisc.chapters.fields import Lags, fit_reconstructor
+from gaitdisc.chapters.fields.field_cell import FieldCell
+from gaitdisc.chapters.fields.field_task import FieldTask
+from gaitdisc.chapters.fields.field_windows import snapshots_of
+from gaitdisc.chapters.fields.monthly_fields import read_navy_winds, read_sst_pacific
+from gaitdisc.chapters.fields.reconstruct_field import prepare, reconstruct_field, targets_of
+from gaitdisc.chapters.fields.routes import Route, fixed_at_random, random_walk
+from gaitdisc.chapters.fields.sea_surface import read_oisst, read_sst_mat
+from gaitdisc.chapters.fields.unseen_path import unseen_path
+from gaitdisc.chapters.pages import Block, Table, write_blocks, write_markdown
 
 FIELDS = SHARED / "fields"
 WALKS = 12  # fitted, before one that never was

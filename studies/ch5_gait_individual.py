@@ -12,42 +12,27 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from command_line import QUICK, SHARED, argument, command_line
+from command_line import KEPT, QUICK, SHARED, argument, command_line
 
 GIVEN = command_line(
     __name__,
     __doc__,
-    argument(
-        "folder",
-        "where recordings, results and the pages go; what is there is not computed again",
-        Path("ch5_individual"),
-    ),
+    argument("folder", KEPT, Path("ch5_individual")),
     argument("data", "folder of the real gait recordings", SHARED / "gait"),
     QUICK,
 )  # before the slow imports
 
 from collections.abc import Mapping
 
+import ch5_gait as gait
 import pandas as pd
-from ch5_gait import (
-    DATA,
-    NOTHING_PRINTED,
-    PELVIS,
-    SENSORS,
-    Result,
-    cell,
-    cohort,
-    exotendon,
-    first_person,
-    printed,
-    treadmill,
-)
+from ch5_gait import DATA, NOTHING_PRINTED, PELVIS, SENSORS, Result, cell
 
 from gaitdisc.batch.reconstruct_study import ReconstructionSettings
 from gaitdisc.batch.sensed_walks import sensed_walks
+from gaitdisc.chapters.pages.sensor_sets import disturbance_figure, sensor_sets_figure, sensor_sets_table
 from gaitdisc.ingest.study import Study
 from gaitdisc.report.page import Block, write_blocks
-from gaitdisc.report.sensor_sets import disturbance_figure, sensor_sets_figure, sensor_sets_table
 from gaitdisc.report.table import save_table
 from gaitdisc.sensing.disturbance import against_missing, against_noise
 from gaitdisc.sensing.reconstructor import KINDS, MASKED, sensing
@@ -71,7 +56,7 @@ def run(quick: bool = False, folder: Path = Path("ch5_individual"), data: Path =
         blocks.append(Block(name, study.title, (), (sensor_sets_figure(errors, study.title, name, "temporal"),)))
     table = pd.concat(summaries, ignore_index=True)
     first = Block(
-        "sets", "Table 5.2", (), tables=(sensor_sets_table(table, printed("individual"), "sets", "temporal"),)
+        "sets", "Table 5.2", (), tables=(sensor_sets_table(table, gait.printed("individual"), "sets", "temporal"),)
     )
     blocks = [first, *blocks, leaks(walks, kinds, folder), disturbed(walks["cohort"], kinds, folder)]
     page = write_blocks("Individual models, section 5.3.3", "Ebers 2023, chapter 5, computed anew.", blocks, folder)
@@ -81,10 +66,13 @@ def run(quick: bool = False, folder: Path = Path("ch5_individual"), data: Path =
 def studies(quick: bool, folder: Path, data: Path) -> Mapping[str, Study]:
     """Who walked, by name."""
     if quick:
-        return {"cohort": cohort(folder / "recordings", 1, 30.0)}
-    found = {"cohort": cohort(folder / "recordings")}
+        return {"cohort": gait.cohort(folder / "recordings", 1, 30.0)}
+    found = {"cohort": gait.cohort(folder / "recordings")}
     if data.is_dir():
-        found |= {"treadmill_walk_ik": treadmill(data, folder / "treadmill"), "exotendon_run": exotendon(data)}
+        found |= {
+            "treadmill_walk_ik": gait.treadmill(data, folder / "treadmill"),
+            "exotendon_run": gait.exotendon(data),
+        }
     return found
 
 
@@ -92,7 +80,7 @@ def leaks(walks: Mapping[str, Study], kinds: tuple[str, ...], folder: Path) -> B
     """The split that leaks beside the honest ones, for one person: of the treadmill, or the first of the cohort."""
     name = "treadmill_walk_ik" if "treadmill_walk_ik" in walks else "cohort"
     study, condition = walks[name], "nominal" if name == "cohort" else ""
-    one = first_person(study)
+    one = gait.first_person(study)
     found = []
     for rule in RULES:
         settings = ReconstructionSettings(split=rule, kinds=kinds, condition=condition)

@@ -12,16 +12,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from command_line import QUICK, SHARED, argument, command_line
+from command_line import KEPT, QUICK, SHARED, argument, command_line
 
 GIVEN = command_line(
     __name__,
     __doc__,
-    argument(
-        "folder",
-        "where recordings, results and the pages go; what is there is not computed again",
-        Path("ch5_population"),
-    ),
+    argument("folder", KEPT, Path("ch5_population")),
     argument("data", "folder of the real gait recordings", SHARED / "gait"),
     QUICK,
     argument("--without-networks", "ridge regressions alone", False),
@@ -31,8 +27,8 @@ import pandas as pd
 from ch5_gait import DATA, NOTHING_PRINTED, PELVIS, SENSORS, Result, cell, cohort, exotendon, first_person, printed
 
 from gaitdisc.batch.reconstruct_study import CONDITION, SUBJECT, ReconstructionSettings
+from gaitdisc.chapters.pages.sensor_sets import sensor_sets_figure, sensor_sets_table
 from gaitdisc.report.page import Block, write_blocks
-from gaitdisc.report.sensor_sets import sensor_sets_figure, sensor_sets_table
 from gaitdisc.results.reconstruction import CALIBRATED
 from gaitdisc.sensing.reconstructor import KINDS
 

@@ -11,16 +11,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from command_line import QUICK, argument, command_line
+from command_line import KEPT, QUICK, argument, command_line
 
 GIVEN = command_line(
     __name__,
     __doc__,
-    argument(
-        "folder",
-        "where recordings, results and the pages go; what is there is not computed again",
-        Path("ch5_sea_surface"),
-    ),
+    argument("folder", KEPT, Path("ch5_sea_surface")),
     QUICK,
     argument("--kinds", "of model, the text's own is shred-text (default: the usual five)", nargs="+"),
 )  # before the slow imports
@@ -33,15 +29,14 @@ import pandas as pd
 from ch5_fields import Result, fields, maps_told, on_departures, unseen_walks, written
 
 import gaitdisc as gd
-from gaitdisc.report.field_errors import field_table, histograms_figure, latent_figure
-from gaitdisc.report.field_maps import maps_figure, routes_figure
-from gaitdisc.report.page import Block
-from gaitdisc.results.field_cell import FieldCell
-from gaitdisc.sensing.latent_size import latent_sizes
-from gaitdisc.sensing.reconstruct_field import reconstruct_field, targets_of
-from gaitdisc.sensing.reconstructor import KINDS
-from gaitdisc.sensing.routes import Route, circuit, fixed_at_random, joined
-from gaitdisc.sensing.splits import RANDOM
+from gaitdisc.chapters.fields import KINDS, RANDOM
+from gaitdisc.chapters.fields.field_cell import FieldCell
+from gaitdisc.chapters.fields.latent_size import latent_sizes
+from gaitdisc.chapters.fields.reconstruct_field import reconstruct_field, targets_of
+from gaitdisc.chapters.fields.routes import Route, circuit, fixed_at_random, joined
+from gaitdisc.chapters.pages import Block
+from gaitdisc.chapters.pages.field_errors import field_table, histograms_figure, latent_figure
+from gaitdisc.chapters.pages.field_maps import maps_figure, routes_figure
 
 SPLITS = (RANDOM, "temporal")
 WRITTEN_DOWN = tomllib.loads(Path(__file__).with_name("ch5_fields.toml").read_text(encoding="utf-8"))

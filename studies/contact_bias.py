@@ -17,21 +17,15 @@ GIVEN = command_line(__name__, __doc__, DATA, QUICK)  # before the slow imports
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
+from markdown_table import markdown_table
 
 import gaitdisc as gd
-from gaitdisc.ingest.c3d import C3DReader
-from gaitdisc.processing.contact_choice import named_markers
-from gaitdisc.signals.contact_angles import angle_contacts
-from gaitdisc.signals.contact_events import event_contacts
-from gaitdisc.signals.contact_force import plate_contacts
-from gaitdisc.signals.contact_markers import marker_contacts
-from gaitdisc.signals.contacts import Agreement, compared
-from gaitdisc.signals.direction import walking_direction
 
 Row = tuple[str, ...]
-Detected = dict[str, Mapping[str, gd.Contacts]]  # detector, side
+Detected = Mapping[str, Mapping[str, gd.Contacts]]  # detector, side
 Walks = dict[Path, Detected]
 BELT, YOUNG_PERSON = "treadmill_c3d_emg", "young_straight_and_turn/HC033A"
 REPEATED = "type-4a.c3d"  # the walk of type-2a.c3d, with its forces stored in another way
@@ -41,35 +35,27 @@ def walks(data: Path, quick: bool = False) -> Walks:
     """Contacts of every C3D walk under the folder, by detector and side."""
     files = sorted((data / YOUNG_PERSON if quick else data).rglob("*.c3d"))
     found: Walks = {}
-    with C3DReader() as reader:
+    with gd.C3DReader() as reader:
         for file in (file for file in files if file.name != REPEATED):
             with suppress(gd.GaitdiscError):  # three of the files are damaged on purpose
-                found[file] = every_detector(gd.read(file, reader=reader))
+                found[file] = gd.contacts_by_detector(gd.read(file, reader=reader))
     return found
 
 
-def every_detector(trial: gd.Trial) -> Detected:
-    """Contacts as each detector places them; without those that the trial does not serve."""
-    found: Detected = {}
-    with suppress(gd.GaitdiscError):
-        found["events"] = event_contacts(trial)
-    with suppress(gd.GaitdiscError):
-        found["angles"] = angle_contacts(trial.stream("kinematics"))
-    with suppress(gd.GaitdiscError):
-        markers = trial.stream("markers")
-        heels, pelvis = named_markers(markers)
-        direction = walking_direction(markers, heels, pelvis)
-        found["markers"] = marker_contacts(markers, heels, pelvis, direction)
-        found["force"] = plate_contacts(trial.stream("forces"), markers, heels, direction)
-    return found
+class Matched(NamedTuple):
+    """Both feet of several walks together, second minus first [ms], and the contacts that only one has [s]."""
+
+    apart_ms: np.ndarray
+    missed: np.ndarray
+    extra: np.ndarray
 
 
-def matched(walks: list[Detected], first: str, second: str) -> Agreement:
-    """Both feet of these walks together, second minus first."""
+def matched(walks: list[Detected], first: str, second: str) -> Matched:
+    """Contacts of two detectors, paired."""
     sides = [(walk.get(first, {}), walk.get(second, {}), side) for walk in walks for side in "rl"]
-    found = [compared(one[side], other[side]) for one, other, side in sides if side in one and side in other]
-    parts = ([getattr(one, part) for one in found] for part in ("difference_s", "missed", "extra"))
-    return Agreement(*(np.concatenate([np.empty(0), *part]) for part in parts))
+    found = [one[side].compared(other[side]) for one, other, side in sides if side in one and side in other]
+    parts = zip(*((1e3 * one.difference_s, one.missed, one.extra) for one in found), strict=True)
+    return Matched(*map(np.concatenate, parts)) if found else Matched(*(np.empty(0) for _ in range(3)))
 
 
 def against_events(found: Walks) -> list[Row]:
@@ -80,7 +66,7 @@ def against_events(found: Walks) -> list[Row]:
         contacts = sum(len(one) for walk in walked for one in walk["events"].values())
         for detector in ("markers", "angles"):
             pairs = matched(walked, "events", detector)
-            apart, middle = 1e3 * pairs.difference_s, pairs.median_ms
+            apart, middle = pairs.apart_ms, np.median(pairs.apart_ms)
             counts = (f"{kind}, {len(walked)}", detector, f"{len(apart)} of {contacts}")
             sizes = (f"{middle:+.0f}", f"{np.percentile(np.abs(apart - middle), 95):.0f}")
             rows.append((*counts, *sizes, str(len(pairs.missed)), str(len(pairs.extra))))
@@ -91,7 +77,7 @@ def against_plates(found: Walks) -> tuple[list[Row], list[Row]]:
     """Offsets by trial; and what is left of them where another step of the trial corrects a step."""
     offsets, corrections = [], []
     for detector in ("markers", "angles"):
-        steps = {file: 1e3 * matched([walk], "force", detector).difference_s for file, walk in found.items()}
+        steps = {file: matched([walk], "force", detector).apart_ms for file, walk in found.items()}
         seen = {file: apart for file, apart in steps.items() if len(apart)}
         medians = [float(np.median(apart)) for apart in seen.values()]
         middle, span = f"{np.median(medians):+.0f}", f"{min(medians):+.0f} to {max(medians):+.0f}"
@@ -118,8 +104,7 @@ def main() -> None:
     """Print the three tables."""
     found = walks(GIVEN.data, GIVEN.quick)
     for head, rows in zip(TABLES, (against_events(found), *against_plates(found)), strict=True):
-        print(f"| {head.replace('|', ' | ')} |\n|{'---|' * (head.count('|') + 1)}")
-        print("\n".join(f"| {' | '.join(row)} |" for row in rows), end="\n\n")
+        print(markdown_table(head, rows), end="\n\n")
 
 
 if __name__ == "__main__":

@@ -12,8 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
+from markdown_table import markdown_table
 
-from gaitdisc.report.table import as_markdown, save_table, words_table
+from gaitdisc.chapters.pages import save_table
 
 
 class Number(NamedTuple):
@@ -67,7 +68,7 @@ def printed(found: pd.DataFrame, name: str, made: Made) -> str:
         rows.append(
             (str(row), *(_said(own.loc[own["column"] == column, "value"].to_numpy(float)) for column in columns))
         )
-    return as_markdown(words_table(name, "", (made.heading, *map(str, columns)), rows))
+    return markdown_table(" | ".join((made.heading, *map(str, columns))), rows)
 
 
 def _said(values: np.ndarray) -> str:

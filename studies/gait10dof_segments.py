@@ -5,21 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from xml.etree import ElementTree
 
 import numpy as np
+from gait10dof import Gait10dof
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
-from scipy.spatial.transform import Rotation
 
 import gaitdisc as gd
 from gaitdisc.kinematics.calibration import calibrated
 from gaitdisc.kinematics.marker_set_file import marker_set
 from gaitdisc.kinematics.motion import motion
-from gaitdisc.kinematics.pose import Pose
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
-from gaitdisc.kinetics.newton_euler import RigidBody, joint_wrenches
+from gaitdisc.kinetics.newton_euler import joint_wrenches
 from gaitdisc.kinetics.plate_steps import foot_paths
 from gaitdisc.kinetics.platform import platforms
 from gaitdisc.kinetics.segment_motion import segment_motion
@@ -30,81 +27,7 @@ FEET = {"r": ("R.Heel", "R.Toe.Tip"), "l": ("L.Heel", "L.Toe.Tip")}
 JOINTS = {"ankle_angle": "foot", "knee_angle": "shank", "hip_flexion": "thigh"}
 EDGE = 25  # frames at which the filters of two programs differ
 OPENSIM_ORDER = 3  # of its low-pass, forwards and backwards
-PARTS_OF = {"thigh": ("femur",), "shank": ("tibia",), "foot": ("talus", "calcn", "toes")}
 Angles = Mapping[str, NDArray[np.float64]]
-
-
-class Gait10dof:
-    """The planar model: its segments, its inertia, and a knee that slides as it bends."""
-
-    def __init__(self, path: Path) -> None:
-        self.root = ElementTree.parse(path).getroot()
-        self.bodies = {body.get("name"): body for body in self.root.iter("Body")}
-
-    @property
-    def mass_kg(self) -> float:
-        """Of all bodies [kg]."""
-        return sum(float(body.findtext("mass", "0")) for body in self.bodies.values())
-
-    def offset(self, joint: str) -> NDArray[np.float64]:
-        """Where a joint lies in the body above it [m]."""
-        found = next(one for one in self.root.iter() if one.get("name") == joint and one.tag.endswith("Joint"))
-        frame = found.find("frames/PhysicalOffsetFrame")
-        assert frame is not None
-        return np.array(frame.findtext("translation", "").split(), float)
-
-    def slide(self, knee: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Where the shank's origin lies in the thigh at a knee angle [rad, flexion negative], (frame, 3) [m]."""
-        joint = next(one for one in self.root.iter("CustomJoint") if one.get("name") == "knee_r")
-        axes = [one for one in joint.iter("TransformAxis") if str(one.get("name")).startswith("translation")]
-        path = np.zeros((len(knee), 3))
-        for axis in axes[:2]:
-            x, y = (np.array(axis.findtext(f".//SimmSpline/{key}", "").split(), float) for key in "xy")
-            scale = float(axis.findtext(".//scale", "1"))
-            path += np.outer(scale * CubicSpline(x, y)(knee), np.array(axis.findtext("axis", "").split(), float))
-        return path
-
-    def rigid(self, segment: str, side: str) -> RigidBody:
-        """Inertia of a segment: the foot is talus, calcaneus and toes together, about the ankle."""
-        at, parts = np.zeros(3), []
-        for name in PARTS_OF[segment]:
-            if name in ("calcn", "toes"):
-                at = at + self.offset(f"{'subtalar' if name == 'calcn' else 'mtp'}_{side}")
-            body = self.bodies[f"{name}_{side}"]
-            centre = at + np.array(body.findtext("mass_center", "").split(), float)
-            xx, yy, zz, xy, xz, yz = (float(one) for one in body.findtext("inertia", "").split())
-            tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-            parts.append((float(body.findtext("mass", "0")), centre, tensor))
-        mass = sum(one[0] for one in parts)
-        middle = np.sum([one[0] * one[1] for one in parts], axis=0) / mass
-        tensor = np.zeros((3, 3))
-        for one, centre, own in parts:
-            arm = centre - middle
-            tensor += own + one * (arm @ arm * np.eye(3) - np.outer(arm, arm))
-        return RigidBody(mass, middle, tensor)
-
-    def poses(self, motion: gd.Recording) -> dict[str, Pose]:
-        """Segments at the joint angles of a recording that has flexion of the knee positive, as all do here."""
-        angle = {name: np.radians(motion[name]) for name in motion.names if not name.startswith("pelvis_t")}
-        tilt = np.radians(motion["pelvis_tilt"])
-        pelvis = _about_z(tilt)
-        origin = np.stack([motion["pelvis_tx"], motion["pelvis_ty"], np.full(len(tilt), 0.02)], axis=1)
-        found = {"pelvis": Pose(origin, pelvis)}
-        for side in "rl":
-            hip = origin + pelvis @ self.offset(f"hip_{side}")
-            thigh = pelvis @ _about_z(angle[f"hip_flexion_{side}"])
-            bent = -angle[f"knee_angle_{side}"]
-            knee = hip + np.einsum("fij,fj->fi", thigh, self.slide(bent))
-            shank = thigh @ _about_z(bent)
-            ankle = knee + shank @ self.offset(f"ankle_{side}")
-            foot = shank @ _about_z(angle[f"ankle_angle_{side}"])
-            found |= {f"thigh_{side}": Pose(hip, thigh), f"shank_{side}": Pose(knee, shank)}
-            found[f"foot_{side}"] = Pose(ankle, foot)
-        return found
-
-    def slide_rate(self, knee: NDArray[np.float64]) -> NDArray[np.float64]:
-        """How far the shank's origin slides in the thigh for each radian of extension, (frame, 3) [m/rad]."""
-        return (self.slide(knee + 1e-4) - self.slide(knee - 1e-4)) / 2e-4
 
 
 def generalised_forces(model: Gait10dof, motion: gd.Recording, ground: gd.Trial) -> dict[str, NDArray[np.float64]]:
@@ -158,7 +81,3 @@ def against_opensim(folder: Path) -> list[tuple[str, ...]]:
             per_kg = " ".join(f"{one / model.mass_kg:.4f}" for one in size)
             rows.append((name, source, f"{size[0]:.2f} {size[1]:.2f}", f"{largest:.2f}", per_kg))
     return rows
-
-
-def _about_z(angle: NDArray[np.float64]) -> NDArray[np.float64]:
-    return Rotation.from_euler("z", angle[:, None]).as_matrix()

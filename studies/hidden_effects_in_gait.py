@@ -50,14 +50,7 @@ RIGHT = {
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """What was found.
-
-    Parameters
-    ----------
-    table : DataFrame
-        person, hidden, verdict, named, right, value, low, high, truth, engaged_rad, engaged_truth_rad, phase, and
-        before, after, floor: error of the held-out angle [deg].
-    """
+    """What was found, a row a person and effect; `before`, `after` and `floor` are errors held out [deg]."""
 
     table: pd.DataFrame
 

@@ -26,55 +26,15 @@ GIVEN = command_line(
 
 import sys
 import time
-from dataclasses import replace
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 from driven_trials import Driven, Sensed
 from driven_trials import recorded as trials_of
+from hidden_in_systems import KNOWN, Hidden, complete, model_of, put_off
 
 import gaitdisc as gd
-
-SYSTEMS = Path(__file__).parent / "systems"
-
-
-class Hidden(NamedTuple):
-    """What is missing in a model; `{a}` and `{b}` of its term are drawn between their limits."""
-
-    model: str
-    port: str
-    effect: str
-    term: str
-    a: tuple[float, float]
-    b: tuple[float, float]
-    driven_by: tuple[float, ...]
-    fastest_hz: float
-
-
-KNOWN = {
-    "leg": Hidden(
-        "swing_leg", "knee_moment", "one_sided_spring", "-{a}*max(0, knee - hip - {b})",
-        a=(80.0, 160.0), b=(0.05, 0.2), driven_by=(9.0, 5.0), fastest_hz=2.0,
-    ),
-    "exo ankle": Hidden(
-        "ankle", "ankle_moment", "one_sided_spring", "-{a}*max(0, theta - {b})",
-        a=(20.0, 60.0), b=(0.0, 0.08), driven_by=(6.0, 0.0), fastest_hz=2.0,
-    ),
-    "elbow": Hidden(
-        "elbow", "elbow_moment", "coulomb_friction", "-{a}*tanh(omega/0.02)",
-        a=(0.3, 0.8), b=(0.0, 1.0), driven_by=(3.0,), fastest_hz=2.0,
-    ),
-    "standing": Hidden(
-        "standing", "ankle_moment", "delayed_feedback", "-{a}*delay(lean, {b})",
-        a=(150.0, 300.0), b=(0.1, 0.2), driven_by=(40.0,), fastest_hz=1.0,
-    ),
-    "chain": Hidden(
-        "chain", "force_2", "cubic_stiffness", "-{a}*x2**3",
-        a=(300.0, 700.0), b=(0.0, 1.0), driven_by=(12.0,), fastest_hz=2.0,
-    ),
-}  # fmt: skip
 
 
 class Record(NamedTuple):
@@ -85,33 +45,9 @@ class Record(NamedTuple):
     lowpass_hz: float
 
 
-def model_of(hidden: Hidden) -> gd.Simulation:
-    """The model as its author believes it."""
-    own = SYSTEMS / f"{hidden.model}.toml"
-    return gd.read_simulation(own) if own.is_file() else gd.bundled_simulation(hidden.model)
-
-
-def complete(model: gd.Simulation, hidden: Hidden, rng: np.random.Generator) -> gd.Simulation:
-    """The model with what is hidden in it."""
-    a, b = (f"{rng.uniform(*limits):.4g}" for limits in (hidden.a, hidden.b))
-    return model.with_effect(gd.Term(hidden.port, "port", hidden.effect, hidden.term.format(a=a, b=b)))
-
-
-def put_off(model: gd.Simulation, share: float, rng: np.random.Generator) -> gd.Simulation:
-    """The model with each number a little wrong, and bounds that say so."""
-    if not share:
-        return model
-    wrong = []
-    for one in model.parameters:
-        value = one.value * (1 + share * float(np.clip(rng.standard_normal(), -2, 2)))
-        low, high = sorted((value * (1 - 2.5 * share), value * (1 + 2.5 * share)))
-        wrong.append(replace(one, value=value, low=low, high=high))
-    return replace(model, parameters=tuple(wrong))
-
-
 def recorded(truth: gd.Simulation, hidden: Hidden, record: Record, rng: np.random.Generator) -> pd.DataFrame:
     """Trials of the true system, driven by sums of sines, as they come from a laboratory."""
-    driven = Driven(hidden.driven_by, 0.2, hidden.fastest_hz)
+    driven = Driven(tuple(hidden.driven_by), 0.2, hidden.fastest_hz)
     return trials_of(truth, driven, Sensed(record.noise, record.lowpass_hz), rng)
 
 

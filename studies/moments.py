@@ -19,25 +19,28 @@ from pathlib import Path
 
 from curves_over_each_other import over_each_other
 from gait10dof_segments import against_opensim
-from moments_tables import NAMES, SETS, SETTINGS, Curves, Walk, against_plug_in_gait, balances, filter_effect
+from markdown_table import markdown_table
+from moments_tables import NAMES, SETS, Curves, Walk, against_plug_in_gait, balances, filter_effect
 from plug_in_gait_bones import TRUNK, WALKERS, bones, feet, static_file
 
 import gaitdisc as gd
-from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.c3d_measures import read_body_measures
 from gaitdisc.kinematics.calibration import calibrated
 from gaitdisc.kinematics.marker_set_file import marker_set
 from gaitdisc.kinematics.motion import motion
 from gaitdisc.kinetics.body_inertia import Person
+from gaitdisc.kinetics.joint_moments import KineticsSettings
 from gaitdisc.kinetics.trial_kinetics import TrialKinetics, trial_kinetics
 
 SET = marker_set("plug_in_gait")
+CHOSEN = (KineticsSettings(), KineticsSettings(force_cutoff_hz=6.0), KineticsSettings(frame="distal"))
+SETTINGS = dict(zip(SETS, CHOSEN, strict=True))
 
 
 def walks(data: Path, quick: bool = False) -> list[Walk]:
     """Every clean step of every walk, by the source of the segments and the settings."""
     found: list[Walk] = []
-    with C3DReader() as reader:
+    with gd.C3DReader() as reader:
         for person in WALKERS[:1] if quick else WALKERS:
             file = static_file(data / "gait", person)
             static = reader.read(file).stream("markers")
@@ -51,7 +54,8 @@ def walks(data: Path, quick: bool = False) -> list[Walk]:
                 for source, poses in {**segments, "bones": bones(trial)}.items():
                     for name, settings in SETTINGS.items():
                         made = trial_kinetics(trial, poses, feet(trial), who, settings, TRUNK)
-                        found.append(Walk(person, kind, source, name, made, steps(trial, made)))
+                        balance = made.balance.line().removeprefix("force balance ")
+                        found.append(Walk(person, kind, source, name, balance, steps(trial, made)))
     return found
 
 
@@ -77,8 +81,7 @@ def main() -> None:
     found = walks(GIVEN.data, GIVEN.quick)
     opensim = against_opensim(GIVEN.data / "opensim_gait10dof")
     for head, rows in zip(HEADS, (against_plug_in_gait(found), balances(found), opensim), strict=True):
-        print(f"| {head.replace('|', ' | ')} |\n|{'---|' * (head.count('|') + 1)}")
-        print("\n".join(f"| {' | '.join(row)} |" for row in rows), end="\n\n")
+        print(markdown_table(head, rows), end="\n\n")
     print(filter_effect(found))
     if GIVEN.picture:
         over_each_other({w.person: w.steps for w in found if w[1:4] == ("straight", "markers", SETS[0])}, GIVEN.picture)

@@ -6,18 +6,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gaitdisc.kinetics.joint_moments import KineticsSettings
-from gaitdisc.kinetics.trial_kinetics import TrialKinetics
-
 KEPT_BACK = ("HC033A", "HC036A")  # by whom markers to angles were not written either
 PARTS = ("ankle_angle", "knee_angle", "hip_flexion", "ankle_inversion", "knee_adduction", "hip_adduction")
 PARTS += ("ankle_rotation", "knee_rotation", "hip_rotation")
 NAMES = tuple(f"{part}_{{}}_moment" for part in PARTS) + tuple(
     f"{joint}_power_{{}}" for joint in ("ankle", "knee", "hip")
 )
-SETTINGS = {"6/20 Hz": KineticsSettings(), "6/6 Hz": KineticsSettings(force_cutoff_hz=6.0)}
-SETTINGS |= {"6/20 Hz, distal frame": KineticsSettings(frame="distal")}
-SETS = tuple(SETTINGS)
+SETS = ("6/20 Hz", "6/6 Hz", "6/20 Hz, distal frame")
 Curves = dict[str, tuple[np.ndarray, np.ndarray]]  # channel -> ours, theirs over one step
 
 
@@ -28,7 +23,7 @@ class Walk(NamedTuple):
     kind: str
     source: str
     settings: str
-    made: TrialKinetics
+    balance: str
     steps: list[Curves]
 
     @property
@@ -62,7 +57,7 @@ def against_plug_in_gait(found: list[Walk]) -> list[tuple[str, ...]]:
 def balances(found: list[Walk]) -> list[tuple[str, ...]]:
     """Rows of the table: measured against needed force, each walk."""
     chosen = [w for w in found if (w.source, w.settings) == ("markers", SETS[0])]
-    return [(w.person, w.kind, w.made.balance.line().removeprefix("force balance ")) for w in chosen]
+    return [(w.person, w.kind, w.balance) for w in chosen]
 
 
 def filter_effect(found: list[Walk]) -> str:

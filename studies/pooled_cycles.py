@@ -22,7 +22,6 @@ from pathlib import Path
 import numpy as np
 
 import gaitdisc as gd
-from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.new_study import found_study
 from gaitdisc.ingest.reading import read_planned_trial
 from gaitdisc.ingest.study import Study
@@ -41,7 +40,7 @@ def study_of(data: Path, quick: bool = False) -> Study:
 def pooled(study: Study, withhold: bool = False) -> tuple[list[gd.PooledCycles], dict[str, gd.Trial]]:
     """Cycles of everybody, and the trials as they were read, by name."""
     found, trials = [], {}
-    with C3DReader() as reader:
+    with gd.C3DReader() as reader:
         for person in study.participants:
 
             def read(planned, person=person):

@@ -18,17 +18,9 @@ import csv
 from pathlib import Path
 
 import numpy as np
+from markdown_table import markdown_table
 
 import gaitdisc as gd
-from gaitdisc.errors import StrideError
-from gaitdisc.ingest.c3d import C3DReader
-from gaitdisc.processing.contact_choice import named_markers
-from gaitdisc.processing.one_base import on_one_base
-from gaitdisc.signals.contact_events import event_contacts
-from gaitdisc.signals.contact_force import plate_contacts
-from gaitdisc.signals.contacts import compared
-from gaitdisc.signals.direction import walking_direction
-from gaitdisc.signals.emg_quality import live_channels
 
 Row = tuple[str, str, str]
 MUSCLES = {"Rect": "rf", "Hams": "ham", "Gast": "gas", "Tib Ant": "ta"}  # the manifest's words
@@ -50,12 +42,13 @@ def young_people(folder: Path) -> list[Row]:
     differences: list[float] = []
     agree, files = 0, sorted(folder.rglob("*.c3d"))
     walks = [file for file in files if file.parent.name != "static"]
-    with C3DReader() as reader:
+    with gd.C3DReader() as reader:
         for file in files:
             trial = gd.read(file, reader=reader)
             wanted = {f"emg_{MUSCLES[n[2:]]}_{n[0].lower()}" for n in manifest[file.name].split("|") if n}
-            live = {name for name in live_channels(trial.stream("emg")) if name.split("_")[1] in MUSCLES.values()}
-            agree += live == wanted
+            dead = {finding.channel for finding in gd.check(trial).findings if finding.severity == "refused"}
+            live = set(trial.stream("emg").names) - dead
+            agree += {name for name in live if name.split("_")[1] in MUSCLES.values()} == wanted
             differences += plates_against_events(trial) if file in walks else []
     low, middle, high = np.percentile(differences, [25, 50, 75])
     quartiles = f"quartiles {low:+.0f} and {high:+.0f}, n = {len(differences)} contacts"
@@ -68,15 +61,10 @@ def young_people(folder: Path) -> list[Row]:
 
 def plates_against_events(trial: gd.Trial) -> list[float]:
     """Plate minus event at every contact that both have [ms]; none where the trial has no events or no whole plate."""
-    markers = trial.stream("markers")
-    heels, pelvis = named_markers(markers)
-    try:
-        events = event_contacts(trial)
-        plates = plate_contacts(trial.stream("forces"), markers, heels, walking_direction(markers, heels, pelvis))
-    except StrideError:
-        return []
+    seen = gd.contacts_by_detector(trial)
+    events, plates = seen.get("events", {}), seen.get("force", {})
     both = set(events) & set(plates)
-    return [float(1e3 * d) for side in both for d in compared(events[side], plates[side]).difference_s]
+    return [float(1e3 * d) for side in both for d in events[side].compared(plates[side]).difference_s]
 
 
 def opensim_dialects(folder: Path) -> list[Row]:
@@ -90,15 +78,11 @@ def opensim_dialects(folder: Path) -> list[Row]:
         except gd.GaitdiscError as error:
             refused.append(str(error))
     walk = [folder / "mrs_emg_walking" / name for name in ("IK_gait.mot", "GRF_gait.mot", "EMG_gait.mot")]
-    both = on_one_base(gd.read(walk), 100.0)
-    span = f"{both.time[0]:.2f} to {both.time[-1]:.2f} s"
+    both = gd.read(walk).on_one_base(100.0)
+    span = f"{len(both.names)} channels at {both.rate_hz:g} Hz, {both.time[0]:.2f} to {both.time[-1]:.2f} s"
     return [
         (f"opensim_walks, {len(files)} files", "every dialect read", f"{read} read" + "".join(refused)),
-        (
-            "opensim_walks/mrs_emg_walking",
-            "one time base",
-            f"{len(both.names)} channels at {both.rate_hz:g} Hz, {span}",
-        ),
+        ("opensim_walks/mrs_emg_walking", "one time base", span),
     ]
 
 
@@ -106,7 +90,7 @@ def encodings(folder: Path) -> list[Row]:
     """The encodings of one trial are equal; what cannot be read is refused in words."""
     points, read, refused = {}, 0, []
     files = sorted(folder.rglob("*.c3d"))
-    with C3DReader() as reader:
+    with gd.C3DReader() as reader:
         for file in files:
             try:
                 trial = gd.read(file, reader=reader)
@@ -118,25 +102,17 @@ def encodings(folder: Path) -> list[Row]:
                 points[file.name] = trial.stream("markers").values
     first = next(iter(points.values()))
     apart = max(float(np.nanmax(np.abs(values - first))) for values in points.values())
+    equal = f"{len(points)} encodings, {1e3 * apart:.2f} mm apart at most"
+    words = f"{read} read; refused: {', '.join(refused)}"
     return [
-        (
-            "c3d_reader_samples/sample01",
-            "encodings equal",
-            f"{len(points)} encodings, {1e3 * apart:.2f} mm apart at most",
-        ),
-        (
-            f"c3d_reader_samples, {len(files)} files",
-            "read, or refused in words",
-            f"{read} read; refused: {', '.join(refused)}",
-        ),
+        ("c3d_reader_samples/sample01", "encodings equal", equal),
+        (f"c3d_reader_samples, {len(files)} files", "read, or refused in words", words),
     ]
 
 
 def main() -> None:
     """Print the rows."""
-    print("| recordings | promise | found |\n|---|---|---|")
-    for row in run(GIVEN.data):
-        print(f"| {' | '.join(row)} |")
+    print(markdown_table("recordings | promise | found", run(GIVEN.data)))
 
 
 if __name__ == "__main__":

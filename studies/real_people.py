@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,7 +10,6 @@ import numpy as np
 from ch5_gait import DATA, RUNS, TREADMILL
 
 import gaitdisc as gd
-from gaitdisc.sensing.reconstructor import Sensing
 
 JOINTS = ("hip_flexion", "hip_adduction", "hip_rotation", "knee_angle", "ankle_angle")
 ANGLES = tuple(f"{joint}_{side}" for side in "rl" for joint in JOINTS)
@@ -25,9 +25,9 @@ class Person:
     group: str
     recordings: tuple[gd.Recording, ...]
 
-    def windows(self, what: Sensing) -> list[gd.Samples]:
+    def windows(self, windows_of: Callable[[gd.Recording, np.ndarray], gd.Samples]) -> list[gd.Samples]:
         """Windows of every walk, thinned evenly to as many as a person may have."""
-        every = [what.windows(one, np.zeros(len(one.time))) for one in self.recordings]
+        every = [windows_of(one, np.zeros(len(one.time))) for one in self.recordings]
         step = max(1, -(-sum(len(each) for each in every) // MOST_WINDOWS))
         return [each.rows(slice(None, None, step)) for each in every]
 

@@ -17,18 +17,11 @@ GIVEN = command_line(
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
+import pandas as pd
+from markdown_table import markdown_table
 
 import gaitdisc as gd
-from gaitdisc.channel import vocabulary
-from gaitdisc.errors import StrideError
-from gaitdisc.processing.contact_choice import named_markers
-from gaitdisc.recording import Source
-from gaitdisc.signals.contact_angles import angle_contacts
-from gaitdisc.signals.contact_force import plate_contacts
-from gaitdisc.signals.direction import walking_direction
 from gaitdisc.signals.plateaus import plateaus
-from gaitdisc.signals.strides import cut_strides
 from gaitdisc.signals.walking import verify_walking
 
 Row = tuple[str, str, str]
@@ -50,8 +43,7 @@ def exotendon(folder: Path) -> list[Row]:
     rows = []
     for word, count in RUNNING_STRIDES.items():
         [file] = [path for path in folder.rglob("*.mot") if word in path.name]
-        kinematics = gd.read(file).stream("kinematics")
-        strides = cut_strides(angle_contacts(kinematics)["r"], kinematics)
+        strides = right_strides(gd.read(file).stream("kinematics"))
         rows.append(
             (f"exotendon_run/{word}", f"{count} strides, +-1", f"{len(strides)}, {len(strides.dropped)} dropped")
         )
@@ -65,11 +57,12 @@ def treadmill_angles(folder: Path) -> list[Row]:
     kept = dropped = with_plateau = 0
     limits, refused = [], []
     for trial in sorted(key for key in stored.files if key.startswith("S01DE")):
-        kinematics = _angles(names, stored[trial], trial)
+        table = pd.DataFrame(np.asarray(stored[trial], float), columns=pd.Index(names))
+        kinematics = gd.read(table.assign(time=np.arange(len(table)) / 100.0)).stream("kinematics")
         try:
-            strides = cut_strides(angle_contacts(kinematics)["r"], kinematics)
+            strides = right_strides(kinematics)
             verify_walking(kinematics, strides)
-        except StrideError as error:
+        except gd.GaitdiscError as error:
             refused.append(f"{trial}: {error.found.split(': ', 1)[-1]}")
             continue
         kept, dropped = kept + len(strides), dropped + len(strides.dropped)
@@ -78,8 +71,8 @@ def treadmill_angles(folder: Path) -> list[Row]:
         limits += [p.limit for p in found]
     try:
         kinematics = gd.read(folder / "S01DN603_ik.mot").stream("kinematics")
-        verify_walking(kinematics, cut_strides(angle_contacts(kinematics)["r"], kinematics))
-    except StrideError as error:
+        verify_walking(kinematics, right_strides(kinematics))
+    except gd.GaitdiscError as error:
         refused.append(f"S01DN603: {error.found.split(': ', 1)[-1]}")
     return [
         (
@@ -99,10 +92,8 @@ def treadmill_angles(folder: Path) -> list[Row]:
 def treadmill_c3d(folder: Path) -> list[Row]:
     """EMG channels kept apart; strides from belts whose force chatters."""
     trial = gd.read(folder / "walking_1.c3d")
-    emg, markers = trial.stream("emg"), trial.stream("markers")
-    heels, pelvis = named_markers(markers)
-    contacts = plate_contacts(trial.stream("forces"), markers, heels, walking_direction(markers, heels, pelvis))
-    strides = {side: len(cut_strides(found)) for side, found in contacts.items()}
+    emg = trial.stream("emg")
+    strides = {side: len(gd.cycles(trial, side, "force")) for side in "rl"}
     envelopes = gd.envelope(emg)
     peaks = 1e3 * np.nanmax(envelopes.values, axis=0)
     return [
@@ -112,18 +103,14 @@ def treadmill_c3d(folder: Path) -> list[Row]:
     ]
 
 
-def _angles(names: list[str], values: NDArray[np.float32], trial: str) -> gd.Recording:
-    kept = [i for i, name in enumerate(names) if name != "time"]
-    channels = tuple(vocabulary().named(names[i]) or gd.Channel(names[i], "angle", "deg") for i in kept)
-    angles = np.asarray(values[:, kept], float)
-    return gd.Recording(np.arange(len(angles)) / 100.0, angles, channels, source=Source(f"{trial}.npz"))
+def right_strides(kinematics: gd.Recording) -> gd.Strides:
+    """Strides of the right side, from joint angles alone."""
+    return gd.cycles(kinematics, "r", "angles", kinematics)
 
 
 def main() -> None:
     """Print the rows."""
-    print("| recordings | promise | found |\n|---|---|---|")
-    for row in run(GIVEN.data):
-        print(f"| {' | '.join(row)} |")
+    print(markdown_table("recordings | promise | found", run(GIVEN.data)))
 
 
 if __name__ == "__main__":

@@ -22,18 +22,18 @@ FLOORS = (
         "networks",
         "statistics",
         "results",
-        "turbulence",
     ),
     ("kinetics", "engines"),
-    ("processing", "discrepancy", "discovery", "comparison", "sensing", "response", "clinic"),
+    ("processing", "discovery", "comparison", "sensing", "response", "clinic"),
     ("batch", "report"),
-    ("library", "commands"),
+    ("library", "commands", "chapters"),
     ("cli", "__main__"),
 )
+CHAPTERS = (("regression", "turbulence"), ("discrepancy", "fields"), ("pages",))  # within the room of that name
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
 SOLE_HOME = {
     "torch": {"networks"},
-    "matplotlib": {"report", "library"},
+    "matplotlib": {"report", "library", "chapters"},
     "pingouin": {"statistics"},
     "statsmodels": {"statistics"},
     "ezc3d": {"ingest"},
@@ -77,6 +77,18 @@ def test_imports_go_downwards():
             if FLOOR[parts[1]] >= FLOOR[room] and not one_noun_of_another:
                 upwards.append(f"{path.relative_to(PACKAGE)} imports {name}")
     assert not upwards, "\n".join(upwards)
+
+
+def test_within_the_chapters_imports_go_downwards_too_and_pages_alone_draw():
+    floor = {room: number for number, rooms in enumerate(CHAPTERS) for room in rooms}
+    strays = []
+    for path in sorted((PACKAGE / "chapters").glob("*/*.py")):
+        own = path.parent.name
+        others = [name.split(".")[2] for name in _imported(path) if name.startswith("gaitdisc.chapters.")]
+        strays += [f"{path.name} imports {name}" for name in others if name != own and floor[name] >= floor[own]]
+        if own != "pages" and any(name.startswith("matplotlib") for name in _imported(path)):
+            strays.append(f"{path.name} draws")
+    assert strays == []
 
 
 def test_heavy_libraries_have_one_home():

@@ -11,16 +11,16 @@ from pathlib import Path
 
 import pytest
 
+from gaitdisc.chapters.fields.monthly_fields import read_sst_pacific
+from gaitdisc.chapters.fields.netcdf import read_variables
+from gaitdisc.chapters.fields.sea_surface import read_sst_mat
+from gaitdisc.chapters.fields.turbulence_cutout import read_cutout
 from gaitdisc.discovery.catalogue import read_catalogue
 from gaitdisc.errors import ReadError
 from gaitdisc.ingest.file_hash import file_sha256
 from gaitdisc.ingest.hdf5 import hdf5_file, is_hdf5
-from gaitdisc.ingest.monthly_fields import read_sst_pacific
-from gaitdisc.ingest.netcdf import read_variables
 from gaitdisc.ingest.reading import ENDINGS, read_trial
-from gaitdisc.ingest.sea_surface import read_sst_mat
 from gaitdisc.ingest.study_file import load_study
-from gaitdisc.ingest.turbulence_cutout import read_cutout
 from gaitdisc.regular_file import LARGEST_BYTES, LARGEST_TEXT_BYTES, check_regular
 from gaitdisc.simulation.bundled import bundled
 from gaitdisc.simulation.measured_table import read_measured

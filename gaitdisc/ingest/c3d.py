@@ -67,9 +67,18 @@ class C3DReader:
         other analog channel. The first frame is at 0 s. Nothing passes that names a person: neither label prefixes nor
         the groups SUBJECTS, TRIAL, MANUFACTURER.
 
-        channels: the study's own names, see `LabelMap`: label, description, `#<n>` for the n-th analog channel or
-            `<label>.x` -> name, or `name [unit]`
-        returns: with findings for everything that had to be judged
+        Parameters
+        ----------
+        path : Path or str
+            The C3D file.
+        channels : mapping of str to str, optional
+            The study's own names, see `LabelMap`: label, description, `#<n>` for the n-th analog channel or
+            `<label>.x` -> name, or `name [unit]`.
+
+        Returns
+        -------
+        Trial
+            With findings for everything that had to be judged.
         """
         path = Path(path)
         try:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from gaitdisc.errors import StrideError
 from gaitdisc.library.walks import Walk, trial_of
-from gaitdisc.processing.contact_choice import chosen_contacts
+from gaitdisc.processing.contact_choice import chosen_contacts, seen_contacts
 from gaitdisc.recording import Recording, Strides
 from gaitdisc.signals.strides import cut_strides
 
@@ -45,6 +45,30 @@ def contacts(trial: Walk, detector: str = "auto") -> dict[str, Contacts]:
     {'l': 'force', 'r': 'force'}
     """
     return dict(chosen_contacts(trial_of(trial), detector).contacts)
+
+
+def contacts_by_detector(trial: Walk) -> dict[str, dict[str, Contacts]]:
+    """Initial contacts as each detector itself places them, to set one beside the other.
+
+    Parameters
+    ----------
+    trial : Trial, path, DataFrame or Recording
+        A walk: what `read` gave or takes, or a recording.
+
+    Returns
+    -------
+    dict of str to dict of str to Contacts
+        Detector (`force`, `events`, `markers`, `angles`), then side; without those that the walk does not serve. Unlike
+        those of `contacts`, times by markers and angles are not moved to those of a plate.
+
+    Examples
+    --------
+    >>> import gaitdisc as gd
+    >>> found = gd.contacts_by_detector(gd.example_walks(10.0)["nominal"])
+    >>> found["force"]["r"].compared(found["angles"]["r"]).median_ms < 0  # angles see a contact early
+    True
+    """
+    return seen_contacts(trial_of(trial))[0]
 
 
 def cycles(

@@ -14,7 +14,7 @@ from gaitdisc.signals.contact_angles import angle_contacts
 from gaitdisc.signals.contact_events import event_contacts
 from gaitdisc.signals.contact_force import force_contacts, plate_contacts
 from gaitdisc.signals.contact_markers import marker_contacts
-from gaitdisc.signals.contacts import Agreement, Contacts, compared
+from gaitdisc.signals.contacts import Agreement, Contacts
 from gaitdisc.signals.direction import Direction, given_direction, walking_direction
 
 HEELS = {
@@ -121,7 +121,7 @@ def _offset(chosen: str, seen: Mapping[str, Mapping[str, Contacts]]) -> tuple[st
         return "", None
     for name in ("force", "events"):
         later = [
-            -compared(seen[name][side], contacts).difference_s
+            -seen[name][side].compared(contacts).difference_s
             for side, contacts in seen[chosen].items()
             if name in seen and side in seen[name]
         ]
@@ -216,7 +216,7 @@ def _findings(
         if name == chosen:
             continue
         for side in sorted(set(taken) & set(contacts)):
-            agreement = compared(taken[side], contacts[side])
+            agreement = taken[side].compared(contacts[side])
             if name in refused and not len(agreement.difference_s):
                 continue
             findings.append(_compared(trial.name, (name, chosen, side), agreement, name == reference, name in refused))

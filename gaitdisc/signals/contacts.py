@@ -74,6 +74,54 @@ class Contacts:
         span = f", {self.time[0]:.2f} to {self.time[-1]:.2f} s" if len(self) else ""
         return f"Contacts({len(self)} of side {self.side!r} by {self.detector}{span})"
 
+    def compared(self, other: Contacts, within_s: float = MATCH_S) -> Agreement:
+        """Match these contacts with those of another detector, nearest to nearest.
+
+        Parameters
+        ----------
+        other : Contacts
+            Of the same foot in the same walk.
+        within_s : float
+            Farther apart is no pair [s].
+
+        Returns
+        -------
+        Agreement
+            `difference_s`, other minus these, of each pair; `missed` and `extra` [s]. Contacts before the first or
+            after the last of the other detector (by more than `within_s`) count as neither: a plate sees two steps of
+            a walk.
+
+        Raises
+        ------
+        StrideError
+            If the two are of different feet.
+
+        Examples
+        --------
+        >>> a = Contacts(np.array([1.0, 2.0, 3.0]), "r", "force")
+        >>> b = Contacts(np.array([1.02, 3.02]), "r", "markers")
+        >>> a.compared(b).line()
+        '2 pairs, second minus first +20 ms (median), 0 ms (interquartile range); 1 missed, 0 extra'
+        """
+        if self.side != other.side:
+            raise StrideError(
+                "contacts to compare need one foot",
+                f"found {self.detector} of side {self.side!r} and {other.detector} of side {other.side!r}",
+                "Compare right with right, left with left.",
+            )
+        if not len(self) or not len(other):
+            return Agreement(np.empty(0), np.empty(0), np.empty(0))
+        apart = other.time[None, :] - self.time[:, None]
+        nearest = np.abs(apart).argmin(axis=1)
+        back = np.abs(apart).argmin(axis=0)
+        rows = np.flatnonzero((back[nearest] == np.arange(len(self))) & (np.abs(apart).min(axis=1) <= within_s))
+        columns = nearest[rows]
+        lone_own = np.delete(self.time, rows)
+        lone_other = np.delete(other.time, columns)
+        return Agreement(
+            apart[rows, columns], _covered(lone_own, other, within_s), _covered(lone_other, self, within_s)
+        )
+
 
 @dataclass(frozen=True, eq=False)
 class Agreement:
@@ -101,38 +149,6 @@ class Agreement:
             f"{len(self.difference_s)} pairs, second minus first {self.median_ms:+.0f} ms (median), "
             f"{self.iqr_ms:.0f} ms (interquartile range); {len(self.missed)} missed, {len(self.extra)} extra"
         )
-
-
-def compared(first: Contacts, second: Contacts, within_s: float = MATCH_S) -> Agreement:
-    """Match the contacts of two detectors, nearest to nearest.
-
-    within_s: farther apart is no pair [s]
-    returns: contacts before the first or after the last of the other detector (by more than `within_s`) count as
-        neither missed nor extra: a plate sees two steps of a walk
-
-    >>> a = Contacts(np.array([1.0, 2.0, 3.0]), "r", "force")
-    >>> b = Contacts(np.array([1.02, 3.02]), "r", "markers")
-    >>> compared(a, b).line()
-    '2 pairs, second minus first +20 ms (median), 0 ms (interquartile range); 1 missed, 0 extra'
-    """
-    if first.side != second.side:
-        raise StrideError(
-            "contacts to compare need one foot",
-            f"found {first.detector} of side {first.side!r} and {second.detector} of side {second.side!r}",
-            "Compare right with right, left with left.",
-        )
-    if not len(first) or not len(second):
-        return Agreement(np.empty(0), np.empty(0), np.empty(0))
-    apart = second.time[None, :] - first.time[:, None]
-    nearest = np.abs(apart).argmin(axis=1)
-    back = np.abs(apart).argmin(axis=0)
-    rows = np.flatnonzero((back[nearest] == np.arange(len(first))) & (np.abs(apart).min(axis=1) <= within_s))
-    columns = nearest[rows]
-    lone_first = np.delete(first.time, rows)
-    lone_second = np.delete(second.time, columns)
-    return Agreement(
-        apart[rows, columns], _covered(lone_first, second, within_s), _covered(lone_second, first, within_s)
-    )
 
 
 def order_findings(right: Contacts, left: Contacts, file: str = "") -> list[Finding]:

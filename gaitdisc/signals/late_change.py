@@ -63,7 +63,7 @@ def late_change(recording: Recording, strides: Strides, seed: int = 0) -> LateCh
     kept = without_outlying(recording, strides)
     curves = kept.normalised(recording)
     moving = np.array([c.quantity in {"angle", "emg"} for c in recording.channels])
-    moving &= np.isfinite(curves).any(axis=(0, 1))
+    moving &= np.isfinite(curves).any(axis=0).all(axis=0)  # no stride may lack the same phase
     moving[moving] &= np.nanstd(curves[:, :, moving], axis=0).max(axis=0) > 1e-9
     curves = curves[:, :, moving]
     whole = np.isfinite(curves).all(axis=(1, 2))

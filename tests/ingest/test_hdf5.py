@@ -4,10 +4,10 @@ import sys
 import numpy as np
 import pytest
 
+from gaitdisc.chapters.fields.sea_surface import read_oisst
+from gaitdisc.chapters.fields.turbulence_cutout import read_cutout
 from gaitdisc.errors import GaitdiscError, ReadError
 from gaitdisc.ingest.hdf5 import SIGNATURE, attributes, data_set, hdf5_file, is_hdf5
-from gaitdisc.ingest.sea_surface import read_oisst
-from gaitdisc.ingest.turbulence_cutout import read_cutout
 
 
 def test_the_signature_tells(tmp_path):

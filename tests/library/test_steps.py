@@ -22,6 +22,14 @@ def test_contacts_and_cycles_of_a_walk_and_of_its_file(walk, tmp_path):
     assert again.detector == "angles" and abs(len(again) - len(strides)) <= 1
 
 
+def test_every_detector_places_its_own_contacts(walk):
+    found = gd.contacts_by_detector(walk)
+    assert set(found) == {"force", "angles"}
+    apart = found["force"]["l"].compared(found["angles"]["l"])
+    assert len(apart.difference_s) >= 7 and apart.median_ms < -10  # by angles they lie early, and stay where they are
+    np.testing.assert_array_equal(gd.contacts(walk)["l"].time, found["force"]["l"].time)
+
+
 def test_a_cycle_with_a_gap_in_what_is_cut_is_dropped(walk):
     kinematics, strides = walk.stream("kinematics"), gd.cycles(walk)
     values = np.array(kinematics.values)

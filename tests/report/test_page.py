@@ -3,7 +3,7 @@ import os
 import pandas as pd
 
 import gaitdisc
-from gaitdisc.report.discrepancy import statements_table
+from gaitdisc.chapters.pages.discrepancy import statements_table
 from gaitdisc.report.page import Block, drawn_side_by_side, save_block, write_blocks, write_markdown, write_page
 from gaitdisc.report.table import Table
 

@@ -7,7 +7,6 @@ from gaitdisc.errors import StrideError
 from gaitdisc.recording import Event, Trial
 from gaitdisc.signals.contact_events import event_contacts
 from gaitdisc.signals.contact_force import plate_contacts
-from gaitdisc.signals.contacts import compared
 from gaitdisc.signals.direction import walking_direction
 
 
@@ -53,7 +52,7 @@ def test_real_events_agree_with_plates_within_20_ms(gait_data, real):
         seen = event_contacts(Trial(path.stem, {}, tuple(sorted(events, key=lambda e: e.time))))
         plates = plate_contacts(real.plates(c3d), markers, heels, direction)
         for side in "rl":
-            found = compared(seen[side], plates[side])
+            found = seen[side].compared(plates[side])
             assert len(found.extra) == 0
             apart += found.difference_s.tolist()
     assert len(apart) >= 12

@@ -8,7 +8,7 @@ from gaitdisc.errors import ChannelError, StrideError
 from gaitdisc.recording import Recording, Source
 from gaitdisc.signals.contact_force import force_contacts, loaded, plate_contacts
 from gaitdisc.signals.contact_markers import marker_contacts
-from gaitdisc.signals.contacts import compared, order_findings
+from gaitdisc.signals.contacts import order_findings
 from gaitdisc.signals.direction import given_direction, walking_direction
 from gaitdisc.signals.strides import cut_strides
 
@@ -114,7 +114,7 @@ def test_real_belts_that_chatter(gait_data, real):
     for side, count, apart in (("r", 6, -51), ("l", 7, -61)):
         assert np.array_equal(by_foot[side].time, by_belt[side].time)
         assert len(cut_strides(by_belt[side])) == count
-        found = compared(by_belt[side], zeni[side])
+        found = by_belt[side].compared(zeni[side])
         assert (len(found.missed), len(found.extra)) == (0, 0)
         assert found.median_ms == pytest.approx(apart, abs=3)
         assert found.iqr_ms < 15

@@ -9,7 +9,6 @@ from gaitdisc.ingest.reading import read_trial
 from gaitdisc.recording import Recording
 from gaitdisc.signals.contact_events import event_contacts
 from gaitdisc.signals.contact_markers import marker_contacts
-from gaitdisc.signals.contacts import compared
 from gaitdisc.signals.direction import given_direction, walking_direction
 
 CONTACTS = np.array([0.731, 1.802, 2.93, 4.01, 5.12, 6.2])
@@ -63,7 +62,7 @@ def test_real_turns_against_the_events_of_their_files(gait_data):
             continue
         found = marker_contacts(trial.stream("markers"), {"r": "RHEE", "l": "LHEE"}, ["LASI", "RASI"])
         for side, contacts in event_contacts(trial).items():
-            agreement = compared(contacts, found[side])
+            agreement = contacts.compared(found[side])
             inside = (agreement.missed > found[side].time[0]) & (agreement.missed < found[side].time[-1])
             assert not inside.any(), file.name
             assert not len(agreement.extra), file.name

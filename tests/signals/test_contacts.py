@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gaitdisc.errors import StrideError
-from gaitdisc.signals.contacts import Contacts, compared, order_findings
+from gaitdisc.signals.contacts import Contacts, order_findings
 
 
 def contacts(times, side="r", detector="force"):
@@ -16,14 +16,14 @@ def contacts(times, side="r", detector="force"):
 @given(st.lists(st.floats(0.6, 1.4), min_size=2, max_size=20), st.floats(-0.1, 0.1))
 def test_a_shift_is_found_and_nothing_is_missed(durations, shift):
     times = np.cumsum(durations)
-    found = compared(contacts(times), contacts(times + shift, detector="markers"))
+    found = contacts(times).compared(contacts(times + shift, detector="markers"))
     assert len(found.difference_s) == len(times)
     assert found.median_ms == pytest.approx(1e3 * shift, abs=1e-6)
     assert (len(found.missed), len(found.extra)) == (0, 0)
 
 
 def test_missed_and_extra_are_counted_within_the_span_of_both():
-    found = compared(contacts([0, 1, 2, 3, 4, 5]), contacts([1.01, 2.5, 3.01, 4.03]))
+    found = contacts([0, 1, 2, 3, 4, 5]).compared(contacts([1.01, 2.5, 3.01, 4.03]))
     assert found.missed.tolist() == [2.0]
     assert found.extra.tolist() == [2.5]
     assert found.line() == (
@@ -32,12 +32,12 @@ def test_missed_and_extra_are_counted_within_the_span_of_both():
 
 
 def test_without_contacts_there_are_no_pairs():
-    assert np.isnan(compared(contacts([]), contacts([1.0])).median_ms)
+    assert np.isnan(contacts([]).compared(contacts([1.0])).median_ms)
 
 
 def test_two_feet_are_not_compared():
     with pytest.raises(StrideError, match="force of side 'r' and force of side 'l'"):
-        compared(contacts([1.0]), contacts([1.0], "l"))
+        contacts([1.0]).compared(contacts([1.0], "l"))
 
 
 @pytest.mark.parametrize(

@@ -27,6 +27,15 @@ def test_stationary_strides_raise_an_alarm_in_at_most_1_in_20(made):
     assert np.mean(p <= 0.01) <= 0.02
 
 
+def test_an_angle_that_no_stride_has_at_some_phase_is_left_out_in_silence(made, recwarn):
+    recording, strides = made.wandering(40, 0.3, 1)
+    values, phi = np.array(recording.values), strides.phi(recording.time)
+    values[(phi > 40) & (phi < 60), 0] = np.nan
+    found = late_change(recording.with_values(values), strides, 1)
+    assert recording.names[0] not in found.shifts and len(found.shifts) > 0
+    assert [str(one.message) for one in recwarn] == []
+
+
 @pytest.mark.slow
 def test_false_alarms_stay_below_5_percent(made):
     for count in (40, 80, 224):

@@ -47,7 +47,7 @@ def manufactured(study, ratio, faulty_person=None):
     for person in study.PEOPLE:
         for setting in study.SETTINGS:
             table = pd.DataFrame({"Fz_R": force, "Fz_L": force})
-            for name in study._electrodes():
+            for name in study.electrodes_of():
                 table[name] = (0.1 + 0.5 * (np.arange(30) % 10)) * (1 + 0.01 * study.PEOPLE.index(person))
                 if setting != "C1" and name.startswith(("MSOL", "LSOL")):
                     table.loc[10:19, name] *= ratio + 0.001 * study.PEOPLE.index(person)

@@ -4,9 +4,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gaitdisc.discrepancy.cell import cell_of
-from gaitdisc.discrepancy.record import Conditions, recorded
-from gaitdisc.discrepancy.system import system_of
+from gaitdisc.chapters.discrepancy.cell import cell_of
+from gaitdisc.chapters.discrepancy.record import Conditions, recorded
+from gaitdisc.chapters.discrepancy.system import system_of
 from gaitdisc.simulation.bundled import bundled
 from gaitdisc.simulation.parts import Term
 

@@ -4,7 +4,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gaitdisc.results.discrepancy_cell import PARTS, DiscrepancyCell, PartAccuracy
+from gaitdisc.chapters.discrepancy.discrepancy_cell import PARTS, DiscrepancyCell, PartAccuracy
 
 STUDIES = Path(__file__).parents[2] / "studies"
 TIME = np.arange(301) / 10

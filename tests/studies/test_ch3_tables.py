@@ -1,14 +1,17 @@
 import numpy as np
 import pandas as pd
 import pytest
-from ch3_seeds import cell_sets, gathered, rows_of
-from ch3_tables import CELLS, measured, printed, set_table
-from printed_numbers import apart, blocks, pages
+from ch3_cell_sets import cell_sets
+from ch3_cells import CELLS, measured, set_table
+from ch3_seeds import gathered, rows_of
+from ch3_tables import printed
+from printed_blocks import apart, blocks
+from printed_numbers import pages
 
-from gaitdisc.discrepancy.cell import cell_of
-from gaitdisc.discrepancy.recommend import FOUND, evidence_of
-from gaitdisc.discrepancy.record import recorded
-from gaitdisc.results.discrepancy_cell import FORECAST, ORACLE, PARTS
+from gaitdisc.chapters.discrepancy.cell import cell_of
+from gaitdisc.chapters.discrepancy.discrepancy_cell import FORECAST, ORACLE, PARTS
+from gaitdisc.chapters.discrepancy.recommend import FOUND, evidence_of
+from gaitdisc.chapters.discrepancy.record import recorded
 
 OURS = [
     (page.name, block.commands[-1].split()[-1], block.written)

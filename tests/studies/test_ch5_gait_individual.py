@@ -13,15 +13,15 @@ def study(monkeypatch):
 
 
 def test_the_table_of_the_dissertation_is_that_of_the_text(study):
-    rows = study.printed("individual").set_index(["sensors", "model"])["mean"]
+    rows = study.gait.printed("individual").set_index(["sensors", "model"])["mean"]
     assert len(rows) == 4 * 3
     assert rows["3 sagittal", "shred"] == 0.064 and rows["1 random", "linear"] == 1.096
 
 
 def test_the_runners_and_the_treadmill_walks_are_found(study, gait_data, tmp_path):
-    found = study.exotendon(gait_data)
+    found = study.gait.exotendon(gait_data)
     assert [len(person.trials) for person in found.participants] == [2, 1]
-    assert len(study.treadmill(gait_data, tmp_path).participants[0].trials) == 12
+    assert len(study.gait.treadmill(gait_data, tmp_path).participants[0].trials) == 12
 
 
 @pytest.mark.slow

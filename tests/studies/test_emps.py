@@ -42,7 +42,7 @@ def test_the_model_is_the_published_one_without_friction(study):
 
 
 def test_the_results_page_has_what_the_quick_run_prints(study, found):
-    from printed_numbers import apart, blocks
+    from printed_blocks import apart, blocks
 
     text = (PROJECT / "docs" / "results.md").read_text(encoding="utf-8")
     [block] = [block for block in blocks(text) if "emps.py" in block.commands[-1]]

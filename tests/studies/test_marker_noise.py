@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from marker_noise import LOST_S, SHOWN, bodies, errors, lost, slid
+from marker_noise import SHOWN, errors
+from moved_markers import LOST_S, bodies, lost, slid
 
 
 @pytest.fixture(scope="module")

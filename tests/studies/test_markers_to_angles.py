@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from markers_to_angles import WRITTEN_WITH, against_opensim, against_plug_in_gait, nearest_axis, people
+from markers_to_angles import against_opensim
+from plug_in_gait_angles import WRITTEN_WITH, against_plug_in_gait, nearest_axis, people
 
 
 @pytest.fixture(scope="module")

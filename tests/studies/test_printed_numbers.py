@@ -3,7 +3,8 @@ import shlex
 
 import pytest
 from command_line import SHARED
-from printed_numbers import FORMS, Block, answer, apart, blocks, difference, first_two, pages, quoted, renewed, scores
+from printed_blocks import FORMS, Block, apart, blocks, difference, first_two, quoted, renewed, scores
+from printed_numbers import answer, pages
 
 PAGES = {page.name: page.read_text(encoding="utf-8") for page in pages()}
 EVERY = [(name, block) for name, text in PAGES.items() for block in blocks(text)]

@@ -1,0 +1,1 @@
+"""Fits that the dissertation compares: SINDy, dynamic mode decomposition, Gaussian process; each is a `Model`."""

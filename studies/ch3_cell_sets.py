@@ -1,0 +1,73 @@
+"""Sets of cells of section 3.4 that stand in one table, over twelve noise seeds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import ch3_lorenz
+import ch3_measurement_bias
+import ch3_van_der_pol
+
+from gaitdisc.chapters.discrepancy.error_signal import Approach
+from gaitdisc.chapters.discrepancy.methods import Method, MethodSettings
+from gaitdisc.chapters.discrepancy.record import Conditions
+from gaitdisc.chapters.discrepancy.system import System
+
+SEEDS = 12
+
+NOISES = (0.0, 0.001, 0.01, 0.1)
+FOUR: tuple[Method, ...] = ("sindy", "dmd", "gp", "nn")
+LONG, SHORT = 50.0, 10.0
+
+
+@dataclass(frozen=True, eq=False)
+class CellSet:
+    """Cells that stand in one table.
+
+    Parameters
+    ----------
+    noises : tuple of float
+        As shares of each channel's standard deviation.
+    """
+
+    system: System
+    conditions: Conditions
+    approach: Approach = "dynamics"
+    methods: tuple[Method, ...] = FOUR
+    noises: tuple[float, ...] = NOISES
+    seeds: int = SEEDS
+    settings: MethodSettings | None = None
+
+
+def cell_sets() -> dict[str, CellSet]:
+    """Every set by its name, in the order in which they are computed."""
+    pol, mass = ch3_van_der_pol.systems(), ch3_measurement_bias.systems()
+    text, code, lorenz = pol["text"], pol["code"], ch3_lorenz.system()
+    long, short, swing = Conditions(duration_s=LONG), Conditions(duration_s=SHORT), Conditions(duration_s=20.0)
+    fine = Conditions(dt_s=ch3_lorenz.FINE_DT_S, duration_s=ch3_lorenz.FINE_S)
+    bias = {"approach": "state", "settings": ch3_measurement_bias.SETTINGS}
+    found = {
+        "van_der_pol_text": CellSet(text, long),
+        "lorenz": CellSet(lorenz, long),
+        "van_der_pol_code": CellSet(code, long),
+        "van_der_pol_text_short": CellSet(text, short, noises=NOISES[1:]),
+        "lorenz_short": CellSet(lorenz, short, noises=NOISES[1:]),
+        "lorenz_fine": CellSet(lorenz, fine, methods=("sindy", "gp", "nn"), noises=NOISES[:1]),
+        "mass_code": CellSet(mass["code"], swing, **bias),
+        "mass_text": CellSet(mass["text"], swing, **bias),
+        "van_der_pol_text_state": CellSet(text, long, "state"),
+        "van_der_pol_code_state": CellSet(code, long, "state"),
+        "lorenz_state": CellSet(lorenz, long, "state"),
+    }
+    return found | {
+        f"{name}_bopdmd": replace(found[name], methods=("bopdmd",), seeds=3)
+        for name in ("van_der_pol_text", "van_der_pol_code", "lorenz", "mass_code", "mass_text")
+    }
+
+
+def chosen_sets(names: list[str] | None, noises: list[float] | None) -> dict[str, CellSet]:
+    """Sets of these names, at these noises; all where absent."""
+    sets = cell_sets()
+    found = {name: sets[name] for name in names or sets}
+    some = set(noises or NOISES)
+    return {name: replace(one, noises=tuple(n for n in one.noises if n in some)) for name, one in found.items()}

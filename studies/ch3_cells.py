@@ -1,0 +1,67 @@
+"""The cells of section 3.4 that `ch3_seeds.py` measured and kept, and tables of one of their numbers."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pandas as pd
+from markdown_table import markdown_table
+
+from gaitdisc.chapters.discrepancy.discrepancy_cell import FORECAST, ORACLE, RECONSTRUCTION
+from gaitdisc.chapters.discrepancy.recommend import STARTS
+from gaitdisc.chapters.pages.discrepancy import METHOD_WORDS, spread_words
+
+CELLS = Path(__file__).with_name("ch3_cells.csv")
+LYAPUNOV_PER_S = 0.906  # largest exponent of the Lorenz system: Sprott 2003, Chaos and Time-Series Analysis
+START_WORDS = {**STARTS, RECONSTRUCTION: "reconstruction, true start"}
+NUMBERS = {
+    "forecast": ("accuracy", 1.0, (FORECAST, ORACLE)),
+    "parts": ("accuracy", 1.0, (RECONSTRUCTION, FORECAST, ORACLE)),
+    "valid": ("valid_s", LYAPUNOV_PER_S, (FORECAST, ORACLE)),
+    "jump": ("to_jump", 1.0, (FORECAST, ORACLE)),
+}
+
+
+def measured() -> pd.DataFrame:
+    """Every cell that is kept, a row a part."""
+    return pd.read_csv(CELLS)
+
+
+def set_table(table: pd.DataFrame, name: str, number: str) -> str:
+    """One number of a set: a row a method and start, a column a noise; median and range over the n seeds with noise.
+
+    Where the noises have unlike numbers of seeds, n names each in the order of the columns.
+    """
+    column, factor, parts = NUMBERS[number]
+    of_set = table[table["set"] == name]
+    noises, rows = sorted(of_set["noise"].unique()), []
+    for method in [each for each in METHOD_WORDS if each in set(of_set["method"])]:
+        for part in parts:
+            found = of_set[(of_set["method"] == method) & (of_set["part"] == part)]
+            counts = found[found["noise"] > 0].groupby("noise")["seed"].nunique()
+            n = ", ".join(map(str, counts if len(set(counts)) > 1 else counts[:1])) or "1"
+            said = [said_of(found[found["noise"] == noise], column, factor) for noise in noises]
+            rows.append((METHOD_WORDS[method], START_WORDS[part], n, *said))
+    headings = ("method", "start", "n", *(f"{noise:.1%} noise" for noise in noises))
+    return markdown_table(" | ".join(headings), rows)
+
+
+def said_of(found: pd.DataFrame, column: str, factor: float = 1.0) -> str:
+    """Median and range of a number over the seeds, or in how many of them the run diverged."""
+    if not len(found):
+        return ""
+    lost = int(found[column].isna().sum())  # it left every bound before the end of what is judged
+    among = f" in {lost} of {len(found)}" * (len(found) > 1)
+    return f"diverged{among}" if lost else spread_words(factor * found[column].to_numpy(float))
+
+
+def sets_tables(table: pd.DataFrame) -> str:
+    """Every number of every set of a table of cells, under its name."""
+    said = []
+    for name in dict.fromkeys(table["set"]):
+        chaotic = str(name).startswith("lorenz")
+        for number in ("forecast", "valid", "jump") if chaotic else ("forecast",):
+            unit = {"forecast": "less RMSE than the known model [%]", "valid": "valid [Lyapunov times]"}
+            said.append(f"## {name}: {unit.get(number, 'the same until the first jump [%]')}\n")
+            said.append(set_table(table, str(name), number))
+    return "\n".join(said)

@@ -1,0 +1,13 @@
+import pytest
+
+from gaitdisc.chapters.discrepancy.error_signal import error_samples
+from gaitdisc.chapters.discrepancy.methods import OF_TIME, MethodSettings, fitted
+
+
+@pytest.mark.parametrize("method", ["sindy", "esindy", "dmd", "exactdmd", "bopdmd", "gp", "gpm", "nn"])
+def test_every_method_fits_the_same_error_signal(quiet, method):
+    samples = error_samples(quiet, "dynamics", of_time=method in OF_TIME)
+    model = fitted(samples, method, MethodSettings(nodes=5))
+    assert model.outputs == ("x", "y")
+    close = 0.2 if method == "exactdmd" else 0.1  # its modes are those of the map, not of the record
+    assert (model(samples.x)[:, 1] - samples.y[:, 1]).std() < close * samples.y[:, 1].std()

@@ -1,0 +1,100 @@
+import numpy as np
+import pandas as pd
+import pytest
+
+from gaitdisc.chapters.pages.sensor_sets import (
+    MEASURES,
+    disturbance_figure,
+    search_sentences,
+    search_table,
+    sensor_sets_figure,
+    sensor_sets_table,
+)
+
+
+def test_a_box_a_model_and_set_angles_and_translations_apart():
+    rows = [
+        (sensors, person, model, state, unit, value)
+        for sensors in ("3 sagittal", "1 sagittal")
+        for person in ("P01", "P02")
+        for model, value in (("linear", 5.0), ("shred", 1.0), ("shred, calibrated", 0.5))
+        for state, unit in (("knee_angle_l", "deg"), ("hip_flexion_l", "deg"), ("pelvis_tx", "m"))
+    ]
+    errors = pd.DataFrame(rows, columns=pd.Index(["sensors", "participant", "model", "state", "unit", "rmse"]))
+    figure = sensor_sets_figure(errors, "two people", "boxes", "temporal")
+    left, right = figure.drawn.axes
+    assert [label.get_text() for label in left.get_xticklabels()] == ["3 sagittal", "1 sagittal"]
+    assert (left.get_ylabel(), right.get_ylabel()) == ("RMSE of a state [deg]", "RMSE of a state [m]")
+    assert set(figure.numbers["model"]) == {"linear", "shred"}
+    assert "n = 2 participants" in figure.caption
+
+
+@pytest.fixture
+def table():
+    rows = [
+        {"data": "cohort", "sensors": "1 sagittal", "participant": f"P{k}", "model": model,
+         **dict.fromkeys(MEASURES, value + 0.1 * k)}
+        for k in range(3) for model, value in (("linear", 2.0), ("delay ridge", 1.0))
+    ]  # fmt: skip
+    printed = pd.DataFrame({"sensors": ["1 sagittal"], "model": ["linear"], "mean": [1.083], "sd": [0.705]})
+    return sensor_sets_table(pd.DataFrame(rows), printed, "sets", "temporal")
+
+
+def test_mean_interval_and_deviation_over_participants(table):
+    row = dict(zip(table.columns, table.rows[0], strict=True))
+    half = 4.3027 * 0.1 / np.sqrt(3)
+    assert row["RMSE [deg]"] == f"2.10 [{2.1 - half:.2f}, {2.1 + half:.2f}]"
+    assert row["relative L2 with sensors ± sd [1]"] == "2.100 ± 0.100"
+
+
+def test_what_is_printed_stands_beside_it_and_nothing_where_nothing_is(table):
+    assert [row[-2] for row in table.rows] == ["1.083 ± 0.705", "–"]
+
+
+def test_the_caption_says_what_the_printed_numbers_are(table):
+    assert "calls the norm of the error" in table.caption
+    assert "no claim of better or worse is made" in table.caption
+
+
+@pytest.fixture
+def found():
+    names = ["knee_angle_l", "hip_flexion_r, knee_angle_l", "ankle_angle_r, hip_flexion_r, knee_angle_l"]
+    return pd.DataFrame(
+        {"sensors": [1, 2, 3], "names": names, "loss": [1.0, 0.25, 0.2304], "rmse_deg": [4.0, 2.0, 1.9],
+         "fits": [18, 153, 816], "seconds": 0.5}
+    )  # fmt: skip
+
+
+def test_the_smallest_set_that_does_is_marked(found):
+    rows = search_table(found).rows
+    assert [row[0] for row in rows] == ["1", "2 *", "3"]
+    assert rows[1][1:5] == ("hip flexion, right and knee angle, left", "0.500", "2.00", "153")
+
+
+def test_the_sentence_says_how_many_which_what_one_more_brings_and_the_cost(found):
+    [said] = search_sentences(found)
+    assert said.startswith("2 sensors are enough: hip flexion, right and knee angle, left; one more takes 4 % off")
+    assert said.endswith("(search: 987 regressions, 1.5 s).")
+
+
+def test_a_search_that_was_too_short_says_so(found):
+    [said] = search_sentences(found.iloc[:2])
+    assert said.startswith(
+        "The best set of 2 sensors is hip flexion, right and knee angle, left; whether it is enough is "
+    )
+    assert "no larger one was tried" in said and "are enough" not in said
+
+
+def test_one_panel_a_disturbance_and_one_line_a_model():
+    rows = [
+        (disturbance, level, model, 1.0 + level)
+        for disturbance, models in (("noise", ("shred",)), ("missing", ("shred", "masked shred")))
+        for level in (0.0, 0.1)
+        for model in models
+    ]
+    found = pd.DataFrame(rows, columns=pd.Index(["disturbance", "level", "model", "rmse_deg"]))
+    figure = disturbance_figure(found, "W01, 3 sensors", "disturbed")
+    noise, missing = figure.drawn.axes
+    assert (len(noise.get_lines()), len(missing.get_lines())) == (1, 2)
+    assert list(np.asarray(noise.get_lines()[0].get_xdata())) == [0.0, 10.0]
+    assert "masked shred is given which are lost" in figure.caption
