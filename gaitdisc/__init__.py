@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from gaitdisc.errors import GaitdiscError as GaitdiscError
     from gaitdisc.ingest.c3d import C3DReader as C3DReader
     from gaitdisc.ingest.reading import read_trial as read
+    from gaitdisc.ingest.writing import write_recording as write
     from gaitdisc.library import plot as plot
     from gaitdisc.library.checking import check as check
     from gaitdisc.library.clusters import permutation_clusters as permutation_clusters
@@ -61,6 +62,7 @@ __version__ = "0.1.0"
 # name -> module, and the name there; in the order of the reference
 _HOME = {
     "read": ("ingest.reading", "read_trial"),
+    "write": ("ingest.writing", "write_recording"),
     "C3DReader": ("ingest.c3d", "C3DReader"),
     "check": ("library.checking", "check"),
     "example_files": ("library.examples", "example_files"),
@@ -159,6 +161,7 @@ __all__ = [
     "signed_rank",
     "simulate",
     "simulation_from_function",
+    "write",
     "write_simulation",
 ]
 

@@ -19,16 +19,10 @@ from command_line import tables_line
 TABLES = ("band", "terms", "search", "curve")
 GIVEN = tables_line(__name__, __doc__, "ch4_further", TABLES)  # before the slow imports
 
-
-import numpy as np
 from ch4_band import band, curve
 from ch4_search import search
 from ch4_terms import terms
 from further import Made, main
-from numpy.typing import NDArray
-
-Values = NDArray[np.float64]
-
 
 MADE = {
     "band": Made(band, "running, n = 10 outputs of one person, last 12.5 % held out"),

@@ -26,7 +26,6 @@ import numpy as np
 from ch4_energy import energy
 from ch5_gait import DATA
 from further import Made, Number, main
-from numpy.typing import NDArray
 from real_people import ANGLES, CUTOFF_HZ
 
 import gaitdisc as gd
@@ -36,7 +35,6 @@ from gaitdisc.sensing.windows import stacked
 MOMENTS = ("ankle_angle_{}_moment", "knee_angle_{}_moment", "hip_flexion_{}_moment")
 JOINTS = ("ankle", "knee", "hip")
 LOADED, LEAST_S = 0.2, 0.2  # of body weight under the foot; a shorter contact is none of a step
-Values = NDArray[np.float64]
 
 
 def steps(path: Path) -> gd.Samples:

@@ -14,7 +14,6 @@ import gaitdisc as gd
 from gaitdisc.batch.demonstration import write_demonstration
 from gaitdisc.batch.reconstruct_study import ReconstructionSettings, reconstruct_study
 from gaitdisc.channel import vocabulary
-from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Quality, Study
 from gaitdisc.ingest.study_file import load_study
 from gaitdisc.report.reconstruction_page import write_reconstruction_report
@@ -92,7 +91,7 @@ def treadmill(data: Path, folder: Path) -> Study:
             values = np.asarray(packed[f"S01DE{number}"], float)[:, kept]
             channels = tuple(channel for channel in named if channel is not None)
             folder.mkdir(parents=True, exist_ok=True)
-            write_storage(gd.Recording(np.arange(len(values)) / 100.0, values, channels), folder / f"{number}.mot")
+            gd.write(gd.Recording(np.arange(len(values)) / 100.0, values, channels), folder / f"{number}.mot")
     trials = tuple(PlannedTrial(condition="walk", files=(f"{number}.mot",)) for number in TREADMILL)
     return _study("treadmill_walk_ik", ("walk", "none"), (Participant(id="S01", trials=trials),)).placed(folder)
 

@@ -32,8 +32,7 @@ def angles(
 
     from gaitdisc.ingest.c3d_measures import body_measures_in
     from gaitdisc.ingest.reading import read_trial
-    from gaitdisc.ingest.storage import write_storage
-    from gaitdisc.ingest.table import write_table
+    from gaitdisc.ingest.writing import write_recording
     from gaitdisc.kinematics.motion import moved_body
     from gaitdisc.kinematics.segment_angles import segment_angles
     from gaitdisc.recording.body_measures import BodyMeasures
@@ -53,8 +52,7 @@ def angles(
         moved = moved_body(markers, standing, marker_set or None, measures, forward, joints or None).motion
         found, made = moved.angles, moved.findings
         seen = [*(stood.findings if stood is not None else ()), *seen]
-    write = write_storage if out.suffix.lower() in (".mot", ".sto") else write_table
-    write(found, out)
+    write_recording(found, out)
     for finding in dict.fromkeys((*seen, *made)):
         typer.echo(finding.line())
     typer.echo(f"{out}: {len(found.names)} channels, {len(found.time)} samples")

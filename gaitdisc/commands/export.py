@@ -40,8 +40,7 @@ def export(
         return
     from gaitdisc.batch.public_words import with_public_labels
     from gaitdisc.ingest.reading import read_trial
-    from gaitdisc.ingest.storage import write_storage
-    from gaitdisc.ingest.table import write_table
+    from gaitdisc.ingest.writing import write_recording
     from gaitdisc.processing.one_base import on_one_base
 
     together = on_one_base(read_trial(files), rate, tuple(stream) if stream else None)
@@ -50,8 +49,7 @@ def export(
         if count:
             what = "label is" if count == 1 else "labels are"
             typer.echo(f"{count} {what} outside the vocabulary and numbered; --labels keeps them.", err=True)
-    write = write_storage if out.suffix.lower() in (".mot", ".sto") else write_table
-    write(together, out)
+    write_recording(together, out)
     typer.echo(f"{out}: {len(together.names)} channels, {len(together.time)} samples at {together.rate_hz:g} Hz")
 
 

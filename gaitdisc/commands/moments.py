@@ -24,8 +24,7 @@ def moments(
     """Joint moments [N m/kg] and powers [W/kg], internal; frames without a known load of the foot are empty."""
     from gaitdisc.ingest.c3d_measures import body_measures_in
     from gaitdisc.ingest.reading import read_trial
-    from gaitdisc.ingest.storage import write_storage
-    from gaitdisc.ingest.table import write_table
+    from gaitdisc.ingest.writing import write_recording
     from gaitdisc.kinematics.motion import moved_body
     from gaitdisc.kinetics.body_inertia import Person
     from gaitdisc.kinetics.joint_moments import KineticsSettings
@@ -38,8 +37,7 @@ def moments(
     body, moved = moved_body(walk.stream("markers"), standing, marker_set or None, measures)
     settings = KineticsSettings(force_cutoff_hz=force_hz)
     found = trial_kinetics(walk, moved.poses, foot_paths_of(moved, body), person, settings)
-    write = write_storage if out.suffix.lower() in (".mot", ".sto") else write_table
-    write(found.moments, out)
+    write_recording(found.moments, out)
     for finding in dict.fromkeys((*stood.findings, *walk.findings, *moved.findings, *found.findings)):
         typer.echo(finding.line())
     for step in (one for one in found.steps if one.clean):
