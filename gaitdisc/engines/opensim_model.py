@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import atexit
 import os
 import pickle
 import re
 import subprocess
 import sys
+import weakref
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -125,7 +125,7 @@ class OpensimModel:
             stderr=subprocess.DEVNULL,
             env=os.environ | {"OMP_NUM_THREADS": "1", "PYTHONPATH": os.pathsep.join(sys.path)},
         )
-        atexit.register(self._process.kill)
+        weakref.finalize(self, _ended, self._process)
 
     def _conversed(self, question: str, *arguments: Any) -> Any:
         assert self._process is not None and self._process.stdin is not None and self._process.stdout is not None
@@ -161,6 +161,12 @@ class OpensimModel:
                 f"{self.path.name}: all are locked ({', '.join(told['locked']) or 'there is none'})",
                 "Unlock those that were measured.",
             )
+
+
+def _ended(process: subprocess.Popen[bytes]) -> None:
+    """End a process when nobody asks it any more."""
+    process.kill()
+    process.wait()
 
 
 def _name(called: str) -> str:
