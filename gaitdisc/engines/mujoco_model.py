@@ -29,6 +29,7 @@ class MujocoModel:
     """
 
     called = "MuJoCo"
+    fibres = False
 
     def __init__(self, path: Path | str) -> None:
         try:

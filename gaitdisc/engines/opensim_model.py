@@ -47,7 +47,7 @@ class OpensimModel:
         self.controls = tuple(Input(_name(name), "1", kind) for name, kind in told["controls"])
         self.parameters = tuple(Parameter(_name(name), value, unit) for name, value, unit, _ in told["parameters"])
         self._called = {_name(name): name for name, *_ in told["parameters"]}
-        self._muscles: bool = told["muscles"]
+        self.fibres: bool = told["muscles"]
         self.offered = tuple(
             _name(name)
             for name, value, _, moves in told["parameters"]
@@ -80,7 +80,7 @@ class OpensimModel:
         self, q: NDArray[np.float64], v: NDArray[np.float64], controls: NDArray[np.float64], rate: float
     ) -> Motion:
         """Return a prescribed motion with the muscles' states, which OpenSim alone integrates from the excitations."""
-        return Motion(q, v, *self._ask("along", q, v, controls, rate)) if self._muscles else Motion(q, v, controls)
+        return Motion(q, v, *self._ask("along", q, v, controls, rate)) if self.fibres else Motion(q, v, controls)
 
     def near(self, known: Motion, q: NDArray[np.float64], v: NDArray[np.float64]) -> Motion:
         """Return other coordinates and speeds near a known motion; fibres move as their lengths at rest do."""
