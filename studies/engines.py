@@ -24,7 +24,6 @@ GIVEN = command_line(
 )  # before the slow imports
 
 import re
-import resource
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -32,28 +31,22 @@ from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
-from scipy.signal import butter, sosfiltfilt
-
-import gaitdisc as gd
-from gaitdisc.batch.discover_engine import EngineAnswer, discover_model_file
-from gaitdisc.engines.engine import Motion
-from gaitdisc.engines.mapping import drafted
-from gaitdisc.engines.model_file import read_model
+from engine_cases import (
+    RATE_HZ,
+    SECONDS,
+    TRIALS,
+    Case,
+    Model,
+    measured,
+    print_sums,
+    ran,
+    read_model,
+    searched,
+    sines,
+    written,
+)
 
 SYSTEMS = Path(__file__).parent / "systems"
-RATE_HZ, SECONDS, TRIALS, CUTOFF_HZ = 100.0, 4.0, 4, 6.0
-
-
-class Model(NamedTuple):
-    """A model that something is hidden in: at which joint, in which body, how strongly it is driven."""
-
-    file: str
-    joint: str
-    body: str
-    sizes: tuple[float, ...]
-    offset: float = 0.0  # of the controls: excitations of muscles are not negative
-    strength: float = 1.0  # of what is hidden at the joint
 
 
 MODELS = {
@@ -86,16 +79,6 @@ HIDDEN = {
 }
 
 
-class Case(NamedTuple):
-    """A model with something hidden in it: text of the truth, and what the answer is to name with which number."""
-
-    model: Model
-    kind: str
-    truth: str
-    number: float
-    named: tuple[str, str, str]  # effect, place, estimate
-
-
 def hidden_in(model: Model, kind: str, rng: np.random.Generator) -> Case:
     """Hide an effect in the text of a model, in the engine's own words."""
     text, one = (SYSTEMS / model.file).read_text(encoding="utf-8"), HIDDEN[kind]
@@ -104,7 +87,7 @@ def hidden_in(model: Model, kind: str, rng: np.random.Generator) -> Case:
     if kind in ("none", "offset"):
         return Case(model, kind, text, drawn, named)
     if kind in ("mass", "gravity"):
-        return _heavier(model, kind, text, drawn)
+        return with_share(model, kind, text, drawn, named[1])
     drawn *= model.strength
     if model.file.endswith(".osim"):
         return Case(model, kind, _in_opensim(model, kind, text, drawn), drawn, named)
@@ -114,9 +97,9 @@ def hidden_in(model: Model, kind: str, rng: np.random.Generator) -> Case:
     return Case(model, kind, truth, drawn, named)
 
 
-def _heavier(model: Model, kind: str, text: str, share: float) -> Case:
+def with_share(model: Model, kind: str, text: str, share: float, name: str) -> Case:
+    """Hide another value of a parameter, as a share of the model's own."""
     engine = read_model(SYSTEMS / model.file)
-    name = HIDDEN[kind].place.format(body=model.body)
     value = share * next(one.value for one in engine.parameters if one.name == name)
     changed = engine.text_with_value(text, name, value)
     assert changed is not None
@@ -161,62 +144,17 @@ def recorded(case: Case, noise_deg: float, rng: np.random.Generator, folder: Pat
     truth = folder / f"truth{Path(case.model.file).suffix}"
     truth.write_text(case.truth, encoding="utf-8")
     engine = read_model(truth)
-    names, count = [one.name for one in engine.coordinates], len(engine.coordinates)
+    count = len(engine.coordinates)
     t = np.arange(int(RATE_HZ * SECONDS)) / RATE_HZ
-    low_pass = butter(2, CUTOFF_HZ, fs=RATE_HZ, output="sos")
-    passed = sosfiltfilt(low_pass, np.random.default_rng(0).normal(size=20_000)).std()
     tables = []
-    for trial in range(1, TRIALS + 1):
-        u = np.column_stack([case.model.offset + _sines(rng, t, size) for size in case.model.sizes])
+    for _ in range(TRIALS):
+        u = np.column_stack([case.model.offset + sines(rng, t, size) for size in case.model.sizes])
         u = np.maximum(u, 0.0) if case.model.offset else u
         start = rng.uniform(-0.2, 0.2, (1, count))
-        begun = Motion(start, np.zeros_like(start), u[:1])
-        angles = np.rad2deg(engine.run(begun, u[None], RATE_HZ)[0, :, :count])
-        seen = sosfiltfilt(low_pass, angles + noise_deg / passed * rng.normal(size=angles.shape), axis=0)
+        tables.append(measured(engine, u, ran(engine, start, u), noise_deg, rng))
         if case.kind == "offset":
-            seen[:, names.index(case.model.joint)] += case.number
-        columns = dict(zip([one.name for one in engine.controls], u.T, strict=True)) | dict(
-            zip(names, seen.T, strict=True)
-        )
-        tables.append(pd.DataFrame({"trial": trial, "time": t, **columns}))
-    pd.concat(tables).to_csv(folder / "trial.csv", index=False, float_format="%.7g")
-    return folder / "trial.csv"
-
-
-def _sines(rng: np.random.Generator, t: NDArray[np.float64], size: float) -> NDArray[np.float64]:
-    frequencies, phases = rng.uniform(0.4, 1.6, 4), rng.uniform(0, 2 * np.pi, 4)
-    return size * (rng.uniform(0.3, 1.0, 4) * np.sin(2 * np.pi * np.outer(t, frequencies) + phases)).sum(axis=1)
-
-
-def judged(case: Case, answer: EngineAnswer) -> dict[str, object]:
-    """One line of the table."""
-    found = answer.found
-    named = ", ".join(f"{one.name} at {one.place}" for one in found.effects) or found.verdict
-    row: dict[str, object] = {"hidden": case.kind, "named": named}
-    if case.kind == "none":
-        row["right"] = not found.effects
-    else:
-        name, place, number = case.named
-        ours = [one for one in found.effects if (one.name, one.place) == (name, place)]
-        row["right"] = len(ours) == 1 and len(found.effects) == 1
-        estimate = ours[0].estimates.get(number) if ours else None
-        if estimate is not None:
-            row |= {
-                "true": case.number,
-                "found": f"{estimate.value:.4g} ({estimate.low:.4g} to {estimate.high:.4g})",
-                "inside": estimate.low <= case.number <= estimate.high,
-            }
-    row["tied"] = sum(one.tied for one in found.rivals)
-    row["native"] = sum("is written into" in note for note in answer.written.notes)
-    return row
-
-
-def cpu_s() -> float:
-    """Processor time of this process and of those that have ended."""
-    return sum(
-        used.ru_utime + used.ru_stime
-        for used in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
-    )
+            tables[-1][case.model.joint] += case.number
+    return written(tables, folder)
 
 
 def study(
@@ -230,12 +168,7 @@ def study(
             case = hidden_in(MODELS[name], kind, rng)
             with tempfile.TemporaryDirectory() as folder:
                 table = recorded(case, noise_deg, rng, Path(folder))
-                model = Path(folder) / case.model.file
-                model.write_text((SYSTEMS / case.model.file).read_text(encoding="utf-8"), encoding="utf-8")
-                gd.write_simulation(drafted(read_model(model), degrees=True), model.with_suffix(".toml"))
-                before = cpu_s()
-                answer = discover_model_file(model, table)
-                row = {"model": name, **judged(case, answer), "cpu s": round(cpu_s() - before, 1)}
+                row = {"model": name, **searched(case, SYSTEMS / case.model.file, table)}
             told("; ".join(f"{key} {value}" for key, value in row.items()))
             rows.append(row)
     return pd.DataFrame(rows)
@@ -247,16 +180,7 @@ def main() -> None:
     models = GIVEN.models
     if GIVEN.quick:
         models, kinds = ["leg"], ["viscous"]
-    table = study(models, kinds, GIVEN.seed, GIVEN.noise, lambda line: print(line, flush=True))
-    for name, rows in table.groupby("model"):
-        hidden = rows[rows["hidden"] != "none"]
-        inside = hidden["inside"].dropna() if "inside" in hidden else []
-        invented = rows[(rows["hidden"] == "none") & ~rows["right"].astype(bool)]
-        print(
-            f"{name}: name and place right in {int(hidden['right'].sum())} of {len(hidden)}, interval holds the number "
-            f"in {int(sum(inside))} of {len(inside)}, invented {len(invented)}, "
-            f"processor time {rows['cpu s'].median():.0f} s a case (median)"
-        )
+    print_sums(study(models, kinds, GIVEN.seed, GIVEN.noise, lambda line: print(line, flush=True)))
 
 
 if __name__ == "__main__":

@@ -33,6 +33,7 @@ from gaitdisc.whole_file import write_whole
 
 NARROW = 0.4  # of the window that guesses states: what is expanded around need not be smooth, but must not be bent
 CONFIRMED = 0.97  # of the error that the engine's own runs leave of the record, above which nothing was shown
+SMOOTH = 1.2  # of it with muscles: what their fibres make of a wrong speed is far from a straight line
 MOVED = 0.02  # share by which a parameter moves at most for its slopes to hold
 
 
@@ -158,7 +159,7 @@ def smoothed_states(mapping: Simulation, engine: Engine, data: Measured) -> NDAr
     data, plain = without_spikes(data), replace(mapping, model="")
     period = rhythm_of(data.observed, data.rate).period
     rate_of = {one.name: one.speed for one in engine.coordinates}
-    found = guess_states(plain, data, NARROW * period, rate_of).states
+    found = guess_states(plain, data, (SMOOTH if engine.fibres else NARROW) * period, rate_of).states
     largest = np.nanmax(np.abs(found), axis=(0, 1))
     refuse_other_units(mapping, engine, {one.name: float(largest[k]) for k, one in enumerate(engine.coordinates)})
     return found

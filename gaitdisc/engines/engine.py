@@ -78,6 +78,7 @@ class Engine(Protocol):
     controls: tuple[Input, ...]
     parameters: tuple[Parameter, ...]  # all that may be changed by name
     offered: tuple[str, ...]  # those that a new mapping lists
+    fibres: bool  # whether muscles have states besides their activation
 
     def accelerations(
         self, at: Motion, values: Mapping[str, float], forces: NDArray[np.float64] | None = None

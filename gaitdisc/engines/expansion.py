@@ -9,7 +9,7 @@ distance from the smoothed record.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +25,8 @@ from gaitdisc.simulation.simulation import Simulation
 NUDGE = 1e-4  # of a state's or a parameter's size
 LONGEST = 64  # characters of a name
 SLOWEST, FASTEST = 10.0, 300.0  # [1/s] at which a fibre settles at least, and a speed at most
-JUMP = 7  # samples
+JUMP = 5  # points
+SLOPES_HZ = 50.0  # at which slopes of a model with muscles are computed: they change as slowly as the motion
 STILL = 1e-9  # of a column's size, below which it is one number
 
 
@@ -51,9 +52,14 @@ def expanded(
         motions.append(engine.along(along[:, :count], along[:, count:], drive.inputs[trial, :samples], drive.rate))
     parts = ("q", "v", "u") if motions[0].z is None else ("q", "v", "u", "z")
     at = Motion(*(np.concatenate([getattr(one, name) for one in motions]) for name in parts))
-    columns = _Columns(engine)
     paths = [np.gradient(one.v, 1 / drive.rate, axis=0) for one in motions]
-    _expand(columns, simulation, at, np.concatenate(paths), own)
+    stride = 1 if at.z is None else max(round(drive.rate / SLOPES_HZ), 1)
+    begun = np.cumsum(drive.samples) - drive.samples
+    points = [
+        np.unique(np.append(np.arange(0, n, stride), n - 1)) + k for k, n in zip(begun, drive.samples, strict=True)
+    ]
+    columns = _Columns(engine)
+    _expand(columns, simulation, _Along(at, np.concatenate(paths), np.concatenate(points)), own)
     computed = columns.values
     inputs = (*simulation.inputs, *(Input(name, "", "computed along the record", True) for name in computed))
     ends = np.cumsum(drive.samples)[:-1]
@@ -105,25 +111,44 @@ class _Columns:
             self._terms[one.speed].append(f"{word}*{factor}" if factor else word)
 
 
-def _expand(
-    columns: _Columns,
-    simulation: Simulation,
-    at: Motion,
-    accelerations: NDArray[np.float64],
-    values: Mapping[str, float],
-) -> None:
+@dataclass(frozen=True)
+class _Along:
+    """The motion of a record, and those of its points at which slopes are computed."""
+
+    at: Motion
+    accelerations: NDArray[np.float64]  # of that motion (point, coordinate)
+    points: NDArray[np.intp]
+
+    @property
+    def few(self) -> Motion:
+        """The motion at these points."""
+        return self.at.at(self.points)
+
+    def without_jumps(self, slope: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Slopes without those of a few points: a muscle's path jumps where it comes off a surface."""
+        return slope if self.at.z is None else median_filter(slope, (JUMP, 1), mode="nearest")
+
+    def spread(self, slope: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Slopes at every point, linear between those at which they were computed."""
+        every = np.arange(len(self.at.q))
+        if len(every) == len(self.points):
+            return slope
+        return np.column_stack([np.interp(every, self.points, column) for column in slope.T])
+
+
+def _expand(columns: _Columns, simulation: Simulation, along: _Along, values: Mapping[str, float]) -> None:
     """Accelerations to first order in states and controls; forces, and parameters that act as such, exactly."""
-    engine = columns.engine
+    engine, at = columns.engine, along.at
     base = engine.accelerations(at, values)
     rest = base.copy()
-    slopes, moves = _slopes(engine, at, values)
+    slopes, moves = _slopes(engine, along, values)
     if at.z is not None:
-        damping = -np.stack([slopes[one.speed][0] for one in engine.coordinates], axis=2)
+        damping = -np.stack([slopes[one.speed] for one in engine.coordinates], axis=2)
         columns.slowed, heavier = _slowed(damping)
-        rest += np.einsum("pij,pj->pi", heavier, accelerations)
-    for name, (slope, along) in slopes.items():
+        rest += np.einsum("pij,pj->pi", heavier, along.accelerations)
+    for (name, slope), own in zip(slopes.items(), np.hstack([at.q, at.v, at.u]).T, strict=True):
         columns.add(f"by_{name}", slope, name)
-        rest -= slope * along[:, None]
+        rest -= slope * own[:, None]
     columns.add("rate", rest)
     ports = {port.name for port in simulation.ports}
     for number, one in enumerate(engine.coordinates):
@@ -137,24 +162,22 @@ def _expand(
         if acting:
             changed = engine.accelerations(at, values, force) - base
             columns.add(f"by_{one.port}", changed, acting[0] if len(acting) == 1 else f"({' + '.join(acting)})")
-    for name in simulation.values():
-        if engine.as_force(name) is None:
-            _expand_parameter(columns, name, at, values, moves)
+    _expand_parameters(columns, simulation, along, values, moves)
 
 
 def _slopes(
-    engine: Engine, at: Motion, values: Mapping[str, float]
-) -> tuple[dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]], dict[str, NDArray[np.float64]]]:
-    """Slopes of the accelerations by each coordinate, speed and control, with these; and how far each moves a fibre."""
-    count, found = len(engine.coordinates), {}
-    for name, along, ahead, behind, size in _nudged(engine, at, "qvuz"):
-        slope = (engine.rates(ahead, values) - engine.rates(behind, values)) / (2 * size)
-        found[name] = _without_jumps(at, slope), along
-    fibres = [found.pop(name)[0] for name in _fibres(at)]
-    moves = _following(engine, {name: slope[:, count:] for name, (slope, _) in found.items()}, fibres)
-    for name, (slope, along) in found.items():
+    engine: Engine, along: _Along, values: Mapping[str, float]
+) -> tuple[dict[str, NDArray[np.float64]], dict[str, NDArray[np.float64]]]:
+    """Slopes of the accelerations by each coordinate, speed and control at every point; how far each moves a fibre."""
+    few, count = along.few, len(engine.coordinates)
+    found: dict[str, NDArray[np.float64]] = {}
+    for name, _, ahead, behind, size in _nudged(engine, few, "qvuz"):
+        found[name] = along.without_jumps((engine.rates(ahead, values) - engine.rates(behind, values)) / (2 * size))
+    fibres = [found.pop(name) for name in _fibres(few)]
+    moves = _following(engine, {name: slope[:, count:] for name, slope in found.items()}, fibres)
+    for name, slope in found.items():
         by_fibres = sum(fibre[:, :count] * moves[name][:, [k]] for k, fibre in enumerate(fibres))
-        found[name] = slope[:, :count] + by_fibres, along
+        found[name] = along.spread(slope[:, :count] + by_fibres)
     return found, moves
 
 
@@ -192,34 +215,34 @@ def _slowed(damping: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[
     return factor, more
 
 
-def _without_jumps(at: Motion, slope: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Slopes without those of a few samples: a muscle's path jumps where it comes off a surface."""
-    return slope if at.z is None else median_filter(slope, (JUMP, 1), mode="nearest")
-
-
-def _expand_parameter(
+def _expand_parameters(
     columns: _Columns,
-    name: str,
-    at: Motion,
+    simulation: Simulation,
+    along: _Along,
     values: Mapping[str, float],
     moves: Mapping[str, NDArray[np.float64]],
 ) -> None:
-    """What a parameter changes, to first order in it and in the coordinates."""
-    size = NUDGE * max(abs(values[name]), 1e-2)
-    far, near = ({**values, name: values[name] + each} for each in (size, -size))
-
-    def slope(there: Motion) -> NDArray[np.float64]:
-        found = columns.engine.accelerations(there, far) - columns.engine.accelerations(there, near)
-        return _without_jumps(at, found / (2 * size))
-
-    away = f"({name} - {values[name]!r})"
-    here = rest = slope(at)
-    for other, along, ahead, _, step in _nudged(columns.engine, at, "q"):
-        there = ahead if at.z is None else replace(ahead, z=at.z + step * moves[other])
-        mixed = (slope(there) - here) / step
-        columns.add(f"by_{name}_and_{other}", mixed, f"{other}*{away}")
-        rest = rest - mixed * along[:, None]
-    columns.add(f"by_{name}", rest, away)
+    """What each parameter changes, to first order in it and in the coordinates."""
+    engine, at = columns.engine, along.few
+    beside, moved = [at], []
+    for other, value, ahead, _, step in _nudged(engine, at, "q"):
+        beside.append(ahead if at.z is None else replace(ahead, z=at.z + step * moves[other]))
+        moved.append((other, value, step))
+    names = [name for name in simulation.values() if engine.as_force(name) is None]
+    own = [engine.accelerations(one, values) for one in beside if names]
+    for name in names:
+        size = NUDGE * max(abs(values[name]), 1e-2)
+        far = {**values, name: values[name] + size}
+        here, *others = (
+            along.without_jumps((engine.accelerations(one, far) - before) / size)
+            for one, before in zip(beside, own, strict=True)
+        )
+        away, rest = f"({name} - {values[name]!r})", here
+        for slope, (other, value, step) in zip(others, moved, strict=True):
+            mixed = (slope - here) / step
+            columns.add(f"by_{name}_and_{other}", along.spread(mixed), f"{other}*{away}")
+            rest = rest - mixed * value[:, None]
+        columns.add(f"by_{name}", along.spread(rest), away)
 
 
 def _nudged(

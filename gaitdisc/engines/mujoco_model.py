@@ -32,6 +32,7 @@ class MujocoModel:
     """A model of MuJoCo whose joints are hinges and slides."""
 
     called = "MuJoCo"
+    fibres = False
 
     def __init__(self, path: Path | str) -> None:
         try:

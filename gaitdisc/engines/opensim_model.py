@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import atexit
 import os
 import pickle
 import subprocess
 import sys
+import weakref
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -47,7 +47,7 @@ class OpensimModel:
             Parameter(name, value, unit)
             for name, (_, value, unit, _) in zip(self._called, told["parameters"], strict=True)
         )
-        self._muscles: bool = told["muscles"]
+        self.fibres: bool = told["muscles"]
         moving = {name for name, value, _, moves in told["parameters"] if value and moves}
         self.offered = tuple(
             name for name, called in self._called.items() if called in moving and not called.endswith("optimal_force")
@@ -79,7 +79,7 @@ class OpensimModel:
         self, q: NDArray[np.float64], v: NDArray[np.float64], controls: NDArray[np.float64], rate: float
     ) -> Motion:
         """Return a prescribed motion with the muscles' states, which OpenSim alone integrates from the excitations."""
-        return Motion(q, v, *self._ask("along", q, v, controls, rate)) if self._muscles else Motion(q, v, controls)
+        return Motion(q, v, *self._ask("along", q, v, controls, rate)) if self.fibres else Motion(q, v, controls)
 
     def near(self, known: Motion, q: NDArray[np.float64], v: NDArray[np.float64]) -> Motion:
         """Return other coordinates and speeds near a known motion; fibres move as their lengths at rest do."""
@@ -124,7 +124,7 @@ class OpensimModel:
             stderr=subprocess.DEVNULL,
             env=os.environ | {"OMP_NUM_THREADS": "1", "PYTHONPATH": os.pathsep.join(sys.path)},
         )
-        atexit.register(self._process.kill)
+        weakref.finalize(self, _ended, self._process)
 
     def _conversed(self, question: str, *arguments: Any) -> Any:
         assert self._process is not None and self._process.stdin is not None and self._process.stdout is not None
@@ -167,3 +167,9 @@ def _free(called: str, kind: str, taken: set[str]) -> str:
     name = part_name(called, kind, taken)
     taken.add(name)
     return name
+
+
+def _ended(process: subprocess.Popen[bytes]) -> None:
+    """End a process when nobody asks it any more."""
+    process.kill()
+    process.wait()

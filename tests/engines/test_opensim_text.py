@@ -7,7 +7,8 @@ from gaitdisc.simulation.parts import Term
 
 TEXT = """<OpenSimDocument Version="40600"><Model name="arm"><gravity>0 -9.81 0</gravity>
 <BodySet><objects><Body name="shank"><mass>4.0</mass><inertia>0.1 0.01 0.1 0 0 0</inertia></Body></objects></BodySet>
-<ForceSet name="forceset"><objects><ThelenMuscle name="m"><PathPointSet><objects/></PathPointSet><max_isometric_force>500</max_isometric_force></ThelenMuscle>
+<ForceSet name="forceset"><objects><ThelenMuscle name="m"><PathPointSet><objects/></PathPointSet>
+<max_isometric_force>500</max_isometric_force></ThelenMuscle>
 <CoordinateActuator name="knee_motor"><optimal_force>15</optimal_force></CoordinateActuator></objects></ForceSet>
 </Model></OpenSimDocument>"""
 NAMES = ("knee", "knee_speed")
