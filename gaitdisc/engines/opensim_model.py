@@ -33,6 +33,7 @@ class OpensimModel:
     """
 
     called = "OpenSim"
+    worker = WORKER
 
     def __init__(self, path: Path | str) -> None:
         self.path = Path(path)
@@ -98,7 +99,7 @@ class OpensimModel:
 
     def _started(self) -> None:
         self._process = subprocess.Popen(
-            [sys.executable, "-P", str(WORKER), str(self.path)],
+            [sys.executable, "-P", str(self.worker), str(self.path)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,

@@ -1,0 +1,65 @@
+"""OpenSim's own example of an ankle spring: named in a walk with recorded forces, and written into the model."""
+
+import shutil
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from gaitdisc.cli import app
+
+DATA = Path(__file__).parents[3] / "shared/data/opensim_gait10dof"
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(find_spec("opensim") is None, reason="OpenSim is not installed: gaitdisc[opensim]"),
+    pytest.mark.skipif(not DATA.is_dir(), reason="the recorded walk is not here"),
+]
+MAPPING = """model = "subject01_metabolics.osim"
+
+[tracked]
+external_loads = "data/ExperimentalData/subject01_walk_grf.xml"
+actuators = "data/gait10dof_Reserve_Actuators.xml"
+forces = "data/CMC/{results}/walk_subject_Actuation_force.sto"
+speeds = "data/CMC/{results}/walk_subject_Kinematics_u.sto"
+accelerations = "data/CMC/{results}/walk_subject_Kinematics_dudt.sto"
+"""
+
+
+@pytest.fixture
+def lab(tmp_path):
+    (tmp_path / "data").symlink_to(DATA)
+    shutil.copy(DATA / "CMC/subject01_metabolics.osim", tmp_path)
+    return tmp_path
+
+
+def searched(lab, results, model="subject01_metabolics.osim"):
+    mapping = (lab / model).with_suffix(".toml")
+    if not mapping.is_file():
+        mapping.write_text(MAPPING.format(results=results))
+    kinematics = DATA / "CMC" / results / "walk_subject_Kinematics_q.sto"
+    words = ["discover", str(lab / model), str(kinematics), "--out", str(lab / "found"), "-q", "--no-report"]
+    return CliRunner().invoke(app, words)
+
+
+def test_the_ankle_spring_is_named_written_and_no_longer_missed(lab):
+    from gaitdisc import load
+
+    done = searched(lab, "results_spring")
+    assert done.exit_code == 0, done.exception
+    found = load(lab / "found")
+    (effect,) = found.effects
+    assert (effect.name, effect.place) == ("one_sided_spring", "ankle_angle_r_moment")
+    assert effect.estimates["stiffness"].value == pytest.approx(599.0, rel=0.15)  # hard-corner equivalent
+    assert effect.estimates["engagement"].value == pytest.approx(0.0908, abs=0.01)  # 5.2 deg
+    before, after, _ = found.held_out.channels["net_ankle_angle_r_moment"]
+    assert before > 20 and after < 0.1 * before
+    again = searched(lab / "found", "results_spring", "subject01_metabolics_augmented.osim")
+    assert again.exit_code == 0, again.exception
+    assert not load(lab / "found/found").effects
+
+
+def test_where_nothing_was_added_nothing_is_named(lab):
+    done = searched(lab, "results_no_spring")
+    assert done.exit_code == 0, done.exception
+    assert "nothing is missing that these data could show" in done.output
