@@ -14,7 +14,7 @@ from scipy.signal import butter, sosfiltfilt
 
 from gaitdisc.batch.joint_inquiry import EFFECTS, STRENGTH
 from gaitdisc.discovery.candidate import Candidate, candidates_of
-from gaitdisc.discovery.catalogue import known_shapes, read_catalogue
+from gaitdisc.discovery.catalogue import Shape, known_shapes, read_catalogue
 from gaitdisc.discovery.estimates import named_estimates
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.prescribed import JointFinding, LeftMoment, Named, joint_finding
@@ -52,6 +52,7 @@ class TrackedAnswer:
     """What was found of a walk with recorded forces."""
 
     found: Discovery
+    augmented: Simulation  # mapping with what acts at coordinates
     written: WrittenModel
     tracked: Tracked
     joints: tuple[JointFinding, ...]
@@ -111,24 +112,13 @@ def discover_tracked(
 ) -> TrackedAnswer:
     """Find what a model lacks at each joint of a walk whose ground and muscle forces were recorded."""
     told(f"reading {kinematics.name} and the forces")
-    check_loads(tracked)
-    engine = OpensimTracked(tracked.model, tracked.loads, tracked.actuators)
-    motion = tracked_motion(tracked, kinematics, engine.coordinates, engine.actuators)
-    told("computing the moments that the motion demands, by OpenSim")
-    walk = _pass(engine, motion, tracked)
-    findings = [*_balance(walk)]
-    base = _simulation(walk)
-    told("computing what noise of the angles makes of them")
-    shaken = _shaken(walk, tracked)
-    shapes = (*known_shapes(), *(read_catalogue(catalogue) if catalogue else ()))
-    joints = []
-    for number in walk.joints:
-        told(f"weighing what is left at {engine.coordinates[number].called}")
-        joint = _left(walk, base, number, shaken)
-        joints.append(joint_finding(joint, _candidates(base, walk, number, shapes)))
+    walk = tracked_pass(tracked, kinematics, told)
+    findings, engine, motion = _balance(walk), walk.engine, walk.motion
+    base, joints = joints_of(walk, tracked, read_catalogue(catalogue) if catalogue else (), told)
     found = _discovery(base, joints)
     told("writing it into the model")
-    written = _written(engine, found)
+    augmented = _augmented(engine, found)
+    written = _written(engine, augmented, found)
     said = _gaps(walk, written, found)
     findings += [_shows(walk, number, one) for number, one in zip(walk.joints, joints, strict=True)]
     findings += [Finding("note", "written back", "model", one, "") for one in written.notes]
@@ -139,7 +129,44 @@ def discover_tracked(
     found = replace(found, findings=tuple(findings), provenance=made)
     if not walk.joints:
         found = replace(found, sentence=_only_residuals(walk))
-    return TrackedAnswer(found, written, tracked, tuple(joints), said)
+    return TrackedAnswer(found, augmented, written, tracked, tuple(joints), said)
+
+
+def tracked_pass(tracked: Tracked, kinematics: Path, told: Callable[[str], None] = lambda _: None) -> Pass:
+    """Compute the generalised forces that a recorded motion demands, and those that the files' actuators give."""
+    check_loads(tracked)
+    engine = OpensimTracked(tracked.model, tracked.loads, tracked.actuators)
+    motion = tracked_motion(tracked, kinematics, engine.coordinates, engine.actuators)
+    told("computing the moments that the motion demands, by OpenSim")
+    demanded = engine.demanded(motion.time, (motion.q, motion.v, motion.a))
+    arms = engine.arms(motion.time, motion.q, motion.actuators)
+    pulls = arms * motion.forces[:, :, None]
+    muscles = np.array([name in engine.paths for name in motion.actuators])
+    groups = {}
+    for k, one in enumerate(engine.coordinates):
+        if k in engine.base or not muscles.any():
+            continue
+        mean = arms[:, :, k].mean(axis=0) * muscles
+        for sign, word in SIDES:
+            own = sign * mean > LEAST_ARM_M
+            if own.any():
+                groups[f"{one.name}_{word}_muscles"] = pulls[:, own, k].sum(axis=1)
+    return Pass(engine, motion, tracked.lowpass_hz, demanded, pulls, groups)
+
+
+def joints_of(
+    walk: Pass, tracked: Tracked, more: tuple[Shape, ...] = (), told: Callable[[str], None] = lambda _: None
+) -> tuple[Simulation, list[JointFinding]]:
+    """Name what is left at each joint; the simulation says what its numbers are."""
+    base = _simulation(walk)
+    told("computing what noise of the angles makes of them")
+    shaken = _shaken(walk, tracked)
+    joints = []
+    for number in walk.joints:
+        told(f"weighing what is left at {walk.engine.coordinates[number].called}")
+        joint = _left(walk, base, number, shaken)
+        joints.append(joint_finding(joint, _candidates(base, walk, number, (*known_shapes(), *more))))
+    return base, joints
 
 
 def write_tracked(answer: TrackedAnswer, out: Path) -> None:
@@ -154,25 +181,9 @@ def write_tracked(answer: TrackedAnswer, out: Path) -> None:
         if path is not None:
             lines.append(f'{name} = "{Path(os.path.relpath(path.resolve(), out.resolve())).as_posix()}"')
     lines.append(f"lowpass_hz = {tracked.lowpass_hz!r}")
-    lines += [] if tracked.noise_deg is None else [f"noise_deg = {tracked.noise_deg!r}"]
+    numbers = {"noise_deg": tracked.noise_deg, "start_s": tracked.start_s, "end_s": tracked.end_s}
+    lines += [f"{name} = {value!r}" for name, value in numbers.items() if value is not None and np.isfinite(value)]
     write_whole(out / f"{stem}_augmented.toml", "\n".join(lines) + "\n")
-
-
-def _pass(engine: OpensimTracked, motion: TrackedMotion, tracked: Tracked) -> Pass:
-    demanded = engine.demanded(motion.time, (motion.q, motion.v, motion.a))
-    arms = engine.arms(motion.time, motion.q, motion.actuators)
-    pulls = arms * motion.forces[:, :, None]
-    muscles = [name in engine.paths for name in motion.actuators]
-    groups = {}
-    for k, one in enumerate(engine.coordinates):
-        if k in engine.base or not any(muscles):
-            continue
-        mean = arms[:, :, k].mean(axis=0) * muscles
-        for sign, word in SIDES:
-            own = sign * mean > LEAST_ARM_M
-            if own.any():
-                groups[f"{one.name}_{word}_muscles"] = pulls[:, own, k].sum(axis=1)
-    return Pass(engine, motion, tracked.lowpass_hz, demanded, pulls, groups)
 
 
 def _balance(walk: Pass) -> list[Finding]:
@@ -250,7 +261,7 @@ def _simulation(walk: Pass) -> Simulation:
     )
 
 
-def _candidates(base: Simulation, walk: Pass, number: int, shapes: tuple) -> tuple[Candidate, ...]:
+def _candidates(base: Simulation, walk: Pass, number: int, shapes: tuple[Shape, ...]) -> tuple[Candidate, ...]:
     one = walk.engine.coordinates[number]
     place = Place("port", one.port, ((one.name, one.speed),), (), (), one.unit == "rad")
     every = candidates_of(base, (place,), shapes)
@@ -378,12 +389,16 @@ def _runs(joints: list[JointFinding]) -> Runs:
     return Runs(np.arange(2), time, np.zeros((2, 0)), **stacked, names=names)
 
 
-def _written(engine: OpensimTracked, found: Discovery) -> WrittenModel:
-    """The model's text with what acts at a coordinate; what muscles do otherwise is no part of the model's file."""
+def _augmented(engine: OpensimTracked, found: Discovery) -> Simulation:
     augmented = drafted(engine)
     for one in found.effects:
         if one.kind == "port":
             augmented = augmented.with_effect(Term(one.place, "port", one.name, one.term))
+    return augmented
+
+
+def _written(engine: OpensimTracked, augmented: Simulation, found: Discovery) -> WrittenModel:
+    """The model's text with what acts at a coordinate; what muscles do otherwise is no part of the model's file."""
     written = written_model(engine, augmented)
     notes = [
         f"{one.place} = {one.estimates['value'].value:.4g} is about the forces' file and stands in discovery.json alone"

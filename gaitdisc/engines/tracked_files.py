@@ -24,8 +24,9 @@ from gaitdisc.toml_text import parsed_toml
 
 Values = NDArray[np.float64]
 FILES = ("external_loads", "forces", "actuators", "speeds", "accelerations")
-NUMBERS, LOWPASS_HZ = ("lowpass_hz", "noise_deg"), 6.0
+NUMBERS, LOWPASS_HZ = ("lowpass_hz", "noise_deg", "start_s", "end_s"), 6.0
 SHORTEST_S = 0.5
+PASSIVE = ("LimitForce", "CoordinateForce", "BushingForce", "Ligament", "SpringForce", "GeneralizedForce")  # of classes
 MOST_RAD, MOST_M = 4 * np.pi, 50.0
 
 
@@ -41,6 +42,8 @@ class Tracked:
     accelerations: Path | None = None
     lowpass_hz: float = LOWPASS_HZ
     noise_deg: float | None = None  # standard deviation of an angle in the record, 1 mm of a translation at 0.3 deg
+    start_s: float = -np.inf  # part of the record in which all forces on the ground are known
+    end_s: float = np.inf
 
     @property
     def files(self) -> tuple[Path, ...]:
@@ -113,6 +116,8 @@ def _tracked(table: dict[str, Any], file: Path) -> Tracked:
         *(paths.get(name) for name in FILES[1:]),
         lowpass_hz=float(given.get("lowpass_hz", LOWPASS_HZ)),
         noise_deg=None if noise is None else float(noise),
+        start_s=float(given.get("start_s", -np.inf)),
+        end_s=float(given.get("end_s", np.inf)),
     )
 
 
@@ -193,12 +198,13 @@ def tracked_motion(
     time, q = _coordinates(kinematics, coordinates, "")
     _refuse_degrees(kinematics, coordinates, q)
     rates = [_coordinates(one, coordinates, word) for one, word in _rates(tracked)]
-    names, forces = _forces(tracked.forces, known)
+    names, forces = _forces(tracked, known)
     spans = {kinematics: time, **{one: at for (one, _), (at, _) in zip(_rates(tracked), rates, strict=True)}}
     spans[tracked.loads[1]] = _table(tracked.loads[1])[1][:, 0]
     if tracked.forces is not None:
         spans[tracked.forces] = forces[:, 0]
-    inside = _shared(spans, time)
+    inside = _shared(spans, time) & (time >= tracked.start_s) & (time <= tracked.end_s)
+    _refuse_short(time[inside], tracked)
     if rates:
         (_, v), (_, a) = [(at, _at(time, at, values)) for at, values in rates]
     else:
@@ -262,13 +268,16 @@ def _refuse_degrees(path: Path, coordinates: tuple[Coordinate, ...], q: Values) 
         )
 
 
-def _forces(path: Path | None, known: tuple[str, ...]) -> tuple[tuple[str, ...], Values]:
-    """Actuators of a forces' file, and its numbers with time first."""
+def _forces(tracked: Tracked, known: tuple[str, ...]) -> tuple[tuple[str, ...], Values]:
+    """Actuators of a forces' file, and its numbers with time first; what the loads' file gives is passed over."""
+    path = tracked.forces
     if path is None:
         return (), np.zeros((0, 1))
     labels, values = _table(path)
-    names = tuple(label.rpartition("/")[2] for label in labels[1:])
-    for name in names:
+    names = [label.rpartition("/")[2] for label in labels]
+    again = _other_forces(tracked)
+    kept = [0, *(k for k, name in enumerate(names) if k and not name.startswith(again))]
+    for name in (names[k] for k in kept[1:]):
         if name not in known:
             near = nearest_word(name, known)
             raise ChannelError(
@@ -284,12 +293,30 @@ def _forces(path: Path | None, known: tuple[str, ...]) -> tuple[tuple[str, ...],
             f"{path.name} lacks {lacking[0]!r}" + (f" and {len(lacking) - 1} more" if len(lacking) > 1 else ""),
             "Export all forces; a muscle that pulls and is not listed would be found missing.",
         )
+    values = values[:, kept]
     if not np.isfinite(values).all():
         row, column = (int(one[0]) for one in np.nonzero(~np.isfinite(values)))
         raise ReadError(
-            "every force has a number", f"{path.name}: {labels[column]!r} has none in row {row + 1}", "Fill it in."
+            "every force has a number",
+            f"{path.name}: {names[kept[column]]!r} has none in row {row + 1}",
+            "Fill it in.",
         )
-    return names, values
+    return tuple(names[k] for k in kept[1:]), values
+
+
+def _other_forces(tracked: Tracked) -> tuple[str, ...]:
+    """How columns begin of forces that the model or the loads' file gives anyway."""
+    recorded = [
+        f"{(one.findtext('applied_to_body') or '').strip().rpartition('/')[2]}_{one.get('name')}_"
+        for one in _xml(tracked.loads[0]).iter("ExternalForce")
+    ]
+    passive = [
+        one.get("name", "")
+        for forces in _xml(tracked.model).iter("ForceSet")
+        for one in forces.findall("objects/*")
+        if one.tag.endswith(PASSIVE)
+    ]
+    return tuple(name for name in (*recorded, *passive) if name)
 
 
 def _shared(spans: dict[Path, Values], time: Values) -> NDArray[np.bool_]:
@@ -304,6 +331,16 @@ def _shared(spans: dict[Path, Values], time: Values) -> NDArray[np.bool_]:
             "Put both on one clock, or export the same part of the trial.",
         )
     return (time >= begin - 1e-9) & (time <= end + 1e-9)
+
+
+def _refuse_short(time: Values, tracked: Tracked) -> None:
+    if len(time) < 2 or time[-1] - time[0] < SHORTEST_S:
+        raise SamplingError(
+            f"a walk lasts {SHORTEST_S:g} s or more",
+            f"{tracked.model.name} is to be tracked from {tracked.start_s:g} to {tracked.end_s:g} s, where "
+            f"{len(time)} samples are",
+            "Correct start_s and end_s in [tracked].",
+        )
 
 
 def _at(time: Values, own: Values, values: Values) -> Values:

@@ -63,3 +63,45 @@ def test_where_nothing_was_added_nothing_is_named(lab):
     done = searched(lab, "results_no_spring")
     assert done.exit_code == 0, done.exception
     assert "nothing is missing that these data could show" in done.output
+
+
+def test_the_spring_is_named_from_other_kinematics_than_the_forces_were_computed_for(lab):
+    """The angles are those of the markers; the forces belong to a motion that residual reduction had altered."""
+    from gaitdisc import load
+
+    mapping = MAPPING.format(results="results_spring").splitlines()
+    rates = ("speeds", "accelerations")
+    (lab / "subject01_metabolics.toml").write_text("\n".join(line for line in mapping if not line.startswith(rates)))
+    kinematics = DATA / "IK/subject01_walk_IK.mot"
+    words = ["discover", str(lab / "subject01_metabolics.osim"), str(kinematics), "--out", str(lab / "found")]
+    done = CliRunner().invoke(app, [*words, "-q", "--no-report"])
+    assert done.exit_code == 0, done.exception
+    (effect,) = load(lab / "found").effects
+    assert (effect.name, effect.place) == ("one_sided_spring", "ankle_angle_r_moment")
+    assert effect.estimates["stiffness"].value == pytest.approx(599.0, rel=0.15)
+    assert effect.estimates["stiffness"].low < 599.0 < effect.estimates["stiffness"].high
+
+
+def test_without_muscles_forces_only_the_residuals_speak(lab):
+    (lab / "subject01_metabolics.toml").write_text(
+        '[tracked]\nexternal_loads = "data/ExperimentalData/subject01_walk_grf.xml"\n'
+    )
+    kinematics = DATA / "IK/subject01_walk_IK.mot"
+    from gaitdisc import discover
+
+    found, _ = discover(lab / "subject01_metabolics.osim", kinematics)
+    assert found.sentence.startswith("Nothing can be named at a joint: no file gives the muscles' forces")
+    assert "N at pelvis_ty" in found.sentence and not found.effects
+
+
+def test_a_mass_that_the_ground_does_not_carry_is_refused(lab):
+    import re
+
+    model = lab / "subject01_metabolics.osim"
+    text = re.sub(r"<mass>([^<]*)<", lambda found: f"<mass>{1.15 * float(found[1])!r}<", model.read_text())
+    model.write_text(text)
+    done = searched(lab, "results_no_spring")
+    assert done.exit_code != 0
+    assert "subject01_metabolics.osim moves 83.5 kg, pelvis_ty lacks" in str(done.exception)
+    carried = float(re.search(r"the forces carry ([\d.]+) kg", str(done.exception))[1])
+    assert carried == pytest.approx(72.6, abs=0.7)  # which it was before
