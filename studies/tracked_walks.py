@@ -1,13 +1,14 @@
 """Walks with recorded forces in OpenSim models: what is planted into them, and what `discover` then names.
 
-    python studies/tracked_walks.py WALKS [WALKS ...] [--seeds 1] [--out OUT.csv] [--quick]
+    python studies/tracked_walks.py WALKS [WALKS ...] [--seeds 1] [--noise 0.3] [--out OUT.csv] [--quick]
 
-WALKS are a mapping and its kinematics, then the next pair. Each mapping names ground forces and the forces of static optimisation for its own walk (docs/engines.md, `[tracked]`).
-Angles get 0.3 deg of noise that went through the 6 Hz low-pass (seed 1 and on, never the draws that the search
-whitens with). Then at each ankle and knee, one at a time: a one-sided spring that takes its moment from the muscle
-group that pulls its way, the stronger group's moment 40 ms late, or 25 % less of it. Untouched: either half of each
-walk. Beside: the residual at the pelvis, which is what residual reduction has to work on, and a plain regression of
-what is left on angle and rate, learned from the other half.
+WALKS are a mapping and its kinematics, then the next pair. Each mapping names ground forces and the forces of static
+optimisation, or of computed muscle control, for its walk (docs/engines.md, `[tracked]`). Angles get noise that went
+through the 6 Hz low-pass (seed 1 and on, never the draws that the search whitens with). Then at each ankle and knee,
+one at a time: a one-sided spring that takes its moment from the muscle group that pulls its way, the stronger group's
+moment 40 ms late, or 25 % less of it. Untouched: each walk, and its halves where they are long enough. Beside: the
+largest residual at the joint with the ground, which is all that residual reduction has to work on, and a plain
+regression of what is left on angle and rate, learned from the other half.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ GIVEN = command_line(
     __doc__,
     argument("walks", "mapping and kinematics of a walk, then of the next", nargs="+", type=Path),
     argument("--seeds", "how many draws of noise", 1),
+    argument("--noise", "standard deviation of the noise of angles [deg]; 0 where the record has its own", 0.3),
     argument("--out", "CSV that gets the table (default: none)", type=Path),
     QUICK,
 )  # before the slow imports
@@ -32,25 +34,25 @@ import numpy as np
 import pandas as pd
 from scipy.signal import butter, sosfiltfilt
 
-from gaitdisc.batch.discover_tracked import Pass, joints_of, tracked_pass
+from gaitdisc.batch.discover_tracked import FEWEST, Pass, joints_of, tracked_pass
 from gaitdisc.discovery.prescribed import CLOSED, LeftMoment
 from gaitdisc.engines.tracked_files import Tracked, read_tracked
 from gaitdisc.signals.derivatives import differentiated
 
-NOISE_DEG, LATE_S, STRENGTH = 0.3, 0.04, 0.75
+LATE_S, STRENGTH = 0.04, 0.75
 STIFFNESS = {"ankle": 300.0, "knee": 60.0}  # [N m/rad]
 HIDDEN = ("spring", "late", "scaled")
 
 
-def run(walks: list[tuple[Path, Path]], seeds: int, quick: bool) -> pd.DataFrame:
+def run(walks: list[tuple[Path, Path]], seeds: int, noise_deg: float, quick: bool) -> pd.DataFrame:
     """Search every walk, untouched and with each thing planted."""
     rows = []
     for mapping, kinematics in walks:
         tracked = read_tracked(mapping)
         assert tracked is not None, f"{mapping} has no [tracked]"
-        walk = tracked_pass(tracked, kinematics)
+        walk, tracked = tracked_pass(tracked, kinematics), replace(tracked, noise_deg=0.3)
         for seed in range(1, seeds + 1):
-            noisy = shaken(walk, seed)
+            noisy = shaken(walk, noise_deg, seed) if noise_deg else walk
             for hidden, port, truth, planted in cases(noisy, quick):
                 rows.append(
                     {"walk": mapping.parent.name, "seed": seed, **searched(planted, tracked, hidden, port, truth)}
@@ -59,11 +61,11 @@ def run(walks: list[tuple[Path, Path]], seeds: int, quick: bool) -> pd.DataFrame
     return pd.DataFrame(rows)
 
 
-def shaken(walk: Pass, seed: int) -> Pass:
+def shaken(walk: Pass, noise_deg: float, seed: int) -> Pass:
     """A walk whose angles have the noise of markers."""
     motion, rate = walk.motion, walk.motion.rate_hz
     spare, sections = int(rate), butter(4, walk.cutoff_hz, fs=rate, output="sos")
-    sizes = [np.radians(NOISE_DEG) if one.unit == "rad" else NOISE_DEG / 300 for one in walk.engine.coordinates]
+    sizes = [np.radians(noise_deg) if one.unit == "rad" else noise_deg / 300 for one in walk.engine.coordinates]
     white = np.random.default_rng([seed, 2026]).normal(size=(len(motion.time) + 2 * spare, len(sizes)))
     noise = sosfiltfilt(sections, white, axis=0)
     noise *= sizes / noise.std(axis=0)
@@ -76,9 +78,12 @@ def shaken(walk: Pass, seed: int) -> Pass:
 
 def cases(walk: Pass, quick: bool) -> Iterator[tuple[str, str, float, Pass]]:
     """What is hidden, where, its number, and the walk with it."""
+    yield "nothing", "", np.nan, walk
     middle = len(walk.motion.time) // 2
     for half in (slice(0, middle), slice(middle, None)):
-        yield "nothing", "", np.nan, part_of(walk, half)
+        part = part_of(walk, half)
+        if len(part.times) >= FEWEST:
+            yield "nothing", "", np.nan, part
     for number, one in enumerate(walk.engine.coordinates):
         joint = one.name.partition("_")[0]
         if joint not in STIFFNESS or (quick and one.name != "ankle_angle_r"):
@@ -106,7 +111,11 @@ def part_of(walk: Pass, some: slice) -> Pass:
     arrays = {name: getattr(motion, name)[some] for name in ("time", "q", "v", "a", "forces")}
     groups = {name: moment[some] for name, moment in walk.groups.items()}
     return replace(
-        walk, motion=replace(motion, **arrays), demanded=walk.demanded[some], pulls=walk.pulls[some], groups=groups
+        walk,
+        motion=replace(motion, **arrays),
+        demanded=walk.demanded[some],
+        pulls=walk.pulls[some],
+        groups=groups,
     )
 
 
@@ -183,7 +192,7 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
 
 if __name__ == "__main__":
     pairs = list(zip(GIVEN.walks[::2], GIVEN.walks[1::2], strict=True))
-    table = run(pairs, GIVEN.seeds, GIVEN.quick)
+    table = run(pairs, GIVEN.seeds, GIVEN.noise, GIVEN.quick)
     print(table.round(3).to_string(), summary(table).round(3).to_string(), sep="\n")
     if GIVEN.out:
         table.to_csv(GIVEN.out, index=False)

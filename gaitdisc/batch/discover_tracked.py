@@ -25,7 +25,7 @@ from gaitdisc.engines.mapping import drafted
 from gaitdisc.engines.opensim_tracked import OpensimTracked
 from gaitdisc.engines.tracked_files import Tracked, TrackedMotion, check_loads, tracked_motion
 from gaitdisc.engines.written import WrittenModel, written_model
-from gaitdisc.errors import SchemaError
+from gaitdisc.errors import SamplingError, SchemaError
 from gaitdisc.ingest.file_hash import file_sha256
 from gaitdisc.recording import Finding
 from gaitdisc.results.amounts import amount
@@ -39,7 +39,8 @@ from gaitdisc.whole_file import write_whole
 
 Values = NDArray[np.float64]
 DRAWS, SEED = 4, 0
-EDGE_PERIODS = 1.0  # of the low-pass, left out at both ends where rates come from the angles
+FEWEST = 20  # samples that hold what passes the low-pass
+OTHER_MOTION = 0.15  # of the weight
 WRONG_MASS = 0.05  # of the weight, which the ground carries less or more than the model moves
 LEAST_ARM_M = 1e-3
 SIDES = ((1.0, "raising"), (-1.0, "lowering"))
@@ -86,9 +87,7 @@ class Pass:
     @property
     def kept(self) -> slice:
         """Samples that hold all that the low-pass leaves."""
-        rate = self.motion.rate_hz
-        edge = int(EDGE_PERIODS * rate / self.cutoff_hz) if self.motion.differentiated else 0
-        return slice(edge, len(self.motion.time) - edge, max(int(rate / (DENSE * self.cutoff_hz)), 1))
+        return slice(None, None, max(int(self.motion.rate_hz / (DENSE * self.cutoff_hz)), 1))
 
     @property
     def times(self) -> Values:
@@ -114,6 +113,7 @@ def discover_tracked(
     told(f"reading {kinematics.name} and the forces")
     walk = tracked_pass(tracked, kinematics, told)
     findings, engine, motion = _balance(walk), walk.engine, walk.motion
+    _refuse_other_motion(walk)
     base, joints = joints_of(walk, tracked, read_catalogue(catalogue) if catalogue else (), told)
     found = _discovery(base, joints)
     told("writing it into the model")
@@ -158,6 +158,7 @@ def joints_of(
     walk: Pass, tracked: Tracked, more: tuple[Shape, ...] = (), told: Callable[[str], None] = lambda _: None
 ) -> tuple[Simulation, list[JointFinding]]:
     """Name what is left at each joint; the simulation says what its numbers are."""
+    _refuse_short(walk)
     base = _simulation(walk)
     told("computing what noise of the angles makes of them")
     shaken = _shaken(walk, tracked)
@@ -165,8 +166,18 @@ def joints_of(
     for number in walk.joints:
         told(f"weighing what is left at {walk.engine.coordinates[number].called}")
         joint = _left(walk, base, number, shaken)
-        joints.append(joint_finding(joint, _candidates(base, walk, number, (*known_shapes(), *more))))
+        joints.append(joint_finding(joint, _candidates(base, walk, number, (*known_shapes(), *more)), len(walk.joints)))
     return base, joints
+
+
+def _refuse_short(walk: Pass) -> None:
+    if len(walk.times) < FEWEST:
+        raise SamplingError(
+            f"what is left is named from {FEWEST / DENSE / walk.cutoff_hz:.2g} s or more at a low-pass of "
+            f"{walk.cutoff_hz:g} Hz",
+            f"motion and forces share {np.ptp(walk.motion.time):.2g} s",
+            "Record longer.",
+        )
 
 
 def write_tracked(answer: TrackedAnswer, out: Path) -> None:
@@ -212,6 +223,26 @@ def _balance(walk: Pass) -> list[Finding]:
             "named after the error.",
         )
     return found
+
+
+def _refuse_other_motion(walk: Pass) -> None:
+    """Refuse forces whose residuals do not balance this motion: they were computed for another one, or failed."""
+    engine, up = walk.engine, walk.engine.vertical
+    given = np.abs(walk.pulls).max(axis=(0, 1)) if walk.pulls.shape[1] else np.zeros(len(engine.coordinates))
+    if up < 0:
+        return
+    motion = walk.motion
+    alone = engine.demanded(motion.time, (motion.q, motion.v, motion.a), loaded=False)[:, up]
+    weight = float(np.mean(walk.dense(alone)))
+    for k in engine.base:
+        one = engine.coordinates[k]
+        size = float(np.sqrt(np.mean(walk.dense(walk.left[:, k]) ** 2)))
+        if one.unit == "m" and given[k] > 0 and size > OTHER_MOTION * abs(weight):
+            raise SchemaError(
+                f"residual forces of the forces' file balance its motion to {100 * OTHER_MOTION:.0f} % of the weight",
+                f"{one.called} lacks {size:.0f} N (root mean square) of {weight:.0f}",
+                "Compute the forces for this motion again: they belong to another one, or were not found.",
+            )
 
 
 def _shaken(walk: Pass, tracked: Tracked) -> Values:

@@ -30,6 +30,7 @@ CLOSED = 0.3  # of the squared moment that is left, which goes on held-out time
 CHANGED = 0.06  # by which a muscle group's strength differs at least, as in a device walk
 ROUNDS, REFINED = 2, 4  # turns of learning the noise; candidates whose constants are searched between the grid's
 FLAT = 1e-9
+SAMPLES_A_NUMBER = 2.0  # of the low-pass: the samples that are kept hold each number that passes twice
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,27 +76,26 @@ class JointFinding:
     noise: Noise
     named: Named | None
     rivals: tuple[Named, ...]  # best first
-
-    @property
-    def seen(self) -> float:
-        """How far a column of size 1 must stand out of the noise to be named [its unit, times N m]."""
-        return float(np.sqrt(2 * MARGIN))
+    open_ones: int  # candidates at all joints
 
     def least(self, column: Values) -> float:
         """Smallest factor of a column (sample,) that would be named here."""
+        samples = len(self.joint.time)
+        wanted = (MARGIN + _price(1, samples, self.open_ones)) * SAMPLES_A_NUMBER / samples
         size = float(np.linalg.norm(_white(self.noise, column[:, None])))
-        return self.seen / size if size > FLAT else float("inf")
+        return float(np.sqrt(samples * np.expm1(wanted))) / size if size > FLAT else float("inf")
 
 
-def joint_finding(joint: LeftMoment, candidates: tuple[Candidate, ...]) -> JointFinding:
-    """Weigh every candidate at a joint; name the best where the evidence and both halves of the time bear it out."""
+def joint_finding(joint: LeftMoment, candidates: tuple[Candidate, ...], joints: int = 1) -> JointFinding:
+    """Weigh every candidate at one of some joints; name the best where evidence and both halves of time bear it out."""
+    open_ones = len(candidates) * joints
     floor = MODEL_ERROR * float(np.std(joint.demanded))
     noise = noise_of(joint.shaken[:, :, None], least=floor)
     ordered: list[Named] = []
     for _ in range(ROUNDS):
-        coarse = _weighed(joint, noise, candidates, len(candidates), refined=False)
+        coarse = _weighed(joint, noise, candidates, open_ones, refined=False)
         best = tuple(one.part.candidate for one in coarse[:REFINED])
-        ordered = _weighed(joint, noise, best, len(candidates), refined=True)
+        ordered = _weighed(joint, noise, best, open_ones, refined=True)
         rest = joint.left - (ordered[0].explained if ordered else 0.0)
         own = float(np.sqrt(np.mean(rest**2)))
         if own <= float(noise.size[0]):
@@ -103,7 +103,7 @@ def joint_finding(joint: LeftMoment, candidates: tuple[Candidate, ...]) -> Joint
         noise = noise_of(rest[None, :, None], used=2, least=floor)
     ordered = _simple_first(ordered)
     first = _proven(joint, noise, ordered[0]) if ordered and ordered[0].gained > MARGIN else None
-    return JointFinding(joint, noise, first if first and borne_out(joint, first) else None, tuple(ordered))
+    return JointFinding(joint, noise, first if first and borne_out(joint, first) else None, tuple(ordered), open_ones)
 
 
 def _weighed(
@@ -150,8 +150,8 @@ def _fitted(joint: LeftMoment, noise: Noise, candidate: Candidate, open_ones: in
     count = len(candidate.slots)
     variance = max(float((after**2).sum()) / max(len(every) - count, 1), 1.0)
     covariance = np.asarray(variance * np.linalg.pinv(jacobian.T @ jacobian), np.float64)
-    price = count * np.log(len(every)) + 2 * np.log(max(open_ones, 1))
-    gained = float((before**2).sum() - (after**2).sum() - price)
+    price = _price(count, len(every), open_ones)
+    gained = _fall(float((before**2).sum()), float((after**2).sum()), len(every)) - price
     part = Part(candidate, values)
     return Named(part, covariance, explained, np.zeros(len(every)), gained, PairedTest(1.0, 0, 0.0))
 
@@ -234,6 +234,16 @@ def _explained(joint: LeftMoment, candidate: Candidate, values: Mapping[str, flo
     constants = {slot: values[slot] for slot in candidate.constants or {}}
     factors = np.array([values[slot] for slot in candidate.slots[: len(candidate.pieces)]])
     return joint.columns(candidate, constants) @ factors
+
+
+def _fall(before: float, after: float, count: int) -> float:
+    """Fall of twice the log likelihood of a noise whose size is fitted, and is no less than what it is taken for."""
+    return count / SAMPLES_A_NUMBER * float(np.log1p(max(before - after, 0.0) / max(after, count)))
+
+
+def _price(count: int, samples: int, open_ones: int) -> float:
+    """What the numbers of a candidate and the choice among all cost."""
+    return count * float(np.log(samples)) + 2 * float(np.log(max(open_ones, 1)))
 
 
 def _slope(joint: LeftMoment, candidate: Candidate, values: Mapping[str, float], slot: str) -> Values:

@@ -26,6 +26,7 @@ Values = NDArray[np.float64]
 FILES = ("external_loads", "forces", "actuators", "speeds", "accelerations")
 NUMBERS, LOWPASS_HZ = ("lowpass_hz", "noise_deg", "start_s", "end_s"), 6.0
 SHORTEST_S = 0.5
+EDGE_PERIODS = 1.0  # of the low-pass, left out at both ends of the angles where rates come from them
 PASSIVE = ("LimitForce", "CoordinateForce", "BushingForce", "Ligament", "SpringForce", "GeneralizedForce")  # of classes
 MOST_RAD, MOST_M = 4 * np.pi, 50.0
 
@@ -357,5 +358,7 @@ def _smoothed(
     time, _ = _coordinates(path, coordinates, "")
     channels = tuple(Channel(one.called, "signal", one.unit) for one in coordinates)
     smooth = lowpassed(Recording(time, q, channels), cutoff_hz)
-    values, rate = smooth.values, smooth.rate_hz
+    values, rate = np.array(smooth.values), smooth.rate_hz
+    edge = int(EDGE_PERIODS * rate / cutoff_hz)
+    values[:edge], values[len(values) - edge :] = np.nan, np.nan
     return values, differentiated(values, rate, 1), differentiated(values, rate, 2)
