@@ -103,7 +103,9 @@ def joint_finding(joint: LeftMoment, candidates: tuple[Candidate, ...], joints: 
         noise = noise_of(rest[None, :, None], used=2, least=floor)
     ordered = _simple_first(ordered)
     first = _proven(joint, noise, ordered[0]) if ordered and ordered[0].gained > MARGIN else None
-    return JointFinding(joint, noise, first if first and borne_out(joint, first) else None, tuple(ordered), open_ones)
+    return JointFinding(
+        joint, noise, first if first and borne_out(joint, noise, first) else None, tuple(ordered), open_ones
+    )
 
 
 def _weighed(
@@ -123,12 +125,18 @@ def _simple_first(ordered: list[Named]) -> list[Named]:
     return [first, *(one for one in ordered if one is not first)]
 
 
-def borne_out(joint: LeftMoment, one: Named) -> bool:
-    """Whether an explanation has the evidence, closes enough on held-out time, and in no half makes the error rise."""
+def borne_out(joint: LeftMoment, noise: Noise, one: Named) -> bool:
+    """Whether an explanation has the evidence, closes enough on held-out time, and speaks against itself in no half.
+
+    In a half in which it hardly acts the squared error may rise by as much as noise makes it vary (two deviations).
+    """
     if one.gained < MARGIN or _too_small(one):
         return False
     before, after = joint.left**2, (joint.left - one.predicted) ** 2
-    worse = any(after[half].sum() > before[half].sum() for half in joint.halves)
+    worse = any(
+        after[half].sum() > before[half].sum() + 2 * float(noise.size[0]) ** 2 * np.sqrt(len(half))
+        for half in joint.halves
+    )
     return not worse and after.sum() < (1 - CLOSED) * before.sum()
 
 
