@@ -34,12 +34,12 @@ import numpy as np
 import pandas as pd
 from scipy.signal import butter, sosfiltfilt
 
-from gaitdisc.batch.discover_tracked import FEWEST, Pass, joints_of, tracked_pass
+from gaitdisc.batch.discover_tracked import FEWEST, Pass, joints_of, shaken_moments, tracked_pass
 from gaitdisc.discovery.prescribed import CLOSED, LeftMoment
-from gaitdisc.engines.tracked_files import Tracked, read_tracked
+from gaitdisc.engines.tracked_files import read_tracked
 from gaitdisc.signals.derivatives import differentiated
 
-LATE_S, STRENGTH = 0.04, 0.75
+LATE_S, STRENGTH, WHITENED_DEG = 0.04, 0.75, 0.3
 STIFFNESS = {"ankle": 300.0, "knee": 60.0}  # [N m/rad]
 HIDDEN = ("spring", "late", "scaled")
 
@@ -50,12 +50,17 @@ def run(walks: list[tuple[Path, Path]], seeds: int, noise_deg: float, quick: boo
     for mapping, kinematics in walks:
         tracked = read_tracked(mapping)
         assert tracked is not None, f"{mapping} has no [tracked]"
-        walk, tracked = tracked_pass(tracked, kinematics), replace(tracked, noise_deg=0.3)
+        walk = tracked_pass(tracked, kinematics)
+        draws = shaken_moments(walk, WHITENED_DEG)
         for seed in range(1, seeds + 1):
             noisy = shaken(walk, noise_deg, seed) if noise_deg else walk
             for hidden, port, truth, planted in cases(noisy, quick):
                 rows.append(
-                    {"walk": mapping.parent.name, "seed": seed, **searched(planted, tracked, hidden, port, truth)}
+                    {
+                        "walk": mapping.parent.name,
+                        "seed": seed,
+                        **searched(planted, draws[:, -len(planted.times) :], hidden, port, truth),
+                    }
                 )
                 print(rows[-1], flush=True)
     return pd.DataFrame(rows)
@@ -126,9 +131,9 @@ def with_less(walk: Pass, number: int, moment: np.ndarray) -> Pass:
     return replace(walk, pulls=pulls)
 
 
-def searched(walk: Pass, tracked: Tracked, hidden: str, port: str, truth: float) -> dict[str, object]:
+def searched(walk: Pass, draws: np.ndarray, hidden: str, port: str, truth: float) -> dict[str, object]:
     """One search: what it names beside what is true."""
-    _, joints = joints_of(walk, tracked)
+    _, joints = joints_of(walk, draws)
     named = [(one.named.part.candidate.place, one.named.part.candidate.name, one) for one in joints if one.named]
     right = {"spring": "one_sided_spring", "late": "wrong_parameter", "scaled": "wrong_parameter", "nothing": ""}[
         hidden

@@ -38,7 +38,7 @@ from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.whole_file import write_whole
 
 Values = NDArray[np.float64]
-DRAWS, SEED = 4, 0
+DRAWS, SEED, NOISE_DEG = 4, 0, 0.3
 FEWEST = 20  # samples that hold what passes the low-pass
 OTHER_MOTION = 0.15  # of the weight
 WRONG_MASS = 0.05  # of the weight, which the ground carries less or more than the model moves
@@ -114,7 +114,9 @@ def discover_tracked(
     walk = tracked_pass(tracked, kinematics, told)
     findings, engine, motion = _balance(walk), walk.engine, walk.motion
     _refuse_other_motion(walk)
-    base, joints = joints_of(walk, tracked, read_catalogue(catalogue) if catalogue else (), told)
+    told("computing what noise of the angles makes of them")
+    shaken = shaken_moments(walk, tracked.noise_deg)
+    base, joints = joints_of(walk, shaken, read_catalogue(catalogue) if catalogue else (), told)
     found = _discovery(base, joints)
     told("writing it into the model")
     augmented = _augmented(engine, found)
@@ -155,13 +157,11 @@ def tracked_pass(tracked: Tracked, kinematics: Path, told: Callable[[str], None]
 
 
 def joints_of(
-    walk: Pass, tracked: Tracked, more: tuple[Shape, ...] = (), told: Callable[[str], None] = lambda _: None
+    walk: Pass, shaken: Values, more: tuple[Shape, ...] = (), told: Callable[[str], None] = lambda _: None
 ) -> tuple[Simulation, list[JointFinding]]:
-    """Name what is left at each joint; the simulation says what its numbers are."""
+    """Name what is left at each joint beside what noise makes of it; the simulation says what the numbers are."""
     _refuse_short(walk)
     base = _simulation(walk)
-    told("computing what noise of the angles makes of them")
-    shaken = _shaken(walk, tracked)
     joints = []
     for number in walk.joints:
         told(f"weighing what is left at {walk.engine.coordinates[number].called}")
@@ -245,10 +245,10 @@ def _refuse_other_motion(walk: Pass) -> None:
             )
 
 
-def _shaken(walk: Pass, tracked: Tracked) -> Values:
+def shaken_moments(walk: Pass, noise_deg: float | None) -> Values:
     """What noise of the angles, after the record's low-pass, makes of the moments (draw, sample, coordinate)."""
     motion, rate = walk.motion, walk.motion.rate_hz
-    given = tracked.noise_deg if tracked.noise_deg is not None else (0.3 if motion.differentiated else 0.0)
+    given = noise_deg if noise_deg is not None else (NOISE_DEG if motion.differentiated else 0.0)
     sizes = np.array([np.radians(given) if one.unit == "rad" else given / 300 for one in walk.engine.coordinates])
     if not given:
         return np.zeros((1, len(walk.times), len(sizes)))

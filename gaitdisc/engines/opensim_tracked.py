@@ -112,6 +112,8 @@ class _Tracked:
         for one in (*self.given.values(), *self.by_hand):
             one.overrideActuation(self.state, True)
             one.setOverrideActuation(self.state, 0.0)
+            if osim.PathActuator.safeDownCast(one) is not None:
+                one.setAppliesForce(self.state, False)  # pulls come in as moments: no path is followed for nothing
         self.place = self._places()
 
     def _places(self) -> dict[str, int]:

@@ -104,3 +104,19 @@ def test_a_mass_that_the_ground_does_not_carry_is_refused(lab):
     assert "subject01_metabolics.osim moves 83.5 kg, pelvis_ty lacks" in str(done.exception)
     carried = float(re.search(r"the forces carry ([\d.]+) kg", str(done.exception))[1])
     assert carried == pytest.approx(72.6, abs=0.7)  # which it was before
+
+
+def test_forces_that_balance_another_motion_are_refused(lab):
+    results = DATA / "CMC/results_no_spring"
+    head, _, body = (results / "walk_subject_Actuation_force.sto").read_text().partition("endheader\n")
+    rows = [line.split("\t") for line in body.splitlines()]
+    column = rows[0].index("FY")
+    for row in rows[1:]:
+        row[column] = f"{float(row[column]) + 200:.5f}"
+    (lab / "forces.sto").write_text(f"{head}endheader\n" + "\n".join("\t".join(row) for row in rows) + "\n")
+    mapping = MAPPING.format(results="results_no_spring")
+    kept = mapping.replace("data/CMC/results_no_spring/walk_subject_Actuation_force.sto", "forces.sto")
+    (lab / "subject01_metabolics.toml").write_text(kept)
+    done = searched(lab, "results_no_spring")
+    assert "pelvis_ty lacks 200 N (root mean square) of 7" in str(done.exception)
+    assert "Compute the forces for this motion again" in str(done.exception)
