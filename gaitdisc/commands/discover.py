@@ -61,7 +61,16 @@ def discover(
 
     if measured is not None and names_engine(simulation):
         from gaitdisc.batch.discover_engine import discover_model_file, write_answer
+        from gaitdisc.engines.tracked_files import read_tracked
 
+        walk = read_tracked(simulation)
+        if walk is not None:
+            from gaitdisc.batch.discover_tracked import discover_tracked, write_tracked
+
+            answered = discover_tracked(walk, measured, catalogue, told)
+            write_tracked(answered, out)
+            _write(answered.found, out, draw, told, (*answered.written.notes, *answered.said))
+            return
         answer = discover_model_file(simulation, measured, catalogue, told)
         write_answer(answer, out)
         _write(answer.found, out, draw, told, (*answer.written.notes, answer.runs.said))

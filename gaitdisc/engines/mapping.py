@@ -89,7 +89,7 @@ def names_engine(path: Path | str) -> bool:
     path = Path(path)
     if is_model(path) or not path.is_file() or path.suffix.lower() != ".toml" or path.stat().st_size > LARGEST:
         return is_model(path)
-    return re.search(rb"^model\s*=", path.read_bytes(), re.MULTILINE) is not None
+    return re.search(rb"^(model\s*=|\[tracked\])", path.read_bytes(), re.MULTILINE) is not None
 
 
 def check_mapping(mapping: Simulation, engine: Engine) -> None:

@@ -28,6 +28,7 @@ class OpensimModel:
     """A model of OpenSim, with muscles or without."""
 
     called = "OpenSim"
+    worker = WORKER
 
     def __init__(self, path: Path | str) -> None:
         self.path = Path(path)
@@ -118,7 +119,7 @@ class OpensimModel:
 
     def _started(self) -> None:
         self._process = subprocess.Popen(
-            [sys.executable, "-P", str(WORKER), str(self.path)],
+            [sys.executable, "-P", str(self.worker), str(self.path)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import pickle
 import sys
+from collections.abc import Callable
 from typing import Any, BinaryIO
 
 import numpy as np
@@ -296,9 +297,9 @@ def _range(coordinate: Any) -> tuple[float, float]:
     return (low, high) if coordinate.getDefaultClamped() else (-np.inf, np.inf)
 
 
-def serve(questions: BinaryIO, answers: BinaryIO, path: str) -> None:
+def serve(questions: BinaryIO, answers: BinaryIO, path: str, answering: Callable[[Any, str], Any] = _Answers) -> None:
     """Answer until nobody asks."""
-    answered: _Answers | None = None
+    answered: Any = None
     while True:
         try:
             question, arguments = pickle.load(questions)
@@ -309,7 +310,7 @@ def serve(questions: BinaryIO, answers: BinaryIO, path: str) -> None:
                 import opensim  # pyright: ignore[reportMissingImports] the extra
 
                 opensim.Logger.setLevelString("Off")
-                answered = _Answers(opensim, path)
+                answered = answering(opensim, path)
             answer = ("answer", getattr(answered, question)(*arguments))
         except ImportError as error:
             answer = ("absent", str(error))
@@ -319,7 +320,12 @@ def serve(questions: BinaryIO, answers: BinaryIO, path: str) -> None:
         answers.flush()
 
 
-if __name__ == "__main__":
+def answer_questions(answering: Callable[[Any, str], Any] = _Answers) -> None:
+    """Serve the process that started this one."""
     pipe = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # OpenSim prints where it likes
-    serve(sys.stdin.buffer, pipe, sys.argv[1])
+    serve(sys.stdin.buffer, pipe, sys.argv[1], answering)
+
+
+if __name__ == "__main__":
+    answer_questions()

@@ -128,7 +128,7 @@ def _compared(
         column = next(k for k, one in enumerate(engine.coordinates) if one.port == term.place)
         push[:, column] += _by_hand(augmented, term, np.concatenate([q, v], axis=1))
     try:
-        read = loaded_beside(engine.path, text)
+        read = loaded_beside(engine.path, text, getattr(engine, "other", read_model))
     except GaitdiscError:
         return np.inf, None
     if not np.isfinite(push).all():
@@ -138,7 +138,7 @@ def _compared(
     return float(np.abs(found - wanted).max() / np.abs(wanted).max()), read
 
 
-def loaded_beside(path: Path, text: str) -> Engine:
+def loaded_beside(path: Path, text: str, read: Callable[[Path], Engine] = read_model) -> Engine:
     """Model of another text, with the files that lie beside the first."""
     folder = tempfile.TemporaryDirectory()
     for other in path.resolve().parent.iterdir():
@@ -146,6 +146,6 @@ def loaded_beside(path: Path, text: str) -> Engine:
             (Path(folder.name) / other.name).symlink_to(other)
     copy = Path(folder.name) / path.name
     copy.write_text(text, encoding="utf-8")
-    engine = read_model(copy)
+    engine = read(copy)
     weakref.finalize(engine, folder.cleanup)  # an engine may read its file again
     return engine

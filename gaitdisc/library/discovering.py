@@ -94,6 +94,15 @@ def _of_engine(
     model: Path, data: Any, catalogue: Path | str | None, progress: Callable[[str], None] | None
 ) -> tuple[Discovery, Simulation]:
     from gaitdisc.batch.discover_engine import discover_engine, measured_of_file
+    from gaitdisc.engines.tracked_files import read_tracked
+
+    walk = read_tracked(model)
+    if walk is not None and isinstance(data, Path | str):
+        from gaitdisc.batch.discover_tracked import discover_tracked
+
+        of_user = None if catalogue is None else Path(catalogue)
+        answered = discover_tracked(walk, Path(data), of_user, progress or (lambda _: None))
+        return answered.found, answered.augmented
 
     files: dict[Path, str] = {}
 

@@ -18,7 +18,7 @@ from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import read_simulation
 
 
-def test_a_mapping_goes_to_its_file_and_back(pendulum):
+def test_a_mapping_goes_to_its_file_and_back(pendulum, tmp_path):
     file = pendulum.with_suffix(".toml")
     written = write_mapping(read_model(pendulum), file, degrees=True)
     read, model = read_mapping(pendulum)  # the mapping beside it is found
@@ -28,6 +28,8 @@ def test_a_mapping_goes_to_its_file_and_back(pendulum):
     assert (name, sensor.unit) == ("pivot", "deg")
     assert float(expression.partition("*")[0]) == pytest.approx(np.degrees(1.0))
     assert names_engine(file) and names_engine(pendulum) and not names_engine(file.with_name("else.toml"))
+    (tmp_path / "walk.toml").write_text('[tracked]\nexternal_loads = "grf.xml"\n')
+    assert names_engine(tmp_path / "walk.toml")
 
 
 def test_without_a_mapping_columns_have_the_coordinates_names(pendulum):

@@ -1,0 +1,264 @@
+"""What a prescribed motion leaves of a joint's moment, named: the catalogue's shapes by whitened least squares.
+
+A prescribed motion has no start to be found and no run that departs: what is left at a joint is the missing effect and
+noise. The noise of angles is anything but white in a moment (it was differentiated twice) and differs by joint, so each
+joint is whitened by what noise of the angles makes of its own moment, or by what its best explanation leaves, where
+that is more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.discovery.account import Part
+from gaitdisc.discovery.borne_out import PairedTest, paired_test
+from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.gap_share import MODEL_ERROR
+from gaitdisc.discovery.grids import Rhythm, cells
+from gaitdisc.discovery.noise import Noise, noise_of
+from gaitdisc.discovery.price import price_of
+from gaitdisc.discovery.ranking import MARGIN
+
+Values = NDArray[np.float64]
+LATEST_S, DELAYS = 0.12, 25
+HALVES = 2
+CLOSED = 0.3  # of the squared moment that is left, which goes on held-out time
+CHANGED = 0.06  # by which a muscle group's strength differs at least, as in a device walk
+ROUNDS, REFINED = 2, 4  # turns of learning the noise; candidates whose constants are searched between the grid's
+FLAT = 1e-9
+SAMPLES_A_NUMBER = 2.0  # of the low-pass: the samples that are kept hold each number that passes twice
+
+
+@dataclass(frozen=True, eq=False)
+class LeftMoment:
+    """What is left at one joint, at samples that hold all that the record's low-pass passes."""
+
+    port: str
+    time: Values  # (sample,) [s]
+    left: Values  # (sample,) demanded less what the files' forces give [N m]
+    demanded: Values  # (sample,) [N m]
+    shaken: Values  # (draw, sample), what noise of the angles makes of it [N m]
+    along: Values  # (record's sample,) the coordinate [rad]
+    columns: Callable[[Candidate, Mapping[str, float]], Values]  # (sample, piece)
+
+    @property
+    def floor(self) -> float:
+        """Size of what the noise of angles and a hundredth of the moment make [N m]."""
+        return float(np.hypot(np.sqrt(np.mean(self.shaken**2)), MODEL_ERROR * np.std(self.demanded)))
+
+    @property
+    def halves(self) -> list[NDArray[np.intp]]:
+        """Samples of the first and of the second part of the time."""
+        return np.array_split(np.arange(len(self.time)), HALVES)
+
+
+@dataclass(frozen=True, eq=False)
+class Named:
+    """An explanation of what is left at a joint, and how it fares on time that was held out."""
+
+    part: Part
+    covariance: Values  # (slot, slot)
+    explained: Values  # (sample,) [N m]
+    predicted: Values  # (sample,), each half from the other [N m]
+    gained: float  # fall of twice the log likelihood beyond the price of its numbers and of choosing it
+    test: PairedTest
+
+
+@dataclass(frozen=True, eq=False)
+class JointFinding:
+    """What one joint shows."""
+
+    joint: LeftMoment
+    noise: Noise
+    named: Named | None
+    rivals: tuple[Named, ...]  # best first
+    open_ones: int  # candidates at all joints
+
+    def least(self, column: Values) -> float:
+        """Smallest factor of a column (sample,) that would be named here."""
+        samples = len(self.joint.time)
+        wanted = (MARGIN + _price(1, samples, self.open_ones)) * SAMPLES_A_NUMBER / samples
+        size = float(np.linalg.norm(_white(self.noise, column[:, None])))
+        return float(np.sqrt(samples * np.expm1(wanted))) / size if size > FLAT else float("inf")
+
+
+def joint_finding(joint: LeftMoment, candidates: tuple[Candidate, ...], joints: int = 1) -> JointFinding:
+    """Weigh every candidate at one of some joints; name the best where evidence and both halves of time bear it out."""
+    open_ones = len(candidates) * joints
+    floor = MODEL_ERROR * float(np.std(joint.demanded))
+    noise = noise_of(joint.shaken[:, :, None], least=floor)
+    ordered: list[Named] = []
+    for _ in range(ROUNDS):
+        coarse = _weighed(joint, noise, candidates, open_ones, refined=False)
+        best = tuple(one.part.candidate for one in coarse[:REFINED])
+        ordered = _weighed(joint, noise, best, open_ones, refined=True)
+        rest = joint.left - (ordered[0].explained if ordered else 0.0)
+        own = float(np.sqrt(np.mean(rest**2)))
+        if own <= float(noise.size[0]):
+            break
+        noise = noise_of(rest[None, :, None], used=2, least=floor)
+    ordered = _simple_first(ordered)
+    first = _proven(joint, noise, ordered[0]) if ordered and ordered[0].gained > MARGIN else None
+    return JointFinding(
+        joint, noise, first if first and borne_out(joint, noise, first) else None, tuple(ordered), open_ones
+    )
+
+
+def _weighed(
+    joint: LeftMoment, noise: Noise, candidates: tuple[Candidate, ...], open_ones: int, refined: bool
+) -> list[Named]:
+    """Fit candidates to all of the record, the best first."""
+    fitted = [_fitted(joint, noise, each, open_ones, refined) for each in candidates]
+    return sorted((one for one in fitted if one is not None), key=lambda one: -one.gained)
+
+
+def _simple_first(ordered: list[Named]) -> list[Named]:
+    """Put a plainer statement before one that is hardly better."""
+    if not ordered:
+        return ordered
+    near = [one for one in ordered if one.gained > ordered[0].gained - MARGIN]
+    first = min(near, key=lambda one: (price_of(one.part.candidate, one.part.values), -one.gained))
+    return [first, *(one for one in ordered if one is not first)]
+
+
+def borne_out(joint: LeftMoment, noise: Noise, one: Named) -> bool:
+    """Whether an explanation has the evidence, closes enough on held-out time, and speaks against itself in no half.
+
+    In a half in which it hardly acts the squared error may rise by as much as noise makes it vary (two deviations).
+    """
+    if one.gained < MARGIN or _too_small(one):
+        return False
+    before, after = joint.left**2, (joint.left - one.predicted) ** 2
+    worse = any(
+        after[half].sum() > before[half].sum() + 2 * float(noise.size[0]) ** 2 * np.sqrt(len(half))
+        for half in joint.halves
+    )
+    return not worse and after.sum() < (1 - CLOSED) * before.sum()
+
+
+def _too_small(one: Named) -> bool:
+    candidate = one.part.candidate
+    return bool(candidate.bounds) and candidate.beyond_bounds(one.part.values["value"]) <= 0
+
+
+def _fitted(joint: LeftMoment, noise: Noise, candidate: Candidate, open_ones: int, refined: bool) -> Named | None:
+    """Numbers of a candidate on all of the record, None where it is nowhere in it."""
+    every = np.arange(len(joint.time))
+    values = _numbers(joint, noise, candidate, every, refined)
+    if values is None:
+        return None
+    explained = _explained(joint, candidate, values)
+    before = _white(noise, joint.left[:, None])
+    slopes = np.column_stack([_slope(joint, candidate, values, slot) for slot in candidate.slots])
+    after, jacobian = _white(noise, (joint.left - explained)[:, None]), _white(noise, slopes)
+    count = len(candidate.slots)
+    variance = max(float((after**2).sum()) / max(len(every) - count, 1), 1.0)
+    covariance = np.asarray(variance * np.linalg.pinv(jacobian.T @ jacobian), np.float64)
+    price = _price(count, len(every), open_ones)
+    gained = _fall(float((before**2).sum()), float((after**2).sum()), len(every)) - price
+    part = Part(candidate, values)
+    return Named(part, covariance, explained, np.zeros(len(every)), gained, PairedTest(1.0, 0, 0.0))
+
+
+def _proven(joint: LeftMoment, noise: Noise, one: Named) -> Named:
+    """Predict each half of the time with numbers of the other half."""
+    predicted = np.zeros(len(joint.time))
+    for held, learned in zip(joint.halves, reversed(joint.halves), strict=True):
+        values = _numbers(joint, noise, one.part.candidate, learned)
+        if values is not None:
+            predicted[held] = _explained(joint, one.part.candidate, values)[held]
+    rate = (len(joint.time) - 1) / (joint.time[-1] - joint.time[0])
+    errors = [each[None, :, None] for each in (joint.left, joint.left - predicted)]
+    test = paired_test(errors[0], errors[1], np.array([joint.floor or 1.0]), max(round(rate / 2), 1))
+    return replace(one, predicted=predicted, test=test)
+
+
+def _numbers(
+    joint: LeftMoment, noise: Noise, candidate: Candidate, some: NDArray[np.intp], refined: bool = True
+) -> dict[str, float] | None:
+    """Numbers of a candidate that suit some of the samples; None where it does not act in them."""
+    from scipy.optimize import minimize
+
+    y = _white(noise, joint.left[some, None])[:, 0]
+
+    def fit(constants: Mapping[str, float]) -> tuple[float, Values]:
+        columns = joint.columns(candidate, constants)[some]
+        if candidate.place.endswith("_delay"):
+            white = _white(noise, columns)[:, 0]
+            return float(((y - white) ** 2).sum()), np.empty(0)
+        white = _white(noise, columns)
+        if np.linalg.norm(columns, axis=0).min() < FLAT * max(len(some), 1):
+            return np.inf, np.zeros(columns.shape[1])
+        factors = np.asarray(np.linalg.lstsq(white, y, rcond=None)[0], np.float64)
+        return float(((y - white @ factors) ** 2).sum()), factors
+
+    starts = _starts(joint, candidate)
+    scores = [fit(one)[0] for one in starts]
+    best = starts[int(np.argmin(scores))]
+    if not np.isfinite(min(scores)):
+        return None
+    if best and refined:
+        names = list(best)
+        width = np.array([max(_spacing(starts, name), FLAT) for name in names])
+        at = np.array([best[name] for name in names])
+        simplex = np.vstack([at, *(at + step * np.eye(len(names))[k] for k, step in enumerate(width))])
+        found = minimize(
+            lambda x: min(fit(dict(zip(names, x, strict=True)))[0], 1e12),
+            at,
+            method="Nelder-Mead",
+            options={"initial_simplex": simplex, "xatol": 1e-4 * width.max(), "fatol": 1e-3, "maxiter": 60},
+        )
+        if found.fun <= min(scores):
+            best = dict(zip(names, map(float, found.x), strict=True))
+    factors = fit(best)[1]
+    if candidate.verdict == "wrong_parameter":
+        return best if candidate.place.endswith("_delay") else {"value": 1.0 + float(factors[0])}
+    return dict(zip(candidate.slots, [*map(float, factors), *best.values()], strict=True))
+
+
+def _starts(joint: LeftMoment, candidate: Candidate) -> list[dict[str, float]]:
+    """Where the search for the constants of a candidate begins."""
+    if candidate.place.endswith("_delay"):
+        return [{"value": float(one)} for one in np.linspace(-LATEST_S, LATEST_S, DELAYS)]
+    span = float(joint.time[-1] - joint.time[0])
+    rhythm = Rhythm(span, span, (len(joint.time) - 1) / span)
+    return cells(dict(candidate.constants or {}), joint.along, rhythm)
+
+
+def _spacing(starts: list[dict[str, float]], name: str) -> float:
+    each = np.unique([one[name] for one in starts])
+    return float(np.median(np.diff(each))) if len(each) > 1 else 0.1 * abs(float(each[0]))
+
+
+def _explained(joint: LeftMoment, candidate: Candidate, values: Mapping[str, float]) -> Values:
+    if candidate.verdict == "wrong_parameter":
+        if candidate.place.endswith("_delay"):
+            return joint.columns(candidate, values)[:, 0]
+        return (values["value"] - 1.0) * joint.columns(candidate, {})[:, 0]
+    constants = {slot: values[slot] for slot in candidate.constants or {}}
+    factors = np.array([values[slot] for slot in candidate.slots[: len(candidate.pieces)]])
+    return joint.columns(candidate, constants) @ factors
+
+
+def _fall(before: float, after: float, count: int) -> float:
+    """Fall of twice the log likelihood of a noise whose size is fitted, and is no less than what it is taken for."""
+    return count / SAMPLES_A_NUMBER * float(np.log1p(max(before - after, 0.0) / max(after, count)))
+
+
+def _price(count: int, samples: int, open_ones: int) -> float:
+    """What the numbers of a candidate and the choice among all cost."""
+    return count * float(np.log(samples)) + 2 * float(np.log(max(open_ones, 1)))
+
+
+def _slope(joint: LeftMoment, candidate: Candidate, values: Mapping[str, float], slot: str) -> Values:
+    step = 1e-3 * max(abs(values[slot]), 1e-2)
+    sides = [_explained(joint, candidate, {**values, slot: values[slot] + sign * step}) for sign in (1, -1)]
+    return (sides[0] - sides[1]) / (2 * step)
+
+
+def _white(noise: Noise, columns: Values) -> Values:
+    return noise.whitened(columns[None, :, None, :])[0, :, 0, :]

@@ -1,0 +1,282 @@
+"""A walk that OpenSim tracks: the motion is prescribed, ground and muscle forces come from files, moments are left."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.engines.engine import Coordinate, Motion
+from gaitdisc.engines.opensim_model import OpensimModel
+from gaitdisc.engines.opensim_worker import answer_questions
+from gaitdisc.errors import SchemaError
+
+Values = NDArray[np.float64]
+ROTATIONAL, TRANSLATIONAL = 1, 2
+STEP = 1e-5  # of a coordinate, for the slope of a coupler
+FORWARD = 0.0025  # [s], longest step of a short forward run: no fibre is stiff where forces are given
+
+
+class OpensimTracked(OpensimModel):
+    """A model of OpenSim whose muscles pull as a file says."""
+
+    worker = Path(__file__)
+
+    def __init__(self, path: Path | str, loads: tuple[Path, Path] | None = None, actuators: Path | None = None) -> None:
+        self.path = Path(path)
+        self._process = None
+        self.given = (str(loads[0]), str(loads[1])) if loads else None, str(actuators) if actuators else None
+        self._ask("loaded", *self.given)
+        told = self._ask("described")
+        self.coordinates = tuple(
+            Coordinate(re.sub(r"\W", "_", name), "rad" if turns else "m", name) for name, turns in told["coordinates"]
+        )
+        if not self.coordinates:
+            raise SchemaError(
+                "a model has one free coordinate or more", f"{self.path.name}: all are locked", "Unlock some."
+            )
+        self.controls, self.parameters, self.offered = (), (), ()
+        self.actuators: tuple[str, ...] = tuple(told["actuators"])
+        self.base: tuple[int, ...] = tuple(told["base"])  # coordinates of the joint with the ground
+        self.vertical: int = told["vertical"]  # the base's upward coordinate, -1 where there is none
+        self.paths = frozenset[str](told["paths"])  # muscles, and all else that pulls along a path
+        self.mass_kg: float = told["mass_kg"]
+
+    def accelerations(self, at: Motion, values: Mapping[str, float], forces: Values | None = None) -> Values:
+        """Accelerations (point, coordinate) without muscles and without the ground."""
+        del values
+        return self._ask("accelerations", at.q, at.v, np.zeros_like(at.q) if forces is None else forces)
+
+    def demanded(self, time: Values, motion: tuple[Values, Values, Values], loaded: bool = True) -> Values:
+        """Generalised forces (sample, coordinate) that a motion demands of muscles beside the recorded loads."""
+        return self._ask("demanded", time, *motion, loaded)
+
+    def arms(self, time: Values, q: Values, names: tuple[str, ...]) -> Values:
+        """Generalised force of each actuator's unit force (sample, actuator, coordinate)."""
+        return self._ask("arms", time, q, list(names))
+
+    def forward(self, time: Values, start: tuple[Values, Values], moments: Values) -> Values:
+        """Coordinates (sample, coordinate) of a run under recorded loads and generalised forces of muscles."""
+        return self._ask("forward", time, *start, moments)
+
+    def other(self, path: Path) -> OpensimTracked:
+        """Another model under the same loads."""
+        loads, actuators = self.given
+        return OpensimTracked(
+            path, (Path(loads[0]), Path(loads[1])) if loads else None, Path(actuators) if actuators else None
+        )
+
+
+class _Tracked:
+    """What is known of a model under prescribed motion; lives in the worker's process."""
+
+    def __init__(self, osim: Any, path: str) -> None:
+        self.osim, self.model = osim, osim.Model(path)
+
+    def loaded(self, loads: tuple[str, str] | None, actuators: str | None) -> None:
+        osim, model = self.osim, self.model
+        controllers = model.getControllerSet()
+        for k in range(controllers.getSize()):
+            controllers.get(k).setEnabled(False)
+        if actuators:
+            more = osim.ForceSet(actuators)
+            for k in range(more.getSize()):
+                model.updForceSet().cloneAndAppend(more.get(k))
+        model.finalizeConnections()
+        every = model.getCoordinateSet()
+        names = [every.get(k).getName() for k in range(every.getSize())]
+        self.coupled = _couplers(model, osim)
+        self.names = [name for name in names if not every.get(name).getDefaultLocked() and name not in self.coupled]
+        self.actuators = [one.getName() for one in model.getActuators()]
+        for name in self.names:
+            force = osim.CoordinateActuator(name)
+            force.setName(f"force_by_hand_on_{name}")
+            force.setOptimalForce(1.0)
+            model.addForce(force)
+        external = osim.ExternalLoads(loads[0], True) if loads else None
+        if external is not None and loads:
+            external.setDataFileName(loads[1])
+            model.addModelComponent(external)
+        self.state = model.initSystem()
+        self.loads = [external.get(k) for k in range(external.getSize())] if external is not None else []
+        self.solver = osim.InverseDynamicsSolver(model)
+        self.free = {name: model.getCoordinateSet().get(name) for name in [*self.names, *self.coupled]}
+        scalar = osim.ScalarActuator.safeDownCast
+        self.given = {name: scalar(model.getActuators().get(name)) for name in self.actuators}
+        self.by_hand = [scalar(model.getActuators().get(f"force_by_hand_on_{name}")) for name in self.names]
+        for one in (*self.given.values(), *self.by_hand):
+            one.overrideActuation(self.state, True)
+            one.setOverrideActuation(self.state, 0.0)
+            if osim.PathActuator.safeDownCast(one) is not None:
+                one.setAppliesForce(self.state, False)  # pulls come in as moments: no path is followed for nothing
+        self.place = self._places()
+
+    def _places(self) -> dict[str, int]:
+        """Where the engine keeps the speed of each coordinate: its order is not the files'."""
+        found = {}
+        for name, one in self.free.items():
+            self._speeds({})
+            one.setSpeedValue(self.state, 1.0)
+            found[name] = int(np.argmax(np.abs(self.state.getU().to_numpy())))
+        self._speeds({})
+        return found
+
+    def _speeds(self, speeds: Mapping[str, float]) -> None:
+        for name, one in self.free.items():
+            one.setSpeedValue(self.state, float(speeds.get(name, 0.0)))
+
+    def described(self) -> dict[str, Any]:
+        osim, model = self.osim, self.model
+        base = []
+        for k in range(model.getJointSet().getSize()):
+            joint = model.getJointSet().get(k)
+            if joint.getParentFrame().findBaseFrame().getName() == "ground" and joint.numCoordinates() > 1:
+                base += [joint.get_coordinates(i).getName() for i in range(joint.numCoordinates())]
+        zero = np.zeros((1, len(self.names)))
+        still = self.demanded([0.0], zero, zero, zero, False)[0]
+        weight = model.getTotalMass(self.state) * np.linalg.norm([model.getGravity().get(i) for i in range(3)])
+        upward = [
+            k
+            for k, name in enumerate(self.names)
+            if name in base and self.free[name].getMotionType() == TRANSLATIONAL and abs(still[k]) > 0.9 * weight
+        ]
+        return {
+            "coordinates": [(name, self.free[name].getMotionType() == ROTATIONAL) for name in self.names],
+            "actuators": self.actuators,
+            "base": [k for k, name in enumerate(self.names) if name in base],
+            "vertical": upward[0] if upward and weight > 0 else -1,
+            "paths": [name for name, one in self.given.items() if osim.PathActuator.safeDownCast(one) is not None],
+            "mass_kg": model.getTotalMass(self.state),
+        }
+
+    def placed(self, q: Any, v: Any) -> dict[str, float]:
+        """Put a posture in; slopes of the coupled coordinates."""
+        slopes: dict[str, float] = {}
+        for name, position, speed in zip(self.names, q, v, strict=True):
+            self.free[name].setValue(self.state, float(position), False)
+            self.free[name].setSpeedValue(self.state, float(speed))
+        for name, (leading, law) in self.coupled.items():
+            at, rate = self.free[leading].getValue(self.state), self.free[leading].getSpeedValue(self.state)
+            slopes[name] = (law(at + STEP) - law(at - STEP)) / (2 * STEP)
+            self.free[name].setValue(self.state, law(at), False)
+            self.free[name].setSpeedValue(self.state, slopes[name] * rate)
+        return slopes
+
+    def _solved(self, a: Mapping[str, float], slopes: Mapping[str, float] | None = None) -> Any:
+        """Inverse dynamics of the free coordinates; what a coupled one needs comes through its leading one."""
+        wanted = self.osim.Vector(self.state.getNU(), 0.0)
+        slopes = slopes or dict.fromkeys(self.coupled, 0.0)
+        for name, value in a.items():
+            wanted.set(self.place[name], float(value))
+        for name, slope in slopes.items():
+            wanted.set(self.place[name], slope * float(a.get(self.coupled[name][0], 0.0)))
+        whole = self.solver.solve(self.state, wanted).to_numpy()
+        found = np.array([whole[self.place[name]] for name in self.names])
+        for name, slope in slopes.items():
+            found[self.names.index(self.coupled[name][0])] += slope * whole[self.place[name]]
+        return found
+
+    def demanded(self, time: Any, q: Any, v: Any, a: Any, loaded: bool) -> Any:
+        found = np.empty_like(q)
+        for one in self.loads:
+            one.setAppliesForce(self.state, loaded)
+        for k, t in enumerate(time):
+            self.state.setTime(float(t))
+            slopes = self.placed(q[k], v[k])
+            found[k] = self._solved(dict(zip(self.names, a[k], strict=True)), slopes)
+        for one in self.loads:
+            one.setAppliesForce(self.state, True)
+        return found
+
+    def arms(self, time: Any, q: Any, names: list[str]) -> Any:
+        osim, found = self.osim, np.zeros((len(q), len(names), len(self.names)))
+        paths, others = [], []
+        for number, name in enumerate(names):
+            path = osim.PathActuator.safeDownCast(self.given[name])
+            own = osim.CoordinateActuator.safeDownCast(self.given[name])
+            if path is not None:
+                paths.append((number, path))
+            elif own is not None and own.getCoordinate().getName() in self.names:
+                found[:, number, self.names.index(own.getCoordinate().getName())] = 1.0
+            else:
+                others.append((number, self.given[name]))
+        still = np.zeros(len(self.names))
+        for k, t in enumerate(time):
+            self.state.setTime(float(t))
+            slopes = self.placed(q[k], still)
+            for column, name in enumerate(self.names):
+                with_it = {other: slopes[other] for other, (leading, _) in self.coupled.items() if leading == name}
+                self._speeds({name: 1.0, **with_it})
+                self.model.realizeVelocity(self.state)
+                for number, path in paths:
+                    found[k, number, column] = -path.getLengtheningSpeed(self.state)
+            if others:
+                self._speeds({})
+                before = self._solved({}, slopes)
+                for number, one in others:
+                    one.setOverrideActuation(self.state, 1.0)
+                    found[k, number] = before - self._solved({}, slopes)
+                    one.setOverrideActuation(self.state, 0.0)
+        return found
+
+    def accelerations(self, q: Any, v: Any, forces: Any) -> Any:
+        found = np.empty_like(q)
+        for k in range(len(q)):
+            found[k] = self._moved(0.0, q[k], v[k], forces[k])
+        return found
+
+    def _moved(self, time: float, q: Any, v: Any, force: Any) -> Any:
+        self.state.setTime(time)
+        self.placed(q, v)
+        for one, value in zip(self.by_hand, force, strict=True):
+            one.setOverrideActuation(self.state, float(value))
+        self.model.realizeAcceleration(self.state)
+        found = np.array([self.free[name].getAccelerationValue(self.state) for name in self.names])
+        for one in self.by_hand:
+            one.setOverrideActuation(self.state, 0.0)
+        return found
+
+    def forward(self, time: Any, q: Any, v: Any, moments: Any) -> Any:
+        """Runge-Kutta of the coordinates under moments that are linear between samples."""
+        found, n = [np.array(q)], len(q)
+
+        def rates(t: float, y: Any) -> Any:
+            force = np.array([np.interp(t, time, column) for column in moments.T])
+            return np.concatenate([y[n:], self._moved(t, y[:n], y[n:], force)])
+
+        y = np.concatenate([q, v])
+        for t0, t1 in pairwise(time):
+            steps = max(int(np.ceil((t1 - t0) / FORWARD)), 1)
+            h = (t1 - t0) / steps
+            for k in range(steps):
+                t = t0 + k * h
+                one = rates(t, y)
+                two = rates(t + h / 2, y + h / 2 * one)
+                three = rates(t + h / 2, y + h / 2 * two)
+                y = y + h / 6 * (one + 2 * two + 2 * three + rates(t + h, y + h * three))
+            found.append(y[:n].copy())
+        return np.array(found)
+
+
+def _couplers(model: Any, osim: Any) -> dict[str, tuple[str, Any]]:
+    """Coordinates that follow one other by a function: that other, and the function."""
+    found, constraints = {}, model.getConstraintSet()
+    for k in range(constraints.getSize()):
+        one = osim.CoordinateCouplerConstraint.safeDownCast(constraints.get(k))
+        if one is None or not one.get_isEnforced() or one.getIndependentCoordinateNames().getSize() != 1:
+            continue
+        law = one.getFunction()
+        found[one.getDependentCoordinateName()] = (
+            one.getIndependentCoordinateNames().get(0),
+            lambda x, law=law, osim=osim: law.calcValue(osim.Vector(1, float(x))),
+        )
+    return found
+
+
+if __name__ == "__main__":
+    answer_questions(_Tracked)

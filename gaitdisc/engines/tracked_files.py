@@ -1,0 +1,364 @@
+"""The files of a walk with recorded forces: what a mapping's [tracked] table names, on one time base."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.channel import nearest_word
+from gaitdisc.engines.engine import Coordinate
+from gaitdisc.errors import ChannelError, ReadError, SamplingError, SchemaError
+from gaitdisc.ingest.cells import Form, parsed_cells
+from gaitdisc.ingest.raw_file import read_raw
+from gaitdisc.ingest.storage import read_storage
+from gaitdisc.ingest.storage_header import parsed_header
+from gaitdisc.signals.butterworth import lowpassed
+from gaitdisc.signals.derivatives import differentiated
+from gaitdisc.toml_text import parsed_toml
+
+Values = NDArray[np.float64]
+FILES = ("external_loads", "forces", "actuators", "speeds", "accelerations")
+NUMBERS, LOWPASS_HZ = ("lowpass_hz", "noise_deg", "start_s", "end_s"), 6.0
+SHORTEST_S = 0.5
+EDGE_PERIODS = 1.0  # of the low-pass, left out at both ends of the angles where rates come from them
+PASSIVE = ("LimitForce", "CoordinateForce", "BushingForce", "Ligament", "SpringForce", "GeneralizedForce")  # of classes
+MOST_RAD, MOST_M = 4 * np.pi, 50.0
+
+
+@dataclass(frozen=True)
+class Tracked:
+    """A mapping with a [tracked] table."""
+
+    model: Path
+    loads: tuple[Path, Path]  # the ExternalLoads file, and the storage file that it names
+    forces: Path | None = None
+    actuators: Path | None = None
+    speeds: Path | None = None
+    accelerations: Path | None = None
+    lowpass_hz: float = LOWPASS_HZ
+    noise_deg: float | None = None  # standard deviation of an angle in the record, 1 mm of a translation at 0.3 deg
+    start_s: float = -np.inf  # part of the record in which all forces on the ground are known
+    end_s: float = np.inf
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """All that is read beside the model."""
+        some = (*self.loads, self.forces, self.actuators, self.speeds, self.accelerations)
+        return tuple(one for one in some if one is not None)
+
+
+@dataclass(frozen=True)
+class TrackedMotion:
+    """Coordinates with their rates, and forces of actuators, at the times that all files have."""
+
+    time: Values  # (sample,) [s]
+    q: Values  # (sample, coordinate) [rad, m]
+    v: Values
+    a: Values
+    actuators: tuple[str, ...]  # columns of the forces' file
+    forces: Values  # (sample, actuator) [N, N m]
+    differentiated: bool  # whether rates come from the angles
+
+    @property
+    def rate_hz(self) -> float:
+        """Samples a second."""
+        return float((len(self.time) - 1) / (self.time[-1] - self.time[0]))
+
+
+def read_tracked(path: Path | str) -> Tracked | None:
+    """Mapping of a walk with recorded forces: of an .osim with such a mapping beside it, or of that file itself."""
+    path = Path(path)
+    file = path if path.suffix.lower() == ".toml" else path.with_suffix(".toml")
+    if path.suffix.lower() not in (".osim", ".toml") or not file.is_file():
+        return None
+    try:
+        text = file.read_text(encoding="utf-8")
+        if re.search(r"^\s*\[tracked\]", text, re.MULTILINE) is None:
+            return None
+        table = parsed_toml(text)
+    except (OSError, ValueError) as error:
+        raise ReadError("a mapping is a TOML file", f"{file.name}: {error}", "Correct it there.") from None
+    return _tracked(table, file)
+
+
+def _tracked(table: dict[str, Any], file: Path) -> Tracked:
+    given = table["tracked"]
+    unknown = [name for name in table if name not in ("title", "model", "tracked")]
+    unknown += [name for name in given if name not in (*FILES, *NUMBERS)]
+    if unknown:
+        near = nearest_word(unknown[0], (*FILES, *NUMBERS))
+        raise SchemaError(
+            f"a mapping with [tracked] holds title, model and in that table {', '.join((*FILES, *NUMBERS))}",
+            f"{file.name} has {unknown[0]!r}",
+            f"Did you mean {near!r}?" if near else "Take it out.",
+        )
+    if "external_loads" not in given:
+        raise SchemaError(
+            "a walk is tracked with its recorded ground forces",
+            f"[tracked] of {file.name} names no external_loads",
+            'Write external_loads = "grf.xml", the file of OpenSim\'s inverse dynamics; without forces of the ground '
+            "no moment can be said.",
+        )
+    for name in NUMBERS:
+        value = given.get(name, 1.0)
+        if not isinstance(value, int | float) or isinstance(value, bool) or not 0 <= value < 1e3:
+            raise SchemaError(f"{name} is a number", f"{file.name} has {value!r}", "Correct it.")
+    paths = {name: _there(file, name, given[name]) for name in FILES if name in given}
+    loads, noise = paths["external_loads"], given.get("noise_deg")
+    return Tracked(
+        _there(file, "model", table.get("model", f"{file.stem}.osim")),
+        (loads, _data_of(loads)),
+        *(paths.get(name) for name in FILES[1:]),
+        lowpass_hz=float(given.get("lowpass_hz", LOWPASS_HZ)),
+        noise_deg=None if noise is None else float(noise),
+        start_s=float(given.get("start_s", -np.inf)),
+        end_s=float(given.get("end_s", np.inf)),
+    )
+
+
+def _there(file: Path, what: str, name: object) -> Path:
+    path = file.parent / str(name)
+    if not path.is_file():
+        raise ReadError(
+            f"{what} of {file.name} is a file beside it",
+            f"there is none at {name}",
+            "Correct the path; it counts from the mapping's folder.",
+        )
+    return path
+
+
+def _data_of(loads: Path) -> Path:
+    """Storage file of an ExternalLoads file."""
+    named = (_xml(loads).findtext(".//datafile") or "").strip()
+    path = loads.parent / named
+    if not named or not path.is_file():
+        raise ReadError(
+            f"{loads.name} names the file of its forces in <datafile>",
+            f"there is none at {named!r} beside it" if named else "it names none",
+            "Correct <datafile>; it counts from the folder of the file that names it.",
+        )
+    return path
+
+
+def _xml(path: Path) -> ElementTree.Element:
+    try:
+        return ElementTree.parse(path).getroot()
+    except ElementTree.ParseError as error:
+        raise ReadError("a file of OpenSim is XML", f"{path.name}: {error}", "Export it again.") from None
+
+
+def check_loads(tracked: Tracked) -> None:
+    """Refuse forces on a body that the model lacks, and columns that their file lacks."""
+    loads, data = tracked.loads
+    bodies = [one.get("name", "") for one in _xml(tracked.model).iter("Body")]
+    labels, _ = _table(data)
+    for force in _xml(loads).iter("ExternalForce"):
+        body = (force.findtext("applied_to_body") or "").strip()
+        if body.rpartition("/")[2] not in bodies:
+            near = nearest_word(body, tuple(bodies))
+            raise SchemaError(
+                "a recorded force acts on a body of the model",
+                f"{loads.name}: force {force.get('name')!r} acts on {body!r}; {tracked.model.name} has no such body",
+                f"Did you mean {near!r}? " if near else f"Correct <applied_to_body>: {', '.join(bodies)}.",
+            )
+        for word in ("force_identifier", "point_identifier", "torque_identifier"):
+            prefix = (force.findtext(word) or "").strip()
+            lacking = [f"{prefix}{axis}" for axis in "xyz" if prefix and f"{prefix}{axis}" not in labels]
+            if lacking:
+                raise ChannelError(
+                    f"each force of {loads.name} has its columns in {data.name}",
+                    f"force {force.get('name')!r} needs {lacking[0]!r}; there is none",
+                    f"Correct <{word}>, or export the columns.",
+                )
+
+
+def _table(path: Path) -> tuple[list[str], Values]:
+    """Labels and numbers of a storage file, as they stand there."""
+    raw = read_raw(path)
+    lines = raw.lines()
+    header = parsed_header(lines, raw.name)
+    cells = parsed_cells(
+        lines[header.body_line - 1 :], header.labels, header.body_line, Form(raw.name, header.separator)
+    )
+    return list(header.labels), cells.values
+
+
+def tracked_motion(
+    tracked: Tracked, kinematics: Path, coordinates: tuple[Coordinate, ...], known: tuple[str, ...]
+) -> TrackedMotion:
+    """Read the motion and the forces of actuators where all files have both.
+
+    Rates come from their files, or from the angles after a low-pass.
+    """
+    time, q = _coordinates(kinematics, coordinates, "")
+    _refuse_degrees(kinematics, coordinates, q)
+    rates = [_coordinates(one, coordinates, word) for one, word in _rates(tracked)]
+    names, forces = _forces(tracked, known)
+    spans = {kinematics: time, **{one: at for (one, _), (at, _) in zip(_rates(tracked), rates, strict=True)}}
+    spans[tracked.loads[1]] = _table(tracked.loads[1])[1][:, 0]
+    if tracked.forces is not None:
+        spans[tracked.forces] = forces[:, 0]
+    inside = _shared(spans, time) & (time >= tracked.start_s) & (time <= tracked.end_s)
+    _refuse_short(time[inside], tracked)
+    if rates:
+        (_, v), (_, a) = [(at, _at(time, at, values)) for at, values in rates]
+    else:
+        q, v, a = _smoothed(kinematics, coordinates, tracked.lowpass_hz, q)
+    pulls = _at(time, forces[:, 0], forces[:, 1:]) if names else np.zeros((len(time), 0))
+    inside &= np.isfinite(q).all(axis=1) & np.isfinite(v).all(axis=1) & np.isfinite(a).all(axis=1)
+    kept = np.flatnonzero(inside)
+    kept = np.arange(kept[0], kept[-1] + 1)
+    return TrackedMotion(time[kept], q[kept], v[kept], a[kept], names, pulls[kept], not rates)
+
+
+def _rates(tracked: Tracked) -> list[tuple[Path, str]]:
+    if tracked.speeds is None or tracked.accelerations is None:
+        return []
+    return [(tracked.speeds, "/speed"), (tracked.accelerations, "/accel")]
+
+
+def _coordinates(path: Path, coordinates: tuple[Coordinate, ...], word: str) -> tuple[Values, Values]:
+    """Times and free coordinates (sample, coordinate) of a file, in radians and metres."""
+    streams = list(read_storage(path).streams.values())
+    columns = {
+        channel.name.removesuffix(word): stream.values[:, k] * _radians(channel.unit)
+        for stream in streams
+        for k, channel in enumerate(stream.channels)
+    }
+    for one in coordinates:
+        if one.called not in columns:
+            near = nearest_word(one.called, tuple(columns))
+            raise ChannelError(
+                "every free coordinate of the model is measured",
+                f"{path.name} has no column {one.called!r}",
+                f"Did you mean {near!r}? Rename it, or lock the coordinate in the model."
+                if near
+                else "Add it, or lock the coordinate in the model.",
+            )
+    return streams[0].time, np.column_stack([columns[one.called] for one in coordinates])
+
+
+def _radians(unit: str) -> float:
+    return float(np.pi / 180) if unit.startswith("deg") else 1.0
+
+
+def _refuse_degrees(path: Path, coordinates: tuple[Coordinate, ...], q: Values) -> None:
+    for k, one in enumerate(coordinates):
+        largest, limit = float(np.nanmax(np.abs(q[:, k]))), MOST_RAD if one.unit == "rad" else MOST_M
+        if largest > limit:
+            raise SchemaError(
+                f"coordinate {one.called!r} stays within {limit:.3g} {one.unit}",
+                f"{path.name} makes it {largest:.4g} {one.unit}: these may be "
+                f"{'degrees' if one.unit == 'rad' else 'millimetres'}",
+                "Write inDegrees=yes in the header of the file." if one.unit == "rad" else "Write metres.",
+            )
+    turning = [k for k, one in enumerate(coordinates) if one.unit == "rad"]
+    moved = np.ptp(q[:, turning], axis=0) if turning else np.ones(1)
+    if moved.max() < np.radians(2.0):
+        raise SchemaError(
+            "a walk turns some joint by more than 2 deg",
+            f"{path.name}: the most that turns is {np.degrees(moved.max()):.2g} deg, as radians would that are said to "
+            "be degrees",
+            "Write inDegrees=no in the header of the file.",
+        )
+
+
+def _forces(tracked: Tracked, known: tuple[str, ...]) -> tuple[tuple[str, ...], Values]:
+    """Actuators of a forces' file, and its numbers with time first; what the loads' file gives is passed over."""
+    path = tracked.forces
+    if path is None:
+        return (), np.zeros((0, 1))
+    labels, values = _table(path)
+    names = [label.rpartition("/")[2] for label in labels]
+    again = _other_forces(tracked)
+    kept = [0, *(k for k, name in enumerate(names) if k and not name.startswith(again))]
+    for name in (names[k] for k in kept[1:]):
+        if name not in known:
+            near = nearest_word(name, known)
+            raise ChannelError(
+                "every column of the forces' file is an actuator of the model",
+                f"{path.name} has {name!r}, which is none",
+                (f"Did you mean {near!r}? " if near else "")
+                + "Reserves and residuals stand in a file of their own: name it in [tracked] as actuators.",
+            )
+    lacking = [name for name in known if name not in names]
+    if lacking:
+        raise ChannelError(
+            "the forces' file has a column for every actuator of the model",
+            f"{path.name} lacks {lacking[0]!r}" + (f" and {len(lacking) - 1} more" if len(lacking) > 1 else ""),
+            "Export all forces; a muscle that pulls and is not listed would be found missing.",
+        )
+    values = values[:, kept]
+    if not np.isfinite(values).all():
+        row, column = (int(one[0]) for one in np.nonzero(~np.isfinite(values)))
+        raise ReadError(
+            "every force has a number",
+            f"{path.name}: {names[kept[column]]!r} has none in row {row + 1}",
+            "Fill it in.",
+        )
+    return tuple(names[k] for k in kept[1:]), values
+
+
+def _other_forces(tracked: Tracked) -> tuple[str, ...]:
+    """How columns begin of forces that the model or the loads' file gives anyway."""
+    recorded = [
+        f"{(one.findtext('applied_to_body') or '').strip().rpartition('/')[2]}_{one.get('name')}_"
+        for one in _xml(tracked.loads[0]).iter("ExternalForce")
+    ]
+    passive = [
+        one.get("name", "")
+        for forces in _xml(tracked.model).iter("ForceSet")
+        for one in forces.findall("objects/*")
+        if one.tag.endswith(PASSIVE)
+    ]
+    return tuple(name for name in (*recorded, *passive) if name)
+
+
+def _shared(spans: dict[Path, Values], time: Values) -> NDArray[np.bool_]:
+    """Samples of a time base that all files cover."""
+    first = max(spans, key=lambda one: spans[one][0])
+    last = min(spans, key=lambda one: spans[one][-1])
+    begin, end = float(spans[first][0]), float(spans[last][-1])
+    if end - begin < SHORTEST_S:
+        raise SamplingError(
+            f"motion and forces cover {SHORTEST_S:g} s or more together",
+            f"{first.name} begins at {begin:.4g} s, {last.name} ends at {end:.4g} s",
+            "Put both on one clock, or export the same part of the trial.",
+        )
+    return (time >= begin - 1e-9) & (time <= end + 1e-9)
+
+
+def _refuse_short(time: Values, tracked: Tracked) -> None:
+    if len(time) < 2 or time[-1] - time[0] < SHORTEST_S:
+        raise SamplingError(
+            f"a walk lasts {SHORTEST_S:g} s or more",
+            f"{tracked.model.name} is to be tracked from {tracked.start_s:g} to {tracked.end_s:g} s, where "
+            f"{len(time)} samples are",
+            "Correct start_s and end_s in [tracked].",
+        )
+
+
+def _at(time: Values, own: Values, values: Values) -> Values:
+    return np.column_stack([np.interp(time, own, column) for column in values.T])
+
+
+def _smoothed(
+    path: Path, coordinates: tuple[Coordinate, ...], cutoff_hz: float, q: Values
+) -> tuple[Values, Values, Values]:
+    """Coordinates after a low-pass, and their two derivatives."""
+    from gaitdisc.channel import Channel
+    from gaitdisc.recording import Recording
+
+    time, _ = _coordinates(path, coordinates, "")
+    channels = tuple(Channel(one.called, "signal", one.unit) for one in coordinates)
+    smooth = lowpassed(Recording(time, q, channels), cutoff_hz)
+    values, rate = np.array(smooth.values), smooth.rate_hz
+    edge = int(EDGE_PERIODS * rate / cutoff_hz)
+    values[:edge], values[len(values) - edge :] = np.nan, np.nan
+    return values, differentiated(values, rate, 1), differentiated(values, rate, 2)

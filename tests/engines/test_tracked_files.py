@@ -1,0 +1,131 @@
+"""Files of a walk with recorded forces: read on one time base, and refused in words."""
+
+import numpy as np
+import pytest
+
+from gaitdisc.engines.engine import Coordinate
+from gaitdisc.engines.tracked_files import check_loads, read_tracked, tracked_motion
+from gaitdisc.errors import ChannelError, ReadError, SamplingError, SchemaError
+
+JOINTS = (Coordinate("pelvis_ty", "m", "pelvis_ty"), Coordinate("ankle_angle_r", "rad", "ankle_angle_r"))
+ACTUATORS = ("soleus_r", "ankle_angle_r_reserve")
+TIME = np.arange(0, 2, 0.01)
+MODEL = """<OpenSimDocument><Model name="m"><BodySet><objects><Body name="pelvis"/><Body name="calcn_r"/></objects>
+</BodySet><ForceSet><objects><CoordinateLimitForce name="ankle_limit"/></objects></ForceSet>
+</Model></OpenSimDocument>"""
+LOADS = """<OpenSimDocument><ExternalLoads><objects><ExternalForce name="right">
+<applied_to_body>{body}</applied_to_body><force_identifier>ground_force_v</force_identifier>
+<point_identifier>ground_force_p</point_identifier></ExternalForce></objects><datafile>grf.mot</datafile>
+</ExternalLoads></OpenSimDocument>"""
+MAPPING = """[tracked]
+external_loads = "grf.xml"
+forces = "forces.sto"
+"""
+
+
+def storage(path, columns, time=TIME, degrees="no"):
+    rows = np.column_stack([time, *columns.values()])
+    head = f"{path.stem}\nnRows={len(rows)}\nnColumns={len(columns) + 1}\ninDegrees={degrees}\nendheader\n"
+    body = "\n".join("\t".join(f"{one:.8f}" for one in row) for row in rows)
+    path.write_text(head + "\t".join(["time", *columns]) + "\n" + body + "\n")
+
+
+@pytest.fixture
+def walk(tmp_path):
+    """Return a folder with a model, its mapping and the files that it names."""
+    (tmp_path / "leg.osim").write_text(MODEL)
+    (tmp_path / "leg.toml").write_text(MAPPING)
+    (tmp_path / "grf.xml").write_text(LOADS.format(body="calcn_r"))
+    storage(tmp_path / "grf.mot", {f"ground_force_{k}{axis}": TIME for k in "vp" for axis in "xyz"})
+    pulls = {"soleus_r": 100 * TIME, "ankle_angle_r_reserve": TIME, "ankle_limit": TIME, "calcn_r_right_Fx": TIME}
+    storage(tmp_path / "forces.sto", pulls)
+    angle = 10 * np.sin(2 * np.pi * TIME)
+    storage(tmp_path / "walk.mot", {"pelvis_ty": 1 + 0 * TIME, "ankle_angle_r": angle}, degrees="yes")
+    return tmp_path
+
+
+def motion(walk):
+    tracked = read_tracked(walk / "leg.osim")
+    assert tracked is not None
+    check_loads(tracked)
+    return tracked_motion(tracked, walk / "walk.mot", JOINTS, ACTUATORS)
+
+
+def test_degrees_become_radians_and_rates_follow_the_angles(walk):
+    read = motion(walk)
+    inner = slice(50, -50)
+    assert np.allclose(read.q[inner, 1], np.radians(10) * np.sin(2 * np.pi * read.time[inner]), atol=1e-3)
+    assert np.allclose(read.v[inner, 1], np.radians(10) * 2 * np.pi * np.cos(2 * np.pi * read.time[inner]), atol=5e-3)
+    assert read.actuators == ACTUATORS and np.allclose(read.forces[:, 0], 100 * read.time)  # the rest is given anyway
+    assert read.differentiated
+
+
+def test_a_mapping_without_the_table_is_none_and_a_part_of_the_time_is_kept(walk):
+    (walk / "leg.toml").write_text(MAPPING + "start_s = 0.5\nend_s = 1.5\n")
+    read = motion(walk)
+    assert (read.time[0], read.time[-1]) == pytest.approx((0.5, 1.5))
+    (walk / "leg.toml").write_text('model = "leg.osim"\n')
+    assert read_tracked(walk / "leg.osim") is None and read_tracked(walk / "none.osim") is None
+
+
+@pytest.mark.parametrize(
+    ("text", "error", "words"),
+    [
+        ('[tracked]\nforces = "forces.sto"\n', SchemaError, "leg.toml names no external_loads. Write external_loads"),
+        (MAPPING + 'force = "a.sto"\n', SchemaError, "leg.toml has 'force'. Did you mean 'forces'"),
+        (MAPPING.replace("forces.sto", "gone.sto"), ReadError, "there is none at gone.sto"),
+        (MAPPING + "lowpass_hz = '6'\n", SchemaError, "lowpass_hz is a number"),
+        (MAPPING + "start_s = 1.9\n", SamplingError, "Correct start_s and end_s"),
+    ],
+)
+def test_a_mapping_that_cannot_be_meant_is_refused(walk, text, error, words):
+    (walk / "leg.toml").write_text(text)
+    with pytest.raises(error) as refused:
+        motion(walk)
+    assert words in str(refused.value)
+
+
+def test_forces_on_a_body_that_is_not_there_are_refused(walk):
+    (walk / "grf.xml").write_text(LOADS.format(body="calc_r"))
+    with pytest.raises(SchemaError) as refused:
+        motion(walk)
+    assert "force 'right' acts on 'calc_r'; leg.osim has no such body. Did you mean 'calcn_r'?" in str(refused.value)
+
+
+def test_columns_that_the_loads_need_and_are_not_there_are_refused(walk):
+    storage(walk / "grf.mot", {f"ground_force_v{axis}": TIME for axis in "xyz"})
+    with pytest.raises(ChannelError, match="force 'right' needs 'ground_force_px'; there is none"):
+        motion(walk)
+
+
+def test_missing_and_unknown_columns_of_forces_are_refused(walk):
+    storage(walk / "forces.sto", {"soleus_r": TIME})
+    with pytest.raises(ChannelError, match=r"forces.sto lacks 'ankle_angle_r_reserve'. Export all forces"):
+        motion(walk)
+    storage(walk / "forces.sto", dict.fromkeys((*ACTUATORS, "FX"), TIME))
+    with pytest.raises(ChannelError, match=r"forces.sto has 'FX', which is none.*name it in .tracked. as actuators"):
+        motion(walk)
+
+
+def test_files_that_share_no_time_are_refused(walk):
+    storage(walk / "forces.sto", dict.fromkeys(ACTUATORS, TIME), time=TIME + 5)
+    with pytest.raises(SamplingError, match=r"forces.sto begins at 5 s, .* ends at 1.99 s. Put both on one clock"):
+        motion(walk)
+
+
+def test_a_coordinate_without_a_column_is_refused(walk):
+    storage(walk / "walk.mot", {"pelvis_ty": TIME, "ankle_r": 10 * np.sin(TIME)}, degrees="yes")
+    with pytest.raises(ChannelError, match=r"walk.mot has no column 'ankle_angle_r'"):
+        motion(walk)
+
+
+def test_radians_that_are_said_to_be_degrees_are_refused(walk):
+    columns = {"pelvis_ty": 1 + 0 * TIME, "ankle_angle_r": 0.02 * np.sin(TIME)}
+    storage(walk / "walk.mot", columns, degrees="yes")
+    with pytest.raises(SchemaError, match=r"Write inDegrees=no in the header"):
+        motion(walk)
+
+
+def test_the_ends_of_angles_are_left_out_where_rates_come_from_them(walk):
+    read = motion(walk)
+    assert 1 / 6 < read.time[0] < 0.2 and 1.79 < read.time[-1] < 1.99 - 1 / 6  # one period of 6 Hz
