@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.batch.joint_inquiry import WORDS, driven_of, nominal_moment
+from gaitdisc.batch.joint_inquiry import WORDS, changes_of, driven_of, nominal_moment, walk_of, weighed
 from gaitdisc.batch.processed_walks import public_trial
 from gaitdisc.batch.public_words import of_trial, words_of
+from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.errors import ChannelError, SchemaError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.study import Study
@@ -18,13 +19,17 @@ from gaitdisc.ingest.trial_sets import not_compared
 from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.processing.joint_record import JointRecord, joint_record
 from gaitdisc.processing.study_walks import StudyWalks
-from gaitdisc.recording import Finding, Trial
+from gaitdisc.recording import Finding, Samples, Trial
+from gaitdisc.regression.changed_moment import Changed, changed_moment
 from gaitdisc.regression.muscle_moment import MuscleMoment, fitted_moment
-from gaitdisc.results.discovery import Discovery
+from gaitdisc.regression.ridge import fit_ridge
+from gaitdisc.results.amounts import estimate_text
+from gaitdisc.results.discovery import Discovery, Estimate
+from gaitdisc.results.effect_words import spoken
 
 LEAST_R2 = 0.7  # two strides of a published walk have -2.4 and 0.70, 36 s of the embedded cohort 0.96
 HARMONICS = 8  # of the plain regression of what is left
-RIDGE = 1e-3
+NORMAL_95 = 1.96
 Values = NDArray[np.float64]
 
 
@@ -36,10 +41,51 @@ class DeviceWalks:
     device: JointRecord
     model: MuscleMoment
 
+    @cached_property
+    def changed(self) -> Changed | None:
+        """What the strides of both walks together say that changed; None where nothing is borne out."""
+        return changed_moment(self.model, walk_of(self.nominal), walk_of(self.device), changes_of(self.device))
+
+    @property
+    def both_walks_model(self) -> MuscleMoment:
+        """The moment model with gains of both walks where a change was fitted beside them, else of the Nominal walk."""
+        return self.changed.model if self.changed else self.model
+
+    def weighed(self, candidate: Candidate) -> bool:
+        """Whether an explanation is possible: the change that both walks bear out, or all where there is none."""
+        change = self.changed and self.changed.change
+        return weighed(candidate) and (
+            change is None or (candidate.name, candidate.place) == (change.name, change.place)
+        )
+
     @property
     def findings(self) -> tuple[Finding, ...]:
         """Of both files, and of the calibration."""
-        return (*self.nominal.findings, *self.device.findings, self._calibration(), *self._masses())
+        own = (*self.nominal.findings, *self.device.findings, self._calibration(), *self._masses())
+        return (*own, self._together(self.changed)) if self.changed else own
+
+    def _together(self, found: Changed) -> Finding:
+        what = (
+            f"gains are of both walks, fitted together with {spoken(found.change.name)} at {found.change.place}, which "
+            f"closes {100 * found.closed:.0f} % of the squared error on device strides left out of that fit"
+        )
+        return Finding("note", "moment model", self.nominal.subject, what, "")
+
+    def with_model_error(self, found: Discovery) -> Discovery:
+        """Return what was found with the number of both walks, whose interval holds the error of the moment model."""
+        if self.changed is None:
+            return found
+        change, effects, sentence = self.changed.change, [], found.sentence
+        for effect in found.effects:
+            own = dict(effect.estimates)
+            if (effect.name, effect.place) == (change.name, change.place) and change.number in own:
+                old = own[change.number]
+                half = float(np.hypot((old.high - old.low) / 2, NORMAL_95 * self.changed.spread))
+                value = self.changed.value
+                own[change.number] = Estimate(value, value - half, value + half, old.unit)
+                sentence = sentence.replace(estimate_text(old), estimate_text(own[change.number]))
+            effects.append(replace(effect, estimates=own))
+        return replace(found, effects=tuple(effects), sentence=sentence)
 
     def _calibration(self) -> Finding:
         model, word = self.model, WORDS[self.nominal.joint]
@@ -48,7 +94,7 @@ class DeviceWalks:
         what = (
             f"the {word}'s moment model leaves {model.left_nm:.1f} N m of {model.before_nm:.1f} N m on Nominal strides "
             f"left out of its fit (R2 {model.r2:.2f}); EMG acts {1000 * (model.delay_s + model.lag_s):.0f} ms later; "
-            f"{unseen:.1f} N m come from passive parts and from what no electrode sees"
+            f"{unseen:.1f} N m come from what no electrode sees"
         )
         return Finding("note", "moment model", self.nominal.subject, what, "")
 
@@ -147,11 +193,10 @@ def beside(walks: DeviceWalks, found: Discovery) -> dict[str, float]:
     learned = known & ~held
     driven = driven_of(device)
     nominal = model.net(driven)
-    left = device.moment - nominal
     library = _library(device, model.by_muscle(driven))
-    normal = library[learned].T @ library[learned]
-    normal += RIDGE * np.diag(np.diag(normal))
-    augmented = nominal + library @ np.linalg.solve(normal, library[learned].T @ left[learned])
+    names = (*map(str, range(library.shape[1] - 1)), "phi")
+    samples = Samples(library, (device.moment - nominal)[:, None], names, ("left",), device.time, library[:, -1])
+    augmented = nominal + fit_ridge(samples.rows(learned), HARMONICS)(library)[:, 0]
     blocks = np.where(learned, device.stride * 4 // (int(device.stride.max()) + 1), -1)
     exo_model = fitted_moment(driven, np.where(learned, device.moment, np.nan), blocks, (model.delay_s, model.lag_s))
     exo = exo_model.net(driven)
@@ -164,9 +209,7 @@ def beside(walks: DeviceWalks, found: Discovery) -> dict[str, float]:
 
 
 def _library(device: JointRecord, by_muscle: Values) -> Values:
-    """Columns of the plain regression, each of size 1."""
+    """Inputs of the plain regression; the last is percent stride, which brings its harmonics."""
     angle, rate = np.nan_to_num(device.angle), np.nan_to_num(device.rate)
-    turn = 2 * np.pi * np.nan_to_num(device.phase)[:, None] * np.arange(1, HARMONICS + 1)
-    columns = [np.ones_like(angle), angle, rate, angle**2, rate**2, angle * rate, *by_muscle.T]
-    whole = np.hstack([np.column_stack(columns), np.sin(turn), np.cos(turn)])
-    return whole / np.maximum(np.sqrt(np.mean(whole**2, axis=0)), 1e-12)
+    phase = 100 * np.nan_to_num(device.phase)
+    return np.column_stack([angle, rate, angle**2, rate**2, angle * rate, *by_muscle.T, phase])

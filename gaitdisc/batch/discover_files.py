@@ -65,7 +65,7 @@ def discover_study(
     """
     # imported here: a simulation file needs no filters and no pandas
     from gaitdisc.batch.device_study import NoMomentsError, beside, device_walks
-    from gaitdisc.batch.joint_inquiry import tracked_joint, tracked_trials, weighed
+    from gaitdisc.batch.joint_inquiry import tracked_joint, tracked_trials
     from gaitdisc.batch.nominal_model import nominal_inquiry
     from gaitdisc.batch.public_words import words_of
     from gaitdisc.ingest.study_file import load_study
@@ -83,9 +83,10 @@ def discover_study(
         found, augmented = discovered(model, data, catalogue, walks, told)
         said = f"{lacking.needed.capitalize()}, and {lacking.found}: it cannot be named. Of the motion alone: "
         return replace(found, sentence=said + found.sentence), augmented
-    model = tracked_joint(both.device, both.model)
-    data = tracked_trials(both.device, both.model, model)
-    found, augmented = discovered(model, data, catalogue, walks, told, weighed)
+    model = tracked_joint(both.device, both.both_walks_model)
+    data = tracked_trials(both.device, both.both_walks_model, model)
+    found, augmented = discovered(model, data, catalogue, walks, told, both.weighed)
+    found = both.with_model_error(found)
     return replace(found, findings=(*both.findings, *found.findings), beside=beside(both, found)), augmented
 
 
