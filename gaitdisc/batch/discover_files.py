@@ -64,7 +64,7 @@ def discover_study(
         The Nominal model with what was found in it.
     """
     # imported here: a simulation file needs no filters and no pandas
-    from gaitdisc.batch.device_study import NoMomentsError, beside, device_walks
+    from gaitdisc.batch.device_study import NoMomentsError, beside, device_walks, with_foot_mass
     from gaitdisc.batch.joint_inquiry import tracked_joint, tracked_trials
     from gaitdisc.batch.nominal_model import nominal_inquiry
     from gaitdisc.batch.public_words import words_of
@@ -87,7 +87,11 @@ def discover_study(
     data = tracked_trials(both.device, both.both_walks_model, model)
     found, augmented = discovered(model, data, catalogue, walks, told, both.weighed)
     found = both.with_model_error(found)
-    return replace(found, findings=(*both.findings, *found.findings), beside=beside(both, found)), augmented
+    errors = beside(both, found)
+    if joint == "ankle_angle" and not found.effects:
+        told("weighing the foot at knee and hip")
+        found = with_foot_mass(found, read, participant)
+    return replace(found, findings=(*both.findings, *found.findings), beside=errors), augmented
 
 
 def discovered(

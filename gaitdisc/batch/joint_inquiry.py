@@ -86,10 +86,20 @@ def changes_of(record: JointRecord) -> list[Change]:
             "linear_stiffness", word, "stiffness", once, columns=lambda d, _: np.column_stack([d.angle**0, -d.angle])
         ),
         Change(
-            "one_sided_spring", word, "stiffness", angles, columns=lambda d, at: -np.maximum(0, d.angle - at)[:, None]
+            "one_sided_spring",
+            word,
+            "stiffness",
+            angles,
+            columns=lambda d, at: -np.maximum(0, d.angle - at)[:, None],
+            piece=f"max(0, {WORDS[record.joint]} ",
         ),
         Change(
-            "one_sided_spring", word, "stiffness", -angles, columns=lambda d, at: np.maximum(0, -at - d.angle)[:, None]
+            "one_sided_spring",
+            word,
+            "stiffness",
+            -angles,
+            columns=lambda d, at: np.maximum(0, -at - d.angle)[:, None],
+            piece="max(0, _",
         ),
         Change("viscous_damping", word, "damping", once, columns=lambda d, _: -d.rate[:, None]),
         Change("coulomb_friction", word, "friction", once, columns=lambda d, _: -np.sign(d.rate)[:, None]),
@@ -99,10 +109,13 @@ def changes_of(record: JointRecord) -> list[Change]:
     for sign, group in zip((-1, 1), GROUPS[record.joint], strict=True):
         if (signs == sign).any():
             changes.append(Change("wrong_parameter", f"{group}_strength", "value", STRENGTHS, _stronger(sign)))
-    if record.per_kg.size:
-        per_kg = -record.per_kg[:, None]
-        changes.append(Change("wrong_parameter", "added_foot_mass", "value", once, columns=lambda _, __: per_kg))
-    return changes
+    return [*changes, foot_mass_of(record)] if record.per_kg.size else changes
+
+
+def foot_mass_of(record: JointRecord) -> Change:
+    """Return what each kg more at the foot changes in the net moment of inverse dynamics that does not know it."""
+    per_kg = -record.per_kg[:, None]
+    return Change("wrong_parameter", "added_foot_mass", "value", np.zeros(1), columns=lambda _, __: per_kg)
 
 
 def _later(driven: Driven, delay_s: float) -> Driven:

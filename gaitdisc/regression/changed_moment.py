@@ -43,6 +43,7 @@ class Change:
     values: Values
     driven: Callable[[Driven, float], Driven] = lambda driven, _: driven
     columns: Callable[[Driven, float], Values] = lambda driven, _: np.empty((len(driven.angle), 0))
+    piece: str = ""  # with which the catalogue's expression begins, where two effects share a name
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +74,12 @@ def changed_moment(model: MuscleMoment, nominal: Walk, device: Walk, changes: Se
     return Changed(best, changed, number, spread, held)
 
 
+def linear_number(model: MuscleMoment, nominal: Walk, device: Walk, change: Change) -> tuple[float, float]:
+    """Return the number of a change that is linear, borne out or not, and its standard deviation over drawn blocks."""
+    _, number, draws = _drawn_anew(_Both.of(model.form, nominal, device), change, float(change.values[0]), DRAWS)
+    return number, float(np.std(draws))
+
+
 @dataclass(frozen=True, eq=False)
 class _Both:
     """Both walks as normal equations of strides."""
@@ -97,7 +104,7 @@ class _Both:
         mine = sums_of(columns, self.device.moment, self.device.stride, len(self.learned))
         wide = more.shape[1]
         squares = np.pad(self.nominal.squares, ((0, 0), (0, wide), (0, wide)))
-        return Sums(squares, np.pad(self.nominal.match, ((0, 0), (0, wide))), *self.nominal[2:]), mine
+        return Sums(squares, np.pad(self.nominal.match, ((0, 0), (0, wide))), self.nominal.power), mine
 
     def found(self, sums: tuple[Sums, Sums], weights: tuple[Values, Values]) -> tuple[Values, float]:
         """Coefficients and what they leave, strides so many times."""

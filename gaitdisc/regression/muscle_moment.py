@@ -184,7 +184,6 @@ class Sums(NamedTuple):
     squares: Values  # (piece, column, column)
     match: Values  # (piece, column)
     power: Values  # (piece,) [(N m)2]
-    count: Values  # (piece,) samples
 
     def of(self, weights: Values) -> Sums:
         """Return the sum over pieces, each so many times, as one piece without its axis."""
@@ -203,7 +202,7 @@ def sums_of(columns: Values, moment: Values, pieces: NDArray[np.intp], count: in
     for piece in range(count):
         own = kept & (pieces == piece)
         a, b = columns[own], moment[own]
-        parts.append((a.T @ a, a.T @ b, b @ b, own.sum()))
+        parts.append((a.T @ a, a.T @ b, b @ b))
     return Sums(*(np.array(one, np.float64) for one in zip(*parts, strict=True)))
 
 
@@ -250,7 +249,8 @@ def fitted_moment(
     """
     known = np.isfinite(moment) & np.isfinite(driven.phase) & (blocks >= 0)
     span = np.quantile(driven.angle[known], EDGES)
-    usual = np.linalg.lstsq(_cycle(driven.phase, USUAL_HARMONICS)[known], driven.angle[known], rcond=None)[0]
+    turns = _cycle(driven.phase, USUAL_HARMONICS)[known]
+    usual = np.asarray(np.linalg.lstsq(turns, driven.angle[known], rcond=None)[0], np.float64)
     timings = [timing] if timing else [(float(delay), lag) for delay in DELAYS_S for lag in LAGS_S]
     muscles, count = driven.envelopes.shape[1], int(blocks.max()) + 1
     tried = []
