@@ -73,6 +73,9 @@ class DeviceWalks:
             f"gains are of both walks, fitted together with {spoken(found.change.name)} at {found.change.place}, which "
             f"closes {100 * found.closed:.0f} % of the squared error on device strides left out of that fit"
         )
+        if found.rival:
+            rival = f"{spoken(found.rival.name)} at {found.rival.place}"
+            what += f"; the next best, {rival}, leaves {found.rival_leaves:.2f} times as much of what was fitted"
         return Finding("note", "moment model", self.nominal.subject, what, "")
 
     def _calibration(self) -> Finding:

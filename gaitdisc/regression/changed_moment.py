@@ -33,6 +33,16 @@ class Walk(NamedTuple):
     stride: NDArray[np.intp]
 
 
+def as_recorded(driven: Driven, _: float) -> Driven:
+    """Return what drives the muscles of a walk in which they are as they were."""
+    return driven
+
+
+def no_columns(driven: Driven, _: float) -> Values:
+    """Return the moments (sample, 0) of a change that adds none."""
+    return np.empty((len(driven.angle), 0))
+
+
 @dataclass(frozen=True, eq=False)
 class Change:
     """One way in which a walk may differ; `values` is the grid of the number that is not linear, else one value."""
@@ -41,8 +51,8 @@ class Change:
     place: str
     number: str  # whose estimate the change is known by
     values: Values
-    driven: Callable[[Driven, float], Driven] = lambda driven, _: driven
-    columns: Callable[[Driven, float], Values] = lambda driven, _: np.empty((len(driven.angle), 0))
+    driven: Callable[[Driven, float], Driven] = as_recorded
+    columns: Callable[[Driven, float], Values] = no_columns
     piece: str = ""  # with which the catalogue's expression begins, where two effects share a name
 
 
@@ -55,23 +65,28 @@ class Changed:
     value: float
     spread: float  # standard deviation over blocks of strides of both walks drawn anew
     closed: float  # share of the squared error on device strides left out
+    rival: Change | None  # the next best of another name
+    rival_leaves: float  # squared error beside the rival, of that beside the change
 
 
 def changed_moment(model: MuscleMoment, nominal: Walk, device: Walk, changes: Sequence[Change]) -> Changed | None:
     """Return the change that explains both walks best; None where strides left out do not bear it out."""
     both = _Both.of(model.form, nominal, device)
     tried = [(both.misfit(change, value), change, float(value)) for change in changes for value in change.values]
-    _, best, value = min(tried, key=lambda one: one[0])
+    left, best, value = min(tried, key=lambda one: one[0])
+    others = [one for one in tried if (one[1].name, one[1].place) != (best.name, best.place)]
+    rival_left, rival, _ = min(others, key=lambda one: one[0], default=(np.nan, None, 0.0))
     nothing = Change("", "", "", np.zeros(1))
     held = 1 - both.held_out(best, value) / both.held_out(nothing, 0.0)
     if held < CLOSES:
         return None
     found, number, draws = _drawn_anew(both, best, value, DRAWS)
     forms = [replace(model.form, fastest=pace * model.form.fastest) for pace in SPEEDS]
-    others = [_drawn_anew(_Both.of(form, nominal, device), best, value, 0)[1] for form in forms]
-    spread = float(np.hypot(np.std(draws), np.std([number, *others])))
+    at_speeds = [_drawn_anew(_Both.of(form, nominal, device), best, value, 0)[1] for form in forms]
+    errors = [float(np.std(draws)), float(np.std([number, *at_speeds])), _coarseness(both, best, value)]
+    spread = float(np.linalg.norm(errors))
     changed = model_of(model.form, found, model.gains.shape[0], model.left_nm, model.before_nm)
-    return Changed(best, changed, number, spread, held)
+    return Changed(best, changed, number, spread, held, rival, rival_left / left)
 
 
 def linear_number(model: MuscleMoment, nominal: Walk, device: Walk, change: Change) -> tuple[float, float]:
@@ -144,6 +159,13 @@ def _drawn_anew(both: _Both, change: Change, about: float, draws: int) -> tuple[
     found, number = best(both.once)
     drawn = [best((_weights(rng, both.once[0]), _weights(rng, both.learned)))[1] for _ in range(draws)]
     return found, number, drawn
+
+
+def _coarseness(both: _Both, change: Change, about: float) -> float:
+    """Standard deviation of a number that is known to a step of the finer grid; 0 where it is linear."""
+    if len(change.values) < 2 or change.columns(both.device.driven, about).shape[1]:
+        return 0.0
+    return float((FINER[1] - FINER[0]) * abs(change.values[1] - change.values[0]) / np.sqrt(12))
 
 
 def _weights(rng: np.random.Generator, once: Values) -> Values:

@@ -1,4 +1,5 @@
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,7 +19,7 @@ def model(nominal):
     return nominal_moment(nominal)
 
 
-def changed(model, nominal, device):
+def changed(model, nominal, device) -> Any:
     return changed_moment(model, walk_of(nominal), walk_of(device), changes_of(device))
 
 
@@ -39,6 +40,8 @@ def test_what_changed_is_found_with_its_number(model, nominal, hidden, name, pla
     assert (found.change.name, found.change.place) == (name, place)
     assert found.value == pytest.approx(value, rel=0.1)
     assert abs(found.value - value) < 3 * found.spread
+    assert (found.rival.name, found.rival.place) != (name, place)
+    assert found.rival_leaves > 1
 
 
 def test_gains_that_the_nominal_walk_mistakes_are_mended_by_both_walks(nominal, model):
