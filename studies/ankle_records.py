@@ -15,6 +15,7 @@ from scipy.signal import butter, sosfiltfilt
 
 from gaitdisc.cohort.body import bias, inertia, leg_of
 from gaitdisc.cohort.device import FOOT_KG
+from gaitdisc.cohort.leg_path import PHASES, hip_motion
 from gaitdisc.cohort.measurement import measured
 from gaitdisc.cohort.muscles import activated, capacities, strength_of
 from gaitdisc.cohort.person import GROUPS, Person
@@ -42,7 +43,7 @@ def ankle_trials(walk: TrueWalk, emg_late_s: float) -> Measured:
     trial = measured(walk, walk.person.name, "", emg_late_s).stream("kinematics")
     angle = np.radians(trial.values[:, trial.names.index("ankle_angle_r")])
     path = CubicSpline(walk.slow_s, _low(angle))
-    by_emg, per_kg = plantarflexor_moment(walk), moment_per_foot_kg(walk)
+    by_emg, per_kg = plantarflexor_moment(walk), moments_per_foot_kg(walk, hip=False)[:, ANKLE]
     others = walk.moments[:, SIDE, ANKLE] - walk.person.plantarflexors * by_emg
     net = walk.moments[:, SIDE, ANKLE] + walk.spring[:, SIDE]
     net = net - (own_foot_kg(walk.person) + walk.person.foot_kg) * per_kg
@@ -79,20 +80,30 @@ def plantarflexor_moment(walk: TrueWalk) -> Values:
     return total
 
 
-def moment_per_foot_kg(walk: TrueWalk) -> Values:
-    """What each kg at the foot adds to the ankle's moment, the hip's own acceleration left out (time,) [N m/kg]."""
+def moments_per_foot_kg(walk: TrueWalk, hip: bool = True) -> Values:
+    """What each kg at the foot adds to the moments of hip, knee and ankle (time, 3) [N m/kg]; `hip`: it accelerates."""
     angles, speedup = np.radians(walk.angles[:, SIDE]), np.radians(walk.acceleration[:, SIDE])
     psi = _segments(angles[:, 0], angles[:, 3], angles[:, 4])
     turning = np.gradient(psi, 1 / SLOW_HZ, axis=0)
     faster = _segments(speedup[:, 0], speedup[:, 1], speedup[:, 2])
-    person, found = walk.person, np.zeros(len(psi))
+    carried = _hip_speedup(walk) if hip else np.zeros((len(psi), 2))
+    person, found = walk.person, np.zeros((len(psi), 3))
     for kilograms, sign in ((0.0, -1), (1.0, 1)):
         leg, m, b = leg_of(person.height_m, person.mass_kg, kilograms), np.zeros((3, 3)), np.zeros(3)
         for sample in range(len(psi)):
             inertia(leg, psi[sample], m)
-            bias(leg, psi[sample], turning[sample], 0.0, 0.0, b)
-            found[sample] += sign * (m[ANKLE] @ faster[sample] + b[ANKLE])
-    return found
+            bias(leg, psi[sample], turning[sample], *carried[sample], b)
+            found[sample] += sign * (m @ faster[sample] + b)
+    return np.column_stack([found.sum(axis=1), -found[:, 1] - found[:, 2], found[:, 2]])
+
+
+def _hip_speedup(walk: TrueWalk) -> Values:
+    """Acceleration of the hip, forwards and upwards (time, 2) [m/s2]."""
+    grid = np.arange(PHASES) / PHASES
+    phase = walk.phase[:: round(QUICK_HZ / SLOW_HZ)] % 1.0
+    speed = [np.interp(phase, grid, one, period=1.0) for one in hip_motion(walk.person, grid).T]
+    whole = np.column_stack(speed) + np.gradient(walk.pelvis, 1 / SLOW_HZ, axis=0)
+    return np.gradient(whole, 1 / SLOW_HZ, axis=0)
 
 
 def _segments(hip: Values, knee: Values, ankle: Values) -> Values:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from gaitdisc.processing.joint_record import JointRecord
-from gaitdisc.regression.muscle_moment import Driven
+from gaitdisc.regression.muscle_moment import FASTEST, Driven, force_at_speed
 
 RATE_HZ, STRIDE_S = 100.0, 1.1
 MUSCLES = ("emg_sol_r", "emg_gas_r", "emg_ta_r")
@@ -28,7 +28,8 @@ def made_joint(strides=24, seed=0, spring=0.0, late_s=0.0, strength=1.0):
     emg = np.column_stack([0.05 + one * varied(0.15) for one in pulses])
     driven = Driven(emg, np.sign(GAIN), angle, rate, phase, RATE_HZ)
     size = np.array([strength, strength, 1.0]) * GAIN
-    moment = driven.activation(DELAY_S, LAG_S) @ size - spring * np.maximum(0, angle - 0.05)
+    force = force_at_speed(-np.sign(GAIN) * rate[:, None] / FASTEST)
+    moment = (driven.activation(DELAY_S, LAG_S) * force) @ size - spring * np.maximum(0, angle - 0.05)
     wander = np.convolve(rng.normal(size=len(time)), np.ones(10) / np.sqrt(10), "same")
     seen = angle + 0.003 * rng.normal(size=len(time))
     shift = round(late_s * RATE_HZ)

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.batch.joint_inquiry import WORDS, driven_of, nominal_moment
+from gaitdisc.batch.joint_inquiry import WORDS, changes_of, driven_of, foot_mass_of, nominal_moment, walk_of, weighed
 from gaitdisc.batch.processed_walks import public_trial
 from gaitdisc.batch.public_words import of_trial, words_of
+from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.errors import ChannelError, SchemaError
 from gaitdisc.ingest.c3d import C3DReader
 from gaitdisc.ingest.study import Study
@@ -18,13 +20,19 @@ from gaitdisc.ingest.trial_sets import not_compared
 from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.processing.joint_record import JointRecord, joint_record
 from gaitdisc.processing.study_walks import StudyWalks
-from gaitdisc.recording import Finding, Trial
+from gaitdisc.recording import Finding, Samples, Trial
+from gaitdisc.regression.changed_moment import Changed, changed_moment, linear_number
 from gaitdisc.regression.muscle_moment import MuscleMoment, fitted_moment
-from gaitdisc.results.discovery import Discovery
+from gaitdisc.regression.ridge import fit_ridge
+from gaitdisc.results.effect_words import estimate_text
+from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect
+from gaitdisc.results.effect_words import spoken
 
 LEAST_R2 = 0.7  # two strides of a published walk have -2.4 and 0.70, 36 s of the embedded cohort 0.96
 HARMONICS = 8  # of the plain regression of what is left
-RIDGE = 1e-3
+NORMAL_95 = 1.96
+FOOT_SHOWS_AT = ("knee_angle", "hip_flexion")
+LEAST_FOOT_KG = 0.3  # three made people show up to 0.2 kg at these joints where there is none
 Values = NDArray[np.float64]
 
 
@@ -36,10 +44,39 @@ class DeviceWalks:
     device: JointRecord
     model: MuscleMoment
 
+    @cached_property
+    def changed(self) -> Changed | None:
+        """What the strides of both walks together say that changed; None where nothing is borne out."""
+        return changed_moment(self.model, walk_of(self.nominal), walk_of(self.device), changes_of(self.device))
+
+    @property
+    def both_walks_model(self) -> MuscleMoment:
+        """The moment model with gains of both walks where a change was fitted beside them, else of the Nominal walk."""
+        return self.changed.model if self.changed else self.model
+
+    def weighed(self, candidate: Candidate) -> bool:
+        """Whether an explanation is possible: the change that both walks bear out, or all where there is none."""
+        if self.changed is None or not weighed(candidate):
+            return weighed(candidate)
+        change = self.changed.change
+        same = (candidate.name, candidate.place) == (change.name, change.place)
+        return same and (not change.piece or candidate.pieces[0].startswith(change.piece))
+
     @property
     def findings(self) -> tuple[Finding, ...]:
         """Of both files, and of the calibration."""
-        return (*self.nominal.findings, *self.device.findings, self._calibration(), *self._masses())
+        own = (*self.nominal.findings, *self.device.findings, self._calibration(), *self._masses())
+        return (*own, self._together(self.changed)) if self.changed else own
+
+    def _together(self, found: Changed) -> Finding:
+        what = (
+            f"gains are of both walks, fitted together with {spoken(found.change.name)} at {found.change.place}, which "
+            f"closes {100 * found.closed:.0f} % of the squared error on device strides left out of that fit"
+        )
+        if found.rival:
+            rival = f"{spoken(found.rival.name)} at {found.rival.place}"
+            what += f"; the next best, {rival}, leaves {found.rival_leaves:.2f} times as much of what was fitted"
+        return Finding("note", "moment model", self.nominal.subject, what, "")
 
     def _calibration(self) -> Finding:
         model, word = self.model, WORDS[self.nominal.joint]
@@ -48,7 +85,7 @@ class DeviceWalks:
         what = (
             f"the {word}'s moment model leaves {model.left_nm:.1f} N m of {model.before_nm:.1f} N m on Nominal strides "
             f"left out of its fit (R2 {model.r2:.2f}); EMG acts {1000 * (model.delay_s + model.lag_s):.0f} ms later; "
-            f"{unseen:.1f} N m come from passive parts and from what no electrode sees"
+            f"{unseen:.1f} N m come from what no electrode sees"
         )
         return Finding("note", "moment model", self.nominal.subject, what, "")
 
@@ -61,11 +98,35 @@ class DeviceWalks:
         what = f"at the {WORDS[self.device.joint]}, {least:.1f} kg more at the foot would be as large as what is left"
         return [Finding("note", "added mass", self.device.subject, what, "")]
 
+    def with_model_error(self, found: Discovery) -> Discovery:
+        """Return what was found with the number of both walks, whose interval holds the error of the moment model."""
+        if self.changed is None:
+            return found
+        change, effects, sentence = self.changed.change, list(found.effects), found.sentence
+        same = [(one.name, one.place) == (change.name, change.place) for one in effects]
+        if True in same and change.number in (first := effects[same.index(True)]).estimates:
+            old = first.estimates[change.number]
+            half = float(np.hypot((old.high - old.low) / 2, NORMAL_95 * self.changed.spread))
+            new = Estimate(self.changed.value, self.changed.value - half, self.changed.value + half, old.unit)
+            effects[same.index(True)] = replace(first, estimates={**first.estimates, change.number: new})
+            sentence = sentence.replace(estimate_text(old), estimate_text(new))
+        return replace(found, effects=tuple(effects), sentence=sentence)
+
 
 def device_walks(study: Study, participant: str, joint: str = "ankle_angle") -> DeviceWalks:
     """Read one joint of both walks of a participant; a walk that lacks EMG or moments is refused with its name."""
     if joint not in WORDS:
         raise SchemaError(f"a joint is one of {', '.join(WORDS)}", f"found {joint!r}", "Correct --joint.")
+    nominal, device = joint_records(study, participant, (joint,))[joint]
+    model = nominal_moment(nominal)
+    check_calibrated(model, nominal)
+    return DeviceWalks(nominal, device, model)
+
+
+def joint_records(
+    study: Study, participant: str, joints: tuple[str, ...]
+) -> dict[str, tuple[JointRecord, JointRecord]]:
+    """Read some joints of both walks of a participant: the Nominal one and the one with the device, by joint."""
     person = study.participant(participant)
     lacking = not_compared(study, person)
     if lacking:
@@ -80,11 +141,39 @@ def device_walks(study: Study, participant: str, joint: str = "ankle_angle") -> 
             check_kinetics(read.trial)
             mass_kg = None if read.body_weight_n is None else read.body_weight_n / GRAVITY
             public = of_trial(words, person, planned)
-            records.append(public.of(partial(joint_record, read.trial, study, joint, mass_kg)))
-    nominal, device = (replace(one, subject=participant) for one in records)
-    model = nominal_moment(nominal)
-    check_calibrated(model, nominal)
-    return DeviceWalks(nominal, device, model)
+            each = [public.of(partial(joint_record, read.trial, study, joint, mass_kg)) for joint in joints]
+            records.append([replace(one, subject=participant) for one in each])
+    return dict(zip(joints, zip(*records, strict=True), strict=True))
+
+
+def weighed_foot(walks: Iterable[tuple[JointRecord, JointRecord]]) -> Estimate | None:
+    """Return the mass at the foot that several joints of both walks agree on [kg]; None where they show none."""
+    numbers = []
+    for nominal, device in walks:
+        model = nominal_moment(nominal)
+        if device.per_kg.size and model.r2 >= LEAST_R2:
+            numbers.append(linear_number(model, walk_of(nominal), walk_of(device), foot_mass_of(device)))
+    if len(numbers) < len(FOOT_SHOWS_AT):
+        return None
+    values, spreads = np.array(numbers).T
+    weights = spreads**-2 / np.sum(spreads**-2)
+    value = float(weights @ values)
+    apart = float(weights @ (values - value) ** 2) / (len(values) - 1)
+    half = NORMAL_95 * float(np.sqrt(1 / np.sum(spreads**-2) + apart))
+    return Estimate(value, value - half, value + half, "kg") if value > LEAST_FOOT_KG and value > half else None
+
+
+def with_foot_mass(found: Discovery, study: Study, participant: str) -> Discovery:
+    """Return what was found at the ankle where nothing is missing there, with a mass that knee and hip show."""
+    try:
+        mass = weighed_foot(joint_records(study, participant, FOOT_SHOWS_AT).values())
+    except ChannelError:  # files that know the ankle alone
+        return found
+    if mass is None:
+        return found
+    said = f"added_foot_mass is {estimate_text(mass)}, from what knee and hip do to move it; the ankle hardly shows it."
+    effect = FoundEffect("parameter", "added_foot_mass", "wrong_parameter", "", {"value": mass})
+    return replace(found, verdict="wrong_parameter", effects=(effect,), sentence=said)
 
 
 def check_kinetics(trial: Trial) -> None:
@@ -135,7 +224,7 @@ class NoMomentsError(ChannelError):
 def beside(walks: DeviceWalks, found: Discovery) -> dict[str, float]:
     """Root mean square error of the net moment on the held-out strides, model by model [N m].
 
-    Nominal, and Nominal with the named effect, are those of the discovery. Augmented adds a plain regression of what
+    Nominal with the named effect is that of the discovery. Augmented adds a plain regression of what
     is left (angle, rate, their squares and product, each muscle's moment, harmonics of the stride); Exo is the moment
     model fitted to the device walk itself. Both learn from all strides of the device walk that are not held out.
     """
@@ -147,26 +236,25 @@ def beside(walks: DeviceWalks, found: Discovery) -> dict[str, float]:
     learned = known & ~held
     driven = driven_of(device)
     nominal = model.net(driven)
-    left = device.moment - nominal
     library = _library(device, model.by_muscle(driven))
-    normal = library[learned].T @ library[learned]
-    normal += RIDGE * np.diag(np.diag(normal))
-    augmented = nominal + library @ np.linalg.solve(normal, library[learned].T @ left[learned])
+    names = (*map(str, range(library.shape[1] - 1)), "phi")
+    samples = Samples(library, (device.moment - nominal)[:, None], names, ("left",), device.time, library[:, -1])
+    augmented = nominal + fit_ridge(samples.rows(learned), HARMONICS)(library)[:, 0]
     blocks = np.where(learned, device.stride * 4 // (int(device.stride.max()) + 1), -1)
     exo_model = fitted_moment(driven, np.where(learned, device.moment, np.nan), blocks, (model.delay_s, model.lag_s))
     exo = exo_model.net(driven)
     own = known & held
-    before, after, _ = found.held_out.channels["net_moment"]
-    sizes = {"Nominal": before, "Nominal + named effect": after if found.effects else before}
-    for name, one in (("Augmented (plain regression)", augmented), ("Exo", exo)):
+    _, after, _ = found.held_out.channels["net_moment"]
+    sizes: dict[str, float] = {}
+    for name, one in (("Nominal", nominal), ("Augmented (plain regression)", augmented), ("Exo", exo)):
         sizes[name] = float(np.sqrt(np.mean((device.moment - one)[own] ** 2)))
+        if name == "Nominal":
+            sizes["Nominal + named effect"] = after if found.effects else sizes[name]
     return sizes
 
 
 def _library(device: JointRecord, by_muscle: Values) -> Values:
-    """Columns of the plain regression, each of size 1."""
+    """Inputs of the plain regression; the last is percent stride, which brings its harmonics."""
     angle, rate = np.nan_to_num(device.angle), np.nan_to_num(device.rate)
-    turn = 2 * np.pi * np.nan_to_num(device.phase)[:, None] * np.arange(1, HARMONICS + 1)
-    columns = [np.ones_like(angle), angle, rate, angle**2, rate**2, angle * rate, *by_muscle.T]
-    whole = np.hstack([np.column_stack(columns), np.sin(turn), np.cos(turn)])
-    return whole / np.maximum(np.sqrt(np.mean(whole**2, axis=0)), 1e-12)
+    phase = 100 * np.nan_to_num(device.phase)
+    return np.column_stack([angle, rate, angle**2, rate**2, angle * rate, *by_muscle.T, phase])

@@ -61,8 +61,8 @@ def discover_study(
     returns augmented: the Nominal model with what was found in it
     """
     # imported here: a simulation file needs no filters and no pandas
-    from gaitdisc.batch.device_study import NoMomentsError, beside, device_walks
-    from gaitdisc.batch.joint_inquiry import tracked_joint, tracked_trials, weighed
+    from gaitdisc.batch.device_study import NoMomentsError, beside, device_walks, with_foot_mass
+    from gaitdisc.batch.joint_inquiry import tracked_joint, tracked_trials
     from gaitdisc.batch.nominal_model import nominal_inquiry
     from gaitdisc.batch.public_words import words_of
     from gaitdisc.ingest.study_file import load_study
@@ -80,10 +80,15 @@ def discover_study(
         found, augmented = discovered(model, data, catalogue, walks, told)
         said = f"{lacking.needed.capitalize()}, and {lacking.found}: it cannot be named. Of the motion alone: "
         return replace(found, sentence=said + found.sentence), augmented
-    model = tracked_joint(both.device, both.model)
-    data = tracked_trials(both.device, both.model, model)
-    found, augmented = discovered(model, data, catalogue, walks, told, weighed)
-    return replace(found, findings=(*both.findings, *found.findings), beside=beside(both, found)), augmented
+    model = tracked_joint(both.device, both.both_walks_model)
+    data = tracked_trials(both.device, both.both_walks_model, model)
+    found, augmented = discovered(model, data, catalogue, walks, told, both.weighed)
+    found = both.with_model_error(found)
+    errors = beside(both, found)
+    if joint == "ankle_angle" and not found.effects:
+        told("weighing the foot at knee and hip")
+        found = with_foot_mass(found, read, participant)
+    return replace(found, findings=(*both.findings, *found.findings), beside=errors), augmented
 
 
 def discovered(

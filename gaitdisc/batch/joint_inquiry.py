@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.errors import StrideError
 from gaitdisc.processing.joint_record import JointRecord
+from gaitdisc.regression.changed_moment import Change, Walk
 from gaitdisc.regression.muscle_moment import Driven, MuscleMoment, fitted_moment, sign_at
 from gaitdisc.simulation.even_time import TrialColumns
 from gaitdisc.simulation.measured import Measured, measured_of_trials
@@ -20,6 +24,8 @@ KNOWN = 0.3  # of the samples of a trial, with a known load of the foot
 BLOCKS = 4  # of the Nominal walk, each left out of the calibration once
 RATE_HZ = 50.0  # enough for moments below 20 Hz
 TRACKED = (800.0, 57.0, 1.0)  # of angle, rate and acceleration
+DELAYS_S, STRENGTHS = np.arange(-0.08, 0.081, 0.01), np.arange(0.5, 1.51, 0.05)  # that a walk's muscles may have
+ENGAGED, ENGAGED_STEP = (0.02, 0.9), np.radians(1.0)  # quantiles of the angle between which a spring may engage
 STRENGTH = 0.06  # by which a muscle group may differ from the Nominal walk's before it is a finding
 SEEN_RAD = 0.005  # noise of an angle, where it follows its own reference
 # joint -> what a clinician calls the groups that turn it towards its negative and its positive angle
@@ -63,6 +69,66 @@ def nominal_moment(record: JointRecord) -> MuscleMoment:
     return fitted_moment(driven_of(record), moment, blocks)
 
 
+def walk_of(record: JointRecord) -> Walk:
+    """Return one walk for the fit of both together."""
+    known = np.isfinite(record.moment) & np.isfinite(record.rate) & np.isfinite(record.phase)
+    return Walk(driven_of(record), np.where(known, record.moment, np.nan), record.stride)
+
+
+def changes_of(record: JointRecord) -> list[Change]:
+    """List what a device, a muscle or a mass may change in a walk, by the names of the simulation and the catalogue."""
+    word, once = f"{WORDS[record.joint]}_moment", np.zeros(1)
+    low, high = np.quantile(record.angle[record.stride >= 0], ENGAGED)
+    angles = np.arange(low, high, ENGAGED_STEP)
+    changes = [
+        Change("constant_load", word, "load", once, columns=lambda d, _: np.ones((len(d.angle), 1))),
+        Change(
+            "linear_stiffness", word, "stiffness", once, columns=lambda d, _: np.column_stack([d.angle**0, -d.angle])
+        ),
+        Change(
+            "one_sided_spring",
+            word,
+            "stiffness",
+            angles,
+            columns=lambda d, at: -np.maximum(0, d.angle - at)[:, None],
+            piece=f"max(0, {WORDS[record.joint]} ",
+        ),
+        Change(
+            "one_sided_spring",
+            word,
+            "stiffness",
+            -angles,
+            columns=lambda d, at: np.maximum(0, -at - d.angle)[:, None],
+            piece="max(0, _",
+        ),
+        Change("viscous_damping", word, "damping", once, columns=lambda d, _: -d.rate[:, None]),
+        Change("coulomb_friction", word, "friction", once, columns=lambda d, _: -np.sign(d.rate)[:, None]),
+        Change("wrong_parameter", "emg_delay", "value", DELAYS_S, _later),
+    ]
+    signs = driven_of(record).signs
+    for sign, group in zip((-1, 1), GROUPS[record.joint], strict=True):
+        if (signs == sign).any():
+            changes.append(Change("wrong_parameter", f"{group}_strength", "value", STRENGTHS, _stronger(sign)))
+    return [*changes, foot_mass_of(record)] if record.per_kg.size else changes
+
+
+def foot_mass_of(record: JointRecord) -> Change:
+    """Return what each kg more at the foot changes in the net moment of inverse dynamics that does not know it."""
+    per_kg = -record.per_kg[:, None]
+    return Change("wrong_parameter", "added_foot_mass", "value", np.zeros(1), columns=lambda _, __: per_kg)
+
+
+def _later(driven: Driven, delay_s: float) -> Driven:
+    at = np.arange(len(driven.angle))
+    late = np.column_stack([np.interp(at - delay_s * driven.rate_hz, at, one) for one in driven.envelopes.T])
+    return replace(driven, envelopes=late)
+
+
+def _stronger(sign: int) -> Callable[[Driven, float], Driven]:
+    """Return how the muscles of one sign become so much stronger."""
+    return lambda driven, by: replace(driven, envelopes=driven.envelopes * np.where(driven.signs == sign, by, 1.0))
+
+
 def tracked_joint(record: JointRecord, model: MuscleMoment) -> Simulation:
     """Return the simulation: the joint goes with the recorded motion, and the model says its net moment.
 
@@ -77,7 +143,7 @@ def tracked_joint(record: JointRecord, model: MuscleMoment) -> Simulation:
         Input("reference", "rad/s^2", "recorded motion, low-passed: acceleration + 57*rate + 800*angle"),
         *(Input(name, "1", "activation, from its EMG as in the Nominal walk") for name, _ in muscles),
         *(Input(f"{name}_gain", "N m", "moment at activation 1, as in the Nominal walk") for name, _ in muscles),
-        Input("others", "N m", "passive parts, and what no electrode sees, as in the Nominal walk"),
+        Input("others", "N m", "what no electrode sees, as in the Nominal walk"),
         Input("phase", "1", "percent stride / 100"),
     ]
     groups = [one for one in (against, towards) if any(group == one for _, group in muscles)]

@@ -27,6 +27,7 @@ from gaitdisc.signals.strides import cut_strides
 JOINT_AT = {"ankle_angle": "ankle_lateral", "knee_angle": "knee_lateral", "hip_flexion": "asis"}  # landmark of a joint
 LEAST_DEG, PERCENTILES = 2.0, (5, 95)
 MOMENT_HZ = 20.0  # the moment keeps what the forces' own filter left of it
+ANGLE_HZ = 12.0  # a muscle's force needs the speed of push-off, which the usual low-pass of angles halves
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +80,7 @@ def joint_record(trial: Trial, study: Study, joint: str, mass_kg: float | None) 
             f"{trial.name}: {name} moves by {moved:.2g} deg, as one in radians would that is said to be in degrees",
             "State the file's unit (inDegrees=no), or choose a joint that is not held.",
         )
-    smooth = lowpassed(raw, filters.kinematics_hz, filters.order, filters.gap_s)
+    smooth = lowpassed(raw, max(ANGLE_HZ, filters.kinematics_hz), filters.order, filters.gap_s)
     rate, speedup = (np.radians(differentiated(smooth.values, smooth.rate_hz, order)[:, 0]) for order in (1, 2))
     moment = _moment(trial, name, mass_kg, raw.time)
     envelopes, muscles, dead = _envelopes(trial, study, side, raw.time)

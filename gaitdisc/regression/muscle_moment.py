@@ -1,32 +1,41 @@
 """The net moment of a joint from the EMG of the muscles that span it: activation, then gains that anatomy gives a sign.
 
-Activation is the envelope a delay later, through a first-order lag. Each muscle's moment is its activation times a gain
-that varies with the joint's angle and rate (bilinear between the ends of what was seen, and no further), of the sign
-that anatomy gives it and nowhere of the other. Beside the muscles stand a passive spring and damper, which resist, and
-a constant. What remains repeatable over the stride is what no electrode sees (deep muscles, cross-talk): it is kept as
-a curve over the stride. All is fitted to one walk by least squares; delay and lag are those that explain blocks of
-strides best that were left out of the fit.
+Activation is the envelope a delay later, through a first-order lag. Each muscle's moment is its activation, times what
+the speed of its fibres leaves of a force (Hill's hyperbola, 1.4 of the isometric force in lengthening), times a gain
+that varies with the joint's angle (straight between the ends of what was seen, and no further), of the sign that
+anatomy gives it. Beside the muscles stands what resists a departure from the usual stride of the walk that calibrates
+(fibres' own stiffness, passive tissue, fast reflexes: no electrode sees it); it differs over the stride and is nowhere
+negative. What remains repeatable over the stride (deep muscles, cross-talk) is kept as a curve. All is fitted by least
+squares; delay and lag are those that explain blocks of strides best that were left out of the fit.
 
 References
 ----------
 Lloyd DG, Besier TF (2003). An EMG-driven musculoskeletal model to estimate muscle forces and knee joint moments in
 vivo. J Biomech 36(6), 765-776. Buchanan TS, Lloyd DG, Manal K, Besier TF (2004). Neuromusculoskeletal modeling. J Appl
-Biomech 20(4), 367-395.
+Biomech 20(4), 367-395. Zajac FE (1989). Muscle and tendon. Crit Rev Biomed Eng 17(4), 359-411. Rouse EJ, Hargrove LJ,
+Perreault EJ, Kuiken TA (2014). Estimation of human ankle impedance during the stance phase of walking. IEEE Trans
+Neural Syst Rehabil Eng 22(4), 870-878.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 DELAYS_S = np.arange(0.0, 0.11, 0.02)
 LAGS_S = (0.015, 0.03, 0.05)
-RESPECT = 0.03  # ridge that pulls the four gains of a muscle together, of the mean squared regressor
-HARMONICS = 6  # of the curve that no electrode sees
-EDGES = (0.01, 0.99)  # quantiles of angle and rate between which a gain varies
+RESPECT = 0.03  # ridge that pulls the two gains of a muscle together, of the mean squared regressor
+HARMONICS, USUAL_HARMONICS = 6, 8  # of the curve that no electrode sees, and of the usual angle
+EDGES = (0.01, 0.99)  # quantiles of the angle between which a gain varies
+# joint's speed at which its muscles give nothing [rad/s]: ten fibre lengths a second (Zajac), 5 to 10 cm long on arms
+# of 4 to 5 cm, a third to two thirds of a path's change in the fibres; general knowledge, the same for all
+FASTEST = 25.0
+CURVATURE, ECCENTRIC = 0.25, 0.4  # of Hill's hyperbola; force in fast lengthening on top of the isometric one
+FIRMNESS = 5  # parts of the stride, between which the stiffness about the usual stride goes straight
 # towards the positive angle (dorsiflexion, knee flexion, hip flexion), or against it
 SPANS: Mapping[str, Mapping[str, int]] = {
     "ankle_angle": {
@@ -55,6 +64,8 @@ Values = NDArray[np.float64]
 def sign_at(joint: str, muscle: str) -> int:
     """Return the direction in which a muscle turns a joint, of a channel such as `emg_sol_r`; 0 where it does not.
 
+    Examples
+    --------
     >>> sign_at("ankle_angle", "emg_sol_r"), sign_at("ankle_angle", "emg_vas_r")
     (-1, 0)
     """
@@ -63,14 +74,14 @@ def sign_at(joint: str, muscle: str) -> int:
 
 @dataclass(frozen=True, eq=False)
 class Driven:
-    """What drives the muscles about a joint in one walk."""
+    """What drives the muscles about a joint in one walk; one row a sample."""
 
-    envelopes: Values  # (sample, muscle), EMG envelopes of the muscles that span the joint
-    signs: Values  # (muscle,), towards the positive angle or against it
-    angle: Values  # (sample,), [rad, rad/s, share of the stride]
-    rate: Values  # (sample,), [rad, rad/s, share of the stride]
-    phase: Values  # (sample,), [rad, rad/s, share of the stride]
-    rate_hz: float  # samples a second
+    envelopes: Values  # (sample, muscle)
+    signs: Values  # (muscle,) towards the positive angle or against it
+    angle: Values  # [rad]
+    rate: Values  # [rad/s]
+    phase: Values  # share of the stride
+    rate_hz: float
 
     def activation(self, delay_s: float, lag_s: float) -> Values:
         """Return the envelopes so much later, through a first-order lag (sample, muscle)."""
@@ -83,25 +94,71 @@ class Driven:
 
 
 @dataclass(frozen=True, eq=False)
+class Form:
+    """What the columns of a moment model depend on: timing of activation, angles seen, and the usual stride."""
+
+    delay_s: float
+    lag_s: float
+    span: Values  # (2,) low and high angle between which gains vary [rad]
+    usual: Values  # mean angle and its harmonics over the stride of the calibrating walk [rad]
+    fastest: float = FASTEST  # [rad/s]
+
+    def muscles(self, driven: Driven) -> Values:
+        """Columns (sample, 2 a muscle): activation times force at speed, shared between the ends of the angle."""
+        active = driven.activation(self.delay_s, self.lag_s)[:, :, None] * self._ends(driven)
+        return active.reshape(len(active), -1)
+
+    def gain(self, driven: Driven, gains: Values) -> Values:
+        """Moment of each muscle for each unit of activation, with its sign (sample, muscle) [N m]."""
+        return np.einsum("sme,me->sm", self._ends(driven), gains)
+
+    def firm(self, driven: Driven) -> Values:
+        """Columns (sample, FIRMNESS): how far the angle is short of the usual one, in each part of the stride."""
+        at = np.mod(np.nan_to_num(driven.phase), 1.0)[:, None] * FIRMNESS
+        apart = np.abs(np.mod(at - np.arange(FIRMNESS) + FIRMNESS / 2, FIRMNESS) - FIRMNESS / 2)
+        behind = _cycle(driven.phase, USUAL_HARMONICS) @ self.usual - driven.angle
+        return np.maximum(1.0 - apart, 0.0) * behind[:, None]
+
+    def columns(self, driven: Driven) -> Values:
+        """All columns: two a muscle, a constant, firmness, and the waves that no electrode sees."""
+        constant = np.ones((len(driven.angle), 1))
+        return np.hstack([self.muscles(driven), constant, self.firm(driven), _cycle(driven.phase, HARMONICS)[:, 1:]])
+
+    def _ends(self, driven: Driven) -> Values:
+        """Signed share of the low and the high gain of each muscle (sample, muscle, 2)."""
+        low, high = self.span
+        share = np.clip((driven.angle - low) / max(high - low, 1e-9), 0.0, 1.0)
+        ends = np.column_stack([1 - share, share])
+        force = np.column_stack([sign * force_at_speed(-sign * driven.rate / self.fastest) for sign in driven.signs])
+        return np.asarray(force[:, :, None] * ends[:, None, :], np.float64)
+
+
+@dataclass(frozen=True, eq=False)
 class MuscleMoment:
     """A fitted moment model."""
 
-    # (muscle, 4), at low and high angle, each at low and high rate, without sign [N m per unit of the envelope]
-    gains: Values
-    passive: Values  # (3,), stiffness [N m/rad], damping [N m s/rad], constant [N m]
-    unseen: Values  # (2 x HARMONICS,), sines and cosines of the curve over the stride that no electrode sees [N m]
-    span: Values  # (2, 2), low and high angle [rad] and rate [rad/s] between which gains vary
-    delay_s: float
-    lag_s: float
-    # root mean square of what is left, and of the moment about its mean, on strides left out of the fit [N m]
-    left_nm: float = float("nan")
-    # root mean square of what is left, and of the moment about its mean, on strides left out of the fit [N m]
-    before_nm: float = float("nan")
+    form: Form
+    gains: Values  # (muscle, 2) at low and high angle, without sign [N m per unit of the envelope]
+    constant: float  # [N m]
+    firmness: Values  # (FIRMNESS,) against a departure from the usual stride [N m/rad]
+    unseen: Values  # (2 x HARMONICS,) of the curve over the stride that no electrode sees [N m]
+    left_nm: float = float("nan")  # root mean square of what is left on strides left out of the fit [N m]
+    before_nm: float = float("nan")  # and of the moment about its mean
 
     @property
     def r2(self) -> float:
         """Share of the moment's variance that is explained on strides left out of the fit."""
         return 1 - (self.left_nm / self.before_nm) ** 2
+
+    @property
+    def delay_s(self) -> float:
+        """Of activation behind the envelope [s]."""
+        return self.form.delay_s
+
+    @property
+    def lag_s(self) -> float:
+        """Of activation behind the delayed envelope [s]."""
+        return self.form.lag_s
 
     def by_muscle(self, driven: Driven) -> Values:
         """Return each muscle's moment (sample, muscle) [N m]."""
@@ -113,11 +170,73 @@ class MuscleMoment:
 
     def gain(self, driven: Driven) -> Values:
         """Return each muscle's moment for each unit of activation, with its sign (sample, muscle) [N m]."""
-        return driven.signs * (_corners(driven, self.span) @ self.gains.T)
+        return self.form.gain(driven, self.gains)
 
     def others(self, driven: Driven) -> Values:
-        """Return passive parts and the curve over the stride, which no electrode sees (sample,) [N m]."""
-        return _passive(driven) @ self.passive + _waves(driven.phase) @ self.unseen
+        """Return what no electrode sees: firmness about the usual stride, and a curve over it (sample,) [N m]."""
+        waves = _cycle(driven.phase, HARMONICS)[:, 1:] @ self.unseen
+        return self.constant + self.form.firm(driven) @ self.firmness + waves
+
+
+class Sums(NamedTuple):
+    """Normal equations, one each of some pieces of a walk."""
+
+    squares: Values  # (piece, column, column)
+    match: Values  # (piece, column)
+    power: Values  # (piece,) [(N m)2]
+
+    def of(self, weights: Values) -> Sums:
+        """Return the sum over pieces, each so many times, as one piece without its axis."""
+        return Sums(*(np.tensordot(weights, one, 1) for one in self))
+
+    def left(self, found: Values) -> Values:
+        """Return the sum of squares that coefficients leave of each piece (piece,) [(N m)2]."""
+        own = np.einsum("pij,i,j->p", self.squares, found, found)
+        return self.power - 2 * self.match @ found + own
+
+
+def sums_of(columns: Values, moment: Values, pieces: NDArray[np.intp], count: int) -> Sums:
+    """Return the normal equations of each piece 0 to count - 1; samples without a number or outside are left out."""
+    kept = np.isfinite(moment) & np.isfinite(columns).all(axis=1)
+    parts = []
+    for piece in range(count):
+        own = kept & (pieces == piece)
+        a, b = columns[own], moment[own]
+        parts.append((a.T @ a, a.T @ b, b @ b))
+    return Sums(*(np.array(one, np.float64) for one in zip(*parts, strict=True)))
+
+
+def solved(total: Sums, muscles: int) -> Values:
+    """Return coefficients of summed normal equations, then the waves of what these leave.
+
+    Gains and firmness are not negative, the two gains of a muscle are pulled together; columns behind the waves (what a
+    device does) are fitted with the first ones and are free.
+    """
+    from scipy.optimize import lsq_linear
+
+    waves = np.arange(2 * muscles + 1 + FIRMNESS, 2 * muscles + 1 + FIRMNESS + 2 * HARMONICS)
+    first = np.setdiff1d(np.arange(len(total.match)), waves)
+    normal, match = total.squares[np.ix_(first, first)].copy(), total.match[first]
+    for number in range(muscles):
+        own = slice(2 * number, 2 * number + 2)
+        normal[own, own] += RESPECT * float(np.trace(normal[own, own])) / 2 * (np.eye(2) - 0.5)
+    size = np.sqrt(np.maximum(np.diag(normal), 1e-12))
+    root = np.linalg.cholesky(normal / np.outer(size, size) + 1e-9 * np.eye(len(first)))
+    low = np.full(len(first), -np.inf)
+    low[: 2 * muscles] = low[2 * muscles + 1 : 2 * muscles + 1 + FIRMNESS] = 0.0
+    own = lsq_linear(root.T, np.linalg.solve(root, match / size), (low, np.inf), method="bvls").x / size
+    found = np.zeros(len(total.match))
+    found[first] = own
+    left = total.match[waves] - total.squares[np.ix_(waves, first)] @ own
+    found[waves] = np.linalg.lstsq(total.squares[np.ix_(waves, waves)], left, rcond=None)[0]
+    return found
+
+
+def model_of(form: Form, found: Values, muscles: int, left_nm: float, before_nm: float) -> MuscleMoment:
+    """Return the model of some coefficients."""
+    gains, rest = found[: 2 * muscles].reshape(muscles, 2), found[2 * muscles :]
+    firm, waves = rest[1 : 1 + FIRMNESS], rest[1 + FIRMNESS : 1 + FIRMNESS + 2 * HARMONICS]
+    return MuscleMoment(form, gains, float(rest[0]), firm, waves, left_nm, before_nm)
 
 
 def fitted_moment(
@@ -125,95 +244,43 @@ def fitted_moment(
 ) -> MuscleMoment:
     """Fit the model to a walk; delay and lag [s] are searched where they are not given.
 
-    moment (sample,): net moment towards the positive angle [N m]
-    blocks (sample,): which block of strides each sample belongs to; -1 for none. Each is left out of the fit once
+    `moment` is the net moment towards the positive angle [N m]; `blocks` numbers the blocks of strides that are left
+    out of the fit in turn, -1 for none.
     """
     known = np.isfinite(moment) & np.isfinite(driven.phase) & (blocks >= 0)
-    span = np.array([np.quantile(one[known], EDGES) for one in (driven.angle, driven.rate)])
+    span = np.quantile(driven.angle[known], EDGES)
+    turns = _cycle(driven.phase, USUAL_HARMONICS)[known]
+    usual = np.asarray(np.linalg.lstsq(turns, driven.angle[known], rcond=None)[0], np.float64)
     timings = [timing] if timing else [(float(delay), lag) for delay in DELAYS_S for lag in LAGS_S]
-    coarse = [_left_out(driven, moment, blocks, span, timing, known) for timing in timings]
-    delay, lag = timings[int(np.argmin(coarse))]
-    whole = _solved(driven, moment, span, (delay, lag), known)
-    left = float(min(coarse))
-    return MuscleMoment(*whole, span, delay, lag, left, float(np.std(moment[known])))
+    muscles, count = driven.envelopes.shape[1], int(blocks.max()) + 1
+    tried = []
+    for one in timings:
+        form = Form(*one, span, usual)
+        sums = sums_of(form.columns(driven), np.where(known, moment, np.nan), blocks, count)
+        apart = 1.0 - np.eye(count)
+        left = sum(float(sums.left(solved(sums.of(apart[block]), muscles))[block]) for block in range(count))
+        tried.append((left, form, sums))
+    left, form, sums = min(tried, key=lambda one: one[0])
+    left_nm, before_nm = float(np.sqrt(left / known.sum())), float(np.std(moment[known]))
+    return model_of(form, solved(sums.of(np.ones(count)), muscles), muscles, left_nm, before_nm)
 
 
-def _left_out(
-    driven: Driven,
-    moment: Values,
-    blocks: NDArray[np.intp],
-    span: Values,
-    timing: tuple[float, float],
-    known: NDArray[np.bool_],
-) -> float:
-    """Root mean square of what is left of blocks that were left out of the fit [N m]."""
-    parts = _parts(driven, span, timing)
-    squares, muscles = 0.0, driven.envelopes.shape[1]
-    for block in np.unique(blocks[known]):
-        own = known & (blocks == block)
-        found = _bounded(parts, moment, known & ~own, muscles)
-        squares += float(((moment[own] - parts[own] @ found) ** 2).sum())
-    return float(np.sqrt(squares / known.sum()))
+def force_at_speed(lengthening: Values) -> Values:
+    """Share of the isometric force at a speed of lengthening, of the fastest shortening (Hill 1938, Zajac 1989).
+
+    Examples
+    --------
+    >>> force_at_speed(np.array([-1.0, -0.25, 0.0, 9.0])).round(2).tolist()
+    [0.0, 0.38, 1.0, 1.4]
+    """
+    slow = np.minimum(lengthening, 0.0)
+    fast = np.maximum(lengthening, 0.0)
+    shortening = np.maximum(0.0, 1.0 + slow) / (1.0 - slow / CURVATURE)
+    steep = ECCENTRIC / (1.0 + 1.0 / CURVATURE)  # of one slope at rest
+    return np.where(lengthening < 0, shortening, 1.0 + ECCENTRIC * fast / (fast + steep))
 
 
-def _solved(
-    driven: Driven, moment: Values, span: Values, timing: tuple[float, float], known: NDArray[np.bool_]
-) -> tuple[Values, Values, Values]:
-    muscles = driven.envelopes.shape[1]
-    found = _bounded(_parts(driven, span, timing), moment, known, muscles)
-    return found[: 4 * muscles].reshape(muscles, 4), found[4 * muscles : 4 * muscles + 3], found[4 * muscles + 3 :]
-
-
-def _parts(driven: Driven, span: Values, timing: tuple[float, float]) -> Values:
-    """Regressors (sample, 4 a muscle + 3 + waves)."""
-    active = driven.signs * driven.activation(*timing)
-    corners = _corners(driven, span)
-    muscles = [active[:, [number]] * corners for number in range(active.shape[1])]
-    return np.hstack([*muscles, _passive(driven), _waves(driven.phase)])
-
-
-def _bounded(parts: Values, moment: Values, kept: NDArray[np.bool_], muscles: int) -> Values:
-    """Least squares with gains, stiffness and damping that are not negative; then the curve, of what these leave."""
-    first = 4 * muscles + 3
-    seen = _signed(parts[:, :first], moment, kept, muscles)
-    left = (moment - parts[:, :first] @ seen)[kept]
-    return np.asarray(np.concatenate([seen, np.linalg.lstsq(parts[kept, first:], left, rcond=None)[0]]), np.float64)
-
-
-def _signed(parts: Values, moment: Values, kept: NDArray[np.bool_], muscles: int) -> Values:
-    """Least squares with gains, stiffness and damping that are not negative, a muscle's gains pulled together."""
-    from scipy.optimize import lsq_linear
-
-    columns = parts.shape[1]
-    normal, match = parts[kept].T @ parts[kept], parts[kept].T @ moment[kept]
-    for number in range(muscles):
-        own = slice(4 * number, 4 * number + 4)
-        size = float(np.trace(normal[own, own])) / 4
-        normal[own, own] += RESPECT * size * (np.eye(4) - 0.25)
-    size = np.sqrt(np.maximum(np.diag(normal), 1e-12))
-    scaled = normal / np.outer(size, size) + 1e-9 * np.eye(columns)
-    root = np.linalg.cholesky(scaled)
-    low = np.full(columns, -np.inf)
-    low[: 4 * muscles + 2] = 0.0
-    found = lsq_linear(
-        root.T, np.linalg.solve(root, match / size), (low, np.inf), method="bvls" if columns < 40 else "trf"
-    )
-    return np.asarray(found.x / size, np.float64)
-
-
-def _corners(driven: Driven, span: Values) -> Values:
-    """Weights of the four ends of angle and rate (sample, 4): they add up to 1."""
-    shares = [
-        np.clip((one - low) / max(high - low, 1e-9), 0.0, 1.0)
-        for one, (low, high) in zip((driven.angle, driven.rate), span, strict=True)
-    ]
-    return np.column_stack([a * b for a in (1 - shares[0], shares[0]) for b in (1 - shares[1], shares[1])])
-
-
-def _passive(driven: Driven) -> Values:
-    return np.column_stack([-driven.angle, -driven.rate, np.ones(len(driven.angle))])
-
-
-def _waves(phase: Values) -> Values:
-    turn = 2 * np.pi * np.nan_to_num(phase)[:, None] * np.arange(1, HARMONICS + 1)
-    return np.hstack([np.sin(turn), np.cos(turn)])
+def _cycle(phase: Values, harmonics: int) -> Values:
+    """A constant and harmonics of the stride (sample, 1 + 2 harmonics)."""
+    turn = 2 * np.pi * np.nan_to_num(phase)[:, None] * np.arange(1, harmonics + 1)
+    return np.hstack([np.ones((len(phase), 1)), np.sin(turn), np.cos(turn)])

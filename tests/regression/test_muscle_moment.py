@@ -1,14 +1,14 @@
 import numpy as np
 import pytest
 
-from gaitdisc.regression.muscle_moment import Driven, fitted_moment, sign_at
+from gaitdisc.regression.muscle_moment import FASTEST, FIRMNESS, Driven, fitted_moment, force_at_speed, sign_at
 
 RATE_HZ, STRIDES, STRIDE = 100.0, 12, 110
 
 
 @pytest.fixture(scope="module")
 def made():
-    """Two muscles of known gain, delay and lag, beside a passive spring."""
+    """Two muscles of known gain, delay and lag, beside what resists a departure from the usual stride."""
     rng = np.random.default_rng(0)
     count = np.arange(STRIDES * STRIDE) / STRIDE
     phase = count % 1
@@ -16,17 +16,20 @@ def made():
     emg = np.column_stack(
         [h * np.exp(-(((phase - at) / 0.08) ** 2)) for h, at in zip(heights, (0.4, 0.75), strict=True)]
     )
-    angle = 0.2 * np.sin(2 * np.pi * phase)
-    driven = Driven(emg, np.array([-1.0, 1.0]), angle, np.gradient(angle, 1 / RATE_HZ), phase, RATE_HZ)
-    moment = driven.activation(0.04, 0.03) @ np.array([-80.0, 25.0]) - 12.0 * angle + 3.0
+    usual = 0.2 * np.sin(2 * np.pi * phase)
+    angle = usual + 0.02 * np.interp(count, np.arange(0, STRIDES + 0.1, 0.5), rng.normal(size=2 * STRIDES + 1))
+    signs = np.array([-1.0, 1.0])
+    driven = Driven(emg, signs, angle, np.gradient(angle, 1 / RATE_HZ), phase, RATE_HZ)
+    force = force_at_speed(-signs * driven.rate[:, None] / FASTEST)
+    moment = (driven.activation(0.04, 0.03) * force) @ np.array([-80.0, 25.0]) + 60.0 * (usual - angle) + 3.0
     return driven, moment, count.astype(int) // 3
 
 
-def test_gains_delay_and_passive_spring_come_back(made):
+def test_gains_delay_and_the_stiffness_about_the_usual_stride_come_back(made):
     model = fitted_moment(*made)
     assert (model.delay_s, model.lag_s) == (pytest.approx(0.04), 0.03)
     np.testing.assert_allclose(model.gains.mean(axis=1), [80.0, 25.0], rtol=0.05)
-    assert model.passive[0] == pytest.approx(12.0, rel=0.2)
+    np.testing.assert_allclose(model.firmness, np.full(FIRMNESS, 60.0), rtol=0.25)
     assert model.left_nm < 0.02 * model.before_nm
 
 
@@ -35,7 +38,7 @@ def test_a_muscle_never_pushes_the_other_way(made):
     model = fitted_moment(driven, -moment, blocks, (0.04, 0.03))
     assert (model.gains >= 0).all()
     assert (driven.signs * model.gain(driven) >= 0).all()
-    assert model.passive[0] >= 0
+    assert (model.firmness >= 0).all()
 
 
 def test_activation_comes_later_and_keeps_its_level(made):

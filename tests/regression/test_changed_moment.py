@@ -1,0 +1,65 @@
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from made_joint import made_joint
+
+from gaitdisc.batch.joint_inquiry import changes_of, nominal_moment, walk_of
+from gaitdisc.regression.changed_moment import changed_moment
+
+
+@pytest.fixture(scope="module")
+def nominal():
+    return made_joint(seed=1)
+
+
+@pytest.fixture(scope="module")
+def model(nominal):
+    return nominal_moment(nominal)
+
+
+def changed(model, nominal, device) -> Any:
+    return changed_moment(model, walk_of(nominal), walk_of(device), changes_of(device))
+
+
+def test_the_same_muscles_changed_nothing(model, nominal):
+    assert changed(model, nominal, made_joint(seed=2)) is None
+
+
+@pytest.mark.parametrize(
+    ("hidden", "name", "place", "value"),
+    [
+        ({"spring": 150.0}, "one_sided_spring", "ankle_moment", 150.0),
+        ({"late_s": 0.05}, "wrong_parameter", "emg_delay", -0.05),
+        ({"strength": 0.7}, "wrong_parameter", "plantarflexors_strength", 0.7),
+    ],
+)
+def test_what_changed_is_found_with_its_number(model, nominal, hidden, name, place, value):
+    found = changed(model, nominal, made_joint(seed=3, **hidden))
+    assert (found.change.name, found.change.place) == (name, place)
+    assert found.value == pytest.approx(value, rel=0.1)
+    assert abs(found.value - value) < 3 * found.spread
+    assert (found.rival.name, found.rival.place) != (name, place)
+    assert found.rival_leaves > 1
+
+
+def test_gains_that_the_nominal_walk_mistakes_are_mended_by_both_walks(nominal, model):
+    """An envelope that holds a muscle of constant tone hides its gain from one walk; the other, relieved, shows it."""
+    device = made_joint(seed=3, spring=150.0)
+    relieved = replace(device, envelopes=0.6 * device.envelopes, moment=device.moment)
+    driven = walk_of(device).driven
+    moment = device.moment - 0.4 * model.by_muscle(driven).sum(axis=1)
+    wrong = replace(model, gains=0.8 * model.gains)
+    found = changed(wrong, nominal, replace(relieved, moment=moment))
+    assert found.value == pytest.approx(150.0, rel=0.1)
+    np.testing.assert_allclose(found.model.gains.mean(axis=1), model.gains.mean(axis=1), rtol=0.1)
+
+
+def test_a_mass_at_the_foot_is_weighed_where_its_moment_is_known(model, nominal):
+    device = made_joint(seed=3)
+    per_kg = 6.0 * np.cos(2 * np.pi * device.phase)
+    heavier = replace(device, per_kg=per_kg, moment=device.moment - 0.8 * per_kg)
+    found = changed(model, nominal, heavier)
+    assert found.change.place == "added_foot_mass"
+    assert found.value == pytest.approx(0.8, rel=0.1)
