@@ -171,7 +171,10 @@ if not TYPE_CHECKING:  # or a type checker takes every misspelt name for one of 
     def __getattr__(name: str) -> object:
         """Load a name when it is first used: `import gaitdisc` itself loads nothing."""
         if name not in _HOME:
-            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+            import sys
+
+            # with the module Python adds the nearest name to the traceback
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}", name=name, obj=sys.modules[__name__])
         from importlib import import_module
 
         module, inside = _HOME[name]
@@ -181,5 +184,5 @@ if not TYPE_CHECKING:  # or a type checker takes every misspelt name for one of 
 
 
 def __dir__() -> list[str]:
-    """Names of the library, and the package's own."""
-    return sorted({*globals(), *__all__} - {"TYPE_CHECKING"})
+    """Names of the library: no room that was loaded behind them."""
+    return sorted([*__all__, *(name for name in globals() if name.startswith("__"))])

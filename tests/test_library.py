@@ -95,3 +95,10 @@ def test_what_a_notebook_shows_is_short_and_names_what_it_is():
             assert thing._repr_html_().startswith("<table><caption>")
     assert "viscous_damping at omega" in repr(shown["Simulation"]) and "-0.4*omega" in shown["Simulation"]._repr_html_()
     assert "green" in repr(shown["Inspection"]) and "<th>emg</th>" in walk._repr_html_()
+
+
+def test_completion_shows_the_names_alone_and_a_misspelt_one_finds_its_neighbour():
+    assert "stride" not in dir(gd) and "recording" not in dir(gd) and {"read", "plot", "__version__"} <= set(dir(gd))
+    with pytest.raises(AttributeError) as refused:
+        gd.low_pass  # noqa: B018
+    assert (refused.value.name, refused.value.obj) == ("low_pass", gd)  # of which Python makes its "Did you mean"

@@ -24,9 +24,8 @@ from gaitdisc.recording import Finding, Samples, Trial
 from gaitdisc.regression.changed_moment import Changed, changed_moment, linear_number
 from gaitdisc.regression.muscle_moment import MuscleMoment, fitted_moment
 from gaitdisc.regression.ridge import fit_ridge
-from gaitdisc.results.effect_words import estimate_text
 from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect
-from gaitdisc.results.effect_words import spoken
+from gaitdisc.results.effect_words import estimate_text, spoken
 
 LEAST_R2 = 0.7  # two strides of a published walk have -2.4 and 0.70, 36 s of the embedded cohort 0.96
 HARMONICS = 8  # of the plain regression of what is left

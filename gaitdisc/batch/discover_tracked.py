@@ -28,8 +28,8 @@ from gaitdisc.engines.written import WrittenModel, written_model
 from gaitdisc.errors import SamplingError, SchemaError
 from gaitdisc.ingest.file_hash import file_sha256
 from gaitdisc.recording import Finding
-from gaitdisc.results.effect_words import amount
 from gaitdisc.results.discovery import Discovery, FoundEffect, GapSize, Runs, Whereabouts
+from gaitdisc.results.effect_words import amount
 from gaitdisc.results.provenance import made_now
 from gaitdisc.signals.derivatives import differentiated
 from gaitdisc.simulation.evaluating import Points, evaluate

@@ -86,10 +86,11 @@ def read_trial(
 
     Examples
     --------
-    >>> read_trial(["ik.mot", "grf.mot", "emg.sto"], subject="P01", condition="natural")  # doctest: +SKIP
+    >>> import gaitdisc as gd
+    >>> gd.read(["ik.mot", "grf.mot", "emg.sto"], subject="P01", condition="natural")  # doctest: +SKIP
     Trial(...)
     >>> import pandas as pd
-    >>> read_trial(pd.DataFrame({"time": [0.0, 0.01, 0.02], "knee_angle_r": [5.0, 6.0, 7.0]}))
+    >>> gd.read(pd.DataFrame({"time": [0.0, 0.01, 0.02], "knee_angle_r": [5.0, 6.0, 7.0]}))
     Trial('the table': kinematics 1 at 100 Hz; 0 events, 0 findings)
     """
     files = list(paths) if isinstance(paths, list | tuple) else [paths]

@@ -78,10 +78,21 @@ class TimedColumns(NamedTuple):
     values: NDArray[np.float64]
 
 
+def has_times(frame: pd.DataFrame) -> bool:
+    """Whether times stand in a column of a DataFrame, or in its index."""
+    return any(_time_unit(str(name)) for name in (frame.index.name, *frame.columns))
+
+
 def frame_columns(frame: pd.DataFrame, channels: Mapping[str, str] | None = None) -> TimedColumns:
     """Columns of a DataFrame whose times stand in a column, or in its index."""
     if _time_unit(str(frame.index.name), channels):
         frame = frame.reset_index()
+    elif not any(_time_unit(str(name), channels) for name in frame.columns):
+        raise ReadError(
+            f"{FRAME} needs times [s] in a column 'time' (or time_s, time [ms]), or in an index of that name",
+            f"its columns are {', '.join(map(str, frame.columns[:6]))}, its index is {frame.index.name or 'nameless'}",
+            'Name the times so: frame.rename(columns={"t": "time"}), or frame.rename_axis("time") for the index.',
+        )
     labels, values = _of_frame(frame, FRAME, channels)
     digit = printed_digit(map(repr, values[:, _time_column(labels, channels)].tolist()))
     return _timed(labels, values, channels, FRAME, digit)
@@ -235,7 +246,8 @@ def _of_frame(
     labels = [str(label) for label in frame.columns]
     for label, dtype in zip(labels, frame.dtypes, strict=True):
         if not is_numeric_dtype(dtype) or is_bool_dtype(dtype):
-            raise ReadError(f"{name}: columns need numbers", f"column {label!r} holds others", "Leave that column out.")
+            remedy = "Give times as numbers of seconds." if _time_unit(label, channels) else "Leave that column out."
+            raise ReadError(f"{name}: columns need numbers", f"column {label!r} holds others ({dtype})", remedy)
     if not any(_time_unit(label, channels) for label in labels):
         raise _no_time(name, f"its columns are {', '.join(labels[:6])}")
     _check_labels(labels, name)

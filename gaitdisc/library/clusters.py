@@ -10,9 +10,14 @@ import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.errors import ShapeError
+from gaitdisc.recording.recording import several
+from gaitdisc.recording.strides import PERCENT
 from gaitdisc.statistics.cluster_test import one_sample_test, two_sample_test
+from gaitdisc.statistics.holm_sidak import check_level
+from gaitdisc.statistics.labels import check_numbers, in_one_order
 from gaitdisc.statistics.permutation import PermutationPlan
 
+POINTS = len(PERCENT)  # of a stride; as many rows of another length are a set on its side
 COLUMNS = ("channel", "first_point", "last_point", "sign", "mass", "p")
 
 
@@ -20,7 +25,7 @@ def permutation_clusters(
     first: ArrayLike | pd.DataFrame,
     second: ArrayLike | pd.DataFrame,
     paired: bool = False,
-    channels: Sequence[str] = (),
+    channels: Sequence[str] | str = (),
     alpha: float = 0.05,
     permutations: int = 2000,
     seed: int = 0,
@@ -33,8 +38,8 @@ def permutation_clusters(
         One row a person, a stride or a block of strides, complete: `strides.normalised(recording)`, or a DataFrame
         with one column a point of the stride.
     paired : bool
-        Row k of both belongs to one person; else the sets are independent.
-    channels : sequence of str, optional
+        Row k of both belongs to one person (of two DataFrames, rows of one index); else the sets are independent.
+    channels : sequence of str, or str, optional
         Names of the channels; numbers where they are not given.
     alpha : float
         Chance of a false alarm anywhere.
@@ -69,8 +74,11 @@ def permutation_clusters(
     >>> gd.permutation_clusters(moved + noise, curves, paired=True)[["first_point", "last_point"]].values.tolist()
     [[40, 59]]
     """
+    check_level(alpha, "alpha")
+    if paired:
+        first, second = in_one_order(first, second)
     one, other = _curves(first), _curves(second)
-    names = tuple(channels) or tuple(range(one.shape[2]))
+    names = several(channels) or tuple(range(one.shape[2]))
     if one.shape[1:] != other.shape[1:] or len(names) != one.shape[2] or (paired and len(one) != len(other)):
         raise ShapeError(
             "two sets of curves have the same points and channels" + (", and as many rows in pairs" if paired else ""),
@@ -86,5 +94,20 @@ def permutation_clusters(
 
 
 def _curves(given: Any) -> NDArray[np.float64]:
+    if isinstance(given, pd.DataFrame):
+        check_numbers(given, "points of the stride")
+        if pd.api.types.infer_dtype(given.columns) in ("mixed", "mixed-integer"):  # 0, 1, ..., 100, participant
+            name = next(label for label in given.columns if isinstance(label, str))
+            raise ShapeError(
+                "every column is one of the points of the stride",
+                f"column {name!r} stands beside {len(given.columns) - 1} others",
+                f"Make it the index: table.set_index({name!r}).",
+            )
     values = np.asarray(given, float)
+    if values.ndim not in (2, 3) or (len(values) == POINTS != values.shape[1]):
+        raise ShapeError(
+            "a set of curves has the shape (unit, phase) or (unit, phase, channel): one row a person or stride",
+            f"found {values.shape}",
+            "Turn it round (array.T); of a long table, table.pivot(index=..., columns=..., values=...).",
+        )
     return values[:, :, None] if values.ndim == 2 else values

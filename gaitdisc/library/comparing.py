@@ -10,6 +10,7 @@ from gaitdisc.batch.compare_recordings import compare_files
 from gaitdisc.comparison.compare import compare_walks
 from gaitdisc.library.walks import Walk, trial_of
 from gaitdisc.processing.walk_pair import walk_pair
+from gaitdisc.recording.recording import several
 from gaitdisc.results.mismatch import Smallest
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 def compare(
     first: Walk,
     second: Walk,
-    channels: Sequence[str] = (),
+    channels: Sequence[str] | str = (),
     cutoff_hz: float = 6.0,
     detector: str = "auto",
     smallest_deg: float = 2.0,
@@ -34,7 +35,7 @@ def compare(
     ----------
     first, second : path, Trial, DataFrame or Recording
         A simulated and a measured walk, or two conditions; the gap is first minus second.
-    channels : sequence of str
+    channels : sequence of str, or str
         Only these; by default all that both have.
     cutoff_hz : float
         Low-pass of angles and moments, -3 dB of one pass [Hz].
@@ -69,6 +70,6 @@ def compare(
     """
     smallest = Smallest(smallest_deg, smallest_n_m_per_kg)
     if isinstance(first, Path | str) and isinstance(second, Path | str):
-        return compare_files(Path(first), Path(second), tuple(channels), cutoff_hz, detector, smallest)
+        return compare_files(Path(first), Path(second), several(channels), cutoff_hz, detector, smallest)
     walks = walk_pair(trial_of(first), trial_of(second), cutoff_hz, detector)
-    return compare_walks(walks[0], walks[1], tuple(channels), smallest=smallest)
+    return compare_walks(walks[0], walks[1], several(channels), smallest=smallest)

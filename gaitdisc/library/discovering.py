@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 def discover(
     model: ModelLike,
-    data: Path | str | pd.DataFrame | Recording | Sequence[Recording],
+    data: Path | str | pd.DataFrame | Recording | Sequence[Recording] | Sequence[pd.DataFrame],
     catalogue: Path | str | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> tuple[Discovery, Simulation]:
@@ -39,10 +39,10 @@ def discover(
     model : path, Simulation or callable
         A simulation file, what `read_simulation` gave, a Python function (`simulation_from_function`), or a model of
         MuJoCo or OpenSim or its mapping file (docs/engines.md).
-    data : path, DataFrame, Recording or sequence of Recording
+    data : path, DataFrame, Recording, or sequence of Recording or of DataFrame
         Measured trials: a table (or its CSV or Parquet file) with the columns `time` [s], each input and each observed
-        channel in the model's units, and `trial` where there are several; or one Recording a trial, whose units are
-        converted to the model's.
+        channel in the model's units, and `trial` where there are several; or one table a trial; or one Recording a
+        trial, whose units are converted to the model's.
     catalogue : path, optional
         A file of effects of your own, considered beside those that come along.
     progress : callable, optional
@@ -126,11 +126,17 @@ def _measured(data: object, simulation: Simulation) -> tuple[Measured, dict[Path
         return measured_of_recordings(data, simulation), {}
     import pandas as pd
 
+    if isinstance(data, list | tuple) and data and all(isinstance(one, pd.DataFrame) for one in data):
+        trials = [_timed(one).assign(trial=number) for number, one in enumerate(data, 1)]
+        return measured_of_table(pd.concat(trials), simulation, "the table"), {}
     if isinstance(data, pd.DataFrame):
-        table = data.reset_index() if "time" not in data and data.index.name == "time" else data
-        return measured_of_table(table, simulation, "the table"), {}
+        return measured_of_table(_timed(data), simulation, "the table"), {}
     raise SimulationError(
         "measured data are a table, a file or recordings",
         f"found {type(data).__name__}",
         "Give a DataFrame with a column 'time' [s], the path of a CSV or Parquet file, or one Recording a trial.",
     )
+
+
+def _timed(table: pd.DataFrame) -> pd.DataFrame:
+    return table.reset_index() if "time" not in table and table.index.name == "time" else table

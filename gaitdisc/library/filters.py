@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from gaitdisc.channel import Channel
-from gaitdisc.errors import ChannelError, SamplingError, ShapeError
+from gaitdisc.errors import SamplingError, ShapeError
+from gaitdisc.ingest.table import has_times
 from gaitdisc.library.walks import PLAIN, Kind, recording_of
 from gaitdisc.recording import Recording, Trial
 from gaitdisc.signals.butterworth import KINEMATICS_HZ, highpassed, lowpassed
@@ -21,7 +22,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 EMG = ("emg", "V")  # quantity and unit
-Signal = TypeVar("Signal", Recording, "pd.DataFrame", "NDArray[np.float64]")
+LIKELY = 10  # an array with more channels than so many times its samples lies on its side
+Signal = TypeVar("Signal", Recording, "pd.DataFrame", "pd.Series[Any]", "NDArray[np.float64]")
 
 
 def lowpass(
@@ -40,8 +42,9 @@ def lowpass(
 
     Parameters
     ----------
-    signal : Recording, DataFrame or array_like (time,) or (time, channel)
+    signal : Recording, DataFrame, Series or array_like (time,) or (time, channel)
         A DataFrame has its times [s] in a column `time` or in an index of that name; every other column is filtered.
+        A Series has them in its index. Without times `rate_hz` is given, as for an array.
     cutoff_hz : float
         -3 dB frequency of one pass [Hz]; both passes are 3 dB down at 5.39 Hz where this is 6 (order 4, 100 Hz).
     order : int
@@ -49,11 +52,11 @@ def lowpass(
     max_gap_s : float
         Longest gap that is bridged [s].
     rate_hz : float, optional
-        Samples a second of an array; recordings and tables know theirs.
+        Samples a second, of what has no times.
 
     Returns
     -------
-    Recording, DataFrame or ndarray
+    Recording, DataFrame, Series or ndarray
         In the form of `signal`; runs too short to filter are NaN.
 
     Raises
@@ -88,7 +91,7 @@ def highpass(
 
     Parameters
     ----------
-    signal : Recording, DataFrame or array_like (time,) or (time, channel)
+    signal : Recording, DataFrame, Series or array_like (time,) or (time, channel)
         As `lowpass` takes it.
     cutoff_hz : float
         -3 dB frequency of one pass [Hz].
@@ -97,11 +100,11 @@ def highpass(
     max_gap_s : float
         Longest gap that is bridged [s].
     rate_hz : float, optional
-        Samples a second of an array.
+        Samples a second, of what has no times.
 
     Returns
     -------
-    Recording, DataFrame or ndarray
+    Recording, DataFrame, Series or ndarray
         In the form of `signal`; runs too short to filter are NaN.
 
     Raises
@@ -131,18 +134,18 @@ def envelope(
 
     Parameters
     ----------
-    emg : Recording, DataFrame or array_like (time,) or (time, channel)
+    emg : Recording, DataFrame, Series or array_like (time,) or (time, channel)
         Raw EMG, as digitised, not rectified; EMG channels only. As `lowpass` takes it.
     highpass_hz, lowpass_hz : float
         -3 dB frequencies of one pass [Hz].
     order : int
         Order of one pass, of both filters.
     rate_hz : float, optional
-        Samples a second of an array.
+        Samples a second, of what has no times.
 
     Returns
     -------
-    Recording, DataFrame or ndarray
+    Recording, DataFrame, Series or ndarray
         In the form and unit of `emg`. Small negative values can follow a burst: the low-pass rings; they are kept.
 
     Raises
@@ -172,16 +175,16 @@ def differentiate(signal: Signal, order: int = 1, rate_hz: float | None = None) 
 
     Parameters
     ----------
-    signal : Recording, DataFrame or array_like (time,) or (time, channel)
+    signal : Recording, DataFrame, Series or array_like (time,) or (time, channel)
         Filtered; the difference quotient passes on what noise is left. As `lowpass` takes it.
     order : int
         1 or 2.
     rate_hz : float, optional
-        Samples a second of an array.
+        Samples a second, of what has no times.
 
     Returns
     -------
-    Recording, DataFrame or ndarray
+    Recording, DataFrame, Series or ndarray
         In the form of `signal`, per second; a Recording's unit says so (`deg/s`). NaN at two samples of each end and
         within two samples of a missing one.
 
@@ -207,17 +210,22 @@ def differentiate(signal: Signal, order: int = 1, rate_hz: float | None = None) 
 def _in_its_form(
     signal: Any, rate_hz: float | None, done: Callable[[Recording], Recording], kind: Kind | None = None
 ) -> Any:
-    if isinstance(signal, Recording):
-        return done(signal)
+    if isinstance(signal, Recording | Trial):
+        recording = recording_of(signal)  # of a trial it says which stream to give
+        _check_rate(rate_hz, recording)
+        return done(recording)
+    if hasattr(signal, "to_frame"):  # a column of a DataFrame
+        return _in_its_form(signal.to_frame("signal"), rate_hz, done, kind)["signal"].rename(signal.name)
     if hasattr(signal, "columns"):
-        made = done(recording_of(signal, kind))
-        return signal.assign(**dict(zip(made.names, np.array(made.values).T, strict=True)))
-    if isinstance(signal, Trial):
-        raise ChannelError(
-            "a filter takes one stream of a trial",
-            f"{signal.name} has {', '.join(signal.streams) or 'none'}",
-            'Give one of them: trial.stream("kinematics"), for instance.',
-        )
+        timed = has_times(signal)
+        time = None if timed else _times(len(signal), rate_hz)
+        recording = recording_of(signal if timed else signal.set_axis(time).rename_axis("time"), kind)
+        _check_rate(rate_hz, recording)
+        made, filtered = done(recording), signal.copy()
+        labels = [label for label in signal.columns if str(label) in made.names]  # not that of the times
+        for label, values in zip(labels, made.values.T, strict=True):
+            filtered[label] = values
+        return filtered
     try:
         values = np.asarray(signal, float)
     except (TypeError, ValueError):
@@ -226,14 +234,38 @@ def _in_its_form(
             f"found {type(signal).__name__}",
             "Read a file with gaitdisc.read first.",
         ) from None
-    if rate_hz is None or not rate_hz > 0:
-        raise SamplingError(
-            "an array is filtered at its rate",
-            "no rate_hz is given" if rate_hz is None else f"rate_hz is {rate_hz:g}",
-            "Say how many samples a second it has: rate_hz=100, for instance.",
+    if values.ndim not in (1, 2) or (values.ndim == 2 and values.shape[1] > LIKELY * len(values)):
+        raise ShapeError(
+            "an array that is filtered has the shape (time,) or (time, channel), time first",
+            f"found {values.shape}",
+            "Turn it round (array.T), or filter one trial at a time.",
         )
+    time = _times(len(values), rate_hz)
     columns = values.reshape(len(values), -1)
     labels = [f"column {number + 1}" for number in range(columns.shape[1])]
     channels = tuple(Channel(label, *(kind or PLAIN)) for label in labels)
-    made = done(Recording(np.arange(len(values)) / rate_hz, columns, channels))
+    made = done(Recording(time, columns, channels))
     return np.array(made.values).reshape(values.shape)
+
+
+def _times(count: int, rate_hz: float | None) -> NDArray[np.float64]:
+    if rate_hz is None:
+        raise SamplingError(
+            "an array, or a table without times, is filtered at its rate",
+            "no rate_hz is given",
+            "Say how many samples a second it has: rate_hz=100, for instance.",
+        )
+    if not isinstance(rate_hz, int | float | np.number) or not 0 < rate_hz < np.inf:
+        raise SamplingError(
+            "a rate is a number of samples a second above zero", f"rate_hz is {rate_hz!r}", "Write rate_hz=100."
+        )
+    return np.arange(count) / rate_hz
+
+
+def _check_rate(rate_hz: float | None, recording: Recording) -> None:
+    if rate_hz is not None and not abs(_times(2, rate_hz)[1] * recording.rate_hz - 1) < 1e-3:
+        raise SamplingError(
+            "a signal with times has its rate from them",
+            f"its times give {recording.rate_hz:g} samples a second, rate_hz is {rate_hz:g}",
+            "Leave rate_hz out, or correct the times (they are in seconds).",
+        )

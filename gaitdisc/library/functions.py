@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.recording.recording import several
 from gaitdisc.simulation.expression import LONGEST
 from gaitdisc.simulation.parts import Input, Parameter, Port, State, Term
 from gaitdisc.simulation.python_simulation import PythonSimulation, python_simulation
@@ -31,8 +32,8 @@ def simulation_from_function(
     function: Callable[..., Any],
     units: Mapping[str, str] | None = None,
     observations: Mapping[str, str] | None = None,
-    states: Sequence[str] = (),
-    inputs: Sequence[str] = (),
+    states: Sequence[str] | str = (),
+    inputs: Sequence[str] | str = (),
     parameters: Mapping[str, float] | None = None,
 ) -> Simulation | PythonSimulation:
     """Simulation of a Python function that gives the time derivative of each state.
@@ -59,7 +60,7 @@ def simulation_from_function(
     observations : mapping of str to str, optional
         Measured column and what it measures, in states, inputs and parameters: `{"height": "level + offset"}`. By
         default each state is measured under its own name, as far as the data have such a column.
-    states, inputs : sequence of str, optional
+    states, inputs : sequence of str, or str, optional
         Names of the elements of both vectors, where the function takes vectors.
     parameters : mapping of str to float, optional
         Parameters that such a function takes as a dict, and their values.
@@ -72,7 +73,8 @@ def simulation_from_function(
     Raises
     ------
     SimulationError
-        If the function has too few arguments, a default that is no number, or raises whatever it is given.
+        If the function has too few arguments, a default that is no number, raises whatever it is given, or returns
+        other derivatives when it is called again.
 
     Examples
     --------
@@ -86,6 +88,7 @@ def simulation_from_function(
     >>> gd.simulation_from_function(swing, states=["angle", "rate"], inputs=["moment"], parameters={"k": 2.0}).equations
     (('angle', 'rate'), ('rate', 'moment - k*angle'))
     """
+    states, inputs = several(states), several(inputs)
     taken = _by_name(function) if not states else _as_vectors(function, states, inputs, dict(parameters or {}))
     count = taken.derivatives
     if count > len(taken.signals) or (states and count != len(states)):
@@ -115,6 +118,10 @@ def simulation_from_function(
         return replace(model, manner=f"{rates.manner}, since its equations could not be written down: {reason}")
 
 
+class _NoNumbersError(TypeError):
+    """What a function returned is no sequence of numbers."""
+
+
 @dataclass(frozen=True, eq=False)
 class _Taken:
     """A function, and what its arguments mean."""
@@ -124,6 +131,7 @@ class _Taken:
     numbers: dict[str, float]
     ports: tuple[str, ...]
     arguments: Callable[[Callable[[str], Any]], tuple[tuple, dict]]  # from what gives the value of a name
+    remedy: str = "Call it yourself with numbers, and correct it."  # where it raises whatever it is given
 
     @property
     def title(self) -> str:
@@ -133,15 +141,25 @@ class _Taken:
     @cached_property
     def derivatives(self) -> int:
         """How many it returns."""
-        found = [len(one) for one in self.returned if one]
+        found = [(len(one), point) for one, point in zip(self.returned, self.points, strict=True) if one]
         if not found:
             raised = self.raised[0]
             raise SimulationError(
                 "a simulation's function takes a number for each argument and returns a derivative for each state",
-                f"{self.title} raised {type(raised).__name__}: {str(raised)[:200]}",
-                "Call it yourself with numbers, and correct it.",
+                str(raised)
+                if isinstance(raised, _NoNumbersError)
+                else f"{self.title} raised {type(raised).__name__}: {str(raised)[:200]}",
+                self.remedy,
             ) from raised
-        return found[0]
+        again = self._tried(found[-1][1])
+        before = next(one for one in reversed(self.returned) if one)
+        if not np.array_equal(again, before, equal_nan=True):
+            raise SimulationError(
+                "a simulation's function returns the same derivatives whenever it is called with the same numbers",
+                f"{self.title} returned {before}, then {again}",
+                "Leave random numbers and what it remembers out of it; noise belongs to the measurement.",
+            )
+        return found[0][0]
 
     @cached_property
     def points(self) -> list[dict[str, float]]:
@@ -176,7 +194,11 @@ class _Taken:
         """Derivatives at one point."""
         plain, named = self.arguments(point.__getitem__)
         found = self.function(*plain, **named)
-        return [*found] if _are_floats(found) else [float(one) for one in flat(found)]
+        if _are_floats(found):
+            return [*found]
+        if found is None or isinstance(found, str | Mapping):
+            raise _NoNumbersError(f"{self.title} returns {str(found)[:60] if found is None else type(found).__name__}")
+        return [float(one) for one in flat(found)]
 
     def gives(self, found: NDArray[np.float64]) -> bool:
         """Whether derivatives (point, state) are what it returns, wherever that is a number."""
@@ -285,7 +307,15 @@ def _by_name(function: Callable[..., Any]) -> _Taken:
             named[name] = {key: value(key) for key in keys}
         return (), named
 
-    return _Taken(function, tuple(name for name in plain if name != TIME), numbers, ports, from_values)
+    signals = tuple(name for name in plain if name != TIME)
+    if len(plain) - len(signals) == 1 == len(signals):  # a solver's f(t, y), or that of odeint
+        order = "" if plain[0] == TIME else " (with the time as the first argument)"
+        remedy = (
+            f"Where {signals[0]!r} is the vector of the states, name them{order}: "
+            f'gaitdisc.simulation_from_function({_title(function)}, states=["angle", "rate"]).'
+        )
+        return _Taken(function, signals, numbers, ports, from_values, remedy)
+    return _Taken(function, signals, numbers, ports, from_values)
 
 
 def _as_vectors(
@@ -308,7 +338,9 @@ def _as_vectors(
         dicts = [{name: value(name) for name in numbers}] if numbers else []
         return (*([value(TIME)] if len(taken) > wanted else []), *vectors, *dicts), {}
 
-    return _Taken(function, (*states, *inputs), numbers, (), from_values)
+    swapped = len(taken) > wanted and taken[0].name != TIME and any(one.name == TIME for one in taken)
+    remedy = f"The time comes first: def {_title(function)}(t, {taken[0].name}): ..." if swapped else _Taken.remedy
+    return _Taken(function, (*states, *inputs), numbers, (), from_values, remedy)
 
 
 def _are_floats(found: Any) -> bool:

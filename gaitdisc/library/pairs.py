@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import pandas as pd
 
 from gaitdisc.errors import ShapeError
 from gaitdisc.response.comparison import compare_columns
-
-if TYPE_CHECKING:
-    import pandas as pd
+from gaitdisc.statistics.labels import check_numbers, check_same
 
 
 def paired_tests(first: pd.DataFrame, second: pd.DataFrame, alpha: float = 0.05) -> pd.DataFrame:
@@ -33,7 +31,7 @@ def paired_tests(first: pd.DataFrame, second: pd.DataFrame, alpha: float = 0.05)
     Raises
     ------
     ShapeError
-        If the tables are of other participants or variables, or a participant stands twice.
+        If the tables are of other participants or variables, a participant stands twice, or a column holds no numbers.
 
     References
     ----------
@@ -49,16 +47,14 @@ def paired_tests(first: pd.DataFrame, second: pd.DataFrame, alpha: float = 0.05)
     >>> found["p"].round(3).tolist(), found["different"].tolist()
     ([0.008, 0.844], [True, False])
     """
-    for words, one, other in (
-        ("participants", first.index, second.index),
-        ("variables", first.columns, second.columns),
-    ):
-        unlike = one.symmetric_difference(other)
-        if len(unlike) or one.has_duplicates:
-            found = f"{unlike[0]!r} is in one of them" if len(unlike) else f"{one[one.duplicated()][0]!r} stands twice"
+    for table in (first, second):
+        if not isinstance(table, pd.DataFrame):
             raise ShapeError(
-                f"both tables have the same {words}, once each",
-                found,
-                "Leave out of both who was measured once; a number that is missing is NaN.",
+                "paired tests take two DataFrames (participant, variable)",
+                f"found {type(table).__name__}",
+                "Take signed_rank for one variable; bring a long table here with table.pivot(...).",
             )
+        check_numbers(table, "variables")
+    check_same(first.index, second.index, "participants")
+    check_same(first.columns, second.columns, "variables")
     return compare_columns(first, second.loc[first.index, first.columns], alpha)

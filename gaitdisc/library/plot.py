@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitdisc.channel import nearest_word, side_of
-from gaitdisc.errors import ChannelError
+from gaitdisc.errors import ChannelError, ShapeError
 from gaitdisc.library.walks import recording_of
 from gaitdisc.recording import Recording, Strides
 from gaitdisc.report.panels import axes_or_new
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from gaitdisc.results.reconstruction import Reconstruction
 
 STRIDE = "stride [%]"
+__all__ = ["curves", "cycles", "discovery", "latent", "mismatch", "r2", "reconstruction", "recording"]
 
 
 def recording(
@@ -102,6 +103,7 @@ def cycles(recording: Recording | pd.DataFrame, strides: Strides, channel: str, 
     from gaitdisc.report.cycles_page import draw_cycles
     from gaitdisc.report.wording import label, unit_text
 
+    _refuse_other(strides, "Strides", "gaitdisc.cycles")
     one = recording_of(recording).selected([channel])
     every = strides.normalised(one)[:, :, 0]
     every = every[np.isfinite(every).all(axis=1)]
@@ -145,6 +147,7 @@ def curves(run: ResponseRun, channel: str, participant: str | None = None, ax: A
     from gaitdisc.report.palette import SIDES
     from gaitdisc.report.wording import label, unit_text
 
+    _refuse_other(run, "ResponseRun", "gaitdisc.fit_response")
     numbers = curve_numbers(run, participant or _first(run.reported))
     numbers = numbers[numbers["channel"] == _known(channel, numbers["channel"])]
     axes = axes_or_new(ax)
@@ -175,6 +178,7 @@ def r2(run: ResponseRun, ax: Axes | None = None) -> Axes:
     """
     from gaitdisc.report.r2 import draw_r2, r2_key, r2_numbers
 
+    _refuse_other(run, "ResponseRun", "gaitdisc.fit_response")
     numbers, axes = r2_numbers(run), axes_or_new(ax)
     draw_r2(axes, numbers)
     axes.set_xlabel("R² on the held-out device walk [1]")
@@ -223,6 +227,7 @@ def discovery(found: Discovery, channel: str | None = None, left: bool = False, 
         stretch_of,
     )
 
+    _refuse_other(found, "Discovery", "gaitdisc.discover")
     name = _known(channel, found.channels) if channel else ranked_channels(found)[0]
     unit, floor = noise_floor(found, name)
     numbers, axes = stretch_of(shown_runs(found), name), axes_or_new(ax)
@@ -269,6 +274,7 @@ def mismatch(found: Mismatch, channel: str, gap: bool = False, ax: Axes | None =
     from gaitdisc.report.palette import SIDES
     from gaitdisc.report.wording import label, unit_text
 
+    _refuse_other(found, "Mismatch", "gaitdisc.compare")
     numbers = mismatch_numbers(found, [_known(channel, found.names)])
     axes, draw = axes_or_new(ax), draw_gap if gap else draw_both
     draw(axes, numbers, found.regions_of(channel), SIDES[side_of(channel)].colour)
@@ -313,6 +319,7 @@ def reconstruction(done: Reconstruction, state: str, participant: str | None = N
     from gaitdisc.report.reconstruction_page import draw_state, shown_curves, states_key
     from gaitdisc.report.wording import label, unit_text
 
+    _refuse_other(done, "Reconstruction", "`gaitdisc reconstruct`")
     numbers = shown_curves(done, participant or _first(done.participants))
     numbers = numbers[numbers["state"] == _known(state, [channel.name for channel in done.states])]
     axes = axes_or_new(ax)
@@ -358,12 +365,27 @@ def latent(model: Reconstructor, x: ArrayLike, percent: ArrayLike, ax: Axes | No
     from gaitdisc.report.curves import LATENT, course_numbers, draw_course
     from gaitdisc.sensing.latent_states import latent_states, leading
 
+    _refuse_other(model, "Reconstructor", "gaitdisc.Reconstructor")
     windows = model.windows(x, percent)
     axes = axes_or_new(ax)
     draw_course(axes, course_numbers(windows.phi, leading(latent_states(model.model.reconstructor, windows))))
     axes.set_title(LATENT)
     axes.legend(frameon=False)
     return axes
+
+
+def __dir__() -> list[str]:
+    """Names of the pictures alone, for whoever looks through them."""
+    return __all__
+
+
+def _refuse_other(given: object, kind: str, made_by: str) -> None:
+    if type(given).__name__ != kind:
+        raise ShapeError(
+            f"this picture is of a {kind}, as {made_by} gives it",
+            f"found {type(given).__name__}",
+            "Give the result itself, or what gaitdisc.load read of its folder.",
+        )
 
 
 def _stride_axis(axes: Axes, title: str, unit: str) -> None:

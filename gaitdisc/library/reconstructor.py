@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeAlias, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError, ShapeError, TrainingError
+from gaitdisc.ingest.table import frame_columns, has_times
 from gaitdisc.recording import Recording, Samples
 from gaitdisc.results.saved import Saved
 from gaitdisc.sensing.intervals import half_widths
@@ -19,9 +21,14 @@ from gaitdisc.sensing.reconstructor import Sensing, fit_reconstructor
 from gaitdisc.sensing.windows import Lags, stacked, windows_of
 from gaitdisc.statistics.r2 import r2
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 CHECKED = 0.15  # of each trial, its last part: penalties, epochs and the interval are chosen on it
 SEAM_S = 0.3  # zero-lag filters look ahead and back over the border
-Trials = ArrayLike | Sequence[ArrayLike]
+Readings: TypeAlias = Union[ArrayLike, Recording, "pd.DataFrame", "pd.Series[Any]"]
+Trials: TypeAlias = Readings | Sequence[Readings]
+SETTINGS = ("kind", "rate_hz", "history_s", "spacing_s", "ahead_s", "seed")
 
 
 class Reconstructor(Saved, by="gaitdisc.library.reconstructor:save_reconstructor"):
@@ -84,9 +91,10 @@ class Reconstructor(Saved, by="gaitdisc.library.reconstructor:save_reconstructor
 
         Parameters
         ----------
-        x : array_like (time, sensor), DataFrame, Recording, or a sequence of them
-            Readings; a DataFrame or a Recording names them, and `predict` then finds them by name.
-        y : array_like (time, state), or a sequence of them
+        x : array_like (time, sensor), DataFrame, Series, Recording, or a sequence of them
+            Readings; a DataFrame or a Recording names them, and `predict` then finds them by name. Times, in a column
+            `time` or an index of that name, are no sensor; they have to go with `rate_hz`.
+        y : array_like (time, state), DataFrame, Series, Recording, or a sequence of them
             States at the same times.
 
         Returns
@@ -103,8 +111,9 @@ class Reconstructor(Saved, by="gaitdisc.library.reconstructor:save_reconstructor
         TrainingError
             If too few windows are left, or a state does not vary.
         """
-        many = isinstance(x, list | tuple) and np.ndim(x[0]) > 1
-        readings, states = (list(x), list(y)) if many else ([x], [y])  # type: ignore[arg-type]
+        many = isinstance(x, list | tuple) and (isinstance(x[0], Recording) or np.ndim(x[0]) > 1)
+        given = (list(x), list(y)) if many else ([x], [y])  # type: ignore[arg-type]
+        readings, states = ([_timeless(one, self.rate_hz) for one in trials] for trials in given)
         if len(readings) != len(states):
             raise ShapeError(
                 "a model is fitted to as many trials of states as of readings",
@@ -133,13 +142,13 @@ class Reconstructor(Saved, by="gaitdisc.library.reconstructor:save_reconstructor
         self._model = SensingModel(done, channels, half_widths(done(check) - check.y))
         return self
 
-    def predict(self, x: ArrayLike) -> NDArray[np.float64]:
+    def predict(self, x: Readings) -> NDArray[np.float64]:
         """Estimate the states of one trial.
 
         Parameters
         ----------
-        x : array_like (time, sensor)
-            Readings at `rate_hz`, with the sensors of `fit` in their order.
+        x : array_like (time, sensor), DataFrame or Recording
+            Readings at `rate_hz`, with the sensors of `fit`: by name, or in their order.
 
         Returns
         -------
@@ -155,19 +164,21 @@ class Reconstructor(Saved, by="gaitdisc.library.reconstructor:save_reconstructor
             If there are more or fewer sensors than at `fit`.
         """
         model = self.model
+        x = _timeless(x, self.rate_hz)
         return np.array(model(self._recording(x, model.reconstructor.sensing.sensors)).values)
 
-    def score(self, x: ArrayLike, y: ArrayLike) -> float:
+    def score(self, x: Readings, y: Readings) -> float:
         """R2 of the estimates, the mean over states, where there are any.
 
         Parameters
         ----------
         x : array_like (time, sensor), DataFrame or Recording
             Readings.
-        y : array_like (time, state)
+        y : array_like (time, state), DataFrame or Recording
             Measured states at the same times.
         """
-        estimated, measured = self.predict(x), _array(y, "states")
+        estimated = self.predict(x)
+        measured = _array(_in_order(_timeless(y, self.rate_hz), self.model.reconstructor.sensing.states), "states")
         known = np.isfinite(estimated).all(axis=1) & np.isfinite(measured).all(axis=1)
         return float(np.mean(r2(measured[known], estimated[known])))
 
@@ -190,6 +201,40 @@ class Reconstructor(Saved, by="gaitdisc.library.reconstructor:save_reconstructor
         read = self._recording(x, what.sensors)
         return windows_of(read, what.sensors, (), what.lags, np.asarray(percent, float))
 
+    def get_params(self, deep: bool = True) -> dict[str, Any]:  # noqa: ARG002
+        """Settings by name, as scikit-learn's `clone` and `Pipeline` ask for them.
+
+        Parameters
+        ----------
+        deep : bool
+            Of no effect: there is nothing inside.
+        """
+        return {name: getattr(self, name) for name in SETTINGS}
+
+    def set_params(self, **settings: Any) -> Reconstructor:
+        """Change settings, as scikit-learn's searches do; what was fitted is forgotten.
+
+        Parameters
+        ----------
+        **settings
+            Those of the constructor.
+        """
+        unknown = sorted(set(settings) - set(SETTINGS))
+        if unknown:
+            raise TrainingError(
+                f"a Reconstructor has the settings {', '.join(SETTINGS)}", f"found {unknown[0]!r}", "Name one of these."
+            )
+        self.__init__(**{**self.get_params(), **settings})  # type: ignore[misc]
+        return self
+
+    def __sklearn_is_fitted__(self) -> bool:
+        return self._model is not None
+
+    def __sklearn_tags__(self) -> Any:
+        from sklearn.utils import RegressorTags, Tags, TargetTags
+
+        return Tags("regressor", TargetTags(required=True, multi_output=True), regressor_tags=RegressorTags())
+
     @property
     def model(self) -> SensingModel:
         """What was fitted; takes a Recording as well."""
@@ -211,12 +256,8 @@ class Reconstructor(Saved, by="gaitdisc.library.reconstructor:save_reconstructor
         return f"Reconstructor({self.kind!r}, {self.rate_hz:g} Hz, {self.history_s:g} s of history: {fitted})"
 
     def _recording(self, x: Any, sensors: tuple[str, ...]) -> Recording:
-        if isinstance(x, Recording) and abs(x.rate_hz - self.rate_hz) > 1e-3 * self.rate_hz:
-            raise SamplingError(
-                f"the model reads {self.rate_hz:g} samples a second",
-                f"the recording has {x.rate_hz:g}",
-                "Resample it, or give its rate: Reconstructor(rate_hz=...).",
-            )
+        if isinstance(x, Recording):
+            _check_rate(self.rate_hz, x.rate_hz, "recording")
         values = _array(_in_order(x, sensors), "readings")
         if values.shape[1] != len(sensors):
             raise ShapeError(
@@ -264,6 +305,8 @@ def load_reconstructor(folder: Path) -> Reconstructor:
 
 def _array(given: Any, words: str) -> NDArray[np.float64]:
     values = np.asarray(given.values if isinstance(given, Recording) else given, float)
+    if hasattr(given, "to_frame"):  # one column of a DataFrame
+        values = values[:, None]
     if values.ndim != 2:
         raise ShapeError(
             f"{words} are an array (time, column)",
@@ -277,7 +320,26 @@ def _named(given: Any) -> tuple[str, ...]:
     """Names of the columns of a table or a recording; none of an array."""
     if isinstance(given, Recording):
         return given.names
-    return tuple(str(name) for name in getattr(given, "columns", ()))
+    names = (given.name,) if hasattr(given, "to_frame") else getattr(given, "columns", ())
+    return tuple(str(name) for name in names if name is not None)
+
+
+def _timeless(given: Any, rate_hz: float) -> Any:
+    """A table without its times, after a look whether they have the rate of the model; all else as it is."""
+    if not hasattr(given, "columns") or not has_times(given):
+        return given
+    timed = frame_columns(given)
+    _check_rate(rate_hz, (len(timed.time) - 1) / float(timed.time[-1] - timed.time[0]), "table")
+    return given[[name for name in given.columns if str(name) in timed.labels]]
+
+
+def _check_rate(rate_hz: float, found_hz: float, what: str) -> None:
+    if abs(found_hz - rate_hz) > 1e-3 * rate_hz:
+        raise SamplingError(
+            f"the model reads {rate_hz:g} samples a second",
+            f"the {what} has {found_hz:g}",
+            "Resample it, or give its rate: Reconstructor(rate_hz=...).",
+        )
 
 
 def _names(given: Any, word: str) -> tuple[str, ...]:
@@ -285,14 +347,14 @@ def _names(given: Any, word: str) -> tuple[str, ...]:
 
 
 def _in_order(given: Any, sensors: tuple[str, ...]) -> Any:
-    """Columns of the sensors by name, where both have names; else as given."""
+    """Columns of the sensors or states by name, where both have names; else as given."""
     names = _named(given)
-    if not names or all(name == f"sensor_{n}" for n, name in enumerate(sensors, 1)):
+    if not names or all(re.fullmatch(r"(sensor|state)_\d+", name) for name in sensors):
         return given
     absent = [name for name in sensors if name not in names]
     if absent:
         raise ShapeError(
-            f"the model reads {', '.join(sensors)}",
+            f"the model is of the columns {', '.join(sensors)}",
             f"{absent[0]!r} is not among {', '.join(names[:8])}",
             "Name the columns as in fit, or give an array in the order of fit.",
         )

@@ -7,12 +7,13 @@ from dataclasses import asdict, replace
 
 from gaitdisc.batch.participant_unit import response_settings
 from gaitdisc.batch.public_words import public_settings
-from gaitdisc.errors import ChannelError
+from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.ingest.study import ANGLES, OUTPUTS, Conditions, HeldOut, Models, Participant, Study
 from gaitdisc.library.walks import Walk, trial_of
 from gaitdisc.processing.filter_null import filter_null_of
 from gaitdisc.processing.process import processed
 from gaitdisc.recording import Trial
+from gaitdisc.recording.recording import several
 from gaitdisc.response.fit_response import fit_response as fitted
 from gaitdisc.results import ResponseRun
 from gaitdisc.results.provenance import made_now
@@ -23,9 +24,9 @@ WITHOUT, WITH = "nominal", "exo"
 def fit_response(
     nominal: Walk,
     exo: Walk,
-    outputs: Sequence[str] = OUTPUTS,
-    angles: Sequence[str] | None = None,
-    emg: Sequence[str] = (),
+    outputs: Sequence[str] | str = OUTPUTS,
+    angles: Sequence[str] | str | None = None,
+    emg: Sequence[str] | str = (),
     held_out_share: float = 0.125,
     seed: int = 0,
 ) -> ResponseRun:
@@ -38,11 +39,11 @@ def fit_response(
     ----------
     nominal, exo : Trial, path, DataFrame or Recording
         The walk without and the walk with the device, with joint angles; a minute or more each.
-    outputs : sequence of str
+    outputs : sequence of str, or str
         Angles whose second derivative is predicted.
-    angles : sequence of str, optional
+    angles : sequence of str, or str, optional
         Angles among the inputs; the package's usual ones that both walks have where it is not given.
-    emg : sequence of str
+    emg : sequence of str, or str
         EMG channels among the inputs.
     held_out_share : float
         Share of each walk that is held out, its last part.
@@ -75,8 +76,14 @@ def fit_response(
     >>> run.to_frame()  # doctest: +SKIP
     """
     trials = {word: replace(trial_of(one), condition=word) for word, one in ((WITHOUT, nominal), (WITH, exo))}
-    inputs = _angles(trials, outputs, angles)
-    models = Models(angles=inputs, emg=tuple(emg), outputs=tuple(outputs), seed=seed)
+    if not 0 < held_out_share < 1:
+        raise SamplingError(
+            "the share that is held out lies between 0 and 1",
+            f"held_out_share is {held_out_share!r}",
+            "Write 0.125 for 12.5 %.",
+        )
+    inputs = _angles(trials, several(outputs), None if angles is None else several(angles))
+    models = Models(angles=inputs, emg=several(emg), outputs=several(outputs), seed=seed)
     study = _study(trials, models, HeldOut(share=held_out_share))
     walks = {word: processed(trial, study) for word, trial in trials.items()}
     settings, null = response_settings(study), filter_null_of(walks[WITH], study.filters)

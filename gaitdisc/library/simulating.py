@@ -16,7 +16,9 @@ from gaitdisc.engines.engine import Engine
 from gaitdisc.engines.mapping import names_engine
 from gaitdisc.engines.written import whole_model
 from gaitdisc.errors import ShapeError, UnitError
+from gaitdisc.ingest.table import has_times
 from gaitdisc.library.models import ModelLike, model_of
+from gaitdisc.library.walks import recording_of
 from gaitdisc.recording import Recording, Source
 from gaitdisc.recording.strides import interpolated
 from gaitdisc.simulation.divergence import refuse_divergence
@@ -47,7 +49,8 @@ def simulate(
         Evenly spaced, increasing.
     inputs : Recording, DataFrame or mapping of str to array_like (time,), optional
         What drives the simulation, by the input's name [the input's unit]. A Recording is read at `time`, linearly
-        between its samples.
+        between its samples, and so is a DataFrame that has times; a mapping may also hold a number or a function of
+        the time.
     start : mapping of str to float, or sequence of float (state,), optional
         State at the first time [the state's unit]; what is not named starts at the state's own `initial`.
 
@@ -80,9 +83,13 @@ def simulate(
     else:
         simulation = model_of(model)
     time = np.asarray(time, float)
+    if time.ndim != 1 or len(time) < 3:
+        raise ShapeError(
+            "a simulation runs over the times at which it is read, three or more [s]",
+            f"found {time.tolist() if time.size < 3 else time.shape}",
+            "Give every time, np.linspace(start, end, number) for instance.",
+        )
     base = Recording(time, np.empty((len(time), 0)), ())  # refuses a time that is not even
-    if len(time) < 2:
-        raise ShapeError("a simulation runs over two times or more", f"found {len(time)}", "Give a longer time.")
     driven, begun = _driven(simulation, time, inputs), _start(simulation, start)
     states, seen = (_run if engine is None else partial(_run_by, engine))(simulation, time, driven, begun)
     for parts, values in ((simulation.states, states), (simulation.inputs, driven)):
@@ -139,7 +146,14 @@ def _driven(simulation: Simulation, time: NDArray[np.float64], inputs: Any) -> N
     names = [each.name for each in simulation.inputs]
     if not names:
         return np.empty((len(time), 0))
-    given = {} if inputs is None else inputs
+    given: Any = {} if inputs is None else inputs
+    if not isinstance(given, Recording | Mapping) and not hasattr(given, "columns"):
+        raise SimulationError(
+            f"{simulation.title or 'the simulation'!r} is driven by {', '.join(names)}",
+            f"the inputs are given as {type(given).__name__}, without names",
+            f"Name them: inputs={{{names[0]!r}: values}}, or a DataFrame or Recording with these columns.",
+        )
+    given = _read_at_times(given)
     known = given.names if isinstance(given, Recording) else [str(name) for name in given]
     columns = []
     for name in names:
@@ -149,7 +163,7 @@ def _driven(simulation: Simulation, time: NDArray[np.float64], inputs: Any) -> N
                 f"{name!r} is not among the inputs given ({', '.join(known) or 'none'})",
                 f"Give it: inputs={{{name!r}: values}}.",
             )
-        values = _at(given, time, name) if isinstance(given, Recording) else np.asarray(given[name], float)
+        values = _at(given, time, name) if isinstance(given, Recording) else _values(given[name], time)
         if values.shape != time.shape:
             raise ShapeError(
                 f"the input {name!r} has one value a time",
@@ -171,6 +185,17 @@ def _driven(simulation: Simulation, time: NDArray[np.float64], inputs: Any) -> N
 
 def _at(recording: Recording, time: NDArray[np.float64], name: str) -> NDArray[np.float64]:
     return interpolated(recording.time, recording.selected([name]).values, time)[:, 0]
+
+
+def _read_at_times(given: Any) -> Any:
+    """A DataFrame with times as a Recording, which is read at the simulation's times; all else as it is."""
+    return recording_of(given.select_dtypes("number")) if hasattr(given, "columns") and has_times(given) else given
+
+
+def _values(given: Any, time: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Values of one input at the times: of a function of the time, of a number that stays, or as they are given."""
+    values = np.asarray(given(time) if callable(given) else given, float)
+    return np.full(len(time), values) if values.ndim == 0 else values
 
 
 def _start(simulation: Simulation, start: Mapping[str, float] | Sequence[float] | None) -> NDArray[np.float64]:

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
 
 from gaitdisc.errors import StrideError
-from gaitdisc.library.walks import Walk, trial_of
+from gaitdisc.library.walks import Walk, recording_of, trial_of
 from gaitdisc.processing.contact_choice import chosen_contacts, seen_contacts
-from gaitdisc.recording import Recording, Strides
+from gaitdisc.recording import Recording, Strides, Trial
+from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.strides import cut_strides
 
 if TYPE_CHECKING:
-    from gaitdisc.signals.contacts import Contacts
+    import pandas as pd
 
 
 def contacts(trial: Walk, detector: str = "auto") -> dict[str, Contacts]:
@@ -75,9 +80,10 @@ def cycles(
     trial: Walk,
     side: str = "r",
     detector: str = "auto",
-    recording: Recording | None = None,
+    recording: Recording | pd.DataFrame | None = None,
     min_s: float = 0.4,
     max_s: float = 2.5,
+    contacts: ArrayLike | Contacts | Mapping[str, Contacts] | None = None,
 ) -> Strides:
     """Gait cycles of one foot, from each initial contact to the next.
 
@@ -89,10 +95,12 @@ def cycles(
         The foot whose contacts begin the cycles, `r` or `l`.
     detector : str
         `auto`, `force`, `events`, `markers` or `angles`.
-    recording : Recording, optional
+    recording : Recording or DataFrame, optional
         What will be cut: cycles in which it has a gap that cannot be filled are dropped.
     min_s, max_s : float
         Shortest and longest cycle [s].
+    contacts : array_like (contact,), Contacts, or what `gaitdisc.contacts` gave, optional
+        Initial contacts of that foot [s], on the walk's clock, where they are known; nothing is searched for then.
 
     Returns
     -------
@@ -113,11 +121,29 @@ def cycles(
     >>> strides.normalised(walk.stream("kinematics")).shape[1]
     101
     """
-    found = contacts(trial, detector)
+    walk = trial_of(trial)
+    found = dict(chosen_contacts(walk, detector).contacts) if contacts is None else _given(contacts, side, walk)
     if side not in found:
         raise StrideError(
             f"cycles of side {side!r} begin at its initial contacts",
             f"contacts were found of side {', '.join(sorted(found)) or 'none'}",
             "Take the other side ('r' or 'l'), or another detector.",
         )
-    return cut_strides(found[side], recording, min_s, max_s)
+    return cut_strides(found[side], None if recording is None else recording_of(recording), min_s, max_s)
+
+
+def _given(contacts: Any, side: str, walk: Trial) -> dict[str, Contacts]:
+    """Contacts by side, as they were given."""
+    if isinstance(contacts, Mapping):
+        return dict(contacts)
+    if isinstance(contacts, Contacts):
+        return {contacts.side: contacts}
+    time = np.asarray(contacts, float)
+    latest = max((one.time[-1] for one in walk.streams.values()), default=np.inf)
+    if time.size and np.nanmax(time) > latest:
+        raise StrideError(
+            "initial contacts are times on the walk's clock [s]",
+            f"one is at {np.nanmax(time):g} s, and {walk.name} ends at {latest:g} s",
+            "Divide numbers of frames by the rate, milliseconds by 1000.",
+        )
+    return {side: Contacts(time, side, "events")}

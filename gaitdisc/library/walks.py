@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias, Union
 
 from gaitdisc.channel import Channel, vocabulary
+from gaitdisc.errors import ChannelError, ShapeError
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.streams import stream_of
 from gaitdisc.ingest.table import frame_columns
@@ -20,13 +21,25 @@ PLAIN = ("signal", "1")
 Kind = tuple[str, str]  # quantity and unit
 
 
-def recording_of(signal: Recording | pd.DataFrame, kind: Kind | None = None) -> Recording:
-    """Recording of every column of a table beside its times, under the table's own names; a recording as it is.
+def recording_of(signal: Recording | Trial | pd.DataFrame, kind: Kind | None = None) -> Recording:
+    """Recording of every column of a table beside its times, under its own names; a recording as it is.
 
     Names of the vocabulary have their unit, all others none, where no kind is given.
     """
     if isinstance(signal, Recording):
         return signal
+    if isinstance(signal, Trial):
+        raise ChannelError(
+            "one stream of a trial is taken, not all of them",
+            f"{signal.name} has {', '.join(signal.streams) or 'none'}",
+            'Give one of them: trial.stream("kinematics"), for instance.',
+        )
+    if not hasattr(signal, "columns"):
+        raise ShapeError(
+            "a recording is a Recording, or a DataFrame with times [s] in a column 'time'",
+            f"found {type(signal).__name__}",
+            "Read a file with gaitdisc.read first; put arrays into a DataFrame.",
+        )
     columns = frame_columns(signal)
     known = {} if kind else {channel.name: channel for channel in vocabulary().channels}
     channels = tuple(known.get(label) or Channel(label, *(kind or PLAIN)) for label in columns.labels)

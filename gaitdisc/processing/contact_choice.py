@@ -65,6 +65,12 @@ def chosen_contacts(
     direction: direction of walking in the laboratory's axes, `+x` to `-z`; inferred from the markers where it is empty
     body_weight_n: mass x 9.81, by which a plate counts as loaded; 50 N without it
     """
+    if not isinstance(detector, str) or detector not in ("auto", *PREFERRED):
+        raise StrideError(
+            f"contacts are found by auto, {', '.join(PREFERRED)}",
+            f"the detector is {str(detector)[:60]!r}",
+            "Name one of these; contacts that are known already go into cycles(..., contacts=times).",
+        )
     seen, refused = seen_contacts(trial, direction, body_weight_n)
     found = {name: contacts for name, contacts in seen.items() if _stride_count(contacts)}
     if detector != "auto":

@@ -1,7 +1,10 @@
-"""Arrays: read-only ones, for the nouns are frozen and so are the numbers in them; means of those with gaps."""
+"""Arrays and mappings: read-only ones, for the nouns are frozen and so is what they hold; means of those with gaps."""
 
 from __future__ import annotations
 
+import copyreg
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -19,6 +22,15 @@ def read_only(values: ArrayLike, dtype: Any = float) -> NDArray[Any]:
     view = np.asarray(values, dtype).view()
     view.flags.writeable = False
     return view
+
+
+def frozen(mapping: Mapping[str, Any]) -> MappingProxyType[str, Any]:
+    """View of a mapping that cannot be written through; it can be copied and sent to another process."""
+    return MappingProxyType(dict(mapping))
+
+
+# Python itself pickles no read-only view; with this line a Trial goes through `pickle`, `copy.deepcopy` and a pool
+copyreg.pickle(MappingProxyType, lambda view: (frozen, (dict(view),)))
 
 
 def mean_where_known(values: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from types import MappingProxyType
 
 from gaitdisc.errors import UnitError
+from gaitdisc.recording.arrays import frozen
 
 LENGTHS_M = {
     "height_m": (0.4, 2.5),
@@ -63,7 +63,7 @@ class BodyMeasures:
             if isinstance(value, Mapping):
                 for side, length in value.items():
                     _check(f"{name} of side {side!r}", length, limits, "m")
-                object.__setattr__(self, name, MappingProxyType(dict(value)))
+                object.__setattr__(self, name, frozen(value))
             else:
                 _check(name, value, limits, "m")
 

@@ -79,6 +79,13 @@ class Recording:
         """Check shapes and the time base once; nothing below checks them again."""
         time, values = read_only(self.time), read_only(self.values)
         channels = tuple(self.channels)
+        strange = next((one for one in channels if not isinstance(one, Channel)), None)
+        if strange is not None:
+            raise ChannelError(
+                "a recording's channels say name, quantity and unit, each a gaitdisc.Channel",
+                f"found {strange!r}",
+                'Write Channel("knee_angle_r", "angle", "deg", "r"), or read a DataFrame with gaitdisc.read.',
+            )
         if time.ndim != 1 or values.shape != (len(time), len(channels)):
             raise ShapeError(
                 "a recording needs values of shape (time, channel)",
@@ -129,29 +136,39 @@ class Recording:
         ChannelError
             If there is none of that name; the nearest one is named.
         """
+        if not isinstance(name, str):
+            raise ChannelError(
+                "a channel is taken by its name",
+                f"found {type(name).__name__} {str(name)[:60]}",
+                "Give the name; several with recording.selected([...]), a stretch of time with recording.between(...).",
+            )
         if name not in self.names:
-            nearest = vocabulary().nearest(name, among=self.names)
+            axes = [own for own in self.names if own.rpartition(".")[0] == name]
+            nearest = None if axes else vocabulary().nearest(name, among=self.names)
             there = f"{', '.join(self.names[:SHOWN])}{', ...' * (len(self.names) > SHOWN)}" or "none"
-            hint = f"the nearest is {nearest!r}" if nearest else there
+            hint = f"the marker is {', '.join(axes)}" if axes else f"the nearest is {nearest!r}" if nearest else there
             raise ChannelError(
                 f"channel {name!r} is needed",
                 f"{self.source.file or 'the recording'} has {len(self.names)} channels: {hint}",
-                "Map it in the study's [channels], or add an alias to channels.csv.",
+                "Take one of these, or say which column it is in the study's [channels] or read(..., channels=...).",
             )
         return self.names.index(name)
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
         return self.values[:, self.index(name)]
 
+    def __contains__(self, name: object) -> bool:
+        return name in self.names
+
     def selected(self, names: Sequence[str]) -> Recording:
         """Recording of some channels, in the order asked for.
 
         Parameters
         ----------
-        names : sequence of str
-            Names of the channels.
+        names : sequence of str, or str
+            Names of the channels, or one name.
         """
-        columns = [self.index(name) for name in names]
+        columns = [self.index(name) for name in several(names)]
         return replace(
             self,
             values=self.values[:, columns],
@@ -213,11 +230,18 @@ class Recording:
             rows.append((f"and {len(self.channels) - SHOWN} more", ""))
         return html_of("Recording", [row for row in rows if row[1] or row[0].startswith("and ")])
 
-    def to_pandas(self) -> pd.DataFrame:
-        """Table with one column a channel, indexed by time [s]."""
+    def to_pandas(self, units: bool = False) -> pd.DataFrame:
+        """Table with one column a channel, indexed by time [s].
+
+        Parameters
+        ----------
+        units : bool
+            Columns are called `name [unit]`, which `gaitdisc.read` reads back, from the table or its CSV file.
+        """
         import pandas as pd
 
-        return pd.DataFrame(self.values, pd.Index(self.time, name="time"), list(self.names))
+        names = [f"{one.name} [{one.unit}]" if units else one.name for one in self.channels]
+        return pd.DataFrame(self.values, pd.Index(self.time, name="time"), names)
 
     def to_xarray(self) -> xr.DataArray:
         """Labelled array (time, channel) with the units as a coordinate; needs xarray installed."""
@@ -235,6 +259,11 @@ class Recording:
     def _suspect(self) -> NDArray[np.bool_]:
         assert self.suspect is not None  # set in __post_init__
         return self.suspect
+
+
+def several(names: str | Sequence[str]) -> tuple[str, ...]:
+    """Names of which one may be given by itself: a string is one name, and no sequence of letters."""
+    return (names,) if isinstance(names, str) else tuple(names)
 
 
 def _check_names(channels: Sequence[Channel], file: str) -> None:

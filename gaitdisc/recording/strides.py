@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import ShapeError, StrideError
 from gaitdisc.notebook import html_of
 from gaitdisc.recording.arrays import read_only
 from gaitdisc.recording.recording import Recording
 from gaitdisc.recording.wrapping import in_one_turn, turn_of, unwrapped
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 PERCENT = read_only(np.arange(101.0))  # 0 to 100 % inclusive
 
@@ -128,7 +133,7 @@ class Strides:
         which = np.searchsorted(self.start, time, side="right") - 1
         return np.where((which >= 0) & (time < self.end[which]), which, -1)
 
-    def normalised(self, recording: Recording) -> NDArray[np.float64]:
+    def normalised(self, recording: Recording | pd.DataFrame) -> NDArray[np.float64]:
         """Every stride of a recording on 0 to 100 % in 101 points, (stride, phase, channel) [channel's unit].
 
         Linear between samples; NaN where a sample beside the point is missing or the recording does not reach. A
@@ -136,9 +141,10 @@ class Strides:
 
         Parameters
         ----------
-        recording : Recording
-            On the trial's clock, at any rate.
+        recording : Recording or DataFrame
+            On the trial's clock, at any rate; a DataFrame has times [s] in a column `time` or an index of that name.
         """
+        recording = recording if isinstance(recording, Recording) else _of_table(recording)
         points = self.start[:, None] + self.duration_s[:, None] * PERCENT / 100.0
         plain = unwrapped(recording)
         curves = interpolated(recording.time, plain.values, points)
@@ -159,6 +165,22 @@ class Strides:
         """
         inside = (self.start >= start_s) & (self.end <= end_s)
         return Strides(self.start[inside], self.end[inside], self.side, self.detector, self.dropped)
+
+
+def _of_table(table: Any) -> Recording:
+    """Recording of a DataFrame with times under `time`; channels of the vocabulary are known, others plain."""
+    if getattr(getattr(table, "index", None), "name", None) == "time":
+        table = table.reset_index()
+    if "time" not in getattr(table, "columns", ()):
+        raise ShapeError(
+            "strides are cut from a Recording, or from a DataFrame with times [s] in a column 'time'",
+            f"found {type(table).__name__}" + (" without it" if hasattr(table, "columns") else ""),
+            "Give one stream of a trial, trial.stream('kinematics') for instance, or name the column of times so.",
+        )
+    known = {channel.name: channel for channel in vocabulary().channels}
+    names = [name for name in table.columns if name != "time"]
+    channels = [known.get(str(name)) or Channel(str(name), "signal", "1") for name in names]
+    return Recording(table["time"].to_numpy(float), table[names].to_numpy(float), tuple(channels))
 
 
 def interpolated(

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.notebook import html_of
+from gaitdisc.recording.arrays import frozen
 from gaitdisc.recording.finding import Finding
 from gaitdisc.recording.recording import Recording
 from gaitdisc.recording.strides import interpolated
@@ -89,7 +89,7 @@ class Trial:
                 f"{self.name} has {sorted(unknown)[0]!r}",
                 "Put the channels into one of these streams.",
             )
-        object.__setattr__(self, "streams", MappingProxyType(dict(self.streams)))
+        object.__setattr__(self, "streams", frozen(self.streams))
 
     def __repr__(self) -> str:
         streams = ", ".join(f"{key} {len(one.names)} at {one.rate_hz:g} Hz" for key, one in self.streams.items())
@@ -122,7 +122,7 @@ class Trial:
             raise ChannelError(
                 f"trial {self.name} is read for its {key}",
                 f"it has {', '.join(self.streams) or 'no stream at all'}",
-                "Give the file that holds them in the study's [[trials]].",
+                "Take one of these, or read the file that holds them together with it.",
             )
         return self.streams[key]
 

@@ -99,6 +99,12 @@ def short_run_findings(
 
 
 def _filtered(recording: Recording, cutoff_hz: float, order: int, kind: str, max_gap_s: float) -> Recording:
+    if not isinstance(cutoff_hz, int | float | np.number):
+        raise SamplingError(
+            f"a {kind} filter has one cut-off [Hz], a number",
+            f"found {cutoff_hz!r}",
+            "Filter twice, highpass and then lowpass, for a band.",
+        )
     rate = recording.rate_hz
     file = recording.source.file or "the recording"
     need = needed_samples(cutoff_hz, rate, order) if cutoff_hz > 0 and rate > 0 else 2

@@ -27,7 +27,7 @@ def bundled(name: str) -> Simulation:
     Parameters
     ----------
     name : str
-        One of `bundled_names()`.
+        `pendulum`, `lorenz` and so on; one that is none of them is refused with the list.
 
     Raises
     ------
@@ -36,7 +36,8 @@ def bundled(name: str) -> Simulation:
 
     Examples
     --------
-    >>> bundled("pendulum").values()["length"]
+    >>> import gaitdisc as gd
+    >>> gd.bundled_simulation("pendulum").values()["length"]
     0.8
     """
     if name not in bundled_names():

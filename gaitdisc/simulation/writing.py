@@ -11,6 +11,7 @@ from pathlib import Path
 from gaitdisc.errors import GaitdiscError, ReadError, SchemaError
 from gaitdisc.simulation.parts import Parameter, Sensor, State, Term
 from gaitdisc.simulation.python_simulation import PythonSimulation
+from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Lines, Simulation
 from gaitdisc.simulation.simulation_file import simulation_of
 from gaitdisc.whole_file import write_whole
@@ -58,6 +59,12 @@ def write_simulation(simulation: Simulation | PythonSimulation, path: Path | str
     """
     if isinstance(simulation, PythonSimulation):
         return write_whole(path, _python_text(simulation))
+    if not isinstance(simulation, Simulation):
+        raise SimulationError(
+            "a simulation file holds a Simulation",
+            f"found {type(simulation).__name__}",
+            "Make one of a function first: gaitdisc.simulation_from_function(function).",
+        )
     return write_whole(path, simulation_text(simulation))
 
 

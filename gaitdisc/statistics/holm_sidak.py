@@ -65,7 +65,7 @@ def holm_sidak(p: ArrayLike, alpha: float = 0.05) -> StepDown:
     Raises
     ------
     ComparisonError
-        If there is no test, or a p is missing or outside of 0 to 1.
+        If there is no test, or a p or alpha is missing or outside of 0 to 1.
 
     References
     ----------
@@ -78,6 +78,7 @@ def holm_sidak(p: ArrayLike, alpha: float = 0.05) -> StepDown:
     >>> int(found.rejected.sum()), round(found.critical, 3)
     (4, 0.013)
     """
+    check_level(alpha, "alpha")
     found = np.asarray(p, float).ravel()
     if not len(found) or not np.all((found >= 0) & (found <= 1)):
         wrong = [f"{value:g}" for value in found[~((found >= 0) & (found <= 1))]]
@@ -102,6 +103,14 @@ def holm_sidak(p: ArrayLike, alpha: float = 0.05) -> StepDown:
         alpha=alpha,
         critical=float(levels[min(rejections, len(found) - 1)]),
     )
+
+
+def check_level(level: float, name: str) -> None:
+    """Refuse a level that is no probability between 0 and 1, as a percentage is."""
+    if not 0 < level < 1:
+        raise ComparisonError(
+            f"{name} is a probability between 0 and 1", f"found {level:g}", "Give a share: 0.05 for 5 %, 0.95 for 95 %."
+        )
 
 
 def holm_sidak_by(p: ArrayLike, families: Sequence[str], alpha: float = 0.05) -> dict[str, StepDown]:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.errors import ShapeError
 
 ROUNDING = 1e-9  # of the largest value: a spread below it is rounding
 
 
-def r2(measured: NDArray[np.float64], predicted: NDArray[np.float64]) -> NDArray[np.float64]:
+def r2(measured: ArrayLike, predicted: ArrayLike) -> NDArray[np.float64]:
     """Coefficient of determination of every column, 1 - SSE / SST, SST about the mean of the measured part itself.
 
     It is 1 for a perfect prediction, 0 for one as good as the mean, and has no lower bound. It is NaN where it means
@@ -18,8 +18,8 @@ def r2(measured: NDArray[np.float64], predicted: NDArray[np.float64]) -> NDArray
 
     Parameters
     ----------
-    measured, predicted : ndarray (sample, column) [each column's unit]
-        Held-out samples, and what a model says of them.
+    measured, predicted : array_like (sample, column), or (sample,) [each column's unit]
+        Held-out samples, and what a model says of them. Rows and columns are taken as they stand.
 
     Returns
     -------
@@ -39,11 +39,17 @@ def r2(measured: NDArray[np.float64], predicted: NDArray[np.float64]) -> NDArray
     >>> r2(np.array([[0.0], [1.0], [2.0]]), np.array([[0.0], [1.0], [1.0]]))
     array([0.5])
     """
+    measured, predicted = (_columns(values) for values in (measured, predicted))
     meaningless = np.array([bool(reason) for reason in why_no_r2(measured, predicted)])
     y, f = (np.where(meaningless, 0.0, values) for values in (measured, predicted))
     sse = np.sum((y - f) ** 2, axis=0)
     sst = np.sum((y - y.mean(axis=0)) ** 2, axis=0) if len(y) else sse
     return np.where(meaningless, np.nan, 1.0 - sse / np.where(meaningless, 1.0, sst))
+
+
+def _columns(values: ArrayLike) -> NDArray[np.float64]:
+    array = np.asarray(values, float)
+    return array[:, None] if array.ndim == 1 else array
 
 
 def why_no_r2(measured: NDArray[np.float64], predicted: NDArray[np.float64]) -> tuple[str, ...]:

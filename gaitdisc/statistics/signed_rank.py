@@ -10,6 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.stats import rankdata, wilcoxon
 
 from gaitdisc.errors import ComparisonError, ShapeError
+from gaitdisc.statistics.holm_sidak import check_level
+from gaitdisc.statistics.labels import in_one_order
 
 
 @dataclass(frozen=True)
@@ -44,7 +46,7 @@ def signed_rank(
     Parameters
     ----------
     first, second : array_like (pair,)
-        In one unit, pair by pair.
+        In one unit, pair by pair. Two Series are paired by their index, in whatever order.
     left_out : mapping of int to str, optional
         Pairs that are left out, with the reason. A number that is missing elsewhere is refused: libraries drop it in
         silence, and with 10 pairs of 11 the smallest p doubles.
@@ -58,7 +60,7 @@ def signed_rank(
     Raises
     ------
     ShapeError
-        If the two are not of one length.
+        If the two are not of one length, or two Series are of other participants.
     ComparisonError
         If a number is missing that nobody explains, or no pair is left.
 
@@ -74,6 +76,8 @@ def signed_rank(
     >>> found.w, round(found.p, 4), round(found.rank_biserial, 3), round(found.shift, 4)
     (9.0, 0.0322, 0.727, 0.0425)
     """
+    check_level(level, "level")
+    first, second = in_one_order(first, second)
     differences = _differences(np.asarray(first, float), np.asarray(second, float), left_out or {})
     ranked = differences[differences != 0]
     ranks = rankdata(np.abs(ranked))

@@ -20,8 +20,8 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import write_study
 from gaitdisc.recording import Finding, Recording, Trial
-from gaitdisc.results.effect_words import estimate_text
 from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, GapSize, Runs
+from gaitdisc.results.effect_words import estimate_text
 
 
 def trial(*keys, findings=()):

@@ -23,3 +23,7 @@ def test_a_region_is_as_large_as_the_smallest_that_is_reported(walks):
     found = gd.compare(walks["exo"], walks["nominal"], ["ankle_angle_r"], smallest_deg=3.5)
     assert len(found.regions) and (found.regions["gap"].abs() >= 3.5).all()
     assert not len(gd.compare(walks["exo"], walks["nominal"], ["ankle_angle_r"], smallest_deg=30.0).regions)
+
+
+def test_one_channel_may_be_named_by_a_word(walks):
+    assert gd.compare(walks["exo"], walks["nominal"], "ankle_angle_r").names == ("ankle_angle_r",)

@@ -43,7 +43,16 @@ def given(monkeypatch):
 
 def test_a_table_its_file_and_recordings_are_the_same_trials(given, tmp_path):
     table().to_csv(tmp_path / "runs.csv", index=False)
-    for data in (table(), table().set_index("time"), tmp_path / "runs.csv", str(tmp_path / "runs.csv"), runs()):
+    several = [run.to_pandas() for run in runs()]
+    for data in (
+        table(),
+        table().set_index("time"),
+        several,
+        [several[0], several[1].reset_index()],
+        tmp_path / "runs.csv",
+        str(tmp_path / "runs.csv"),
+        runs(),
+    ):
         gd.discover(cooling, data)
         np.testing.assert_allclose(given["data"].observed[1, :, 0], np.exp(-0.5 * TIME), atol=1e-6)
         assert given["data"].observed.shape == (2, 60, 1)

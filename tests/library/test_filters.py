@@ -45,7 +45,9 @@ def test_an_envelope_of_an_array_is_that_of_its_recording():
 
 
 def test_what_cannot_be_filtered_is_refused():
-    with pytest.raises(SamplingError, match=r"an array is filtered at its rate; no rate_hz.*rate_hz=100"):
+    with pytest.raises(
+        SamplingError, match=r"an array, or a table without times, is filtered at its rate; no rate_hz.*rate_hz=100"
+    ):
         gd.lowpass(X)
     with pytest.raises(SamplingError, match="rate_hz is -1"):
         gd.lowpass(X, rate_hz=-1.0)
@@ -59,3 +61,41 @@ def test_what_cannot_be_filtered_is_refused():
         gd.lowpass("walk.csv", rate_hz=100.0)
     with pytest.raises(ReadError, match="columns need numbers; column 'who' holds others"):
         gd.lowpass(pd.DataFrame({"time": T, "who": "me"}))
+
+
+def test_a_column_of_a_table_is_filtered_by_its_index_or_at_a_rate_and_stays_a_column():
+    table = pd.DataFrame(X, columns=["knee_angle_r", "a"])
+    for column, rate in ((table["a"], {"rate_hz": RATE_HZ}), (table.set_index(pd.Index(T, name="time"))["a"], {})):
+        found = gd.lowpass(column, **rate)
+        assert isinstance(found, pd.Series) and found.index.equals(column.index) and found.name == "a"
+        np.testing.assert_allclose(found, gd.lowpass(RECORDING)["a"], rtol=1e-9)
+
+
+def test_a_table_without_times_is_filtered_at_a_rate_under_its_own_labels():
+    table = pd.DataFrame(X)  # its labels are the numbers 0 and 1
+    found = gd.lowpass(table, rate_hz=RATE_HZ)
+    assert list(found) == [0, 1] and found.index.equals(table.index)
+    np.testing.assert_allclose(found, gd.lowpass(X, rate_hz=RATE_HZ))
+    assert list(gd.lowpass(table.assign(time=T))) == [0, 1, "time"]
+    with pytest.raises(SamplingError, match=r"a table without times.*rate_hz=100"):
+        gd.lowpass(table)
+
+
+@pytest.mark.parametrize("signal", [RECORDING, pd.DataFrame({"time": T, "a": X[:, 0]})], ids=["recording", "table"])
+def test_a_rate_that_the_times_contradict_is_refused(signal):
+    assert gd.lowpass(signal, rate_hz=RATE_HZ) is not None
+    with pytest.raises(SamplingError, match=r"its times give 120 samples a second, rate_hz is 200"):
+        gd.lowpass(signal, rate_hz=200)
+
+
+@pytest.mark.parametrize("shape", [(7, 1000), (600, 2, 3)])
+def test_an_array_on_its_side_is_refused(shape):
+    with pytest.raises(ShapeError, match="time first"):
+        gd.differentiate(np.zeros(shape), rate_hz=RATE_HZ)
+
+
+def test_a_rate_and_a_cut_off_are_numbers():
+    with pytest.raises(SamplingError, match="rate_hz is '100'"):
+        gd.lowpass(X, rate_hz="100")
+    with pytest.raises(SamplingError, match=r"one cut-off.*\[20, 40\].*highpass and then lowpass"):
+        gd.lowpass(X, [20, 40], rate_hz=RATE_HZ)

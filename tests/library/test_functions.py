@@ -218,3 +218,38 @@ def test_vectors_need_the_arguments_that_they_are_given_to():
 def test_a_unit_of_nothing_is_refused():
     with pytest.raises(SimulationError, match=r"none called 'angel'.*Known: angle, rate, torque, length, hip"):
         simulation_from_function(pendulum, {"angel": "rad"})
+
+
+def ball(t, y):
+    return [y[1], -9.81]
+
+
+def turned(y, t):
+    return [y[1], -9.81]
+
+
+def test_a_solver_s_function_without_names_of_its_states_says_how_to_name_them():
+    with pytest.raises(SimulationError, match=r"'y' is the vector of the states, name them: .*\(ball, states="):
+        simulate(ball, np.arange(5.0), start=[1.0, 0.0])
+    with pytest.raises(SimulationError, match=r"time as the first argument.*\(turned, states="):
+        simulation_from_function(turned)
+    with pytest.raises(SimulationError, match=r"The time comes first: def turned\(t, y\)"):
+        simulation_from_function(turned, states=["height", "speed"])
+    assert simulation_from_function(ball, states=["height", "speed"]).equations[0] == ("height", "speed")
+
+
+@pytest.mark.parametrize("returned", [None, {"x": 1.0}, "a"], ids=str)
+def test_a_function_that_returns_no_numbers_is_refused_with_what_it_returned(returned):
+    with pytest.raises(SimulationError, match=f"returns {'None' if returned is None else type(returned).__name__}"):
+        simulation_from_function(lambda x: returned)
+
+
+def test_a_function_with_noise_in_it_is_refused():
+    rng = np.random.default_rng(0)
+    with pytest.raises(SimulationError, match=r"same derivatives.*noise belongs to the measurement"):
+        simulation_from_function(lambda x: -x + rng.normal())
+
+
+def test_one_state_and_one_input_may_be_named_by_a_word():
+    model = simulation_from_function(lambda t, x, u: [u[0] - x[0]], states="level", inputs="pump")
+    assert model.equations == (("level", "pump - level"),)

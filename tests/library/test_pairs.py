@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 import gaitdisc as gd
-from gaitdisc.errors import ShapeError
+from gaitdisc.errors import ComparisonError, ShapeError
 
 PEOPLE = [f"P{k:02}" for k in range(1, 12)]
 RISE = np.array([5.0, 6, 7, 8, 9, 10, 11, 1, -2, -3, -4]) / 100
@@ -36,3 +36,27 @@ def test_tables_of_others_are_refused():
     twice = BEFORE.rename({"P02": "P01"})
     with pytest.raises(ShapeError, match="'P01' stands twice"):
         gd.paired_tests(twice, twice)
+
+
+def test_what_is_no_table_of_numbers_is_refused_in_words():
+    named = BEFORE.rename_axis("participant").reset_index()
+    with pytest.raises(ShapeError, match=r"column 'participant' holds others.*set_index"):
+        gd.paired_tests(named, named)
+    for given in (BEFORE["knee"], BEFORE.to_numpy()):
+        with pytest.raises(ShapeError, match=f"two DataFrames.*found {type(given).__name__}"):
+            gd.paired_tests(given, given)
+
+
+def test_a_level_in_percent_is_refused():
+    with pytest.raises(ComparisonError, match=r"alpha.*found 5"):
+        gd.paired_tests(BEFORE, AFTER, alpha=5)
+    with pytest.raises(ComparisonError, match=r"level.*found 95"):
+        gd.signed_rank(np.zeros(11), RISE, level=95)
+
+
+def test_two_columns_are_paired_by_their_index():
+    assert gd.signed_rank(BEFORE["knee"], AFTER["knee"].iloc[::-1]) == gd.signed_rank(BEFORE["knee"], AFTER["knee"])
+    uneven = pd.Series(np.arange(11.0), index=PEOPLE)
+    assert gd.signed_rank(uneven, (uneven + RISE).iloc[::-1]).p == pytest.approx(gd.signed_rank(np.zeros(11), RISE).p)
+    with pytest.raises(ShapeError, match="same participants"):
+        gd.signed_rank(uneven, uneven.set_axis(range(11)))

@@ -9,10 +9,11 @@ from matplotlib.figure import Figure
 
 import gaitdisc as gd
 from gaitdisc.channel import Channel
-from gaitdisc.errors import ChannelError
+from gaitdisc.errors import ChannelError, ShapeError
 from gaitdisc.results import Provenance
 
 mpl.use("Agg")
+X_AND_PERCENT = np.zeros((5, 1))
 
 
 @pytest.fixture
@@ -95,3 +96,29 @@ def test_reconstructed_states_are_drawn(ax):
     gd.plot.reconstruction(done, "knee_angle_r", ax=ax)
     np.testing.assert_allclose(ax.lines[0].get_ydata(), 0.9 * sine)
     assert ax.get_ylabel() == "[deg]"
+
+
+@pytest.mark.parametrize("name", ["r2", "discovery", "latent"])
+def test_a_picture_of_another_result_is_refused(name):
+    given = {"latent": (X_AND_PERCENT, X_AND_PERCENT)}.get(name, ())
+    with pytest.raises(ShapeError, match=r"found Recording.*gaitdisc.load"):
+        getattr(gd.plot, name)(sine(), *given)
+
+
+@pytest.mark.parametrize("name", ["curves", "mismatch", "reconstruction"])
+def test_a_picture_of_a_channel_of_another_result_is_refused(name):
+    with pytest.raises(ShapeError, match="found Recording"):
+        getattr(gd.plot, name)(sine(), "knee_angle_r")
+
+
+def test_what_is_no_recording_is_refused(ax):
+    with pytest.raises(ShapeError, match="found ndarray"):
+        gd.plot.recording(np.zeros(5), ax=ax)
+    with pytest.raises(ShapeError, match=r"Strides, as gaitdisc\.cycles"):
+        gd.plot.cycles(sine(), sine(), "knee_angle_r", ax=ax)
+    with pytest.raises(ChannelError, match=r"walk has kinematics.*trial\.stream"):
+        gd.plot.recording(gd.Trial("walk", {"kinematics": sine()}), ax=ax)
+
+
+def test_completion_shows_pictures_alone():
+    assert "cycles" in dir(gd.plot) and "np" not in dir(gd.plot)

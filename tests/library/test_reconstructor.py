@@ -50,7 +50,7 @@ def test_named_readings_are_found_by_name_and_recordings_at_their_rate():
     model = gd.Reconstructor(rate_hz=50.0, history_s=0.4).fit(two, Y)
     turned = two.assign(more=1.0)[["still", "more", "a"]]
     np.testing.assert_array_equal(model.predict(turned), model.predict(two))
-    with pytest.raises(ShapeError, match="the model reads a, still; 'still' is not among a, more"):
+    with pytest.raises(ShapeError, match="the model is of the columns a, still; 'still' is not among a, more"):
         model.predict(turned[["a", "more"]])
     with pytest.raises(ShapeError, match=r"a state is none of the sensors; 'a' is in both\. Leave it out"):
         gd.Reconstructor(rate_hz=50.0).fit(two, two[["a"]])
@@ -80,3 +80,39 @@ def test_what_does_not_fit_is_refused():
         gd.Reconstructor(rate_hz=50.0).fit([X, X], [Y])
     with pytest.raises(ShapeError, match="reads 1 sensors; found 2 columns"):
         fitted().predict(Y)
+
+
+TABLE = pd.DataFrame(np.column_stack([X, np.cos(T)]), columns=["hip", "knee"])
+STATES = pd.DataFrame(Y, columns=["ankle", "toe"])
+
+
+def test_times_of_a_table_are_no_sensor_and_have_the_rate_of_the_model():
+    model = gd.Reconstructor("linear", rate_hz=50.0, history_s=0.4).fit(TABLE.assign(time=T), STATES.assign(time=T))
+    plain = gd.Reconstructor("linear", rate_hz=50.0, history_s=0.4).fit(TABLE, STATES)
+    assert model.model.reconstructor.sensing.sensors == ("hip", "knee")
+    for given in (TABLE, TABLE.assign(time=T)[["time", "knee", "hip"]], TABLE.set_index(pd.Index(T, name="time"))):
+        np.testing.assert_array_equal(model.predict(given), plain.predict(TABLE))
+    assert model.score(TABLE, STATES[["toe", "ankle"]]) == plain.score(TABLE.assign(time=T), STATES)
+    with pytest.raises(SamplingError, match="reads 50 samples a second; the table has 25"):
+        model.predict(TABLE.assign(time=2 * T))
+
+
+def test_a_column_of_a_table_is_one_sensor():
+    model = gd.Reconstructor("linear", rate_hz=50.0, history_s=0.4).fit(TABLE["hip"], STATES["ankle"])
+    assert model.model.reconstructor.sensing.sensors == ("hip",) and model.predict(TABLE["hip"]).shape == (len(T), 1)
+
+
+def test_scikit_learn_clones_chains_and_searches_it():
+    from sklearn.base import clone
+    from sklearn.model_selection import GridSearchCV, TimeSeriesSplit
+    from sklearn.pipeline import make_pipeline
+    from sklearn.preprocessing import StandardScaler
+
+    model = gd.Reconstructor("linear", rate_hz=50, history_s=0.4)
+    assert clone(model).get_params() == model.get_params() and repr(clone(model)) == repr(model)
+    whole = make_pipeline(StandardScaler(), clone(model)).fit(TABLE, Y)
+    assert whole.score(TABLE, Y) == pytest.approx(clone(model).fit(TABLE, Y).score(TABLE, Y), abs=1e-3)
+    search = GridSearchCV(model, {"kind": ["linear", "delay ridge"]}, cv=TimeSeriesSplit(2)).fit(X, Y)
+    assert search.best_params_ == {"kind": "delay ridge"}  # its history reads the phase
+    with pytest.raises(TrainingError, match=r"settings kind, rate_hz.*found 'alpha'"):
+        model.set_params(alpha=1.0)

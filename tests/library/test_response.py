@@ -3,7 +3,7 @@
 import pytest
 
 import gaitdisc as gd
-from gaitdisc.errors import ChannelError
+from gaitdisc.errors import ChannelError, SamplingError
 from gaitdisc.results.participant_response import R2_COLUMNS
 
 OUTPUTS = ("ankle_angle_r",)
@@ -32,3 +32,10 @@ def test_two_walks_become_a_run_that_is_saved_and_drawn(walks, tmp_path):
 def test_an_output_that_is_no_angle_of_both_is_refused(walks):
     with pytest.raises(ChannelError, match="'ankle_angle_q' is not among hip_flexion_r"):
         gd.fit_response(walks["nominal"], walks["exo"], ("ankle_angle_q",))
+
+
+def test_a_share_in_percent_is_refused_and_one_output_is_a_name(walks):
+    with pytest.raises(SamplingError, match=r"between 0 and 1; held_out_share is 12.5"):
+        gd.fit_response(walks["nominal"], walks["exo"], held_out_share=12.5)
+    with pytest.raises(ChannelError, match="'ankle' is not among"):
+        gd.fit_response(walks["nominal"], walks["exo"], outputs="ankle")

@@ -69,7 +69,7 @@ def test_what_is_missing_is_named(keywords, error, words):
 def test_time_that_is_uneven_or_one_sample_is_refused():
     with pytest.raises(SamplingError, match="a constant rate"):
         gd.simulate(lambda x: -x, [0.0, 0.1, 0.4], start=[1.0])
-    with pytest.raises(ShapeError, match="two times or more"):
+    with pytest.raises(ShapeError, match="three or more"):
         gd.simulate(lambda x: -x, [0.0], start=[1.0])
 
 
@@ -118,3 +118,25 @@ def test_an_engine_runs_its_model_and_what_the_mapping_adds(engine_pendulum):
         SchemaError, match=r"pendulum.toml has besides: .* at pivot_moment.*write it into the model by hand"
     ):
         gd.simulate(engine_pendulum, time, {"drive": drive}, start)
+
+
+@pytest.mark.parametrize("u", [np.sin, 0.5], ids=["function", "number"])
+def test_an_input_may_be_a_function_of_the_time_or_a_number(u):
+    values = u(TIME) if callable(u) else np.full(len(TIME), u)
+    run = gd.simulate(driven, TIME, {"u": u}, start=[0.5])
+    np.testing.assert_array_equal(run.values, gd.simulate(driven, TIME, {"u": values}, start=[0.5]).values)
+
+
+def test_a_table_with_times_is_read_at_the_times_of_the_run():
+    slow = np.arange(0.0, 5.0, 0.02)
+    table = pd.DataFrame({"time": slow, "u": slow})  # a ramp: linear between its samples
+    run = gd.simulate(driven, TIME, table, start=[0.5])
+    np.testing.assert_allclose(run["u"], TIME, atol=1e-12)
+
+
+def test_inputs_without_names_and_a_span_in_place_of_times_are_refused():
+    with pytest.raises(SimulationError, match=r"given as ndarray, without names.*inputs=\{'u': values\}"):
+        gd.simulate(driven, TIME, np.sin(TIME), start=[0.5])
+    for time in ((0.0, 5.0), 5.0):
+        with pytest.raises(ShapeError, match=r"three or more.*np\.linspace"):
+            gd.simulate(lambda x: -x, time, start=[0.5])

@@ -1,6 +1,7 @@
 """Contacts and cycles of a trial."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import gaitdisc as gd
@@ -42,3 +43,22 @@ def test_a_cycle_with_a_gap_in_what_is_cut_is_dropped(walk):
 def test_a_side_without_contacts_is_refused(walk):
     with pytest.raises(StrideError, match=r"cycles of side 'right'.*contacts were found of side l, r"):
         gd.cycles(walk, "right")
+
+
+def test_contacts_that_are_known_are_used_as_they_are_given(walk):
+    table = pd.DataFrame({"time": np.arange(0.0, 10.0, 0.01), "knee": 0.0})
+    at = np.arange(0.5, 9.0)
+    strides = gd.cycles(table.assign(time=table["time"]).rename(columns={"knee": "knee_angle_r"}), contacts=at)
+    np.testing.assert_array_equal(strides.start, at[:-1])
+    assert (strides.side, strides.detector) == ("r", "events")
+    found = gd.contacts(walk)
+    for given in (found, found["l"]):
+        np.testing.assert_array_equal(gd.cycles(walk, "l", contacts=given).start, gd.cycles(walk, "l").start)
+
+
+def test_contacts_in_frames_and_unknown_detectors_are_refused(walk):
+    with pytest.raises(StrideError, match=r"one is at 1000 s, and W01_nominal ends at .*numbers of frames"):
+        gd.cycles(walk, contacts=[100, 1000])
+    for detector in ("heel", np.array([0.5, 1.5])):
+        with pytest.raises(StrideError, match=r"auto, force, events, markers, angles.*contacts=times"):
+            gd.contacts(walk, detector)

@@ -3,6 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import gaitdisc as gd
 from gaitdisc.channel import Channel
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError
 from gaitdisc.recording import Recording, Source
@@ -95,3 +96,28 @@ def test_tables_for_those_who_want_them():
     labelled = walk().to_xarray()
     assert labelled.sel(channel="knee_angle_r").coords["unit"].item() == "deg"
     assert labelled.dims == ("time", "channel")
+
+
+def test_a_channel_is_taken_by_its_name_and_one_name_is_one_channel():
+    walk = Recording(
+        np.arange(100) / 100, np.zeros((100, 3)), tuple(Channel(f"RHEE.{axis}", "marker", "m") for axis in "xyz")
+    )
+    assert walk.selected("RHEE.y").names == ("RHEE.y",)
+    assert "RHEE.z" in walk and "RHEE" not in walk and 0 not in walk
+    with pytest.raises(ChannelError, match=r"the marker is RHEE.x, RHEE.y, RHEE.z"):
+        walk["RHEE"]
+    for other in (["RHEE.x"], slice(0, 10), 0):
+        with pytest.raises(ChannelError, match=f"taken by its name; found {type(other).__name__}"):
+            walk[other]
+
+
+def test_channels_are_no_bare_names():
+    with pytest.raises(ChannelError, match=r"found 'knee_angle_r'.*Channel\("):
+        Recording(np.arange(100) / 100, np.zeros((100, 1)), ("knee_angle_r",))
+
+
+def test_a_table_with_units_is_read_back():
+    walk = Recording(np.arange(100) / 100, np.ones((100, 1)), (Channel("RHEE.x", "marker", "m", "r"),))
+    assert list(walk.to_pandas(units=True)) == ["RHEE.x [m]"]
+    again = gd.read(walk.to_pandas(units=True)).stream("markers")
+    assert [(one.name, one.unit) for one in again.channels] == [("RHEE.x", "m")] and (again.values == 1.0).all()

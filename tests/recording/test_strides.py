@@ -1,4 +1,5 @@
 import numpy as np
+import pandas as pd
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -77,3 +78,13 @@ def test_every_time_has_the_number_of_its_stride():
     np.testing.assert_array_equal(np.isfinite(strides.phi(time)), strides.number(time) >= 0)
     none = Strides(np.empty(0), np.empty(0), "r", "force")
     np.testing.assert_array_equal(none.number(time), np.full(8, -1))
+
+
+def test_a_table_is_cut_as_its_recording_is():
+    time = np.arange(300) / 100
+    one, table = strides(0.5, 1.5), pd.DataFrame({"knee": time, "time": time})
+    for recording in (table, table.set_index("time")):
+        np.testing.assert_allclose(one.normalised(recording)[0, :, 0], 0.5 + np.arange(101) / 100)
+    for other, words in ((time, "found ndarray"), (table[["knee"]], "found DataFrame without it")):
+        with pytest.raises(ShapeError, match=f"times \\[s\\] in a column 'time'; {words}"):
+            one.normalised(other)

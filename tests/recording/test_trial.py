@@ -1,3 +1,6 @@
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -46,3 +49,12 @@ def test_an_unknown_kind_of_stream():
 def test_streams_are_frozen():
     with pytest.raises(TypeError):
         trial().streams["emg"] = trial().stream("forces")
+
+
+@pytest.mark.parametrize("sent", [lambda one: pickle.loads(pickle.dumps(one)), copy.deepcopy], ids=["pickle", "copy"])
+def test_a_trial_goes_to_another_process_and_stays_frozen(sent):
+    again = sent(trial())
+    assert repr(again) == repr(trial())
+    np.testing.assert_array_equal(again.stream("forces").values, trial().stream("forces").values)
+    with pytest.raises(TypeError):
+        again.streams["emg"] = again.stream("forces")

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from gaitdisc.errors import ReadError, SchemaError, WriteError
 from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State, Term
 from gaitdisc.simulation.python_simulation import python_simulation
+from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Simulation
 from gaitdisc.simulation.simulation_file import read_simulation, simulation_of
 from gaitdisc.simulation.writing import read_into, simulation_text, write_simulation
@@ -198,3 +199,8 @@ def test_the_sensors_of_a_python_object_are_written_with_it(tmp_path):
     changed = ball().with_observation("fall", "-v").with_sensor(Sensor("fall", "m/s", 0.1, 8.0))
     path = write_simulation(changed, tmp_path / "ball.toml")
     assert read_into(ball(), path).parts == changed.parts
+
+
+def test_a_function_is_no_simulation_yet(tmp_path):
+    with pytest.raises(SimulationError, match=r"found function.*simulation_from_function"):
+        write_simulation(lambda x: -x, tmp_path / "decay.toml")  # pyright: ignore[reportArgumentType]

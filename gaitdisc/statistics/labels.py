@@ -1,0 +1,44 @@
+"""Rows and columns of two tables that belong together, by their labels."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pandas as pd
+
+from gaitdisc.errors import ShapeError
+
+
+def in_one_order(first: Any, second: Any) -> tuple[Any, Any]:
+    """Both, the second in the order of the first's index where both have one (DataFrame or Series); else as given."""
+    if not all(isinstance(one, pd.DataFrame | pd.Series) for one in (first, second)):
+        return first, second
+    check_same(first.index, second.index, "participants")
+    return first, second.loc[first.index]
+
+
+def check_same(one: pd.Index, other: pd.Index, words: str) -> None:
+    """Refuse labels that stand in one of two tables alone, or twice in it."""
+    unlike = one.symmetric_difference(other)
+    if len(unlike) or one.has_duplicates or other.has_duplicates:
+        double = next((index for index in (one, other) if index.has_duplicates), one)
+        found = (
+            f"{unlike[0]!r} is in one of them" if len(unlike) else f"{double[double.duplicated()][0]!r} stands twice"
+        )
+        raise ShapeError(
+            f"both tables have the same {words}, once each",
+            found,
+            "Leave out of both who was measured once (a missing number is NaN), and make the participant the index: "
+            'table.set_index("participant").',
+        )
+
+
+def check_numbers(table: pd.DataFrame, words: str) -> None:
+    """Refuse a column that holds no numbers."""
+    for name, kind in table.dtypes.items():
+        if not pd.api.types.is_numeric_dtype(kind) or pd.api.types.is_bool_dtype(kind):
+            raise ShapeError(
+                f"every column is one of the {words} and holds numbers",
+                f"column {name!r} holds others ({kind})",
+                'Leave it out; who was measured goes into the index: table.set_index("participant").',
+            )
