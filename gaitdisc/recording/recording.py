@@ -144,7 +144,7 @@ class Recording:
         return self.values[:, self.index(name)]
 
     def selected(self, names: Sequence[str]) -> Recording:
-        """Recording of some channels, in the order asked for.
+        """Recording of some channels, in the order requested.
 
         Parameters
         ----------

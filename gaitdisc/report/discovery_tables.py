@@ -13,8 +13,8 @@ from gaitdisc.report.table import Table
 from gaitdisc.report.wording import NONE, counted, p_cell
 from gaitdisc.results.amounts import amount, estimate_text, shown_unit, with_unit
 from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect
+from gaitdisc.results.distinguishing import would_distinguish
 from gaitdisc.results.effect_words import at_place, outside_text, spoken
-from gaitdisc.results.told_apart import would_tell_apart
 
 
 def estimates_table(discovery: Discovery) -> Table:
@@ -145,7 +145,7 @@ def rivals_table(discovery: Discovery) -> Table:
     rows, records = [], []
     named = discovery.effects[0].name if discovery.effects else ""
     for one in discovery.rivals:
-        apart = would_tell_apart(named, one.name) if named else NONE
+        apart = would_distinguish(named, one.name) if named else NONE
         rows.append(
             (
                 spoken(one.name),

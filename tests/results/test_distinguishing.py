@@ -1,6 +1,6 @@
 import pytest
 
-from gaitdisc.results.told_apart import would_tell_apart
+from gaitdisc.results.distinguishing import would_distinguish
 
 
 @pytest.mark.parametrize(
@@ -17,5 +17,5 @@ from gaitdisc.results.told_apart import would_tell_apart
     ],
 )
 def test_a_recording_is_named_whichever_comes_first(name, other, recording):
-    assert recording in would_tell_apart(name, other)
-    assert would_tell_apart(name, other) == would_tell_apart(other, name)
+    assert recording in would_distinguish(name, other)
+    assert would_distinguish(name, other) == would_distinguish(other, name)
