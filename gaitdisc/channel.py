@@ -164,7 +164,7 @@ def path_label(label: str) -> str:
 
 
 def side_of(name: str) -> str:
-    """Side that a name tells: `r`, `l` or empty.
+    """Side that a name states: `r`, `l` or empty.
 
     >>> side_of("emg_sol_l"), side_of("hip_flexion_r_moment"), side_of("lumbar_bending")
     ('l', 'r', '')

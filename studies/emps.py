@@ -23,10 +23,10 @@ import numpy as np
 
 import gaitdisc as gd
 from gaitdisc.discovery.discover import discover
-from gaitdisc.discovery.evidence import Judged
-from gaitdisc.discovery.growth import grown
+from gaitdisc.discovery.forward_selection import select_forward
 from gaitdisc.discovery.held_out import Trial, runs_of
-from gaitdisc.discovery.inquiry import Inquiry, begin_inquiry
+from gaitdisc.discovery.problem import Problem, set_up_problem
+from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.simulation.measured import Measured, TrialColumns, measured_of_trials
 
 MODEL = Path(__file__).with_name("emps.toml")
@@ -57,13 +57,13 @@ def run(quick: bool, data: Path) -> Result:
     """Search the first record; test on its end, and on the pulses where they are there."""
     simulation = gd.read_simulation(MODEL)
     measured = stretches(data / "DATA_EMPS.mat", simulation)
-    inquiry = begin_inquiry(simulation, measured)
-    as_read = inquiry.as_read()
-    first, _ = grown(inquiry.search, as_read, 1)
-    part = first.account.parts[0]
-    runs = {"held-out stretches": free_runs(inquiry, inquiry.held_out, as_read, first)}
+    problem = set_up_problem(simulation, measured)
+    as_read = problem.as_read()
+    first, _ = select_forward(problem.search, as_read, 1)
+    part = first.model.parts[0]
+    runs = {"held-out stretches": free_runs(problem, problem.held_out, as_read, first)}
     if (data / "DATA_EMPS_PULSES.mat").exists():
-        pulses = begin_inquiry(simulation, stretches(data / "DATA_EMPS_PULSES.mat", simulation))
+        pulses = set_up_problem(simulation, stretches(data / "DATA_EMPS_PULSES.mat", simulation))
         runs["pulses"] = free_runs(pulses, (*pulses.learned, *pulses.held_out), as_read, first)
     left = {name: (rms(before), rms(after)) for name, (before, after) in runs.items()}
     whole = None if quick else discover(simulation, measured)[0]
@@ -89,9 +89,11 @@ def stretches(path: Path, simulation: gd.Simulation) -> Measured:
     return measured_of_trials(trials, ("force",), tuple(name for name, _ in simulation.observations), path.name)
 
 
-def free_runs(inquiry: Inquiry, trials: tuple[int, ...], before: Judged, after: Judged) -> tuple[Trial, Trial]:
+def free_runs(
+    problem: Problem, trials: tuple[int, ...], before: ScoredModel, after: ScoredModel
+) -> tuple[Trial, Trial]:
     """Runs of the model as read and with what was named, over trials that were not fitted."""
-    return runs_of(inquiry, before, trials, after), runs_of(inquiry, after, trials, after)
+    return runs_of(problem, before, trials, after), runs_of(problem, after, trials, after)
 
 
 def rms(runs: Trial) -> float:

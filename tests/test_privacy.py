@@ -263,7 +263,7 @@ def test_models_and_what_they_tell_hold_none_of_them(study, recordings, tmp_path
 
 def test_a_discovery_from_a_study_holds_none_of_them(study, tmp_path, monkeypatch):
     """Whatever is found: the words come from the study, and the search for what is missing has none of them."""
-    monkeypatch.setattr("gaitdisc.discovery.discover.judge", lambda _, as_read: Verdict("no_gap", as_read, ()))
+    monkeypatch.setattr("gaitdisc.discovery.discover.decide", lambda _, as_read: Verdict("no_gap", as_read, ()))
     done = called("discover", study, "--participant", "P01", "--out", tmp_path, "--no-report", "--quiet")
     assert (tmp_path / "discovery.json").exists(), done.output
     assert planted(done.output.replace(str(tmp_path), "")) == []

@@ -33,7 +33,7 @@ def common_curves(walks: Sequence[WalkSummary], wanted: Sequence[str] = ()) -> C
 
     Left out, each with a finding: channels that a walk lacks or gives in another unit, that do not move in any walk,
     that repeat another channel, of which half of the strides or more have gaps, or that the quality checks found
-    frozen, clipped or dead (unless they are asked for). The foot with fewer strides tells how many are used of both.
+    frozen, clipped or dead (unless they are requested). The foot with fewer strides decides how many are used of both.
     """
     findings: list[Finding] = []
     shared = _shared(walks, wanted, findings)

@@ -6,17 +6,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from gaitdisc.discovery.account import Part
+from gaitdisc.discovery.candidate_model import Part
+from gaitdisc.discovery.corrections import corrected, corrections_of, file_bounds
 from gaitdisc.discovery.effect_units import places_unit, unit_of_channel
 from gaitdisc.discovery.estimates import estimates_of
-from gaitdisc.discovery.evidence import Judged
 from gaitdisc.discovery.held_out import drawn_runs, gap_size, proof_of, runs_of, tested
 from gaitdisc.discovery.influence import nearly_off
-from gaitdisc.discovery.inquiry import Inquiry
-from gaitdisc.discovery.moved import corrected, corrections_of, file_bounds
 from gaitdisc.discovery.odd_trials import KIND as ODD_TRIAL
-from gaitdisc.discovery.rivals import Rival, evidence_of, rivals_of
-from gaitdisc.discovery.shaken import Shaken
+from gaitdisc.discovery.problem import Problem
+from gaitdisc.discovery.process_noise import ProcessNoise
+from gaitdisc.discovery.rivals import Rival, bic_gain, rivals_of
+from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.verdict import Verdict
 from gaitdisc.discovery.wording import sentence_of
 from gaitdisc.discovery.wrong_start import begun_at
@@ -29,38 +29,38 @@ HALF = 0.5
 DIGITS = 3  # of the numbers in an expression that a person reads; those of the file are exact
 
 
-def answer(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> tuple[Discovery, Simulation]:
-    """Write down what an inquiry came to.
+def answer(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> tuple[Discovery, Simulation]:
+    """Write down what was found.
 
     returns augmented: the simulation with what was found, its numbers written in
     """
-    now, base = verdict.account, inquiry.search.base
+    now, base = verdict.found, problem.search.base
     channels = tuple(name for name, _ in base.observations)
-    floor, proof = inquiry.noise_floor(now.noise.size), verdict.proof
-    before, after = (runs_of(inquiry, one, inquiry.learned, now) for one in (as_read, now))
-    train = gap_size(before, after, floor, channels, tested(inquiry, before, after, now))
-    held = proof if proof and now.account.parts else proof_of(inquiry, as_read, now, now)
+    floor, proof = problem.noise_floor(now.noise.size), verdict.proof
+    before, after = (runs_of(problem, one, problem.learned, now) for one in (as_read, now))
+    train = gap_size(before, after, floor, channels, tested(problem, before, after, now))
+    held = proof if proof and now.model.parts else proof_of(problem, as_read, now, now)
     held_out = gap_size(held.before, held.after, floor, channels, (proof or held).test)
-    gained = evidence_of(inquiry.search, now)
-    moved = corrections_of(now.account, base)
-    effects = effects_of(inquiry, verdict, 1 - held_out.unexplained, gained)
+    gained = bic_gain(problem.search, now)
+    moved = corrections_of(now.model, base)
+    effects = effects_of(problem, verdict, 1 - held_out.unexplained, gained)
     discovery = Discovery(
         verdict.word,
         "",
-        whereabouts(inquiry, verdict, train),
+        whereabouts(problem, verdict, train),
         effects,
-        (*told_rivals(inquiry, rivals_of(inquiry.search, now, verdict.rivals, gained)), *small_ones(verdict.small)),
+        (*reported_rivals(problem, rivals_of(problem.search, now, verdict.rivals, gained)), *small_ones(verdict.small)),
         train,
         held_out,
         channels,
-        units_of(inquiry),
-        drawn_runs(inquiry, held.before, held.after),
-        (*inquiry.measured.findings, *nearly_off(effects, inquiry.measured.source)),
+        units_of(problem),
+        drawn_runs(problem, held.before, held.after),
+        (*problem.measured.findings, *nearly_off(effects, problem.measured.source)),
         corrections=moved,
     )
-    augmented = begun_at(augmented_of(corrected(base, moved), now.account.parts), verdict.starts)
-    said = sentence_of(discovery, base, now.account.parts)
-    return replace(said, sentence=" ".join([said.sentence, *left_out(inquiry.measured.findings)])), augmented
+    augmented = begun_at(augmented_of(corrected(base, moved), now.model.parts), verdict.starts)
+    said = sentence_of(discovery, base, now.model.parts)
+    return replace(said, sentence=" ".join([said.sentence, *left_out(problem.measured.findings)])), augmented
 
 
 def left_out(findings: tuple[Finding, ...]) -> list[str]:
@@ -68,28 +68,28 @@ def left_out(findings: tuple[Finding, ...]) -> list[str]:
     return [f"{one.what[0].upper()}{one.what[1:]}; it was left out." for one in findings if one.kind == ODD_TRIAL]
 
 
-def effects_of(inquiry: Inquiry, verdict: Verdict, closed: float, gained: float) -> tuple[FoundEffect, ...]:
-    """List what was found: a random push, wrong starts, or the explanations that were let in."""
-    if verdict.shaking:
-        place, push = verdict.shaking.place, push_of(inquiry, verdict.shaking)
+def effects_of(problem: Problem, verdict: Verdict, closed: float, gained: float) -> tuple[FoundEffect, ...]:
+    """List what was found: a random push, wrong starts, or the explanations that were selected."""
+    if verdict.process_noise:
+        place, push = verdict.process_noise.place, push_of(problem, verdict.process_noise)
         return (FoundEffect(place.kind, place.name, "process_noise", "", {"strength": push}),)
     if verdict.starts:
         return tuple(
             FoundEffect("state", name, "wrong_initial_condition", "", {"initial": start})
             for name, start in verdict.starts.items()
         )
-    found = found_effects(inquiry, verdict.account, closed, gained)
+    found = found_effects(problem, verdict.found, closed, gained)
     if verdict.read:
-        (part,) = verdict.account.account.parts
+        (part,) = verdict.found.model.parts
         expression = part.candidate.term({slot: f"{value:.{DIGITS}g}" for slot, value in part.values.items()})
         found = [replace(found[0], reads_as=expression, reads_as_effect=verdict.reads_as)]
     return tuple(found)
 
 
-def push_of(inquiry: Inquiry, shaking: Shaken) -> Estimate:
+def push_of(problem: Problem, process_noise: ProcessNoise) -> Estimate:
     """Return the standard deviation of a random push, in the unit of its place."""
-    unit = places_unit(inquiry.search.base, shaking.place.kind, shaking.place.name)
-    return Estimate(shaking.strength, np.nan, np.nan, unit)
+    unit = places_unit(problem.search.base, process_noise.place.kind, process_noise.place.name)
+    return Estimate(process_noise.strength, np.nan, np.nan, unit)
 
 
 def augmented_of(base: Simulation, parts: tuple[Part, ...]) -> Simulation:
@@ -99,12 +99,12 @@ def augmented_of(base: Simulation, parts: tuple[Part, ...]) -> Simulation:
     return base
 
 
-def found_effects(inquiry: Inquiry, now: Judged, closed: float, gained: float) -> list[FoundEffect]:
+def found_effects(problem: Problem, now: ScoredModel, closed: float, gained: float) -> list[FoundEffect]:
     """List the explanations with their numbers and intervals."""
     found = []
-    for number, part in enumerate(now.account.parts):
+    for number, part in enumerate(now.model.parts):
         candidate = part.candidate
-        estimates = estimates_of(now.account, number, inquiry.search.base)
+        estimates = estimates_of(now.model, number, problem.search.base)
         place = (candidate.kind, candidate.place, candidate.name)
         found.append(
             FoundEffect(
@@ -113,19 +113,19 @@ def found_effects(inquiry: Inquiry, now: Judged, closed: float, gained: float) -
                 estimates,
                 closed,
                 gained,
-                bounds=file_bounds(inquiry.search.base, candidate),
+                bounds=file_bounds(problem.search.base, candidate),
                 states=candidate.states_at(part.written),
             )
         )
     return found
 
 
-def told_rivals(inquiry: Inquiry, rivals: tuple[Rival, ...]) -> tuple[FoundEffect, ...]:
+def reported_rivals(problem: Problem, rivals: tuple[Rival, ...]) -> tuple[FoundEffect, ...]:
     """List what else was weighed, with its numbers."""
     listed = []
     for rival in rivals:
-        candidate, account = rival.part.candidate, rival.account.account
-        estimates = estimates_of(account, len(account.parts) - 1, inquiry.search.base)
+        candidate, model = rival.part.candidate, rival.scored.model
+        estimates = estimates_of(model, len(model.parts) - 1, problem.search.base)
         place = (candidate.kind, candidate.place, candidate.name)
         listed.append(
             FoundEffect(
@@ -134,7 +134,7 @@ def told_rivals(inquiry: Inquiry, rivals: tuple[Rival, ...]) -> tuple[FoundEffec
                 estimates,
                 bic=rival.gained,
                 tied=rival.tied,
-                bounds=file_bounds(inquiry.search.base, candidate),
+                bounds=file_bounds(problem.search.base, candidate),
             )
         )
     return tuple(listed)
@@ -148,43 +148,43 @@ def small_ones(parts: tuple[Part, ...]) -> tuple[FoundEffect, ...]:
     )
 
 
-def whereabouts(inquiry: Inquiry, verdict: Verdict, train: GapSize) -> tuple[Whereabouts, ...]:
+def whereabouts(problem: Problem, verdict: Verdict, train: GapSize) -> tuple[Whereabouts, ...]:
     """Say where the gap arises.
 
     train: the gap before and after on the trials that were learned from
     """
-    if verdict.shaking:
-        return (Whereabouts(verdict.shaking.place.kind, verdict.shaking.place.name, float("nan")),)
+    if verdict.process_noise:
+        return (Whereabouts(verdict.process_noise.place.kind, verdict.process_noise.place.name, float("nan")),)
     if verdict.starts:
         return tuple(Whereabouts("state", name, float("nan")) for name in verdict.starts)
-    now = verdict.account
+    now = verdict.found
     share = (train.before**2 - train.after**2) / train.before**2 if train.before > 0 else 0.0
     return tuple(
         Whereabouts(
             part.candidate.kind,
             part.candidate.place,
-            share / len(now.account.parts),
-            phase_of(inquiry, now, part),
+            share / len(now.model.parts),
+            phase_of(problem, now, part),
             region_of(part),
         )
-        for part in now.account.parts
+        for part in now.model.parts
     )
 
 
-def phase_of(inquiry: Inquiry, now: Judged, part: Part) -> tuple[float, ...]:
+def phase_of(problem: Problem, now: ScoredModel, part: Part) -> tuple[float, ...]:
     """Return the part of the stride in which an effect is at least half as strong as at its strongest."""
-    names = [one.name for one in inquiry.search.base.inputs]
+    names = [one.name for one in problem.search.base.inputs]
     if "phase" not in names or part.candidate.verdict != "missing_physics":
         return ()
     term = part.candidate.term({slot: f"{value:.9g}" for slot, value in part.values.items()})
     if "delay(" in term:
         return ()
-    segments, drive, fit = now.shooting.segments, inquiry.measured.drive, now.account.fit
+    segments, drive, fit = now.shooting.segments, problem.measured.drive, now.model.fit
     inputs = segments.of(drive.inputs)
     time = drive.time0[segments.trial][:, None] + segments.samples / drive.rate
     # run by run: what stands beside the effect may be late, and a delay needs consecutive samples
     runs = [Points(*one, fit.values, rate=drive.rate) for one in zip(time, fit.states, inputs, strict=True)]
-    push = np.abs(np.concatenate([evaluate(now.account.simulation, term, run) for run in runs]))
+    push = np.abs(np.concatenate([evaluate(now.model.simulation, term, run) for run in runs]))
     inputs = inputs.reshape(-1, len(names))
     phase = inputs[:, names.index("phase")]
     bins = np.minimum((phase * 100).astype(int), 99)
@@ -204,7 +204,7 @@ def region_of(part: Part) -> str:
     return ""
 
 
-def units_of(inquiry: Inquiry) -> tuple[str, ...]:
+def units_of(problem: Problem) -> tuple[str, ...]:
     """Return the units of the observed channels."""
-    base = inquiry.search.base
+    base = problem.search.base
     return tuple(unit_of_channel(base, name) for name, _ in base.observations)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from gaitdisc.discovery.inquiry import FEWEST_SAMPLES, begin_inquiry
+from gaitdisc.discovery.problem import FEWEST_SAMPLES, set_up_problem
 from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.simulation.divergence import refuse_divergence
 from gaitdisc.simulation.drive import Rows
@@ -17,10 +17,10 @@ MOST_LOST = 0.2  # of the shortest runs; a few may begin at a bad guess of what 
 
 def refuse_blow_up(simulation: Simulation, measured: Measured) -> None:
     """Refuse a simulation that does not stay finite over runs of a few samples that begin at the data."""
-    inquiry, machine = begin_inquiry(simulation, without_spikes(measured)), compile_simulation(simulation)
-    segments = inquiry.segments((*inquiry.learned, *inquiry.held_out), 0.0)
-    rows = Rows(segments.trial, segments.begin, inquiry.guess.starts(segments))
-    drive = inquiry.measured.drive
+    problem, machine = set_up_problem(simulation, without_spikes(measured)), compile_simulation(simulation)
+    segments = problem.segments((*problem.learned, *problem.held_out), 0.0)
+    rows = Rows(segments.trial, segments.begin, problem.guess.starts(segments))
+    drive = problem.measured.drive
     states, ok = machine.run(drive, rows, FEWEST_SAMPLES - 1)
     if np.mean(~ok) > MOST_LOST:
         refuse_divergence(machine, drive, rows, states, ok)

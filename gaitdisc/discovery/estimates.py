@@ -8,8 +8,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.account import Account, Part
 from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.candidate_model import CandidateModel, Part
 from gaitdisc.discovery.effect_units import divided, places_unit, unit_of, unit_of_channel, unit_of_state
 from gaitdisc.results.discovery import Estimate
 from gaitdisc.simulation.simulation import Simulation
@@ -22,15 +22,15 @@ _WANING = re.compile(r"max\(0, (-|_\w+ - )")  # max(0, x0 - x), max(0, -v)
 _WAVE = re.compile(r"(sin|cos)\((.*)\)")
 
 
-def estimates_of(account: Account, number: int, base: Simulation) -> dict[str, Estimate]:
+def estimates_of(model: CandidateModel, number: int, base: Simulation) -> dict[str, Estimate]:
     """Return the numbers of one explanation.
 
     returns: by name: `stiffness`, `engagement`, ... A stiffness, a damping, a drag and a friction are positive where
         they resist. A sine and a cosine of one argument are an `amplitude` and a `phase`
     """
-    part, own = account.parts[number], account.names[number]
-    rows = [account.fit.free.index(own[slot]) for slot in part.candidate.slots]
-    return named_estimates(part, np.asarray(account.fit.covariance)[np.ix_(rows, rows)], base)
+    part, own = model.parts[number], model.names[number]
+    rows = [model.fit.free.index(own[slot]) for slot in part.candidate.slots]
+    return named_estimates(part, np.asarray(model.fit.covariance)[np.ix_(rows, rows)], base)
 
 
 def named_estimates(part: Part, covariance: NDArray[np.float64], base: Simulation) -> dict[str, Estimate]:

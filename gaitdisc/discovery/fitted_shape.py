@@ -10,13 +10,13 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.account import Account, Part
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.evidence import Judged, judged
-from gaitdisc.discovery.gap_share import REMEMBERED, GapScale, Weighed, weighed
-from gaitdisc.discovery.nameless import MEANS, NAME
+from gaitdisc.discovery.candidate_model import CandidateModel, Part
+from gaitdisc.discovery.gap_share import PER_INDEPENDENT, CrossValidated, GapScale, cross_validated
 from gaitdisc.discovery.places import Place
+from gaitdisc.discovery.scored_model import ScoredModel, scored
 from gaitdisc.discovery.search import Search
+from gaitdisc.discovery.unnamed_terms import MEANS, NAME
 from gaitdisc.simulation.evaluating import Points, evaluate_many
 
 BUMPS = 5
@@ -32,12 +32,12 @@ EACH_NUMBER = 0.004  # of the gap
 SIGNIFICANT = 3.0  # standard errors that a bump must have to stay
 
 
-def shapes_at(place: Place, judged_now: Judged, search: Search) -> list[Candidate]:
+def shapes_at(place: Place, now: ScoredModel, search: Search) -> list[Candidate]:
     """Return the shapes that could be fitted at a place: over one state, over two (bumps, and powers), over the stride.
 
     At a place between bodies the states may be differences of two, and another body's.
     """
-    shapes = [one for motion in place.motions for one in _shapes_over(place, motion, judged_now, search)]
+    shapes = [one for motion in place.motions for one in _shapes_over(place, motion, now, search)]
     if any(one.name == "phase" for one in search.base.inputs):
         centres = (np.arange(STRIDE_BUMPS) + 0.5) / STRIDE_BUMPS
         sharp = (STRIDE_BUMPS / (SHARPNESS * 2 * np.pi)) ** 2 * 2
@@ -46,7 +46,7 @@ def shapes_at(place: Place, judged_now: Judged, search: Search) -> list[Candidat
     return shapes
 
 
-def _shapes_over(place: Place, motion: tuple[str, str], now: Judged, search: Search) -> list[Candidate]:
+def _shapes_over(place: Place, motion: tuple[str, str], now: ScoredModel, search: Search) -> list[Candidate]:
     """Shapes over a position and its rate; where it has none, over it and another state."""
     x, v = motion
     axes = [x, v] if v else [x, *place.others[:1]]
@@ -69,56 +69,58 @@ def _unnamed(place: Place, pieces: list[str], role: str) -> Candidate:
     return Candidate("missing_physics", place.kind, place.name, NAME, tuple(pieces), None, role, MEANS)
 
 
-def fitted_shape(now: Judged, search: Search, scale: GapScale) -> Judged | None:
+def fitted_shape(now: ScoredModel, search: Search, scale: GapScale) -> ScoredModel | None:
     """Fit a shape at every place and return the one that closes most of the gap on runs left out of the fit.
 
     The slopes of the simulation as read say which shapes promise most; these are fitted, and the best ones thinned out
-    and tried as one bump. Each number costs a little of the gap. What is left remembers itself as long as a shape is
-    wrong: under noise that does so too, the wrong one would be the likelier.
+    and tried as one bump. Each number costs a little of the gap. Residuals are autocorrelated as long as a shape is
+    wrong: under noise that is so too, the wrong one would be the likelier.
 
     returns: under the noise that it leaves; None where no shape can be fitted
     """
-    plain = weighed(scale, now.shooting, search.base, (), now.account)
+    plain = cross_validated(scale, now.shooting, search.base, (), now.model)
     if not np.isfinite(plain.gap):
         return None
-    tried = [_weighed(scale, search, plain, part) for part in _promising(now, search, plain)]
+    tried = [_cross_validated(scale, search, plain, part) for part in _promising(now, search, plain)]
     best = _cheapest(tried, plain)[:2]
     tried = best + [
-        _weighed(scale, search, plain, part) for one in best for part in (*_thinned(one.account), *_local(one.account))
+        _cross_validated(scale, search, plain, part)
+        for one in best
+        for part in (*_thinned(one.model), *_local(one.model))
     ]
-    kept = _cheapest([one for one in tried if search.sensible(one.account)], plain)
-    return judged(now.shooting, search.base, kept[0].account) if kept else None
+    kept = _cheapest([one for one in tried if search.sensible(one.model)], plain)
+    return scored(now.shooting, search.base, kept[0].model) if kept else None
 
 
-def cost_of(one: Weighed, plain: Weighed) -> float:
-    """Return what an account leaves of the gap on runs left out of the fit, and a little for each of its numbers.
+def cost_of(one: CrossValidated, plain: CrossValidated) -> float:
+    """Return what a model leaves of the gap on runs left out of the fit, and a little for each of its numbers.
 
     one, plain: with a shape or its reading, and the simulation as read
     """
-    return one.gap / plain.gap + EACH_NUMBER * one.account.size if plain.gap > 0 else np.inf
+    return one.gap / plain.gap + EACH_NUMBER * one.model.size if plain.gap > 0 else np.inf
 
 
-def _cheapest(tried: list[Weighed], plain: Weighed) -> list[Weighed]:
+def _cheapest(tried: list[CrossValidated], plain: CrossValidated) -> list[CrossValidated]:
     return sorted((one for one in tried if np.isfinite(one.gap)), key=lambda one: cost_of(one, plain))
 
 
-def _weighed(scale: GapScale, search: Search, plain: Weighed, part: Part) -> Weighed:
-    return weighed(scale, plain.shooting, search.base, (part,), plain.account)
+def _cross_validated(scale: GapScale, search: Search, plain: CrossValidated, part: Part) -> CrossValidated:
+    return cross_validated(scale, plain.shooting, search.base, (part,), plain.model)
 
 
-def _promising(now: Judged, search: Search, plain: Weighed) -> list[Part]:
+def _promising(now: ScoredModel, search: Search, plain: CrossValidated) -> list[Part]:
     """Shapes that promise most, to first order, with the factors that they promise it with."""
-    scorer = search.scorer(plain.shooting, plain.account)
+    scorer = search.scorer(plain.shooting, plain.model)
     shapes = tuple(shape for place in search.places for shape in shapes_at(place, now, search))
-    price = float(np.log(plain.shooting.known.sum() / REMEMBERED))
-    scores = sorted(scorer.scores(shapes), key=lambda one: price * len(one.candidate.slots) - one.gain)
+    penalty = float(np.log(plain.shooting.known.sum() / PER_INDEPENDENT))
+    scores = sorted(scorer.scores(shapes), key=lambda one: penalty * len(one.candidate.slots) - one.gain)
     return [Part(one.candidate, one.values) for one in scores[:FITTED]]
 
 
-def _thinned(account: Account) -> Iterator[Part]:
+def _thinned(model: CandidateModel) -> Iterator[Part]:
     """Yield the shape without the bumps whose factor is lost in its error."""
-    (part,) = account.parts
-    error = np.sqrt(np.diag(account.fit.covariance))[: account.size]
+    (part,) = model.parts
+    error = np.sqrt(np.diag(model.fit.covariance))[: model.size]
     value = np.array([part.values[slot] for slot in part.candidate.slots])
     keep = np.abs(value) > SIGNIFICANT * error
     if not keep.all() and keep.any():
@@ -127,9 +129,9 @@ def _thinned(account: Account) -> Iterator[Part]:
         yield Part(fewer, dict(zip(fewer.slots, value[keep].tolist(), strict=True)))
 
 
-def _local(account: Account) -> Iterator[Part]:
+def _local(model: CandidateModel) -> Iterator[Part]:
     """Yield one bump whose place and width are free, from each of the two strongest of a shape over one state."""
-    (part,) = account.parts
+    (part,) = model.parts
     strongest = sorted(part.candidate.pieces, key=lambda piece: -abs(part.values[_slot_of(part, piece)]))[:2]
     for piece in strongest:
         bump = _ONE_BUMP.fullmatch(piece)
@@ -151,10 +153,10 @@ def _slot_of(part: Part, piece: str) -> str:
     return part.candidate.slots[part.candidate.pieces.index(piece)]
 
 
-def _visited(axis: str, now: Judged, search: Search) -> tuple[float, float]:
+def _visited(axis: str, now: ScoredModel, search: Search) -> tuple[float, float]:
     """Return where a state or difference mostly lies."""
     known = len(search.base.states)
-    states = now.account.fit.states[..., :known].reshape(-1, known)
+    states = now.model.fit.states[..., :known].reshape(-1, known)
     inputs = np.zeros((len(states), len(search.base.inputs)))
     along = evaluate_many(search.base, [axis], Points(np.zeros(len(states)), states, inputs))[0]
     low, high = np.quantile(along, [0.02, 0.98])

@@ -1,6 +1,6 @@
-"""Explanations weighed by the share of the gap that they close on data left out of the fit, less a price for each.
+"""Models scored by the share of the gap that they close on data left out of the fit, less a penalty for each.
 
-Where no simulation is exact, evidence under the noise goes on growing with every explanation that is let in. What a
+Where no simulation is exact, the likelihood goes on growing with every explanation that is added. What a
 person can use is another question: how much of the disagreement goes, and with how plain a statement.
 """
 
@@ -11,17 +11,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.account import Account, Part, account_for
-from gaitdisc.discovery.evidence import Judged
+from gaitdisc.discovery.candidate_model import CandidateModel, Part, fit_model
+from gaitdisc.discovery.cross_validation import left_out_errors
 from gaitdisc.discovery.fitted import Fitted
-from gaitdisc.discovery.left_out import left_out_errors
 from gaitdisc.discovery.noise import Noise, white_noise
+from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.simulation.simulation import Simulation
 
 MODEL_ERROR = 0.01  # of a channel's spread: no simulation of hardware is exact
 AGREES = 1.5  # times the root mean square that a simulation that lacks nothing may leave
-REMEMBERED = 20.0  # samples of what a wrong simulation leaves say as much as one independent number
+PER_INDEPENDENT = 20.0  # samples of what a wrong simulation leaves say as much as one independent number
 CONVERGED = 1e-4  # of a number's share of the misfit
 TURNS, AGAIN = 15, 6
 
@@ -65,39 +65,41 @@ class GapScale:
         return float(np.sqrt(max(mean_square - self.floor, 0.0)))
 
     def error_of(self, fit: Fitted) -> Noise:
-        """Return white noise as large as a residual that remembers itself weighs against a prior."""
-        return white_noise(self.size * np.sqrt(REMEMBERED * max(self.mean_square(fit), 1e-12)))
+        """Return white noise as large as an autocorrelated residual weighs against a prior."""
+        return white_noise(self.size * np.sqrt(PER_INDEPENDENT * max(self.mean_square(fit), 1e-12)))
 
 
 @dataclass(frozen=True, eq=False)
-class Weighed:
+class CrossValidated:
     """A simulation with some explanations in it, and what it leaves of runs that it was not fitted to."""
 
-    account: Account
+    model: CandidateModel
     shooting: Shooting
     errors: NDArray[np.float64]  # (piece,), mean squares left out of the fit, in squares of the scale's size
     gap: float  # their root mean square above the sensors' noise
 
     @property
-    def judged(self) -> Judged:
-        """The same as the rest of an inquiry takes it."""
-        return Judged(self.account, self.shooting)
+    def scored(self) -> ScoredModel:
+        """The same, scored by its information criterion."""
+        return ScoredModel(self.model, self.shooting)
 
 
-def weighed(scale: GapScale, shooting: Shooting, base: Simulation, parts: tuple[Part, ...], like: Account) -> Weighed:
+def cross_validated(
+    scale: GapScale, shooting: Shooting, base: Simulation, parts: tuple[Part, ...], like: CandidateModel
+) -> CrossValidated:
     """Fit a simulation with explanations in it, and measure what it leaves of runs left out of the fit.
 
     like: of the same segments: where start states and numbers with bounds begin
     """
-    enough = CONVERGED * shooting.seen.size / REMEMBERED
+    enough = CONVERGED * shooting.seen.size / PER_INDEPENDENT
     shooting = shooting.with_noise(scale.error_of(like.fit))
-    account = account_for(shooting, base, parts, like.fit.starts, TURNS, enough, like)
-    if not np.isfinite(account.fit.misfit):
-        return Weighed(account, shooting, np.full(1, np.inf), float("inf"))
-    shooting = shooting.with_noise(scale.error_of(account.fit)).with_past(account.fit.states)
-    account = account_for(shooting, base, account.parts, account.fit.starts, AGAIN, enough, account)
-    if not np.isfinite(account.fit.misfit):
-        return Weighed(account, shooting, np.full(1, np.inf), float("inf"))
+    model = fit_model(shooting, base, parts, like.fit.starts, TURNS, enough, like)
+    if not np.isfinite(model.fit.misfit):
+        return CrossValidated(model, shooting, np.full(1, np.inf), float("inf"))
+    shooting = shooting.with_noise(scale.error_of(model.fit)).with_past(model.fit.states)
+    model = fit_model(shooting, base, model.parts, model.fit.starts, AGAIN, enough, model)
+    if not np.isfinite(model.fit.misfit):
+        return CrossValidated(model, shooting, np.full(1, np.inf), float("inf"))
     square = float(np.mean((shooting.noise.size / scale.size) ** 2))
-    errors = left_out_errors(account.fit) * square / shooting.known.mean()
-    return Weighed(account, shooting, errors, scale.gap_above(float(errors.mean())))
+    errors = left_out_errors(model.fit) * square / shooting.known.mean()
+    return CrossValidated(model, shooting, errors, scale.gap_above(float(errors.mean())))

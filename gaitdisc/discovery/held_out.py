@@ -7,24 +7,24 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.borne_out import PairedTest, paired_test
-from gaitdisc.discovery.evidence import Judged
 from gaitdisc.discovery.fitted import Fitted
-from gaitdisc.discovery.inquiry import LENGTHENED, Inquiry
 from gaitdisc.discovery.own_states import with_own_states
+from gaitdisc.discovery.paired_test import PairedTest, paired_test
+from gaitdisc.discovery.problem import LENGTHENED, Problem
+from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.segments import Segments
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording.finding import Finding
 from gaitdisc.results.discovery import GapSize, Runs
 
 TURNS = 30
-TELLING = 36.0  # how far two runs are apart, in variances of the noise, for trials to tell which is true
-WORTH_ASKING = 50.0  # evidence of the trials that were learned from
+INFORMATIVE = 36.0  # how far two runs are apart, in variances of the noise, for trials to show which is true
+STRONG_SUPPORT = 50.0  # fall of the criterion on the trials that were learned from
 
 
 @dataclass(frozen=True)
 class Trial:
-    """Runs over some trials, with the constants of an account and start states of their own."""
+    """Runs over some trials, with the constants of a model and start states of their own."""
 
     segments: Segments
     fit: Fitted
@@ -36,21 +36,21 @@ class Trial:
         return self.fit.misfits
 
 
-def runs_of(inquiry: Inquiry, now: Judged, trials: tuple[int, ...], like: Judged) -> Trial:
-    """Run an account over trials, finding nothing but the start states."""
-    periods = like.shooting.segments.span / inquiry.rhythm.samples
+def runs_of(problem: Problem, now: ScoredModel, trials: tuple[int, ...], like: ScoredModel) -> Trial:
+    """Run a model over trials, finding nothing but the start states."""
+    periods = like.shooting.segments.span / problem.rhythm.samples
     *shorter, whole = _lengths(periods)
-    guess = inquiry.guess
+    guess = problem.guess
     for length in shorter:
-        segments = inquiry.segments(trials, length)
-        shooting = replace(inquiry.shooting(segments).with_noise(like.noise), past=guess.states)
+        segments = problem.segments(trials, length)
+        shooting = replace(problem.shooting(segments).with_noise(like.noise), past=guess.states)
         guess = guess.with_run(segments, _started(shooting, now, guess.starts(segments)).states)
-    segments = inquiry.segments(trials, whole)
-    shooting = replace(inquiry.shooting(segments).with_noise(like.noise), past=guess.states)
+    segments = problem.segments(trials, whole)
+    shooting = replace(problem.shooting(segments).with_noise(like.noise), past=guess.states)
     return Trial(segments, _started(shooting, now, guess.starts(segments)), shooting.seen)
 
 
-def tells_nothing(inquiry: Inquiry, as_read: Judged, now: Judged) -> bool:
+def is_uninformative(problem: Problem, as_read: ScoredModel, now: ScoredModel) -> bool:
     """Whether the held-out data can say nothing for or against what the others speak for.
 
     A spring that engages beyond where a trial goes changes nothing in it. What counts is how far the two runs are
@@ -58,43 +58,43 @@ def tells_nothing(inquiry: Inquiry, as_read: Judged, now: Judged) -> bool:
 
     as_read, now: the simulation as read and with what trials that were learned from speak for
     """
-    if not now.account.parts or now.gained < WORTH_ASKING:
+    if not now.model.parts or now.gained < STRONG_SUPPORT:
         return False
-    return _apart(inquiry, as_read, now, inquiry.held_out) <= TELLING and bool(_telling(inquiry, as_read, now))
+    return _apart(problem, as_read, now, problem.held_out) <= INFORMATIVE and bool(_informative(problem, as_read, now))
 
 
-def holding_out_others(inquiry: Inquiry, as_read: Judged, now: Judged) -> Inquiry:
-    """Return the inquiry with other trials held out: the last of those that can tell.
+def holding_out_others(problem: Problem, as_read: ScoredModel, now: ScoredModel) -> Problem:
+    """Return the problem with other trials held out: the last of those that are informative.
 
     as_read, now: the simulation as read and with what trials that were learned from speak for
     """
-    held = _telling(inquiry, as_read, now)[-len(inquiry.held_out) :]
-    learned = tuple(sorted({*inquiry.learned, *inquiry.held_out} - {*held}))
-    return replace(inquiry, learned=learned, held_out=held)
+    held = _informative(problem, as_read, now)[-len(problem.held_out) :]
+    learned = tuple(sorted({*problem.learned, *problem.held_out} - {*held}))
+    return replace(problem, learned=learned, held_out=held)
 
 
-def noted(before: Inquiry, now: Inquiry) -> Inquiry:
-    """Return an inquiry with a finding that says what is held out in place of what."""
+def noted(before: Problem, now: Problem) -> Problem:
+    """Return a problem with a finding that says what is held out in place of what."""
     blind, instead = (", ".join(one.measured.trials[trial] for trial in one.held_out) for one in (before, now))
     what = f"with and without what was found, trial {blind} runs alike; trial {instead} is held out in its place"
     finding = Finding("note", "held out", now.measured.source, what, "nothing; the last data were to be held out")
     return replace(now, measured=replace(now.measured, findings=(*now.measured.findings, finding)))
 
 
-def _telling(inquiry: Inquiry, as_read: Judged, now: Judged) -> tuple[int, ...]:
+def _informative(problem: Problem, as_read: ScoredModel, now: ScoredModel) -> tuple[int, ...]:
     """Return the learned trials on which the two runs are apart."""
-    return tuple(one for one in inquiry.learned if _apart(inquiry, as_read, now, (one,)) > TELLING)
+    return tuple(one for one in problem.learned if _apart(problem, as_read, now, (one,)) > INFORMATIVE)
 
 
-def _apart(inquiry: Inquiry, as_read: Judged, now: Judged, trials: tuple[int, ...]) -> float:
+def _apart(problem: Problem, as_read: ScoredModel, now: ScoredModel, trials: tuple[int, ...]) -> float:
     """Return by how much the misfit would fall on trials if what was found were true: how far the runs are apart."""
-    before, after = (runs_of(inquiry, one, trials, now) for one in (as_read, now))
+    before, after = (runs_of(problem, one, trials, now) for one in (as_read, now))
     return float(((before.fit.white - after.fit.white) ** 2).sum())
 
 
-def _started(shooting: Shooting, now: Judged, starts: NDArray[np.float64]) -> Fitted:
-    """Return an account run over segments from the start states that suit it best, its constants as they are."""
-    machine, values = now.account.machine, now.account.fit.values
+def _started(shooting: Shooting, now: ScoredModel, starts: NDArray[np.float64]) -> Fitted:
+    """Return a model run over segments from the start states that suit it best, its constants as they are."""
+    machine, values = now.model.machine, now.model.fit.values
     return shooting.fitted(machine, (), values, with_own_states(shooting, machine, values, starts), TURNS)
 
 
@@ -122,7 +122,7 @@ class Proof:
 
     @property
     def bears_out(self) -> bool:
-        """Whether the plain error falls by more than chance, and the misfit under the noise's memory as well."""
+        """Whether the plain error falls by more than chance, and the misfit under autocorrelated noise as well."""
         misfit = float(np.nan_to_num(self.before.misfits - self.after.misfits, nan=0.0).sum())
         return self.test.bears_out and misfit > 0
 
@@ -134,15 +134,15 @@ class Proof:
         return float(1 - after / before)
 
 
-def proof_of(inquiry: Inquiry, before: Judged, now: Judged, like: Judged) -> Proof:
-    """Run two accounts over the held-out trials and compare their squared errors piece by piece."""
-    first, second = (runs_of(inquiry, one, inquiry.held_out, like) for one in (before, now))
-    return Proof(first, second, tested(inquiry, first, second, like))
+def proof_of(problem: Problem, before: ScoredModel, now: ScoredModel, like: ScoredModel) -> Proof:
+    """Run two models over the held-out trials and compare their squared errors piece by piece."""
+    first, second = (runs_of(problem, one, problem.held_out, like) for one in (before, now))
+    return Proof(first, second, tested(problem, first, second, like))
 
 
-def tested(inquiry: Inquiry, before: Trial, after: Trial, like: Judged) -> PairedTest:
+def tested(problem: Problem, before: Trial, after: Trial, like: ScoredModel) -> PairedTest:
     """Compare the squared errors of the same runs of two models."""
-    period = int(inquiry.rhythm.samples / like.shooting.segments.every) + 1
+    period = int(problem.rhythm.samples / like.shooting.segments.every) + 1
     return paired_test(before.fit.residual, after.fit.residual, like.noise.size, period)
 
 
@@ -162,13 +162,13 @@ def gap_size(
     return GapSize(whole[0], whole[1], whole[2], test.p, sizes, test.pieces)
 
 
-def drawn_runs(inquiry: Inquiry, before: Trial, after: Trial) -> Runs:
+def drawn_runs(problem: Problem, before: Trial, after: Trial) -> Runs:
     """Return the runs as a report draws them.
 
     before, after: the same runs of the simulation as read and with what was found
     """
-    segments, drive = before.segments, inquiry.measured.drive
-    names = [one.name for one in inquiry.search.base.inputs]
+    segments, drive = before.segments, problem.measured.drive
+    names = [one.name for one in problem.search.base.inputs]
     time = drive.time0[segments.trial][:, None] + segments.samples / drive.rate
     phase = segments.of(drive.inputs)[:, :, names.index("phase")] if "phase" in names else np.zeros((len(segments), 0))
     return Runs(
@@ -178,5 +178,5 @@ def drawn_runs(inquiry: Inquiry, before: Trial, after: Trial) -> Runs:
         before.measured,
         before.measured - before.fit.residual,
         after.measured - after.fit.residual,
-        inquiry.measured.trials,
+        problem.measured.trials,
     )

@@ -1,4 +1,4 @@
-"""Influence: which places, parameters and states change nothing of what is measured: no data could tell of them."""
+"""Influence: which places, parameters and states change nothing of what is measured: no data could show them."""
 
 from __future__ import annotations
 

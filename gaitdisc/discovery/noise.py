@@ -1,4 +1,8 @@
-"""The noise of a measurement, learned from what is left over: its size, and how long it remembers."""
+"""The noise of a measurement, estimated from residuals: its size and its autocorrelation.
+
+Source: Cochrane and Orcutt 1949, J. Am. Stat. Assoc. 44, 32 (residuals whitened by their autoregression; here of any
+order, Yule-Walker); Schwarz 1978, Ann. Stat. 6, 461 (the order).
+"""
 
 from __future__ import annotations
 
@@ -11,7 +15,7 @@ from scipy.linalg import solve_toeplitz
 from gaitdisc.discovery.whitening import whiten
 
 MOST_LAGS = 16
-MEMORY = 1.03  # in standard deviations before and after the past is taken off
+AUTOCORRELATED = 1.03  # in standard deviations before and after the past is taken off
 WHITE_SHARE = 0.05  # of the variance is taken as white: no simulation is right to the last decimal at high frequency
 
 
@@ -41,14 +45,16 @@ class Noise:
 
     @property
     def lags(self) -> tuple[int, ...]:
-        """How many samples the noise of each channel remembers; 0 is white."""
+        """Order of each channel's autoregression; 0 is white."""
         return tuple(len(spread) - 1 for spread in self.spread)
 
     @property
-    def remembers(self) -> bool:
+    def is_autocorrelated(self) -> bool:
         """Whether what went before says more than next to nothing of what comes, the record's filter apart."""
         filtered = self.filtered or (1.0,) * len(self.spread)
-        return any(all_of[0] > MEMORY * by * all_of[-1] for all_of, by in zip(self.spread, filtered, strict=True))
+        return any(
+            all_of[0] > AUTOCORRELATED * by * all_of[-1] for all_of, by in zip(self.spread, filtered, strict=True)
+        )
 
     def whitened(self, residual: NDArray[np.float64], known: NDArray[np.bool_] | None = None) -> NDArray[np.float64]:
         """Return residuals as independent numbers of unit variance, if the noise is what it is taken for.
@@ -72,7 +78,7 @@ class Noise:
 
 
 def white_noise(size: NDArray[np.float64]) -> Noise:
-    """Return noise without memory.
+    """Return white noise.
 
     size (channel,): its standard deviation [the channel's unit]
     """
@@ -84,16 +90,16 @@ def noise_of(
     used: float = 0.0,
     white_share: float = WHITE_SHARE,
     least: ArrayLike = 0.0,
-    memory: NDArray[np.float64] | None = None,
+    autocorrelation: NDArray[np.float64] | None = None,
 ) -> Noise:
-    """Learn the noise from residuals (Yule-Walker; the order by the Bayesian criterion).
+    """Estimate the noise from residuals (Yule-Walker; the order by BIC).
 
     residual (segment, sample, channel): measured minus fitted; NaN where nothing was measured. Segments are not joined
     used: numbers that the fit took from each segment and channel; the variance is enlarged accordingly
     white_share: of the variance, taken as white whatever the residuals say
     least float or (channel,): standard deviation of white noise that is there in any case: what integration and
         rounding leave
-    memory (lag, channel): autocorrelation of what the record's filter leaves of white noise
+    autocorrelation (lag, channel): of what the record's filter leaves of white noise
 
     >>> e = np.random.default_rng(0).normal(0, 3, (20, 200, 1))
     >>> noise = noise_of(e)
@@ -117,10 +123,14 @@ def noise_of(
         best = int(np.argmin(count * np.log(left) + np.arange(most + 1) * np.log(count)))
         predictors.append(tuple(orders[: best + 1]))
         spread.append(np.sqrt(left[: best + 1]))
-        own = np.ones(1) if memory is None else memory[: best + 1, channel] * (1 - np.arange(best + 1) / each)
+        own = (
+            np.ones(1)
+            if autocorrelation is None
+            else autocorrelation[: best + 1, channel] * (1 - np.arange(best + 1) / each)
+        )
         own[1:] /= 1 + white_share
         filtered.append(float(1 / np.sqrt(_predicted(own)[1][-1])))
-    return Noise(tuple(predictors), tuple(spread), tuple(filtered) if memory is not None else ())
+    return Noise(tuple(predictors), tuple(spread), tuple(filtered) if autocorrelation is not None else ())
 
 
 def _predicted(covariance: NDArray[np.float64]) -> tuple[list[NDArray[np.float64]], NDArray[np.float64]]:

@@ -13,12 +13,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.account import account_for
+from gaitdisc.discovery.candidate_model import fit_model
 from gaitdisc.discovery.first_states import guess_states
 from gaitdisc.discovery.fitted import Fitted, start_basis, without
-from gaitdisc.discovery.inquiry import FEWEST_SAMPLES, MOST_SEARCHED, SUBSTEPS, Inquiry
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.places import kinematic_rates
+from gaitdisc.discovery.problem import FEWEST_SAMPLES, MOST_SEARCHED, SUBSTEPS, Problem
 from gaitdisc.discovery.segments import Segments, cut_segments
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.recording import Finding
@@ -60,15 +60,15 @@ class Change:
     measured: Measured
 
 
-def agreeing_trials(inquiry: Inquiry, measured: Measured) -> Measured:
+def agreeing_trials(problem: Problem, measured: Measured) -> Measured:
     """Return the trials without those that are turned in sign or shifted in time, each with a finding.
 
     measured: these, as they were given; of fewer than three, none can be said to be the odd one
     """
-    odd = odd_trials(inquiry) if len(measured.trials) > FEWEST_OTHERS else ()
+    odd = odd_trials(problem) if len(measured.trials) > FEWEST_OTHERS else ()
     if not odd:
         return measured
-    source = measured.source or inquiry.search.base.title
+    source = measured.source or problem.search.base.title
     findings = tuple(
         Finding(
             "warning",
@@ -86,14 +86,14 @@ def agreeing_trials(inquiry: Inquiry, measured: Measured) -> Measured:
     return replace(kept, findings=(*kept.findings, *findings))
 
 
-def odd_trials(inquiry: Inquiry) -> tuple[Odd, ...]:
+def odd_trials(problem: Problem) -> tuple[Odd, ...]:
     """Find the trials that are turned in sign or shifted in time."""
-    count = len(inquiry.measured.trials)
-    bench = _Bench(inquiry)
-    fit, segments = bench.fitted(inquiry.measured)
+    count = len(problem.measured.trials)
+    bench = _Bench(problem)
+    fit, segments = bench.fitted(problem.measured)
     before = bench.errors(fit, segments)
     found: dict[int, list[Odd]] = {}
-    for change in (*_turned(inquiry), *_shifted(bench, fit, segments)):
+    for change in (*_turned(problem), *_shifted(bench, fit, segments)):
         after = bench.errors(*bench.fitted(change.measured))
         for trial in range(count):
             then, now = (float(np.median(np.delete(each, trial))) for each in (before, after))
@@ -119,12 +119,12 @@ def _either(found: list[Odd]) -> Odd:
 class _Bench:
     """What runs the simulation as read over all trials and measures how far it misses each."""
 
-    def __init__(self, inquiry: Inquiry) -> None:
-        self.simulation, self.rhythm = inquiry.search.base, inquiry.rhythm
+    def __init__(self, problem: Problem) -> None:
+        self.simulation, self.rhythm = problem.search.base, problem.rhythm
         self.rate_of = kinematic_rates(self.simulation, compile_simulation(self.simulation))
-        self.spread = np.nanstd(inquiry.measured.observed, axis=(0, 1))
-        self.samples = max(int(inquiry.tame_periods() * self.rhythm.samples), FEWEST_SAMPLES)
-        self.measured = inquiry.measured
+        self.spread = np.nanstd(problem.measured.observed, axis=(0, 1))
+        self.samples = max(int(problem.predictable_periods() * self.rhythm.samples), FEWEST_SAMPLES)
+        self.measured = problem.measured
 
     def fitted(self, measured: Measured) -> tuple[Fitted, Segments]:
         """The fit of the start states, run by run."""
@@ -133,7 +133,7 @@ class _Bench:
             MOST_SEARCHED
         )
         shooting = Shooting(measured, segments, white_noise(self.spread), SUBSTEPS, guess.states)
-        return account_for(shooting, self.simulation, (), guess.starts(segments)).fit, segments
+        return fit_model(shooting, self.simulation, (), guess.starts(segments)).fit, segments
 
     def errors(self, fit: Fitted, segments: Segments) -> NDArray[np.float64]:
         """Root mean square of what is left of each trial [standard deviations]; infinite where a run failed."""
@@ -142,9 +142,9 @@ class _Bench:
         return np.sqrt([np.nanmean(square[segments.trial == trial]) for trial in np.unique(segments.trial)])
 
 
-def _turned(inquiry: Inquiry) -> Iterator[Change]:
+def _turned(problem: Problem) -> Iterator[Change]:
     """Yield the trials with the sign of a channel, of all channels, or of an input turned."""
-    measured, inputs = inquiry.measured, inquiry.search.base.inputs
+    measured, inputs = problem.measured, problem.search.base.inputs
     for number, name in enumerate(measured.channels):
         observed = measured.observed * np.where(np.arange(len(measured.channels)) == number, -1.0, 1.0)
         yield Change(f"{SIGN}{name}", name, replace(measured, observed=observed))

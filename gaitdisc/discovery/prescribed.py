@@ -14,13 +14,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.account import Part
-from gaitdisc.discovery.borne_out import PairedTest, paired_test
 from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.gap_share import MODEL_ERROR
 from gaitdisc.discovery.grids import Rhythm, cells
 from gaitdisc.discovery.noise import Noise, noise_of
-from gaitdisc.discovery.price import price_of
+from gaitdisc.discovery.paired_test import PairedTest, paired_test
+from gaitdisc.discovery.penalty import penalty_of
 from gaitdisc.discovery.ranking import MARGIN
 
 Values = NDArray[np.float64]
@@ -121,7 +121,7 @@ def _simple_first(ordered: list[Named]) -> list[Named]:
     if not ordered:
         return ordered
     near = [one for one in ordered if one.gained > ordered[0].gained - MARGIN]
-    first = min(near, key=lambda one: (price_of(one.part.candidate, one.part.values), -one.gained))
+    first = min(near, key=lambda one: (penalty_of(one.part.candidate, one.part.values), -one.gained))
     return [first, *(one for one in ordered if one is not first)]
 
 

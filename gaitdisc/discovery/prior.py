@@ -1,4 +1,4 @@
-"""What a file believes of its numbers: those with bounds are fitted within them, in every explanation alike."""
+"""Prior of a file's numbers: those with bounds are fitted within them, in every explanation alike."""
 
 from __future__ import annotations
 

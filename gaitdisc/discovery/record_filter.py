@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.compiled import compiled
 
-MEMORY_PERIODS = 1.0  # of the cut-off, after which the filter has forgotten all but 1 % (exp(-2 pi / sqrt 2))
+SETTLING_PERIODS = 1.0  # of the cut-off, after which the filter has forgotten all but 1 % (exp(-2 pi / sqrt 2))
 DENSE = 4.0  # samples a period of the cut-off hold all that passes: at half that rate 0.4 % of the power is left
 ROOT_TWO = math.sqrt(2.0)
 
@@ -34,7 +34,7 @@ class RecordFilter:
     @property
     def margin(self) -> int:
         """Samples at either end of a run in which its filtered channels cannot be trusted."""
-        return max([math.ceil(MEMORY_PERIODS * self.rate_hz / one) for one in self.cutoffs_hz if one], default=0)
+        return max([math.ceil(SETTLING_PERIODS * self.rate_hz / one) for one in self.cutoffs_hz if one], default=0)
 
     @property
     def every(self) -> int:
@@ -47,7 +47,7 @@ class RecordFilter:
         """What the filter leaves of white noise (channel,): the standard deviation after over that before."""
         return np.sqrt((self._response**2).sum(axis=0))
 
-    def memory(self, lags: int) -> NDArray[np.float64]:
+    def autocorrelation(self, lags: int) -> NDArray[np.float64]:
         """Autocorrelation of what the filter leaves of white noise (lag, channel), between the samples compared."""
         response = self._response
         late = [np.roll(response, lag * self.every, axis=0) for lag in range(lags + 1)]

@@ -1,12 +1,12 @@
-"""Rivals: what else could stand in the place of an answer, weighed on the answer's own runs under its own noise."""
+"""Rivals: other explanations of the same data, ranked on the answer's own runs under its own noise."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from gaitdisc.discovery.account import Part, account_for
-from gaitdisc.discovery.evidence import Judged
+from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.ranking import TIE
+from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.search import TURNS, Search
 
 MOST = 6
@@ -16,51 +16,51 @@ MOST = 6
 class Rival:
     """Another explanation of the same data."""
 
-    account: Judged
-    gained: float  # fall of the Bayesian criterion from the simulation as read
-    tied: bool  # whether these data cannot tell it from the answer
+    scored: ScoredModel
+    gained: float  # fall of the information criterion from the simulation as read
+    tied: bool  # whether these data cannot distinguish it from the answer
 
     @property
     def part(self) -> Part:
         """The rival's explanation."""
-        return self.account.account.parts[-1]
+        return self.scored.model.parts[-1]
 
 
-def evidence_of(search: Search, now: Judged) -> float:
-    """By how much the Bayesian criterion falls from the simulation as read to an answer, on the answer's runs."""
-    return _weighed(search, now, ()).evidence - now.evidence if now.account.parts else 0.0
+def bic_gain(search: Search, now: ScoredModel) -> float:
+    """By how much the information criterion falls from the simulation as read to an answer, on the answer's runs."""
+    return _fitted(search, now, ()).bic - now.bic if now.model.parts else 0.0
 
 
-def rivals_of(search: Search, now: Judged, found: tuple[Judged, ...], gained: float) -> tuple[Rival, ...]:
+def rivals_of(search: Search, now: ScoredModel, found: tuple[ScoredModel, ...], gained: float) -> tuple[Rival, ...]:
     """Weigh other explanations against an answer: alone, and in the place of each that the answer is made of.
 
-    now: the simulation with what was found; without any explanation, rivals keep the evidence that they were found
+    now: the simulation with what was found; without any explanation, rivals keep the criterion that they were found
         with
     returns: best first; none of them explains by the same effect at the same place as the answer
     """
     own = set(now.labels)
-    others: dict[str, Judged] = {}
+    others: dict[str, ScoredModel] = {}
     for one in found:
-        if one.account.parts and not own & set(one.labels):
+        if one.model.parts and not own & set(one.labels):
             others.setdefault(one.labels[-1], one)
     listed = list(others.values())[:MOST]
     if not own:
         return tuple(Rival(one, one.gained, False) for one in listed)
-    weighed = [_best(search, now, one) for one in listed]
-    rivals = [Rival(one, gained - (one.evidence - now.evidence), one.evidence - now.evidence < TIE) for one in weighed]
+    cross_validated = [_best(search, now, one) for one in listed]
+    rivals = [Rival(one, gained - (one.bic - now.bic), one.bic - now.bic < TIE) for one in cross_validated]
     return tuple(sorted(rivals, key=lambda one: -one.gained))
 
 
-def _best(search: Search, now: Judged, other: Judged) -> Judged:
-    """Return the best account with another's last explanation in it: alone, or beside all but one of the answer's."""
-    part, parts = other.account.parts[-1], now.account.parts
+def _best(search: Search, now: ScoredModel, other: ScoredModel) -> ScoredModel:
+    """Return the best model with another's last explanation in it: alone, or beside all but one of the answer's."""
+    part, parts = other.model.parts[-1], now.model.parts
     sets = [(part,)]
     if len(parts) > 1:
         sets += [(*parts[:number], *parts[number + 1 :], part) for number in range(len(parts))]
-    return min((_weighed(search, now, one) for one in sets), key=lambda one: one.evidence)
+    return min((_fitted(search, now, one) for one in sets), key=lambda one: one.bic)
 
 
-def _weighed(search: Search, now: Judged, parts: tuple[Part, ...]) -> Judged:
+def _fitted(search: Search, now: ScoredModel, parts: tuple[Part, ...]) -> ScoredModel:
     """Return the simulation with explanations in it, fitted to an answer's runs under its noise."""
-    account = account_for(now.shooting, search.base, parts, now.account.fit.starts, TURNS, like=now.account)
-    return Judged(account, now.shooting)
+    model = fit_model(now.shooting, search.base, parts, now.model.fit.starts, TURNS, like=now.model)
+    return ScoredModel(model, now.shooting)

@@ -1,4 +1,7 @@
-"""Score every candidate at once: how far the misfit would fall if it were let in, to first order."""
+"""Score every candidate at once: how far the misfit would fall if it were added, to first order.
+
+Source: Rao 1948, Proc. Camb. Phil. Soc. 44, 50 (the score test: the fall of -2 log L from slopes at the present fit).
+"""
 
 from __future__ import annotations
 

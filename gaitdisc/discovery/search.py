@@ -1,4 +1,4 @@
-"""The search: every explanation is scored at once, the most promising are fitted, and judged under one noise."""
+"""The search: every explanation is scored to first order, the best are fitted and compared under one noise."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from gaitdisc.discovery.account import Account, Part, account_for
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.evidence import Judged, compared
+from gaitdisc.discovery.candidate_model import CandidateModel, Part, fit_model
 from gaitdisc.discovery.grids import Rhythm
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.score import Score, Scorer
+from gaitdisc.discovery.scored_model import ScoredModel, compared
 from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.simulation import Simulation
 
 REFITTED = 18
-JUDGED = 5
+MOST_COMPARED = 5
 LIMITS = {
     "frequencies": (0.0, np.inf),
     "phases": (-np.inf, np.inf),
@@ -28,12 +28,12 @@ LIMITS = {
 VISITED = (0.01, 0.99)  # quantiles of a state between which a threshold has a meaning
 WIDEST = 2.0  # times how far a state goes, beyond which no half width shows
 TURNS = 15
-NEARLY = 0.5  # off the misfit: too little to tell explanations apart by
+NEARLY = 0.5  # off the misfit: too little to distinguish explanations by
 CERTAIN = 2.5  # standard errors
 EVERY = 5.0  # seconds between two lines about a round that lasts
 
 
-def _unheard(line: str) -> None:
+def _silent(line: str) -> None:
     """Where nobody wants to know how far it is."""
 
 
@@ -45,39 +45,39 @@ class Search:
     places: tuple[Place, ...]
     candidates: tuple[Candidate, ...]
     rhythm: Rhythm
-    told: Callable[[str], None] = field(default_factory=lambda: _unheard, compare=False)
+    progress: Callable[[str], None] = field(default_factory=lambda: _silent, compare=False)
 
-    def extended(self, now: Judged, judge: int = JUDGED) -> list[Judged]:
-        """Return the account and, after it, others with one explanation more, all under the noise that the best leaves.
+    def extended(self, now: ScoredModel, most: int = MOST_COMPARED) -> list[ScoredModel]:
+        """Return the model and, after it, others with one explanation more, all under the noise that the best leaves.
 
-        judge: how many of the most promising, once refitted, are put under that noise
+        most: how many of the most promising, once refitted, are put under that noise
         returns: empty where no explanation fits; in no order after the first
         """
-        account, shooting = now.account, now.shooting
-        scorer = self.scorer(shooting, account)
-        open_ones = self.open_beside(account)
-        price = float(np.log(account.fit.white.size))
-        scores = sorted(scorer.scores(open_ones), key=lambda one: price * len(one.candidate.slots) - one.gain)
-        worth = [one for one in scores if one.gain > price * len(one.candidate.slots)][:REFITTED]
+        model, shooting = now.model, now.shooting
+        scorer = self.scorer(shooting, model)
+        open_ones = self.open_beside(model)
+        penalty = float(np.log(model.fit.white.size))
+        scores = sorted(scorer.scores(open_ones), key=lambda one: penalty * len(one.candidate.slots) - one.gain)
+        worth = [one for one in scores if one.gain > penalty * len(one.candidate.slots)][:REFITTED]
         tried = [
-            account_for(
+            fit_model(
                 shooting,
                 self.base,
-                (*account.parts, Part(one.candidate, one.values)),
-                account.fit.starts,
+                (*model.parts, Part(one.candidate, one.values)),
+                model.fit.starts,
                 TURNS,
                 NEARLY,
-                account,
+                model,
             )
             for one in self._reported(worth)
         ]
-        tried = sorted(
-            (one for one in tried if self.sensible(one) and is_certain(one, -1)), key=lambda one: one.criterion
-        )[:judge]
+        tried = sorted((one for one in tried if self.sensible(one) and is_certain(one, -1)), key=lambda one: one.bic)[
+            :most
+        ]
         if not tried:
             return []
-        before, *more = compared([now, *(Judged(one, shooting) for one in tried)], self.base)
-        return [before, *(replace(one, gained=before.evidence - one.evidence) for one in more)]
+        before, *more = compared([now, *(ScoredModel(one, shooting) for one in tried)], self.base)
+        return [before, *(replace(one, gained=before.bic - one.bic) for one in more)]
 
     def _reported(self, worth: list[Score]) -> Iterator[Score]:
         """Yield each in turn, and say now and then how many are fitted and how long the others will take."""
@@ -86,33 +86,33 @@ class Search:
             now = time.perf_counter()
             if done and now - last >= EVERY:
                 left = (now - began) / done * (len(worth) - done)
-                self.told(f"{done} of {len(worth)} explanations fitted, {left:.0f} s left of this round")
+                self.progress(f"{done} of {len(worth)} explanations fitted, {left:.0f} s left of this round")
                 last = now
             yield one
 
-    def scorer(self, shooting: Shooting, account: Account) -> Scorer:
-        """Return what scores further explanations beside an account, to first order."""
-        return Scorer(shooting, account.simulation, account.machine, account.fit, self.places, self.rhythm)
+    def scorer(self, shooting: Shooting, model: CandidateModel) -> Scorer:
+        """Return what scores further explanations beside a model, to first order."""
+        return Scorer(shooting, model.simulation, model.machine, model.fit, self.places, self.rhythm)
 
-    def open_beside(self, account: Account) -> tuple[Candidate, ...]:
-        """Return the explanations that are not in an account."""
-        present = account.explanations
+    def open_beside(self, model: CandidateModel) -> tuple[Candidate, ...]:
+        """Return the explanations that are not in a model."""
+        present = model.explanations
         return tuple(one for one in self.candidates if one.identity not in present)
 
-    def sensible(self, account: Account) -> bool:
-        """Whether every number of an account lies where it means what its name says."""
-        return bool(np.isfinite(account.fit.misfit)) and all(
-            low < value < high for value, (low, high) in self._limits(account)
+    def sensible(self, model: CandidateModel) -> bool:
+        """Whether every number of a model lies where it means what its name says."""
+        return bool(np.isfinite(model.fit.misfit)) and all(
+            low < value < high for value, (low, high) in self._limits(model)
         )
 
-    def _limits(self, account: Account) -> Iterator[tuple[float, tuple[float, float]]]:
-        """Yield each constant of an account, and between which limits it means what its name says."""
-        for part in account.parts:
+    def _limits(self, model: CandidateModel) -> Iterator[tuple[float, tuple[float, float]]]:
+        """Yield each constant of a model, and between which limits it means what its name says."""
+        for part in model.parts:
             for slot, kind in (part.candidate.constants or {}).items():
                 if kind == "quantiles of x":
-                    yield part.values[slot], self._visited(account, part.candidate.role)
+                    yield part.values[slot], self._visited(model, part.candidate.role)
                 elif kind == "half widths of x":
-                    yield part.values[slot], (0.0, self._widest(account, part.candidate.role))
+                    yield part.values[slot], (0.0, self._widest(model, part.candidate.role))
                 elif kind == "delays":
                     yield part.values[slot], (0.0, self.rhythm.period)
                 else:
@@ -123,35 +123,35 @@ class Search:
                 early = -self.rhythm.period if part.candidate.name == "input_delay" else 0.0
                 yield part.values["seconds"], (early, self.rhythm.period)
 
-    def _visited(self, account: Account, role: str) -> tuple[float, float]:
+    def _visited(self, model: CandidateModel, role: str) -> tuple[float, float]:
         """Return where the run goes: a threshold beyond makes a one-sided spring a linear one, or nothing."""
         known = len(self.base.states)
-        states = account.fit.states[..., :known].reshape(-1, known)
+        states = model.fit.states[..., :known].reshape(-1, known)
         nothing = np.zeros((len(states), len(self.base.inputs)))
         along = evaluate(self.base, role, Points(np.zeros(len(states)), states, nothing))
         low, high = np.quantile(along, VISITED)
         return float(low), float(high)
 
-    def _widest(self, account: Account, role: str) -> float:
+    def _widest(self, model: CandidateModel, role: str) -> float:
         """Return the half width that a run can show; of an input, one that it never reaches does nothing anyway."""
         driven = any(each.name == role for each in self.base.inputs)
-        return np.inf if driven else WIDEST * max(map(abs, self._visited(account, role)))
+        return np.inf if driven else WIDEST * max(map(abs, self._visited(model, role)))
 
-    def without(self, now: Judged, number: int) -> Judged:
-        """Return the account less one explanation."""
-        parts = now.account.parts[:number] + now.account.parts[number + 1 :]
-        fewer = account_for(now.shooting, self.base, parts, now.account.fit.starts, TURNS, like=now.account)
-        return Judged(fewer, now.shooting)
+    def without(self, now: ScoredModel, number: int) -> ScoredModel:
+        """Return the model less one explanation."""
+        parts = now.model.parts[:number] + now.model.parts[number + 1 :]
+        fewer = fit_model(now.shooting, self.base, parts, now.model.fit.starts, TURNS, like=now.model)
+        return ScoredModel(fewer, now.shooting)
 
 
-def is_certain(account: Account, first: int = 0) -> bool:
+def is_certain(model: CandidateModel, first: int = 0) -> bool:
     """Whether no explanation from `first` on could as well be idle, its number lost in its error."""
-    variance = np.diag(account.fit.covariance)
+    variance = np.diag(model.fit.covariance)
     error = np.sqrt(np.where(variance >= 0, variance, np.inf))  # rounding makes that of what is not determined negative
-    errors = dict(zip(account.fit.free, error, strict=True))
+    errors = dict(zip(model.fit.free, error, strict=True))
     return all(
         _off(part, slot, none) > CERTAIN * errors[names[slot]]
-        for part, names in list(zip(account.parts, account.names, strict=True))[first:]
+        for part, names in list(zip(model.parts, model.names, strict=True))[first:]
         if len(part.candidate.idle) == 1
         for slot, none in part.candidate.idle.items()
     )

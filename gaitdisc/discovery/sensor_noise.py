@@ -1,4 +1,7 @@
-"""The noise of the sensors, estimated from the record alone: no simulation has a part in it."""
+"""The noise of the sensors, estimated from the record alone: no simulation has a part in it.
+
+Source: Savitzky and Golay 1964, Anal. Chem. 36, 1627 (local polynomials).
+"""
 
 from __future__ import annotations
 

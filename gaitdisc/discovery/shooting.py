@@ -1,4 +1,9 @@
-"""Fit a simulation to segments of a record: start states of each segment projected out, unknown constants shared."""
+"""Fit a simulation to segments of a record: start states of each segment projected out, unknown constants shared.
+
+Source: Bock and Plitt 1984, IFAC Proc. 17(2), 1603, doi 10.1016/S1474-6670(17)61205-9 (multiple shooting; here no
+continuity joins the segments); Marquardt 1963, J. SIAM 11, 431 (damped steps); Golub and Pereyra 1973, SIAM J. Numer.
+Anal. 10, 413 (start states solved for within: variable projection).
+"""
 
 from __future__ import annotations
 
@@ -49,9 +54,11 @@ class Shooting:
         return np.isfinite(self.seen)
 
     @cached_property
-    def filter_memory(self) -> NDArray[np.float64] | None:
+    def filter_autocorrelation(self) -> NDArray[np.float64] | None:
         """Autocorrelation of what the record's filter leaves of white noise (lag, channel); None without a filter."""
-        return self.record_filter.memory(MOST_LAGS) if self.record_filter and self.record_filter.margin else None
+        return (
+            self.record_filter.autocorrelation(MOST_LAGS) if self.record_filter and self.record_filter.margin else None
+        )
 
     def run(
         self, machine: Compiled, starts: NDArray[np.float64], values: NDArray[np.float64]

@@ -29,7 +29,7 @@ SHOULDERED = 0.25  # of the leaps, beyond which they are pulses of the motion: a
 SHOULDER = 10.0  # robust standard deviations by which the sample before or after one turns towards it, and
 OF_LEAP = 0.05  # of the leap
 ENDS = 7  # samples of which a line continues the record
-TOLD = 3  # trials of a channel that the finding names
+LISTED = 3  # trials of a channel that the finding names
 MAD_OF_NORMAL = 1.4826
 
 
@@ -58,7 +58,7 @@ def spiked(record: NDArray[np.float64]) -> NDArray[np.bool_]:
 
     record (sample,): one channel of a trial; NaN where a cell is empty
     Source: Hampel 1974, J. Am. Stat. Assoc. 69, 383. Differs: the deviation is from the line between the neighbours,
-        and a step or a corner of the motion is told apart by what comes after.
+        and a step or a corner of the motion is distinguished by what comes after.
 
     >>> x = np.sin(np.arange(300) / 15)
     >>> x[[100, 200, 201]] += [3.0, -2.0, -2.5]
@@ -130,8 +130,8 @@ def _finding(measured: Measured, marks: NDArray[np.bool_], channel: int) -> Find
             f"({value:.4g} between {_beside(measured, marks, trial, channel, first)})"
         )
         spans += [(float(time[begin]), float(time[end - 1])) for begin, end in runs(mine)]
-    more = f"; {len(said) - TOLD} more trials alike" if len(said) > TOLD else ""
-    what = "leaps of one to three samples and back: " + "; ".join(said[:TOLD]) + more
+    more = f"; {len(said) - LISTED} more trials alike" if len(said) > LISTED else ""
+    what = "leaps of one to three samples and back: " + "; ".join(said[:LISTED]) + more
     spoils = "these samples alone, which were left out as empty cells are"
     name = measured.channels[channel]
     return Finding("warning", KIND, measured.source, what, spoils, name, tuple(spans) if len(said) == 1 else ())

@@ -6,10 +6,10 @@ import math
 import re
 from dataclasses import replace
 
-from gaitdisc.discovery.account import Part
-from gaitdisc.discovery.borne_out import LEVEL
+from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.gap_share import AGREES, MODEL_ERROR
-from gaitdisc.discovery.held_out import WORTH_ASKING
+from gaitdisc.discovery.held_out import STRONG_SUPPORT
+from gaitdisc.discovery.paired_test import LEVEL
 from gaitdisc.results.discovery import Discovery, Estimate, FoundEffect, GapSize, Whereabouts
 from gaitdisc.results.effect_words import (
     amount,
@@ -20,7 +20,7 @@ from gaitdisc.results.effect_words import (
     shown_unit,
     spoken,
     with_unit,
-    would_tell_apart,
+    would_distinguish,
 )
 from gaitdisc.simulation.simulation import Simulation
 
@@ -53,7 +53,7 @@ def _said(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> st
         starts = " and ".join(f"{one.place} at {estimate_text(one.estimates['initial'])}" for one in effects)
         return f"Only the start is wrong: the trials begin with {starts}; the dynamics agree to within the noise."
     if discovery.verdict == "unnamed":
-        return f"{_nameless(effects[0], base, discovery.where)}."
+        return f"{_unnamed(effects[0], base, discovery.where)}."
     said = [_one(effect, part, base, discovery.where) for effect, part in zip(effects, parts, strict=True)]
     missing = [one for one, part in zip(said, parts, strict=True) if part.candidate.verdict == "missing_physics"]
     others = [one for one, part in zip(said, parts, strict=True) if part.candidate.verdict != "missing_physics"]
@@ -65,7 +65,7 @@ def _said(discovery: Discovery, base: Simulation, parts: tuple[Part, ...]) -> st
 def _nothing(discovery: Discovery) -> str:
     """Say that nothing is named, and whether the data that were learned from speak for something all the same."""
     first = discovery.rivals[0] if discovery.rivals else None
-    if first is None or not first.bic >= WORTH_ASKING:
+    if first is None or not first.bic >= STRONG_SUPPORT:
         if _may_be_left(discovery.held_out.before, discovery.held_out):
             return "Simulation and data agree to within the noise: nothing is missing that these data could show."
         return (
@@ -143,8 +143,8 @@ def _missing(effect: FoundEffect, part: Part, base: Simulation, where: tuple[Whe
         if part.candidate.role and not how and effect.kind == "port" and " " in part.candidate.role
         else ""
     )
-    told = [f"{noun}{of} {at_place(effect.kind, effect.place)}: {', '.join(numbers)}", how, _stride(effect, where)]
-    return ", ".join(one for one in told if one)
+    said = [f"{noun}{of} {at_place(effect.kind, effect.place)}: {', '.join(numbers)}", how, _stride(effect, where)]
+    return ", ".join(one for one in said if one)
 
 
 def _constant(estimate: Estimate, part: Part, base: Simulation) -> str:
@@ -162,7 +162,7 @@ def _stride(effect: FoundEffect, where: tuple[Whereabouts, ...]) -> str:
     return f"seen between {100 * phase[0]:.0f} and {100 * phase[1]:.0f} % of the stride" if phase else ""
 
 
-def _nameless(effect: FoundEffect, base: Simulation, where: tuple[Whereabouts, ...]) -> str:
+def _unnamed(effect: FoundEffect, base: Simulation, where: tuple[Whereabouts, ...]) -> str:
     seen = [one for one in base.signals if re.search(rf"\b{re.escape(one)}\b", effect.term)]
     over = f", a function of {' and '.join(seen)}," if seen else ""
     stride = _stride(effect, where)
@@ -183,7 +183,7 @@ def _tied(discovery: Discovery) -> str:
     if not tied or not discovery.effects:
         return ""
     names = " or ".join(f"{spoken(one.name)} {at_place(one.kind, one.place)}" for one in tied)
-    apart = would_tell_apart(discovery.effects[0].name, tied[0].name)
+    apart = would_distinguish(discovery.effects[0].name, tied[0].name)
     return f"These data cannot distinguish it from {names}; what would: {apart}."
 
 

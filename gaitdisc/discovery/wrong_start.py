@@ -5,19 +5,19 @@ from __future__ import annotations
 import numpy as np
 
 from gaitdisc.discovery.estimates import NORMAL_95
-from gaitdisc.discovery.evidence import Judged
+from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.results.discovery import Estimate
 from gaitdisc.simulation.simulation import Simulation
 
 WRONG = 5.0  # standard errors from the file's number
 
 
-def wrong_starts(simulation: Simulation, as_read: Judged) -> dict[str, Estimate]:
+def wrong_starts(simulation: Simulation, as_read: ScoredModel) -> dict[str, Estimate]:
     """Find the states that begin elsewhere than the file says.
 
-    returns: state -> where the trials begin on average, weighted by how well each tells, with its 95 % interval
+    returns: state -> where the trials begin on average, weighted by how well each shows it, with its 95 % interval
     """
-    fit, segments = as_read.account.fit, as_read.shooting.segments
+    fit, segments = as_read.model.fit, as_read.shooting.segments
     first = np.flatnonzero(segments.begin == 0)
     slopes = fit.slopes[first][..., : fit.starts.shape[1]]
     variance = np.stack([np.diag(np.linalg.pinv(one.T @ one)) for one in slopes])

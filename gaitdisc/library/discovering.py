@@ -80,10 +80,10 @@ def discover(
         files[Path(model)] = "simulation"
     chosen = None if catalogue is None else Path(catalogue)
     slow = simulation.manner if isinstance(simulation, PythonSimulation) else ""
-    told = progress or (_to_the_terminal if slow else lambda _: None)
+    report = progress or (_to_the_terminal if slow else lambda _: None)
     if slow:
-        told(slow)
-    return discovered(simulation, measured, chosen, files, told)
+        report(slow)
+    return discovered(simulation, measured, chosen, files, report)
 
 
 def _to_the_terminal(step: str) -> None:

@@ -35,7 +35,7 @@ class RecurrentWeights:
 def recurrent_weights(network: TrainedNetwork) -> RecurrentWeights:
     """Weights of a trained `Shred`."""
     shred = network.network
-    assert isinstance(shred, Shred)  # nothing else is asked for
+    assert isinstance(shred, Shred)  # nothing else is given
     found = {name: np.ascontiguousarray(values.T, float) for name, values in network.weights().items()}
     layers = tuple(
         (
@@ -52,7 +52,7 @@ def recurrent_weights(network: TrainedNetwork) -> RecurrentWeights:
 
 
 class CarriedWindows:
-    """Every window that is under way, one reading further at each call; tells what the torch network tells.
+    """Every window that is under way, one reading further at each call; gives what the torch network gives.
 
     A window has `count` readings, `spacing` samples apart, and begins with a state of zero. At any time one window of
     each age is under way in each of `spacing` phases. A new reading belongs to those of one phase: all of them go one
@@ -95,6 +95,6 @@ class CarriedWindows:
                 cells[1:] = kept[:-1]
             states[1:] = read[:-1]
         if self._silent[self._phase] >= len(self._mean):
-            read = np.full_like(read, np.nan)  # no reading at all: a state that nothing tells of
+            read = np.full_like(read, np.nan)  # no reading at all: a state that nothing shows
         self._phase = (self._phase + 1) % len(self._states)
         return self._y_scale.unscaled(decoded(read[-1], *self._weights.decoder))

@@ -66,7 +66,7 @@ def descend(
 
     Decay acts on weight matrices only. The best weights are kept as a copy: a reference would follow the descent.
 
-    part, check pair of Tensor ((sample, input), (sample, output)): scaled samples to descend on, and to judge each
+    part, check pair of Tensor ((sample, input), (sample, output)): scaled samples to descend on, and to check each
         epoch by
     Source: Loshchilov and Hutter 2019, Decoupled weight decay regularization. The dissertation does not say how it
         trained.

@@ -49,7 +49,7 @@ class Ensemble:
     def spread(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """Standard deviation among the members, (sample, output) [each output's unit].
 
-        It tells where the members disagree, which is not the whole of the error: what all of them miss is not in it.
+        It shows where the members disagree, which is not the whole of the error: what all of them miss is not in it.
 
         x (sample, input) [each input's unit]: as for the model itself
         """

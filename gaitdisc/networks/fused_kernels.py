@@ -150,7 +150,7 @@ def gradient(
 
     weights, into (weight,): weights, and where their gradient goes
     x, y (sample, input), (sample, output): scaled samples of the block, contiguous
-    hidden (5, at least sample, node): room to work in; its last length tells the number of nodes
+    hidden (5, at least sample, node): room to work in; its last length is the number of nodes
     samples: samples of the whole batch, over which the mean is taken
     """
     count, nodes = len(x), hidden.shape[2]

@@ -18,7 +18,7 @@ class FusedSteps:
     Same weights to start from, same order of samples, same steps as `TorchSteps`: the two differ by rounding. Nothing
     is dispatched between two matrix products, and what lies between them is one pass over memory.
 
-    part, check pair of Tensor ((sample, input), (sample, output)): scaled samples to descend on, and to judge by
+    part, check pair of Tensor ((sample, input), (sample, output)): scaled samples to descend on, and to check by
     """
 
     arithmetic = "fused"
@@ -82,7 +82,7 @@ def matrices_then_offsets(network: FeedForward) -> tuple[Tensor, ...]:
 
 
 def can_be_fused(network: nn.Module) -> bool:
-    """Tell whether the compiled code computes this network: the dissertation's own, in float32, on the CPU.
+    """Whether the compiled code computes this network: the dissertation's own, in float32, on the CPU.
 
     >>> can_be_fused(FeedForward(3, 2)), can_be_fused(FeedForward(3, 2).double()), can_be_fused(nn.Linear(3, 2))
     (True, False, False)

@@ -48,7 +48,7 @@ def choose_penalty(
 ) -> tuple[float, float]:
     """Penalty of the readout that does best on a check part, and the mean squared error it reaches there.
 
-    part, check pair of Tensor ((sample, input), (sample, output)): scaled samples to solve on, and to judge by
+    part, check pair of Tensor ((sample, input), (sample, output)): scaled samples to solve on, and to check by
     returns penalty, loss: one of `PENALTIES`; mean squared error of the scaled outputs
     """
     network.eval()

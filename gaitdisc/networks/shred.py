@@ -1,4 +1,4 @@
-"""SHRED: a recurrent network reads the sensors' history, a shallow decoder tells the state (section 2.3.5)."""
+"""SHRED: a recurrent network reads the sensors' history, a shallow decoder gives the state (section 2.3.5)."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ class TorchSteps:
 
     Decay acts on weight matrices only.
 
-    part, check pair of Tensor ((sample, input), (sample, output)): scaled samples to descend on, and to judge by; on
+    part, check pair of Tensor ((sample, input), (sample, output)): scaled samples to descend on, and to check by; on
         the device of the network
     precision: of the matrix products: `float32` or `bfloat16`; weights stay float32
     Source: Loshchilov and Hutter 2019, Decoupled weight decay regularization.
@@ -55,8 +55,8 @@ class TorchSteps:
                 group["lr"] = rate
             self._adam.zero_grad()
             with torch.autocast(x.device.type, torch.bfloat16, enabled=self._short):
-                told = self._network(x[rows])
-            nn.functional.mse_loss(told.float(), y[rows]).backward()
+                estimate = self._network(x[rows])
+            nn.functional.mse_loss(estimate.float(), y[rows]).backward()
             self._adam.step()
 
     def loss(self) -> float:

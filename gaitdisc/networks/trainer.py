@@ -64,7 +64,7 @@ def train(
     of the epochs at half the learning rate, so that a further decay is also a further descent. That takes 0.6 of the
     time of descents from scratch; R2 on signals like gait was the same (docs/results.md, "Training speed").
 
-    The hidden layers are not descended again on all samples: judged on a further block of the training part of two
+    The hidden layers are not descended again on all samples: checked on a further block of the training part of two
     runs of 60 s (ten angles; two seeds), keep-and-solve had a mean R2 of 0.9842 and 0.9794, refit-and-solve 0.9843 and
     0.9797 (decay 0.1, penalty 1e-4), at half the time.
 
@@ -82,9 +82,9 @@ def train(
     before.trainable(LEAST_BEFORE_INNER, settings.missing_inputs)
     device = chosen_device(settings.device)
     x_scale, y_scale = scale_of(before.x), scale_of(before.y)
-    part, judged, whole = (_tensors(s, x_scale, y_scale, device) for s in (before, inner, samples))
+    part, checked, whole = (_tensors(s, x_scale, y_scale, device) for s in (before, inner, samples))
     with pinned_threads(settings.threads), torch.random.fork_rng():
-        best = _best_candidate(build, part, judged, settings, progress)
+        best = _best_candidate(build, part, checked, settings, progress)
         if settings.solved:
             solve_readout(best.network, whole, best.penalty)
     progress(1.0)
@@ -106,10 +106,10 @@ def resolved(model: TrainedNetwork, samples: Samples, inner_share: float = 0.15)
     """Return a network with the same hidden layers and its last layer solved for other samples."""
     before, inner = samples.last_block(inner_share, SEAM_S)
     scales = model.x_scale, model.y_scale
-    part, judged, whole = (_tensors(each, *scales, torch.device("cpu")) for each in (before, inner, samples))
+    part, checked, whole = (_tensors(each, *scales, torch.device("cpu")) for each in (before, inner, samples))
     network = copy.deepcopy(model.network)
     with pinned_threads(1):
-        solve_readout(network, whole, choose_penalty(network, part, judged)[0])
+        solve_readout(network, whole, choose_penalty(network, part, checked)[0])
     return replace(model, network=network)
 
 
@@ -139,8 +139,8 @@ def _best_candidate(
         shared = partial(_share, progress, number, count)
         steps = schedule if number == 0 else schedule.continued(decay)
         descent = descend(network, part, check, steps, settings, shared)
-        judged = choose_penalty(network, part, check) if settings.solved else (0.0, min(descent.losses))
-        candidate = _Candidate(network, descent, decay, *judged)
+        scored = choose_penalty(network, part, check) if settings.solved else (0.0, min(descent.losses))
+        candidate = _Candidate(network, descent, decay, *scored)
         if best is not None and candidate.loss >= best.loss:
             break
         best, network = candidate, copy.deepcopy(network)

@@ -56,7 +56,7 @@ class ContactChoice:
 def chosen_contacts(
     trial: Trial, detector: str = "auto", direction: str = "", body_weight_n: float | None = None
 ) -> ContactChoice:
-    """Initial contacts by the detector asked for, or by the best one that the trial allows.
+    """Initial contacts by the detector requested, or by the best one that the trial allows.
 
     `auto` takes force before the file's events before markers before joint angles, but none that sees fewer than 80 %
     of the strides that another sees: a plate in the floor catches one step of many. That one step corrects the others:

@@ -261,8 +261,8 @@ def _line_of(severity: str, kind: str, same: list[Finding]) -> str:
     named = ", ".join(channels[:SHOWN]) + (f" and {len(channels) - SHOWN} more" if len(channels) > SHOWN else "")
     where = ", ".join(part for part in (first.file, named) if part)
     spoils = f"; spoils {first.spoils}" if first.spoils else ""
-    told = f"{first.channel}: {first.what}" if first.channel else first.what
-    return f"{severity}: {where}: {kind}, {len(same)} times, the first {told}{spoils}"
+    said = f"{first.channel}: {first.what}" if first.channel else first.what
+    return f"{severity}: {where}: {kind}, {len(same)} times, the first {said}{spoils}"
 
 
 def _sorted(findings: list[Finding] | tuple[Finding, ...]) -> tuple[Finding, ...]:

@@ -1,4 +1,4 @@
-"""Cycles of one participant pooled over trials: read, cut, corrected, judged and counted together."""
+"""Cycles of one participant pooled over trials: read, cut, corrected, checked and counted together."""
 
 from __future__ import annotations
 
@@ -152,7 +152,7 @@ def _strides(steps: StepEvents, study: Study) -> dict[str, Strides]:
 
 
 def _verify(trial: Trial, found: Mapping[str, Strides], outside: bool) -> None:
-    """Refuse swapped sides; on a treadmill, and where angles alone tell the steps, what is no walking."""
+    """Refuse swapped sides; on a treadmill, and where angles alone show the steps, what is no walking."""
     if "kinematics" not in trial.streams:
         return
     joints = {f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle") for side in "rl"}
@@ -194,17 +194,17 @@ def _pooled(
 ) -> PooledCycles:
     study, participant = standing.study, standing.participant
     cut = [_cut(study, trial, offsets) for trial in seen]
-    judged = _judged([cycles for cycles, _ in cut], study)
+    checked = _checked([cycles for cycles, _ in cut], study)
     outside = bool(seen) and all(trial.over_ground for trial in seen)
-    too_few = _too_few(study, participant, one, judged, outside)
+    too_few = _too_few(study, participant, one, checked, outside)
     where = " ".join(part for part in (one.session, one.condition) if part)
     rows = [
         _row(trial.number, cycle, place, too_few)
-        for trial, cycles, (_, places) in zip(seen, judged, cut, strict=True)
+        for trial, cycles, (_, places) in zip(seen, checked, cut, strict=True)
         for cycle, place in zip(cycles, places, strict=True)
     ]
     table = pd.DataFrame(rows, columns=pd.Index(CYCLE_COLUMNS))
-    channels, curves = ((), np.empty((0, len(PERCENT), 0))) if too_few else _curves(seen, judged)
+    channels, curves = ((), np.empty((0, len(PERCENT), 0))) if too_few else _curves(seen, checked)
     late = next((trial.steps.detector for trial in seen if trial.steps.detector in SEEN_LATE), "")
     off_late = next((trial.steps.off_detector for trial in seen), "")
     refusals = [*lost, *([Refusal(participant.id, where, too_few)] if too_few and (seen or not lost) else [])]
@@ -262,8 +262,8 @@ def _cut(study: Study, seen: _Seen, offsets: _Offsets) -> tuple[list[Cycle], lis
     return with_gaps(cycles, seen.legs), feet_in(cycles, seen.feet, belt)
 
 
-def _judged(cycles: Sequence[list[Cycle]], study: Study) -> list[list[Cycle]]:
-    """Cycles with the reason of their duration, which is judged over all trials together."""
+def _checked(cycles: Sequence[list[Cycle]], study: Study) -> list[list[Cycle]]:
+    """Cycles with the reason of their duration, which is checked over all trials together."""
     flat = [cycle for own in cycles for cycle in own]
     durations = np.array([cycle.duration_s for cycle in flat])
     reasons = iter(duration_reasons(durations, study.strides.min_s, study.strides.max_s))

@@ -155,7 +155,7 @@ def envelope_of(emg: Recording, filters: Filters) -> Recording:
 
 
 def is_raw(emg: Recording) -> bool:
-    """Tell raw EMG, which swings about zero, from an envelope, which does not fall below it."""
+    """Distinguish raw EMG, which swings about zero, from an envelope, which does not fall below it."""
     known = emg.values[np.isfinite(emg.values)]
     return len(known) > 0 and bool(np.min(known) < 0)
 

@@ -45,7 +45,7 @@ def _muscle_findings(emg: Recording, strides: Mapping[str, Strides]) -> list[Fin
         return []
     try:
         envelope = enveloped(emg.selected(live))
-    except GaitdiscError:  # too short or with gaps: nothing is judged
+    except GaitdiscError:  # too short or with gaps: nothing is checked
         return []
     return order_of_muscles(envelope, strides)
 

@@ -46,7 +46,7 @@ class Standing:
     _walked: tuple[str, Mapping[str, float]] | None = field(default=None, init=False)
 
     def computed(self, planned: PlannedTrial, trial: Trial) -> tuple[Trial, tuple[PlateStep, ...] | None]:
-        """Trial with the angles that the study asks for, and its steps on plates where moments were computed."""
+        """Trial with the angles that the study requests, and its steps on plates where moments were computed."""
         source = self.study.kinematics.angles if self.study.kinematics else ""
         trial = trial if source == "file" or "markers" in trial.streams else with_segment_angles(trial)
         if source == "file" or "markers" not in trial.streams or (not source and has_leg_angles(trial)):

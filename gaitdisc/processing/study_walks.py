@@ -1,4 +1,4 @@
-"""Walks of one participant as models are fitted to them: with angles from markers where the study asks for these."""
+"""Walks of one participant as models are fitted to them: with angles from markers where the study requests these."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from gaitdisc.recording import Trial
 class ReadWalk:
     """A trial before it is filtered."""
 
-    trial: Trial  # with the angles that its study asks for, and moments where they could be computed
+    trial: Trial  # with the angles that its study requests, and moments where they could be computed
     body_weight_n: float | None = None  # of the person [N]; None where neither the study nor a file states a mass
     # why no angles were computed of the trial's markers; empty where it has angles, or no markers
     without_angles: str = ""
@@ -42,7 +42,7 @@ class StudyWalks:
     _standing: dict[str, Standing] = field(default_factory=dict, init=False)
 
     def read_walk(self, planned: PlannedTrial) -> ReadWalk:
-        """Trial of the study, with angles and moments from its markers where the study asks for them."""
+        """Trial of the study, with angles and moments from its markers where the study requests them."""
         trial = self.read(planned)
         standing = self._of_session(planned.session or "")
         computed, _ = standing.computed(planned, trial)

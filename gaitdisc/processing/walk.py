@@ -19,7 +19,7 @@ class Walk:
     """One processed trial."""
 
     trial: Trial
-    # filtered joint angles, and EMG envelopes where the study asks for them, on the time base of the kinematics
+    # filtered joint angles, and EMG envelopes where the study requests them, on the time base of the kinematics
     state: Recording
     strides: Mapping[str, Strides]
     trajectory: Trajectory  # state, derivatives and percent stride of the study's side

@@ -168,7 +168,7 @@ def _summary(trial: Trial, contacts: Mapping[str, Contacts], cutoff_hz: float, r
 
 
 def _looked_at(trial: Trial, strides: Strides, repeated: bool) -> list[Finding]:
-    """Refuse what is no walking; say what the strides tell."""
+    """Refuse what is no walking; say what the strides show."""
     legs = _legs(trial)
     joints = [f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle") for side in "rl"]
     if set(joints) <= set(legs.names):

@@ -204,7 +204,7 @@ class Field:
         return replace(self, time=self.time[chosen], values=self.values[chosen])
 
     def selected(self, quantities: Sequence[str]) -> Field:
-        """Keep some quantities, in the order asked for.
+        """Keep some quantities, in the order requested.
 
         Parameters
         ----------

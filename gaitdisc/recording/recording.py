@@ -161,7 +161,7 @@ class Recording:
         return name in self.names
 
     def selected(self, names: Sequence[str]) -> Recording:
-        """Recording of some channels, in the order asked for.
+        """Recording of some channels, in the order requested.
 
         Parameters
         ----------

@@ -63,14 +63,14 @@ def fit_fourier_ridge(training: Samples, check: Samples, features: int = 0, seed
             "Record longer, or give validation a larger share.",
         )
     x_scale, y_scale = scale_of(training.x), scale_of(training.y)
-    part, judged = (
+    part, checked = (
         (x_scale.scaled(s.x).astype(np.float32), y_scale.scaled(s.y).astype(np.float32)) for s in (training, check)
     )
     rng = np.random.default_rng(seed)
     directions = rng.normal(size=(training.x.shape[1], features))
     phases = rng.uniform(0, 2 * np.pi, features)
-    frequencies = directions / _chosen_width(part, judged, directions, phases)
-    penalty, _, weights, offset = _solved(part, judged, frequencies, phases)
+    frequencies = directions / _chosen_width(part, checked, directions, phases)
+    penalty, _, weights, offset = _solved(part, checked, frequencies, phases)
     return FourierRidge(
         training.inputs, training.outputs, x_scale, y_scale, frequencies, phases, weights, offset, penalty
     )
@@ -79,24 +79,24 @@ def fit_fourier_ridge(training: Samples, check: Samples, features: int = 0, seed
 Part = tuple[NDArray[np.float32], NDArray[np.float32]]
 
 
-def _chosen_width(part: Part, judged: Part, directions: NDArray[np.float64], phases: NDArray[np.float64]) -> float:
+def _chosen_width(part: Part, checked: Part, directions: NDArray[np.float64], phases: NDArray[np.float64]) -> float:
     few = slice(0, min(TRIAL_FEATURES, directions.shape[1]))
     if not directions.shape[1]:
         return 1.0
     some = part[0][:: max(1, len(part[0]) // 500)]
     typical = float(np.sqrt(np.median(((some - some[::-1]) ** 2).sum(axis=1)))) or 1.0
-    losses = [_solved(part, judged, directions[:, few] / (w * typical), phases[few])[1] for w in WIDTHS]
+    losses = [_solved(part, checked, directions[:, few] / (w * typical), phases[few])[1] for w in WIDTHS]
     return WIDTHS[int(np.argmin(losses))] * typical
 
 
 def _solved(
-    part: Part, judged: Part, frequencies: NDArray[np.float64], phases: NDArray[np.float64]
+    part: Part, checked: Part, frequencies: NDArray[np.float64], phases: NDArray[np.float64]
 ) -> tuple[float, float, NDArray[np.float64], NDArray[np.float64]]:
     """Penalty, mean squared error on the check part, weights and offset."""
     from scipy.linalg import cho_factor, cho_solve
 
     squares, products, mean = _squares(part, frequencies, phases)
-    h = _columns(judged[0], frequencies, phases)
+    h = _columns(checked[0], frequencies, phases)
     best = None
     for penalty in PENALTIES:
         try:
@@ -105,7 +105,7 @@ def _solved(
             continue  # rounding: inputs that say the same need a larger penalty
         weights = cho_solve(factor, products, check_finite=False)
         offset = -mean @ weights  # scaled outputs have no mean
-        loss = float(np.mean((judged[1] - h @ weights - offset) ** 2))
+        loss = float(np.mean((checked[1] - h @ weights - offset) ** 2))
         if best is None or loss < best[1]:
             best = (penalty, loss, weights, offset)
     assert best is not None  # the largest penalty outweighs any rounding

@@ -23,7 +23,7 @@ from gaitdisc.results.effect_words import (
     shown_unit,
     spoken,
     with_unit,
-    would_tell_apart,
+    would_distinguish,
 )
 
 
@@ -155,7 +155,7 @@ def rivals_table(discovery: Discovery) -> Table:
     rows, records = [], []
     named = discovery.effects[0].name if discovery.effects else ""
     for one in discovery.rivals:
-        apart = would_tell_apart(named, one.name) if named else NONE
+        apart = would_distinguish(named, one.name) if named else NONE
         rows.append(
             (
                 spoken(one.name),

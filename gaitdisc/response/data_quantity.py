@@ -28,7 +28,7 @@ def fit_data_quantity(
     progress: Callable[[float], None] | None = None,
     whole: ParticipantResponse | None = None,
 ) -> DataQuantity:
-    """Fit Nominal, Exo and Discrepancy to parts of the training part, and to all of it, and judge each alike.
+    """Fit Nominal, Exo and Discrepancy to parts of the training part, and to all of it, and score each alike.
 
     lengths_s: lengths of the training part [s]; its whole length is always added
     part: `first` takes the beginning of the training part, from its first usable sample on, `last` its end, next to
@@ -49,9 +49,9 @@ def fit_data_quantity(
     tables = []
     for number, length in enumerate(wanted if whole else [*wanted, whole_s]):
         less_nominal, less_exo = (shortened(walk, settings, length, part) for walk in (nominal, exo))
-        told = partial(_told, progress, number, len(wanted) + 1)
+        report = partial(_reported, progress, number, len(wanted) + 1)
         try:
-            response = fit_response(less_nominal, less_exo, settings, progress=told)
+            response = fit_response(less_nominal, less_exo, settings, progress=report)
         except TrainingError as error:
             left_away[length] = str(error)
             continue
@@ -88,5 +88,5 @@ def shortened(walk: Trajectory, settings: ResponseSettings, length_s: float, par
     return replace(walk, usable=usable)
 
 
-def _told(progress: Callable[[float], None], number: int, count: int, fraction: float) -> None:
+def _reported(progress: Callable[[float], None], number: int, count: int, fraction: float) -> None:
     progress((number + fraction) / count)

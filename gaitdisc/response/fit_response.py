@@ -1,4 +1,4 @@
-"""The response of one participant: fit on the first part of both walks, judge on the last."""
+"""The response of one participant: fit on the first part of both walks, score on the last."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ LEAST_HELD_OUT = 50
 
 @dataclass(frozen=True)
 class ResponseSettings:
-    """What is predicted, on what it is judged, and how the models are fitted.
+    """What is predicted, on what it is scored, and how the models are fitted.
 
     >>> ResponseSettings(("ankle_angle_r",)).training.seed
     0
@@ -60,13 +60,13 @@ def fit_response(
     progress: Callable[[float], None] | None = None,
     banded: bool = False,
 ) -> ParticipantResponse:
-    """Fit all models to the first part of both walks and judge them on the held-out last part.
+    """Fit all models to the first part of both walks and score them on the held-out last part.
 
     nominal, exo: whole walks of one participant without and with the device, with the same channels
     null_r2: R2 that noise reaches through the same filters, for each output (`gaitdisc.statistics.band_limit_null`)
     banded: whether predictions get a band from refits on blocks
     Source: Ebers 2023, Eqs. 4.1-4.5 and section 4.2.3. Beside the source: ridge regressions with phase harmonics and
-        without, and the null of the filters, stand beside every network, and the Nominal model is judged on held-out
+        without, and the null of the filters, stand beside every network, and the Nominal model is scored on held-out
         nominal walking, too.
     """
     _check_pair(nominal, exo)
@@ -75,7 +75,7 @@ def fit_response(
     parts = training_samples(nominal, exo, settings)
     fitted = fit_both(*parts, settings, progress)
     kinds = {"network": fitted.network, "ridge": fitted.ridge, "linear": fitted.linear}
-    judged = [_judged(kind, models, on_nominal, on_exo, settings) for kind, models in kinds.items()]
+    scored = [_scored(kind, models, on_nominal, on_exo, settings) for kind, models in kinds.items()]
     predicted = {name: model(on_exo.x) for name, model in fitted.network.on_exo().items()}
     bands = response_bands(fitted.network, refitted_network, *parts, on_exo) if banded else {}
     return ParticipantResponse(
@@ -83,7 +83,7 @@ def fit_response(
         inputs=on_exo.inputs,
         outputs=settings.outputs,
         units=tuple(rate_unit(exo.channels[column].unit, 2) for column in exo.columns(settings.outputs)),
-        r2=pd.concat([*judged, _null_rows(null_r2 or {}, settings, len(on_exo))], ignore_index=True),
+        r2=pd.concat([*scored, _null_rows(null_r2 or {}, settings, len(on_exo))], ignore_index=True),
         fits=pd.concat([_fit_rows(kind, models) for kind, models in kinds.items()], ignore_index=True),
         held_out=HeldOut(on_exo.time, on_exo.phi, on_exo.y, predicted, bands),
         residuals={name: residual_strides(held_exo, on_exo, values) for name, values in predicted.items()},
@@ -107,7 +107,7 @@ def fit_both(
     ridge = fit_models(nominal, exo, fit=lambda part, _: fit_linear(part, settings.harmonics))
     linear = fit_models(nominal, exo, fit=lambda part, _: fit_linear(part, harmonics=0))
     networks = fit_models(
-        nominal, exo, fit=lambda part, told: fit_network(part, settings.training, told), progress=progress
+        nominal, exo, fit=lambda part, report: fit_network(part, settings.training, report), progress=progress
     )
     return FittedResponse(networks, ridge, linear)
 
@@ -119,7 +119,7 @@ def held_out_part(walk: Trajectory, settings: ResponseSettings) -> tuple[Traject
 
 
 def held_out_samples(held_out: Trajectory, settings: ResponseSettings) -> Samples:
-    """Samples of a held-out part that models are judged on."""
+    """Samples of a held-out part that models are scored on."""
     samples, dropped = gait_samples(held_out, settings.outputs)
     if len(samples) < LEAST_HELD_OUT:
         raise TrainingError(
@@ -141,7 +141,7 @@ def residual_strides(held_out: Trajectory, samples: Samples, predicted: NDArray[
     return stride_curves(held_out.time, residual, strides_of_phase(held_out.time, held_out.phi))
 
 
-def _judged(
+def _scored(
     kind: str, models: ResponseModels, on_nominal: Samples, on_exo: Samples, settings: ResponseSettings
 ) -> pd.DataFrame:
     trials = [("nominal", models.nominal.model, "nominal", on_nominal)]

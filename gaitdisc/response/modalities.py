@@ -62,12 +62,12 @@ def fit_without(
     settings: ResponseSettings,
     progress: Callable[[float], None] | None = None,
 ) -> pd.DataFrame:
-    """Fit Discrepancy and Exo without one family of inputs at a time, and judge them on held-out device walking.
+    """Fit Discrepancy and Exo without one family of inputs at a time, and score them on held-out device walking.
 
     The Nominal model keeps all of its inputs, so that what Augmented loses is what the Discrepancy model lost.
 
     returns: columns `VARIANT_COLUMNS`; variant is `ALL` or the name of a family
-    Source: Ebers 2023, section 6.2.2, asks which modalities are needed. A family's fall of R2 says what the other
+    Source: Ebers 2023, section 6.2.2: which modalities are needed. A family's fall of R2 says what the other
         inputs cannot replace, no more: joint angles and EMG of one walk go together, so that a family whose absence
         costs nothing may carry the response as well as those that stand in for it.
     """
@@ -82,12 +82,12 @@ def fit_without(
     known = {kind: fit(training[0]) for kind, fit in kinds.items()}
     rows = []
     for number, (family, left_away) in enumerate(families.items()):
-        fewer, judged = _without(training[1], left_away), _without(held, left_away)
+        fewer, scored = _without(training[1], left_away), _without(held, left_away)
         for kind, fit in kinds.items():
             missed = fewer.with_outputs(training[1].y - known[kind](training[1].x))
             predicted = {
-                "augmented": known[kind](held.x) + fit(missed)(judged.x),
-                "exo": fit(fewer)(judged.x),
+                "augmented": known[kind](held.x) + fit(missed)(scored.x),
+                "exo": fit(fewer)(scored.x),
             }
             for model, values in predicted.items():
                 found = zip(settings.outputs, r2(held.y, values), strict=True)

@@ -160,10 +160,10 @@ BETWEEN = (
 )
 
 
-def would_tell_apart(name: str, other: str) -> str:
+def would_distinguish(name: str, other: str) -> str:
     """Return which recording would separate two explanations.
 
-    >>> would_tell_apart("coulomb_friction", "viscous_damping")
+    >>> would_distinguish("coulomb_friction", "viscous_damping")
     'the same movement at clearly different speeds'
     """
     if name == other:

@@ -33,7 +33,7 @@ def stance_over_swing(envelope: Recording, strides: Strides, name: str) -> float
 def order_of_muscles(envelope: Recording, strides: Mapping[str, Strides]) -> list[Finding]:
     """Say that calf and tibialis anterior of a leg, or the calves of both legs, are exchanged.
 
-    A muscle alone is not judged: a foot that drops or a calf that is spastic has its own course. Two that each do what
+    A muscle alone is not tested: a foot that drops or a calf that is spastic has its own course. Two that each do what
     the other should are.
     """
     seen: dict[tuple[str, str], tuple[str, float]] = {}

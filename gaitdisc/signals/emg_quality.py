@@ -1,4 +1,4 @@
-"""Dead, unplugged and clipped EMG, judged against the range of the amplifier."""
+"""Dead, unplugged and clipped EMG, measured against the range of the amplifier."""
 
 from __future__ import annotations
 

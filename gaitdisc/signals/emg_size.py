@@ -29,7 +29,7 @@ def other_unit_findings(
 ) -> list[Finding]:
     """Say that EMG of a trial is so much weaker or stronger than that of another that one states a wrong unit.
 
-    own, others: of `emg_sizes`; the channels in common are judged
+    own, others: of `emg_sizes`; the channels in common are compared
     usual (float, float): least and largest ratio that needs no other unit
     """
     common = sorted(set(own) & set(others))

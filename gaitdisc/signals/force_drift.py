@@ -47,7 +47,7 @@ def drift_findings(forces: Recording) -> list[Finding]:
     other foot on the belt do not count.
 
     forces: channels of quantity `vertical_force` [N]; others are passed over
-    returns: a warning for an offset above 10 N or a drift above 5 N; a note where fewer than five swings tell
+    returns: a warning for an offset above 10 N or a drift above 5 N; a note where fewer than five swings show it
     """
     findings = []
     for channel in forces.channels:

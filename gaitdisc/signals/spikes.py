@@ -25,7 +25,7 @@ def spikes(recording: Recording) -> NDArray[np.bool_]:
     Far means eight robust standard deviations of the differences between neighbours, and 5 % of the channel's range (1
     deg or 1 cm at least); and the channel leaps there and back, each by four times the step that one sample in a
     hundred exceeds: a stumble is fast too, but has samples on its way. Within 0.03 s of an end or of a gap nothing is
-    judged. A heading is looked at as it goes on.
+    tested. A heading is looked at as it goes on.
 
     Source: Hampel 1974, J. Am. Stat. Assoc. 69, 383; Pearson 2002, IEEE Trans. Control Syst. Technol. 10, 55. Differs:
         the scale is that of the whole channel, not of the window, for a smooth channel has none in a window.

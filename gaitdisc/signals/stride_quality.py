@@ -89,7 +89,7 @@ def without_outlying(recording: Recording, strides: Strides, fewest_channels: in
     """Strides without those that are unlike the others; each goes to `dropped` with its reason.
 
     An accident, a stumble say, spoils one to three strides. Four or more in a row are another way of walking: they
-    stay, and `late_change` judges them.
+    stay, and `late_change` tests them.
 
     fewest_channels: in how many channels a stride must be outlying to be dropped
     """

@@ -12,7 +12,7 @@ from gaitdisc.recording import Finding
 from gaitdisc.recording.runs import runs
 
 SHORTEST = 20  # samples of a trial
-SHAKEN = 0.1  # of a step: how far a sample may lie from its place on the even time base
+JITTER = 0.1  # of a step: how far a sample may lie from its place on the even time base
 EVEN = 1e-3  # of a step, which is even enough
 BRIDGED_S = 0.2  # longest gap of an input that is bridged
 SLOW_HZ = 0.5  # rates below are rare where time is in seconds, and what milliseconds look like
@@ -45,7 +45,7 @@ def on_even_time(
     findings: list[Finding] = []
     even = trial
     if rate is None:
-        rate, off = _shaken(trial.time, place, where)
+        rate, off = _jittered(trial.time, place, where)
         worst = 100 * float(np.abs(off).max())
         if worst > 100 * EVEN:
             first = float(np.median(trial.time * rate - place))
@@ -104,21 +104,21 @@ def _places(time: NDArray[np.float64], where: str) -> tuple[float | None, NDArra
     return None, place
 
 
-def _shaken(time: NDArray[np.float64], place: NDArray[np.intp], where: str) -> tuple[float, NDArray[np.float64]]:
-    """Rate of the even clock next to a shaken one, and how far each time lies beside it (sample,) [steps]."""
+def _jittered(time: NDArray[np.float64], place: NDArray[np.intp], where: str) -> tuple[float, NDArray[np.float64]]:
+    """Rate of the even clock next to a jittering one, and how far each time lies beside it (sample,) [steps]."""
     slope, first = np.polyfit(place, time, 1)
     off = (time - first) / slope - place
-    if np.abs(off).max() > SHAKEN:
+    if np.abs(off).max() > JITTER:
         raise _uneven(time, where)
     rate = 1.0 / float(slope)
-    return _rounded(rate, SHAKEN * rate / len(time)), off
+    return _rounded(rate, JITTER * rate / len(time)), off
 
 
 def _uneven(time: NDArray[np.float64], where: str) -> SamplingError:
     steps = np.diff(time)
     worst = int(np.argmax(np.abs(steps - np.median(steps))))
     return SamplingError(
-        f"a trial is sampled evenly, to {SHAKEN:g} of a step",
+        f"a trial is sampled evenly, to {JITTER:g} of a step",
         f"{where}: a step of {steps[worst]:.6g} s after t = {time[worst]:.6g} s where most are "
         f"{np.median(steps):.6g} s (steps from {steps.min():.6g} to {steps.max():.6g} s)",
         "Resample it to an even rate, or cut it there into two trials.",
@@ -128,7 +128,7 @@ def _uneven(time: NDArray[np.float64], where: str) -> SamplingError:
 def _resampled(trial: TrialColumns, time: NDArray[np.float64], inputs: tuple[str, ...]) -> tuple[TrialColumns, str]:
     """The trial at even times, and how: its samples moved, or its times alone where moving makes the channels rougher.
 
-    A shaken clock is one of two things: the samples were taken at these times, or they were taken evenly and marked
+    A jittering clock is one of two things: the samples were taken at these times, or they were taken evenly and marked
     with the times of their arrival. The channels show which: wrong times make them rough.
     """
     even, late_s = replace(trial, time=time), trial.time - time

@@ -142,7 +142,7 @@ def _still(values: NDArray[np.float64]) -> bool:
 
 
 def _empty(trials: Sequence[TrialColumns], channels: Sequence[str], source: str) -> list[Finding]:
-    """Refuse a channel that is as good as empty in a trial; tell of empty cells."""
+    """Refuse a channel that is as good as empty in a trial; report empty cells."""
     found = []
     for column, name in enumerate(channels):
         missing = {trial.name: int((~np.isfinite(trial.observed[:, column])).sum()) for trial in trials}
@@ -165,7 +165,7 @@ def _empty(trials: Sequence[TrialColumns], channels: Sequence[str], source: str)
 def _constant(
     trials: Sequence[TrialColumns], inputs: Sequence[str], channels: Sequence[str], source: str
 ) -> list[Finding]:
-    """Refuse an observed channel that never varies; tell of what does not vary in a trial."""
+    """Refuse an observed channel that never varies; report what does not vary in a trial."""
     found = []
     for kind, names in (("observed", channels), ("inputs", inputs)):
         for column, name in enumerate(names):

@@ -217,7 +217,7 @@ def _refuse_timeless(time: NDArray[np.float64], trial: NDArray[np.object_], file
 
 
 def _left_out(simulation: Simulation, columns: Sequence[str], channels: tuple[str, ...], file: str) -> list[Finding]:
-    """Tell of states that are not measured, and of columns that nothing asked for."""
+    """Report states that are not measured, and columns that nothing uses."""
     found = []
     absent = [name for name, _ in simulation.observations if name not in channels]
     if absent:
@@ -234,10 +234,10 @@ def _left_out(simulation: Simulation, columns: Sequence[str], channels: tuple[st
 
 
 def _converted(
-    recording: Recording, name: str, simulation: Simulation, told: tuple[str, dict[str, Finding]]
+    recording: Recording, name: str, simulation: Simulation, named: tuple[str, dict[str, Finding]]
 ) -> NDArray[np.float64]:
     """Channel in the simulation's unit."""
-    file, findings = told
+    file, findings = named
     channel = recording.channels[recording.names.index(name)]
     units = {part.name: part.unit for part in (*simulation.states, *simulation.inputs)}
     observed = dict(simulation.observations).get(name, name)

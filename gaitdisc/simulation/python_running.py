@@ -90,7 +90,7 @@ class _Walk:
         halves = np.arange(2 * self._substeps + 1)
         at = np.broadcast_to(sample + halves / (2 * self._substeps), (len(x), len(halves)))
         inputs = [self._input(k, at) for k in range(len(self._compiled.inputs))]
-        with np.errstate(all="ignore"):  # a row that leaves every bound is told, not warned of
+        with np.errstate(all="ignore"):  # a row that leaves every bound is reported, not warned of
             for half in halves[:-1:2]:
                 start, middle, end = ((at[0, half + k], [each[:, half + k] for each in inputs]) for k in range(3))
                 k1 = self._rates(x, *start)

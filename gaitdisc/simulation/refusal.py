@@ -23,5 +23,5 @@ class SimulationError(SchemaError):
         return where + super().__str__()
 
     def at(self, *place: str) -> SimulationError:
-        """Return the same refusal, told of a part of the simulation."""
+        """Return the same refusal, of a part of the simulation."""
         return SimulationError(self.needed, self.found, self.remedy, place)

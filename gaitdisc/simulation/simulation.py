@@ -255,7 +255,7 @@ class Simulation:
         return replace(self, observations=tuple(kept.items()))
 
     def observing(self, names: Sequence[str]) -> Simulation:
-        """Simulation with some of its observations only, in the order asked for.
+        """Simulation with some of its observations only, in the order requested.
 
         Parameters
         ----------

@@ -239,7 +239,7 @@ def _expression(value: Any, place: tuple[str, ...]) -> str:
 
 
 def _located(error: SimulationError, text: str, file: str) -> SchemaError:
-    """Tell a refusal of the file and the line."""
+    """Give a refusal the file and the line."""
     line = _line(text, error.place)
     where = f"{file}, line {line}" if line else file
     part = f", [{error.place[0]}] {' '.join(error.place[1:])}".rstrip() if error.place else ""

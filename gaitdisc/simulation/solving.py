@@ -1,4 +1,4 @@
-"""One trial solved with an adaptive step: the reference that fixed steps are judged by."""
+"""One trial solved with an adaptive step: the reference that fixed steps are checked by."""
 
 from __future__ import annotations
 
@@ -97,4 +97,4 @@ def _beyond(_t: float, x: NDArray[np.float64]) -> float:
     return float(BOUND - np.max(np.abs(x))) if np.all(np.isfinite(x)) else -1.0
 
 
-setattr(_beyond, "terminal", True)  # noqa: B010 the way in which solve_ivp is told
+setattr(_beyond, "terminal", True)  # noqa: B010 the way in which solve_ivp takes it

@@ -1,4 +1,4 @@
-"""Whether the units of a simulation fit together; what does not is told, never refused."""
+"""Whether the units of a simulation fit together; what does not is reported, never refused."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def unit_findings(simulation: Simulation) -> tuple[Finding, ...]:
     r"""Warnings where unlike units are added, a port's unit does not fit its place, or a unit is unknown.
 
     A number without a name may carry any unit, and so does what it multiplies; an angle counts as a pure number. Of a
-    simulation in which nothing but 1 is given as a unit (a plain function, say) there is nothing to tell.
+    simulation in which nothing but 1 is given as a unit (a plain function, say) there is nothing to report.
 
     >>> from gaitdisc.simulation.simulation_file import simulation_of
     >>> text = '[states.x]\nunit = "m"\n[parameters.f]\nvalue = 1\nunit = "N"\n[equations]\nx = "f"\n'
@@ -72,10 +72,10 @@ class _Check:
         return None if own is None or second is None else tuple(a - b for a, b in zip(own, second, strict=True))
 
     def expect(self, text: str, wanted: Dimension | None, where: str, unit: str) -> None:
-        """Tell where an expression has another dimension than its place."""
+        """Report where an expression has another dimension than its place."""
         found = self.unit(parsed(text), where)
         if found is not None and wanted is not None and found != wanted:
-            self._tell(f"{where}: {_short(parsed(text))} is not of the unit {unit}")
+            self._report(f"{where}: {_short(parsed(text))} is not of the unit {unit}")
 
     def unit(self, tree: Tree, where: str) -> Dimension | None:
         """Dimension of an expression; None where it may be any."""
@@ -86,7 +86,7 @@ class _Check:
             return self._alike(tree, parts, where)
         if tree.symbol in _PURE:
             if tree.symbol in _OF_PURE and parts[0] is not None and any(parts[0]):
-                self._tell(f"{where}: {_short(tree)} takes a pure number or an angle")
+                self._report(f"{where}: {_short(tree)} takes a pure number or an angle")
             return dimension_of("1")
         if tree.symbol == "where":
             return parts[1]
@@ -109,11 +109,11 @@ class _Check:
         for part, argument in there[1:]:
             if part != there[0][0]:
                 word = "compared" if tree.symbol in ("max", "min") else "added"
-                self._tell(f"{where}: {_short(there[0][1])} and {_short(argument)} are {word} and differ in unit")
+                self._report(f"{where}: {_short(there[0][1])} and {_short(argument)} are {word} and differ in unit")
                 return None
         return there[0][0] if there else None
 
-    def _tell(self, what: str) -> None:
+    def _report(self, what: str) -> None:
         self.findings.append(Finding("warning", "unit", self._file, what, "the numbers there, if the units are right"))
 
 

@@ -21,7 +21,7 @@ SHARE_KEPT = 0.8
 class Groups:
     """Sub-groups of participants."""
 
-    count: int  # how many sub-groups; 0 where none can be told from one cloud
+    count: int  # how many sub-groups; 0 where none can be distinguished from one cloud
     labels: NDArray[np.intp]  # (participant,), Sub-group of each participant, 1 to the count; all 0 where there is none
     silhouette: float  # largest mean silhouette over the numbers of groups tried, -1 to 1
     p: float  # share of normal clouds of the same covariance that part as well, or better
@@ -43,7 +43,7 @@ def find_groups(
     features (participant, feature): in comparable units; complete
     most: largest number of sub-groups tried; none smaller than two participants is
     Source: Ward 1963; Rousseeuw 1987 (silhouette); Liu et al. 2008 (clouds of the same covariance); Hubert and Arabie
-        1985 (adjusted Rand index). Ebers 2023, section 6.2 asks the question.
+        1985 (adjusted Rand index). Ebers 2023, section 6.2 raises the question.
 
     >>> rng = np.random.default_rng(0)
     >>> apart = rng.standard_normal((12, 3)) + 12.0 * (np.arange(12) % 2)[:, None]

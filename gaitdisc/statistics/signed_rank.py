@@ -28,7 +28,7 @@ class SignedRank:
     shift: float  # Hodges-Lehmann shift and its interval [the numbers' unit]; infinite where so few pairs have none
     low: float  # Hodges-Lehmann shift and its interval [the numbers' unit]; infinite where so few pairs have none
     high: float  # Hodges-Lehmann shift and its interval [the numbers' unit]; infinite where so few pairs have none
-    level: float  # asked of the interval; what it holds is at least that
+    level: float  # requested of the interval; what it holds is at least that
     left_out: tuple[str, ...]  # reasons of the pairs that were left out, one each
 
 

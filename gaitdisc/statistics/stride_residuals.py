@@ -19,7 +19,7 @@ LEAST_STRIDES = 5
 def strides_of_phase(time: NDArray[np.float64], phi: NDArray[np.float64], side: str = "r") -> Strides:
     """Strides that lie wholly within a stretch of time, recovered from its percent stride.
 
-    Percent stride rises evenly from one initial contact to the next, so that two samples of a stride tell its start and
+    Percent stride rises evenly from one initial contact to the next, so that two samples of a stride give its start and
     end. A stride that begins before the first sample or ends after the last is left out.
 
     time (time,) [s]: even

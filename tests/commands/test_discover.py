@@ -109,7 +109,7 @@ def test_the_sentence_the_files_and_the_report(lab, tmp_path):
 
 def test_without_a_report_and_without_progress(lab, tmp_path, monkeypatch):
     """Whatever is found; the search is that of the test above."""
-    monkeypatch.setattr("gaitdisc.discovery.discover.judge", lambda _, as_read: Verdict("no_gap", as_read, ()))
+    monkeypatch.setattr("gaitdisc.discovery.discover.decide", lambda _, as_read: Verdict("no_gap", as_read, ()))
     words = [str(lab / "good.toml"), str(lab / "good.csv"), "--out", str(tmp_path), "--no-report", "-q"]
     done = CliRunner().invoke(app, ["discover", *words])
     assert done.exit_code == 0, done.output

@@ -5,12 +5,12 @@ import pytest
 from hidden_in_a_function import tank, write_record
 from hidden_in_a_mass import MASS, Experiment, mass, record, with_load
 
-from gaitdisc.discovery.account import Part
 from gaitdisc.discovery.answer import answer, augmented_of, phase_of, region_of, units_of
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.evidence import compared
-from gaitdisc.discovery.inquiry import begin_inquiry
-from gaitdisc.discovery.shaken import shaken
+from gaitdisc.discovery.candidate_model import Part
+from gaitdisc.discovery.problem import set_up_problem
+from gaitdisc.discovery.process_noise import rank_process_noise
+from gaitdisc.discovery.scored_model import compared
 from gaitdisc.discovery.verdict import Verdict
 from gaitdisc.simulation.measured_table import read_measured
 from gaitdisc.simulation.running import compile_simulation
@@ -26,15 +26,15 @@ SLACK = replace(
 
 
 @pytest.fixture(scope="module")
-def answered(inquiry, as_read, named):
+def answered(problem, as_read, named):
     now, rivals = named
-    plain, *_ = compared([as_read, now], inquiry.search.base)
-    return answer(inquiry, plain, Verdict("missing_physics", now, tuple(rivals)))
+    plain, *_ = compared([as_read, now], problem.search.base)
+    return answer(problem, plain, Verdict("missing_physics", now, tuple(rivals)))
 
 
 def test_the_augmented_simulation_has_the_numbers_that_were_found(answered, named):
     _, augmented = answered
-    value = named[0].account.parts[0].values["factor"]
+    value = named[0].model.parts[0].values["factor"]
     assert augmented.effects[0].term == f"{value:.6g}*(x**3)"
     assert augmented.parameters == mass().parameters
 
@@ -87,8 +87,8 @@ def test_a_region_is_said_where_an_effect_has_one(candidate, values, region):
     assert region_of(Part(candidate, values)) == region
 
 
-def test_units_are_those_of_what_is_observed(inquiry):
-    assert units_of(inquiry) == ("m",)
+def test_units_are_those_of_what_is_observed(problem):
+    assert units_of(problem) == ("m",)
 
 
 @pytest.mark.parametrize(("seen", "centre"), [("phase", 0.4), ("late", 0.5)])
@@ -102,7 +102,7 @@ def test_the_part_of_the_stride_is_where_the_effect_is_half_as_strong_as_at_its_
     time = np.arange(measured.samples[0]) / measured.rate
     phase = np.broadcast_to((time % 1.0)[None, :, None], (2, len(time), 1))
     drive = replace(measured.drive, inputs=np.concatenate([measured.drive.inputs, phase], axis=2))
-    inquiry = begin_inquiry(stride, replace(measured, drive=drive))
+    problem = set_up_problem(stride, replace(measured, drive=drive))
     pulse = Candidate(
         "missing_physics",
         "port",
@@ -112,14 +112,14 @@ def test_the_part_of_the_stride_is_where_the_effect_is_half_as_strong_as_at_its_
         {"c": "phases", "w": "phase widths"},
     )
     half = 0.1 * np.sqrt(np.log(2))
-    begin, end = phase_of(inquiry, inquiry.as_read(), Part(pulse, {"factor": 3.0, "c": 0.4, "w": 0.1}))
+    begin, end = phase_of(problem, problem.as_read(), Part(pulse, {"factor": 3.0, "c": 0.4, "w": 0.1}))
     assert (begin, end) == pytest.approx((centre - half, centre + half), abs=0.03)
 
 
 def test_random_pushes_of_a_function_are_answered(tmp_path):
-    inquiry = begin_inquiry(tank(), read_measured(write_record(tmp_path / "tank.csv"), tank()))
-    as_read = inquiry.as_read()
-    shaking, *_ = shaken(as_read.shooting, as_read.account, inquiry.search.places)
-    found, augmented = answer(inquiry, as_read, Verdict("process_noise", as_read, (), shaking))
+    problem = set_up_problem(tank(), read_measured(write_record(tmp_path / "tank.csv"), tank()))
+    as_read = problem.as_read()
+    process_noise, *_ = rank_process_noise(as_read.shooting, as_read.model, problem.search.places)
+    found, augmented = answer(problem, as_read, Verdict("process_noise", as_read, (), process_noise))
     assert [(one.place, one.name) for one in found.effects] == [("leak", "process_noise")]
     assert augmented == tank()

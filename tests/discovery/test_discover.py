@@ -237,12 +237,12 @@ def test_a_spring_that_the_held_out_trial_never_reaches_is_proven_on_another():
     reached = measured.observed[:, :, 0].max(axis=1)
     assert (reached[:3] > 0.8).all()
     assert reached[3] < 0.65
-    told = []
-    found, _ = discover(mass(), measured, told=told.append)
+    progress = []
+    found, _ = discover(mass(), measured, progress=progress.append)
     assert [effect.name for effect in found.effects] == ["one_sided_spring"]
     assert found.effects[0].estimates["engagement"].value == pytest.approx(0.7, abs=0.03)
     assert found.held_out.after < 0.5 * found.held_out.before
-    assert "what is held out never goes where it would act: other data are held out" in told
+    assert "what is held out never goes where it would act: other data are held out" in progress
     note = next(finding for finding in found.findings if finding.kind == "held out")
     assert note.what == "with and without what was found, trial 4 runs alike; trial 3 is held out in its place"
 
@@ -264,7 +264,7 @@ def test_where_one_trial_comes_to_rest_its_first_quarter_proves_the_friction():
 
 def test_every_step_is_told():
     said = []
-    discover(mass(), record(mass(), SEED), told=said.append)
+    discover(mass(), record(mass(), SEED), progress=said.append)
     assert said[0] == "fitting the simulation as it was read"
     assert any("weighing" in one and "explanations" in one for one in said)
 

@@ -36,8 +36,8 @@ def test_a_unit_that_nobody_knows_is_kept_as_a_word():
 
 @given(st.sampled_from(UNITS), st.sampled_from(UNITS))
 def test_dividing_agrees_with_the_units_of_the_simulation_file(unit, by):
-    told = divided(divided(unit, by), divided("1", by))
-    assert unit_factor(told, unit) == pytest.approx(1.0)
+    said = divided(divided(unit, by), divided("1", by))
+    assert unit_factor(said, unit) == pytest.approx(1.0)
 
 
 def test_what_is_added_to_an_equation_is_a_rate():
@@ -60,6 +60,6 @@ def test_a_channel_in_other_units_is_never_told_in_those_of_its_state(text, unit
 
 
 def test_the_unit_of_a_channel_is_the_one_that_the_file_says():
-    told = bundled("ankle").with_observation("ankle_angle_r", "1000*theta")
-    assert unit_of_channel(told, "ankle_angle_r") == "1"
-    assert unit_of_channel(told.with_sensor(Sensor("ankle_angle_r", "mrad")), "ankle_angle_r") == "mrad"
+    said = bundled("ankle").with_observation("ankle_angle_r", "1000*theta")
+    assert unit_of_channel(said, "ankle_angle_r") == "1"
+    assert unit_of_channel(said.with_sensor(Sensor("ankle_angle_r", "mrad")), "ankle_angle_r") == "mrad"

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import mass
 
-from gaitdisc.discovery.account import Part
 from gaitdisc.discovery.candidate import Candidate, candidates_of
+from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.catalogue import Shape, known_shapes
 from gaitdisc.discovery.estimates import NORMAL_95, named_estimates, slot_units
 from gaitdisc.discovery.places import places_of
@@ -53,9 +53,9 @@ def test_intervals_are_two_standard_errors_and_follow_the_sign(candidates):
     ],
 )
 def test_each_number_has_its_name_unit_and_sign(candidates, label, values, name, unit, value):
-    (told,) = named(candidates, label, values).items()
-    assert told[0] == name
-    assert (told[1].unit, told[1].value) == (unit, value)
+    (said,) = named(candidates, label, values).items()
+    assert said[0] == name
+    assert (said[1].unit, said[1].value) == (unit, value)
 
 
 def test_a_sine_and_a_cosine_are_an_amplitude_and_a_phase(candidates):
@@ -69,6 +69,6 @@ def test_a_sine_and_a_cosine_are_an_amplitude_and_a_phase(candidates):
 
 def test_numbers_of_one_name_stay_apart():
     bumps = Candidate("missing_physics", "port", "load", "unnamed", ("exp(-x**2)", "exp(-(x - 1)**2)"))
-    told = named_estimates(Part(bumps, {"factor": 1.0, "factor_1": 2.0}), np.eye(2), mass())
-    assert [one.value for one in told.values()] == [1.0, 2.0]
+    said = named_estimates(Part(bumps, {"factor": 1.0, "factor_1": 2.0}), np.eye(2), mass())
+    assert [one.value for one in said.values()] == [1.0, 2.0]
     assert slot_units(bumps, mass()) == {"factor": "N", "factor_1": "N"}

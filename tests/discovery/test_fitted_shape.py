@@ -4,22 +4,22 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import MASS, Experiment, mass, record, with_load
 
-from gaitdisc.discovery.by_share import scale_of
+from gaitdisc.discovery.by_gap_share import scale_of
 from gaitdisc.discovery.fitted_shape import FLAT_BUMPS, fitted_shape, shapes_at
-from gaitdisc.discovery.inquiry import begin_inquiry
+from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.simulation.expression import parsed
 from gaitdisc.simulation.simulation_file import simulation_of
 
 
 @pytest.fixture(scope="module")
 def bumpy():
-    inquiry = begin_inquiry(mass(), record(with_load("-6*exp(-((x - 0.3)/0.2)**2)"), 3, Experiment(trials=6)))
-    return inquiry, inquiry.as_read()
+    problem = set_up_problem(mass(), record(with_load("-6*exp(-((x - 0.3)/0.2)**2)"), 3, Experiment(trials=6)))
+    return problem, problem.as_read()
 
 
 def test_shapes_over_place_speed_and_both_are_tried(bumpy):
-    inquiry, now = bumpy
-    shapes = shapes_at(inquiry.search.places[0], now, inquiry.search)
+    problem, now = bumpy
+    shapes = shapes_at(problem.search.places[0], now, problem.search)
     assert {one.name for one in shapes} == {"unnamed"}
     assert len(shapes[0].pieces) == FLAT_BUMPS
     assert all(parsed(piece) for one in shapes for piece in one.pieces)
@@ -27,36 +27,36 @@ def test_shapes_over_place_speed_and_both_are_tried(bumpy):
 
 
 def test_bumps_lie_where_the_run_goes(bumpy):
-    inquiry, now = bumpy
-    first = shapes_at(inquiry.search.places[0], now, inquiry.search)[0]
-    x = now.account.fit.states[..., 0]
+    problem, now = bumpy
+    first = shapes_at(problem.search.places[0], now, problem.search)[0]
+    x = now.model.fit.states[..., 0]
     centres = [float(piece.split(" - ")[1].split("/")[0].strip("()")) for piece in first.pieces]
     assert x.min() <= min(centres) < 0 < max(centres) <= x.max()
 
 
 def test_powers_of_two_states_are_tried_up_to_the_third_together(bumpy):
-    inquiry, now = bumpy
-    (powers,) = [one for one in shapes_at(inquiry.search.places[0], now, inquiry.search) if "1" in one.pieces]
+    problem, now = bumpy
+    (powers,) = [one for one in shapes_at(problem.search.places[0], now, problem.search) if "1" in one.pieces]
     assert len(powers.pieces) == 10
     assert max(sum(map(int, re.findall(r"\*\*(\d)", piece))) for piece in powers.pieces) == 3
-    x = now.account.fit.states[..., 0]
+    x = now.model.fit.states[..., 0]
     centre, half = map(float, re.search(r"x - (?:\()?([-\d.]+)\)*/([\d.]+)", powers.pieces[-1]).groups())
     assert np.mean(np.abs((x - centre) / half) <= 1) == pytest.approx(0.96, abs=0.01)
 
 
 def test_where_there_is_a_stride_a_shape_may_be_locked_to_it():
     strides = simulation_of(MASS.replace("inputs.push", "inputs.phase").replace("(push +", "(phase +"), "stride.toml")
-    inquiry = begin_inquiry(strides, record(mass(), 0, Experiment(2, 4.0)))
-    shapes = shapes_at(inquiry.search.places[0], inquiry.as_read(), inquiry.search)
+    problem = set_up_problem(strides, record(mass(), 0, Experiment(2, 4.0)))
+    shapes = shapes_at(problem.search.places[0], problem.as_read(), problem.search)
     assert any("phase" in one.pieces[0] for one in shapes)
 
 
 def test_a_fitted_shape_closes_a_gap_that_has_no_name(bumpy):
-    inquiry, now = bumpy
-    shape = fitted_shape(now, inquiry.search, scale_of(inquiry))
+    problem, now = bumpy
+    shape = fitted_shape(now, problem.search, scale_of(problem))
     assert shape is not None
-    (part,) = shape.account.parts
+    (part,) = shape.model.parts
     assert (part.candidate.name, part.candidate.place) == ("unnamed", "load")
-    plain = now.under(shape, inquiry.search.base)
-    before, after, noise = plain.account.fit.misfit, shape.account.fit.misfit, shape.account.fit.white.size
+    plain = now.under(shape, problem.search.base)
+    before, after, noise = plain.model.fit.misfit, shape.model.fit.misfit, shape.model.fit.white.size
     assert 1 - (after - noise) / (before - noise) > 0.7

@@ -1,14 +1,14 @@
 import numpy as np
 import pytest
 
-from gaitdisc.discovery.account import Part
-from gaitdisc.discovery.by_share import scale_of
-from gaitdisc.discovery.gap_share import MODEL_ERROR, GapScale, weighed
+from gaitdisc.discovery.by_gap_share import scale_of
+from gaitdisc.discovery.candidate_model import Part
+from gaitdisc.discovery.gap_share import MODEL_ERROR, GapScale, cross_validated
 
 
 @pytest.fixture(scope="module")
-def scale(inquiry):
-    return scale_of(inquiry)
+def scale(problem):
+    return scale_of(problem)
 
 
 def test_the_scale_is_noise_and_a_hundredth_of_the_spread():
@@ -18,19 +18,21 @@ def test_the_scale_is_noise_and_a_hundredth_of_the_spread():
     assert scale.least == pytest.approx((0.64 + 1.0) / 2)
 
 
-def test_the_true_explanation_closes_the_gap_and_a_wrong_one_does_not(inquiry, as_read, cubic, scale):
-    shooting, base = as_read.shooting, inquiry.search.base
-    before = weighed(scale, shooting, base, (), as_read.account)
-    after = weighed(scale, shooting, base, (Part(cubic, {"factor": -10.0}),), before.account)
-    assert after.account.parts[0].values["factor"] == pytest.approx(-14.0, rel=0.05)
+def test_the_true_explanation_closes_the_gap_and_a_wrong_one_does_not(problem, as_read, cubic, scale):
+    shooting, base = as_read.shooting, problem.search.base
+    before = cross_validated(scale, shooting, base, (), as_read.model)
+    after = cross_validated(scale, shooting, base, (Part(cubic, {"factor": -10.0}),), before.model)
+    assert after.model.parts[0].values["factor"] == pytest.approx(-14.0, rel=0.05)
     assert after.gap < 0.15 * before.gap
-    load = next(one for one in inquiry.search.candidates if one.label == "constant_load@load")
-    wrong = weighed(scale, shooting, base, (Part(load, {"factor": 0.0}),), before.account)
+    load = next(one for one in problem.search.candidates if one.label == "constant_load@load")
+    wrong = cross_validated(scale, shooting, base, (Part(load, {"factor": 0.0}),), before.model)
     assert wrong.gap > 0.8 * before.gap
 
 
-def test_what_was_not_fitted_leaves_the_sensors_noise(inquiry, as_read, cubic, scale):
-    found = weighed(scale, as_read.shooting, inquiry.search.base, (Part(cubic, {"factor": -14.0}),), as_read.account)
+def test_what_was_not_fitted_leaves_the_sensors_noise(problem, as_read, cubic, scale):
+    found = cross_validated(
+        scale, as_read.shooting, problem.search.base, (Part(cubic, {"factor": -14.0}),), as_read.model
+    )
     assert found.errors.mean() == pytest.approx(scale.floor, rel=0.15)
-    assert found.account.explanations == {("cubic_stiffness@load", ("x**3",))}
-    assert found.account.price == pytest.approx(0.03)
+    assert found.model.explanations == {("cubic_stiffness@load", ("x**3",))}
+    assert found.model.penalty == pytest.approx(0.03)

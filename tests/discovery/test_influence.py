@@ -6,9 +6,9 @@ from hidden_in_a_mass import MASS, Experiment, mass, record, with_load
 
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.influence import nearly_off
-from gaitdisc.discovery.inquiry import begin_inquiry
 from gaitdisc.discovery.places import places_of
-from gaitdisc.discovery.shaken import shaken
+from gaitdisc.discovery.problem import set_up_problem
+from gaitdisc.discovery.process_noise import rank_process_noise
 from gaitdisc.results.discovery import Estimate, FoundEffect
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation
@@ -49,10 +49,10 @@ def test_a_state_that_nothing_sees_and_the_port_that_moves_it_are_said(measured)
 
 def test_a_parameter_without_influence_is_no_candidate(measured):
     more = MASS.replace("[ports.load]", "[parameters.colour]\nvalue = 3.0\n[ports.load]")
-    inquiry = begin_inquiry(simulation_of(more), measured)
-    assert "parameter 'colour' has no effect on what is measured" in inquiry.measured.findings[-1].what
-    assert all(one.place != "colour" for one in inquiry.search.candidates)
-    assert any(one.place == "k" for one in inquiry.search.candidates)
+    problem = set_up_problem(simulation_of(more), measured)
+    assert "parameter 'colour' has no effect on what is measured" in problem.measured.findings[-1].what
+    assert all(one.place != "colour" for one in problem.search.candidates)
+    assert any(one.place == "k" for one in problem.search.candidates)
 
 
 def test_where_no_port_shows_the_simulation_is_refused(measured):
@@ -72,22 +72,22 @@ def test_an_observation_that_never_changes_is_refused(measured, expression):
 
 def test_a_port_that_shows_only_late_has_influence():
     slow = MASS.replace("push + load - k*x", "push + load - k*delay(x, 5)")
-    inquiry = begin_inquiry(simulation_of(slow), record(mass(), 3, Experiment(trials=2, seconds=8.0)))
-    assert [place.name for place in inquiry.search.places] == ["load"]
-    assert inquiry.measured.findings == ()
+    problem = set_up_problem(simulation_of(slow), record(mass(), 3, Experiment(trials=2, seconds=8.0)))
+    assert [place.name for place in problem.search.places] == ["load"]
+    assert problem.measured.findings == ()
 
 
 def test_all_has_influence_where_all_is_as_it_should_be(measured):
-    assert begin_inquiry(mass(), measured).measured.findings == ()
+    assert set_up_problem(mass(), measured).measured.findings == ()
 
 
 def test_pushes_that_show_nowhere_explain_nothing(measured):
-    inquiry = begin_inquiry(simulation_of(MUTED), measured)
-    now = inquiry.as_read()
-    places = places_of(inquiry.search.base, compile_simulation(inquiry.search.base))
-    best, muted = shaken(now.shooting, now.account, places)
+    problem = set_up_problem(simulation_of(MUTED), measured)
+    now = problem.as_read()
+    places = places_of(problem.search.base, compile_simulation(problem.search.base))
+    best, muted = rank_process_noise(now.shooting, now.model, places)
     assert (best.place.name, muted.place.name) == ("load", "wind")
-    assert np.isfinite(best.evidence) and np.isinf(muted.evidence)
+    assert np.isfinite(best.bic) and np.isinf(muted.bic)
 
 
 def test_an_answer_that_takes_two_inputs_nearly_away_is_said():

@@ -8,8 +8,8 @@ from hidden_in_a_mass import Experiment, mass, record
 
 from gaitdisc.discovery.catalogue import Shape
 from gaitdisc.discovery.discover import discover
-from gaitdisc.discovery.inquiry import begin_inquiry
 from gaitdisc.discovery.matched import matched
+from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.errors import GaitdiscError, SamplingError
 from gaitdisc.simulation.drive import Drive
 from gaitdisc.simulation.parts import Sensor
@@ -85,7 +85,7 @@ def test_what_does_not_fit_is_refused_in_words(measured, wrong):
 def test_of_the_observations_those_that_were_measured_are_kept(measured):
     both = mass().with_observation("v", "v")
     assert matched(both, measured).observations == (("x", "x"),)
-    assert begin_inquiry(both, measured).search.base.observations == (("x", "x"),)
+    assert set_up_problem(both, measured).search.base.observations == (("x", "x"),)
     assert matched(mass(), measured) is not None and matched(mass(), measured) == mass()
 
 
@@ -113,7 +113,7 @@ def test_channels_are_found_by_name_whatever_their_order(measured):
 def test_delays_of_the_users_own_effects_are_refused_as_those_of_the_file(measured, piece, words):
     with pytest.raises(SimulationError, match=words):
         discover(mass(), measured, (Shape("mine", (piece,)),))
-    discover_begins = begin_inquiry(mass(), measured, (Shape("mine", ("delay(x, 0.5*d)",), {"d": "delays"}),))
+    discover_begins = set_up_problem(mass(), measured, (Shape("mine", ("delay(x, 0.5*d)",), {"d": "delays"}),))
     assert any(one.name == "mine" for one in discover_begins.search.candidates)
 
 
@@ -126,11 +126,11 @@ def test_a_delay_of_the_simulation_longer_than_the_shortest_trial_is_refused(mea
 
 
 def test_a_filter_beyond_half_the_rate_is_refused(measured):
-    told = mass().with_sensor(Sensor("x", lowpass=25.0))
+    filtered = mass().with_sensor(Sensor("x", lowpass=25.0))
     with pytest.raises(
         SamplingError,
         match=r"below half the rate, 25 Hz; A mass on a spring, pushed, \[observations.x\] "
         r"has lowpass = 25 where walk.csv has 50 samples a second. Correct lowpass",
     ):
-        matched(told, measured)
+        matched(filtered, measured)
     assert matched(mass().with_sensor(Sensor("x", lowpass=24.0)), measured).sensors

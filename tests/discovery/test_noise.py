@@ -43,12 +43,12 @@ def test_the_first_samples_of_a_segment_are_as_likely_as_the_rest(remembering):
 def test_white_noise_has_no_memory_and_its_own_size():
     noise = noise_of(np.random.default_rng(0).normal(0, [3.0, 0.2], (40, 200, 2)))
     assert noise.lags == (0, 0)
-    assert not noise.remembers
+    assert not noise.is_autocorrelated
     np.testing.assert_allclose(noise.size, [3.0, 0.2], rtol=0.03)
 
 
 def test_noise_that_remembers_says_so(remembering):
-    assert noise_of(remembering).remembers
+    assert noise_of(remembering).is_autocorrelated
 
 
 def test_numbers_that_the_fit_took_enlarge_the_variance():
@@ -103,8 +103,8 @@ def test_a_memory_that_the_records_filter_explains_is_none():
     passed = RecordFilter((6.0,), 100.0)
     white = np.random.default_rng(2).normal(size=(40, 600, 1))
     slow = lfilter([1.0], [1.0, -0.97], white, axis=1)
-    memory = passed.memory(MOST_LAGS)
+    autocorrelation = passed.autocorrelation(MOST_LAGS)
     for noise, beyond in ((white, False), (slow, True)):
         seen = passed.filtered(noise, 1)[:, 40 : -40 : passed.every]
-        assert noise_of(seen).remembers
-        assert noise_of(seen, memory=memory).remembers == beyond
+        assert noise_of(seen).is_autocorrelated
+        assert noise_of(seen, autocorrelation=autocorrelation).is_autocorrelated == beyond

@@ -7,8 +7,8 @@ import pytest
 from hidden_in_a_mass import Experiment, mass, neuron, record, two_rods, with_load
 
 from gaitdisc.discovery.discover import discover
-from gaitdisc.discovery.inquiry import begin_inquiry
 from gaitdisc.discovery.odd_trials import agreeing_trials, odd_trials, shifted
+from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.report.discovery_page import write_discovery_report
 from gaitdisc.results.discovery_folder import save_discovery
 from gaitdisc.simulation.drive import Drive, Rows
@@ -36,7 +36,7 @@ def moved_in_time(measured, trial, samples):
 
 
 def found_in(simulation, measured):
-    return [(one.trial, one.change, one.channel) for one in odd_trials(begin_inquiry(simulation, measured))]
+    return [(one.trial, one.change, one.channel) for one in odd_trials(set_up_problem(simulation, measured))]
 
 
 @pytest.mark.parametrize("trial", [0, 2])
@@ -106,12 +106,12 @@ def test_it_is_left_out_and_said_in_the_answer_and_the_report(cubic, tmp_path):
 
 def test_of_two_trials_none_is_the_odd_one(cubic):
     two = turned(cubic.selected([0, 1]), 1)
-    assert agreeing_trials(begin_inquiry(mass(), two), two) is two
+    assert agreeing_trials(set_up_problem(mass(), two), two) is two
 
 
 def test_two_against_two_are_left_as_they_are(cubic):
     both = turned(turned(cubic, 0), 1)
-    assert agreeing_trials(begin_inquiry(mass(), both), both) is both
+    assert agreeing_trials(set_up_problem(mass(), both), both) is both
 
 
 def test_trials_are_shifted_against_their_inputs(cubic):

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import MASS, record, with_load
 
-from gaitdisc.discovery.account import Part, account_for
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.inquiry import begin_inquiry
+from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.prior import prior_of
+from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.simulation.simulation_file import simulation_of
 
 NOISE = 0.013
@@ -25,9 +25,9 @@ def measured():
 
 
 def _fitted(simulation, measured, parts=()):
-    inquiry = begin_inquiry(simulation, measured)
-    shooting = inquiry.shooting(inquiry.segments(inquiry.learned)).with_noise(white_noise(np.array([NOISE])))
-    return account_for(shooting, simulation, parts, inquiry.guess.starts(shooting.segments))
+    problem = set_up_problem(simulation, measured)
+    shooting = problem.shooting(problem.segments(problem.learned)).with_noise(white_noise(np.array([NOISE])))
+    return fit_model(shooting, simulation, parts, problem.guess.starts(shooting.segments))
 
 
 def test_half_the_width_is_two_standard_deviations():
@@ -44,11 +44,11 @@ def test_a_number_without_two_bounds_is_exact(bounds):
 
 
 def test_a_number_that_is_a_little_off_is_found_within_its_bounds(measured):
-    account = _fitted(bounded(k=22.5, low=19.0, high=26.0), measured)
-    found = account.fit.values[account.machine.parameters.index("k")]
-    error = float(np.sqrt(account.fit.covariance[0, 0]))
+    model = _fitted(bounded(k=22.5, low=19.0, high=26.0), measured)
+    found = model.fit.values[model.machine.parameters.index("k")]
+    error = float(np.sqrt(model.fit.covariance[0, 0]))
     assert abs(found - 24.0) < 4 * error < 0.5
-    assert account.size == 0
+    assert model.size == 0
 
 
 def test_a_number_stops_at_its_bound_and_the_others_are_fitted_with_it_there(measured):
@@ -60,15 +60,15 @@ def test_a_number_stops_at_its_bound_and_the_others_are_fitted_with_it_there(mea
 
 def test_only_a_wrong_parameter_leaves_its_bounds(measured):
     wrong = Candidate("wrong_parameter", "parameter", "k", "wrong_parameter", value=20.0, bounds=(18.0, 22.0))
-    account = _fitted(bounded(k=20.0, low=18.0, high=22.0), measured, (Part(wrong, {"value": 20.0}),))
-    assert account.parts[0].values["value"] == pytest.approx(24.0, abs=0.3)
-    assert account.fit.prior.names == ()
-    assert account.size == 1
+    model = _fitted(bounded(k=20.0, low=18.0, high=22.0), measured, (Part(wrong, {"value": 20.0}),))
+    assert model.parts[0].values["value"] == pytest.approx(24.0, abs=0.3)
+    assert model.fit.prior.names == ()
+    assert model.size == 1
 
 
 def test_few_data_leave_a_number_where_the_file_has_it(measured):
-    inquiry = begin_inquiry(bounded(k=22.0, low=21.9, high=22.1), measured)
-    shooting = inquiry.shooting(inquiry.segments((0,))).with_noise(white_noise(np.array([50.0])))
-    account = account_for(shooting, inquiry.search.base, (), inquiry.guess.starts(shooting.segments))
-    assert account.fit.values[1] == pytest.approx(22.0, abs=1e-3)
-    assert np.sqrt(account.fit.covariance[0, 0]) == pytest.approx(0.05, rel=0.01)
+    problem = set_up_problem(bounded(k=22.0, low=21.9, high=22.1), measured)
+    shooting = problem.shooting(problem.segments((0,))).with_noise(white_noise(np.array([50.0])))
+    model = fit_model(shooting, problem.search.base, (), problem.guess.starts(shooting.segments))
+    assert model.fit.values[1] == pytest.approx(22.0, abs=1e-3)
+    assert np.sqrt(model.fit.covariance[0, 0]) == pytest.approx(0.05, rel=0.01)

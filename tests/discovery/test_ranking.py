@@ -1,9 +1,9 @@
 from dataclasses import replace
 
-from gaitdisc.discovery.account import Part
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.evidence import Judged
+from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.ranking import MARGIN, ranked
+from gaitdisc.discovery.scored_model import ScoredModel
 
 SPRING = Candidate(
     "missing_physics", "port", "load", "one_sided_spring", ("max(0, x - _x0)",), {"x0": "quantiles of x"}, "x"
@@ -14,12 +14,12 @@ SENSOR = Candidate("sensor_error", "observation", "x", "sensor_gain")
 OPEN = (SPRING, DAMPER, NUMBER, SENSOR)
 
 
-def _judged(as_read, candidate, evidence, size):
-    """An account of a given evidence, by a residual that has it."""
-    fit = replace(as_read.account.fit, free=tuple("abcdef"[:size]))
-    one = Judged(replace(as_read.account, fit=fit, parts=(Part(candidate, {}),)), as_read.shooting)
-    scale = ((evidence - (one.account.criterion - fit.misfit)) / fit.misfit) ** 0.5
-    return replace(one, account=replace(one.account, fit=replace(fit, white=fit.white * scale)))
+def _judged(as_read, candidate, bic, size):
+    """A model of a given evidence, by a residual that has it."""
+    fit = replace(as_read.model.fit, free=tuple("abcdef"[:size]))
+    one = ScoredModel(replace(as_read.model, fit=fit, parts=(Part(candidate, {}),)), as_read.shooting)
+    scale = ((bic - (one.model.bic - fit.misfit)) / fit.misfit) ** 0.5
+    return replace(one, model=replace(one.model, fit=replace(fit, white=fit.white * scale)))
 
 
 def test_the_better_explanation_stands_first(as_read):
@@ -40,8 +40,8 @@ def test_of_equals_a_wrong_number_stands_first_and_a_missing_term_whose_kind_has
 
 
 def test_accounts_that_failed_are_not_ranked(as_read):
-    failed = replace(as_read.account.fit, white=as_read.account.fit.white * float("inf"))
-    assert ranked([replace(as_read, account=replace(as_read.account, fit=failed))], OPEN) == []
+    failed = replace(as_read.model.fit, white=as_read.model.fit.white * float("inf"))
+    assert ranked([replace(as_read, model=replace(as_read.model, fit=failed))], OPEN) == []
 
 
 def test_accounts_that_are_all_hopeless_are_ranked_as_well(as_read):

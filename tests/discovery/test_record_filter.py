@@ -62,5 +62,5 @@ def test_the_memory_of_filtered_noise_is_that_of_its_samples():
     passed = RecordFilter((6.0,), 100.0)
     noise = passed.filtered(np.random.default_rng(2).normal(size=(1, 200000, 1)), 1)[0, :: passed.every, 0]
     measured = [np.mean(noise[: len(noise) - lag] * noise[lag:]) / noise.var() for lag in range(5)]
-    np.testing.assert_allclose(passed.memory(4)[:, 0], measured, atol=0.03)
-    assert RecordFilter((None,), 100.0).memory(2)[:, 0].tolist() == [1.0, 0.0, 0.0]
+    np.testing.assert_allclose(passed.autocorrelation(4)[:, 0], measured, atol=0.03)
+    assert RecordFilter((None,), 100.0).autocorrelation(2)[:, 0].tolist() == [1.0, 0.0, 0.0]

@@ -4,67 +4,65 @@ from dataclasses import replace
 
 import pytest
 
-from gaitdisc.discovery.account import Part, account_for
-from gaitdisc.discovery.evidence import judged
-from gaitdisc.discovery.rivals import TIE, evidence_of, rivals_of
+from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.rivals import TIE, bic_gain, rivals_of
+from gaitdisc.discovery.scored_model import scored
 
 
 @pytest.fixture(scope="module")
-def shape(inquiry, as_read, cubic):
+def shape(problem, as_read, cubic):
     """Return an answer without a name that is the truth: no effect of the catalogue but one comes near it."""
     part = Part(replace(cubic, name="unnamed"), {"factor": -14.0})
-    account = account_for(as_read.shooting, inquiry.search.base, (part,), as_read.account.fit.starts)
-    return judged(as_read.shooting, inquiry.search.base, account)
+    model = fit_model(as_read.shooting, problem.search.base, (part,), as_read.model.fit.starts)
+    return scored(as_read.shooting, problem.search.base, model)
 
 
-def test_the_evidence_of_an_answer_is_its_own(inquiry, shape):
-    before = account_for(shape.shooting, inquiry.search.base, (), shape.account.fit.starts, 15)
-    assert evidence_of(inquiry.search, shape) == pytest.approx(before.criterion - shape.evidence)
+def test_the_evidence_of_an_answer_is_its_own(problem, shape):
+    before = fit_model(shape.shooting, problem.search.base, (), shape.model.fit.starts, 15)
+    assert bic_gain(problem.search, shape) == pytest.approx(before.bic - shape.bic)
 
 
-def test_an_answer_of_nothing_has_no_evidence(inquiry, as_read):
-    assert evidence_of(inquiry.search, as_read) == 0.0
+def test_an_answer_of_nothing_has_no_evidence(problem, as_read):
+    assert bic_gain(problem.search, as_read) == 0.0
 
 
-def test_the_best_rival_is_compared_with_the_answer_and_not_with_itself(inquiry, shape, named):
-    gained = evidence_of(inquiry.search, shape)
+def test_the_best_rival_is_compared_with_the_answer_and_not_with_itself(problem, shape, named):
+    gained = bic_gain(problem.search, shape)
     found = tuple(one for one in named[1] if one.labels != ("cubic_stiffness@load",))
     assert found
-    rivals = rivals_of(inquiry.search, shape, found, gained)
+    rivals = rivals_of(problem.search, shape, found, gained)
     assert rivals
     assert not any(one.tied for one in rivals)
     assert all(one.gained < gained - TIE for one in rivals)
 
 
-def test_a_rival_that_explains_as_much_is_tied(inquiry, shape, named):
-    gained = evidence_of(inquiry.search, shape)
-    first = rivals_of(inquiry.search, shape, tuple(named[1]), gained)[0]
-    assert first.account.labels == ("cubic_stiffness@load",)
+def test_a_rival_that_explains_as_much_is_tied(problem, shape, named):
+    gained = bic_gain(problem.search, shape)
+    first = rivals_of(problem.search, shape, tuple(named[1]), gained)[0]
+    assert first.scored.labels == ("cubic_stiffness@load",)
     assert first.tied
     assert first.gained == pytest.approx(gained, abs=0.5)
 
 
-def test_one_that_is_in_the_answer_is_no_rival(inquiry, named):
+def test_one_that_is_in_the_answer_is_no_rival(problem, named):
     now, found = named
-    rivals = rivals_of(inquiry.search, now, tuple(found), evidence_of(inquiry.search, now))
-    assert "cubic_stiffness@load" not in [one.account.labels[-1] for one in rivals]
+    rivals = rivals_of(problem.search, now, tuple(found), bic_gain(problem.search, now))
+    assert "cubic_stiffness@load" not in [one.scored.labels[-1] for one in rivals]
 
 
-def test_beside_one_of_two_a_rival_stands_in_the_place_of_the_other(inquiry, as_read, cubic, named):
-    drift = next(one for one in inquiry.search.candidates if one.label == "sensor_drift@x")
+def test_beside_one_of_two_a_rival_stands_in_the_place_of_the_other(problem, as_read, cubic, named):
+    drift = next(one for one in problem.search.candidates if one.label == "sensor_drift@x")
     parts = (Part(cubic, {"factor": -14.0}), Part(drift, {"rate": 0.0}))
-    account = account_for(as_read.shooting, inquiry.search.base, parts, as_read.account.fit.starts)
-    both = judged(as_read.shooting, inquiry.search.base, account)
-    offset = next(one for one in inquiry.search.candidates if one.label == "sensor_offset@x")
-    other = account_for(
-        as_read.shooting, inquiry.search.base, (Part(offset, {"offset": 0.0}),), as_read.account.fit.starts
-    )
-    (rival,) = rivals_of(inquiry.search, both, (replace(both, account=other),), 0.0)
-    assert rival.account.labels == ("cubic_stiffness@load", "sensor_offset@x")
+    model = fit_model(as_read.shooting, problem.search.base, parts, as_read.model.fit.starts)
+    both = scored(as_read.shooting, problem.search.base, model)
+    offset = next(one for one in problem.search.candidates if one.label == "sensor_offset@x")
+    other = fit_model(as_read.shooting, problem.search.base, (Part(offset, {"offset": 0.0}),), as_read.model.fit.starts)
+    (rival,) = rivals_of(problem.search, both, (replace(both, model=other),), 0.0)
+    assert rival.scored.labels == ("cubic_stiffness@load", "sensor_offset@x")
     assert rival.tied
 
 
-def test_where_nothing_is_named_rivals_keep_what_they_were_found_with(inquiry, as_read, named):
-    rivals = rivals_of(inquiry.search, as_read, tuple(named[1]), 0.0)
+def test_where_nothing_is_named_rivals_keep_what_they_were_found_with(problem, as_read, named):
+    rivals = rivals_of(problem.search, as_read, tuple(named[1]), 0.0)
     assert [one.gained for one in rivals] == [one.gained for one in named[1]][: len(rivals)]
     assert not any(one.tied for one in rivals)

@@ -2,9 +2,9 @@ from dataclasses import replace
 
 import pytest
 
-from gaitdisc.discovery.account import Part, account_for
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.evidence import Judged
+from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.search import is_certain
 
 SPRING = Candidate(
@@ -17,8 +17,8 @@ LAG = Candidate("sensor_error", "observation", "x", "sensor_lag")
 DAMPER = Candidate("missing_physics", "port", "load", "viscous_damping", ("v",), None, "x")
 
 
-def _with(account, candidate, **values):
-    return replace(account, parts=(Part(candidate, values),))
+def _with(model, candidate, **values):
+    return replace(model, parts=(Part(candidate, values),))
 
 
 @pytest.mark.parametrize(
@@ -39,29 +39,29 @@ def _with(account, candidate, **values):
         (LAG, {"seconds": -0.1}, False),
     ],
 )
-def test_a_number_has_to_lie_where_it_means_what_its_name_says(inquiry, as_read, candidate, values, sensible):
-    assert inquiry.search.sensible(_with(as_read.account, candidate, **values)) is sensible
+def test_a_number_has_to_lie_where_it_means_what_its_name_says(problem, as_read, candidate, values, sensible):
+    assert problem.search.sensible(_with(as_read.model, candidate, **values)) is sensible
 
 
-def test_a_fit_that_failed_is_not_sensible(inquiry, as_read):
-    failed = replace(as_read.account.fit, white=as_read.account.fit.white * float("inf"))
-    assert not inquiry.search.sensible(replace(as_read.account, fit=failed))
+def test_a_fit_that_failed_is_not_sensible(problem, as_read):
+    failed = replace(as_read.model.fit, white=as_read.model.fit.white * float("inf"))
+    assert not problem.search.sensible(replace(as_read.model, fit=failed))
 
 
-def _both(inquiry, as_read, cubic):
+def _both(problem, as_read, cubic):
     parts = (Part(cubic, {"factor": -14.0}), Part(DAMPER, {"factor": 0.0}))
-    return Judged(
-        account_for(as_read.shooting, inquiry.search.base, parts, as_read.account.fit.starts), as_read.shooting
+    return ScoredModel(
+        fit_model(as_read.shooting, problem.search.base, parts, as_read.model.fit.starts), as_read.shooting
     )
 
 
-def test_less_one_explanation_the_others_stay(inquiry, as_read, cubic):
-    both = _both(inquiry, as_read, cubic)
-    assert inquiry.search.without(both, 0).labels == ("viscous_damping@load",)
-    assert inquiry.search.without(both, 1).labels == ("cubic_stiffness@load",)
+def test_less_one_explanation_the_others_stay(problem, as_read, cubic):
+    both = _both(problem, as_read, cubic)
+    assert problem.search.without(both, 0).labels == ("viscous_damping@load",)
+    assert problem.search.without(both, 1).labels == ("cubic_stiffness@load",)
 
 
-def test_a_number_lost_in_its_error_is_not_certain(inquiry, as_read, cubic):
-    both = _both(inquiry, as_read, cubic)
-    assert not is_certain(both.account)
-    assert is_certain(inquiry.search.without(both, 1).account)
+def test_a_number_lost_in_its_error_is_not_certain(problem, as_read, cubic):
+    both = _both(problem, as_read, cubic)
+    assert not is_certain(both.model)
+    assert is_certain(problem.search.without(both, 1).model)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import Experiment, mass, neuron, record
 
-from gaitdisc.discovery.inquiry import begin_inquiry
 from gaitdisc.discovery.noise import white_noise
+from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.running import compile_simulation
 
@@ -13,11 +13,11 @@ COVERED = 20
 
 
 def _shooting(seed=0, noise=0.02, value=24.0):
-    inquiry = begin_inquiry(mass(), record(mass().with_values({"k": value}), seed, Experiment(3, 8.0, noise)))
-    segments = inquiry.segments((0, 1, 2))
-    shooting = inquiry.shooting(segments)
-    size = max(noise, 1e-6) * np.nanstd(inquiry.measured.observed)
-    return shooting.with_noise(white_noise(np.array([size]))), inquiry.guess.starts(segments)
+    problem = set_up_problem(mass(), record(mass().with_values({"k": value}), seed, Experiment(3, 8.0, noise)))
+    segments = problem.segments((0, 1, 2))
+    shooting = problem.shooting(segments)
+    size = max(noise, 1e-6) * np.nanstd(problem.measured.observed)
+    return shooting.with_noise(white_noise(np.array([size]))), problem.guess.starts(segments)
 
 
 def test_a_parameter_that_is_wrong_in_the_file_is_found_without_noise():
@@ -37,11 +37,11 @@ def test_start_states_are_found_from_far_away():
 
 def test_a_segment_that_began_on_the_wrong_side_of_a_threshold_is_begun_elsewhere():
     truth = neuron().with_values({"b": 1.0})
-    inquiry = begin_inquiry(neuron(), record(truth, 2, Experiment(seconds=20.0, noise=0.01)))
-    segments = inquiry.segments(inquiry.learned)
-    size = white_noise(0.01 * np.nanstd(inquiry.measured.observed, axis=(0, 1)))
-    shooting, machine = inquiry.shooting(segments).with_noise(size), compile_simulation(neuron())
-    fit = shooting.fitted(machine, ("b",), machine.defaults, inquiry.guess.starts(segments), 30)
+    problem = set_up_problem(neuron(), record(truth, 2, Experiment(seconds=20.0, noise=0.01)))
+    segments = problem.segments(problem.learned)
+    size = white_noise(0.01 * np.nanstd(problem.measured.observed, axis=(0, 1)))
+    shooting, machine = problem.shooting(segments).with_noise(size), compile_simulation(neuron())
+    fit = shooting.fitted(machine, ("b",), machine.defaults, problem.guess.starts(segments), 30)
     assert (fit.misfits < 1.6 * fit.white.shape[1]).all()
     assert fit.values[machine.parameters.index("b")] == pytest.approx(1.0, abs=1e-3)
 
@@ -116,20 +116,20 @@ def test_a_fitted_run_becomes_the_past_of_what_comes_late():
 FILTERED = Experiment(3, 10.0, 0.02, lowpass_hz=0.7)
 
 
-def _filtered(told):
-    simulation = mass().with_sensor(Sensor("x", lowpass=0.7)) if told else mass()
-    inquiry = begin_inquiry(simulation, record(mass().with_values({"k": 31.0, "c": 1.4}), 5, FILTERED))
-    segments = inquiry.segments((0, 1, 2))
-    return inquiry.shooting(segments), inquiry.guess.starts(segments)
+def _filtered(stated):
+    simulation = mass().with_sensor(Sensor("x", lowpass=0.7)) if stated else mass()
+    problem = set_up_problem(simulation, record(mass().with_values({"k": 31.0, "c": 1.4}), 5, FILTERED))
+    segments = problem.segments((0, 1, 2))
+    return problem.shooting(segments), problem.guess.starts(segments)
 
 
-@pytest.mark.parametrize("told", [True, False])
-def test_a_filtered_record_gives_the_true_numbers_where_the_simulation_is_filtered_alike(told):
-    shooting, starts = _filtered(told)
+@pytest.mark.parametrize("stated", [True, False])
+def test_a_filtered_record_gives_the_true_numbers_where_the_simulation_is_filtered_alike(stated):
+    shooting, starts = _filtered(stated)
     machine = compile_simulation(mass())
     fit = shooting.fitted(machine, ("k", "c"), machine.defaults, starts, 30, 1e-9)
     off = np.abs(fit.values[[machine.parameters.index(name) for name in ("k", "c")]] / [31.0, 1.4] - 1).max()
-    assert off < 0.03 if told else off > 0.08
+    assert off < 0.03 if stated else off > 0.08
 
 
 def test_slopes_of_a_filtered_record_are_those_of_finite_differences():

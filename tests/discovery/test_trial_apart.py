@@ -7,7 +7,7 @@ import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
 from gaitdisc.discovery.discover import discover
-from gaitdisc.discovery.inquiry import begin_inquiry
+from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.trial_apart import without_trial_apart
 
@@ -43,11 +43,11 @@ def test_trials_that_were_recorded_alike_are_all_kept_after_one_search_at_most(m
     search = Search.extended
     monkeypatch.setattr(Search, "extended", lambda *a, **k: searched.append(1) or search(*a, **k))
     bump = with_load("-6*exp(-((x - 0.3)/0.2)**2)")  # of which no single explanation leaves mere noise
-    inquiry = begin_inquiry(mass(), record(bump, 3, Experiment(seconds=10.0)))
-    assert without_trial_apart(inquiry) is inquiry.measured
+    problem = set_up_problem(mass(), record(bump, 3, Experiment(seconds=10.0)))
+    assert without_trial_apart(problem) is problem.measured
     assert len(searched) <= 1
 
 
 def test_of_three_trials_none_is_said_to_stand_apart():
-    inquiry = begin_inquiry(mass(), record(mass(), 3, Experiment(trials=3, seconds=10.0)))
-    assert without_trial_apart(inquiry) is inquiry.measured
+    problem = set_up_problem(mass(), record(mass(), 3, Experiment(trials=3, seconds=10.0)))
+    assert without_trial_apart(problem) is problem.measured

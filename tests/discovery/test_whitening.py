@@ -38,13 +38,13 @@ def test_what_follows_a_gap_begins_afresh_and_the_gap_is_nothing():
 
 @settings(max_examples=20, deadline=None)
 @given(st.floats(-0.9, 0.9), st.floats(0.1, 10.0), st.integers(0, 99))
-def test_the_innovations_of_an_autoregression_come_back(memory, size, seed):
+def test_the_innovations_of_an_autoregression_come_back(autocorrelation, size, seed):
     innovations = np.random.default_rng(seed).normal(size=30)
-    spread = size / np.sqrt(1 - memory**2)
+    spread = size / np.sqrt(1 - autocorrelation**2)
     values = [spread * innovations[0]]
     for one in innovations[1:]:
-        values.append(memory * values[-1] + size * one)
-    out = _whitened(np.reshape(values, (1, 30, 1, 1)), [[0.0], [memory]], [spread, size])
+        values.append(autocorrelation * values[-1] + size * one)
+    out = _whitened(np.reshape(values, (1, 30, 1, 1)), [[0.0], [autocorrelation]], [spread, size])
     np.testing.assert_allclose(out.ravel(), innovations, atol=1e-9)
 
 

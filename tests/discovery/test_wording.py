@@ -4,8 +4,8 @@ import pytest
 from hidden_in_a_mass import mass
 from manufactured_discovery import CUBIC, SPRING, manufactured
 
-from gaitdisc.discovery.account import Part
 from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.catalogue import known_shapes
 from gaitdisc.discovery.wording import sentence_of
 from gaitdisc.results.discovery import Correction, Estimate, FoundEffect, GapSize, Whereabouts
@@ -41,17 +41,17 @@ def test_the_issues_own_sentence():
 def test_a_coupling_says_to_what():
     effect = FoundEffect("equation", "v", "linear_coupling", "", {"coupling": Estimate(0.2, 0.1, 0.3, "1/s^2")})
     part = Candidate("missing_physics", "equation", "v", "linear_coupling", ("x",), means="a linear coupling", role="x")
-    told = sentence(mass(), (part,), effects=(effect,), where=())
-    assert told.startswith("The simulation lacks a linear coupling (x) in the equation of v: 0.2 1/s^2 (95 % 0.1-0.3).")
+    said = sentence(mass(), (part,), effects=(effect,), where=())
+    assert said.startswith("The simulation lacks a linear coupling (x) in the equation of v: 0.2 1/s^2 (95 % 0.1-0.3).")
 
 
 @pytest.mark.parametrize(("before", "agrees"), [(0.11, True), (0.4, False)])
 def test_no_gap_says_what_is_left(before, agrees):
     size = GapSize(before, before, 0.1, 0.4, {"theta": (0.054, 0.054, 0.0087)}, 14)
-    told = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=(), held_out=size)
-    assert told.startswith("Simulation and data agree to within the noise") == agrees
-    assert told.startswith("Nothing is named: simulation and data differ by more than the sensors' noise") != agrees
-    assert told.endswith("Held-out error: 3.09 deg (noise floor 0.50).")
+    said = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=(), held_out=size)
+    assert said.startswith("Simulation and data agree to within the noise") == agrees
+    assert said.startswith("Nothing is named: simulation and data differ by more than the sensors' noise") != agrees
+    assert said.endswith("Held-out error: 3.09 deg (noise floor 0.50).")
 
 
 def test_what_stays_unexplained_is_said_where_it_is_more_than_a_few_percent():
@@ -61,32 +61,32 @@ def test_what_stays_unexplained_is_said_where_it_is_more_than_a_few_percent():
     assert "unexplained" not in sentence(held_out=GapSize(0.5, 0.02, 0.01, 0.001, sizes, 14))
 
 
-@pytest.mark.parametrize(("evidence", "unproven"), [(1325.0, True), (9.0, False), (float("nan"), False)])
-def test_what_was_learned_from_and_not_borne_out_is_not_called_agreement(evidence, unproven):
-    rival = FoundEffect("equation", "omega", "coulomb_friction", "", {}, bic=evidence)
+@pytest.mark.parametrize(("bic", "unproven"), [(1325.0, True), (9.0, False), (float("nan"), False)])
+def test_what_was_learned_from_and_not_borne_out_is_not_called_agreement(bic, unproven):
+    rival = FoundEffect("equation", "omega", "coulomb_friction", "", {}, bic=bic)
     size = GapSize(1, 1, 1, 0.4, {"theta": (0.054, 0.054, 0.0087)}, 14)
-    told = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=(rival,), held_out=size)
-    assert told.startswith("Nothing is named: the data that were learned from speak for") == unproven
-    assert ("in the equation of omega, and those held out do not bear it out" in told) == unproven
-    assert ("agree to within the noise" in told) != unproven
+    said = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=(rival,), held_out=size)
+    assert said.startswith("Nothing is named: the data that were learned from speak for") == unproven
+    assert ("in the equation of omega, and those held out do not bear it out" in said) == unproven
+    assert ("agree to within the noise" in said) != unproven
 
 
 def test_two_effects_are_both_told():
     friction = FoundEffect("port", "load", "coulomb_friction", "", {"friction": Estimate(3.0, 2.8, 3.2, "N m")})
     other = Candidate("missing_physics", "port", "load", "coulomb_friction", means="dry (Coulomb) friction")
-    told = sentence(parts=(ENGAGED, other), effects=(SPRING, friction))
-    assert "of the stride; and dry (Coulomb) friction at the load port: 3.0 N m (95 % 2.8-3.2)." in told
+    said = sentence(parts=(ENGAGED, other), effects=(SPRING, friction))
+    assert "of the stride; and dry (Coulomb) friction at the load port: 3.0 N m (95 % 2.8-3.2)." in said
 
 
 def test_a_wrong_parameter_is_told_beside_the_files_number():
     effect = FoundEffect("parameter", "k", "wrong_parameter", "", {"value": Estimate(31.2, 30.8, 31.6, "N/m")})
     part = Candidate("wrong_parameter", "parameter", "k", "wrong_parameter", value=24.0)
-    told = sentence(mass(), (part,), verdict="wrong_parameter", effects=(effect,), where=())
-    assert told.startswith("The parameter k is 31.2 N/m (95 % 30.8-31.6) where the file says 24 N/m.")
+    said = sentence(mass(), (part,), verdict="wrong_parameter", effects=(effect,), where=())
+    assert said.startswith("The parameter k is 31.2 N/m (95 % 30.8-31.6) where the file says 24 N/m.")
 
 
 @pytest.mark.parametrize(
-    ("kind", "name", "number", "told"),
+    ("kind", "name", "number", "said"),
     [
         ("input_error", "input_delay", Estimate(0.04, 0.03, 0.05, "s"), "driving signal x acts late by 0.04 s"),
         (
@@ -107,73 +107,73 @@ def test_a_wrong_parameter_is_told_beside_the_files_number():
         ("sensor_error", "sensor_lag", Estimate(0.04, 0.03, 0.05, "s"), "measured x is seen late by 0.04 s"),
     ],
 )
-def test_signals(kind, name, number, told):
+def test_signals(kind, name, number, said):
     effect = FoundEffect("observation", "x", name, "", {"number": number})
     made = sentence(mass(), (Candidate(kind, "observation", "x", name),), verdict=kind, effects=(effect,), where=())
     assert made.startswith("The ")
-    assert told in made
+    assert said in made
 
 
 def test_random_pushes():
     push = FoundEffect(
         "equation", "v", "process_noise", "", {"strength": Estimate(3.0, float("nan"), float("nan"), "N")}
     )
-    told = sentence(mass(), (), verdict="process_noise", effects=(push,), where=(Whereabouts("equation", "v", 1.0),))
-    assert told.startswith(
+    said = sentence(mass(), (), verdict="process_noise", effects=(push,), where=(Whereabouts("equation", "v", 1.0),))
+    assert said.startswith(
         "Random pushes of 3.00 N (standard deviation) come in the equation of v; nothing that repeats"
     )
 
 
 def test_a_shape_without_a_name_says_over_which_states():
     shape = FoundEffect("port", "load", "unnamed", "2*exp(-x**2)*v", {})
-    told = sentence(mass(), (), verdict="unnamed", effects=(shape,), where=())
-    assert "at the load port that no effect of the catalogue explains" in told
-    assert "a fitted shape, a function of x and v, stands in for it." in told
+    said = sentence(mass(), (), verdict="unnamed", effects=(shape,), where=())
+    assert "at the load port that no effect of the catalogue explains" in said
+    assert "a fitted shape, a function of x and v, stands in for it." in said
 
 
 def test_a_shape_that_was_read_says_what_it_reads_as_and_never_that_this_is_its_name():
     shape = FoundEffect("port", "load", "unnamed", "-8.0725*(x**2*v)", {}, reads_as="-8.07*(x**2*v)")
-    told = sentence(mass(), (), verdict="unnamed", effects=(shape,), where=())
+    said = sentence(mass(), (), verdict="unnamed", effects=(shape,), where=())
     assert (
         "that no effect of the catalogue explains; a fitted shape, a function of x and v, reads as -8.07*(x**2*v)."
-        in told
+        in said
     )
     known = replace(shape, reads_as="-14*(x**3)", reads_as_effect="cubic_stiffness")
-    told = sentence(mass(), (), verdict="unnamed", effects=(known,), where=())
-    assert "at the load port; a shape was fitted, and it reads as -14*(x**3), cubic stiffness of the catalogue." in told
+    said = sentence(mass(), (), verdict="unnamed", effects=(known,), where=())
+    assert "at the load port; a shape was fitted, and it reads as -14*(x**3), cubic stiffness of the catalogue." in said
 
 
 def test_a_tie_is_told_with_what_would_tell_them_apart():
-    told = sentence(rivals=(replace(CUBIC, tied=True),))
+    said = sentence(rivals=(replace(CUBIC, tied=True),))
     assert (
         "These data cannot distinguish it from cubic stiffness at the ankle_moment port; what would: movement through "
-        "a wider range, to both sides of rest." in told
+        "a wider range, to both sides of rest." in said
     )
 
 
 def test_of_several_channels_the_one_with_the_clearest_gap_is_told():
     size = GapSize(1, 1, 1, 0.1, {"x": (1.0, 0.9, 0.9), "y": (0.5, 0.1, 0.1)})
-    told = sentence(held_out=size, channels=("x", "y"), units=("m", "m"))
-    assert "the held-out error of y falls from 0.50 to 0.10 m" in told
+    said = sentence(held_out=size, channels=("x", "y"), units=("m", "m"))
+    assert "the held-out error of y falls from 0.50 to 0.10 m" in said
 
 
 @pytest.mark.parametrize(
-    ("size", "told"),
+    ("size", "said"),
     [
         ((0.054, 0.0105, 0.0087), "falls from 3.09 to 0.60 deg (noise floor 0.50)."),
         ((0.0105, 0.054, 0.0087), "rises from 0.60 to 3.09 deg (noise floor 0.50)."),
         ((0.0105, 0.01051, 0.0087), "does not change: 0.60 deg (noise floor 0.50)."),
     ],
 )
-def test_an_error_falls_rises_or_does_not_change_as_its_numbers_do(size, told):
+def test_an_error_falls_rises_or_does_not_change_as_its_numbers_do(size, said):
     sentence_now = sentence(held_out=GapSize(1, 1, 1, 0.01, {"theta": size}, 40))
-    assert sentence_now.endswith(f"With it, the held-out error {told}")
+    assert sentence_now.endswith(f"With it, the held-out error {said}")
 
 
 def test_a_channel_whose_error_rises_is_not_passed_over():
     size = GapSize(1, 1, 1, 0.01, {"x": (1.0, 0.5, 0.1), "y": (0.2, 0.4, 0.1)}, 40)
-    told = sentence(held_out=size, channels=("x", "y"), units=("m", "m"))
-    assert told.endswith("of x falls from 1.00 to 0.50 m (noise floor 0.10); that of y rises from 0.20 to 0.40 m.")
+    said = sentence(held_out=size, channels=("x", "y"), units=("m", "m"))
+    assert said.endswith("of x falls from 1.00 to 0.50 m (noise floor 0.10); that of y rises from 0.20 to 0.40 m.")
 
 
 def test_few_pieces_are_counted_in_the_sentence():
@@ -184,12 +184,12 @@ def test_few_pieces_are_counted_in_the_sentence():
 def test_what_is_not_borne_out_says_by_which_test():
     rival = FoundEffect("equation", "omega", "coulomb_friction", "", {}, bic=900.0)
     size = GapSize(1, 1, 1, 0.34, {"theta": (0.054, 0.054, 0.0087)}, 9)
-    told = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=(rival,), held_out=size)
-    assert "those held out do not bear it out (p = 0.34 over 9 pieces)." in told
+    said = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=(rival,), held_out=size)
+    assert "those held out do not bear it out (p = 0.34 over 9 pieces)." in said
 
 
 @pytest.mark.parametrize(
-    ("bounds", "told"),
+    ("bounds", "said"),
     [
         ((20.0, 28.0), "is 31.2 N/m (95 % 30.8-31.6) where the file says 24 N/m, outside its bounds, 20 to 28 N/m."),
         ((-float("inf"), 28.0), "where the file says 24 N/m, above its bound, 28 N/m."),
@@ -197,11 +197,11 @@ def test_what_is_not_borne_out_says_by_which_test():
         ((20.0, 40.0), "where the file says 24 N/m. With it"),
     ],
 )
-def test_a_number_outside_its_bounds_is_said_to_lie_there(bounds, told):
+def test_a_number_outside_its_bounds_is_said_to_lie_there(bounds, said):
     found = {"value": Estimate(31.2, 30.8, 31.6, "N/m")}
     effect = FoundEffect("parameter", "k", "wrong_parameter", "", found, bounds=bounds)
     part = Candidate("wrong_parameter", "parameter", "k", "wrong_parameter", value=24.0)
-    assert told in sentence(mass(), (part,), verdict="wrong_parameter", effects=(effect,), where=())
+    assert said in sentence(mass(), (part,), verdict="wrong_parameter", effects=(effect,), where=())
 
 
 def test_what_clearly_moved_within_its_bounds_is_said():
@@ -216,8 +216,8 @@ def test_what_clearly_moved_within_its_bounds_is_said():
 def test_where_names_explain_too_little_it_is_not_said_that_the_data_do_not_bear_them_out():
     rival = FoundEffect("equation", "omega", "coulomb_friction", "", {}, bic=900.0)
     size = GapSize(1, 1, 1, 0.001, {"theta": (0.054, 0.054, 0.0087)}, 14)
-    told = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=(rival,), held_out=size)
+    said = sentence(verdict="no_gap", effects=(), parts=(), where=(), rivals=(rival,), held_out=size)
     assert (
-        "several things are missing at a time; Coulomb friction in the equation of omega would explain the most" in told
+        "several things are missing at a time; Coulomb friction in the equation of omega would explain the most" in said
     )
-    assert "bear it out" not in told
+    assert "bear it out" not in said

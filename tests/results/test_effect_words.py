@@ -9,7 +9,7 @@ from gaitdisc.results.effect_words import (
     shown_unit,
     spoken,
     with_unit,
-    would_tell_apart,
+    would_distinguish,
 )
 
 NAN = float("nan")
@@ -68,5 +68,5 @@ def test_places_and_names_as_they_are_said():
     ],
 )
 def test_a_recording_is_named_whichever_comes_first(name, other, recording):
-    assert recording in would_tell_apart(name, other)
-    assert would_tell_apart(name, other) == would_tell_apart(other, name)
+    assert recording in would_distinguish(name, other)
+    assert would_distinguish(name, other) == would_distinguish(other, name)

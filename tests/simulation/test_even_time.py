@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.errors import ReadError, SamplingError
-from gaitdisc.simulation.even_time import SHAKEN, TrialColumns, clock_findings, on_even_time
+from gaitdisc.simulation.even_time import JITTER, TrialColumns, clock_findings, on_even_time
 
 RATE, COUNT = 100.0, 400
 
@@ -49,7 +49,7 @@ def test_samples_taken_evenly_and_stamped_late_are_left_as_they_are():
 
 def test_a_clock_that_shakes_more_is_refused():
     with pytest.raises(
-        SamplingError, match=rf"sampled evenly, to {SHAKEN:g} of a step; walk.csv, trial 'a': a step of"
+        SamplingError, match=rf"sampled evenly, to {JITTER:g} of a step; walk.csv, trial 'a': a step of"
     ):
         on_even_time(_trial(_shaken(0.25)), ("u",), "walk.csv")
 

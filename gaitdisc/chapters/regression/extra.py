@@ -1,4 +1,4 @@
-"""Libraries of chapter 3 that do not come with the plain package: asked for where they are used."""
+"""Libraries of chapter 3 that do not come with the plain package: needed where they are used."""
 
 from __future__ import annotations
 

@@ -81,7 +81,7 @@ def fit_sindy(samples: Samples, degree: int = 3, threshold: float | None = None,
 
 
 def _of_chosen_threshold(samples: Samples, powers: NDArray[np.int64], bags: int, seed: int) -> Sindy:
-    _triangle(samples, powers)  # what all samples cannot tell apart is refused before a part of them is
+    _triangle(samples, powers)  # what all samples cannot distinguish is refused before a part of them is
     before, inner = samples.last_block(0.15, SEAM_S)
     before.trainable(max(LEAST_BEFORE_INNER, len(powers)))
     sizes = sizes_of(products(samples.x, powers), samples.y)

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
-from gaitdisc.discovery.account import Part, account_for
+from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.catalogue import Shape
 from gaitdisc.discovery.discover import discover
-from gaitdisc.discovery.evidence import judged
-from gaitdisc.discovery.inquiry import SHORT, begin_inquiry, split_in_time
+from gaitdisc.discovery.problem import SHORT, set_up_problem, split_in_time
 from gaitdisc.discovery.record_filter import RecordFilter
+from gaitdisc.discovery.scored_model import scored
 from gaitdisc.discovery.sensor_noise import sensor_noise
 from gaitdisc.report.discovery_page import write_discovery_report
 from gaitdisc.results.discovery_folder import save_discovery
@@ -38,9 +38,9 @@ x = "x"
 
 @pytest.mark.parametrize(("trials", "held"), [(2, (1,)), (4, (3,)), (8, (6, 7))])
 def test_of_four_trials_one_is_held_out(trials, held):
-    inquiry = begin_inquiry(mass(), record(mass(), 0, Experiment(trials, 4.0)))
-    assert inquiry.held_out == held
-    assert inquiry.learned == tuple(range(held[0]))
+    problem = set_up_problem(mass(), record(mass(), 0, Experiment(trials, 4.0)))
+    assert problem.held_out == held
+    assert problem.learned == tuple(range(held[0]))
 
 
 def test_one_trial_is_split_in_time():
@@ -65,11 +65,11 @@ def ringing(lengths: tuple[int, ...], rate: float = 10.0) -> Measured:
 
 
 def test_runs_are_cut_again_as_they_were():
-    inquiry = begin_inquiry(mass(), ringing((240, 200, 220, 268)))
-    for trials in (inquiry.learned, inquiry.held_out, (0, 1, 2, 3)):
+    problem = set_up_problem(mass(), ringing((240, 200, 220, 268)))
+    for trials in (problem.learned, problem.held_out, (0, 1, 2, 3)):
         for periods in np.linspace(0.5, 12, 60):
-            once = inquiry.segments(trials, periods)
-            again = inquiry.segments(trials, once.length / (inquiry.rhythm.period * inquiry.rhythm.rate))
+            once = problem.segments(trials, periods)
+            again = problem.segments(trials, once.length / (problem.rhythm.period * problem.rhythm.rate))
             assert (again.length, again.begin.tolist()) == (once.length, once.begin.tolist())
 
 
@@ -82,55 +82,55 @@ def test_trials_of_unequal_length_are_answered_written_and_drawn(tmp_path):
 
 
 def test_what_is_learned_and_what_is_held_out_share_no_sample():
-    inquiry = begin_inquiry(mass(), record(mass(), 0, Experiment(1, 8.0)))
-    assert set(inquiry.segments(inquiry.learned).trial).isdisjoint(inquiry.segments(inquiry.held_out).trial)
+    problem = set_up_problem(mass(), record(mass(), 0, Experiment(1, 8.0)))
+    assert set(problem.segments(problem.learned).trial).isdisjoint(problem.segments(problem.held_out).trial)
 
 
-def test_runs_are_about_a_period_long(inquiry):
-    period = inquiry.rhythm.period * inquiry.rhythm.rate
-    assert inquiry.segments(inquiry.learned).length == pytest.approx(period, rel=0.25)
+def test_runs_are_about_a_period_long(problem):
+    period = problem.rhythm.period * problem.rhythm.rate
+    assert problem.segments(problem.learned).length == pytest.approx(period, rel=0.25)
 
 
 def test_runs_are_shorter_where_a_change_of_the_start_grows_fast():
     unstable = simulation_of(FALLING, "falling.toml")
-    calm = begin_inquiry(mass(), record(mass(), 0, Experiment(4, 6.0)))
-    wild = begin_inquiry(unstable, record(mass(), 0, Experiment(4, 6.0)))
-    assert calm.tame_periods() == 1.0
-    growing = wild.tame_periods() * wild.rhythm.period
+    calm = set_up_problem(mass(), record(mass(), 0, Experiment(4, 6.0)))
+    wild = set_up_problem(unstable, record(mass(), 0, Experiment(4, 6.0)))
+    assert calm.predictable_periods() == 1.0
+    growing = wild.predictable_periods() * wild.rhythm.period
     assert np.cosh(np.sqrt(60) * growing) == pytest.approx(3.0, abs=2.0)
 
 
 def test_as_read_only_the_starts_are_fitted(as_read):
-    assert as_read.account.parts == ()
-    np.testing.assert_array_equal(as_read.account.fit.values, as_read.account.machine.defaults)
+    assert as_read.model.parts == ()
+    np.testing.assert_array_equal(as_read.model.fit.values, as_read.model.machine.defaults)
 
 
-def test_a_right_account_is_followed_over_half_a_trial_or_more(inquiry, as_read, cubic):
+def test_a_right_account_is_followed_over_half_a_trial_or_more(problem, as_read, cubic):
     part = Part(cubic, {"factor": -14.0})
-    true = account_for(as_read.shooting, inquiry.search.base, (part,), as_read.account.fit.starts)
-    longer = inquiry.lengthened(judged(as_read.shooting, inquiry.search.base, true))
-    assert longer.shooting.segments.length >= inquiry.measured.samples.min() / 2
-    assert longer.account.parts[0].values["factor"] == pytest.approx(-14.0, rel=0.005)
+    true = fit_model(as_read.shooting, problem.search.base, (part,), as_read.model.fit.starts)
+    longer = problem.lengthened(scored(as_read.shooting, problem.search.base, true))
+    assert longer.shooting.segments.length >= problem.measured.samples.min() / 2
+    assert longer.model.parts[0].values["factor"] == pytest.approx(-14.0, rel=0.005)
 
 
-def test_no_run_is_longer_than_wanted(inquiry, as_read):
+def test_no_run_is_longer_than_wanted(problem, as_read):
     length = as_read.shooting.segments.length
-    assert inquiry.lengthened(as_read, 2 * length).shooting.segments.length <= 2 * length
+    assert problem.lengthened(as_read, 2 * length).shooting.segments.length <= 2 * length
 
 
 def test_shapes_of_the_users_own_are_searched():
-    inquiry = begin_inquiry(mass(), record(with_load("0"), 0, Experiment(2, 4.0)), (Shape("quintic", ("x**5",)),))
-    assert "quintic@load" in {one.label for one in inquiry.search.candidates}
+    problem = set_up_problem(mass(), record(with_load("0"), 0, Experiment(2, 4.0)), (Shape("quintic", ("x**5",)),))
+    assert "quintic@load" in {one.label for one in problem.search.candidates}
 
 
 def test_the_noise_of_the_sensors_is_what_the_file_says_behind_the_filter():
     measured = record(mass(), 3, Experiment(trials=2, seconds=6.0))
-    told = mass().with_sensor(Sensor("x", "m", 0.03, 3.0))
-    inquiry = begin_inquiry(told, measured)
-    assert inquiry.record_filter == RecordFilter((3.0,), measured.rate)
-    assert inquiry.sensor_noise == pytest.approx(0.03 * inquiry.record_filter.gains)
-    assert inquiry.noise_floor(np.array([0.5])) == inquiry.sensor_noise
-    plain = begin_inquiry(mass(), measured)
+    progress = mass().with_sensor(Sensor("x", "m", 0.03, 3.0))
+    problem = set_up_problem(progress, measured)
+    assert problem.record_filter == RecordFilter((3.0,), measured.rate)
+    assert problem.sensor_noise == pytest.approx(0.03 * problem.record_filter.gains)
+    assert problem.noise_floor(np.array([0.5])) == problem.sensor_noise
+    plain = set_up_problem(mass(), measured)
     assert plain.sensor_noise == pytest.approx(sensor_noise(measured.observed))
     silent = replace(plain, record_filter=RecordFilter((3.0,), measured.rate))
     assert np.isnan(silent.sensor_noise).all() and silent.noise_floor(np.array([0.5])) == 0.5
@@ -138,7 +138,7 @@ def test_the_noise_of_the_sensors_is_what_the_file_says_behind_the_filter():
 
 def test_a_trial_too_short_for_whole_margins_is_cut_all_the_same():
     measured = record(mass(), 3, Experiment(trials=3, seconds=1.6))
-    inquiry = begin_inquiry(mass().with_sensor(Sensor("x", lowpass=1.0)), measured)
-    segments = inquiry.segments((0, 1))
+    problem = set_up_problem(mass().with_sensor(Sensor("x", lowpass=1.0)), measured)
+    segments = problem.segments((0, 1))
     assert segments.margin == 80 // SHORT and segments.span >= 8
-    assert np.isfinite(inquiry.as_read().account.fit.misfit)
+    assert np.isfinite(problem.as_read().model.fit.misfit)

@@ -1,4 +1,7 @@
-"""Cross-validation of a fit: what it leaves of runs whose numbers were estimated without them, to first order."""
+"""Cross-validation of a fit: what it leaves of runs whose numbers were estimated without them, to first order.
+
+Source: Stone 1974, J. R. Stat. Soc. B 36, 111.
+"""
 
 from __future__ import annotations
 

@@ -5,32 +5,32 @@ import re
 import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
-from gaitdisc.discovery.by_share import scale_of
+from gaitdisc.discovery.by_gap_share import scale_of
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.decision import borne_out
+from gaitdisc.discovery.decision import held_out_proof
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.fitted_shape import fitted_shape
-from gaitdisc.discovery.inquiry import begin_inquiry
-from gaitdisc.discovery.reading import effect_of, read_instead, read_shape
+from gaitdisc.discovery.problem import set_up_problem
+from gaitdisc.discovery.symbolic_regression import effect_of, read_instead, read_shape
 from gaitdisc.discovery.verdict import Verdict
 
 
 def asked(term):
-    inquiry = begin_inquiry(mass(), record(with_load(term), 3, Experiment(seconds=8.0)))
-    return inquiry, inquiry.as_read()
+    problem = set_up_problem(mass(), record(with_load(term), 3, Experiment(seconds=8.0)))
+    return problem, problem.as_read()
 
 
 @pytest.fixture(scope="module")
 def damped():
     """A damping that grows with the square of the displacement, which no effect of the catalogue is, and its shape."""
-    inquiry, as_read = asked("-8*x**2*v")
-    shape = fitted_shape(as_read, inquiry.search, scale_of(inquiry))
-    return inquiry, as_read, Verdict("unnamed", shape, (), proof=borne_out(inquiry, as_read, shape))
+    problem, as_read = asked("-8*x**2*v")
+    shape = fitted_shape(as_read, problem.search, scale_of(problem))
+    return problem, as_read, Verdict("unnamed", shape, (), proof=held_out_proof(problem, as_read, shape))
 
 
 def test_a_shape_is_read_as_the_product_that_was_hidden(damped):
     verdict = read_shape(*damped)
-    (part,) = verdict.account.account.parts
+    (part,) = verdict.found.model.parts
     assert verdict.read and verdict.reads_as == ""
     assert part.candidate.pieces == ("x**2*v",)
     assert part.values["factor"] == pytest.approx(-8, rel=0.03)
@@ -46,17 +46,17 @@ def test_a_reading_that_is_an_effect_of_the_catalogue_is_said_to_be_one(damped):
 
 
 def test_what_is_no_learned_shape_is_not_read(damped):
-    inquiry, as_read, verdict = damped
+    problem, as_read, verdict = damped
     nothing = Verdict("no_gap", as_read, ())
-    assert read_shape(inquiry, as_read, nothing) is nothing
-    unproven = Verdict("unnamed", verdict.account, ())
-    assert read_shape(inquiry, as_read, unproven) is unproven
+    assert read_shape(problem, as_read, nothing) is nothing
+    unproven = Verdict("unnamed", verdict.found, ())
+    assert read_shape(problem, as_read, unproven) is unproven
 
 
 def test_names_stay_where_no_reading_has_fewer_numbers(damped):
-    inquiry, as_read, verdict = damped
-    one = Verdict("missing_physics", verdict.account, ())
-    assert read_instead(inquiry, as_read, one) is one
+    problem, as_read, verdict = damped
+    one = Verdict("missing_physics", verdict.found, ())
+    assert read_instead(problem, as_read, one) is one
 
 
 @pytest.mark.slow

@@ -1,4 +1,4 @@
-"""An inquiry: one simulation, one set of measured trials, and what is asked of them."""
+"""An identification problem: one simulation, one set of measured trials, what is fitted and what is held out."""
 
 from __future__ import annotations
 
@@ -9,12 +9,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.account import account_for
 from gaitdisc.discovery.candidate import Candidate, candidates_of
+from gaitdisc.discovery.candidate_model import fit_model
 from gaitdisc.discovery.catalogue import Shape, known_shapes
-from gaitdisc.discovery.evidence import Judged, judged
+from gaitdisc.discovery.estimated_filter import record_filter_of
 from gaitdisc.discovery.first_states import StateGuess, guess_states
-from gaitdisc.discovery.found_filter import record_filter_of
 from gaitdisc.discovery.grids import Rhythm, rhythm_of
 from gaitdisc.discovery.influence import Idle, idle_parts, refuse_idle
 from gaitdisc.discovery.linearised import linearise, linearise_along
@@ -22,6 +21,7 @@ from gaitdisc.discovery.matched import matched
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.places import kinematic_rates, places_of
 from gaitdisc.discovery.record_filter import RecordFilter
+from gaitdisc.discovery.scored_model import ScoredModel, scored
 from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.segments import Segments, cut_segments
 from gaitdisc.discovery.sensor_noise import sensor_noise
@@ -35,23 +35,23 @@ FEWEST_SAMPLES = 16  # of a segment
 FEWEST_COMPARED = 8  # samples of a segment that went through a filter
 SHORT = 6  # margins in a trial, at least
 GROWTH = 5.0  # of a small change of the start, by which a run is cut
-WILD = 300.0  # growth at which the likelihood has so many hills that none can be trusted
+CHAOTIC_GROWTH = 300.0  # growth at which the likelihood has too many local maxima
 FIRST_SHARE = 0.3  # of that length, is fitted first, so that the fit of the whole begins near its end
 LENGTHENED = 3  # times as long, again and again, while a run stays with the data
-TAME = 0.8
+WHOLE_PERIOD = 0.8
 FOLLOWED = 1.08  # times the noise of the shorter runs before any filter, beyond which a run does not follow the data
 SUBSTEPS = 2
 MOST_SEARCHED = 10_000  # samples, all runs together: what is found on them is fitted to all data
 
 
 @dataclass(frozen=True)
-class Inquiry:
+class Problem:
     """A simulation, measured trials, and which of them are held out."""
 
     search: Search  # the simulation, and everything that could explain a gap
     measured: Measured
-    learned: tuple[int, ...]  # trials that are searched and fitted, and trials that are only judged on
-    held_out: tuple[int, ...]  # trials that are searched and fitted, and trials that are only judged on
+    learned: tuple[int, ...]  # trials that are searched and fitted
+    held_out: tuple[int, ...]  # trials that nothing but a start is fitted to
     guess: StateGuess
     record_filter: RecordFilter
 
@@ -103,21 +103,21 @@ class Inquiry:
         """Return the learned trials cut into runs, ready to be fitted."""
         return self.shooting(self.segments(self.learned, samples / self.rhythm.samples))
 
-    def as_read(self) -> Judged:
-        """Return the simulation as read, fitted to short runs and judged.
+    def as_read(self) -> ScoredModel:
+        """Return the simulation as read, fitted to short runs and scored.
 
         The runs last one period, or less where a small change of the start grows fast (chaos, a fall). Of a long record
         runs spread over all of it are taken.
         """
-        periods = self.tame_periods()
+        periods = self.predictable_periods()
         first = self.shooting(self.segments(self.learned, FIRST_SHARE * periods).spread(MOST_SEARCHED))
-        begun = account_for(first, self.search.base, (), self.guess.starts(first.segments))
+        begun = fit_model(first, self.search.base, (), self.guess.starts(first.segments))
         guess = self.guess.with_run(first.segments, begun.fit.states)
         shooting = self.shooting(self.segments(self.learned, periods).spread(MOST_SEARCHED))
-        account = account_for(shooting, self.search.base, (), guess.starts(shooting.segments), like=begun)
-        return judged(shooting.with_past(account.fit.states), self.search.base, account)
+        model = fit_model(shooting, self.search.base, (), guess.starts(shooting.segments), like=begun)
+        return scored(shooting.with_past(model.fit.states), self.search.base, model)
 
-    def tame_periods(self) -> float:
+    def predictable_periods(self) -> float:
         """Return how long a run may be, in periods, before a change of its start has grown by `GROWTH`."""
         shooting = self.shooting(self.segments(self.learned).spread(MOST_SEARCHED))
         states = shooting.segments.of(self.guess.states)
@@ -126,33 +126,33 @@ class Inquiry:
         step = line.first_growth(GROWTH, states)
         return 1.0 if step is None else step / self.rhythm.samples
 
-    def is_tame(self, now: Judged) -> bool:
-        """Whether runs were cut at a whole period, and not earlier for fear of chaos."""
-        return now.shooting.segments.span >= TAME * self.rhythm.samples
+    def spans_a_period(self, now: ScoredModel) -> bool:
+        """Whether runs were cut at a whole period, and not earlier, as chaos demands."""
+        return now.shooting.segments.span >= WHOLE_PERIOD * self.rhythm.samples
 
-    def lengthened(self, now: Judged, most: int = 10**9) -> Judged:
-        """Return an account fitted to runs as long as it can follow.
+    def lengthened(self, now: ScoredModel, most: int = 10**9) -> ScoredModel:
+        """Return a model fitted to runs as long as it can follow.
 
         most: longest run wanted [samples]
         """
         longest = min(most, self.longest - 2 * now.shooting.segments.margin)
         followed = np.sqrt(1 + (FOLLOWED**2 - 1) / self.record_filter.gains**2)
         while now.shooting.segments.span * 2 < longest:
-            guess = self.guess.with_run(now.shooting.segments, now.account.fit.states)
+            guess = self.guess.with_run(now.shooting.segments, now.model.fit.states)
             samples = min(LENGTHENED * now.shooting.segments.span, longest)
             shooting = self.learned_runs(samples)
             starts = guess.starts(shooting.segments)
-            longer = account_for(
-                shooting.with_noise(now.noise), self.search.base, now.account.parts, starts, like=now.account
+            longer = fit_model(
+                shooting.with_noise(now.noise), self.search.base, now.model.parts, starts, like=now.model
             )
             if not np.isfinite(longer.fit.misfit):
                 break
-            longer = replace(judged(shooting.with_past(longer.fit.states), self.search.base, longer), gained=now.gained)
-            if (longer.noise.size > followed * now.noise.size).any() or not self.search.sensible(longer.account):
+            longer = replace(scored(shooting.with_past(longer.fit.states), self.search.base, longer), gained=now.gained)
+            if (longer.noise.size > followed * now.noise.size).any() or not self.search.sensible(longer.model):
                 break
-            fit = longer.account.fit
+            fit = longer.model.fit
             if (
-                linearise(longer.shooting, longer.account.simulation, (), fit).first_growth(WILD, fit.states)
+                linearise(longer.shooting, longer.model.simulation, (), fit).first_growth(CHAOTIC_GROWTH, fit.states)
                 is not None
             ):
                 break
@@ -160,14 +160,14 @@ class Inquiry:
         return now
 
 
-def begin_inquiry(
+def set_up_problem(
     simulation: Simulation,
     measured: Measured,
     shapes: tuple[Shape, ...] = (),
-    told: Callable[[str], None] = lambda _: None,
-    weighed: Callable[[Candidate], bool] = lambda _: True,
-) -> Inquiry:
-    """Prepare an inquiry: split the trials, list places and explanations, guess the states.
+    progress: Callable[[str], None] = lambda _: None,
+    cross_validated: Callable[[Candidate], bool] = lambda _: True,
+) -> Problem:
+    """Prepare a problem: split the trials, list places and explanations, guess the states.
 
     measured: its trials; of four, one is held out, of one, the last quarter of its time
     weighed: whether an explanation is possible here; all are by default
@@ -178,34 +178,34 @@ def begin_inquiry(
     machine = compile_simulation(simulation)
     rate_of, places = kinematic_rates(simulation, machine), places_of(simulation, machine)
     rhythm = rhythm_of(measured.observed, measured.drive.rate)
-    possible = tuple(filter(weighed, candidates_of(simulation, places, (*known_shapes(), *shapes))))
-    search = Search(simulation, places, possible, rhythm, told)
+    possible = tuple(filter(cross_validated, candidates_of(simulation, places, (*known_shapes(), *shapes))))
+    search = Search(simulation, places, possible, rhythm, progress)
     trials = len(measured.drive.samples)
     held = max(round(trials / 4), 1)
     guess = guess_states(simulation, measured, rhythm.period, rate_of)
     passed, findings = record_filter_of(simulation, measured, rhythm.period, guess)
     measured = replace(measured, findings=(*measured.findings, *findings))
-    inquiry = Inquiry(search, measured, tuple(range(trials - held)), tuple(range(trials - held, trials)), guess, passed)
-    return _less_idle(inquiry)
+    problem = Problem(search, measured, tuple(range(trials - held)), tuple(range(trials - held, trials)), guess, passed)
+    return _less_idle(problem)
 
 
-def _less_idle(inquiry: Inquiry) -> Inquiry:
-    """Return the inquiry without the places that change nothing of what is measured, and a finding about each."""
-    search = inquiry.search
-    for periods in (1.0, inquiry.rhythm.duration / inquiry.rhythm.period):  # what comes late may need a whole trial
-        segments = inquiry.segments(inquiry.learned, periods)
-        idle = idle_parts(inquiry.shooting(segments), search.base, search.places, inquiry.guess.starts(segments))
+def _less_idle(problem: Problem) -> Problem:
+    """Return the problem without the places that change nothing of what is measured, and a finding about each."""
+    search = problem.search
+    for periods in (1.0, problem.rhythm.duration / problem.rhythm.period):  # what comes late may need a whole trial
+        segments = problem.segments(problem.learned, periods)
+        idle = idle_parts(problem.shooting(segments), search.base, search.places, problem.guess.starts(segments))
         if idle == Idle():
-            return inquiry
+            return problem
     refuse_idle(idle, search.base, search.places)
     kinds = {(place.kind, place.name) for place in search.places if place.name in idle.places}
     kinds |= {("parameter", name) for name in idle.parameters}
     places = tuple(place for place in search.places if place.name not in idle.places)
     candidates = tuple(one for one in search.candidates if (one.kind, one.place) not in kinds)
-    measured, kind = inquiry.measured, "port" if search.base.ports else "equation"
+    measured, kind = problem.measured, "port" if search.base.ports else "equation"
     findings = (*measured.findings, *idle.findings(measured.source or search.base.title, kind))
     return replace(
-        inquiry,
+        problem,
         search=replace(search, places=places, candidates=candidates),
         measured=replace(measured, findings=findings),
     )

@@ -1,4 +1,10 @@
-"""Process noise: whether what is left looks like a system that is shaken, rather than a late or smooth sensor."""
+"""Process noise: whether what is left looks like a system driven by noise, rather than a late or smooth sensor.
+
+Random pushes enter the equations to first order; their variance is found by restricted likelihood and compared, by the
+information criterion, with autoregressive noise of the sensors.
+Source: Kristensen, Madsen and Jorgensen 2004, Automatica 40, 225 (process noise in grey-box models, there by a Kalman
+filter); Patterson and Thompson 1971, Biometrika 58, 545 (restricted likelihood).
+"""
 
 from __future__ import annotations
 
@@ -7,81 +13,81 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.account import Account
+from gaitdisc.discovery.candidate_model import CandidateModel
 from gaitdisc.discovery.fitted import Fitted, start_basis
 from gaitdisc.discovery.linearised import linearise, seen_change
 from gaitdisc.discovery.noise import noise_of, white_noise
 from gaitdisc.discovery.places import Place
 from gaitdisc.discovery.shooting import Shooting
 
-SHARES = np.logspace(-3, 3, 19)  # of the shaking's variance in what is seen, against the sensor's
+SHARES = np.logspace(-3, 3, 19)  # of the process noise's variance in what is seen, against the sensor's
 MOST_SEGMENTS = 24
 MOST_NUMBERS = 400
 ROUNDED = 1e-3  # of the variance is taken as white: what is left of a record above its filter's cut-off
 
 
 @dataclass(frozen=True)
-class Shaken:
+class ProcessNoise:
     """How well random pushes at one place explain what is left."""
 
     place: Place
-    # minus twice the restricted log likelihood plus the price of its numbers, over the segments looked at
-    evidence: float
-    rival: float  # the same for sensor noise with a memory of its own (an autoregression), over the same segments
+    # minus twice the restricted log likelihood plus the penalty of its numbers, over the segments looked at
+    bic: float
+    rival: float  # the same for autocorrelated sensor noise (an autoregression), over the same segments
     strength: float  # standard deviation of the push, held over one sample [the place's unit]
     numbers: int  # how many measured numbers were looked at
 
 
-def shaken(shooting: Shooting, account: Account, places: tuple[Place, ...]) -> list[Shaken]:
+def rank_process_noise(shooting: Shooting, model: CandidateModel, places: tuple[Place, ...]) -> list[ProcessNoise]:
     """Weigh random pushes at every place against noise of the sensors; the best place first.
 
     returns: pushes are independent from sample to sample; the sensors' noise beside them is white
     """
-    fit, segments = account.fit, shooting.segments
+    fit, segments = model.fit, shooting.segments
     most = max(MOST_NUMBERS // fit.residual.shape[2], 8)
     length = min(fit.residual.shape[1], most)
     some = np.unique(np.linspace(0, len(segments) - 1, MOST_SEGMENTS).astype(int))
-    line = linearise(shooting, account.simulation, places, fit)
+    line = linearise(shooting, model.simulation, places, fit)
     known = shooting.known[some, :length]
     plain = np.where(known, fit.residual[some, :length], 0.0)
     count = known.sum(axis=(0, 1))
     size = np.sqrt((plain**2).sum(axis=(0, 1)) / count - (plain.sum(axis=(0, 1)) / count) ** 2)
-    starts = _raw_slopes(shooting, account)[some, :length] / size[:, None] * known[..., None]
+    starts = _raw_slopes(shooting, model)[some, :length] / size[:, None] * known[..., None]
     rival = _autoregressive(fit.residual, starts * size[:, None], some, known)
     sensors = _sensor_covariance(shooting, known)
-    price = 2 * float(count @ np.log(size)) + np.log(count.sum())
+    penalty = 2 * float(count @ np.log(size)) + np.log(count.sum())
     flat = (plain / size).reshape(len(some), -1), starts.reshape(len(some), plain[0].size, -1)
-    if segments.margin:  # the filter is a memory of the sensor's noise as well, and a known one
-        rival = min(rival, _likelihood(*flat, sensors, int(count.sum()))[0] + float(price))
+    if segments.margin:  # the filter correlates the sensor's noise as well, in a known way
+        rival = min(rival, _likelihood(*flat, sensors, int(count.sum()))[0] + float(penalty))
     found = []
     for number, place in enumerate(places):
         steps = fit.states.shape[1] - 1
         last = min((length - 1) * segments.every + 2 * segments.margin, steps)  # later pushes change nothing here
         change = line.pushed[some][:, :, :, number, None] * np.eye(steps)[None, :, None, :last]
-        seen = _seen_in(shooting, account, some, line.among(some).of_change(change))[:, :length]
+        seen = _seen_in(shooting, model, some, line.among(some).of_change(change))[:, :length]
         pushed = (seen / size[:, None] * known[..., None]).reshape(len(some), -1, last)
         pushes = pushed @ np.swapaxes(pushed, 1, 2)
         unit = np.trace(pushes, axis1=1, axis2=2).sum() / count.sum()
         if unit == 0:  # pushes there change nothing of what is measured
-            found.append(Shaken(place, np.inf, rival, 0.0, int(count.sum())))
+            found.append(ProcessNoise(place, np.inf, rival, 0.0, int(count.sum())))
             continue
         tried = [(*_likelihood(*flat, sensors + share * pushes / unit, int(count.sum())), share) for share in SHARES]
         best, level, share = min(tried)
-        best += float(price + np.log(count.sum()))
-        found.append(Shaken(place, best, rival, float(np.sqrt(level * share / unit)), int(count.sum())))
-    return sorted(found, key=lambda one: one.evidence)
+        best += float(penalty + np.log(count.sum()))
+        found.append(ProcessNoise(place, best, rival, float(np.sqrt(level * share / unit)), int(count.sum())))
+    return sorted(found, key=lambda one: one.bic)
 
 
 def _seen_in(
-    shooting: Shooting, account: Account, some: NDArray[np.intp], change: NDArray[np.float64]
+    shooting: Shooting, model: CandidateModel, some: NDArray[np.intp], change: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """What changes of state change in some of the segments (segment, sample, channel, step)."""
-    fit = account.fit
+    fit = model.fit
     few = replace(shooting, segments=shooting.segments.among(some))
     part = Fitted(
         fit.free, fit.values, fit.starts[some], fit.states[some], fit.residual[some], fit.white[some], fit.slopes[some]
     )
-    return seen_change(few, account.machine, part, change)
+    return seen_change(few, model.machine, part, change)
 
 
 def _sensor_covariance(shooting: Shooting, known: NDArray[np.bool_]) -> NDArray[np.float64]:
@@ -121,7 +127,7 @@ def _likelihood(
 def _autoregressive(
     residual: NDArray[np.float64], slopes: NDArray[np.float64], some: NDArray[np.intp], known: NDArray[np.bool_]
 ) -> float:
-    """Return the evidence of the account's own noise, a memory of each sensor, over the same numbers."""
+    """Return the criterion of the model with autoregressive noise of each sensor, over the same numbers."""
     noise = noise_of(residual, slopes.shape[-1] / residual.shape[2], white_share=0.0)
     plain = np.where(known, residual[some, : known.shape[1]], 0.0)
     white = noise.whitened(plain, known).reshape(len(some), -1)
@@ -145,8 +151,8 @@ def _known_before(known: NDArray[np.bool_]) -> NDArray[np.intp]:
     return out
 
 
-def _raw_slopes(shooting: Shooting, account: Account) -> NDArray[np.float64]:
+def _raw_slopes(shooting: Shooting, model: CandidateModel) -> NDArray[np.float64]:
     """Return what each start state changes in what is seen (segment, sample, channel, state), unwhitened."""
-    plain = shooting.with_noise(white_noise(np.ones(account.fit.residual.shape[2])))
-    fit = plain.at(account.machine, (), account.fit.values, account.fit.starts)
-    return fit.slopes.reshape(*account.fit.residual.shape, -1)
+    plain = shooting.with_noise(white_noise(np.ones(model.fit.residual.shape[2])))
+    fit = plain.at(model.machine, (), model.fit.values, model.fit.starts)
+    return fit.slopes.reshape(*model.fit.residual.shape, -1)

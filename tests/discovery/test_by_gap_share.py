@@ -1,25 +1,25 @@
 import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
-from gaitdisc.discovery.by_share import closing_most, leaves_noise, scale_of
+from gaitdisc.discovery.by_gap_share import closing_most, leaves_noise, scale_of
 from gaitdisc.discovery.discover import discover
-from gaitdisc.discovery.inquiry import begin_inquiry
+from gaitdisc.discovery.problem import set_up_problem
 
 CLEAN = Experiment(noise=0.001)
 
 
-def test_what_leaves_the_sensors_noise_is_known_from_the_record_alone(inquiry, as_read, named):
-    scale = scale_of(inquiry)
-    assert leaves_noise(inquiry, named[0])
-    assert not leaves_noise(inquiry, as_read)
-    assert not scale.agrees(as_read.account.fit)
+def test_what_leaves_the_sensors_noise_is_known_from_the_record_alone(problem, as_read, named):
+    scale = scale_of(problem)
+    assert leaves_noise(problem, named[0])
+    assert not leaves_noise(problem, as_read)
+    assert not scale.agrees(as_read.model.fit)
 
 
 def test_where_nothing_is_missing_nothing_is_weighed():
-    inquiry = begin_inquiry(mass(), record(mass(), 3, CLEAN))
-    scale = scale_of(inquiry)
-    assert scale.agrees(inquiry.as_read().account.fit)
-    assert closing_most(inquiry, scale, ()) is None
+    problem = set_up_problem(mass(), record(mass(), 3, CLEAN))
+    scale = scale_of(problem)
+    assert scale.agrees(problem.as_read().model.fit)
+    assert closing_most(problem, scale, ()) is None
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.account import Account, account_for
+from gaitdisc.discovery.candidate_model import CandidateModel, fit_model
 from gaitdisc.discovery.first_states import StateGuess
 from gaitdisc.discovery.noise import white_noise
 from gaitdisc.discovery.record_filter import RecordFilter
@@ -36,7 +36,7 @@ def record_filter_of(
     """Return what the measured channels went through: as the file says, or as their spectra show.
 
     period: the motion's main period [s]
-    returns findings: about filters that the file does not tell of
+    returns findings: about filters that the file does not state
     """
     stated = tuple(simulation.sensor(name).lowpass for name in measured.channels)
     unknown = [number for number, cutoff in enumerate(stated) if cutoff is None]
@@ -88,8 +88,8 @@ def _beside_the_simulation(
 
     Where inputs were filtered too, none are found if the simulation goes better with the record as it is.
     """
-    shooting, account = _laid_over(simulation, measured, period, guess)
-    like = _stitched(shooting, account, measured)
+    shooting, model = _laid_over(simulation, measured, period, guess)
+    like = _stitched(shooting, model, measured)
     found = dict(seen)
     for number, one in seen.items():
         if one.signal <= FELT:
@@ -103,25 +103,25 @@ def _beside_the_simulation(
         return found
     cutoffs = tuple(found[number].cutoff_hz if number in found else None for number in range(len(measured.channels)))
     filtered = replace(shooting, record_filter=RecordFilter(cutoffs, measured.rate))
-    other = account_for(filtered, simulation, (), account.fit.starts, like=account)
-    return found if other.fit.misfit < account.fit.misfit else {}
+    other = fit_model(filtered, simulation, (), model.fit.starts, like=model)
+    return found if other.fit.misfit < model.fit.misfit else {}
 
 
 def _laid_over(
     simulation: Simulation, measured: Measured, period: float, guess: StateGuess
-) -> tuple[Shooting, Account]:
+) -> tuple[Shooting, CandidateModel]:
     """The simulation as read, fitted to runs of a period that overlap."""
     length = max(int(period * measured.rate), FEWEST_SAMPLES)
     length = min(length, int(measured.samples.min()) // 2)
     segments = cut_segments(measured.samples, tuple(range(len(measured.trials))), length, length // OVERLAP)
     shooting = Shooting(measured, segments, white_noise(np.nanstd(measured.observed, axis=(0, 1))), past=guess.states)
-    return shooting, account_for(shooting, simulation, (), guess.starts(segments))
+    return shooting, fit_model(shooting, simulation, (), guess.starts(segments))
 
 
-def _stitched(shooting: Shooting, account: Account, measured: Measured) -> NDArray[np.float64]:
+def _stitched(shooting: Shooting, model: CandidateModel, measured: Measured) -> NDArray[np.float64]:
     """Overlapping runs as whole trials (trial, sample, channel): one fades out while the next fades in."""
-    segments, fit = shooting.segments, account.fit
-    runs = shooting.unfiltered(account.machine, fit.states[None], fit.values[None])[0]
+    segments, fit = shooting.segments, model.fit
+    runs = shooting.unfiltered(model.machine, fit.states[None], fit.values[None])[0]
     weight, shared = np.ones(segments.length), 2 * segments.margin
     ramp = np.sin(np.linspace(0, np.pi / 2, shared + 2)[1:-1]) ** 2
     weight[:shared], weight[segments.length - shared :] = ramp, ramp[::-1]

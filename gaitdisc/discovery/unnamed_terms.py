@@ -15,7 +15,7 @@ NAME = "unnamed"
 MEANS = "an effect that has no name here"
 
 
-def nameless_terms(simulation: Simulation, places: tuple[Place, ...]) -> tuple[Candidate, ...]:
+def unnamed_terms(simulation: Simulation, places: tuple[Place, ...]) -> tuple[Candidate, ...]:
     """List them at every place."""
     rate_of = kinematic_rates(simulation, compile_simulation(simulation))
     inputs = [one.name for one in simulation.driving if one.name != "phase"]

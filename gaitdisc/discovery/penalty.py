@@ -1,4 +1,4 @@
-"""The price of an explanation: the more kinds of motion it can imitate, the more of a gap it has to close."""
+"""The penalty of an explanation: the more kinds of motion it can imitate, the more of a gap it has to close."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from gaitdisc.discovery.candidate import Candidate
 
 PLAIN = 0.03  # of the gap
-PRICES = {
+PENALTIES = {
     "input_gain": 0.04,
     "input_delay": 0.04,
     "input_lag": 0.05,
@@ -42,10 +42,10 @@ LOSSES = (
 DRIVES = 0.05  # more, for a friction that drives the motion
 
 
-def price_of(candidate: Candidate, values: Mapping[str, float]) -> float:
+def penalty_of(candidate: Candidate, values: Mapping[str, float]) -> float:
     """Return the share of the gap that an explanation must close to be worth its statement.
 
     values: its numbers: a friction that drives costs more than one that resists
     """
     drives = candidate.name in LOSSES and values.get("factor", 0.0) > 0
-    return PRICES.get(candidate.name, PLAIN) + DRIVES * drives
+    return PENALTIES.get(candidate.name, PLAIN) + DRIVES * drives

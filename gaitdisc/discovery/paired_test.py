@@ -10,13 +10,11 @@ from numpy.typing import NDArray
 from gaitdisc.discovery.estimates import NORMAL_95
 
 LEVEL = 0.05
-WANTED = 12  # pieces; where pieces of a period are fewer, they are cut shorter, not below the memory of what is left
-SILENT = 0.05  # of the greatest difference
-FEWEST_SPEAKING = 6  # pieces
+WANTED = 12  # pieces; where pieces of a period are fewer, they are cut shorter, not below the residuals' correlation
+ALIKE_BELOW = 0.05  # of the greatest difference
+FEWEST_DIFFERING = 6  # pieces
 FEWEST = 8  # pieces are kept all the same: fewer make the test blind, whatever they gain in independence
-MEMORY = (
-    0.2  # correlation at which what is left counts as forgotten; more, where so few samples could show it by chance
-)
+UNCORRELATED = 0.2  # autocorrelation that counts as none; more, where so few samples could show it by chance
 MOST_EXACT = 60  # pieces, up to which the distribution of the sum of ranks is counted out
 
 
@@ -50,39 +48,39 @@ def paired_test(
     fall = np.nan_to_num(fall).sum(axis=2)
     runs, samples = fall.shape
     total = runs * samples
-    length = min(period, max(total // WANTED, min(memory_of(after), total // FEWEST), 1))
+    length = min(period, max(total // WANTED, min(correlation_length(after), total // FEWEST), 1))
     blocks = max(samples // length, 1)
     gains = np.array([part.sum() for run in fall for part in np.array_split(run, blocks)])
     return PairedTest(signed_rank_p(gains), len(gains), float(gains.sum()))
 
 
-def speaking(gains: NDArray[np.float64]) -> NDArray[np.float64]:
+def differing(gains: NDArray[np.float64]) -> NDArray[np.float64]:
     """Leave out the pieces on which two models hardly differ, but for a few (piece,).
 
     Which these are does not depend on which model is the better, so that the test keeps its level.
 
     gains (piece,): differences of the two models' errors
 
-    >>> speaking(np.array([3.0, 2.0, 0.01, -2.5, 4.0, 2.0, 3.0])).tolist()
+    >>> differing(np.array([3.0, 2.0, 0.01, -2.5, 4.0, 2.0, 3.0])).tolist()
     [4.0, 3.0, 3.0, -2.5, 2.0, 2.0]
     """
     size = np.abs(gains)
     order = np.argsort(-size, kind="stable")
-    return gains[order[: max(FEWEST_SPEAKING, int((size >= SILENT * size.max()).sum()))]]
+    return gains[order[: max(FEWEST_DIFFERING, int((size >= ALIKE_BELOW * size.max()).sum()))]]
 
 
-def memory_of(residual: NDArray[np.float64]) -> int:
-    """Return after how many samples what is left has forgotten itself, for the channel that remembers longest.
+def correlation_length(residual: NDArray[np.float64]) -> int:
+    """Return after how many samples residuals are uncorrelated, for the channel where it takes longest.
 
     residual (run, sample, channel): measured minus a model
 
-    >>> memory_of(np.random.default_rng(0).normal(size=(4, 500, 1)))
+    >>> correlation_length(np.random.default_rng(0).normal(size=(4, 500, 1)))
     1
     """
     left = np.nan_to_num(residual)
     samples = left.shape[1]
     power = (left**2).sum(axis=(0, 1))
-    forgotten = max(MEMORY, NORMAL_95 / np.sqrt(left[:, :, 0].size))
+    forgotten = max(UNCORRELATED, NORMAL_95 / np.sqrt(left[:, :, 0].size))
     for lag in range(1, samples // 2):
         kept = (left[:, lag:] * left[:, :-lag]).sum(axis=(0, 1))
         if (np.abs(kept) <= forgotten * power).all():

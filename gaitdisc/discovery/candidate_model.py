@@ -1,4 +1,4 @@
-"""An account of the data: the simulation with some explanations in it, fitted."""
+"""A candidate model: the simulation with some explanations in it, fitted."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from gaitdisc.discovery.candidate import Candidate, Identity
 from gaitdisc.discovery.fitted import Fitted
 from gaitdisc.discovery.own_states import with_own_states
-from gaitdisc.discovery.price import price_of
+from gaitdisc.discovery.penalty import penalty_of
 from gaitdisc.discovery.prior import prior_of
 from gaitdisc.discovery.shooting import ENOUGH, Shooting
 from gaitdisc.simulation.compiled_simulation import Compiled
@@ -39,7 +39,7 @@ class Part:
 
 
 @dataclass(frozen=True)
-class Account:
+class CandidateModel:
     """The simulation with some explanations in it, fitted to segments."""
 
     simulation: Simulation  # with the explanations, their numbers as parameters
@@ -58,18 +58,18 @@ class Account:
         return frozenset(part.candidate.identity for part in self.parts)
 
     @property
-    def price(self) -> float:
+    def penalty(self) -> float:
         """What its explanations have to close [of the gap of the simulation as read]."""
-        return sum(price_of(part.candidate, part.values) for part in self.parts)
+        return sum(penalty_of(part.candidate, part.values) for part in self.parts)
 
     @property
     def size(self) -> int:
-        """How many numbers the explanations have; those with bounds are fitted in every account alike."""
+        """How many numbers the explanations have; those with bounds are fitted in every model alike."""
         return sum(len(part.candidate.slots) for part in self.parts)
 
     @property
-    def criterion(self) -> float:
-        """Misfit plus the Bayesian price of each number fitted; the smaller the better."""
+    def bic(self) -> float:
+        """Information criterion (BIC): misfit plus log(N) for each number fitted; the smaller the better."""
         return self.fit.misfit + self.size * float(np.log(self.fit.white.size))
 
 
@@ -87,15 +87,15 @@ def _tag(number: int) -> str:
     return f"part{number}"
 
 
-def account_for(
+def fit_model(
     shooting: Shooting,
     base: Simulation,
     parts: tuple[Part, ...],
     starts: NDArray[np.float64],
     turns: int = 12,
     enough: float = ENOUGH,
-    like: Account | None = None,
-) -> Account:
+    like: CandidateModel | None = None,
+) -> CandidateModel:
     """Fit a simulation with explanations in it, and with them the numbers that have bounds, within these.
 
     A number that an explanation calls wrong may leave its bounds.
@@ -122,4 +122,4 @@ def account_for(
         Part(part.candidate, {slot: float(fit.values[machine.parameters.index(name)]) for slot, name in slots.items()})
         for part, slots in zip(parts, names, strict=True)
     )
-    return Account(simulation, machine, found, fit)
+    return CandidateModel(simulation, machine, found, fit)

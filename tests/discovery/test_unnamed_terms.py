@@ -1,12 +1,12 @@
 from hidden_in_a_mass import mass, two_rods
 
-from gaitdisc.discovery.nameless import nameless_terms
 from gaitdisc.discovery.places import places_of
+from gaitdisc.discovery.unnamed_terms import unnamed_terms
 from gaitdisc.simulation.running import compile_simulation
 
 
 def terms(simulation):
-    found = nameless_terms(simulation, places_of(simulation, compile_simulation(simulation)))
+    found = unnamed_terms(simulation, places_of(simulation, compile_simulation(simulation)))
     return [(one.place, one.pieces[0]) for one in found]
 
 
@@ -23,6 +23,6 @@ def test_another_bodys_acceleration_may_act_with_nothing_at_its_port():
 
 def test_each_compiles_where_it_is_put():
     simulation = two_rods()
-    for one in nameless_terms(simulation, places_of(simulation, compile_simulation(simulation))):
+    for one in unnamed_terms(simulation, places_of(simulation, compile_simulation(simulation))):
         assert one.name == "unnamed"
         compile_simulation(one.written(simulation, {"factor": "0.5"}))

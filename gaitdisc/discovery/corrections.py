@@ -4,22 +4,22 @@ from __future__ import annotations
 
 import numpy as np
 
-from gaitdisc.discovery.account import Account
 from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.candidate_model import CandidateModel
 from gaitdisc.discovery.estimates import NORMAL_95
 from gaitdisc.results.discovery import Correction, Estimate
 from gaitdisc.simulation.simulation import Simulation
 
 
-def corrections_of(account: Account, base: Simulation) -> tuple[Correction, ...]:
+def corrections_of(model: CandidateModel, base: Simulation) -> tuple[Correction, ...]:
     """List the numbers that were fitted within their bounds and moved, each with its 95 % interval inside these."""
-    prior, free = account.fit.prior, account.fit.free
-    error = np.sqrt(np.diag(account.fit.covariance))
+    prior, free = model.fit.prior, model.fit.free
+    error = np.sqrt(np.diag(model.fit.covariance))
     units, found = {one.name: one.unit for one in base.parameters}, []
     for name, place, given, low, high in zip(
         prior.names, prior.places, prior.value, prior.low, prior.high, strict=True
     ):
-        value, half = float(f"{account.fit.values[place]:.6g}"), NORMAL_95 * float(error[free.index(name)])
+        value, half = float(f"{model.fit.values[place]:.6g}"), NORMAL_95 * float(error[free.index(name)])
         if value != float(f"{given:.6g}"):
             interval = max(value - half, float(low)), min(value + half, float(high))
             found.append(Correction(name, float(given), Estimate(value, *interval, units[name])))

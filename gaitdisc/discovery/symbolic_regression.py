@@ -15,18 +15,18 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.discovery.account import Part
-from gaitdisc.discovery.by_share import leaves_noise, scale_of
+from gaitdisc.discovery.by_gap_share import leaves_noise, scale_of
 from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.catalogue import Shape, known_shapes
-from gaitdisc.discovery.decision import borne_out
-from gaitdisc.discovery.evidence import Judged, judged
+from gaitdisc.discovery.decision import held_out_proof
 from gaitdisc.discovery.fitted_shape import cost_of, fitted_shape
-from gaitdisc.discovery.gap_share import weighed
+from gaitdisc.discovery.gap_share import cross_validated
 from gaitdisc.discovery.grids import cells
-from gaitdisc.discovery.inquiry import Inquiry
-from gaitdisc.discovery.nameless import NAME
+from gaitdisc.discovery.problem import Problem
+from gaitdisc.discovery.scored_model import ScoredModel, scored
 from gaitdisc.discovery.search import Search
+from gaitdisc.discovery.unnamed_terms import NAME
 from gaitdisc.discovery.verdict import Verdict
 from gaitdisc.simulation.evaluating import Points, evaluate_many
 
@@ -53,53 +53,53 @@ class Piece:
         return Shape("", (self.text,)).written({f"_{slot}": f"{value:.9g}" for slot, value in self.values.items()})[0]
 
 
-def read_shape(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> Verdict:
+def read_shape(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> Verdict:
     """Return a verdict on a learned shape with its reading in its place; as it was where there is none.
 
     Source: Brunton, Proctor and Kutz 2016, PNAS 113, 3932 (a library of pieces, few of which act); Miller 2002, Subset
         Selection in Regression (all pairs are tried here, in place of thresholds); Rackauckas et al. 2020, arXiv
         2001.04385 (a learned term of an equation, read by regression).
     """
-    shape = verdict.account
-    if verdict.word != NAME or len(shape.account.parts) != 1 or not verdict.proof:
+    shape = verdict.found
+    if verdict.word != NAME or len(shape.model.parts) != 1 or not verdict.proof:
         return verdict
-    search, scale = inquiry.search, scale_of(inquiry)
-    plain = weighed(scale, shape.shooting, search.base, (), shape.account)
+    search, scale = problem.search, scale_of(problem)
+    plain = cross_validated(scale, shape.shooting, search.base, (), shape.model)
     if not np.isfinite(plain.gap):
         return verdict
     readings = [
-        weighed(scale, shape.shooting, search.base, (part,), plain.account) for part in _readings(search, shape)
+        cross_validated(scale, shape.shooting, search.base, (part,), plain.model) for part in _readings(search, shape)
     ]
-    readings = [one for one in readings if search.sensible(one.account)]
+    readings = [one for one in readings if search.sensible(one.model)]
     for one in sorted(readings, key=lambda one: cost_of(one, plain)):
-        found = judged(shape.shooting, search.base, one.account)
-        proof = borne_out(inquiry, as_read, found)
+        found = scored(shape.shooting, search.base, one.model)
+        proof = held_out_proof(problem, as_read, found)
         if proof.bears_out and proof.closed >= AS_MUCH * verdict.proof.closed:
-            reads_as = effect_of(search, one.account.parts[0].candidate)
-            return replace(verdict, account=found, proof=proof, read=True, reads_as=reads_as)
+            reads_as = effect_of(search, one.model.parts[0].candidate)
+            return replace(verdict, found=found, proof=proof, read=True, reads_as=reads_as)
     return verdict
 
 
-def read_instead(inquiry: Inquiry, as_read: Judged, verdict: Verdict) -> Verdict:
+def read_instead(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> Verdict:
     """Return a verdict on several names at one place, or on a shape that reads as less than they are and errs less.
 
     Pieces of the catalogue laid beside each other imitate any curve, above all one piece laid twice; other names
     that leave mere noise are never given up.
     """
-    named = verdict.account
-    places = [part.candidate.place for part in named.account.parts if part.candidate.verdict == "missing_physics"]
-    if named.account.size < FEWEST_NUMBERS or len(set(places)) == len(places):
+    named = verdict.found
+    places = [part.candidate.place for part in named.model.parts if part.candidate.verdict == "missing_physics"]
+    if named.model.size < FEWEST_NUMBERS or len(set(places)) == len(places):
         return verdict
     twice = len(set(named.labels)) < len(named.labels)
-    if leaves_noise(inquiry, named) and not twice:
+    if leaves_noise(problem, named) and not twice:
         return verdict
-    shape = fitted_shape(as_read, inquiry.search, scale_of(inquiry))
+    shape = fitted_shape(as_read, problem.search, scale_of(problem))
     if shape is None:
         return verdict
-    proof = borne_out(inquiry, as_read, shape)
-    instead = read_shape(inquiry, as_read, Verdict(NAME, shape, (named, *verdict.rivals), proof=proof))
-    less = instead.read and instead.account.account.size < named.account.size
-    return instead if less and borne_out(inquiry, named, instead.account, as_read).bears_out else verdict
+    proof = held_out_proof(problem, as_read, shape)
+    instead = read_shape(problem, as_read, Verdict(NAME, shape, (named, *verdict.rivals), proof=proof))
+    less = instead.read and instead.found.model.size < named.model.size
+    return instead if less and held_out_proof(problem, named, instead.found, as_read).bears_out else verdict
 
 
 def effect_of(search: Search, candidate: Candidate) -> str:
@@ -108,9 +108,9 @@ def effect_of(search: Search, candidate: Candidate) -> str:
     return next((one.name for one in alike if one.pieces == candidate.pieces), "")
 
 
-def _readings(search: Search, shape: Judged) -> Iterator[Part]:
+def _readings(search: Search, shape: ScoredModel) -> Iterator[Part]:
     """Yield what a shape may read as, with numbers to begin from; itself, where it has few pieces."""
-    (part,) = shape.account.parts
+    (part,) = shape.model.parts
     if len(part.candidate.pieces) <= len(TRIED):
         yield part
     place = next(one for one in search.places if (one.kind, one.name) == (part.candidate.kind, part.candidate.place))
@@ -155,7 +155,7 @@ class _Curve:
     """A shape's values along its runs, and what could make them up."""
 
     search: Search
-    shape: Judged
+    shape: ScoredModel
     motion: tuple[str, str]
 
     def subsets(self) -> Iterator[tuple[tuple[Piece, ...], list[float]]]:
@@ -186,7 +186,7 @@ class _Curve:
         points = self._points
         along = evaluate_many(self.search.base, [self.motion[0]], points)[0]
         pieces = list(self._pieces(along))
-        (part,) = self.shape.account.parts
+        (part,) = self.shape.model.parts
         values = evaluate_many(self.search.base, [part.term, *(one.at for one in pieces)], points).T
         size = np.linalg.norm(values, axis=0)
         good = np.flatnonzero(np.isfinite(size[1:]) & (size[1:] > 0))
@@ -197,7 +197,7 @@ class _Curve:
         """Samples of the runs, spread over all of them."""
         shooting, known = self.shape.shooting, len(self.search.base.states)
         segments, drive = shooting.segments, shooting.measured.drive
-        states = self.shape.account.fit.states[..., :known].reshape(-1, known)
+        states = self.shape.model.fit.states[..., :known].reshape(-1, known)
         time = (drive.time0[segments.trial][:, None] + segments.samples / drive.rate).ravel()
         some = slice(None, None, max(len(states) // MOST_SAMPLES, 1))
         inputs = segments.of(drive.inputs).reshape(len(states), -1)

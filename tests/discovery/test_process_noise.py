@@ -4,21 +4,21 @@ import numpy as np
 import pytest
 from hidden_in_a_mass import Experiment, mass, record
 
-from gaitdisc.discovery.inquiry import begin_inquiry
-from gaitdisc.discovery.shaken import shaken
+from gaitdisc.discovery.problem import set_up_problem
+from gaitdisc.discovery.process_noise import rank_process_noise
 from gaitdisc.simulation.parts import Sensor
 
 
 def _weighed(how, seed=3):
-    inquiry = begin_inquiry(mass(), record(mass(), seed, how))
-    now = inquiry.as_read()
-    return shaken(now.shooting, now.account, inquiry.search.places)[0]
+    problem = set_up_problem(mass(), record(mass(), seed, how))
+    now = problem.as_read()
+    return rank_process_noise(now.shooting, now.model, problem.search.places)[0]
 
 
 @pytest.mark.parametrize("seed", [3, 4])
 def test_random_pushes_are_likelier_than_a_sensor_that_remembers(seed):
     best = _weighed(Experiment(shaking=6.0), seed)
-    assert best.rival - best.evidence > 0.1 * best.numbers
+    assert best.rival - best.bic > 0.1 * best.numbers
     assert best.strength == pytest.approx(6.0, rel=0.3)
     assert best.place.name == "load"
 
@@ -26,7 +26,7 @@ def test_random_pushes_are_likelier_than_a_sensor_that_remembers(seed):
 @pytest.mark.parametrize("how", [Experiment(), Experiment(cutoff_hz=6.0)], ids=["white", "coloured"])
 def test_noise_of_the_sensor_is_not_taken_for_pushes(how):
     best = _weighed(how)
-    assert best.rival - best.evidence < 0.01 * best.numbers
+    assert best.rival - best.bic < 0.01 * best.numbers
 
 
 def test_the_strength_of_pushes_follows_theirs():
@@ -36,12 +36,12 @@ def test_the_strength_of_pushes_follows_theirs():
 
 
 def test_filtered_noise_of_the_sensor_is_not_taken_for_pushes_and_pushes_are_found_all_the_same():
-    told = mass().with_sensor(Sensor("x", lowpass=3.0))
+    stated = mass().with_sensor(Sensor("x", lowpass=3.0))
     for how, pushed in ((Experiment(lowpass_hz=3.0), False), (Experiment(lowpass_hz=3.0, shaking=6.0), True)):
-        inquiry = begin_inquiry(told, record(mass(), 3, how))
-        now = inquiry.as_read()
-        best = shaken(now.shooting, now.account, inquiry.search.places)[0]
-        gained = (best.rival - best.evidence) / best.numbers
+        problem = set_up_problem(stated, record(mass(), 3, how))
+        now = problem.as_read()
+        best = rank_process_noise(now.shooting, now.model, problem.search.places)[0]
+        gained = (best.rival - best.bic) / best.numbers
         assert gained > 0.1 if pushed else gained < 0.01
 
 
@@ -49,8 +49,8 @@ def test_gaps_change_little():
     measured = record(mass(), 3, Experiment(shaking=6.0))
     observed = np.array(measured.observed)
     observed[:, 100:112] = observed[0, 300:309] = np.nan
-    gaps = begin_inquiry(mass(), replace(measured, observed=observed))
+    gaps = set_up_problem(mass(), replace(measured, observed=observed))
     now = gaps.as_read()
-    best = shaken(now.shooting, now.account, gaps.search.places)[0]
-    assert best.rival - best.evidence > 0.1 * best.numbers
+    best = rank_process_noise(now.shooting, now.model, gaps.search.places)[0]
+    assert best.rival - best.bic > 0.1 * best.numbers
     assert best.strength == pytest.approx(6.0, rel=0.3)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.signal import lfilter
 from scipy.stats import rankdata, wilcoxon
 
-from gaitdisc.discovery.borne_out import memory_of, paired_test, signed_rank_p
+from gaitdisc.discovery.paired_test import correlation_length, paired_test, signed_rank_p
 
 ONE = np.ones(1)
 
@@ -67,14 +67,14 @@ def test_pieces_are_a_period_long_and_no_shorter_than_what_is_left_remembers():
     assert paired_test(2 * white, white, ONE, 50).pieces == 40
     assert paired_test(2 * white, white, ONE, 800).pieces == 12
     short = slow[:, :600]
-    assert 60 < memory_of(short) < 150
-    assert paired_test(2 * short, short, ONE, 150).pieces == 2 * (600 // max(memory_of(short), 100)) <= 12
+    assert 60 < correlation_length(short) < 150
+    assert paired_test(2 * short, short, ONE, 150).pieces == 2 * (600 // max(correlation_length(short), 100)) <= 12
 
 
 def test_what_never_forgets_is_cut_into_eight_pieces_all_the_same():
     after = np.sin(np.arange(80) / 40)[None, :, None]
     test = paired_test(3 * after, after, ONE, 80)
-    assert memory_of(after) > 10
+    assert correlation_length(after) > 10
     assert test.pieces == 8
 
 
@@ -102,5 +102,5 @@ def test_what_is_false_is_borne_out_at_most_as_often_as_the_level_says(shrink):
 
 
 def test_what_ten_samples_show_by_chance_is_no_memory():
-    shortest = [memory_of(np.random.default_rng(seed).normal(size=(1, 10, 1))) for seed in range(200)]
+    shortest = [correlation_length(np.random.default_rng(seed).normal(size=(1, 10, 1))) for seed in range(200)]
     assert np.mean(np.array(shortest) == 1) > 0.9

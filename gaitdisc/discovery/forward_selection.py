@@ -1,0 +1,136 @@
+"""Forward selection with exchange: explanations are added while the information criterion falls, exchanged, eliminated.
+
+Source: Efroymson 1960, in Ralston and Wilf, Mathematical Methods for Digital Computers, 191 (stepwise selection);
+Miller 2002, Subset Selection in Regression (replacement of one at a time).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.discovery.candidate_model import Explanations
+from gaitdisc.discovery.ranking import ALIKE, MARGIN, ranked
+from gaitdisc.discovery.scored_model import ScoredModel, compared
+from gaitdisc.discovery.search import Search, is_certain
+
+MATERIAL = (0.0, 0.001, 0.01)  # of what is explained already, which the first, second, third explanation must explain
+MOST_TURNS = 5  # explanations added, those that were eliminated again included
+FIRST_PLACES = 5  # that a second explanation is sought beside
+SAME = 0.1  # difference of the criterion
+FAR = 4.0  # times the variance of the sensors' noise
+SETTLED = 3  # turns of exchange and elimination
+
+
+def select_forward(
+    search: Search, now: ScoredModel, most: int, noise: NDArray[np.float64] | None = None
+) -> tuple[ScoredModel, list[ScoredModel]]:
+    """Add explanations while the information criterion falls by enough.
+
+    noise (channel,): standard deviation of the sensors' noise: two explanations that leave far more of an error are
+        not refined, for no set of names is exact then
+    returns rivals: what else stood for the first place, best first
+    """
+    rivals: list[ScoredModel] = []
+    explored = {now.model.explanations}
+    explained, turns = 0.0, 0
+    while len(now.model.parts) < most and turns < MOST_TURNS:
+        before, *more = search.extended(now) or [now]
+        more = ranked(more, search.candidates)
+        rivals = rivals or more
+        number = len(now.model.parts) + 1
+        worth = max(MARGIN, MATERIAL[min(number, len(MATERIAL)) - 1] * explained)
+        if not more or before.bic - more[0].bic < (worth if number > 2 else MARGIN):
+            break
+        better = more[0]
+        if number == 2:
+            better = beside_others(search, better, [one for one in rivals if one is not now], explored)
+        far = noise is not None and number > 1 and leaves(better, noise) > FAR
+        if number > 1:
+            better = better if far else settled(search, better, worth, explored)
+            before, better = compared([before, better], search.base)
+        gained = before.bic - better.bic
+        if gained < worth or not is_certain(better.model):
+            break
+        explained, now, turns = max(explained, gained), better, turns + 1
+        explored.add(now.model.explanations)
+        if far:
+            break
+    return now, rivals
+
+
+def leaves(now: ScoredModel, noise: NDArray[np.float64]) -> float:
+    """Return the mean square of what a model leaves, over the variance of the sensors' noise.
+
+    noise (channel,): its standard deviation [the channel's unit]
+    """
+    return float(np.nanmean((now.model.fit.residual / noise) ** 2))
+
+
+def beside_others(
+    search: Search, pair: ScoredModel, firsts: list[ScoredModel], explored: set[Explanations]
+) -> ScoredModel:
+    """Return the best pair of explanations, also of those whose first was not the best alone.
+
+    Two effects together may look most like a third one, which then stands in the way of both.
+
+    explored: beside which another was sought; those of this search are added
+    """
+    pairs = [pair]
+    unlike = [one for number, one in enumerate(firsts) if not any(_alike(one, other) for other in firsts[:number])]
+    for first in unlike[: FIRST_PLACES - 1]:
+        pairs += ranked(search.extended(first)[1:], search.candidates)[:1]
+        explored.add(first.model.explanations)
+    return ranked(compared(pairs, search.base), search.candidates)[0]
+
+
+def _alike(one: ScoredModel, other: ScoredModel) -> bool:
+    """Whether two models are the same model under two names: a wrong damping, and damping that is missing."""
+    return one.model.size == other.model.size and abs(one.bic - other.bic) < SAME
+
+
+def settled(search: Search, now: ScoredModel, worth: float, explored: set[Explanations]) -> ScoredModel:
+    """Exchange and eliminate explanations until nothing changes.
+
+    worth: by which the criterion must get worse for one to stay
+    explored: beside which another was sought; those of this search are added
+    """
+    for _ in range(SETTLED):
+        before = now
+        now = pruned(search, exchanged(search, now, explored), worth)
+        if sorted(now.labels) == sorted(before.labels):
+            break
+    return now
+
+
+def exchanged(search: Search, now: ScoredModel, explored: set[Explanations]) -> ScoredModel:
+    """Return the model after each explanation was tried against all others in its place.
+
+    explored: beside which another was sought; those of this search are added
+    """
+    for number in range(len(now.model.parts)):
+        rest = search.without(now, number)
+        if rest.model.explanations in explored:
+            continue
+        explored.add(rest.model.explanations)
+        others = search.extended(rest)[1:]
+        if others:
+            now, *others = compared([now, *others], search.base)
+            best = ranked(others, search.candidates)[0]
+            if best.bic < now.bic - ALIKE:
+                now = best
+    return now
+
+
+def pruned(search: Search, now: ScoredModel, worth: float) -> ScoredModel:
+    """Return the model without the explanations that a better choice of the others has made idle.
+
+    worth: by which the criterion must get worse for one to stay
+    """
+    while len(now.model.parts) > 1:
+        fewer = [search.without(now, number) for number in range(len(now.model.parts))]
+        best = min(fewer, key=lambda one: one.bic)
+        if best.bic > now.bic + worth:
+            break
+        now = best
+    return now

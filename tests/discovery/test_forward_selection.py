@@ -1,0 +1,80 @@
+import pytest
+from hidden_in_a_mass import Experiment, mass, record, with_load
+
+from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.forward_selection import beside_others, exchanged, pruned, select_forward, settled
+from gaitdisc.discovery.problem import set_up_problem
+from gaitdisc.discovery.ranking import MARGIN, ranked
+from gaitdisc.discovery.scored_model import ScoredModel
+
+DAMPER = Candidate("missing_physics", "port", "load", "viscous_damping", ("v",), None, "x")
+
+
+def test_what_is_hidden_is_let_in_alone(named):
+    now, rivals = named
+    assert now.labels == ("cubic_stiffness@load",)
+    assert rivals[0].labels == now.labels
+    assert all(one.labels != now.labels for one in rivals[1:])
+    assert now.gained > 100
+
+
+def _with(problem, as_read, *parts):
+    return ScoredModel(
+        fit_model(as_read.shooting, problem.search.base, parts, as_read.model.fit.starts), as_read.shooting
+    )
+
+
+def _idle_and_true(problem, as_read, cubic):
+    return _with(problem, as_read, Part(cubic, {"factor": -14.0}), Part(DAMPER, {"factor": 0.0}))
+
+
+def _wrong_and_idle(problem, as_read):
+    quadratic = Candidate("missing_physics", "port", "load", "quadratic_stiffness", ("x**2",), None, "x")
+    return _with(problem, as_read, Part(quadratic, {"factor": 0.0}), Part(DAMPER, {"factor": 0.0}))
+
+
+def test_an_explanation_that_earns_nothing_is_thrown_out(problem, as_read, cubic):
+    assert pruned(problem.search, _idle_and_true(problem, as_read, cubic), MARGIN).labels == ("cubic_stiffness@load",)
+
+
+def test_a_wrong_explanation_is_exchanged_for_the_true_one(problem, as_read):
+    assert "cubic_stiffness@load" in exchanged(problem.search, _wrong_and_idle(problem, as_read), set()).labels
+
+
+def test_what_is_settled_holds_the_true_one_alone(problem, as_read):
+    now = settled(problem.search, _wrong_and_idle(problem, as_read), MARGIN, set())
+    assert now.labels == ("cubic_stiffness@load",)
+
+
+def test_beside_what_was_explored_already_nothing_is_sought_again(problem, as_read):
+    now = _wrong_and_idle(problem, as_read)
+    explored = {problem.search.without(now, number).model.explanations for number in range(2)}
+    assert len(explored) == 2
+    assert exchanged(problem.search, now, explored) is now
+
+
+@pytest.fixture(scope="module")
+def two():
+    """Return a problem into two springs, and the simulation as read."""
+    problem = set_up_problem(mass(), record(with_load("-14*x**3 - 9*x**2"), 3, Experiment(seconds=12.0)))
+    return problem, problem.as_read()
+
+
+def test_two_effects_are_both_found_with_their_numbers(two):
+    problem, as_read = two
+    now, _ = select_forward(problem.search, as_read, 3)
+    assert sorted(now.labels) == ["cubic_stiffness@load", "quadratic_stiffness@load"]
+    values = {part.candidate.name: part.values["factor"] for part in now.model.parts}
+    assert values == pytest.approx({"cubic_stiffness": -14.0, "quadratic_stiffness": -9.0}, rel=0.05)
+
+
+def test_a_pair_whose_first_was_not_the_best_alone_is_found_beside_it(two):
+    problem, as_read = two
+    wrong = _wrong_and_idle(problem, as_read)
+    firsts = ranked(problem.search.extended(as_read)[1:], problem.search.candidates)
+    cubic = [one for one in firsts if one.labels == ("cubic_stiffness@load",)]
+    explored = set()
+    pair = beside_others(problem.search, wrong, [*cubic, *cubic], explored)
+    assert sorted(pair.labels) == ["cubic_stiffness@load", "quadratic_stiffness@load"]
+    assert explored == {cubic[0].model.explanations}

@@ -1,0 +1,65 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gaitdisc.discovery.candidate_model import Part, fit_model
+from gaitdisc.discovery.scored_model import ScoredModel, compared, scored
+
+
+@pytest.fixture(scope="module")
+def with_cubic(problem, as_read, cubic):
+    part = Part(cubic, {"factor": -14.0})
+    return ScoredModel(
+        fit_model(as_read.shooting, problem.search.base, (part,), as_read.model.fit.starts), as_read.shooting
+    )
+
+
+def test_under_its_own_noise_an_account_leaves_numbers_of_unit_variance(problem, as_read, with_cubic):
+    own = scored(as_read.shooting, problem.search.base, with_cubic.model)
+    fit = own.model.fit
+    used = fit.starts.size + 1
+    assert fit.misfit / (fit.white.size - used) == pytest.approx(1.0, abs=0.1)
+
+
+def test_the_noise_of_the_true_account_is_that_of_the_sensor(problem, as_read, with_cubic):
+    own = scored(as_read.shooting, problem.search.base, with_cubic.model)
+    hidden = 0.02 * problem.measured.observed.std()
+    assert own.noise.size[0] == pytest.approx(hidden, rel=0.1)
+
+
+def test_what_comes_late_sees_the_past_of_the_account_and_not_of_the_simulation_as_read(problem, as_read, with_cubic):
+    own = scored(as_read.shooting, problem.search.base, with_cubic.model)
+    past, states = own.shooting.segments.of(own.shooting.past), own.model.fit.states
+    apart = np.abs(states - as_read.model.fit.states).max()
+    assert np.abs(past - states).max() < 0.01 * apart
+
+
+def test_accounts_are_compared_under_the_noise_that_the_best_leaves(problem, as_read, with_cubic):
+    plain, true = compared([as_read, with_cubic], problem.search.base)
+    assert plain.noise is true.noise
+    assert true.noise.size[0] < as_read.noise.size[0]
+    assert plain.bic - true.bic > 100
+
+
+def test_the_order_in_which_accounts_stand_does_not_decide(problem, as_read, with_cubic):
+    plain, true = compared([as_read, with_cubic], problem.search.base)
+    true_first, plain_last = compared([with_cubic, as_read], problem.search.base)
+    assert true_first.bic == pytest.approx(true.bic, rel=1e-3)
+    assert plain_last.bic == pytest.approx(plain.bic, rel=0.02)
+
+
+def test_an_account_under_its_own_noise_stays_as_it_is(problem, as_read):
+    assert as_read.under(as_read, problem.search.base) is as_read
+
+
+def test_labels_name_what_is_in(as_read, with_cubic):
+    assert as_read.labels == ()
+    assert with_cubic.labels == ("cubic_stiffness@load",)
+    assert np.isfinite(with_cubic.bic)
+
+
+def test_under_anothers_noise_what_was_gained_stays(problem, as_read, with_cubic):
+    own = scored(as_read.shooting, problem.search.base, with_cubic.model)
+    moved = replace(as_read, gained=7.0).under(own, problem.search.base)
+    assert (moved.gained, moved.noise) == (7.0, own.noise)
