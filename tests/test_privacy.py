@@ -15,7 +15,7 @@ from driven_walker import DrivenWalker
 from typer.testing import CliRunner
 
 from gaitdisc.cli import app
-from gaitdisc.discovery.verdict import Verdict
+from gaitdisc.discovery.decision import Verdict
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.table import write_table
 

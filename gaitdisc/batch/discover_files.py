@@ -9,10 +9,9 @@ from pathlib import Path
 from typing import cast
 
 from gaitdisc.batch.public_words import PublicWords
-from gaitdisc.discovery.blow_up import refuse_blow_up
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.catalogue import read_catalogue
-from gaitdisc.discovery.discover import discover
+from gaitdisc.discovery.discover import discover, refuse_blow_up
 from gaitdisc.ingest.file_hash import file_sha256
 from gaitdisc.results.discovery import Discovery
 from gaitdisc.results.provenance import made_now

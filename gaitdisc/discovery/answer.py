@@ -8,6 +8,7 @@ import numpy as np
 
 from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.corrections import corrected, corrections_of, file_bounds
+from gaitdisc.discovery.decision import Verdict
 from gaitdisc.discovery.effect_units import places_unit, unit_of_channel
 from gaitdisc.discovery.estimates import estimates_of
 from gaitdisc.discovery.held_out import drawn_runs, gap_size, proof_of, runs_of, tested
@@ -17,7 +18,6 @@ from gaitdisc.discovery.problem import Problem
 from gaitdisc.discovery.process_noise import ProcessNoise
 from gaitdisc.discovery.rivals import Rival, bic_gain, rivals_of
 from gaitdisc.discovery.scored_model import ScoredModel
-from gaitdisc.discovery.verdict import Verdict
 from gaitdisc.discovery.wording import sentence_of
 from gaitdisc.discovery.wrong_start import begun_at
 from gaitdisc.recording import Finding

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from gaitdisc.discovery.beam import MOST
 from gaitdisc.discovery.by_gap_share import closing_most, leaves_noise, scale_of
-from gaitdisc.discovery.candidate_model import fit_model
+from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.fitted_shape import fitted_shape
 from gaitdisc.discovery.forward_selection import pruned, select_forward
 from gaitdisc.discovery.gap_share import GapScale
@@ -19,8 +19,8 @@ from gaitdisc.discovery.ranking import MARGIN, ranked
 from gaitdisc.discovery.scored_model import ScoredModel, compared, scored
 from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.unnamed_terms import NAME as UNNAMED
-from gaitdisc.discovery.verdict import Verdict
 from gaitdisc.discovery.wrong_start import wrong_starts
+from gaitdisc.results.discovery import Estimate
 
 MOST_NAMES = 2  # where they leave more than noise; where they leave nothing else, MOST
 NEAR = 40.0  # by which a rival's criterion may be worse and still be tried on long runs
@@ -29,6 +29,23 @@ REPEATS = 0.2  # of the misfit, which something that repeats itself has to take 
 PUSHED = 0.03  # by which process noise must be likelier than a sensor's autocorrelated noise, for each number
 HALF = 0.5  # of the held-out squared error, which names must take where more were found than are named
 WORTH = 0.05  # of what was named, which a shape without a name must explain beyond it
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What the search came to."""
+
+    word: str
+    found: ScoredModel  # the simulation with what was found in it
+    rivals: tuple[ScoredModel, ...]
+    process_noise: ProcessNoise | None = None  # for process noise: where, and how strong
+    starts: dict[str, Estimate] = field(default_factory=dict)  # for wrong initial conditions: where the trials begin
+    # Held-out runs that bear the model out; where nothing is named, those that do not bear the first rival out
+    proof: Proof | None = None
+    small: tuple[Part, ...] = ()  # explanations that close too little of the gap to be named
+    # of a shape without a name: whether it was read as an expression of few pieces, which stands in its place
+    read: bool = False
+    reads_as: str = ""  # the catalogue's effect that this expression is; empty where it is none
 
 
 def decide(problem: Problem, as_read: ScoredModel) -> Verdict:

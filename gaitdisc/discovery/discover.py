@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
+import numpy as np
+
 from gaitdisc.discovery.answer import answer
 from gaitdisc.discovery.by_gap_share import leaves_noise
 from gaitdisc.discovery.candidate import Candidate
@@ -12,13 +14,18 @@ from gaitdisc.discovery.catalogue import Shape
 from gaitdisc.discovery.decision import decide
 from gaitdisc.discovery.held_out import holding_out_others, is_uninformative, noted
 from gaitdisc.discovery.odd_trials import agreeing_trials
-from gaitdisc.discovery.problem import set_up_problem, split_in_time
+from gaitdisc.discovery.problem import FEWEST_SAMPLES, set_up_problem, split_in_time
 from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.discovery.symbolic_regression import read_instead, read_shape
 from gaitdisc.discovery.trial_apart import without_trial_apart
 from gaitdisc.results.discovery import Discovery
+from gaitdisc.simulation.divergence import refuse_divergence
+from gaitdisc.simulation.drive import Rows
 from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
+
+MOST_LOST = 0.2  # of the shortest runs; a few may begin at a bad guess of what is not measured
 
 
 def discover(
@@ -58,3 +65,14 @@ def discover(
     verdict = read_instead(problem, as_read, read_shape(problem, as_read, verdict))
     progress("showing it on what was held out")
     return answer(problem, as_read, verdict)
+
+
+def refuse_blow_up(simulation: Simulation, measured: Measured) -> None:
+    """Refuse a simulation that does not stay finite over runs of a few samples that begin at the data."""
+    problem, machine = set_up_problem(simulation, without_spikes(measured)), compile_simulation(simulation)
+    segments = problem.segments((*problem.learned, *problem.held_out), 0.0)
+    rows = Rows(segments.trial, segments.begin, problem.guess.starts(segments))
+    drive = problem.measured.drive
+    states, ok = machine.run(drive, rows, FEWEST_SAMPLES - 1)
+    if np.mean(~ok) > MOST_LOST:
+        refuse_divergence(machine, drive, rows, states, ok)

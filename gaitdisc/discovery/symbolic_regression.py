@@ -19,7 +19,7 @@ from gaitdisc.discovery.by_gap_share import leaves_noise, scale_of
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part
 from gaitdisc.discovery.catalogue import Shape, known_shapes
-from gaitdisc.discovery.decision import held_out_proof
+from gaitdisc.discovery.decision import Verdict, held_out_proof
 from gaitdisc.discovery.fitted_shape import cost_of, fitted_shape
 from gaitdisc.discovery.gap_share import cross_validated
 from gaitdisc.discovery.grids import cells
@@ -27,7 +27,6 @@ from gaitdisc.discovery.problem import Problem
 from gaitdisc.discovery.scored_model import ScoredModel, scored
 from gaitdisc.discovery.search import Search
 from gaitdisc.discovery.unnamed_terms import NAME
-from gaitdisc.discovery.verdict import Verdict
 from gaitdisc.simulation.evaluating import Points, evaluate_many
 
 BUMP = Shape("bump", ("exp(-((x - c)/w)**2)",), {"c": "quantiles of x", "w": "half widths of x"})

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 from gaitdisc.cli import app
 from gaitdisc.commands.exit_codes import REFUSED
-from gaitdisc.discovery.verdict import Verdict
+from gaitdisc.discovery.decision import Verdict
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.results.discovery_folder import load_discovery
 from gaitdisc.simulation.simulation_file import read_simulation

@@ -8,10 +8,10 @@ from hidden_in_a_mass import MASS, Experiment, mass, record, with_load
 from gaitdisc.discovery.answer import answer, augmented_of, phase_of, region_of, units_of
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.discovery.candidate_model import Part
+from gaitdisc.discovery.decision import Verdict
 from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.discovery.process_noise import rank_process_noise
 from gaitdisc.discovery.scored_model import compared
-from gaitdisc.discovery.verdict import Verdict
 from gaitdisc.simulation.measured_table import read_measured
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import simulation_of

@@ -4,10 +4,12 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
+from hidden_in_a_mass import Experiment, mass, record
 
 from gaitdisc.discovery import decision
 from gaitdisc.discovery.candidate_model import Part, fit_model
 from gaitdisc.discovery.decision import decide, kept_on_longer_runs, needed, strongest
+from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.discovery.scored_model import ScoredModel, scored
 
 
@@ -101,3 +103,21 @@ def test_one_shape_that_leaves_mere_noise_stands_before_names_that_do_not(proble
     assert decision.shape_that_leaves_noise(problem, as_read, None, alone) is None
     monkeypatch.setattr(decision, "leaves_noise", lambda *_: False)
     assert decision.shape_that_leaves_noise(problem, as_read, None, names) is None
+
+
+def test_a_verdict_carries_the_account_and_what_else_was_weighed(problem, as_read, named):
+    verdict = decide(problem, as_read)
+    assert verdict.word == "missing_physics"
+    assert verdict.found.labels == named[0].labels
+    assert verdict.rivals[0].bic <= verdict.rivals[1].bic
+    assert (verdict.process_noise, verdict.starts) == (None, {})
+
+
+def test_a_random_push_comes_with_its_place_and_strength_and_without_an_explanation():
+    problem = set_up_problem(mass(), record(mass(), 3, Experiment(shaking=6.0)))
+    verdict = decide(problem, problem.as_read())
+    assert verdict.word == "process_noise"
+    assert verdict.found.model.parts == ()
+    assert verdict.process_noise is not None
+    assert verdict.process_noise.place.name == "load"
+    assert 4.0 < verdict.process_noise.strength < 8.0

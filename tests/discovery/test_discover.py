@@ -7,10 +7,11 @@ import pytest
 from hidden_in_a_mass import Experiment, lagging, mass, record, remembering, two_rods, with_load
 
 from gaitdisc.discovery.catalogue import read_catalogue
-from gaitdisc.discovery.discover import discover
+from gaitdisc.discovery.discover import discover, refuse_blow_up
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import Term
+from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import simulation_of
 from gaitdisc.simulation.writing import simulation_text
@@ -284,3 +285,18 @@ def test_one_record_in_degrees_gives_the_same_name_and_estimates():
         assert (other.low, other.high) == pytest.approx((one.low, one.high), rel=1e-3)
     assert (plain.units, degrees.units) == (("rad",), ("deg",))
     assert degrees.held_out.after == pytest.approx(plain.held_out.after, rel=1e-3)
+
+
+@pytest.fixture(scope="module")
+def short():
+    return record(mass(), 2, Experiment(seconds=8.0))
+
+
+def test_a_simulation_that_stays_near_the_data_passes(short):
+    refuse_blow_up(mass(), short)
+
+
+def test_where_it_blows_up_and_what_drives_it_is_told(short):
+    wild = mass().with_effect(Term("load", "port", "wild", "k*exp(300*abs(x))"))
+    with pytest.raises(SimulationError, match=r"leaves it in trial \d after t = .* s, first in 'v'.*Check 'k'"):
+        refuse_blow_up(wild, short)

@@ -7,12 +7,11 @@ from hidden_in_a_mass import Experiment, mass, record, with_load
 
 from gaitdisc.discovery.by_gap_share import scale_of
 from gaitdisc.discovery.candidate import Candidate
-from gaitdisc.discovery.decision import held_out_proof
+from gaitdisc.discovery.decision import Verdict, held_out_proof
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.fitted_shape import fitted_shape
 from gaitdisc.discovery.problem import set_up_problem
 from gaitdisc.discovery.symbolic_regression import effect_of, read_instead, read_shape
-from gaitdisc.discovery.verdict import Verdict
 
 
 def asked(term):
