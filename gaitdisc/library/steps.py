@@ -121,8 +121,9 @@ def cycles(
     >>> strides.normalised(walk.stream("kinematics")).shape[1]
     101
     """
-    walk = trial_of(trial)
-    found = dict(chosen_contacts(walk, detector).contacts) if contacts is None else _given(contacts, side, walk)
+    found = (
+        dict(chosen_contacts(trial_of(trial), detector).contacts) if contacts is None else _given(contacts, side, trial)
+    )
     if side not in found:
         raise StrideError(
             f"cycles of side {side!r} begin at its initial contacts",
@@ -132,13 +133,15 @@ def cycles(
     return cut_strides(found[side], None if recording is None else recording_of(recording), min_s, max_s)
 
 
-def _given(contacts: Any, side: str, walk: Trial) -> dict[str, Contacts]:
+def _given(contacts: Any, side: str, trial: Walk) -> dict[str, Contacts]:
     """Contacts by side, as they were given."""
     if isinstance(contacts, Mapping):
         return dict(contacts)
     if isinstance(contacts, Contacts):
         return {contacts.side: contacts}
     time = np.asarray(contacts, float)
+    plain = hasattr(trial, "columns")  # a table in which nothing has to be found may have any names
+    walk = Trial("the table", {"signals": recording_of(trial)}) if plain else trial_of(trial)  # type: ignore[arg-type]
     latest = max((one.time[-1] for one in walk.streams.values()), default=np.inf)
     if time.size and np.nanmax(time) > latest:
         raise StrideError(
