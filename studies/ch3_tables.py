@@ -25,6 +25,7 @@ from markdown_table import markdown_table
 
 import gaitdisc as gd
 from gaitdisc.chapters.discrepancy.discrepancy_cell import FORECAST, ORACLE
+from gaitdisc.chapters.pages import exact_p
 from gaitdisc.chapters.pages.discrepancy import METHOD_WORDS
 
 IN_README = ("sindy", "dmd", "gp", "nn")
@@ -58,8 +59,7 @@ def rankings(table: pd.DataFrame) -> str:
                 ahead = factor * (by_seed.loc[:, one] - by_seed.loc[:, other]).dropna().to_numpy()
                 what = f"{name}, {noise:.1%} noise, {START_WORDS[part]}: {METHOD_WORDS[one]} against"
                 size = f"{np.median(ahead):+.2g} {'Lyapunov times' if number == 'valid' else 'points'}"
-                p = gd.signed_rank(0 * ahead, ahead).p
-                pairs.append((p, f"{what} {METHOD_WORDS[other]} {size} in the median, n = {len(ahead)}"))
+                pairs.append((exact_p(ahead), f"{what} {METHOD_WORDS[other]} {size} in the median, n = {len(ahead)}"))
     corrected = gd.holm_sidak([p for p, _ in pairs])
     sure = [
         f"{said}, p = {p:.3g} ({p_corrected:.2g} corrected)"

@@ -27,7 +27,7 @@ class Part(NamedTuple):
 
 
 PARTS = (
-    Part(3, "tables", "ch3_tables", "every table of 3.4, printed from the cells that come along", 0.2, 0.2,
+    Part(3, "tables", "ch3_tables", "every table of 3.4, printed from the cells that come along", 0.1, 0.1,
          ("all",), ("all",)),
     Part(3, "van_der_pol", "ch3_van_der_pol", "3.4.1, Figs. 3.2-3.5, 3.11", 20, 1, libraries=METHODS),
     Part(3, "lorenz", "ch3_lorenz", "3.4.2, Figs. 3.6-3.11", 25, 1.5, libraries=METHODS),

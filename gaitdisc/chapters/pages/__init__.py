@@ -2,5 +2,6 @@
 
 from gaitdisc.report.page import Block, write_blocks, write_markdown
 from gaitdisc.report.table import Table, save_table
+from gaitdisc.statistics.signed_rank import exact_p
 
-__all__ = ["Block", "Table", "save_table", "write_blocks", "write_markdown"]
+__all__ = ["Block", "Table", "exact_p", "save_table", "write_blocks", "write_markdown"]
