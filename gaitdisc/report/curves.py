@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
 WALKS = ("nominal", "exo")
+LOOKS = tuple(RECONSTRUCTED.values())
+BINS = np.arange(0.0, 101.0, 2.0)
+LATENT, MODES = "latent state of SHRED", "modes of the states"
 
 
 @in_style
@@ -188,11 +191,6 @@ def draw_recording(axes: Axes, recording: Recording, names: Sequence[str]) -> No
     units = list(dict.fromkeys(unit_text(channel.unit) for channel in chosen.channels))
     axes.set_ylabel(f"[{', '.join(units)}]")
     axes.legend(frameon=False)
-
-
-LOOKS = tuple(RECONSTRUCTED.values())
-BINS = np.arange(0.0, 101.0, 2.0)
-LATENT, MODES = "latent state of SHRED", "modes of the states"
 
 
 def course_numbers(phi: NDArray[np.float64], components: NDArray[np.float64]) -> pd.DataFrame:

@@ -58,6 +58,8 @@ COMPUTED = (
     "“Findings”. Moments and powers of these trials are shown for cycles whose stance is a step of this foot alone, "
     "seen whole, with centre of pressure, heel and toes on the plate."
 )
+COLUMNS, MOST_PANELS = 4, 20
+MOST_FAINT = 25  # cycles that are drawn one by one
 
 
 def write_cycles_page(run: ResponseRun, folder: Path) -> Path:
@@ -165,10 +167,6 @@ def _person(sets: Sequence[PooledCycles]) -> str:
             else f"{one.where}: no cycle, see “Left out”"
         )
     return f"{'; '.join(parts)}."
-
-
-COLUMNS, MOST_PANELS = 4, 20
-MOST_FAINT = 25  # cycles that are drawn one by one
 
 
 @in_style

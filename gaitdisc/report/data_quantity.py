@@ -23,6 +23,8 @@ GROUPS = {"angles": "joint angles", "EMG": "EMG envelopes"}
 HEIGHT = 2.3  # of a panel [inch]
 APART = 1.4  # least ratio of two lengths that are both written at the axis
 ENOUGH = 0.01  # as near to the whole training part as this
+_GROUPS = (("", 2), ("(i) Augmented to Exo, same length", 3), ("(ii) Exo to Exo of the whole training part", 3))
+_COLUMNS = ("training [s]", "n", "different", "which", "largest shift", "different", "which", "largest shift")
 
 
 @in_style
@@ -136,10 +138,6 @@ def _caption(run: ResponseRun, low: float) -> str:
 
 def _alt(run: ResponseRun) -> str:
     return f"R² of three models rising with the training length, for {counted(len(run.quantities), 'participant')}."
-
-
-_GROUPS = (("", 2), ("(i) Augmented to Exo, same length", 3), ("(ii) Exo to Exo of the whole training part", 3))
-_COLUMNS = ("training [s]", "n", "different", "which", "largest shift", "different", "which", "largest shift")
 
 
 def length_table(run: ResponseRun) -> Table | None:

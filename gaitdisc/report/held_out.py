@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 WINDOW_S = 4.0
 _DRAWN = ("nominal", "augmented")
 _BANDED, _BOUNDS = "augmented", ("low", "high")
+CONFIDENCE = 0.95
+MOST_VECTOR_POINTS = 6_000  # faint strides beyond this are drawn as pixels, or the page grows by megabytes
 
 
 @in_style
@@ -155,10 +157,6 @@ def _alt(response: ParticipantResponse, count: int, r2: pd.DataFrame) -> str:
         f"{number(r2['nominal_on_exo'].median())} for Nominal and {number(r2['augmented_on_exo'].median())} "
         f"for Augmented."
     )
-
-
-CONFIDENCE = 0.95
-MOST_VECTOR_POINTS = 6_000  # faint strides beyond this are drawn as pixels, or the page grows by megabytes
 
 
 @in_style

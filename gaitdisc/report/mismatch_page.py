@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 Draw = Callable[["Axes", pd.DataFrame, list[dict[str, Any]], str], None]
 COLUMNS, MOST_ROWS = 3, 4
 SHADE = "#f2b632"  # a gap; no side and no model has this colour
+HEADINGS = ("channel", "stride [%]", "gap", "at [%]", "in sd", "p")
 
 
 @in_style
@@ -172,9 +173,6 @@ def _alt(mismatch: Mismatch, names: list[str]) -> str:
         size = f"{largest[np.argmax(np.abs(largest))]:.3g}"
         parts.append(f"{spoken(name)} {size}" + (f", differs at {spans}" if spans else ", no gap seen"))
     return f"{mismatch.first} against {mismatch.second} over the stride. Largest gaps: {'; '.join(parts)}."
-
-
-HEADINGS = ("channel", "stride [%]", "gap", "at [%]", "in sd", "p")
 
 
 def regions_table(mismatch: Mismatch) -> Table:

@@ -22,6 +22,15 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Item = TypeVar("Item")
+MEASURES = {"peak_to_peak": "peak to peak", "rms": "root mean square"}
+OFFSETS = {"augmented": -0.18, "exo": 0.18}
+LOWEST = -100.0  # percent; what a model makes more than twice as large stands at the edge
+BASELINE_WORDS = {
+    "ridge": "ridge with phase harmonics",
+    "linear": "ridge on the network’s inputs",
+    "null": "the null of the filters",
+}
+_COLUMNS = ("variable", "model", "n", *(f"against {words}" for words in BASELINE_WORDS.values()))
 
 
 def over_blocks(run: ResponseRun) -> list[Block]:
@@ -66,11 +75,6 @@ def responder_table(run: ResponseRun) -> Table | None:
 
 def _there(thing: Item | None) -> tuple[Item, ...]:
     return () if thing is None else (thing,)
-
-
-MEASURES = {"peak_to_peak": "peak to peak", "rms": "root mean square"}
-OFFSETS = {"augmented": -0.18, "exo": 0.18}
-LOWEST = -100.0  # percent; what a model makes more than twice as large stands at the edge
 
 
 @in_style
@@ -194,14 +198,6 @@ def _caption(run: ResponseRun) -> str:
 
 def _alt(run: ResponseRun) -> str:
     return " ".join(reduction_sentences(run))
-
-
-BASELINE_WORDS = {
-    "ridge": "ridge with phase harmonics",
-    "linear": "ridge on the network’s inputs",
-    "null": "the null of the filters",
-}
-_COLUMNS = ("variable", "model", "n", *(f"against {words}" for words in BASELINE_WORDS.values()))
 
 
 def baseline_table(run: ResponseRun) -> Table | None:

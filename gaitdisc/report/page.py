@@ -18,6 +18,9 @@ from gaitdisc.whole_file import write_whole
 if TYPE_CHECKING:
     import jinja2
 
+Result = TypeVar("Result")
+MOST_PROCESSES = 4  # that draw; each holds some 400 MB
+
 
 def write_page(template: str, shown: Mapping[str, Any], folder: Path) -> Path:
     """Write `report.html` of a folder.
@@ -91,10 +94,6 @@ def write_markdown(blocks: Sequence[Block], folder: Path) -> Path:
     """Write all tables of a page once more as Markdown, each under the heading of its block: `tables.md`."""
     text = "\n\n".join(f"{block.heading}\n\n{as_markdown(table)}" for block in blocks for table in block.tables)
     return write_whole(folder / "tables.md", text + "\n")
-
-
-Result = TypeVar("Result")
-MOST_PROCESSES = 4  # that draw; each holds some 400 MB
 
 
 def drawn_side_by_side(draw: Callable[..., Result], each: Sequence[tuple[Any, ...]], alone: int) -> list[Result]:

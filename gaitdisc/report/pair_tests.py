@@ -34,6 +34,10 @@ _COLUMNS = (
     "variable", "{first}", "{second}", "n", "zeros", "W", "p", "level of its step", "adjusted p", "{second} is",
     "median", "shift [95 %]", "rank-biserial",
 )  # fmt: skip
+MOST = 10  # variables in one figure
+HEIGHT = 3.1  # of the panel [inch]
+PLACES = {"nominal": -0.27, "augmented": 0.0, "exo": 0.27}
+BARS = (("nominal", "augmented"), ("augmented", "exo"), ("nominal", "exo"))  # the longest lies highest
 
 
 def comparison_tables(run: ResponseRun) -> list[Table]:
@@ -200,12 +204,6 @@ def _range(values: pd.Series, form: str) -> str:
         return "–"
     low, high = f"{values.min():{form}}", f"{values.max():{form}}"
     return low if low == high else f"{low} to {high}"
-
-
-MOST = 10  # variables in one figure
-HEIGHT = 3.1  # of the panel [inch]
-PLACES = {"nominal": -0.27, "augmented": 0.0, "exo": 0.27}
-BARS = (("nominal", "augmented"), ("augmented", "exo"), ("nominal", "exo"))  # the longest lies highest
 
 
 @in_style

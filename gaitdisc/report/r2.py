@@ -19,6 +19,14 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
+_JUDGED = (("nominal", "nominal"), ("nominal", "exo"), ("augmented", "exo"), ("exo", "exo"))
+LOWEST = -0.25  # R2 below this is drawn as an arrow at the edge, with its value
+FEWEST_FOR_BOXES = 5
+MOST_VALUES = 3  # that are written one by one
+ROW_IN, LABELLED_ROW_IN = 0.36, 0.5  # a row's height; three lines of labels need more
+_OFFSETS = {"nominal": -0.24, "augmented": 0.0, "exo": 0.24}
+_R2_GROUPS = (("", 1), ("network", 4), ("ridge, phase harmonics", 4), ("ridge, inputs alone", 3), ("noise", 1))
+
 
 @dataclass(frozen=True)
 class R2Column:
@@ -37,7 +45,6 @@ class R2Column:
         return MODEL_WORDS[self.model] + (", no device" if self.walk == "nominal" else "")
 
 
-_JUDGED = (("nominal", "nominal"), ("nominal", "exo"), ("augmented", "exo"), ("exo", "exo"))
 R2_TABLE = (
     *(R2Column(f"{model}_on_{walk}", model, "network", walk) for model, walk in _JUDGED),
     *(R2Column(f"ridge_{model}_on_{walk}", model, "ridge", walk) for model, walk in _JUDGED),
@@ -114,13 +121,6 @@ def held_out_text(run: ResponseRun) -> str:
     """Length of the held-out part in words [s]: one number, the few that there are, or their range."""
     seconds = sorted({f"{response.held_out_s:.4g}" for response in run.responses}, key=float)
     return " or ".join(seconds) if len(seconds) < 4 else f"{seconds[0]} to {seconds[-1]}"
-
-
-LOWEST = -0.25  # R2 below this is drawn as an arrow at the edge, with its value
-FEWEST_FOR_BOXES = 5
-MOST_VALUES = 3  # that are written one by one
-ROW_IN, LABELLED_ROW_IN = 0.36, 0.5  # a row's height; three lines of labels need more
-_OFFSETS = {"nominal": -0.24, "augmented": 0.0, "exo": 0.24}
 
 
 @in_style
@@ -279,9 +279,6 @@ def _alt(run: ResponseRun, numbers: pd.DataFrame) -> str:
     ]
     count = numbers["variable"].nunique()
     return f"R² of {counted(count, 'variable')} on the held-out device walk of {run.title}: {'; '.join(parts)}."
-
-
-_R2_GROUPS = (("", 1), ("network", 4), ("ridge, phase harmonics", 4), ("ridge, inputs alone", 3), ("noise", 1))
 
 
 def r2_table(response: ParticipantResponse, name: str) -> Table:

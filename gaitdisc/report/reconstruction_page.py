@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 
 WITH_SENSORS, COVERAGE = "with sensors [1]", "coverage [%]"  # left out where there is little room
 BESIDE = ("shred", "fourier ridge", "delay ridge", "linear", *FLOORS)
+MOST_PANELS = 16
+MOST_DRAWN = 4  # participants whose curves stand in the page; the numbers of all are in errors.csv and curves.csv
+FINDINGS = "Findings in the recordings, n = {}; windows on plateaus and filled gaps are used as they are."
 
 
 def models_table(done: Reconstruction) -> Table:
@@ -200,9 +203,6 @@ def _rmse(value: Any, unit: str) -> str:
     return _plain(value, max(0, 2 - leading))  # three digits of volts, metres and newtons alike
 
 
-MOST_PANELS = 16
-
-
 @in_style
 def reconstruction_figures(done: Reconstruction, participant: str, name: str) -> list[Figure]:
     """One panel a state: the mean of what was measured with its spread, and what the models tell."""
@@ -263,10 +263,6 @@ def draw_state(axes: Axes, numbers: pd.DataFrame) -> None:
             axes.fill_between(rows["percent"], low, high, color=MEASURED.colour, alpha=0.2, linewidth=0)
         look = RECONSTRUCTED[str(model).removesuffix(", calibrated")]
         axes.plot(rows["percent"], rows["reconstructed"], color=look.colour, linestyle=look.line, linewidth=1.1)
-
-
-MOST_DRAWN = 4  # participants whose curves stand in the page; the numbers of all are in errors.csv and curves.csv
-FINDINGS = "Findings in the recordings, n = {}; windows on plateaus and filled gaps are used as they are."
 
 
 def write_reconstruction_report(done: Reconstruction, folder: Path) -> Path:

@@ -21,6 +21,7 @@ from gaitdisc.results import ResponseRun
 
 FIGURES_A_PERSON = 5
 MOST_OPEN = 2  # with more participants than this, the first screen is brief and their sections are folded
+_FILTER_WORDS = ("filter", "cutoff", "low_pass", "high_pass", "lowpass", "highpass", "order", "envelope", "band")
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,9 +117,6 @@ def _section(run: ResponseRun, person: str, name: str, folder: Path, limit: int)
         dropped,
         {subject: save_figures(figures, folder, limit) for subject, figures in drawn.items()},
     )
-
-
-_FILTER_WORDS = ("filter", "cutoff", "low_pass", "high_pass", "lowpass", "highpass", "order", "envelope", "band")
 
 
 def method_sentences(run: ResponseRun) -> list[str]:

@@ -25,6 +25,7 @@ PAGES = {  # what a result is, what draws its page, and the folder of the page i
     "Reconstruction": ("reconstruction_page:write_reconstruction_report", ""),
     "VariantRun": ("variants:write_variants", ""),
 }
+DRAWN = "drawn.json"  # in the folder of the report: what it was drawn of, and hashes of all its files
 
 
 def draw_saved(folder: Path) -> dict[str, Path]:
@@ -54,9 +55,6 @@ def _drawn(result: Any, folder: Path) -> Path:
     module, _, name = place.partition(":")
     write: Callable[[Any, Path], Path] = getattr(import_module(f"gaitdisc.report.{module}"), name)
     return write(result, folder / inside)
-
-
-DRAWN = "drawn.json"  # in the folder of the report: what it was drawn of, and hashes of all its files
 
 
 def page_of(run_folder: Path, draw: Callable[[], Path]) -> Path:

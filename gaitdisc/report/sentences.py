@@ -24,6 +24,10 @@ if TYPE_CHECKING:
 MARGIN = 0.005  # a difference in R2 that two printed digits cannot show is called none
 MOST_NAMED = 6  # variables in one sentence
 _ON_EXO = {model: f"{model}_on_exo" for model in ("nominal", "augmented", "exo")}
+_SHOWN = [
+    column for column in R2_TABLE if (column.kind, column.walk) != ("ridge", "nominal") and column.kind != "linear"
+]
+_SHORT = {"nominal": "Nominal", "augmented": "Augm.", "exo": "Exo", "": "null"}
 
 
 def study_sentences(run: ResponseRun) -> list[str]:
@@ -189,12 +193,6 @@ def _median_iqr(values: pd.Series) -> str:
     q1, middle, q3 = np.quantile(values.dropna(), [0.25, 0.5, 0.75])
     some = f" (n = {known})" if known < len(values) else ""
     return f"{number(middle)} [{number(q1)}, {number(q3)}]{some}"
-
-
-_SHOWN = [
-    column for column in R2_TABLE if (column.kind, column.walk) != ("ridge", "nominal") and column.kind != "linear"
-]
-_SHORT = {"nominal": "Nominal", "augmented": "Augm.", "exo": "Exo", "": "null"}
 
 
 def r2_text(run: ResponseRun) -> rich.table.Table:

@@ -20,6 +20,11 @@ GROUPS = {"angles": "joint angles predicted", "EMG": "EMG predicted"}
 SHOWN = ("augmented", "exo")
 ROW = 0.19  # inch
 FARTHEST = 1.0  # a fall beyond it is drawn at the edge
+HEADINGS = ("Nominal", "Augmented", "Exo", "null")
+TITLES = {
+    "modalities": "Which inputs carry the response",
+    "sensitivity": "Other cut-offs and training lengths",
+}
 
 
 @in_style
@@ -149,9 +154,6 @@ def _alt(numbers: pd.DataFrame) -> str:
     return f"Fall of R² without each of {len(own)} families of inputs; the largest is without {own.idxmax()}."
 
 
-HEADINGS = ("Nominal", "Augmented", "Exo", "null")
-
-
 def setting_medians(run: VariantRun) -> pd.DataFrame:
     """Median over participants of the median over variables, for each setting, group of variables and model.
 
@@ -254,12 +256,6 @@ def sensitivity_sentences(run: VariantRun) -> tuple[str, ...]:
         who, why = ", ".join(each.participant for each in whom), whom[0].left_away[name]
         said.append(f"{name} is left away for {who}: {why}")
     return tuple(said)
-
-
-TITLES = {
-    "modalities": "Which inputs carry the response",
-    "sensitivity": "Other cut-offs and training lengths",
-}
 
 
 def write_variants(run: VariantRun, folder: Path) -> Path:

@@ -22,6 +22,24 @@ LIGHTS = {
 }
 NONE = "–"  # cell of what has no value
 _TRANSLATIONS = {"pelvis_tx": "pelvis fore-aft", "pelvis_ty": "pelvis vertical", "pelvis_tz": "pelvis sideways"}
+# meaning of a larger value -> what the joint is then, and what it is when the value is smaller
+DIRECTIONS = {
+    "dorsiflexion": ("dorsiflexed", "plantarflexed"),
+    "flexion": ("flexed", "extended"),
+    "adduction": ("adducted", "abducted"),
+    "internal rotation": ("internally rotated", "externally rotated"),
+    "inversion": ("inverted", "everted"),
+}
+JOINTS = {
+    "hip_flexion": "hip",
+    "hip_adduction": "hip",
+    "hip_rotation": "hip",
+    "knee_angle": "knee",
+    "knee_adduction": "knee",
+    "knee_rotation": "knee",
+    "ankle_angle": "ankle",
+    "subtalar_angle": "subtalar joint",
+}
 
 
 def sideless(name: str) -> str:
@@ -114,26 +132,6 @@ def listed(words: list[str]) -> str:
 def _meaning(name: str) -> str:
     meaning = vocabulary().positive.get(name, "")
     return re.split(r" \(|,", meaning)[0].strip()
-
-
-# meaning of a larger value -> what the joint is then, and what it is when the value is smaller
-DIRECTIONS = {
-    "dorsiflexion": ("dorsiflexed", "plantarflexed"),
-    "flexion": ("flexed", "extended"),
-    "adduction": ("adducted", "abducted"),
-    "internal rotation": ("internally rotated", "externally rotated"),
-    "inversion": ("inverted", "everted"),
-}
-JOINTS = {
-    "hip_flexion": "hip",
-    "hip_adduction": "hip",
-    "hip_rotation": "hip",
-    "knee_angle": "knee",
-    "knee_adduction": "knee",
-    "knee_rotation": "knee",
-    "ankle_angle": "ankle",
-    "subtalar_angle": "subtalar joint",
-}
 
 
 def region_words(row: Mapping[str, Any]) -> str:

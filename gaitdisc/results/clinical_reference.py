@@ -21,6 +21,9 @@ from gaitdisc.whole_file import write_whole
 COLUMNS = ("group", "speed_low", "speed_high", "people", "variable", "percent", "mean", "sd")
 FEWEST_POINTS = 20  # a curve of fewer is none
 FORM = f"a published reference is a CSV with {', '.join(COLUMNS)}, after a line '# source, who, licence'"
+FILE, FORMAT = "reference.json", 1
+PUBLISHED = "published.csv"
+DIGITS = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,11 +71,6 @@ def _group(name: str, rows: pd.DataFrame, file: str) -> PublishedGroup:
         )
     people = max(band.people for band in bands.values())
     return PublishedGroup(name, (float(first["speed_low"]), float(first["speed_high"])), people, bands)
-
-
-FILE, FORMAT = "reference.json", 1
-PUBLISHED = "published.csv"
-DIGITS = 4
 
 
 @dataclass(frozen=True, eq=False)

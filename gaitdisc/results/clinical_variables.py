@@ -5,6 +5,35 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 KINEMATICS, MOMENTS, POWERS, FORCES = "kinematics", "moments", "powers", "forces"
+# The nine curves of the movement analysis profile (Baker et al. 2009), those of the pelvis first.
+PROFILE = (
+    "pelvis_tilt", "pelvis_obliquity", "pelvis_rotation", "hip_flexion", "hip_adduction", "hip_rotation",
+    "knee_flexion", "ankle_dorsiflexion", "foot_progression",
+)  # fmt: skip
+PELVIS = PROFILE[:3]
+# [% of the cycle]; healthy adults at their own speed, about, after Perry J, Burnfield JM 2010, Gait Analysis: Normal
+# and Pathological Function, 2nd ed.; children and other speeds differ.
+NORMAL: dict[str, tuple[tuple[int, int], ...]] = {
+    "gmax": ((0, 24), (95, 100)),
+    "gmed": ((0, 29), (95, 100)),
+    "tfl": ((0, 45),),
+    "rf": ((56, 64),),
+    "vas": ((0, 18), (86, 100)),
+    "vasmed": ((0, 15), (90, 100)),
+    "vaslat": ((0, 20), (86, 100)),
+    "ham": ((0, 8), (80, 100)),
+    "bf": ((0, 8), (82, 100)),
+    "st": ((0, 4), (75, 100)),
+    "sol": ((7, 52),),
+    "gas": ((9, 50),),
+    "gasmed": ((9, 50),),
+    "gaslat": ((9, 50),),
+    "ta": ((0, 12), (56, 100)),
+    "tp": ((0, 55),),
+    "per": ((15, 51),),
+    "perl": ((15, 51),),
+    "perb": ((15, 51),),
+}
 
 
 @dataclass(frozen=True)
@@ -81,34 +110,3 @@ VARIABLES = (
     _force("fore_aft_force", "fore-aft force, of body weight", "vx", "forwards", "backwards", 1),
 )
 BY_NAME = {one.name: one for one in VARIABLES}
-# The nine curves of the movement analysis profile (Baker et al. 2009), those of the pelvis first.
-PROFILE = (
-    "pelvis_tilt", "pelvis_obliquity", "pelvis_rotation", "hip_flexion", "hip_adduction", "hip_rotation",
-    "knee_flexion", "ankle_dorsiflexion", "foot_progression",
-)  # fmt: skip
-PELVIS = PROFILE[:3]
-
-
-# [% of the cycle]; healthy adults at their own speed, about, after Perry J, Burnfield JM 2010, Gait Analysis: Normal
-# and Pathological Function, 2nd ed.; children and other speeds differ.
-NORMAL: dict[str, tuple[tuple[int, int], ...]] = {
-    "gmax": ((0, 24), (95, 100)),
-    "gmed": ((0, 29), (95, 100)),
-    "tfl": ((0, 45),),
-    "rf": ((56, 64),),
-    "vas": ((0, 18), (86, 100)),
-    "vasmed": ((0, 15), (90, 100)),
-    "vaslat": ((0, 20), (86, 100)),
-    "ham": ((0, 8), (80, 100)),
-    "bf": ((0, 8), (82, 100)),
-    "st": ((0, 4), (75, 100)),
-    "sol": ((7, 52),),
-    "gas": ((9, 50),),
-    "gasmed": ((9, 50),),
-    "gaslat": ((9, 50),),
-    "ta": ((0, 12), (56, 100)),
-    "tp": ((0, 55),),
-    "per": ((15, 51),),
-    "perl": ((15, 51),),
-    "perb": ((15, 51),),
-}

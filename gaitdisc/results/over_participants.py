@@ -15,6 +15,22 @@ TEST_COLUMNS = (
     "median_first", "median_second", "median_difference", "shift", "low", "high", "rank_biserial", "left_out",
 )  # fmt: skip
 FAMILY_COLUMNS = ("family", "first", "second", "variable", "tests", "critical", "step_level", "p_adjusted", "different")
+WHOLE = "exo, whole training part"
+LENGTH_COLUMNS = ("length_s", *TEST_COLUMNS)
+REDUCTION_COLUMNS = (
+    "participant", "variable", "unit", "model", "strides", "peak_to_peak", "rms",
+    "peak_to_peak_reduction", "rms_reduction",
+)  # fmt: skip
+REDUCTION_TEST_COLUMNS = ("measure", *TEST_COLUMNS)
+BASELINE_COLUMNS = ("model", *TEST_COLUMNS)
+RESPONDER_COLUMNS = ("participant", "group", "count", "silhouette", "p", "stability")
+TABLES = {
+    "lengths": LENGTH_COLUMNS,
+    "reductions": REDUCTION_COLUMNS,
+    "reduction_tests": REDUCTION_TEST_COLUMNS,
+    "baselines": BASELINE_COLUMNS,
+    "responders": RESPONDER_COLUMNS,
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,24 +67,6 @@ class PairTests:
     def of_pair(self, first: str, second: str) -> pd.DataFrame:
         """Tests of one pair of models, one row a variable."""
         return self.tests[(self.tests["first"] == first) & (self.tests["second"] == second)]
-
-
-WHOLE = "exo, whole training part"
-LENGTH_COLUMNS = ("length_s", *TEST_COLUMNS)
-REDUCTION_COLUMNS = (
-    "participant", "variable", "unit", "model", "strides", "peak_to_peak", "rms",
-    "peak_to_peak_reduction", "rms_reduction",
-)  # fmt: skip
-REDUCTION_TEST_COLUMNS = ("measure", *TEST_COLUMNS)
-BASELINE_COLUMNS = ("model", *TEST_COLUMNS)
-RESPONDER_COLUMNS = ("participant", "group", "count", "silhouette", "p", "stability")
-TABLES = {
-    "lengths": LENGTH_COLUMNS,
-    "reductions": REDUCTION_COLUMNS,
-    "reduction_tests": REDUCTION_TEST_COLUMNS,
-    "baselines": BASELINE_COLUMNS,
-    "responders": RESPONDER_COLUMNS,
-}
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,6 +19,7 @@ BASELINES = ("ridge", "linear", "null")
 KINDS = ("network", *BASELINES)
 R2_COLUMNS = ("variable", "model", "kind", "walk", "r2", "n")
 FIT_COLUMNS = ("model", "kind", "decay", "epochs", "n_training", "n_inner")
+QUANTITY_COLUMNS = ("length_s", "n_training", *R2_COLUMNS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,9 +94,6 @@ class ParticipantResponse:
         """R2 by variable, model, kind and walk: a report asks for each of them many times."""
         columns = (self.r2[name] for name in ("variable", "model", "kind", "walk", "r2"))
         return {(v, model, kind, walk): float(value) for v, model, kind, walk, value in zip(*columns, strict=True)}
-
-
-QUANTITY_COLUMNS = ("length_s", "n_training", *R2_COLUMNS)
 
 
 @dataclass(frozen=True, eq=False)

@@ -53,7 +53,7 @@ class Form(Generic[T]):
     named: tuple[str, ...]  # what the JSON file says, in its order: fields, or properties that are not read back
     tables: Mapping[str, CSV] = field(default_factory=dict)  # by field
     arrays: Mapping[str, Callable[[Arrays], Any]] = field(default_factory=dict)  # field -> how it is made of the arrays
-    written: Callable[[T], Mapping[str, NDArray[np.float64]]] = lambda _: {}  # all arrays by name
+    written: Callable[[T], Mapping[str, NDArray[np.float64]]] | None = None  # all arrays by name
     later: bool = True  # whether arrays are read when they are looked at
     keyed: bool = True  # whether the JSON file says what the result was computed from
     reasons: str = ""  # what the keys of `left_away` are called
@@ -67,7 +67,7 @@ class Form(Generic[T]):
         data |= {name: _plain(getattr(result, name), self.reasons) for name in self.named}
         tables = {csv.file: getattr(result, name) for name, csv in self.tables.items()}
         there = {file: table for file, table in tables.items() if table is not None}
-        save_unit(folder, self.name, data, there, self.written(result))
+        save_unit(folder, self.name, data, there, self.written(result) if self.written else {})
 
     def load(self, folder: Path) -> T:
         """Load a result."""

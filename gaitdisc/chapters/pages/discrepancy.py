@@ -54,6 +54,10 @@ KNOWN, AUGMENTED = Look("#1f4fc8", "-", ""), Look("#111111", (0, (4.0, 1.6)), ""
 HORIZONS_S = tuple(np.round(np.geomspace(0.2, 20.0, 40), 2))
 MOST_DRAWN = 1000  # points of a line
 BAR = 0.16  # of the distance between two noises, for one method
+MOST_TERMS = 110  # characters
+COEFFICIENT = r"(?<![*\w.])-?[0-9.]+(e[-+]?[0-9]+)?\*"  # of a term, but no power
+WORST_SAID = -1000.0  # %: how much worse a run is whose error is eleven times the known model's, rounding decides
+MOST_CHANNELS = 4  # that are listed one by one
 
 
 @in_style
@@ -307,12 +311,6 @@ def _patches(looks: dict[str, Look]) -> list[Artist]:
     from matplotlib.patches import Patch
 
     return [Patch(color=look.colour, label=words) for words, look in looks.items()]
-
-
-MOST_TERMS = 110  # characters
-COEFFICIENT = r"(?<![*\w.])-?[0-9.]+(e[-+]?[0-9]+)?\*"  # of a term, but no power
-WORST_SAID = -1000.0  # %: how much worse a run is whose error is eleven times the known model's, rounding decides
-MOST_CHANNELS = 4  # that are listed one by one
 
 
 def grid_table(cells: Sequence[DiscrepancyCell], name: str) -> Table:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 SENSOR_COLOUR = "#111111"
 ROUTE_COLOURS = ("#c8102e", "#1f4fc8", "#00875a", "#d97700", "#7a3fa0")
+SHELL = re.compile(r"e_(\d+)")
 
 
 @in_style
@@ -104,9 +105,6 @@ def _span(values: NDArray[np.float64]) -> tuple[float, float]:
     if low < 0 < high:
         return 0.0, float(max(-low, high))
     return float((low + high) / 2), float((high - low) / 2) or 1.0
-
-
-SHELL = re.compile(r"e_(\d+)")
 
 
 @in_style

@@ -18,6 +18,19 @@ if TYPE_CHECKING:
 
 MOST_WORDS = 120  # characters of an answer
 TOOL_WORDS = {"discover": "discover", "sindy": "SINDy", "dmd": "DMD", "gp": "Gaussian process", "nn": "network"}
+RIGHT, HALF, WRONG, SILENT, CURVE = "#00875a", "#8fd0b5", "#d97700", "#ffffff", "#c9ced6"
+EDGE = "#555555"
+LOOKS = {
+    "right": (RIGHT, "N", "right, and nothing else"),
+    "tied": (HALF, "T", "right or another, tied"),
+    "among others": (HALF, "A", "right among others"),
+    "wrong name": (WRONG, "W", "wrong name"),
+    "curve": (CURVE, "C", "a curve, no name"),
+    "nothing": (SILENT, "–", "nothing found"),
+    "refused": (SILENT, "R", "refused"),
+}
+ROW, LEFT = 0.27, 1.75  # inch
+FEW, MANY = -999.0, 99.5  # accuracies beyond are written as such
 
 
 def naming_table(namings: Sequence[Naming], name: str) -> Table:
@@ -63,21 +76,6 @@ def _said(found: pd.DataFrame) -> str:
     first = str(found["said"].iloc[0]).split(";")[0]
     shown = found["answer"].iloc[0] in ("curve", "refused") and len(first) < MOST_WORDS
     return f"{words}: {first}" if shown else words
-
-
-RIGHT, HALF, WRONG, SILENT, CURVE = "#00875a", "#8fd0b5", "#d97700", "#ffffff", "#c9ced6"
-EDGE = "#555555"
-LOOKS = {
-    "right": (RIGHT, "N", "right, and nothing else"),
-    "tied": (HALF, "T", "right or another, tied"),
-    "among others": (HALF, "A", "right among others"),
-    "wrong name": (WRONG, "W", "wrong name"),
-    "curve": (CURVE, "C", "a curve, no name"),
-    "nothing": (SILENT, "–", "nothing found"),
-    "refused": (SILENT, "R", "refused"),
-}
-ROW, LEFT = 0.27, 1.75  # inch
-FEW, MANY = -999.0, 99.5  # accuracies beyond are written as such
 
 
 @in_style

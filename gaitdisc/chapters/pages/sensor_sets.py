@@ -18,6 +18,20 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 STEP, PITCH = 0.23, 1.4  # from one box to the next, and from one sensor set to the next
+MEASURES = ("rmse_deg", "relative_l2", "relative_l2_whole", "r2", "coverage", "seconds")
+NOT_MSE = (
+    "The dissertation calls the norm of the error by the norm of the measured values “MSE” (Eq. 2.21, Table 5.2) and "
+    "prints it in degrees; it has no unit. It is compared with the relative L2 here, and with no number in degrees."
+)
+LESS_THAN_NOTHING = (
+    "A relative L2 above 1 is worse than estimating zero; the table prints such values for linear and SDN, so its norm "
+    "may be of something else than angles about zero. It has no model that sees history without being a network, and "
+    "does not say how time was split or how long the history was: no claim of better or worse is made."
+)
+AXES = {
+    "noise": "noise of the sensors [% of their standard deviation]",
+    "missing": "missing readings [%]",
+}
 
 
 @in_style
@@ -59,18 +73,6 @@ def _draw(axes: Axes, errors: pd.DataFrame, models: list[str]) -> None:
     decades(axes)
     axes.set_xticks([PITCH * place for place in range(len(sets))], sets)
     axes.set_xlim(-PITCH / 2, PITCH * (len(sets) - 0.5))
-
-
-MEASURES = ("rmse_deg", "relative_l2", "relative_l2_whole", "r2", "coverage", "seconds")
-NOT_MSE = (
-    "The dissertation calls the norm of the error by the norm of the measured values “MSE” (Eq. 2.21, Table 5.2) and "
-    "prints it in degrees; it has no unit. It is compared with the relative L2 here, and with no number in degrees."
-)
-LESS_THAN_NOTHING = (
-    "A relative L2 above 1 is worse than estimating zero; the table prints such values for linear and SDN, so its norm "
-    "may be of something else than angles about zero. It has no model that sees history without being a network, and "
-    "does not say how time was split or how long the history was: no claim of better or worse is made."
-)
 
 
 def sensor_sets_table(summary: pd.DataFrame, printed: pd.DataFrame, name: str, rule: str) -> Table:
@@ -176,12 +178,6 @@ def search_sentences(found: pd.DataFrame) -> list[str]:
         said += "was tried"
     cost = f"{counted(int(found['fits'].sum()), 'regression')}, {found['seconds'].sum():.1f} s"
     return [f"{said} (search: {cost})."]
-
-
-AXES = {
-    "noise": "noise of the sensors [% of their standard deviation]",
-    "missing": "missing readings [%]",
-}
 
 
 @in_style

@@ -22,6 +22,8 @@ WIDTH, HEIGHT = 240, 165
 LEFT, RIGHT, TOP, BOTTOM = 34, 236, 8, 143  # of the axes
 DASHES = {"l": "", "r": "5 1.6", "": ""}  # so that grey print tells left from right
 BAR = 5  # height of a bar below the curves
+SHORT = {"l": "L", "r": "R"}
+MOST_SINGLE = 12  # cycles of a leg that are drawn one by one
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,10 +177,6 @@ def _axes(panel: Panel, low: float, high: float, y) -> list[str]:
     if panel.down:
         parts.append(f'<text class="sign" x="{LEFT + 4}" y="{BOTTOM - 4}">↓ {escape(panel.down)}</text>')
     return parts
-
-
-SHORT = {"l": "L", "r": "R"}
-MOST_SINGLE = 12  # cycles of a leg that are drawn one by one
 
 
 def sheet(reading: ClinicalReading, *kinds: str) -> list[Panel]:

@@ -46,6 +46,14 @@ MOMENT_SIGNS = (
     "positive where generated; forces are of the ground on the foot. Only cycles whose whole stance lay on one plate, "
     "with this foot alone on it."
 )
+EMG = (
+    "Envelopes in percent of the largest of the leg's own mean. Dark bars: when the muscle is active in the walking of "
+    "healthy adults, about (Perry and Burnfield 2010); a muscle without a bar has none there."
+)
+CONSISTENCY = (
+    f"Single cycles thin (the first {MOST_SINGLE}), mean thick. CMC: coefficient of multiple correlation of a leg's "
+    f"cycles (Kadaba 1989), 1 where all are alike; – where there is one cycle or it is not defined."
+)
 
 
 def page_names(titles: Sequence[str]) -> list[str]:
@@ -110,16 +118,6 @@ def _condition(reading: ClinicalReading, beside: Path, prefix: str, say: PageWor
         "numbers": _saved(numbers_table(reading), beside, stem, say),
         "profile": _saved(profile, beside, stem, say) if profile else None,
     }
-
-
-EMG = (
-    "Envelopes in percent of the largest of the leg's own mean. Dark bars: when the muscle is active in the walking of "
-    "healthy adults, about (Perry and Burnfield 2010); a muscle without a bar has none there."
-)
-CONSISTENCY = (
-    f"Single cycles thin (the first {MOST_SINGLE}), mean thick. CMC: coefficient of multiple correlation of a leg's "
-    f"cycles (Kadaba 1989), 1 where all are alike; – where there is one cycle or it is not defined."
-)
 
 
 def _sheet(panels: list[Panel], caption: str, place: tuple[Path, str], say: PageWords) -> dict[str, Any]:

@@ -17,6 +17,8 @@ from gaitdisc.results.clinical_reading import ClinicalReading, Profile, Score
 from gaitdisc.results.clinical_variables import BY_NAME, PROFILE
 from gaitdisc.results.leg_curves import FEET
 
+WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 240, 365, 104, 232, 6, 346
+
 
 def values_table(reading: ClinicalReading) -> Table:
     """Spatiotemporal values of both legs, of the reference, and their asymmetry."""
@@ -108,9 +110,6 @@ def _cell(values: np.ndarray | None, digits: int) -> str:
         return NONE
     spread = f" ± {float(values.std(ddof=1)):.{digits}f}" if len(values) > 1 else ""
     return f"{number(float(values.mean()), digits)}{spread} ({len(values)})"
-
-
-WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 240, 365, 104, 232, 6, 346
 
 
 def profile_svg(profile: Profile, say: Callable[[str], str] = str) -> str:

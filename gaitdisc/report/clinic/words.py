@@ -30,6 +30,8 @@ TABLES = (  # headings and cells of tables, and the words between numbers in a s
 )  # fmt: skip
 HEADER = ("English", "other")
 LARGEST_BYTES = 2**20
+MOST = 6  # sentences of what stands out
+MOST_SPANS = 6
 
 
 @dataclass(frozen=True)
@@ -108,10 +110,6 @@ def read_words(path: Path, english: Sequence[str]) -> PageWords:
             )
         other |= {word: said} if said else {}
     return PageWords(other)
-
-
-MOST = 6  # sentences of what stands out
-MOST_SPANS = 6
 
 
 def noted_sentences(noted: Sequence[Noted], say: Callable[[str], str] = str) -> list[str]:
