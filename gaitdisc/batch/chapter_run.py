@@ -70,7 +70,7 @@ def run_part(
 
 def _stands(folder: Path, begun: dict[str, Any]) -> bool:
     """Whether the part was finished there by this code; refused where the folder holds something else."""
-    if not folder.is_dir() or not any(path.name != ".lock" for path in folder.iterdir()):
+    if not folder.is_dir() or not any(not path.name.startswith(".lock") for path in folder.iterdir()):
         return False
     if not (folder / NAME).is_file():
         raise SchemaError(

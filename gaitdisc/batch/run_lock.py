@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import socket
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
+
+from filelock import BaseFileLock, FileLock, SoftFileLock, Timeout
 
 from gaitdisc.errors import WriteError
 from gaitdisc.whole_file import sweep_parts
+
+# How long a folder is tried [s]: a lock file that its last holder deletes under our hand is made anew at once.
+PATIENCE_S = 0.2
 
 
 @contextmanager
@@ -20,56 +26,57 @@ def run_lock(folder: Path) -> Iterator[None]:
 
     The system itself frees the lock of a process that ends, however it ends; that a number of a process is given to
     another afterwards, as in a container that is started again, does no harm. Between machines that share a disk such
-    locks are not to be relied on: a lock file of another machine is believed. POSIX only: Windows has no such lock.
+    locks are not to be relied on: what another machine wrote into .lock is believed.
 
     >>> import tempfile
     >>> with run_lock(Path(tempfile.mkdtemp())):
     ...     pass
     """
-    path = folder / ".lock"
+    says = folder / ".lock"  # who holds the folder; Windows lets nobody else read the locked file itself
+    locked = folder / ".lock-held"
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        handle = _taken(path)
-        sweep_parts(folder)
+        lock = _taken(locked, says)
     except OSError as error:
-        raise WriteError(
-            "a run needs a folder that it can write",
-            f"{folder}: the system says: {error.strerror or error}",
-            "Make room, mend the right to write, or choose another folder with --out.",
-        ) from error
+        raise _unwritable(folder, error) from error
     try:
-        yield
-    finally:
-        path.unlink(missing_ok=True)
-        os.close(handle)
-
-
-def _taken(path: Path) -> int:
-    """Open and locked lock file, which says who holds it."""
-    try:
-        import fcntl
-    except ImportError:
-        raise WriteError(
-            "a run needs the file locks of a POSIX system, which go when their process goes",
-            f"this system is {os.name!r}",
-            "Use Linux, macOS or the Windows Subsystem for Linux; check, compare, discover and export take no lock.",
-        ) from None
-    while True:
-        handle = os.open(path, os.O_CREAT | os.O_RDWR)
+        _refuse_other_machine(says)
         try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            if path.is_file() and path.stat().st_ino == os.fstat(handle).st_ino:
-                _refuse_other_machine(path)
-                os.truncate(handle, 0)
-                os.write(handle, json.dumps({"pid": os.getpid(), "host": socket.gethostname()}).encode())
-                return handle
-        except BlockingIOError:
-            os.close(handle)
-            _refuse(path, f"process {_holder(path).get('pid', 'unknown')} on this machine")
-        except BaseException:
-            os.close(handle)
-            raise
-        os.close(handle)  # its last holder deleted it between our opening and our locking
+            says.write_text(json.dumps({"pid": os.getpid(), "host": socket.gethostname()}))
+            sweep_parts(folder)
+        except OSError as error:
+            raise _unwritable(folder, error) from error
+        try:
+            yield
+        finally:
+            says.unlink(missing_ok=True)
+    finally:
+        with suppress(OSError):  # Windows keeps a file that is open
+            locked.unlink()
+        lock.release()
+
+
+def _taken(path: Path, says: Path) -> BaseFileLock:
+    """Lock that the system keeps on the file, or the refusal that names who holds it."""
+    lock = FileLock(path)
+    try:
+        lock.acquire(timeout=PATIENCE_S, poll_interval=PATIENCE_S / 10)
+    except Timeout:
+        _refuse(says, f"process {_holder(says).get('pid', 'unknown')} on this machine")
+    except NotImplementedError as error:  # filelock before 3.24, where the disk has no locks
+        raise OSError(errno.ENOSYS, os.strerror(errno.ENOSYS)) from error
+    if isinstance(lock, SoftFileLock):  # a mere file in place of the lock would outlive a killed run
+        lock.release()
+        raise OSError(errno.ENOSYS, "this disk keeps no file locks")
+    return lock
+
+
+def _unwritable(folder: Path, error: OSError) -> WriteError:
+    return WriteError(
+        "a run needs a folder that it can write and lock",
+        f"{folder}: the system says: {error.strerror or error}",
+        "Make room, mend the right to write, or choose another folder with --out.",
+    )
 
 
 def _refuse_other_machine(path: Path) -> None:
@@ -87,7 +94,7 @@ def _holder(path: Path) -> dict[str, Any]:
     return holder if isinstance(holder, dict) else {}
 
 
-def _refuse(path: Path, holder: str) -> None:
+def _refuse(path: Path, holder: str) -> NoReturn:
     raise WriteError(
         "one run at a time may write into a folder",
         f"{path.parent} is held by {holder}",

@@ -72,7 +72,7 @@ def tables(folder):
     """Every file of a run but its lock, the moment of its making, and the seal that holds this moment too."""
     found = {}
     for path in sorted(folder.rglob("*")):
-        if path.is_file() and path.name not in (".lock", "run.json"):
+        if path.is_file() and path.name not in (".lock", ".lock-held", "run.json"):
             found[str(path.relative_to(folder))] = path.read_bytes()
     run = json.loads((folder / "run.json").read_text())
     run["provenance"].pop("created")

@@ -1,8 +1,10 @@
+import errno
 import json
 import os
 import socket
 import subprocess
 import sys
+import warnings
 
 import pytest
 
@@ -56,7 +58,7 @@ def test_a_number_that_another_process_has_by_now_holds_nothing(tmp_path):
             pass
 
 
-def test_of_many_that_start_at_once_one_gets_the_folder(tmp_path):
+def test_of_many_that_start_at_once_one_gets_the_folder_until_it_is_killed(tmp_path):
     code = (
         "import sys, time; from pathlib import Path; from gaitdisc.batch.run_lock import run_lock\n"
         "from gaitdisc.errors import WriteError\n"
@@ -64,13 +66,17 @@ def test_of_many_that_start_at_once_one_gets_the_folder(tmp_path):
         "except WriteError as error: print(error)"
     )
     started = [
-        subprocess.Popen([sys.executable, "-c", code, str(tmp_path)], stdin=-1, stdout=-1, text=True) for _ in range(4)
+        subprocess.Popen([sys.executable, "-c", code, str(tmp_path)], stdin=-1, stdout=-1, text=True) for _ in range(3)
     ]
     said = [process.stdout.readline() for process in started]
     for process in started:
-        process.communicate("")
+        process.kill()
+        process.communicate()
     assert said.count("held\n") == 1
     assert all("is held by process" in line for line in said if line != "held\n")
+    assert (tmp_path / ".lock").exists()
+    with run_lock(tmp_path):
+        pass
 
 
 def test_what_a_killed_run_left_unfinished_is_cleared_away(tmp_path):
@@ -82,9 +88,21 @@ def test_what_a_killed_run_left_unfinished_is_cleared_away(tmp_path):
         assert [file.name for file in unit.iterdir()] == ["r2.csv"]
 
 
-def test_a_system_without_such_locks_is_told_so(tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "fcntl", None)
-    said = r"locks of a POSIX system.*'posix'.*Windows Subsystem for Linux"
-    with pytest.raises(WriteError, match=said), run_lock(tmp_path):
-        pass
-    assert not (tmp_path / ".lock").exists()
+def test_a_disk_without_locks_is_refused_and_keeps_no_mark(tmp_path, monkeypatch):
+    """A mere file in place of a lock would stay when its run is killed."""
+
+    def unknown(*_):
+        raise OSError(errno.ENOSYS, "Function not implemented")
+
+    monkeypatch.setattr("fcntl.flock", unknown)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        with pytest.raises(WriteError, match=r"can write and lock.*no file locks.*--out"), run_lock(tmp_path):
+            pass
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_run_that_fails_frees_its_folder(tmp_path):
+    with pytest.raises(ZeroDivisionError), run_lock(tmp_path):
+        raise ZeroDivisionError
+    assert not list(tmp_path.iterdir())
