@@ -82,7 +82,7 @@ def discover_study(
     model = tracked_joint(both.device, both.both_walks_model)
     data = tracked_trials(both.device, both.both_walks_model, model)
     found, augmented = discovered(model, data, catalogue, walks, told, both.weighed)
-    found = both.with_model_error(found)
+    found, augmented = both.with_model_error(found), model if both.agrees else augmented
     errors = beside(both, found)
     if joint == "ankle_angle" and not found.effects:
         told("weighing the foot at knee and hip")

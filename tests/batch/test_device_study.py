@@ -16,6 +16,7 @@ from gaitdisc.batch.device_study import (
 from gaitdisc.batch.discover_files import discover_study
 from gaitdisc.batch.joint_inquiry import nominal_moment
 from gaitdisc.channel import vocabulary
+from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
 from gaitdisc.ingest.study_file import write_study
@@ -121,6 +122,19 @@ def test_the_number_of_both_walks_stands_with_the_error_of_the_moment_model(walk
     assert new.value == walks.changed.value
     assert new.high - new.low > 2 * 1.96 * walks.changed.spread
     assert estimate_text(new) in mended.sentence
+
+
+def test_a_walk_that_the_nominal_model_follows_lacks_nothing_whatever_a_search_makes_of_the_rest(walks):
+    same = replace(walks, device=made_joint(seed=2))
+    assert same.agrees and not walks.agrees
+    candidate = Candidate("missing_physics", "port", "ankle_moment", "phase_locked_moment", ("1",), None, "")
+    assert not same.weighed(candidate)
+    size = GapSize(1.0, 0.2, 0.1)
+    invented = FoundEffect("port", "ankle_moment", "phase_locked_moment", "")
+    found = Discovery("missing_physics", "s", (), (invented,), (), size, size, (), (), None)
+    mended = same.with_model_error(found)
+    assert (mended.verdict, mended.effects) == ("no_gap", ())
+    assert "as it follows Nominal strides" in mended.sentence
 
 
 def test_a_model_that_does_not_explain_the_nominal_walk_names_no_device(walks):
