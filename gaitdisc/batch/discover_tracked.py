@@ -84,6 +84,15 @@ class Pass:
         )
         return tuple(k for k in range(self.demanded.shape[1]) if moved[k] and k not in self.engine.base)
 
+    @cached_property
+    def weight_n(self) -> float:
+        """What moving the body up and down takes in the mean; 0 where no coordinate does [N]."""
+        motion, up = self.motion, self.engine.vertical
+        if up < 0:
+            return 0.0
+        alone = self.engine.demanded(motion.time, (motion.q, motion.v, motion.a), loaded=False)
+        return abs(float(np.mean(self.dense(alone[:, up]))))
+
     @property
     def kept(self) -> slice:
         """Samples that hold all that the low-pass leaves."""
@@ -207,12 +216,8 @@ def _balance(walk: Pass) -> list[Finding]:
         found.append(Finding("note", "residual", "model", what, "", one.called))
     if up < 0:
         return found
-    motion = walk.motion
     mean = float(np.mean(walk.dense(walk.demanded[:, up])))
-    weight = float(
-        np.mean(walk.dense(engine.demanded(motion.time, (motion.q, motion.v, motion.a), loaded=False)[:, up]))
-    )
-    share = mean / weight
+    share = mean / walk.weight_n
     if abs(share) > WRONG_MASS:
         mass = engine.mass_kg
         raise SchemaError(
@@ -227,17 +232,12 @@ def _balance(walk: Pass) -> list[Finding]:
 
 def _refuse_other_motion(walk: Pass) -> None:
     """Refuse forces whose residuals do not balance this motion: they were computed for another one, or failed."""
-    engine, up = walk.engine, walk.engine.vertical
+    engine, weight = walk.engine, walk.weight_n
     given = np.abs(walk.pulls).max(axis=(0, 1)) if walk.pulls.shape[1] else np.zeros(len(engine.coordinates))
-    if up < 0:
-        return
-    motion = walk.motion
-    alone = engine.demanded(motion.time, (motion.q, motion.v, motion.a), loaded=False)[:, up]
-    weight = float(np.mean(walk.dense(alone)))
     for k in engine.base:
         one = engine.coordinates[k]
         size = float(np.sqrt(np.mean(walk.dense(walk.left[:, k]) ** 2)))
-        if one.unit == "m" and given[k] > 0 and size > OTHER_MOTION * abs(weight):
+        if one.unit == "m" and given[k] > 0 and weight and size > OTHER_MOTION * weight:
             raise SchemaError(
                 f"residual forces of the forces' file balance its motion to {100 * OTHER_MOTION:.0f} % of the weight",
                 f"{one.called} lacks {size:.0f} N (root mean square) of {weight:.0f}",
