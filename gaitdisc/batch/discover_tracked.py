@@ -103,6 +103,11 @@ class Pass:
         """Of these samples [s]."""
         return self.motion.time[self.kept]
 
+    def groups_at(self, number: int) -> list[str]:
+        """Names of the groups of muscles that move a coordinate."""
+        name = self.engine.coordinates[number].name
+        return [f"{name}_{word}_muscles" for _, word in SIDES if f"{name}_{word}_muscles" in self.groups]
+
     def dense(self, values: Values) -> Values:
         """Values (sample, ...) after the record's low-pass, at these samples."""
         return sosfiltfilt(self._sections, values, axis=0)[self.kept]
@@ -276,8 +281,7 @@ def _simulation(walk: Pass) -> Simulation:
     seen, sensors = [], []
     for k in walk.joints:
         one = walk.engine.coordinates[k]
-        own = [name for name in walk.groups if name.removesuffix("_muscles").rpartition("_")[0] == one.name]
-        terms = [f"{name}_strength*delay({name}, {name}_delay)" for name in own]
+        terms = [f"{name}_strength*delay({name}, {name}_delay)" for name in walk.groups_at(k)]
         seen.append((f"net_{one.port}", " + ".join([*terms, one.port])))
         sensors.append(Sensor(f"net_{one.port}", one.force_unit))
     shown = tuple(seen) or plain.observations
@@ -296,8 +300,7 @@ def _candidates(base: Simulation, walk: Pass, number: int, shapes: tuple[Shape, 
     one = walk.engine.coordinates[number]
     place = Place("port", one.port, ((one.name, one.speed),), (), (), one.unit == "rad")
     every = candidates_of(base, (place,), shapes)
-    mine = {f"{name}_{word}" for name in walk.groups for word in ("strength", "delay")
-            if name.removesuffix("_muscles").rpartition("_")[0] == one.name}  # fmt: skip
+    mine = {f"{name}_{word}" for name in walk.groups_at(number) for word in ("strength", "delay")}
     ours = {shape.name for shape in shapes} - {shape.name for shape in known_shapes()}
     return tuple(
         one
@@ -482,10 +485,10 @@ def _shows(walk: Pass, number: int, found: JointFinding) -> Finding:
     unit = one.force_unit
     spring = found.least(walk.dense(walk.motion.q[:, number] - walk.motion.q[:, number].mean()))
     damper = found.least(walk.dense(walk.motion.v[:, number]))
-    shares = []
-    for name, moment in walk.groups.items():
-        if name.removesuffix("_muscles").rpartition("_")[0] == one.name:
-            shares.append(f"{100 * found.least(walk.dense(moment)):.2g} % of its {name.split('_')[-2]} muscles")
+    shares = [
+        f"{100 * found.least(walk.dense(walk.groups[name])):.2g} % of its {name.split('_')[-2]} muscles"
+        for name in walk.groups_at(number)
+    ]
     left = float(np.sqrt(np.mean(joint.left**2)))
     what = (
         f"{one.called}: {left:.3g} {unit} are left of {np.std(joint.demanded):.3g}, noise {joint.floor:.2g}; it shows "
