@@ -84,6 +84,15 @@ class Pass:
         )
         return tuple(k for k in range(self.demanded.shape[1]) if moved[k] and k not in self.engine.base)
 
+    @cached_property
+    def weight_n(self) -> float:
+        """What moving the body up and down takes in the mean; 0 where no coordinate does [N]."""
+        motion, up = self.motion, self.engine.vertical
+        if up < 0:
+            return 0.0
+        alone = self.engine.demanded(motion.time, (motion.q, motion.v, motion.a), loaded=False)
+        return abs(float(np.mean(self.dense(alone[:, up]))))
+
     @property
     def kept(self) -> slice:
         """Samples that hold all that the low-pass leaves."""
@@ -93,6 +102,11 @@ class Pass:
     def times(self) -> Values:
         """Of these samples [s]."""
         return self.motion.time[self.kept]
+
+    def groups_at(self, number: int) -> list[str]:
+        """Names of the groups of muscles that move a coordinate."""
+        name = self.engine.coordinates[number].name
+        return [f"{name}_{word}_muscles" for _, word in SIDES if f"{name}_{word}_muscles" in self.groups]
 
     def dense(self, values: Values) -> Values:
         """Values (sample, ...) after the record's low-pass, at these samples."""
@@ -207,12 +221,8 @@ def _balance(walk: Pass) -> list[Finding]:
         found.append(Finding("note", "residual", "model", what, "", one.called))
     if up < 0:
         return found
-    motion = walk.motion
     mean = float(np.mean(walk.dense(walk.demanded[:, up])))
-    weight = float(
-        np.mean(walk.dense(engine.demanded(motion.time, (motion.q, motion.v, motion.a), loaded=False)[:, up]))
-    )
-    share = mean / weight
+    share = mean / walk.weight_n
     if abs(share) > WRONG_MASS:
         mass = engine.mass_kg
         raise SchemaError(
@@ -227,17 +237,12 @@ def _balance(walk: Pass) -> list[Finding]:
 
 def _refuse_other_motion(walk: Pass) -> None:
     """Refuse forces whose residuals do not balance this motion: they were computed for another one, or failed."""
-    engine, up = walk.engine, walk.engine.vertical
+    engine, weight = walk.engine, walk.weight_n
     given = np.abs(walk.pulls).max(axis=(0, 1)) if walk.pulls.shape[1] else np.zeros(len(engine.coordinates))
-    if up < 0:
-        return
-    motion = walk.motion
-    alone = engine.demanded(motion.time, (motion.q, motion.v, motion.a), loaded=False)[:, up]
-    weight = float(np.mean(walk.dense(alone)))
     for k in engine.base:
         one = engine.coordinates[k]
         size = float(np.sqrt(np.mean(walk.dense(walk.left[:, k]) ** 2)))
-        if one.unit == "m" and given[k] > 0 and size > OTHER_MOTION * abs(weight):
+        if one.unit == "m" and given[k] > 0 and weight and size > OTHER_MOTION * weight:
             raise SchemaError(
                 f"residual forces of the forces' file balance its motion to {100 * OTHER_MOTION:.0f} % of the weight",
                 f"{one.called} lacks {size:.0f} N (root mean square) of {weight:.0f}",
@@ -276,8 +281,7 @@ def _simulation(walk: Pass) -> Simulation:
     seen, sensors = [], []
     for k in walk.joints:
         one = walk.engine.coordinates[k]
-        own = [name for name in walk.groups if name.removesuffix("_muscles").rpartition("_")[0] == one.name]
-        terms = [f"{name}_strength*delay({name}, {name}_delay)" for name in own]
+        terms = [f"{name}_strength*delay({name}, {name}_delay)" for name in walk.groups_at(k)]
         seen.append((f"net_{one.port}", " + ".join([*terms, one.port])))
         sensors.append(Sensor(f"net_{one.port}", one.force_unit))
     shown = tuple(seen) or plain.observations
@@ -296,8 +300,7 @@ def _candidates(base: Simulation, walk: Pass, number: int, shapes: tuple[Shape, 
     one = walk.engine.coordinates[number]
     place = Place("port", one.port, ((one.name, one.speed),), (), (), one.unit == "rad")
     every = candidates_of(base, (place,), shapes)
-    mine = {f"{name}_{word}" for name in walk.groups for word in ("strength", "delay")
-            if name.removesuffix("_muscles").rpartition("_")[0] == one.name}  # fmt: skip
+    mine = {f"{name}_{word}" for name in walk.groups_at(number) for word in ("strength", "delay")}
     ours = {shape.name for shape in shapes} - {shape.name for shape in known_shapes()}
     return tuple(
         one
@@ -482,10 +485,10 @@ def _shows(walk: Pass, number: int, found: JointFinding) -> Finding:
     unit = one.force_unit
     spring = found.least(walk.dense(walk.motion.q[:, number] - walk.motion.q[:, number].mean()))
     damper = found.least(walk.dense(walk.motion.v[:, number]))
-    shares = []
-    for name, moment in walk.groups.items():
-        if name.removesuffix("_muscles").rpartition("_")[0] == one.name:
-            shares.append(f"{100 * found.least(walk.dense(moment)):.2g} % of its {name.split('_')[-2]} muscles")
+    shares = [
+        f"{100 * found.least(walk.dense(walk.groups[name])):.2g} % of its {name.split('_')[-2]} muscles"
+        for name in walk.groups_at(number)
+    ]
     left = float(np.sqrt(np.mean(joint.left**2)))
     what = (
         f"{one.called}: {left:.3g} {unit} are left of {np.std(joint.demanded):.3g}, noise {joint.floor:.2g}; it shows "
