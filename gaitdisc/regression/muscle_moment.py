@@ -64,8 +64,6 @@ Values = NDArray[np.float64]
 def sign_at(joint: str, muscle: str) -> int:
     """Return the direction in which a muscle turns a joint, of a channel such as `emg_sol_r`; 0 where it does not.
 
-    Examples
-    --------
     >>> sign_at("ankle_angle", "emg_sol_r"), sign_at("ankle_angle", "emg_vas_r")
     (-1, 0)
     """
@@ -268,8 +266,6 @@ def fitted_moment(
 def force_at_speed(lengthening: Values) -> Values:
     """Share of the isometric force at a speed of lengthening, of the fastest shortening (Hill 1938, Zajac 1989).
 
-    Examples
-    --------
     >>> force_at_speed(np.array([-1.0, -0.25, 0.0, 9.0])).round(2).tolist()
     [0.0, 0.38, 1.0, 1.4]
     """
