@@ -30,9 +30,9 @@ from ch5_gait import DATA, NOTHING_PRINTED, PELVIS, SENSORS, Result, cell
 
 from gaitdisc.batch.reconstruct_study import ReconstructionSettings
 from gaitdisc.batch.sensed_walks import sensed_walks
-from gaitdisc.chapters.pages.sensor_sets import disturbance_figure, sensor_sets_figure, sensor_sets_table
 from gaitdisc.ingest.study import Study
 from gaitdisc.report.page import Block, write_blocks
+from gaitdisc.report.sensor_sets import disturbance_figure, sensor_sets_figure, sensor_sets_table
 from gaitdisc.report.table import save_table
 from gaitdisc.sensing.disturbance import against_missing, against_noise
 from gaitdisc.sensing.reconstructor import KINDS, MASKED, sensing

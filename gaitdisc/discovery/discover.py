@@ -33,11 +33,11 @@ def discover(
     measured: Measured,
     shapes: tuple[Shape, ...] = (),
     progress: Callable[[str], None] = lambda _: None,
-    cross_validated: Callable[[Candidate], bool] = lambda _: True,
+    possible: Callable[[Candidate], bool] = lambda _: True,
 ) -> tuple[Discovery, Simulation]:
     """Find where a simulation and measured trials disagree, name what is missing, add it, show the gap shrink."""
     measured = without_spikes(measured)
-    begun = partial(set_up_problem, simulation, shapes=shapes, progress=progress, cross_validated=cross_validated)
+    begun = partial(set_up_problem, simulation, shapes=shapes, progress=progress, possible=possible)
     problem = begun(measured)
     agreeing = agreeing_trials(problem, measured)
     if agreeing is not measured:

@@ -165,12 +165,12 @@ def set_up_problem(
     measured: Measured,
     shapes: tuple[Shape, ...] = (),
     progress: Callable[[str], None] = lambda _: None,
-    cross_validated: Callable[[Candidate], bool] = lambda _: True,
+    possible: Callable[[Candidate], bool] = lambda _: True,
 ) -> Problem:
     """Prepare a problem: split the trials, list places and explanations, guess the states.
 
     measured: its trials; of four, one is held out, of one, the last quarter of its time
-    weighed: whether an explanation is possible here; all are by default
+    possible: whether an explanation is possible here; all are by default
     """
     simulation = matched(simulation, measured, shapes)
     if len(measured.trials) == 1:
@@ -178,8 +178,8 @@ def set_up_problem(
     machine = compile_simulation(simulation)
     rate_of, places = kinematic_rates(simulation, machine), places_of(simulation, machine)
     rhythm = rhythm_of(measured.observed, measured.drive.rate)
-    possible = tuple(filter(cross_validated, candidates_of(simulation, places, (*known_shapes(), *shapes))))
-    search = Search(simulation, places, possible, rhythm, progress)
+    considered = tuple(filter(possible, candidates_of(simulation, places, (*known_shapes(), *shapes))))
+    search = Search(simulation, places, considered, rhythm, progress)
     trials = len(measured.drive.samples)
     held = max(round(trials / 4), 1)
     guess = guess_states(simulation, measured, rhythm.period, rate_of)

@@ -46,8 +46,8 @@ def rivals_of(search: Search, now: ScoredModel, found: tuple[ScoredModel, ...], 
     listed = list(others.values())[:MOST]
     if not own:
         return tuple(Rival(one, one.gained, False) for one in listed)
-    cross_validated = [_best(search, now, one) for one in listed]
-    rivals = [Rival(one, gained - (one.bic - now.bic), one.bic - now.bic < TIE) for one in cross_validated]
+    fitted = [_best(search, now, one) for one in listed]
+    rivals = [Rival(one, gained - (one.bic - now.bic), one.bic - now.bic < TIE) for one in fitted]
     return tuple(sorted(rivals, key=lambda one: -one.gained))
 
 

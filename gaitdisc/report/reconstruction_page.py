@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from gaitdisc.chapters.pages.sensor_sets import NOT_MSE, search_sentences, search_table
 from gaitdisc.report.figure import Figure, file_names, save_figures
 from gaitdisc.report.page import write_page
 from gaitdisc.report.palette import MEASURED, RECONSTRUCTED
 from gaitdisc.report.panels import Room, in_style, legend, lines_of, panels_for, sheets
+from gaitdisc.report.sensor_sets import NOT_MSE, search_sentences, search_table
 from gaitdisc.report.table import Table, left_out_table, provenance_tables, save_tables, seen_table
 from gaitdisc.report.wording import counted, label, listed, number, plain, unit_text
 from gaitdisc.results.reconstruction import CALIBRATED, FLOORS, Reconstruction

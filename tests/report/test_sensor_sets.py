@@ -2,7 +2,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from gaitdisc.chapters.pages.sensor_sets import (
+from gaitdisc.report.sensor_sets import (
     MEASURES,
     disturbance_figure,
     search_sentences,
