@@ -219,16 +219,32 @@ def test_the_study_is_the_key_and_its_title_names_nobody(study):
     assert "Zqfile_exo_ik.mot" in text
 
 
-def test_a_run_holds_none_of_them(study):
-    done = called("run", study, "--quiet")
+@pytest.fixture(scope="module")
+def ran(study):
+    """What a run of it prints; its report stands with every figure drawn."""
+    with pytest.MonkeyPatch.context() as brief:
+        brief.setattr("gaitdisc.networks.schedule.epochs_of", lambda *_: 2)
+        done = called("run", study, "--quiet")
     assert done.exit_code == 3, done.output
-    assert planted(done.output.replace(str(study), "")) == []
-    assert "refused: P04 exo: P04 exo, file 1" in " ".join(done.output.split())
+    return done.output
+
+
+@pytest.fixture(params=[False, pytest.param(True, marks=pytest.mark.slow)], ids=["words", "figures"])
+def painted(request):
+    """Words alone by default; the figures as well, which take most of the time, among the slow ones."""
+    if not request.param:
+        request.getfixturevalue("unpainted")
+
+
+def test_a_run_holds_none_of_them(study, ran):
+    assert planted(ran.replace(str(study), "")) == []
+    assert "refused: P04 exo: P04 exo, file 1" in " ".join(ran.split())
     assert found_in(study) == {}
     page = (study / "run" / "report" / "report.html").read_text()
     assert "<h1>natural against exo</h1>" in page and "P01 natural, file 1" in page and "P04 exo, file 1" in page
 
 
+@pytest.mark.usefixtures("ran", "painted")
 def test_what_is_made_of_a_run_holds_none_of_them(study):
     for word in ("ablate", "modalities"):
         done = called(word, study, "--quiet", *(("--length", "5") if word == "ablate" else ()))
@@ -308,6 +324,7 @@ def clinic(tmp_path_factory):
     return home / "Zqhome"
 
 
+@pytest.mark.usefixtures("painted")
 def test_pages_of_a_clinic_hold_none_of_them(clinic):
     text = (clinic / "week" / "study.toml").read_text()
     assert "age_years = 32" in text and 'id = "P01"' in text and "Zqward" in text
