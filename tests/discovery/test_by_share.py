@@ -5,7 +5,7 @@ from gaitdisc.discovery.by_share import closing_most, leaves_noise, scale_of
 from gaitdisc.discovery.discover import discover
 from gaitdisc.discovery.inquiry import begin_inquiry
 
-CLEAN = Experiment(noise=0.001)
+CLEAN = Experiment(seconds=8.0, noise=0.001)
 
 
 def test_what_leaves_the_sensors_noise_is_known_from_the_record_alone(inquiry, as_read, named):
