@@ -129,8 +129,8 @@ def discover_tracked(
     findings, engine, motion = _balance(walk), walk.engine, walk.motion
     _refuse_other_motion(walk)
     told("computing what noise of the angles makes of them")
-    shaken = shaken_moments(walk, tracked.noise_deg)
-    base, joints = joints_of(walk, shaken, read_catalogue(catalogue) if catalogue else (), told)
+    angle_noise = shaken_moments(walk, tracked.noise_deg)
+    base, joints = joints_of(walk, angle_noise, read_catalogue(catalogue) if catalogue else (), told)
     found = _discovery(base, joints)
     told("writing it into the model")
     augmented = _augmented(engine, found)
@@ -171,7 +171,7 @@ def tracked_pass(tracked: Tracked, kinematics: Path, told: Callable[[str], None]
 
 
 def joints_of(
-    walk: Pass, shaken: Values, more: tuple[Shape, ...] = (), told: Callable[[str], None] = lambda _: None
+    walk: Pass, angle_noise: Values, more: tuple[Shape, ...] = (), told: Callable[[str], None] = lambda _: None
 ) -> tuple[Simulation, list[JointFinding]]:
     """Name what is left at each joint beside what noise makes of it; the simulation says what the numbers are."""
     _refuse_short(walk)
@@ -179,7 +179,7 @@ def joints_of(
     joints = []
     for number in walk.joints:
         told(f"weighing what is left at {walk.engine.coordinates[number].called}")
-        joint = _left(walk, base, number, shaken)
+        joint = _left(walk, base, number, angle_noise)
         joints.append(joint_finding(joint, _candidates(base, walk, number, (*known_shapes(), *more)), len(walk.joints)))
     return base, joints
 
@@ -310,7 +310,7 @@ def _candidates(base: Simulation, walk: Pass, number: int, shapes: tuple[Shape, 
     )
 
 
-def _left(walk: Pass, base: Simulation, number: int, shaken: Values) -> LeftMoment:
+def _left(walk: Pass, base: Simulation, number: int, angle_noise: Values) -> LeftMoment:
     motion, one = walk.motion, walk.engine.coordinates[number]
     states, inputs = np.hstack([motion.q, motion.v]), np.zeros((len(motion.time), len(base.inputs)))
     points = Points(motion.time, states, inputs)
@@ -338,7 +338,7 @@ def _left(walk: Pass, base: Simulation, number: int, shaken: Values) -> LeftMome
         walk.times,
         walk.dense(walk.left[:, number]),
         walk.dense(walk.demanded[:, number]),
-        shaken[:, :, number],
+        angle_noise[:, :, number],
         motion.q[:, number],
         columns,
     )

@@ -41,14 +41,14 @@ class LeftMoment:
     time: Values  # (sample,) [s]
     left: Values  # (sample,) demanded less what the files' forces give [N m]
     demanded: Values  # (sample,) [N m]
-    shaken: Values  # (draw, sample), what noise of the angles makes of it [N m]
+    angle_noise: Values  # (draw, sample), what noise of the angles makes of it [N m]
     along: Values  # (record's sample,) the coordinate [rad]
     columns: Callable[[Candidate, Mapping[str, float]], Values]  # (sample, piece)
 
     @property
     def floor(self) -> float:
         """Size of what the noise of angles and a hundredth of the moment make [N m]."""
-        return float(np.hypot(np.sqrt(np.mean(self.shaken**2)), MODEL_ERROR * np.std(self.demanded)))
+        return float(np.hypot(np.sqrt(np.mean(self.angle_noise**2)), MODEL_ERROR * np.std(self.demanded)))
 
     @property
     def halves(self) -> list[NDArray[np.intp]]:
@@ -90,7 +90,7 @@ def joint_finding(joint: LeftMoment, candidates: tuple[Candidate, ...], joints: 
     """Weigh every candidate at one of some joints; name the best where evidence and both halves of time bear it out."""
     open_ones = len(candidates) * joints
     floor = MODEL_ERROR * float(np.std(joint.demanded))
-    noise = noise_of(joint.shaken[:, :, None], least=floor)
+    noise = noise_of(joint.angle_noise[:, :, None], least=floor)
     ordered: list[Named] = []
     for _ in range(ROUNDS):
         coarse = _weighed(joint, noise, candidates, open_ones, refined=False)

@@ -202,7 +202,7 @@ class Reconstructor(Saved, by="gaitdisc.library.reconstructor:save_reconstructor
         return windows_of(read, what.sensors, (), what.lags, np.asarray(percent, float))
 
     def get_params(self, deep: bool = True) -> dict[str, Any]:  # noqa: ARG002
-        """Settings by name, as scikit-learn's `clone` and `Pipeline` ask for them.
+        """Settings by name, as scikit-learn's `clone` and `Pipeline` read them.
 
         Parameters
         ----------

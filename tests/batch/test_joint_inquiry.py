@@ -16,7 +16,7 @@ def model():
 
 def found_in(record, model):
     simulation = tracked_joint(record, model)
-    return discover(simulation, tracked_trials(record, model, simulation), weighed=weighed)[0]
+    return discover(simulation, tracked_trials(record, model, simulation), possible=weighed)[0]
 
 
 def test_the_nominal_walk_gives_each_muscle_its_gain_and_sign(model):

@@ -48,8 +48,8 @@ def noise(seed, count=1):
 
 
 def found(left, seed=1):
-    shaken = noise(99, 4)
-    joint = LeftMoment("ankle_moment", TIME, left + noise(seed)[0], MUSCLES + left, shaken, ANGLE, columns)
+    angle_noise = noise(99, 4)
+    joint = LeftMoment("ankle_moment", TIME, left + noise(seed)[0], MUSCLES + left, angle_noise, ANGLE, columns)
     return joint_finding(joint, SHAPES)
 
 
