@@ -34,7 +34,7 @@ import numpy as np
 import pandas as pd
 from scipy.signal import butter, sosfiltfilt
 
-from gaitdisc.batch.discover_tracked import FEWEST, Pass, joints_of, shaken_moments, tracked_pass
+from gaitdisc.batch.discover_tracked import FEWEST, Pass, joints_of, moments_of_angle_noise, tracked_pass
 from gaitdisc.discovery.prescribed import CLOSED, LeftMoment
 from gaitdisc.engines.tracked_files import read_tracked
 from gaitdisc.signals.derivatives import differentiated
@@ -51,7 +51,7 @@ def run(walks: list[tuple[Path, Path]], seeds: int, noise_deg: float, quick: boo
         tracked = read_tracked(mapping)
         assert tracked is not None, f"{mapping} has no [tracked]"
         walk = tracked_pass(tracked, kinematics)
-        draws = shaken_moments(walk, WHITENED_DEG)
+        draws = moments_of_angle_noise(walk, WHITENED_DEG)
         for seed in range(1, seeds + 1):
             noisy = shaken(walk, noise_deg, seed) if noise_deg else walk
             for hidden, port, truth, planted in cases(noisy, quick):

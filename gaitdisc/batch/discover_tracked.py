@@ -129,7 +129,7 @@ def discover_tracked(
     findings, engine, motion = _balance(walk), walk.engine, walk.motion
     _refuse_other_motion(walk)
     told("computing what noise of the angles makes of them")
-    angle_noise = shaken_moments(walk, tracked.noise_deg)
+    angle_noise = moments_of_angle_noise(walk, tracked.noise_deg)
     base, joints = joints_of(walk, angle_noise, read_catalogue(catalogue) if catalogue else (), told)
     found = _discovery(base, joints)
     told("writing it into the model")
@@ -250,7 +250,7 @@ def _refuse_other_motion(walk: Pass) -> None:
             )
 
 
-def shaken_moments(walk: Pass, noise_deg: float | None) -> Values:
+def moments_of_angle_noise(walk: Pass, noise_deg: float | None) -> Values:
     """What noise of the angles, after the record's low-pass, makes of the moments (draw, sample, coordinate)."""
     motion, rate = walk.motion, walk.motion.rate_hz
     given = noise_deg if noise_deg is not None else (NOISE_DEG if motion.differentiated else 0.0)
