@@ -101,6 +101,7 @@ def test_one_participant_carries_no_test(folder):
     assert tests["too_few"]
 
 
+@pytest.mark.slow
 def test_whoever_is_left_out_is_named_and_every_table_has_its_n(folder):
     written(
         folder, walker("P01"), walker("P02", exo=""), walker("P03", exo="gone.mot"), walker("P04"),

@@ -1,8 +1,11 @@
+import pytest
+
 from gaitdisc.batch.ablate_study import ablate_study
 from gaitdisc.batch.run_study import run_study
 from gaitdisc.results.run_store import load_run
 
 
+@pytest.mark.slow
 def test_a_run_keeps_what_ablate_added(study, tmp_path):
     one = study.model_copy(update={"participants": study.participants[:1]})
     run = ablate_study(one, tmp_path, (1.0, 300.0))

@@ -108,6 +108,7 @@ def test_a_participant_whose_process_is_killed_is_refused_and_the_others_stand(
     assert [refusal.reason for refusal in load_run(copy).refusals] == [refusal.reason]
 
 
+@pytest.mark.slow
 def test_side_by_side_gives_the_same_tables(run, study, tmp_path):
     parallel = run_study(study, tmp_path / "parallel", Workers(jobs=2))
     pd.testing.assert_frame_equal(parallel.r2_table(), run.r2_table(), check_dtype=False)

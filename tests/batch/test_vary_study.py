@@ -8,6 +8,7 @@ from gaitdisc.results.stores import load_variant_run
 pytestmark = pytest.mark.usefixtures("trained_briefly")
 
 
+@pytest.mark.slow
 def test_every_participant_of_the_run_is_varied(small, tmp_path):
     told = []
     run = vary_study(small, tmp_path, "modalities", told=lambda who, share: told.append((who, share)))

@@ -201,6 +201,7 @@ def test_one_trial_is_enough_and_its_last_quarter_proves_it():
     assert discovery.runs.time.min() == pytest.approx(30.0, abs=0.1)
 
 
+@pytest.mark.slow
 def test_an_effect_outside_the_catalogue_is_answered_by_a_shape_that_closes_the_gap():
     discovery, augmented = _found(with_load("-6*exp(-((x - 0.3)/0.2)**2)"), Experiment(trials=6, seconds=9.0))
     assert _named(discovery) == ("unnamed", [("unnamed", "load")])

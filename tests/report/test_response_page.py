@@ -159,6 +159,7 @@ def test_a_run_of_before_there_were_tests_has_no_such_section(run_maker, tmp_pat
     assert "Which model explains more" not in text
 
 
+@pytest.mark.slow
 def test_participants_drawn_side_by_side_are_those_drawn_alone(run_maker, tmp_path):
     run = run_maker(3, outputs=("hip_flexion_r",))
     write_report(run, tmp_path / "all")

@@ -28,17 +28,6 @@ def filtered_start(record: Record, learned: Model, by: Filter) -> NDArray[np.flo
 
     Source: Julier and Uhlmann 2004, Proc. IEEE 92:401; Evensen 1994, J. Geophys. Res. 99:10143; Mehra 1970, IEEE
         Trans. Autom. Control 15:175 (process noise from the innovations).
-
-    >>> from gaitdisc.chapters.discrepancy.cell import learned_model
-    >>> from gaitdisc.chapters.discrepancy.methods import MethodSettings
-    >>> from gaitdisc.chapters.discrepancy.record import Conditions, recorded
-    >>> from gaitdisc.chapters.discrepancy.system import system_of
-    >>> from gaitdisc.simulation.bundled import bundled
-    >>> record = recorded(system_of(bundled("van_der_pol")), Conditions(0.1, duration_s=20.0))
-    >>> learned = learned_model(record, "sindy", "dynamics", MethodSettings())
-    >>> error = abs(filtered_start(record, learned, "unscented") - record.start(forecast=True)).max()
-    >>> bool(error < 0.5 * abs(record.filtered[-1] - record.start(forecast=True)).max())
-    True
     """
     if len(record.system.channels) < len(record.system.states):
         raise ShapeError(

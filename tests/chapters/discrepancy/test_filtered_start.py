@@ -10,7 +10,7 @@ from gaitdisc.errors import ShapeError
 from gaitdisc.simulation.bundled import bundled
 
 
-@pytest.mark.parametrize("by", ["unscented", "ensemble"])
+@pytest.mark.parametrize("by", ["unscented", pytest.param("ensemble", marks=pytest.mark.slow)])
 def test_a_filter_is_nearer_to_the_true_state_than_the_last_sample_and_its_smoothing(van_der_pol, by):
     record = recorded(van_der_pol, Conditions(noise=0.1, duration_s=20.0, seed=5))
     learned = learned_model(record, "sindy", "dynamics", MethodSettings())

@@ -4,7 +4,9 @@ from gaitdisc.chapters.discrepancy.error_signal import error_samples
 from gaitdisc.chapters.discrepancy.methods import OF_TIME, MethodSettings, fitted
 
 
-@pytest.mark.parametrize("method", ["sindy", "esindy", "dmd", "exactdmd", "bopdmd", "gp", "gpm", "nn"])
+@pytest.mark.parametrize(
+    "method", ["sindy", "esindy", "dmd", "exactdmd", pytest.param("bopdmd", marks=pytest.mark.slow), "gp", "gpm", "nn"]
+)
 def test_every_method_fits_the_same_error_signal(quiet, method):
     samples = error_samples(quiet, "dynamics", of_time=method in OF_TIME)
     model = fitted(samples, method, MethodSettings(nodes=5))

@@ -34,6 +34,7 @@ def test_a_field_that_is_its_season_is_told_by_it():
     assert cells[SEASON].r2 == pytest.approx(1, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_a_network_tells_it_too():
     out_and_back = circuit(WAVE, [(-2.0, 4.0), (-2.0, 16.0)], 12, "out and back")
     cells = reconstruct(WAVE, out_and_back, FieldTask("wave", Lags(4, 5), energy=0.999), ("shred",), floors=False)
