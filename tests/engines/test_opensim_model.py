@@ -73,6 +73,8 @@ def test_a_process_that_dies_is_told_and_replaced(model):
     model._process.stdin.close()
     with pytest.raises((GaitdiscError, ValueError)):
         model._conversed("described")
+    model._process.kill()
+    model._process.wait()  # the next test begins with a process of its own
 
 
 @pytest.mark.parametrize(
