@@ -1,7 +1,8 @@
-"""TOML that a person wrote: parsed, and refused where it is nested deeper than anybody writes."""
+"""TOML that a person wrote: parsed, and refused where it is nested too deep; and texts as it has them."""
 
 from __future__ import annotations
 
+import json
 import re
 import tomllib
 from typing import Any
@@ -35,3 +36,12 @@ def parsed_toml(text: str) -> dict[str, Any]:
         if not level:
             return table
     raise tomllib.TOMLDecodeError(too_deep)
+
+
+def quoted(text: str) -> str:
+    r"""Text as a basic string of TOML; JSON's escapes are among TOML's.
+
+    >>> print(quoted('a "b"\\'))
+    "a \"b\"\\"
+    """
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -35,6 +35,7 @@ from gaitdisc.signals.derivatives import differentiated
 from gaitdisc.simulation.evaluating import Points, evaluate
 from gaitdisc.simulation.parts import Input, Parameter, Sensor, Term
 from gaitdisc.simulation.simulation import Simulation
+from gaitdisc.toml_text import quoted
 from gaitdisc.whole_file import write_whole
 
 Values = NDArray[np.float64]
@@ -110,10 +111,11 @@ class Pass:
 
     def dense(self, values: Values) -> Values:
         """Values (sample, ...) after the record's low-pass, at these samples."""
-        return sosfiltfilt(self._sections, values, axis=0)[self.kept]
+        return sosfiltfilt(self.sections, values, axis=0)[self.kept]
 
     @cached_property
-    def _sections(self) -> Values:
+    def sections(self) -> Values:
+        """Low-pass of the record, in second-order sections."""
         return np.asarray(butter(4, self.cutoff_hz, fs=self.motion.rate_hz, output="sos"))
 
 
@@ -199,12 +201,12 @@ def write_tracked(answer: TrackedAnswer, out: Path) -> None:
     tracked = answer.tracked
     stem, suffix = tracked.model.stem, tracked.model.suffix
     write_whole(out / f"{stem}_augmented{suffix}", answer.written.text)
-    lines = [f'model = "{stem}_augmented{suffix}"', "", "[tracked]"]
+    lines = [f"model = {quoted(f'{stem}_augmented{suffix}')}", "", "[tracked]"]
     names = {"external_loads": tracked.loads[0], "forces": tracked.forces, "actuators": tracked.actuators}
     names |= {"speeds": tracked.speeds, "accelerations": tracked.accelerations}
     for name, path in names.items():
         if path is not None:
-            lines.append(f'{name} = "{Path(os.path.relpath(path.resolve(), out.resolve())).as_posix()}"')
+            lines.append(f"{name} = {quoted(Path(os.path.relpath(path.resolve(), out.resolve())).as_posix())}")
     lines.append(f"lowpass_hz = {tracked.lowpass_hz!r}")
     numbers = {"noise_deg": tracked.noise_deg, "start_s": tracked.start_s, "end_s": tracked.end_s}
     lines += [f"{name} = {value!r}" for name, value in numbers.items() if value is not None and np.isfinite(value)]
@@ -257,11 +259,11 @@ def moments_of_angle_noise(walk: Pass, noise_deg: float | None) -> Values:
     sizes = np.array([np.radians(given) if one.unit == "rad" else given / 300 for one in walk.engine.coordinates])
     if not given:
         return np.zeros((1, len(walk.times), len(sizes)))
-    rng, sections = np.random.default_rng(SEED), butter(4, walk.cutoff_hz, fs=rate, output="sos")
+    rng = np.random.default_rng(SEED)
     spare = int(rate)
     draws = []
     for _ in range(DRAWS):
-        noise = sosfiltfilt(sections, rng.normal(size=(len(motion.time) + 2 * spare, len(sizes))), axis=0)
+        noise = sosfiltfilt(walk.sections, rng.normal(size=(len(motion.time) + 2 * spare, len(sizes))), axis=0)
         noise *= sizes / noise.std(axis=0)
         inside = slice(spare, spare + len(motion.time))
         first, second = (differentiated(noise, rate, order)[inside] for order in (1, 2))

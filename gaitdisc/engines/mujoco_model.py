@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.engines.engine import ByHand, Coordinate, Motion, refuse_absent
 from gaitdisc.engines.mujoco_text import with_effect, with_value
-from gaitdisc.engines.part_names import part_name
+from gaitdisc.engines.part_names import new_name
 from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.simulation.parts import Input, Parameter
 
@@ -178,7 +178,7 @@ class MujocoModel:
         if (kind, number) not in self._names:
             taken = {name for (other, _), name in self._names.items() if other == kind}
             called = self._called(kind, number) or f"{kind}_{number + 1}"
-            self._names[kind, number] = part_name(called, kind, taken)
+            self._names[kind, number] = new_name(called, kind, taken)
         return self._names[kind, number]
 
     def _control_names(self) -> list[str]:
@@ -186,11 +186,8 @@ class MujocoModel:
         taken = {"gravity", *(f"{self._name('body', body)}_mass" for body in range(1, self._model.nbody))}
         for one in self.coordinates:
             taken |= {one.name, one.speed, one.port, *(f"{one.name}_{word}" for word in JOINT_UNITS)}
-        found: list[str] = []
-        for number in range(self._model.nu):
-            called = self._called("actuator", number) or f"control_{number + 1}"
-            found.append(part_name(called, "control", taken.union(found)))
-        return found
+        called = [self._called("actuator", number) or f"control_{number + 1}" for number in range(self._model.nu)]
+        return [new_name(one, "control", taken) for one in called]
 
     def _called(self, kind: str, number: int) -> str:
         found = self._mujoco.mj_id2name(self._model, getattr(self._mujoco.mjtObj, f"mjOBJ_{kind.upper()}"), number)

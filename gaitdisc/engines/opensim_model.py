@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.engines.engine import ByHand, Coordinate, Motion, refuse_absent
 from gaitdisc.engines.opensim_text import with_effect, with_value
-from gaitdisc.engines.part_names import part_name
+from gaitdisc.engines.part_names import new_name
 from gaitdisc.errors import ReadError, SchemaError
 from gaitdisc.simulation.parts import Input, Parameter
 
@@ -37,13 +37,13 @@ class OpensimModel:
         self._refuse_what_has_no_place(told)
         taken: set[str] = set()
         found = [
-            Coordinate(_free(name, "coordinate", taken), "rad" if turns else "m", name, low, high)
+            Coordinate(new_name(name, "coordinate", taken), "rad" if turns else "m", name, low, high)
             for name, turns, low, high in told["coordinates"]
         ]
         self.coordinates = tuple(found)
-        self._called = {_free(name, "number", taken): name for name, *_ in told["parameters"]}
+        self._called = {new_name(name, "number", taken): name for name, *_ in told["parameters"]}
         taken |= {each for one in found for each in (one.speed, one.port)}
-        self.controls = tuple(Input(_free(name, "control", taken), "1", kind) for name, kind in told["controls"])
+        self.controls = tuple(Input(new_name(name, "control", taken), "1", kind) for name, kind in told["controls"])
         self.parameters = tuple(
             Parameter(name, value, unit)
             for name, (_, value, unit, _) in zip(self._called, told["parameters"], strict=True)
@@ -161,13 +161,6 @@ class OpensimModel:
                 f"{self.path.name}: all are locked ({', '.join(told['locked']) or 'there is none'})",
                 "Unlock those that were measured.",
             )
-
-
-def _free(called: str, kind: str, taken: set[str]) -> str:
-    """Name of a part, which is taken from then on."""
-    name = part_name(called, kind, taken)
-    taken.add(name)
-    return name
 
 
 def _ended(process: subprocess.Popen[bytes]) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from itertools import pairwise
 from pathlib import Path
@@ -13,11 +12,19 @@ from numpy.typing import NDArray
 
 from gaitdisc.engines.engine import Coordinate, Motion
 from gaitdisc.engines.opensim_model import OpensimModel
-from gaitdisc.engines.opensim_worker import answer_questions
+from gaitdisc.engines.opensim_worker import (
+    PORT,
+    ROTATIONAL,
+    add_ports,
+    answer_questions,
+    couplers,
+    switch_off_controllers,
+)
+from gaitdisc.engines.part_names import new_name
 from gaitdisc.errors import SchemaError
 
 Values = NDArray[np.float64]
-ROTATIONAL, TRANSLATIONAL = 1, 2
+TRANSLATIONAL = 2
 STEP = 1e-5  # of a coordinate, for the slope of a coupler
 FORWARD = 0.0025  # [s], longest step of a short forward run: no fibre is stiff where forces are given
 
@@ -33,8 +40,10 @@ class OpensimTracked(OpensimModel):
         self.given = (str(loads[0]), str(loads[1])) if loads else None, str(actuators) if actuators else None
         self._ask("loaded", *self.given)
         told = self._ask("described")
+        taken: set[str] = set()
         self.coordinates = tuple(
-            Coordinate(re.sub(r"\W", "_", name), "rad" if turns else "m", name) for name, turns in told["coordinates"]
+            Coordinate(new_name(name, "coordinate", taken), "rad" if turns else "m", name)
+            for name, turns in told["coordinates"]
         )
         if not self.coordinates:
             raise SchemaError(
@@ -80,9 +89,7 @@ class _Tracked:
 
     def loaded(self, loads: tuple[str, str] | None, actuators: str | None) -> None:
         osim, model = self.osim, self.model
-        controllers = model.getControllerSet()
-        for k in range(controllers.getSize()):
-            controllers.get(k).setEnabled(False)
+        switch_off_controllers(model)
         if actuators:
             more = osim.ForceSet(actuators)
             for k in range(more.getSize()):
@@ -90,14 +97,10 @@ class _Tracked:
         model.finalizeConnections()
         every = model.getCoordinateSet()
         names = [every.get(k).getName() for k in range(every.getSize())]
-        self.coupled = _couplers(model, osim)
+        self.coupled = _led_by_one(model, osim)
         self.names = [name for name in names if not every.get(name).getDefaultLocked() and name not in self.coupled]
         self.actuators = [one.getName() for one in model.getActuators()]
-        for name in self.names:
-            force = osim.CoordinateActuator(name)
-            force.setName(f"force_by_hand_on_{name}")
-            force.setOptimalForce(1.0)
-            model.addForce(force)
+        add_ports(model, osim, self.names)
         external = osim.ExternalLoads(loads[0], True) if loads else None
         if external is not None and loads:
             external.setDataFileName(loads[1])
@@ -108,7 +111,7 @@ class _Tracked:
         self.free = {name: model.getCoordinateSet().get(name) for name in [*self.names, *self.coupled]}
         scalar = osim.ScalarActuator.safeDownCast
         self.given = {name: scalar(model.getActuators().get(name)) for name in self.actuators}
-        self.by_hand = [scalar(model.getActuators().get(f"force_by_hand_on_{name}")) for name in self.names]
+        self.by_hand = [scalar(model.getActuators().get(PORT + name)) for name in self.names]
         for one in (*self.given.values(), *self.by_hand):
             one.overrideActuation(self.state, True)
             one.setOverrideActuation(self.state, 0.0)
@@ -263,19 +266,14 @@ class _Tracked:
         return np.array(found)
 
 
-def _couplers(model: Any, osim: Any) -> dict[str, tuple[str, Any]]:
+def _led_by_one(model: Any, osim: Any) -> dict[str, tuple[str, Any]]:
     """Coordinates that follow one other by a function: that other, and the function."""
-    found, constraints = {}, model.getConstraintSet()
-    for k in range(constraints.getSize()):
-        one = osim.CoordinateCouplerConstraint.safeDownCast(constraints.get(k))
-        if one is None or not one.get_isEnforced() or one.getIndependentCoordinateNames().getSize() != 1:
-            continue
-        law = one.getFunction()
-        found[one.getDependentCoordinateName()] = (
-            one.getIndependentCoordinateNames().get(0),
-            lambda x, law=law, osim=osim: law.calcValue(osim.Vector(1, float(x))),
-        )
-    return found
+
+    def law(function: Any, scale: float) -> Any:
+        return lambda x: scale * function.calcValue(osim.Vector(1, float(x)))
+
+    every = couplers(model, osim).items()
+    return {name: (leading[0], law(function, scale)) for name, (leading, function, scale) in every if len(leading) == 1}
 
 
 if __name__ == "__main__":

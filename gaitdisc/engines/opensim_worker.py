@@ -26,22 +26,16 @@ class _Ready:
         self, osim: Any, path: str, values: dict[str, float], profiles: Any = None, motion: Any = None
     ) -> None:
         self.osim, self.model = osim, osim.Model(path)
-        controllers = self.model.getControllerSet()
-        for k in range(controllers.getSize()):
-            controllers.get(k).setEnabled(False)
+        switch_off_controllers(self.model)
         self.actuators = [one.getName() for one in self.model.getActuators()]
         for name, value in values.items():
             _set(self.model, osim, name, value)
         every = self.model.getCoordinateSet()
         names = [every.get(k).getName() for k in range(every.getSize())]
         self.locked = [name for name in names if every.get(name).getDefaultLocked()]
-        self.couplers = _couplers(self.model, osim)
+        self.couplers = couplers(self.model, osim)
         free = [name for name in names if name not in self.locked and name not in self.couplers]
-        for name in free:
-            force = osim.CoordinateActuator(name)
-            force.setName(PORT + name)
-            force.setOptimalForce(1.0)
-            self.model.addForce(force)
+        add_ports(self.model, osim, free)
         if profiles is not None:
             self._driven(*profiles)
         if motion is not None:
@@ -131,7 +125,23 @@ class _Ready:
         return [*found, *self.state.getZDot().to_numpy()[self.fibres]] if self.fibres else found
 
 
-def _couplers(model: Any, osim: Any) -> dict[str, tuple[list[str], Any, float]]:
+def switch_off_controllers(model: Any) -> None:
+    """Let the controls of the question, and no others, drive a model."""
+    controllers = model.getControllerSet()
+    for k in range(controllers.getSize()):
+        controllers.get(k).setEnabled(False)
+
+
+def add_ports(model: Any, osim: Any, names: list[str]) -> None:
+    """Put an actuator of unit force on each of some coordinates."""
+    for name in names:
+        force = osim.CoordinateActuator(name)
+        force.setName(PORT + name)
+        force.setOptimalForce(1.0)
+        model.addForce(force)
+
+
+def couplers(model: Any, osim: Any) -> dict[str, tuple[list[str], Any, float]]:
     """Coordinates that follow others by a function: these others, the function, and its scale."""
     found = {}
     constraints = model.getConstraintSet()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -101,7 +101,8 @@ def _left(
             driven = np.repeat(controls[None], len(starts), axis=0)
             run = engine.run(engine.near(known, starts[:, :n], starts[:, n:]), driven, measured.rate)
             t = measured.time(one.trial)[one.first : one.end]
-            return np.where(there, seen - np.stack([_observed(mapping, measured, t, x, controls) for x in run]), 0.0)
+            points = [Points(t, x, controls, rate=measured.rate) for x in run]
+            return np.where(there, seen - np.stack([observed(mapping, measured.channels, one) for one in points]), 0.0)
 
         start = states[one.trial, one.first].copy()
         left = residual(start[None])[0]
@@ -122,12 +123,8 @@ def _left(
     return np.sqrt(np.asarray(total) / count)
 
 
-def _observed(
-    mapping: Simulation,
-    measured: Measured,
-    t: NDArray[np.float64],
-    x: NDArray[np.float64],
-    u: NDArray[np.float64],
-) -> NDArray[np.float64]:
-    expressions = [dict(mapping.observations)[name] for name in measured.channels]
-    return evaluate_many(replace(mapping, model=""), expressions, Points(t, x, u, rate=measured.rate)).T
+def observed(mapping: Simulation, channels: Sequence[str], points: Points) -> NDArray[np.float64]:
+    """Observed channels (sample, channel) of an engine's run."""
+    expressions = [dict(mapping.observations)[name] for name in channels]
+    found = evaluate_many(replace(mapping, model=""), expressions, points)
+    return np.broadcast_to(found, (len(channels), len(points.t))).T

@@ -29,3 +29,10 @@ def part_name(called: str, kind: str, taken: Collection[str] = ()) -> str:
         number += 1
         free = f"{name}_{number}"
     return free
+
+
+def new_name(called: str, kind: str, taken: set[str]) -> str:
+    """Name of a part, which is taken from then on."""
+    name = part_name(called, kind, taken)
+    taken.add(name)
+    return name

@@ -11,13 +11,14 @@ from xml.etree import ElementTree
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.channel import nearest_word
+from gaitdisc.channel import Channel, nearest_word
 from gaitdisc.engines.engine import Coordinate
 from gaitdisc.errors import ChannelError, ReadError, SamplingError, SchemaError
 from gaitdisc.ingest.cells import Form, parsed_cells
 from gaitdisc.ingest.raw_file import read_raw
 from gaitdisc.ingest.storage import read_storage
 from gaitdisc.ingest.storage_header import parsed_header
+from gaitdisc.recording import Recording
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.derivatives import differentiated
 from gaitdisc.toml_text import parsed_toml
@@ -157,7 +158,7 @@ def check_loads(tracked: Tracked) -> None:
     """Refuse forces on a body that the model lacks, and columns that their file lacks."""
     loads, data = tracked.loads
     bodies = [one.get("name", "") for one in _xml(tracked.model).iter("Body")]
-    labels, _ = _table(data)
+    labels = parsed_header(read_raw(data).lines(), data.name).labels
     for force in _xml(loads).iter("ExternalForce"):
         body = (force.findtext("applied_to_body") or "").strip()
         if body.rpartition("/")[2] not in bodies:
@@ -209,7 +210,7 @@ def tracked_motion(
     if rates:
         (_, v), (_, a) = [(at, _at(time, at, values)) for at, values in rates]
     else:
-        q, v, a = _smoothed(kinematics, coordinates, tracked.lowpass_hz, q)
+        q, v, a = _smoothed(coordinates, tracked.lowpass_hz, time, q)
     pulls = _at(time, forces[:, 0], forces[:, 1:]) if names else np.zeros((len(time), 0))
     inside &= np.isfinite(q).all(axis=1) & np.isfinite(v).all(axis=1) & np.isfinite(a).all(axis=1)
     kept = np.flatnonzero(inside)
@@ -349,13 +350,9 @@ def _at(time: Values, own: Values, values: Values) -> Values:
 
 
 def _smoothed(
-    path: Path, coordinates: tuple[Coordinate, ...], cutoff_hz: float, q: Values
+    coordinates: tuple[Coordinate, ...], cutoff_hz: float, time: Values, q: Values
 ) -> tuple[Values, Values, Values]:
     """Coordinates after a low-pass, and their two derivatives."""
-    from gaitdisc.channel import Channel
-    from gaitdisc.recording import Recording
-
-    time, _ = _coordinates(path, coordinates, "")
     channels = tuple(Channel(one.called, "signal", one.unit) for one in coordinates)
     smooth = lowpassed(Recording(time, q, channels), cutoff_hz)
     values, rate = np.array(smooth.values), smooth.rate_hz

@@ -14,7 +14,7 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.raw_file import read_raw
 from gaitdisc.ingest.study import Kinematics, Study
 from gaitdisc.ingest.study_errors import schema_error
-from gaitdisc.toml_text import parsed_toml
+from gaitdisc.toml_text import parsed_toml, quoted
 from gaitdisc.whole_file import write_whole
 
 LARGEST_STUDY_BYTES = 16 * 2**20  # a hundred thousand trials
@@ -95,7 +95,7 @@ def study_text(study: Study, folder: Path | None = None) -> str:
             parts.append(f"# {about}\n[{key}]\n{pairs}")
         else:
             about = type(study).model_fields[key].description
-            pairs = "".join(f"{_string(label)} = {_string(name)}\n" for label, name in value.items())
+            pairs = "".join(f"{quoted(label)} = {quoted(name)}\n" for label, name in value.items())
             parts.append(f"# {about}\n[{key}]\n{pairs}")
     told = False  # each key is explained where it stands first
     for participant in study.participants:
@@ -130,17 +130,12 @@ def _pair(part: BaseModel, name: str) -> str:
 
 def _value(value: Any) -> str:
     if isinstance(value, str):
-        return _string(value)
+        return quoted(value)
     if isinstance(value, tuple):
         items = [_value(item) for item in value]
         one_line = f"[{', '.join(items)}]"
         return one_line if len(one_line) <= 90 else "[\n" + "".join(f"    {item},\n" for item in items) + "]"
     return repr(value)
-
-
-def _string(text: str) -> str:
-    """Basic string of TOML; JSON's escapes are among TOML's."""
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def _moved(file: str, old: Path, new: Path | None) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from gaitdisc.channel import Channel, side_of
 from gaitdisc.engines.engine import Engine
 from gaitdisc.engines.mapping import names_engine
+from gaitdisc.engines.own_runs import observed
 from gaitdisc.engines.written import whole_model
 from gaitdisc.errors import ShapeError, UnitError
 from gaitdisc.ingest.table import has_times
@@ -23,7 +23,7 @@ from gaitdisc.recording import Recording, Source
 from gaitdisc.recording.strides import interpolated
 from gaitdisc.simulation.divergence import refuse_divergence
 from gaitdisc.simulation.drive import Drive, Rows
-from gaitdisc.simulation.evaluating import Points, evaluate_many
+from gaitdisc.simulation.evaluating import Points
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation import Simulation
@@ -130,11 +130,9 @@ def _run_by(
             f"it has no numbers from t = {time[lost[0]]:.6g} s on",
             "Begin at another state, or look at the inputs there.",
         )
-    channels = dict(simulation.observations)
-    points = Points(time, states, driven, rate=rate)
-    plain = replace(simulation, model="", effects=(), definitions=())
-    observed = evaluate_many(plain, [*channels.values()], points)
-    return states, {name: np.broadcast_to(each, time.shape) for name, each in zip(channels, observed, strict=True)}
+    channels = [*dict(simulation.observations)]
+    seen = observed(simulation, channels, Points(time, states, driven, rate=rate))
+    return states, dict(zip(channels, seen.T, strict=True))
 
 
 def _rate(time: NDArray[np.float64]) -> float:

@@ -14,6 +14,7 @@ from gaitdisc.simulation.python_simulation import PythonSimulation
 from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.simulation import Lines, Simulation
 from gaitdisc.simulation.simulation_file import simulation_of
+from gaitdisc.toml_text import quoted
 from gaitdisc.whole_file import write_whole
 
 _REPLACED = "replaced_"  # begins the name of the definition that an input of a Python object is replaced by
@@ -100,7 +101,7 @@ def read_into(model: PythonSimulation, path: Path | str) -> PythonSimulation:
                 f"{path.name} has {', '.join(its) or 'none'}",
                 "Read the file that was written of this model.",
             )
-    equations = [f"{name} = {_quoted(listed)}" for name, listed in model.equations]
+    equations = [f"{name} = {quoted(listed)}" for name, listed in model.equations]
     read = simulation_of("\n".join([text, "[equations]", *equations, ""]), path.name)
     replaced = tuple((name.removeprefix(_REPLACED), listed) for name, listed in read.definitions)
     return replace(model, parts=replace(read, definitions=(), layout="", source=None), replaced=replaced)
@@ -155,7 +156,7 @@ def _with_parameter(lines: list[str], old: Parameter, new: Parameter) -> list[st
 
 def _with_expressions(lines: list[str], section: str, old: Lines, new: Lines) -> list[str]:
     had = dict(old)
-    changed = {name: _quoted(text) for name, text in new if had.get(name) != text}
+    changed = {name: quoted(text) for name, text in new if had.get(name) != text}
     return _with_values(lines, _table(lines, section), changed) if changed else lines
 
 
@@ -170,7 +171,7 @@ def _with_observations(lines: list[str], before: Simulation, after: Simulation) 
         span = _table(lines, rf"observations\s*\.\s*[\"']?{re.escape(name)}[\"']?")
         long = long or span[0] >= 0
         if span[0] >= 0 and name in wanted:
-            lines = _with_values(lines, span, {"expression": _quoted(wanted[name])})
+            lines = _with_values(lines, span, {"expression": quoted(wanted[name])})
     start, end = _table(lines, "observations")
     if start < 0 and long:
         added = [["", *_observation(text, after.sensor(name))] for name, text in after.observations if name not in has]
@@ -224,18 +225,18 @@ def _with_values(lines: list[str], span: tuple[int, int], values: dict[str, str]
 
 
 def _new_text(simulation: Simulation, sections: Iterable[str] = ("definitions", "equations", "observations")) -> str:
-    lines = [f"title = {_quoted(simulation.title)}"]
+    lines = [f"title = {quoted(simulation.title)}"]
     if simulation.model:
-        lines += [f"model = {_quoted(simulation.model)}"]
+        lines += [f"model = {quoted(simulation.model)}"]
         sections = [section for section in sections if section != "equations"]
     for state in simulation.states:
         lines += ["", *_state(state)]
     for each in simulation.inputs:
-        lines += ["", f"[inputs.{each.name}]", f"unit = {_quoted(each.unit)}", *_meaning(each.meaning)]
+        lines += ["", f"[inputs.{each.name}]", f"unit = {quoted(each.unit)}", *_meaning(each.meaning)]
     for parameter in simulation.parameters:
         lines += ["", *_parameter(parameter)]
     for port in simulation.ports:
-        lines += ["", f"[ports.{port.name}]", f"unit = {_quoted(port.unit)}", *_meaning(port.meaning)]
+        lines += ["", f"[ports.{port.name}]", f"unit = {quoted(port.unit)}", *_meaning(port.meaning)]
     for section in sections:
         if section == "observations" and simulation.sensors:
             for name, text in simulation.observations:
@@ -249,45 +250,40 @@ def _new_text(simulation: Simulation, sections: Iterable[str] = ("definitions", 
 
 def _state(state: State) -> list[str]:
     initial = [] if state.initial is None else [f"initial = {state.initial!r}"]
-    return [f"[states.{state.name}]", f"unit = {_quoted(state.unit)}", *_meaning(state.meaning), *initial]
+    return [f"[states.{state.name}]", f"unit = {quoted(state.unit)}", *_meaning(state.meaning), *initial]
 
 
 def _parameter(parameter: Parameter) -> list[str]:
     bounds = [
         f"{key} = {bound!r}" for key, bound in (("low", parameter.low), ("high", parameter.high)) if bound is not None
     ]
-    unit = f"unit = {_quoted(parameter.unit)}"
+    unit = f"unit = {quoted(parameter.unit)}"
     meaning = _meaning(parameter.meaning)
     return [f"[parameters.{parameter.name}]", f"value = {parameter.value!r}", unit, *bounds, *meaning]
 
 
 def _observation(expression: str, sensor: Sensor) -> list[str]:
-    unit = [f"unit = {_quoted(sensor.unit)}"] if sensor.unit else []
+    unit = [f"unit = {quoted(sensor.unit)}"] if sensor.unit else []
     numbers = [f"{key} = {value!r}" for key in ("sd", "lowpass") if (value := getattr(sensor, key)) is not None]
-    return [f"[observations.{_key(sensor.channel)}]", f"expression = {_quoted(expression)}", *unit, *numbers]
+    return [f"[observations.{_key(sensor.channel)}]", f"expression = {quoted(expression)}", *unit, *numbers]
 
 
 def _effect(term: Term) -> list[str]:
     return [
         "[[effects]]",
-        f"{term.kind} = {_quoted(term.place)}",
-        f"name = {_quoted(term.name)}",
-        f"term = {_quoted(term.term)}",
+        f"{term.kind} = {quoted(term.place)}",
+        f"name = {quoted(term.name)}",
+        f"term = {quoted(term.term)}",
     ]
 
 
 def _expressions(lines: Iterable[tuple[str, str]]) -> list[str]:
-    return [f"{_key(name)} = {_quoted(text)}" for name, text in lines]
+    return [f"{_key(name)} = {quoted(text)}" for name, text in lines]
 
 
 def _key(name: str) -> str:
-    return name if re.match(r"[A-Za-z0-9_-]+$", name) else _quoted(name)
+    return name if re.match(r"[A-Za-z0-9_-]+$", name) else quoted(name)
 
 
 def _meaning(text: str) -> list[str]:
-    return [f"meaning = {_quoted(text)}"] if text else []
-
-
-def _quoted(text: str) -> str:
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
-    return '"' + re.sub(r"[\x00-\x1f\x7f]", lambda found: f"\\u{ord(found[0]):04x}", escaped) + '"'
+    return [f"meaning = {quoted(text)}"] if text else []
