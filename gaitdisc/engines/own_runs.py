@@ -127,4 +127,4 @@ def observed(mapping: Simulation, channels: Sequence[str], points: Points) -> ND
     """Observed channels (sample, channel) of an engine's run."""
     expressions = [dict(mapping.observations)[name] for name in channels]
     found = evaluate_many(replace(mapping, model=""), expressions, points)
-    return np.broadcast_to(found, (len(channels), len(points.t))).T
+    return np.broadcast_to(found, (len(channels), np.size(points.t))).T
