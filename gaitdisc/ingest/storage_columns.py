@@ -20,6 +20,8 @@ _RATES = {
     "kinematics_u": "/s",  # what OpenSim's analyses write
     "kinematics_dudt": "/s2",
 }
+# What OpenSim's analyses write of muscles under the names of the muscles, which elsewhere are those of EMG
+_OF_ACTUATORS = {"actuation_force": "N", "actuation_power": "W", "forcereporter": "N"}
 _RATE_WORD = {"/s": "speed", "/s2": "accel"}
 
 
@@ -96,6 +98,9 @@ def _known(label: str, plain: str, title: str, of_emg: bool) -> Column:
         name = f"{channel.name}/{_RATE_WORD[rate]}"
         return Column(label, Channel(name, "signal", channel.unit + rate, channel.side), channel.unit + rate)
     if channel and channel.quantity == "emg":
+        unit = _OF_ACTUATORS.get(title.lower())
+        if unit:
+            return Column(label, Channel(plain, "signal", unit, channel.side), unit, f"{title} of a muscle, no EMG")
         return Column(label, replace(channel, unit="1"), "1")
     if channel:
         return Column(label, channel, channel.unit)

@@ -114,3 +114,13 @@ def test_sides_of_unmarked_ground_forces_are_told():
 def test_names_known_to_the_vocabulary_are_no_guess():
     header = StorageHeader("Coordinates", ("time", "hip_flexion_r", "pelvis_tx"), 3)
     assert naming_findings(storage_columns(header, "a.mot"), "a.mot") == []
+
+
+@pytest.mark.parametrize(
+    ("title", "unit"), [("Actuation_force", "N"), ("ForceReporter", "N"), ("Actuation_power", "W")]
+)
+def test_forces_and_powers_of_muscles_are_no_emg(title, unit):
+    column = _column("soleus_r", title)
+    assert (column.channel.name, column.channel.quantity, column.channel.unit) == ("soleus_r", "signal", unit)
+    assert column.guessed == f"{title} of a muscle, no EMG"
+    assert _column("soleus_r").channel.name == "emg_sol_r"
