@@ -46,8 +46,8 @@ def discover(
     catalogue : path, optional
         A file of effects of your own, considered beside those that come along.
     progress : callable, optional
-        Called with one line about each step; `print`, say. Of a function whose equations could not be written down,
-        which takes minutes, the lines go to the standard error stream by default.
+        Called with one line about each step; `print`, say. Of a model of an engine, and of a function whose
+        equations could not be written down, which take their time, they go to the standard error stream by default.
 
     Returns
     -------
@@ -101,7 +101,7 @@ def _of_engine(
         from gaitdisc.batch.discover_tracked import discover_tracked
 
         of_user = None if catalogue is None else Path(catalogue)
-        answered = discover_tracked(walk, Path(data), of_user, progress or (lambda _: None))
+        answered = discover_tracked(walk, Path(data), of_user, progress or _to_the_terminal)
         return answered.found, answered.augmented
 
     files: dict[Path, str] = {}
@@ -113,7 +113,7 @@ def _of_engine(
         return _measured(data, mapping)[0]
 
     chosen = None if catalogue is None else Path(catalogue)
-    answer = discover_engine(model, read, chosen, files, progress or (lambda _: None))
+    answer = discover_engine(model, read, chosen, files, progress or _to_the_terminal)
     return answer.found, answer.augmented
 
 
