@@ -8,7 +8,6 @@ from gaitdisc.engines.mapping import (
     names_engine,
     other_values,
     read_mapping,
-    refuse_other_units,
     with_input_changed,
     write_mapping,
 )
@@ -63,13 +62,6 @@ def test_a_number_that_is_not_the_models_is_told(pendulum):
     assert other_values(mapping, model) == ()
     (said,) = other_values(mapping.with_values({"rod_mass": 3.0}), model)
     assert said.what == "rod_mass is 3 in the mapping and 2 in the model"
-
-
-def test_degrees_that_nobody_said_are_degrees_are_refused(pendulum):
-    mapping, model = read_mapping(pendulum)
-    refuse_other_units(mapping, model, {"pivot": 1.2})
-    with pytest.raises(GaitdiscError, match=r"column 'pivot' makes it 45 rad: these may be degrees.*--degrees"):
-        refuse_other_units(mapping, model, {"pivot": 45.0})
 
 
 def test_a_mapping_is_no_simulation_that_runs_by_itself(pendulum):
