@@ -30,7 +30,7 @@ def storage_columns(header: StorageHeader, file: str, channels: Mapping[str, str
 
     The study's map comes first, then what the file itself states, then the vocabulary, then the habits of OpenSim:
     `*_moment` in N m, `*_force` in N, `/speed` per second, EMG without a unit. Angles are marked `deg` here; whether
-    the file holds radians is judged on the numbers.
+    the file holds radians follows from the numbers.
 
     channels: the study's `[channels]`
 
@@ -110,7 +110,7 @@ def _known(label: str, plain: str, title: str, of_emg: bool) -> Column:
 
 
 def _muscle(label: str, plain: str) -> Column:
-    """EMG whose side or muscle the vocabulary cannot tell."""
+    """EMG whose side or muscle the vocabulary cannot determine."""
     of_right = vocabulary().named(f"{plain}_r")
     if of_right and of_right.quantity == "emg":
         channel = Channel(of_right.name.removesuffix("_r"), "emg", "1")

@@ -91,14 +91,14 @@ def test_events_and_the_first_field(tmp_path, write_c3d, some_points, reader):
     assert [event.time for event in trial.events] == pytest.approx([0.1, 0.3], abs=1e-6)
 
 
-def test_a_rate_that_is_no_multiple_is_told(tmp_path, write_c3d, some_points, some_analog, reader):
+def test_a_rate_that_is_no_multiple_is_reported(tmp_path, write_c3d, some_points, some_analog, reader):
     path = write_c3d(tmp_path / "a.c3d", some_points, some_analog)
     content = path.read_bytes()
     at = content.index(np.float32(1000).tobytes())
     path.write_bytes(content[:at] + np.float32(1003).tobytes() + content[at + 4 :])
     trial = reader.read(path)
-    told = [finding.what for finding in trial.findings if finding.kind == "analog rate"]
-    assert told == [
+    said = [finding.what for finding in trial.findings if finding.kind == "analog rate"]
+    assert said == [
         "ANALOG:RATE 1003 Hz is 10.03 times POINT:RATE 100 Hz, the file holds 10 samples a frame; read at 1000 Hz"
     ]
     assert trial.stream("signals").rate_hz == 1000
@@ -161,8 +161,8 @@ def test_the_second_reader_is_asked_and_named(tmp_path, write_c3d, some_points, 
     trial = reader.read(path)
     assert trial.stream("markers").source.reader.startswith("c3d")
     np.testing.assert_allclose(trial.stream("markers").values[:, 0], some_points[0, 0] / 1000, rtol=1e-6)
-    told = [finding.what for finding in trial.findings if finding.kind == "second reader"]
-    assert told[0].endswith(f"as ezc3d could not: {crash}")
+    said = [finding.what for finding in trial.findings if finding.kind == "second reader"]
+    assert said[0].endswith(f"as ezc3d could not: {crash}")
 
 
 def test_both_refusals_are_said(tmp_path, write_c3d, some_points, reader, monkeypatch):

@@ -99,13 +99,13 @@ def test_the_study_comes_before_the_vocabulary():
     assert _column("ch 7", channels={"ch 7": "load"}).guessed == "its name is in [channels], its unit is not"
 
 
-def test_guesses_are_told_together():
+def test_guesses_are_reported_together():
     header = StorageHeader("x", ("time", *(f"c{i}" for i in range(9))), 3)
     (finding,) = naming_findings(storage_columns(header, "a.sto"), "a.sto")
     assert finding.what == "c0, c1, c2, c3, c4, c5 and 3 more: unknown name, kept as a signal without a unit"
 
 
-def test_sides_of_unmarked_ground_forces_are_told():
+def test_sides_of_unmarked_ground_forces_are_reported():
     header = StorageHeader("grf", ("time", "ground_force_vy", "1_ground_force_vy"), 3)
     (finding,) = naming_findings(storage_columns(header, "a.mot"), "a.mot")
     assert "ground_force_ is taken as the right foot" in finding.what
