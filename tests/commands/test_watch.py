@@ -14,7 +14,7 @@ import pytest
 from gaitdisc.ingest.study_file import load_study
 
 PIECES, PAUSE_S = 6, 0.25
-STILL_S = 4.0  # sixteen pauses: a busy machine may sleep longer than it is told to
+STILL_S = 4.0  # sixteen pauses: a busy machine may sleep longer than it should
 
 
 def copied_slowly(source, target):
