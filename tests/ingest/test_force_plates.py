@@ -64,7 +64,7 @@ def test_both_signs_of_the_origin(origin):
     _check(_read(_rows(), _file(origin=origin))[0])
 
 
-def test_an_origin_without_depth_is_judged_by_where_the_foot_stands():
+def test_an_origin_without_depth_is_inferred_by_where_the_foot_stands():
     sensors = np.array([0.25, 0.8, 0])  # at a corner of a treadmill; the file points from the surface to them
     streams, _, findings = _read(_rows(sensors), _file(origin=tuple(-1000 * sensors)))
     _check(streams)

@@ -82,7 +82,7 @@ def test_the_crop_keeps_its_part_and_must_lie_inside(tmp_path):
         read_trial(path, crop_s=(5, 6))
 
 
-def test_the_unit_of_angles_is_judged_in_what_the_crop_leaves(tmp_path):
+def test_the_unit_of_angles_is_checked_in_what_the_crop_leaves(tmp_path):
     time = np.arange(400) / 100
     hip, knee = 0.4 * np.cos(2 * np.pi * time), 0.5 - 0.5 * np.cos(4 * np.pi * time)
     hip[200:], knee[200:] = 9 * np.sin(time[200:]), 8 * np.cos(time[200:])  # a fit that lost its markers

@@ -155,7 +155,7 @@ def test_translations_are_never_scaled(tmp_path):
     assert walk["pelvis_tx"][-1] == 59.0
 
 
-def test_a_silent_header_is_judged_or_refused(tmp_path):
+def test_a_silent_header_is_inferred_or_refused(tmp_path):
     silent = HEAD.replace("inDegrees=yes\n", "")
     trial = read_storage(_written(tmp_path, silent + BODY))
     assert any(finding.kind == "unit inferred" and "taken as deg" in finding.what for finding in trial.findings)
