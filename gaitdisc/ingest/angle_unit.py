@@ -73,7 +73,7 @@ def copied_coordinate_unit(
     """Unit of OpenSim's `knee_angle_r_beta`, which copies the knee angle, or None where it copies nothing.
 
     OpenSim converts rotational coordinates when it writes a file but leaves coupled ones as they are, so that in a file
-    of degrees the copy stands in radians, and in one of radians it may stand in degrees. The knee that it copies decides.
+    of degrees the copy stands in radians, and in one of radians it may stand in degrees. The copied knee decides.
 
     values (time,) [deg or rad]: as read
     angles each (time,) [deg]: the other angles of the file, already in degrees
