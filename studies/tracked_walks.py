@@ -34,7 +34,8 @@ import numpy as np
 import pandas as pd
 from scipy.signal import butter, sosfiltfilt
 
-from gaitdisc.batch.discover_tracked import FEWEST, Pass, joints_of, moments_of_angle_noise, tracked_pass
+from gaitdisc.batch.tracked_joints import FEWEST, joints_of
+from gaitdisc.batch.tracked_pass import Pass, moments_of_angle_noise, tracked_pass
 from gaitdisc.discovery.prescribed import CLOSED, LeftMoment
 from gaitdisc.engines.tracked_files import read_tracked
 from gaitdisc.signals.derivatives import differentiated
@@ -171,7 +172,7 @@ def regressed(walk: Pass, joint: LeftMoment) -> float:
         [np.ones(len(joint.time)), *(walk.dense(each[:, number]) for each in (walk.motion.q, walk.motion.v))]
     )
     rest = np.zeros(len(joint.time))
-    for held, learned in zip(joint.halves, reversed(joint.halves), strict=True):
+    for held, learned in joint.blocks:
         factors = np.linalg.lstsq(columns[learned], joint.left[learned], rcond=None)[0]
         rest[held] = joint.left[held] - columns[held] @ factors
     return float(np.sqrt(np.mean(rest**2)))

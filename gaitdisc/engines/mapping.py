@@ -11,6 +11,7 @@ import numpy as np
 
 from gaitdisc.engines.engine import Engine, refuse_unknown
 from gaitdisc.engines.model_file import is_model, read_model
+from gaitdisc.engines.tracked_files import read_tracked
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Finding
 from gaitdisc.simulation.parts import Port, Sensor, State
@@ -77,6 +78,12 @@ def read_mapping(path: Path | str) -> tuple[Simulation, Engine]:
             engine = read_model(path)
             return drafted(engine), engine
         path = beside
+    if read_tracked(path) is not None:
+        raise SchemaError(
+            "a mapping that is run forward says what drives the model",
+            f"{path.name} holds [tracked]: its motion is prescribed, and only discover reads it",
+            "Run gaitdisc discover on it; to simulate, write a mapping without [tracked] for a copy of the model.",
+        )
     mapping = read_simulation(path)
     engine = read_model(path.parent / mapping.model)
     check_mapping(mapping, engine)

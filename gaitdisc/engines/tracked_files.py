@@ -114,7 +114,7 @@ def _tracked(table: dict[str, Any], file: Path) -> Tracked:
     loads, noise = paths["external_loads"], given.get("noise_deg")
     return Tracked(
         _there(file, "model", table.get("model", f"{file.stem}.osim")),
-        (loads, _data_of(loads)),
+        loads_of(loads),
         *(paths.get(name) for name in FILES[1:]),
         lowpass_hz=float(given.get("lowpass_hz", LOWPASS_HZ)),
         noise_deg=None if noise is None else float(noise),
@@ -134,8 +134,14 @@ def _there(file: Path, what: str, name: object) -> Path:
     return path
 
 
-def _data_of(loads: Path) -> Path:
-    """Storage file of an ExternalLoads file."""
+def loads_of(loads: Path) -> tuple[Path, Path]:
+    """Return an ExternalLoads file, and the storage file that it names."""
+    if loads.suffix.lower() in (".mot", ".sto"):
+        raise ReadError(
+            "external_loads is the file that says on which body each force acts (.xml, ExternalLoads)",
+            f"{loads.name} holds the forces themselves",
+            f"Give the .xml of OpenSim's inverse dynamics, which names {loads.name} in <datafile>.",
+        )
     named = (_xml(loads).findtext(".//datafile") or "").strip()
     path = loads.parent / named
     if not named or not path.is_file():
@@ -144,7 +150,7 @@ def _data_of(loads: Path) -> Path:
             f"there is none at {named!r} beside it" if named else "it names none",
             "Correct <datafile>; it counts from the folder of the file that names it.",
         )
-    return path
+    return loads, path
 
 
 def _xml(path: Path) -> ElementTree.Element:
@@ -197,10 +203,16 @@ def tracked_motion(
 
     Rates come from their files, or from the angles after a low-pass.
     """
+    if kinematics.suffix.lower() not in (".mot", ".sto"):
+        raise ReadError(
+            "a walk is tracked by the angles of the model's coordinates (.mot, .sto)",
+            f"{kinematics.name} is a file of another kind",
+            "Run OpenSim's inverse kinematics on the markers first, with this model, and give its .mot.",
+        )
     time, q = _coordinates(kinematics, coordinates, "")
     _refuse_degrees(kinematics, coordinates, q)
     rates = [_coordinates(one, coordinates, word) for one, word in _rates(tracked)]
-    names, forces = _forces(tracked, known)
+    names, forces = actuator_forces(tracked, known)
     spans = {kinematics: time, **{one: at for (one, _), (at, _) in zip(_rates(tracked), rates, strict=True)}}
     spans[tracked.loads[1]] = _table(tracked.loads[1])[1][:, 0]
     if tracked.forces is not None:
@@ -270,8 +282,8 @@ def _refuse_degrees(path: Path, coordinates: tuple[Coordinate, ...], q: Values) 
         )
 
 
-def _forces(tracked: Tracked, known: tuple[str, ...]) -> tuple[tuple[str, ...], Values]:
-    """Actuators of a forces' file, and its numbers with time first; what the loads' file gives is passed over."""
+def actuator_forces(tracked: Tracked, known: tuple[str, ...]) -> tuple[tuple[str, ...], Values]:
+    """Return the actuators of a forces' file, and its numbers with time first; what the loads give is passed over."""
     path = tracked.forces
     if path is None:
         return (), np.zeros((0, 1))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from gaitdisc.batch.discover_files import discovered
 from gaitdisc.engines.mapping import names_engine
+from gaitdisc.errors import SchemaError
 from gaitdisc.library.models import ModelLike, model_of
 from gaitdisc.recording import Recording
 from gaitdisc.simulation.measured import Measured
@@ -97,7 +98,13 @@ def _of_engine(
     from gaitdisc.engines.tracked_files import read_tracked
 
     walk = read_tracked(model)
-    if walk is not None and isinstance(data, Path | str):
+    if walk is not None:
+        if not isinstance(data, Path | str):
+            raise SchemaError(
+                f"the walk of {model.name} is tracked by a file of its angles (.mot, .sto)",
+                f"found {type(data).__name__}",
+                "Give the path of that file.",
+            )
         from gaitdisc.batch.discover_tracked import discover_tracked
 
         of_user = None if catalogue is None else Path(catalogue)
