@@ -56,18 +56,18 @@ def discover_tracked(
     tracked: Tracked,
     kinematics: Path,
     catalogue: Path | None = None,
-    told: Callable[[str], None] = lambda _: None,
+    progress: Callable[[str], None] = lambda _: None,
 ) -> TrackedAnswer:
     """Find what a model lacks at each joint of a walk whose ground and muscle forces were recorded."""
-    told(f"reading {kinematics.name} and the forces")
-    walk = tracked_pass(tracked, kinematics, told)
+    progress(f"reading {kinematics.name} and the forces")
+    walk = tracked_pass(tracked, kinematics, progress)
     findings, engine, motion = balance(walk), walk.engine, walk.motion
     refuse_other_motion(walk)
-    told("computing what noise of the angles makes of them")
+    progress("computing what noise of the angles makes of them")
     angle_noise = moments_of_angle_noise(walk, tracked.noise_deg)
-    base, joints = joints_of(walk, angle_noise, read_catalogue(catalogue) if catalogue else (), told)
+    base, joints = joints_of(walk, angle_noise, read_catalogue(catalogue) if catalogue else (), progress)
     found = discovery_of(base, joints)
-    told("writing it into the model")
+    progress("writing it into the model")
     augmented = _augmented(engine, found)
     written = _written(engine, augmented, found)
     said = _gaps(walk, written, found)

@@ -28,16 +28,17 @@ BEYOND = 3.0  # times the noise of a joint, from which what is left is worth a w
 
 
 def joints_of(
-    walk: Pass, angle_noise: Values, more: tuple[Shape, ...] = (), told: Callable[[str], None] = lambda _: None
+    walk: Pass, angle_noise: Values, more: tuple[Shape, ...] = (), progress: Callable[[str], None] = lambda _: None
 ) -> tuple[Simulation, list[JointFinding]]:
     """Name what is left at each joint beside what noise makes of it; the simulation says what the numbers are."""
     _refuse_short(walk)
     base = _simulation(walk)
+    candidates = _candidates(base, walk, more)
     joints = []
     for number in walk.joints:
-        told(f"weighing what is left at {walk.engine.coordinates[number].called}")
+        progress(f"weighing what is left at {walk.engine.coordinates[number].called}")
         joint = _left(walk, base, number, angle_noise)
-        joints.append(joint_finding(joint, _candidates(base, walk, number, (*known_shapes(), *more)), len(walk.joints)))
+        joints.append(joint_finding(joint, candidates[number], len(walk.joints)))
     return base, joints
 
 
@@ -77,18 +78,21 @@ def _simulation(walk: Pass) -> Simulation:
     )
 
 
-def _candidates(base: Simulation, walk: Pass, number: int, shapes: tuple[Shape, ...]) -> tuple[Candidate, ...]:
-    one = walk.engine.coordinates[number]
-    place = Place("port", one.port, ((one.name, one.speed),), (), (), one.unit == "rad")
-    every = candidates_of(base, (place,), shapes)
-    mine = {f"{name}_{word}" for name in walk.groups_at(number) for word in ("strength", "delay")}
-    ours = {shape.name for shape in shapes} - {shape.name for shape in known_shapes()}
-    return tuple(
-        one
-        for one in every
-        if (one.kind == "port" and one.name in (*EFFECTS, *ours) and not one.states)
-        or (one.kind == "parameter" and one.place in mine)
-    )
+def _candidates(base: Simulation, walk: Pass, more: tuple[Shape, ...]) -> dict[int, tuple[Candidate, ...]]:
+    """What may act at each joint: a device's shapes at its port, its muscles stronger or later, effects of the user."""
+    joints = {k: walk.engine.coordinates[k] for k in walk.joints}
+    places = [Place("port", one.port, ((one.name, one.speed),), (), (), one.unit == "rad") for one in joints.values()]
+    every = candidates_of(base, tuple(places), (*known_shapes(), *more))
+    effects = {*EFFECTS, *(shape.name for shape in more)}
+    found = {}
+    for k, one in joints.items():
+        mine = {one.port, *(f"{name}_{word}" for name in walk.groups_at(k) for word in ("strength", "delay"))}
+        found[k] = tuple(
+            each
+            for each in every
+            if each.place in mine and (each.kind == "parameter" or (each.name in effects and not each.states))
+        )
+    return found
 
 
 def _left(walk: Pass, base: Simulation, number: int, angle_noise: Values) -> LeftMoment:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -21,6 +21,7 @@ from gaitdisc.signals.derivatives import differentiated
 
 Values = NDArray[np.float64]
 DRAWS, SEED, NOISE_DEG = 4, 0, 0.3
+MM = 1 / 300  # [m] of a translation, that go with a degree of an angle
 OTHER_MOTION = 0.15  # of the weight
 WRONG_MASS = 0.05  # of the weight, which the ground carries less or more than the model moves
 LEAST_ARM_M = 1e-3
@@ -85,12 +86,12 @@ class Pass:
         return np.asarray(butter(4, self.cutoff_hz, fs=self.motion.rate_hz, output="sos"))
 
 
-def tracked_pass(tracked: Tracked, kinematics: Path, told: Callable[[str], None] = lambda _: None) -> Pass:
+def tracked_pass(tracked: Tracked, kinematics: Path, progress: Callable[[str], None] = lambda _: None) -> Pass:
     """Compute the generalised forces that a recorded motion demands, and those that the files' actuators give."""
     check_loads(tracked)
     engine = OpensimTracked(tracked.model, tracked.loads, tracked.actuators)
     motion = tracked_motion(tracked, kinematics, engine.coordinates, engine.actuators)
-    told("computing the moments that the motion demands, by OpenSim")
+    progress("computing the moments that the motion demands, by OpenSim")
     demanded = engine.demanded(motion.time, (motion.q, motion.v, motion.a))
     arms = engine.arms(motion.time, motion.q, motion.actuators)
     pulls = arms * motion.forces[:, :, None]
@@ -109,22 +110,25 @@ def tracked_pass(tracked: Tracked, kinematics: Path, told: Callable[[str], None]
 
 def moments_of_angle_noise(walk: Pass, noise_deg: float | None) -> Values:
     """Return what noise of the angles, after the record's low-pass, makes of the moments (draw, sample, coordinate)."""
-    motion, rate = walk.motion, walk.motion.rate_hz
-    given = noise_deg if noise_deg is not None else (NOISE_DEG if motion.differentiated else 0.0)
-    sizes = np.array([np.radians(given) if one.unit == "rad" else given / 300 for one in walk.engine.coordinates])
+    given = noise_deg if noise_deg is not None else (NOISE_DEG if walk.motion.differentiated else 0.0)
     if not given:
-        return np.zeros((1, len(walk.times), len(sizes)))
+        return np.zeros((1, len(walk.times), len(walk.engine.coordinates)))
     rng = np.random.default_rng(SEED)
-    spare = int(rate)
-    draws = []
-    for _ in range(DRAWS):
-        noise = sosfiltfilt(walk.sections, rng.normal(size=(len(motion.time) + 2 * spare, len(sizes))), axis=0)
-        noise *= sizes / noise.std(axis=0)
-        inside = slice(spare, spare + len(motion.time))
-        first, second = (differentiated(noise, rate, order)[inside] for order in (1, 2))
-        moved = (motion.q + noise[inside], motion.v + first, motion.a + second)
-        draws.append(walk.dense(walk.engine.demanded(motion.time, moved) - walk.demanded))
-    return np.array(draws)
+    moved = [shaken(walk, given, rng) for _ in range(DRAWS)]
+    return np.array([walk.dense(one.demanded - walk.demanded) for one in moved])
+
+
+def shaken(walk: Pass, noise_deg: float, rng: np.random.Generator) -> Pass:
+    """Return a walk whose angles have noise of a size [deg] that went through the record's low-pass."""
+    motion, spare = walk.motion, int(walk.motion.rate_hz)
+    sizes = [np.radians(noise_deg) if one.unit == "rad" else noise_deg * MM for one in walk.engine.coordinates]
+    white = rng.normal(size=(len(motion.time) + 2 * spare, len(sizes)))
+    noise = sosfiltfilt(walk.sections, white, axis=0)
+    noise *= sizes / noise.std(axis=0)
+    inside = slice(spare, spare + len(motion.time))
+    first, second = (differentiated(noise, motion.rate_hz, order)[inside] for order in (1, 2))
+    moved = replace(motion, q=motion.q + noise[inside], v=motion.v + first, a=motion.a + second)
+    return replace(walk, motion=moved, demanded=walk.engine.demanded(moved.time, (moved.q, moved.v, moved.a)))
 
 
 def balance(walk: Pass) -> list[Finding]:

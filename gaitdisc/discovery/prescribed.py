@@ -101,14 +101,13 @@ def joint_finding(joint: LeftMoment, candidates: tuple[Candidate, ...], joints: 
         coarse = _weighed(joint, noise, candidates, open_ones, refined=False)
         best = tuple(one.part.candidate for one in coarse[:REFINED])
         ordered = _weighed(joint, noise, best, open_ones, refined=True)
-        rest = joint.left - (ordered[0].explained if ordered else 0.0)
-        own = float(np.sqrt(np.mean(rest**2)))
-        if own <= float(noise.size[0]):
+        rest = min((joint.left - one.explained for one in ordered), key=np.linalg.norm, default=joint.left)
+        if np.sqrt(np.mean(rest**2)) <= noise.size[0]:
             break
         noise = noise_of(rest[None, :, None], used=2, least=floor)
     near = [one for one in ordered if one.gained > max(ordered[0].gained - MARGIN, MARGIN)]
     proven = [_proven(joint, noise, one) for one in near]
-    ordered = [*_simple_first(proven), *ordered[len(near) :]]
+    ordered = [*_simple_first(proven, candidates), *ordered[len(near) :]]
     first = ordered[0] if proven and borne_out(joint, ordered[0]) else None
     return JointFinding(joint, noise, first, tuple(ordered), open_ones)
 
@@ -121,11 +120,20 @@ def _weighed(
     return sorted((one for one in fitted if one is not None), key=lambda one: -one.gained)
 
 
-def _simple_first(proven: list[Named]) -> list[Named]:
-    """Put first what predicts held-out time best, or a plainer statement that does so hardly worse."""
+def _simple_first(proven: list[Named], candidates: tuple[Candidate, ...]) -> list[Named]:
+    """Put first what predicts held-out time best, or a plainer statement that does so hardly worse.
+
+    candidates: of two with one penalty the one that stands first in the catalogue is the simpler
+    """
     ordered = sorted(proven, key=lambda one: -one.held_out)
     alike = [one for one in ordered if one.held_out > ordered[0].held_out - TIE]
-    alike.sort(key=lambda one: penalty_of(one.part.candidate, one.part.values))
+    order = [one.identity for one in candidates]
+    alike.sort(
+        key=lambda one: (
+            penalty_of(one.part.candidate, one.part.values),
+            order.index(one.part.candidate.identity),
+        )
+    )
     return [*alike, *ordered[len(alike) :]]
 
 

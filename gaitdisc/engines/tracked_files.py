@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, nearest_word
 from gaitdisc.engines.engine import Coordinate
-from gaitdisc.errors import ChannelError, ReadError, SamplingError, SchemaError
+from gaitdisc.errors import ChannelError, ReadError, SamplingError, SchemaError, UnitError
 from gaitdisc.ingest.cells import Form, parsed_cells
 from gaitdisc.ingest.raw_file import read_raw
 from gaitdisc.ingest.storage import read_storage
@@ -239,11 +239,14 @@ def _rates(tracked: Tracked) -> list[tuple[Path, str]]:
 def _coordinates(path: Path, coordinates: tuple[Coordinate, ...], word: str) -> tuple[Values, Values]:
     """Times and free coordinates (sample, coordinate) of a file, in radians and metres."""
     streams = list(read_storage(path).streams.values())
-    columns = {
-        channel.name.removesuffix(word): stream.values[:, k] * _radians(channel.unit)
-        for stream in streams
-        for k, channel in enumerate(stream.channels)
-    }
+    turning = {one.called for one in coordinates if one.unit == "rad"}
+    columns = {}
+    for stream in streams:
+        for k, channel in enumerate(stream.channels):
+            name, unit = channel.name.removesuffix(word), channel.unit
+            if name in turning and not unit.startswith("deg"):  # a name that only this model has
+                unit = "deg" if _in_degrees(path) else "rad"
+            columns[name] = stream.values[:, k] * _radians(unit)
     for one in coordinates:
         if one.called not in columns:
             near = nearest_word(one.called, tuple(columns))
@@ -255,6 +258,17 @@ def _coordinates(path: Path, coordinates: tuple[Coordinate, ...], word: str) -> 
                 else "Add it, or lock the coordinate in the model.",
             )
     return streams[0].time, np.column_stack([columns[one.called] for one in coordinates])
+
+
+def _in_degrees(path: Path) -> bool:
+    degrees = parsed_header(read_raw(path).lines(), path.name).degrees
+    if degrees is None:
+        raise UnitError(
+            f"{path.name} says whether its angles are degrees",
+            "its header does not",
+            "Write inDegrees=yes or inDegrees=no there, before endheader.",
+        )
+    return degrees
 
 
 def _radians(unit: str) -> float:
