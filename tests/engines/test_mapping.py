@@ -12,6 +12,7 @@ from gaitdisc.engines.mapping import (
     write_mapping,
 )
 from gaitdisc.engines.model_file import read_model
+from gaitdisc.engines.tracked_files import Tracked
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import read_simulation
@@ -29,6 +30,14 @@ def test_a_mapping_goes_to_its_file_and_back(pendulum, tmp_path):
     assert names_engine(file) and names_engine(pendulum) and not names_engine(file.with_name("else.toml"))
     (tmp_path / "walk.toml").write_text('[tracked]\nexternal_loads = "grf.xml"\n')
     assert names_engine(tmp_path / "walk.toml")
+
+
+def test_a_walk_whose_motion_is_prescribed_has_nothing_to_run_forward(pendulum, tmp_path, monkeypatch):
+    tracked = Tracked(tmp_path / "leg.osim", (tmp_path / "grf.xml", tmp_path / "grf.mot"))
+    monkeypatch.setattr("gaitdisc.engines.mapping.read_tracked", lambda _: tracked)
+    pendulum.with_suffix(".toml").write_text("[tracked]\n")
+    with pytest.raises(GaitdiscError, match=r"pendulum.toml holds .tracked.: its motion is prescribed, and only disc"):
+        read_mapping(pendulum)
 
 
 def test_without_a_mapping_columns_have_the_coordinates_names(pendulum):
