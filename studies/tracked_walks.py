@@ -36,7 +36,7 @@ import pandas as pd
 from gaitdisc.batch.tracked_joints import joints_of
 from gaitdisc.batch.tracked_pass import Pass, moments_of_angle_noise, shaken, tracked_pass
 from gaitdisc.discovery.prescribed import CLOSED, LeftMoment
-from gaitdisc.engines.tracked_files import read_tracked
+from gaitdisc.engines.tracked_mapping import read_tracked
 
 WHITENED_DEG, SIZES = 0.3, (0.6, 1.4)
 STIFFNESS, LATE_S, LESS = {"ankle": 300.0, "knee": 60.0}, 0.04, 0.25  # [N m/rad], [s], share: of the middle size

@@ -24,8 +24,8 @@ from gaitdisc.discovery.catalogue import read_catalogue
 from gaitdisc.discovery.prescribed import JointFinding
 from gaitdisc.engines.mapping import drafted
 from gaitdisc.engines.opensim_tracked import OpensimTracked
-from gaitdisc.engines.tracked_files import Tracked, TrackedMotion
-from gaitdisc.engines.tracked_mapping import write_tracked_mapping
+from gaitdisc.engines.tracked_files import TrackedMotion
+from gaitdisc.engines.tracked_mapping import Tracked, write_tracked_mapping
 from gaitdisc.engines.written import WrittenModel, written_model
 from gaitdisc.ingest.file_hash import file_sha256
 from gaitdisc.recording import Finding

@@ -13,7 +13,8 @@ from scipy.signal import butter, sosfiltfilt
 
 from gaitdisc.discovery.record_filter import DENSE
 from gaitdisc.engines.opensim_tracked import OpensimTracked
-from gaitdisc.engines.tracked_files import Tracked, TrackedMotion, check_loads, tracked_motion
+from gaitdisc.engines.tracked_files import TrackedMotion, check_loads, tracked_motion
+from gaitdisc.engines.tracked_mapping import Tracked
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Finding
 from gaitdisc.results.effect_words import amount

@@ -70,7 +70,8 @@ def _write_mapping(file: Path, model: Path, degrees: bool) -> None:
 
 
 def _write_tracked(file: Path, model: Path, files: tuple[Path | None, Path | None, Path | None]) -> None:
-    from gaitdisc.engines.tracked_mapping import drafted_tracked, write_tracked_mapping
+    from gaitdisc.engines.tracked_files import drafted_tracked
+    from gaitdisc.engines.tracked_mapping import write_tracked_mapping
     from gaitdisc.report.wording import counted
 
     _refuse_unnamed(file, model)

@@ -11,7 +11,7 @@ import numpy as np
 
 from gaitdisc.engines.engine import Engine, refuse_unknown
 from gaitdisc.engines.model_file import is_model, read_model
-from gaitdisc.engines.tracked_files import read_tracked
+from gaitdisc.engines.tracked_mapping import read_tracked
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Finding
 from gaitdisc.simulation.parts import Port, Sensor, State

@@ -95,7 +95,7 @@ def _of_engine(
     model: Path, data: Any, catalogue: Path | str | None, progress: Callable[[str], None] | None
 ) -> tuple[Discovery, Simulation]:
     from gaitdisc.batch.discover_engine import discover_engine, measured_of_file
-    from gaitdisc.engines.tracked_files import read_tracked
+    from gaitdisc.engines.tracked_mapping import read_tracked
 
     walk = read_tracked(model)
     if walk is not None:

@@ -12,7 +12,7 @@ from gaitdisc.engines.mapping import (
     write_mapping,
 )
 from gaitdisc.engines.model_file import read_model
-from gaitdisc.engines.tracked_files import Tracked
+from gaitdisc.engines.tracked_mapping import Tracked
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import read_simulation

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from gaitdisc.engines.engine import Coordinate
-from gaitdisc.engines.tracked_files import check_loads, read_tracked, tracked_motion
-from gaitdisc.errors import ChannelError, ReadError, SamplingError, SchemaError, UnitError
+from gaitdisc.engines.tracked_files import check_loads, drafted_tracked, tracked_motion
+from gaitdisc.engines.tracked_mapping import read_tracked
+from gaitdisc.errors import ChannelError, GaitdiscError, ReadError, SamplingError, SchemaError, UnitError
 
 JOINTS = (Coordinate("pelvis_ty", "m", "pelvis_ty"), Coordinate("ankle_angle_r", "rad", "ankle_angle_r"))
 ACTUATORS = ("soleus_r", "ankle_angle_r_reserve")
@@ -174,3 +175,17 @@ def test_the_forces_themselves_in_the_place_of_external_loads_are_refused(walk):
     (walk / "leg.toml").write_text('[tracked]\nexternal_loads = "grf.mot"\n')
     with pytest.raises(ReadError, match=r"grf.mot holds the forces themselves. Give the .xml of OpenSim's inverse dyn"):
         read_tracked(walk / "leg.osim")
+
+
+def test_files_that_do_not_fit_are_refused_before_a_model_is_loaded(tmp_path):
+    model = tmp_path / "leg.osim"
+    model.write_text("<OpenSimDocument/>")
+    (tmp_path / "grf.mot").write_text("")
+    for given, words in {
+        (tmp_path / "leg.xml", tmp_path / "grf.xml"): "leg.xml is none. Leave out --external-loads",
+        (model, None): "Add --external-loads grf.xml",
+        (model, tmp_path / "grf.xml"): "there is none at .*grf.xml",
+        (model, tmp_path / "grf.mot"): "grf.mot holds the forces themselves. Give the .xml",
+    }.items():
+        with pytest.raises(GaitdiscError, match=words):
+            drafted_tracked(*given)

@@ -1,12 +1,12 @@
-"""The mapping of a walk with recorded forces goes to its file and back; files that do not fit are refused in words."""
+"""The mapping of a walk with recorded forces goes to its file and back."""
 
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from gaitdisc.engines.tracked_files import read_tracked
-from gaitdisc.engines.tracked_mapping import drafted_tracked, write_tracked_mapping
+from gaitdisc.engines.tracked_files import drafted_tracked
+from gaitdisc.engines.tracked_mapping import read_tracked, write_tracked_mapping
 from gaitdisc.errors import GaitdiscError
 
 DATA = Path(__file__).parents[3] / "shared/data/opensim_gait10dof"
@@ -27,17 +27,3 @@ def test_a_mapping_goes_to_its_file_and_back(tmp_path):
     assert (read.noise_deg, read.start_s, read.end_s) == (0.5, 0.7, float("inf"))
     with pytest.raises(GaitdiscError, match=r"which is none.*name it in .tracked. as actuators"):
         drafted_tracked(model, LOADS, forces)  # its reserves are in no file that is named
-
-
-def test_files_that_do_not_fit_are_refused_before_a_model_is_loaded(tmp_path):
-    model = tmp_path / "leg.osim"
-    model.write_text("<OpenSimDocument/>")
-    (tmp_path / "grf.mot").write_text("")
-    for given, words in {
-        (tmp_path / "leg.xml", tmp_path / "grf.xml"): "leg.xml is none. Leave out --external-loads",
-        (model, None): "Add --external-loads grf.xml",
-        (model, tmp_path / "grf.xml"): "there is none at .*grf.xml",
-        (model, tmp_path / "grf.mot"): "grf.mot holds the forces themselves. Give the .xml",
-    }.items():
-        with pytest.raises(GaitdiscError, match=words):
-            drafted_tracked(*given)

@@ -14,7 +14,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.skipif(not DATA.is_dir(), reason="th
 def walk():
     import tracked_walks
 
-    from gaitdisc.engines.tracked_files import Tracked
+    from gaitdisc.engines.tracked_mapping import Tracked
 
     loads = tuple(DATA / f"ExperimentalData/subject01_walk_grf.{end}" for end in ("xml", "mot"))
     forces = DATA / "CMC/results_no_spring/walk_subject_Actuation_force.sto"
