@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.batch.tracked_answer import discovery_of
-from gaitdisc.batch.tracked_joints import joints_of, shown_by
+from gaitdisc.batch.tracked_joints import doubts, joints_of, shown_by
 from gaitdisc.batch.tracked_pass import (
     SEED,
     Pass,
@@ -71,7 +71,8 @@ def discover_tracked(
     augmented = _augmented(engine, found)
     written = _written(engine, augmented, found)
     said = _gaps(walk, written, found)
-    findings += [shown_by(walk, number, one) for number, one in zip(walk.joints, joints, strict=True)]
+    shown = [shown_by(walk, number, one) for number, one in zip(walk.joints, joints, strict=True)]
+    findings += [*shown, *doubts(shown)]
     findings += [Finding("note", "written back", "model", one, "") for one in written.notes]
     findings += [Finding("note", "own runs", "model", one, "") for one in said]
     hashes = {file.name: file_sha256(file) for file in (engine.path, kinematics, *tracked.files)}

@@ -149,3 +149,15 @@ def shown_by(walk: Pass, number: int, found: JointFinding) -> Finding:
     if unexplained > BEYOND * joint.floor and found.named is None:
         return Finding("warning", "without a name", "model", what, "what is left there: nothing weighed explains it")
     return Finding("note", "joint", "model", what, "", one.called)
+
+
+def doubts(shown: list[Finding]) -> list[Finding]:
+    """Warn where joints are left far beyond their noise and have no name: the forces may answer another motion."""
+    unnamed = [one for one in shown if one.severity == "warning"]
+    if not unnamed:
+        return []
+    what = (
+        f"{len(unnamed)} of {len(shown)} joints have no name for what is left, {BEYOND:g} times their noise or more: "
+        "the forces may have been computed for another motion, or for angles of another low-pass (lowpass_hz)"
+    )
+    return [Finding("warning", "forces in doubt", "model", what, "what is named at the other joints")]

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gaitdisc.batch.tracked_joints import joints_of, shown_by
+from gaitdisc.batch.tracked_joints import doubts, joints_of, shown_by
 from gaitdisc.batch.tracked_pass import moments_of_angle_noise, shaken
 from gaitdisc.errors import SamplingError
 
@@ -49,7 +49,11 @@ def test_a_joint_says_what_it_shows_and_warns_of_what_has_no_name(leg_walk):
         said.severity == "note" and "it shows a spring from" in said.what and "% of its lowering muscles" in said.what
     )
     odd = 30 * np.sign(np.sin(2 * np.pi * 3.1 * walk.motion.time))
-    assert shown_by(walk, 2, searched(walk, odd)[1]).kind == "without a name"
+    unnamed = shown_by(walk, 2, searched(walk, odd)[1])
+    assert unnamed.kind == "without a name" and doubts([said]) == []
+    (doubt,) = doubts([said, unnamed])
+    assert "1 of 2 joints have no name for what is left, 3 times their noise or more" in doubt.what
+    assert doubt.spoils == "what is named at the other joints"
 
 
 def test_a_walk_of_half_a_second_is_refused(leg_walk):
