@@ -29,7 +29,7 @@ from gaitdisc.engines.tracked_mapping import Tracked, write_tracked_mapping
 from gaitdisc.engines.written import WrittenModel, written_model
 from gaitdisc.ingest.file_hash import file_sha256
 from gaitdisc.recording import Finding
-from gaitdisc.results.discovery import Discovery
+from gaitdisc.results.discovery import TRACKED, Discovery
 from gaitdisc.results.effect_words import amount
 from gaitdisc.results.provenance import made_now
 from gaitdisc.simulation.parts import Term
@@ -77,7 +77,7 @@ def discover_tracked(
     findings += [Finding("note", "own runs", "model", one, "") for one in said]
     hashes = {file.name: file_sha256(file) for file in (engine.path, kinematics, *tracked.files)}
     settings = {"title": base.title, "seconds": float(np.ptp(motion.time)), "rate_hz": motion.rate_hz}
-    made = made_now({**settings, "channels": list(found.channels)}, SEED, hashes, "tracked pass")
+    made = made_now({**settings, "channels": list(found.channels)}, SEED, hashes, TRACKED)
     found = replace(found, findings=tuple(findings), provenance=made)
     if not walk.joints:
         found = replace(found, sentence=only_residuals(walk))

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from gaitdisc.report.discovery_method import method_of
 from gaitdisc.report.figure import Figure
 from gaitdisc.report.palette import MEASURED, MODELS
 from gaitdisc.report.panels import Room, in_style, legend, lines_of, panels, panels_for
@@ -144,7 +145,7 @@ def _over_time(discovery: Discovery, table: pd.DataFrame) -> Figure:
         axes.set_xlabel("time [s]", labelpad=1)
     legend(drawn, discovery_key(measured=True))
     caption = (
-        f"Trial {trial}, held out: neither searched nor fitted, only the start of each run was found. Left: measured "
+        f"Trial {trial}, {method_of(discovery).held_out}. Left: measured "
         f"(black), simulated as read{within_bounds(discovery)} (orange, dashed), with what was found (green); "
         "the gap is shaded. Right: measured "
         f"minus each; grey band: two standard deviations of the noise. Typical stretch, {len(numbers)} samples."

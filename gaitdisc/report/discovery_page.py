@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.report.discovery_figure import discovery_figures
+from gaitdisc.report.discovery_method import method_of
 from gaitdisc.report.figure import save_figures
 from gaitdisc.report.page import write_page
 from gaitdisc.report.table import Table, provenance_tables, save_tables, seen_table
@@ -36,27 +37,6 @@ VERDICTS = {
     "process_noise": "process noise: something random pushes the system",
     "unnamed": "unnamed: a deterministic term is missing, and no known effect explains it",
 }
-METHOD = (
-    "Trials were cut into short runs. Each run's start was found, so that only the dynamics, the inputs and the "
-    "sensors could be wrong; whole trajectories were compared with the measurement, never derivatives of it.",
-    "Numbers to which the file gives two bounds were fitted within these, in the simulation as read and in every "
-    "explanation alike (half the width is two standard deviations); a wrong parameter is one that has to leave them.",
-    "Every explanation was weighed at every place where it may enter: the effects of the catalogue, and beside them "
-    "wrong parameters, late or scaled inputs, and errors of the sensors. The best were fitted in full, with the "
-    "constants inside them (a threshold, a delay, a frequency).",
-    "Evidence is twice the log likelihood, under noise whose memory was learned from what is left, less the logarithm "
-    "of the number of samples for each number fitted.",
-    "What was found had to make the squared error fall on the held-out data, of which nothing was fitted but the start "
-    "of each run: p < .05 in a one-sided signed-rank test over pieces of these data, each a period long or, where "
-    "these are few, no shorter than what is left remembers; beside another effect, too. The intervals follow from the "
-    "curvature of the likelihood under that noise.",
-    "The noise floor is the noise of the sensors, estimated from the record without any model: what a cubic over seven "
-    "samples leaves. Where up to four explanations leave no more, they are the answer. Where all leave more, sets of "
-    "them were weighed by the share of the gap that they close on runs left out of the fit, less a price for each: 3 % "
-    "of the gap for a plain term, up to 10 % for what can imitate anything (a delay, a product, a periodic force). "
-    "What closes less than 5 % is listed as small.",
-    "What no name explains, and a fitted shape does, has no name.",
-)
 
 
 def estimates_table(discovery: Discovery) -> Table:
@@ -249,7 +229,7 @@ def _frame(records: Sequence[tuple[object, ...]], columns: Sequence[str]) -> pd.
 
 def write_discovery_report(discovery: Discovery, folder: Path) -> Path:
     """Write the report of a discovery: `report.html`, `figures/` and `tables/`."""
-    made = discovery.provenance
+    made, how = discovery.provenance, method_of(discovery)
     tables = {
         "estimates": estimates_table(discovery),
         "gap": gap_table(discovery),
@@ -270,6 +250,7 @@ def write_discovery_report(discovery: Discovery, folder: Path) -> Path:
         "terms": [effect for effect in discovery.effects if effect.term],
         "figures": save_figures(discovery_figures(discovery), folder),
         "tables": tables,
-        "method": METHOD,
+        "method": how.sentences,
+        "added_to": how.added_to,
     }
     return write_page("discovery", shown, folder)

@@ -28,6 +28,12 @@ VERDICTS = (
     "unnamed",
 )
 
+# What an answer follows, as its provenance has it
+SIMULATION = "discovery of missing physics"
+ENGINE = "discovery of missing physics in a model of an engine"
+TRACKED = "tracked pass"
+DEVICE = "discovery of what a device does"
+
 
 @dataclass(frozen=True)
 class Estimate:
