@@ -142,9 +142,9 @@ def _per_kg(trial: Trial, study: Study, joint: str, time: NDArray[np.float64]) -
         for key in ("heel", "toe", "ankle_lateral", "knee_lateral", "asis", "sacrum")
         if (names := known.landmark(key, on, own))
     }
-    spines = ("asis", "l"), ("asis", "r"), ("sacrum", side)
-    if joint == "hip_flexion" and all(one in seen for one in spines):
-        seen[JOINT_AT[joint], side] = hip_of_spines(*(seen[one] for one in spines), side)
+    left, right, sacrum = (seen.get(one) for one in (("asis", "l"), ("asis", "r"), ("sacrum", side)))
+    if joint == "hip_flexion" and left is not None and right is not None and sacrum is not None:
+        seen[JOINT_AT[joint], side] = hip_of_spines(left, right, sacrum, side)
     if not all((key, side) in seen for key in (JOINT_AT[joint], "heel", "toe")):
         return np.empty(0)
     centre, heel, toe = (seen[key, side] for key in (JOINT_AT[joint], "heel", "toe"))

@@ -38,9 +38,10 @@ PARTS = (1, 3)  # of the stride, each of which may resist a departure differentl
 def foot_mass(model: MuscleMoment, nominal: Walk, device: Walk, per_kg: Values) -> tuple[float, float]:
     """Mass at the foot in the device walk and its standard deviation [kg].
 
+    The deviation holds strides of both walks drawn anew, the usual stride of the device walk unknown by a degree, and
+    what the number of parts of the stride makes of the mass.
+
     per_kg: what each kg adds to the net moment of the device walk (sample,) [N m/kg]
-    spread: strides of both walks drawn anew, the usual stride of the device walk unknown by a degree, and what the
-    number of parts of the stride makes of it
     """
     values, spreads = zip(*(_weighed(model.form, nominal, device, per_kg, parts) for parts in PARTS), strict=True)
     return float(np.mean(values)), float(np.hypot(np.mean(spreads), np.std(values)))
