@@ -43,6 +43,7 @@ SPEEDS, LAGS, RESPECTS = (0.7, 1.4), (0.5, 2.0), (1 / 3, 3.0)
 # usual stride of the device walk [rad], root mean square of its change in the first harmonics: what the mean ankle
 # curve of a person moves by from one session to the next (McGinley et al. 2009: 2 deg and less)
 SHIFT_RAD, SHIFT_HARMONICS, SHIFTS = np.radians(1.0), 4, 12
+NORMAL_95 = 1.96
 FINER = np.linspace(-1.5, 1.5, 7)  # steps of a grid about its best value
 
 
@@ -74,6 +75,7 @@ class Change:
     values: Values
     driven: Callable[[Driven, float], Driven] = as_recorded
     columns: Callable[[Driven, float], Values] = no_columns
+    neutral: float = 0.0  # its number where nothing changed
     piece: str = ""  # with which the catalogue's expression begins, where two effects share a name
 
 
@@ -91,7 +93,10 @@ class Changed:
 
 
 def changed_moment(model: MuscleMoment, nominal: Walk, device: Walk, changes: Sequence[Change]) -> Changed | None:
-    """Return the change that explains both walks best; None where strides left out do not bear it out."""
+    """Return the change that explains both walks best.
+
+    None where strides left out do not bear it out, or its interval holds that nothing changed.
+    """
     both = _Both.of(model.form, nominal, device)
     tried = [(both.misfit(change, value), change, float(value)) for change in changes for value in change.values]
     left, best, value = min(tried, key=lambda one: one[0])
@@ -107,8 +112,11 @@ def changed_moment(model: MuscleMoment, nominal: Walk, device: Walk, changes: Se
         _doubted(model.form, (nominal, device), best, value),
         _coarseness(both, best, value),
     ]
+    spread = float(np.linalg.norm(errors))
+    if abs(number - best.neutral) < NORMAL_95 * spread:
+        return None
     changed = model_of(model.form, found, model.gains.shape[0], model.left_nm, model.before_nm)
-    return Changed(best, changed, number, float(np.linalg.norm(errors)), held, rival, rival_left / left)
+    return Changed(best, changed, number, spread, held, rival, rival_left / left)
 
 
 def _doubted(form: Form, walks: tuple[Walk, Walk], change: Change, about: float) -> float:
