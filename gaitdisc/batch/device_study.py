@@ -21,7 +21,7 @@ from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.processing.joint_record import JointRecord, joint_record
 from gaitdisc.processing.study_walks import StudyWalks
 from gaitdisc.recording import Finding, Samples, Trial
-from gaitdisc.regression.changed_moment import Changed, changed_moment
+from gaitdisc.regression.changed_moment import NORMAL_95, Changed, changed_moment
 from gaitdisc.regression.foot_mass import foot_mass
 from gaitdisc.regression.muscle_moment import MuscleMoment, fitted_moment
 from gaitdisc.regression.ridge import fit_ridge
@@ -30,7 +30,6 @@ from gaitdisc.results.effect_words import estimate_text, spoken
 
 LEAST_R2 = 0.7  # two strides of a published walk have -2.4 and 0.70, 36 s of the embedded cohort 0.96
 HARMONICS = 8  # of the plain regression of what is left
-NORMAL_95 = 1.96
 AGREES = 1.25  # times what is left of Nominal strides; 0.97 to 1.12 in four made people where nothing was hidden
 APART = 0.02  # of a number, from which on the answer says that the written model has another
 FOOT_SHOWS_AT = ("knee_angle", "hip_flexion")
