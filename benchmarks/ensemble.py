@@ -43,7 +43,7 @@ def line(person: Person) -> str:
     """What is found for one person."""
     what = person.what
     parts, angles = person.parts(), person.angles
-    check, test = parts.checked(), parts.judged()
+    check, test = parts.checked(), parts.tested()
     done = fit_reconstructor(ENSEMBLE, what, parts.fitted(), check)
     ridge = fit_reconstructor("fourier ridge", what, parts.fitted(), check)
     assert isinstance(done.model, Ensemble)

@@ -85,9 +85,9 @@ def write_parts(folder: Path, network: str, energy: float) -> None:
     seconds = time.process_time() - begun
     rows = [np.rint(part.time).astype(int) for part in (ready.training, ready.test)]
     x_mean, x_sd = ready.training.x.mean(), ready.training.x.std()
-    told = {"modes_s": seconds, "mean": ready.targets.modes.mean, "spread": ready.targets.modes.spread}
+    modes = {"modes_s": seconds, "mean": ready.targets.modes.mean, "spread": ready.targets.modes.spread}
     parts = {"training": (ready.training.x - x_mean) / x_sd, "test": (ready.test.x - x_mean) / x_sd}
-    np.savez(folder / f"{network}-windows.npz", test_rows=rows[1], **told, **parts)
+    np.savez(folder / f"{network}-windows.npz", test_rows=rows[1], **modes, **parts)
     np.savez(folder / f"{network}-modes.npz", basis=ready.targets.modes.basis, y=ready.training.y)
     np.save(
         folder / f"{network}-raw.npy",
@@ -124,10 +124,10 @@ def trained(folder: Path, network: str, targets: str, epochs: int) -> dict[str, 
     peak = peak_mb() - before
     model.eval()
     with torch.no_grad():
-        told = model(torch.from_numpy(windows["test"].astype(np.float32))).numpy() * sd
-    told = told if raw else told @ np.load(folder / f"{network}-modes.npz")["basis"].T
+        reconstructed = model(torch.from_numpy(windows["test"].astype(np.float32))).numpy() * sd
+    reconstructed = reconstructed if raw else reconstructed @ np.load(folder / f"{network}-modes.npz")["basis"].T
     truth = np.load(folder / "flow" / "u.npy", mmap_mode="r")[windows["test_rows"]]
-    error = told * windows["spread"][0] + windows["mean"][:, 0] - truth
+    error = reconstructed * windows["spread"][0] + windows["mean"][:, 0] - truth
     return {
         "outputs": y.shape[1], "weights": sum(p.numel() for p in model.parameters()),
         "epoch_s": float(np.median(seconds)), "peak_mb": peak, "modes_s": float(windows["modes_s"]),
@@ -138,7 +138,7 @@ def trained(folder: Path, network: str, targets: str, epochs: int) -> dict[str, 
 def peak_mb() -> float:
     """Largest resident memory of this process so far; getrusage would count the parent's."""
     found = re.search(r"VmHWM:\s+(\d+) kB", Path("/proc/self/status").read_text())
-    assert found is not None  # Linux tells it
+    assert found is not None  # Linux reports it
     return int(found.group(1)) / 1024
 
 

@@ -43,23 +43,23 @@ def main() -> None:
     people = chosen_walks(GIVEN.walks, GIVEN.people)
     windows = [person.windows() for person in people]
     for kind in GIVEN.kinds.split(","):
-        judged = range(0, len(people), GIVEN.every)
-        found = np.array([shares(kind, people[k], parts_of(windows, k, GIVEN.split)) for k in judged])
+        tested = range(0, len(people), GIVEN.every)
+        found = np.array([shares(kind, people[k], parts_of(windows, k, GIVEN.split)) for k in tested])
         said = [f"{name} {100 * v.mean():.1f} % ({100 * v.min():.0f} to {100 * v.max():.0f})"
                 for name, v in zip(("plain", "ours"), found.T, strict=True)]  # fmt: skip
         print(f"{GIVEN.walks}, {GIVEN.split}, {kind}: {', '.join(said)}", flush=True)
 
 
-def parts_of(windows: list[list[Samples]], judged: int, split: str) -> Parts:
+def parts_of(windows: list[list[Samples]], tested: int, split: str) -> Parts:
     """Parts of one person's windows, or of everybody's."""
     if split == "subject":
-        return split_by_subject(windows, judged)
-    return split_within(windows[judged], split, 1.0)
+        return split_by_subject(windows, tested)
+    return split_within(windows[tested], split, 1.0)
 
 
 def shares(kind: str, person: Person, parts: Parts) -> tuple[float, float]:
     """Coverage of the plain interval and of ours."""
-    what, check, test = person.what, parts.checked(), parts.judged()
+    what, check, test = person.what, parts.checked(), parts.tested()
     done = fit_reconstructor(kind, what, parts.fitted(), check)
     missed, errors = done(check) - check.y, done(test) - test.y
     half = crossed_widths(kind, what, parts, missed) if parts.rule == PERSON_OUT else half_widths(missed)

@@ -44,7 +44,7 @@ SHARES = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5)
 RUNS_S = (0.0, 0.2)
 FILLED = [("delay ridge", "mean"), ("delay ridge", "last"), ("fourier ridge", "mean"), ("fourier ridge", "last")]
 FILLED += [("shred", "mean"), ("shred", "last")]
-Told = Callable[[Samples], NDArray[np.float64]]
+Reconstruct = Callable[[Samples], NDArray[np.float64]]
 
 
 def main() -> None:
@@ -71,12 +71,12 @@ def curves(person: Person, seed: int) -> NDArray[np.float64]:
     found = np.empty((len(RUNS_S), len(SHARES), len(FILLED) + 2))
     for i, run_s in enumerate(RUNS_S):
         for j, share in enumerate(SHARES):
-            lost = parts(person, share, run_s, seed).judged()
+            lost = parts(person, share, run_s, seed).tested()
             for k, (kind, way) in enumerate(FILLED):
-                judged = parts(person, share, run_s, seed, (fitted[kind], way)).judged()
-                found[i, j, k] = np.mean((fitted[kind](judged) - judged.y)[:, angles] ** 2)
-            told = ridge(with_marks(lost, means).x), fitted[MASKED](lost)
-            found[i, j, -2:] = [np.mean((each - lost.y)[:, angles] ** 2) for each in told]
+                test = parts(person, share, run_s, seed, (fitted[kind], way)).tested()
+                found[i, j, k] = np.mean((fitted[kind](test) - test.y)[:, angles] ** 2)
+            masked = ridge(with_marks(lost, means).x), fitted[MASKED](lost)
+            found[i, j, -2:] = [np.mean((each - lost.y)[:, angles] ** 2) for each in masked]
     return found
 
 

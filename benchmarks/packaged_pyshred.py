@@ -41,7 +41,7 @@ model.fit(train, val, num_epochs=epochs, verbose=False)
 spent = time.process_time() - begun
 model.eval()
 with torch.no_grad():
-    told = manager.data_scaler.inverse_transform(model(test.X).numpy())
-error = told - values[-len(told) :, sensors:]
+    states = manager.data_scaler.inverse_transform(model(test.X).numpy())
+error = states - values[-len(states) :, sensors:]
 rmse = float(np.sqrt(np.mean(error**2)))
 print(json.dumps({"version": version("pyshred"), "epochs": epochs, "seconds": spent, "rmse_deg": rmse}))

@@ -43,7 +43,7 @@ PROGRAM = """
 import resource, sys, time
 from pathlib import Path
 
-def told(since):
+def report(since):
     print(time.perf_counter() - since[0], time.process_time() - since[1], end=" ")
     print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
     return time.perf_counter(), time.process_time()
@@ -53,13 +53,13 @@ from gaitdisc.ingest.study_file import load_study
 from gaitdisc.report.response_page import write_report
 folder = Path(sys.argv[1])
 study = load_study(folder)
-since = told((time.perf_counter(), 0.0))
+since = report((time.perf_counter(), 0.0))
 run = run_study(study, folder / "run")
-since = told(since)
+since = report(since)
 run = run_study(study, folder / "run")
-since = told(since)
+since = report(since)
 write_report(run, folder / "run" / "report")
-told(since)
+report(since)
 """
 
 

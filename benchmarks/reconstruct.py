@@ -99,15 +99,15 @@ def main() -> None:
         several(GIVEN.seed)
 
 
-def rmse(told: NDArray[np.float64], samples: Samples, angles: Sequence[int]) -> float:
+def rmse(states: NDArray[np.float64], samples: Samples, angles: Sequence[int]) -> float:
     """Over windows and angles [deg]."""
-    return float(np.sqrt(np.mean((told - samples.y)[:, angles] ** 2)))
+    return float(np.sqrt(np.mean((states - samples.y)[:, angles] ** 2)))
 
 
 def original(parts: Parts, angles: list[int], cap_s: float, seed: int) -> list[Watched]:
     """Train the original SHRED, and watch it; the last entry is the error with its best weights."""
     torch.manual_seed(seed)
-    training, check, test = parts.fitted(), parts.checked(), parts.judged()
+    training, check, test = parts.fitted(), parts.checked(), parts.tested()
     low, high = (np.concatenate([f(training.x, axis=0), f(training.y, axis=0)]) for f in (np.min, np.max))
     width = training.x.shape[1]
     unit = [_unit(s, low, high - low, width) for s in (training, check, test)]
@@ -125,21 +125,21 @@ def original(parts: Parts, angles: list[int], cap_s: float, seed: int) -> list[W
             optimizer.step()
         epoch += 1
         if epoch % CHECK_EVERY == 0:
-            loss = float(nn.functional.mse_loss(_told(model, unit[1][0]), unit[1][1]))
+            loss = float(nn.functional.mse_loss(_scaled_states(model, unit[1][0]), unit[1][1]))
             waited = 0 if loss < best else waited + 1
             if loss < best:
                 best, kept = loss, copy.deepcopy(model.state_dict())
         spent += time.process_time() - begun
         if epoch % WATCH == 0 or spent >= cap_s:
-            loss = float(nn.functional.mse_loss(_told(model, unit[1][0]), unit[1][1]))
-            told = _told(model, unit[2][0]).double().numpy() * (high - low)[width:] + low[width:]
-            found.append(Watched(epoch, spent, loss, rmse(told, test, angles)))
+            loss = float(nn.functional.mse_loss(_scaled_states(model, unit[1][0]), unit[1][1]))
+            states = _scaled_states(model, unit[2][0]).double().numpy() * (high - low)[width:] + low[width:]
+            found.append(Watched(epoch, spent, loss, rmse(states, test, angles)))
             print(f"  original, epoch {epoch}: {spent:.0f} s, {found[-1].rmse_deg:.3f} deg", flush=True)
     stopped = "its own rule" if waited >= PATIENCE else f"the cap of {cap_s:g} s"
     if best < float("inf"):
         model.load_state_dict(kept)
-    told = _told(model, unit[2][0]).double().numpy() * (high - low)[width:] + low[width:]
-    rate, error = 1e6 * spent / epoch / len(training), rmse(told, test, angles)
+    states = _scaled_states(model, unit[2][0]).double().numpy() * (high - low)[width:] + low[width:]
+    rate, error = 1e6 * spent / epoch / len(training), rmse(states, test, angles)
     print(f"original: {len(training)} windows, {rate:.0f} us a window and epoch; ended by {stopped}")
     print(f"original: {epoch} epochs, {spent:.0f} s, {error:.3f} deg with its best weights", flush=True)
     return [*found, Watched(epoch, spent, best, error)]
@@ -150,7 +150,7 @@ def ours(parts: Parts, person: Person, watched: list[Watched], seed: int) -> Non
     final, angles = watched[-1], person.angles
     for kind in KINDS:
         done = fit_reconstructor(kind, person.what, parts.fitted(), parts.checked(), seed)
-        error = rmse(done(parts.judged()), parts.judged(), angles)
+        error = rmse(done(parts.tested()), parts.tested(), angles)
         reached = next((w.seconds for w in watched if w.rmse_deg <= error), None)
         same = f"{reached:.0f} s, {reached / done.seconds:.0f} times as long" if reached else "did not reach it"
         faster = f"; at most its final error, {final.seconds / done.seconds:.0f} times as fast"
@@ -170,9 +170,9 @@ def packaged(person: Person, python: Path) -> None:
     if done.returncode:
         print(f"packaged pyshred: failed, {done.stderr.strip().splitlines()[-1]}")
         return
-    told = json.loads(done.stdout.strip().splitlines()[-1])
-    cost = f"{told['epochs']} epochs, {told['seconds']:.0f} s"
-    print(f"packaged pyshred {told['version']}: {cost}, {told['rmse_deg']:.3f} deg")
+    result = json.loads(done.stdout.strip().splitlines()[-1])
+    cost = f"{result['epochs']} epochs, {result['seconds']:.0f} s"
+    print(f"packaged pyshred {result['version']}: {cost}, {result['rmse_deg']:.3f} deg")
 
 
 def several(seed: int) -> None:
@@ -199,7 +199,7 @@ def _unit(samples: Samples, low: NDArray, span: NDArray, width: int) -> tuple[Te
     return torch.from_numpy(shaped.astype(np.float32)), torch.from_numpy(y.astype(np.float32))
 
 
-def _told(model: nn.Module, x: Tensor) -> Tensor:
+def _scaled_states(model: nn.Module, x: Tensor) -> Tensor:
     model.eval()
     with torch.no_grad():
         return torch.cat([model(part) for part in x.split(2048)])

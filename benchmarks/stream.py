@@ -48,8 +48,8 @@ def main() -> None:
     for kind in KINDS:
         done = fit_reconstructor(kind, what, parts.fitted(), parts.checked())
         stream = Stream(done)
-        told = np.array([stream.update(reading) for reading in readings[: len(recording.time)]])
-        apart = np.abs(told[what.lags.reach :] - done(windows)) / sd
+        streamed = np.array([stream.update(reading) for reading in readings[: len(recording.time)]])
+        apart = np.abs(streamed[what.lags.reach :] - done(windows)) / sd
         each = timed(stream.update, readings)
         whole = timed(done, [windows.rows(slice(row, row + 1)) for row in range(200)])
         line = f"{kind:<18}{np.median(each):>10.3f}{np.quantile(each, 0.99):>10.3f}{np.median(whole):>10.3f}"

@@ -45,17 +45,17 @@ def main() -> None:
         study = write_demonstration(Path(name), 60.0, GIVEN.people)
         for targets in ("emg", "forces"):
             settings = ReconstructionSettings(kinds=kinds, condition="nominal", targets=targets)
-            tell("cohort", study, SENSORS, settings)
+            measure("cohort", study, SENSORS, settings)
     walk = PlannedTrial(condition="walk", files=(str(DATA / "gait" / "treadmill_c3d_emg" / "walking_1.c3d"),))
     study = Study(
         conditions=Conditions(nominal="walk", device="none"), participants=(Participant(id="P01", trials=(walk,)),)
     )
     for targets in ("emg", "forces"):
         settings = ReconstructionSettings(history_s=0.24, kinds=kinds, targets=targets)
-        tell("treadmill_c3d_emg", study, MARKERS, settings)
+        measure("treadmill_c3d_emg", study, MARKERS, settings)
 
 
-def tell(name: str, study: Study, sensors: tuple[str, ...], settings: ReconstructionSettings) -> None:
+def measure(name: str, study: Study, sensors: tuple[str, ...], settings: ReconstructionSettings) -> None:
     """Print what is found, state by state."""
     done, _ = reconstruct_study(study, sensors, settings)
     print(f"{name}, {settings.targets}: {reconstruction_sentences(done)[0]}")

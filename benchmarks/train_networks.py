@@ -94,7 +94,7 @@ def ours(nominal: Samples, exo: Samples, held_out: Samples, arithmetic: str) -> 
     rates = [matrix_rate()]
     try:
         begun, begun_core = time.perf_counter(), time.process_time()
-        models = fit_models(nominal, exo, lambda samples, told: fit_network(samples, settings, told))
+        models = fit_models(nominal, exo, lambda samples, progress: fit_network(samples, settings, progress))
         seconds, core_seconds = time.perf_counter() - begun, time.process_time() - begun_core
     finally:
         trainer.descend = plain
@@ -189,10 +189,16 @@ def recorded_loop(
         load = os.getloadavg()[0]
         done = users_loop(*walks[person].first(length), seed)
         rounded = Done(np.round(done.r2, 5).tolist(), round(done.seconds, 3), round(done.core_seconds, 3))
-        told = {"person": person, "length_s": length, "seed": seed, "key": keys[person], "load": round(load, 1)}
-        told |= {"torch": torch.__version__, "date": datetime.now(UTC).date().isoformat()}
+        circumstances = {
+            "person": person,
+            "length_s": length,
+            "seed": seed,
+            "key": keys[person],
+            "load": round(load, 1),
+        }
+        circumstances |= {"torch": torch.__version__, "date": datetime.now(UTC).date().isoformat()}
         with RECORD.open("a") as record:
-            record.write(json.dumps(told | {k: v for k, v in asdict(rounded).items() if v}) + "\n")
+            record.write(json.dumps(circumstances | {k: v for k, v in asdict(rounded).items() if v}) + "\n")
         found[person, length] = rounded
     return {unit: found[unit] for unit in units if unit in found}
 

@@ -70,10 +70,10 @@ def run(quick: bool = False, folder: Path = Path("ch3_burgers")) -> Result:
     return written(cells, [stated, *blocks], "Burgers' equation, section 3.4.3", folder)
 
 
-def cells_of(cubic: float, asked: list[Conditions]) -> tuple[DiscrepancyCell, ...]:
+def cells_of(cubic: float, wanted: list[Conditions]) -> tuple[DiscrepancyCell, ...]:
     """DMD by both approaches, and what is learned at each point."""
     found = []
-    for conditions in asked:
+    for conditions in wanted:
         record = recorded_field(burgers(cubic), conditions)
         found += [cell_of(record, "dmd", approach, SETTINGS) for approach in APPROACHES]
         found += [

@@ -50,7 +50,7 @@ def said_of(found: pd.DataFrame, column: str, factor: float = 1.0) -> str:
     """Median and range of a number over the seeds, or in how many of them the run diverged."""
     if not len(found):
         return ""
-    lost = int(found[column].isna().sum())  # it left every bound before the end of what is judged
+    lost = int(found[column].isna().sum())  # it left every bound before the end of the tested part
     among = f" in {lost} of {len(found)}" * (len(found) > 1)
     return f"diverged{among}" if lost else spread_words(factor * found[column].to_numpy(float))
 

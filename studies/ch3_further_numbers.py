@@ -45,7 +45,7 @@ def systems() -> dict[str, System]:
 
 
 def score(part: PartAccuracy, system: str) -> float:
-    """What a forecast is judged by."""
+    """What a forecast is compared with."""
     if system == "Lorenz":
         return LYAPUNOV_PER_S * part.valid_s("augmented")
     return float(np.median(part.accuracy()))
@@ -85,7 +85,7 @@ def of_method(system: System, name: str, noise: float, method, seed: int, **made
 
 
 def of_trajectories(method, made: dict, seed: int) -> float:
-    """Forecast with a learned residual, judged after what may be sacrificed."""
+    """Forecast with a learned residual, tested after what may be sacrificed."""
     record = recorded(systems()["Van der Pol"], Conditions(0.01, seed, **made))
     part = cell_of(record, method, "state").parts[FORECAST]
     later = part.time >= SACRIFICED_S

@@ -48,7 +48,7 @@ def compute(folder: Path, sets: dict[str, CellSet], seeds: int) -> None:
     warm = set()
     for seed in range(seeds):
         for name, cell_set in sets.items():
-            for noise, method in _asked(cell_set, seed):
+            for noise, method in _wanted(cell_set, seed):
                 path = folder / f"{name}-{noise:g}-{seed:02d}-{method}.csv"
                 if path.exists():
                     continue
@@ -63,7 +63,7 @@ def compute(folder: Path, sets: dict[str, CellSet], seeds: int) -> None:
                 print(path.name, file=sys.stderr, flush=True)
 
 
-def _asked(cell_set: CellSet, seed: int) -> Iterator[tuple[float, Method]]:
+def _wanted(cell_set: CellSet, seed: int) -> Iterator[tuple[float, Method]]:
     for noise in cell_set.noises:
         for method in cell_set.methods:
             if seed < (cell_set.seeds if noise else 1):  # without noise all seeds are one

@@ -30,7 +30,7 @@ from gaitdisc.chapters.discrepancy.known_rates import KnownRates
 from gaitdisc.chapters.discrepancy.methods import Method
 from gaitdisc.chapters.discrepancy.naming import Naming
 from gaitdisc.chapters.discrepancy.record import Conditions, recorded
-from gaitdisc.chapters.discrepancy.shaken_rates import ShakenRates
+from gaitdisc.chapters.discrepancy.stochastic_rates import StochasticRates
 from gaitdisc.chapters.discrepancy.system import system_of
 from gaitdisc.chapters.pages import Block
 from gaitdisc.chapters.pages.naming import naming_figure, naming_table
@@ -52,7 +52,7 @@ def cases(seed: int = 0) -> tuple[HiddenEffect, ...]:
     by_code = system_of(free.with_effect(gd.Term("v", "equation", "cubic", "x**3")), gain=(1.1,))
     hidden, alike = system_of(text, minus), system_of(text)
     begun = replace(system_of(text, start=START), assumed=alike.start)
-    shaken, both = (replace(s, true=ShakenRates(s.true, (0.0, PUSH), seed)) for s in (alike, hidden))
+    pushed, both = (replace(s, true=StochasticRates(s.true, (0.0, PUSH), seed)) for s in (alike, hidden))
     cubic, gain = {"y": {"x**3": -0.01}}, ("x", "sensor_gain")
     damping = {"y": {"y": MU - 0.5, "x**2*y": 0.5 - MU}}
     mu = replace(alike, true=KnownRates(text.with_values({"mu": MU})))
@@ -70,7 +70,7 @@ def cases(seed: int = 0) -> tuple[HiddenEffect, ...]:
         HiddenEffect("only x measured, residual", "−0.01 x³", only, CUBIC, 0.01, cubic, "state"),
         HiddenEffect("wrong parameter", f"mu {MU} for 0.5", mu, ("mu", "wrong_parameter"), MU, damping),
         HiddenEffect("wrong start", "start of x, y", begun, ("x", "wrong_initial_condition"), START[0], {}, "state"),
-        HiddenEffect("random pushes", "pushes of y", shaken, ("y", "process_noise")),
+        HiddenEffect("random pushes", "pushes of y", pushed, ("y", "process_noise")),
         HiddenEffect("random pushes and a cubic", "−0.01 x³", both, CUBIC, 0.01, cubic),
     )  # fmt: skip
 
@@ -83,8 +83,8 @@ def run(quick: bool = False, folder: Path = Path("ch3_who_names")) -> Result:
         for seed in seeds if noise else seeds[:1]:
             for hidden in cases(seed):
                 record = recorded(hidden.system, Conditions(noise, seed, duration_s=hidden.duration_s))
-                asked = METHODS if seed == seeds[0] and noise in CURVED else NAMING
-                found += [discover_answer(hidden, record), *(method_answer(hidden, record, each) for each in asked)]
+                methods = METHODS if seed == seeds[0] and noise in CURVED else NAMING
+                found += [discover_answer(hidden, record), *(method_answer(hidden, record, each) for each in methods)]
     block = Block("names", "Who names it", (), (naming_figure(found, "names"),), (naming_table(found, "names"),))
     return written({}, [block], "Who names the hidden effect, sections 3.4 and 3.5", folder)
 

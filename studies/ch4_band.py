@@ -29,7 +29,7 @@ def band(quick: bool) -> Iterator[Number]:
     ridge = fit_models(nominal, exo, fit=lambda part, _: fit_linear(part))
     kinds: dict[str, tuple[ResponseModels, Refit]] = {"ridge": (ridge, lambda _, part: fit_linear(part).model)}
     if not quick:
-        network = fit_models(nominal, exo, fit=lambda part, told: fit_network(part, TrainingSettings(), told))
+        network = fit_models(nominal, exo, fit=lambda part, progress: fit_network(part, TrainingSettings(), progress))
         kinds["network, last layer"] = (network, refitted_network)
         kinds["network, whole"] = (network, lambda _, part: fit_network(part, TrainingSettings()).model)
     for kind, (models, refit) in kinds.items():
@@ -50,30 +50,30 @@ def curve(quick: bool) -> Iterator[Number]:
         x = np.column_stack([np.cos(turn), np.sin(turn)])
         return gd.Samples(x, samples.y - model(samples.x), ("cos", "sin"), samples.outputs, samples.time, samples.phi)
 
-    fitted, judged = circle(exo), circle(held)
-    line = tuple(replace(each, x=each.phi[:, None], inputs=("phi",)) for each in (fitted, judged))
-    bins = [np.minimum(each.phi.astype(int) // 2, 49) for each in (fitted, judged)]
-    means = np.array([judged.y[bins[1] == k].mean(axis=0) for k in range(50)])[bins[1]]  # the held-out strides' own
+    fitted, test = circle(exo), circle(held)
+    line = tuple(replace(each, x=each.phi[:, None], inputs=("phi",)) for each in (fitted, test))
+    bins = [np.minimum(each.phi.astype(int) // 2, 49) for each in (fitted, test)]
+    means = np.array([test.y[bins[1] == k].mean(axis=0) for k in range(50)])[bins[1]]  # the held-out strides' own
 
-    def said(row: str, told: Values, sd: Values | None = None, noise: Values | None = None) -> Iterator[Number]:
+    def said(row: str, predicted: Values, sd: Values | None = None, noise: Values | None = None) -> Iterator[Number]:
         for which, column in enumerate(ANGLES):
-            of_mean = np.sqrt(np.mean((told - means)[:, which] ** 2)) / judged.y[:, which].std()
+            of_mean = np.sqrt(np.mean((predicted - means)[:, which] ** 2)) / test.y[:, which].std()
             yield Number(row, "error of the held-out mean curve [SD]", column, float(of_mean))
             if sd is not None and noise is not None:
-                inside = np.abs(told - means)[:, which] <= SIDES * sd[:, which]
+                inside = np.abs(predicted - means)[:, which] <= SIDES * sd[:, which]
                 yield Number(row, "held-out mean curve inside the band [%]", column, 100 * float(inside.mean()))
-                inside = np.abs(told - judged.y)[:, which] <= SIDES * np.hypot(sd, noise)[:, which]
+                inside = np.abs(predicted - test.y)[:, which] <= SIDES * np.hypot(sd, noise)[:, which]
                 yield Number(row, "held-out samples inside, noise added [%]", column, 100 * float(inside.mean()))
 
     plain = np.array([fitted.y[bins[0] == k].mean(axis=0) for k in range(50)])[bins[1]]
     yield from said("means of 2 %", plain)
     features = fit_fourier_ridge(*fitted.last_block(0.15, 0.3), features=200, seed=0)
-    yield from said("200 random Fourier features, circle", features(judged.x))
+    yield from said("200 random Fourier features, circle", features(test.x))
     processes: dict[str, tuple[KernelKind, tuple[gd.Samples, ...]]]
     processes = {"squared exponential, line": ("squared_exponential", line)}
     if not quick:
-        processes["squared exponential, circle (periodic)"] = ("squared_exponential", (fitted, judged))
-        processes["Matern 5/2, circle (periodic)"] = ("matern_5_2", (fitted, judged))
+        processes["squared exponential, circle (periodic)"] = ("squared_exponential", (fitted, test))
+        processes["Matern 5/2, circle (periodic)"] = ("matern_5_2", (fitted, test))
     for row, (kind, (training, later)) in processes.items():
         found = fit_gaussian_process(training.rows(slice(None, None, 4)), kind=kind, variance=True)
         yield from said(f"Gaussian process, {row}", found(later.x), found.sd(later.x), found.noise)

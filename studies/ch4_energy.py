@@ -15,7 +15,7 @@ from gaitdisc.sensing.windows import stacked
 
 
 def energy(quick: bool) -> Iterator[Number]:
-    """Power of each person from mean strides, by the other seven; judged over the person's nine settings."""
+    """Power of each person from mean strides, by the other seven; tested over the person's nine settings."""
     walks = read_walks(DATA / "ankle_exo_emg_grf")
     curves = {key: table.to_numpy().T for key, table in walks.curves.items()}  # (signal, bin)
     power = walks.energy_w.loc[list(PEOPLE), list(SETTINGS)].to_numpy()
@@ -35,21 +35,21 @@ def energy(quick: bool) -> Iterator[Number]:
         own = x - x.mean(axis=1, keepdims=True)
         parts = [gd.Samples(own[k], change[k][:, None], tuple(map(str, range(own.shape[2]))), ("W",),
                             np.arange(9.0), np.zeros(9)) for k in range(len(PEOPLE))]  # fmt: skip
-        told = []
+        predicted = []
         for place in range(len(PEOPLE)):
             chosen = (place + 1) % len(PEOPLE)
             fitted = [parts[k] for k in range(len(PEOPLE)) if k not in (place, chosen)]
             model = fit_fourier_ridge(stacked(fitted), parts[chosen])
-            told.append(model(own[place])[:, 0])
-        told = np.array(told)
-        explained = 1 - np.mean((told - change) ** 2) / np.mean(change**2)
-        shuffled = [np.array([rng.permutation(row) for row in told]) for _ in range(200 if quick else 2000)]
+            predicted.append(model(own[place])[:, 0])
+        predicted = np.array(predicted)
+        explained = 1 - np.mean((predicted - change) ** 2) / np.mean(change**2)
+        shuffled = [np.array([rng.permutation(row) for row in predicted]) for _ in range(200 if quick else 2000)]
         null = np.array([1 - np.mean((each - change) ** 2) / np.mean(change**2) for each in shuffled])
         yield Number(kind, "within persons: R2 [1]", "", float(explained))
         yield Number(kind, "95 % of shuffled settings below [1]", "", float(np.quantile(null, 0.95)))
         yield Number(kind, "p", "", float((1 + np.sum(null >= explained)) / (1 + len(null))))
         for place, person in enumerate(PEOPLE):
-            yield Number(kind, "RMSE [W]", person, float(np.sqrt(np.mean((told - change)[place] ** 2))))
+            yield Number(kind, "RMSE [W]", person, float(np.sqrt(np.mean((predicted - change)[place] ** 2))))
     for place, person in enumerate(PEOPLE):
         others = np.delete(change, place, axis=0).mean(axis=0)
         yield Number("no setting known (null)", "RMSE [W]", person, float(change[place].std()))

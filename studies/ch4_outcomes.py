@@ -72,14 +72,14 @@ def moments(quick: bool) -> Iterator[Number]:
         exo = fit_fourier_ridge(stacked(turn), walks["turn"][chosen])
         missed = [replace(each, y=each.y - f(each.x)) for each in (*turn, walks["turn"][chosen])]
         g = fit_fourier_ridge(stacked(missed[:-1]), missed[-1])
-        for word, judged in (("turn", walks["turn"][place]), ("straight", walks["straight"][place])):
-            told = {"mean of the others' turns (null)": np.tile(stacked(turn).y.mean(axis=0), (len(judged), 1)),
-                    "Nominal": f(judged.x), "Augmented": f(judged.x) + g(judged.x), "Exo": exo(judged.x)}  # fmt: skip
-            for model, values in told.items():
+        for word, test in (("turn", walks["turn"][place]), ("straight", walks["straight"][place])):
+            predicted = {"mean of the others' turns (null)": np.tile(stacked(turn).y.mean(axis=0), (len(test), 1)),
+                    "Nominal": f(test.x), "Augmented": f(test.x) + g(test.x), "Exo": exo(test.x)}  # fmt: skip
+            for model, values in predicted.items():
                 if word == "straight" and model != "Nominal":
                     continue
                 for k, joint in enumerate(JOINTS):
-                    missed_of = np.sqrt(np.mean((values - judged.y)[:, k] ** 2))
+                    missed_of = np.sqrt(np.mean((values - test.y)[:, k] ** 2))
                     yield Number(f"{model} on {word}", f"{joint}: RMSE [N m/kg]", person.name, float(missed_of))
 
 

@@ -40,7 +40,7 @@ def terms(quick: bool) -> Iterator[Number]:
         ("device", nominal, exo, held),
         ("control", first, second, run("welk007", "natural")[1]),
     ):
-        samples, judged = discrepancy(before, after), discrepancy(before, later)
+        samples, test = discrepancy(before, after), discrepancy(before, later)
         rng = np.random.default_rng(0)
         counts: dict[tuple[str, str], list[float]] = {}
         blocks = np.array_split(np.arange(len(samples)), BLOCKS)
@@ -51,11 +51,11 @@ def terms(quick: bool) -> Iterator[Number]:
                 for term, value in model.terms(name).items():
                     counts.setdefault((name, term), []).append(value)
         whole = fit_sindy(samples, 1)
-        error = 1 - np.mean((whole(judged.x) - judged.y) ** 2, axis=0) / np.mean(judged.y**2, axis=0)
+        error = 1 - np.mean((whole(test.x) - test.y) ** 2, axis=0) / np.mean(test.y**2, axis=0)
         for name, held_r2 in zip(OUTPUTS, error, strict=True):
             often = [v for (which, _), v in counts.items() if which == name]
             share = np.array([len(v) for v in often]) / (5 if quick else REFITS)
-            size = float(np.sqrt(np.mean(judged.y[:, OUTPUTS.index(name)] ** 2)))
+            size = float(np.sqrt(np.mean(test.y[:, OUTPUTS.index(name)] ** 2)))
             yield Number(f"{name}: size of the discrepancy [deg/s2]", column, "", size)
             yield Number(f"{name}: terms of the fit to all", column, "", float(len(whole.terms(name))))
             yield Number(f"{name}: share of it explained, held out [1]", column, "", float(held_r2))

@@ -55,7 +55,7 @@ def few(quick: bool) -> Iterator[Number]:
     for place, walk in enumerate(both):
         parts = split_by_trial(windows, [place], what.reach_s)
         first = first_strides(parts.test, STRIDES, what.reach_s)
-        judged, column = parts.judged().rows(first.rest), f"{walk.recording.condition} tested"
+        test, column = parts.tested().rows(first.rest), f"{walk.recording.condition} tested"
         for kind in ("delay ridge", "fourier ridge") if quick else ("delay ridge", "fourier ridge", "shred"):
             done = fit_reconstructor(kind, what, parts.fitted(), parts.checked())
             found = {"as it is": done, "linear correction": calibrated(done, first.strides)}
@@ -67,7 +67,7 @@ def few(quick: bool) -> Iterator[Number]:
                 repeated = stacked([parts.fitted(), *[inner[0]] * WEIGHT])
                 found[f"all, these {WEIGHT} times"] = fit_reconstructor(kind, what, repeated, inner[1])
             for name, model in found.items():
-                yield Number(f"{kind}: {name}", column, "", rmse(model(judged) - judged.y))
+                yield Number(f"{kind}: {name}", column, "", rmse(model(test) - test.y))
 
 
 def descended(model: TrainedNetwork, fitted: gd.Samples, checked: gd.Samples) -> TrainedNetwork:
@@ -78,18 +78,18 @@ def descended(model: TrainedNetwork, fitted: gd.Samples, checked: gd.Samples) ->
 
 def spread(quick: bool) -> Iterator[Number]:
     """Coverage and width of 90 % intervals on the test part of a run."""
-    walk, told = runner()
-    what, parts = parts_of(walk, told, LAGS)
+    walk, angles = runner()
+    what, parts = parts_of(walk, angles, LAGS)
     training = parts.fitted().rows(slice(600)) if quick else parts.fitted()
-    done, judged = fit_reconstructor(ENSEMBLE, what, training, parts.checked()), parts.judged()
-    half, missed = half_widths(done(parts.checked()) - parts.checked().y), done(judged) - judged.y
+    done, test = fit_reconstructor(ENSEMBLE, what, training, parts.checked()), parts.tested()
+    half, missed = half_widths(done(parts.checked()) - parts.checked().y), done(test) - test.y
     ensemble = done.model
     assert isinstance(ensemble, Ensemble)
-    sd, checked = (1.645 * ensemble.spread(each.x) for each in (judged, parts.checked()))
+    sd, checked = (1.645 * ensemble.spread(each.x) for each in (test, parts.checked()))
     scaled = sd * np.quantile(np.abs(done(parts.checked()) - parts.checked().y) / checked, 0.9, axis=0)
     for name, width in (("spread of five", sd), ("spread, scaled on the checked part", scaled),
-                        ("conformal (the program's)", np.tile(half, (len(judged), 1)))):  # fmt: skip
-        for k, channel in enumerate(told):
+                        ("conformal (the program's)", np.tile(half, (len(test), 1)))):  # fmt: skip
+        for k, channel in enumerate(angles):
             inside = coverage((np.abs(missed) / width)[:, [k]], np.ones(1))
             yield Number(name, "covered [%]", channel.name, 100 * float(inside[0]))
             yield Number(name, "half width [deg]", channel.name, float(width[:, k].mean()))

@@ -47,8 +47,8 @@ def fields() -> Iterator[tuple[gd.Field, FieldTask, str]]:
     yield winds, FieldTask("winds of the globe", Lags(7, 1), season=12), "globe"
 
 
-def maps_told(field: gd.Field, route: Route, task: FieldTask, kind: str, rules: Sequence[str]) -> dict:
-    """One snapshot of the judged part as measured, and as reconstructed, under each split."""
+def reconstructed_maps(field: gd.Field, route: Route, task: FieldTask, kind: str, rules: Sequence[str]) -> dict:
+    """One snapshot of the test part as measured, and as reconstructed, under each split."""
     shown = {}
     for rule in rules:
         ready = prepare(field, route, replace(task, rule=rule))
@@ -59,9 +59,9 @@ def maps_told(field: gd.Field, route: Route, task: FieldTask, kind: str, rules: 
     return shown
 
 
-def middle_of(judged: gd.Samples) -> tuple[gd.Samples, int]:
-    """Return the window in the middle of the judged ones, and the number of its snapshot."""
-    middle = judged.rows(slice(len(judged) // 2, len(judged) // 2 + 1))
+def middle_of(test: gd.Samples) -> tuple[gd.Samples, int]:
+    """Return the window in the middle of the test part, and the number of its snapshot."""
+    middle = test.rows(slice(len(test) // 2, len(test) // 2 + 1))
     return middle, int(snapshots_of(middle)[0])
 
 
@@ -69,10 +69,10 @@ def on_departures(field: gd.Field, routes: Sequence[Route], task: FieldTask, rul
     """Every route again, with readings and field taken as departures from the season: the cheap models."""
     cells: list[FieldCell] = []
     for rule in rules:
-        asked = replace(task, rule=rule, departures=True)
-        targets = targets_of(field, asked)
+        departing = replace(task, rule=rule, departures=True)
+        targets = targets_of(field, departing)
         for route in routes:
-            cells += reconstruct_field(field, route, asked, ("linear", "delay ridge"), False, targets)
+            cells += reconstruct_field(field, route, departing, ("linear", "delay ridge"), False, targets)
     return cells
 
 

@@ -23,22 +23,22 @@ AHEAD_S, STEP, RANK, SINDY_RANK = (0.04, 0.12, 0.2, 0.4, 0.8), 4, 12, 4
 
 def ahead(quick: bool) -> Iterator[Number]:
     """Errors of every forecast at the times that all of them reach."""
-    walk, told = runner()
-    what, parts = parts_of(walk, told, Lags(25, 4))
+    walk, angles = runner()
+    what, parts = parts_of(walk, angles, Lags(25, 4))
     present = fit_reconstructor("shred", what, parts.fitted().rows(slice(600 if quick else None)), parts.checked())
     carried = {"latent state, linear": linear(present, parts), "latent state, SINDy": sparse(present, parts)}
     for ahead_s in AHEAD_S[::4] if quick else AHEAD_S:
-        whole, later = parts_of(walk, told, Lags(25, 4, round(100 * ahead_s)))
-        judged, found = later.judged(), {}
+        whole, later = parts_of(walk, angles, Lags(25, 4, round(100 * ahead_s)))
+        test, found = later.tested(), {}
         for kind in ("delay ridge", "fourier ridge") if quick else ("delay ridge", "fourier ridge", "shred"):
-            found[kind] = fit_reconstructor(kind, whole, later.fitted(), later.checked())(judged)
+            found[kind] = fit_reconstructor(kind, whole, later.fitted(), later.checked())(test)
         found["persistence"] = persistence(later.test, ahead_s)
-        found["phase average"] = phase_average(later.training).told(later.test, ahead_s)
+        found["phase average"] = phase_average(later.training).forecast(later.test, ahead_s)
         for name, model in carried.items():  # windows of the present that end where these do
-            found[name] = model(latent_states(present, judged), round(100 * ahead_s))
+            found[name] = model(latent_states(present, test), round(100 * ahead_s))
         known = np.isfinite(np.hstack(list(found.values()))).all(axis=1) | np.isinf(found["latent state, SINDy"][:, 0])
         for name, values in found.items():
-            yield Number(name, f"{ahead_s:g} s", "", rmse((values - judged.y)[known]))
+            yield Number(name, f"{ahead_s:g} s", "", rmse((values - test.y)[known]))
 
 
 def components(done: Reconstructor, parts: Parts, rank: int) -> tuple[Values, Values, Values]:

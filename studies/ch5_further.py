@@ -49,28 +49,28 @@ def text(quick: bool) -> Iterator[Number]:
         ):
             yield Number(one.model, f"Pacific, {rule}: R2 [1]", "", one.r2)
             yield Number(one.model, f"Pacific, {rule}: fit [s]", "", one.seconds)
-    walk, told = runner()
+    walk, angles = runner()
     for kind in () if quick else kinds:
         settings = ReconstructionSettings(spacing_s=0.01 if kind == OF_TEXT else 0.04)
-        what, parts = parts_of(walk, told, settings.lags(walk.recording.rate_hz))
+        what, parts = parts_of(walk, angles, settings.lags(walk.recording.rate_hz))
         done = fit_reconstructor(kind, what, parts.fitted(), parts.checked())
-        yield Number(kind, "runner: RMSE [deg]", "", rmse(done(parts.judged()) - parts.judged().y))
+        yield Number(kind, "runner: RMSE [deg]", "", rmse(done(parts.tested()) - parts.tested().y))
         yield Number(kind, "runner: fit [s]", "", done.seconds)
 
 
 def latent(quick: bool) -> Iterator[Number]:
     """What the leading components of the latent state hold of the states' modes, on windows that were not fitted."""
-    walk, told = runner()
-    what, parts = parts_of(walk, told, Lags(25, 4))
+    walk, angles = runner()
+    what, parts = parts_of(walk, angles, Lags(25, 4))
     done = fit_reconstructor("shred", what, parts.fitted().rows(slice(600 if quick else None)), parts.checked())
-    windows = parts.judged()
+    windows = parts.tested()
     states, modes = (leading(each, 5) for each in (latent_states(done, windows), windows.y / windows.y.std(axis=0)))
     courses = {word: course_numbers(windows.phi, each[:, :3]) for word, each in ((LATENT, states), (MODES, modes))}
     save_figures([latent_course_figure(courses, "latent-course", "Running, test part, as Fig. 5.1")], GIVEN.folder)
     for count in (1, 2, 3, 5):
-        told_of = states[:, :count] @ np.linalg.lstsq(states[:, :count], modes, rcond=None)[0]
+        estimated = states[:, :count] @ np.linalg.lstsq(states[:, :count], modes, rcond=None)[0]
         for mode in range(3):
-            held = 1 - np.mean((modes[:, mode] - told_of[:, mode]) ** 2)
+            held = 1 - np.mean((modes[:, mode] - estimated[:, mode]) ** 2)
             yield Number(f"{count} component{'s' * (count > 1)}", f"mode {mode + 1}: R2 [1]", "", float(held))
 
 
@@ -81,10 +81,10 @@ def population(quick: bool) -> Iterator[Number]:
     windows = [person.windows(what.windows) for person in people]
     for place, person in enumerate(people):
         parts = split_by_subject(windows, place)
-        judged, fitted = parts.judged(), parts.fitted()
-        yield Number("mean of the others", person.group, person.name, rmse(fitted.y.mean(axis=0) - judged.y))
+        test, fitted = parts.tested(), parts.fitted()
+        yield Number("mean of the others", person.group, person.name, rmse(fitted.y.mean(axis=0) - test.y))
         for kind in WITHOUT_NETWORK if quick else KINDS:
-            missed = fit_reconstructor(kind, what, fitted, parts.checked())(judged) - judged.y
+            missed = fit_reconstructor(kind, what, fitted, parts.checked())(test) - test.y
             yield Number(kind, person.group, person.name, rmse(missed))
             yield Number(f"{kind}, own means known", person.group, person.name, rmse(missed - missed.mean(axis=0)))
 

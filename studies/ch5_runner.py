@@ -22,13 +22,13 @@ Values = NDArray[np.float64]
 def runner() -> tuple[SensedWalk, tuple[gd.Channel, ...]]:
     """A minute of one runner, and the states that no sagittal sensor measures and that are angles."""
     walks = sensed_walks(first_person(exotendon(DATA)), SAGITTAL, "natural")
-    told = [channel for channel in walks.channels if channel.unit == "deg" and channel.name not in SAGITTAL]
-    return next(iter(walks.people.values()))[0], tuple(told)
+    angles = [channel for channel in walks.channels if channel.unit == "deg" and channel.name not in SAGITTAL]
+    return next(iter(walks.people.values()))[0], tuple(angles)
 
 
-def parts_of(walk: SensedWalk, told: tuple[gd.Channel, ...], lags: Lags) -> tuple[Sensing, Parts]:
+def parts_of(walk: SensedWalk, angles: tuple[gd.Channel, ...], lags: Lags) -> tuple[Sensing, Parts]:
     """Fitted, checked and tested windows, in time."""
-    what = Sensing(SAGITTAL, tuple(channel.name for channel in told), lags, walk.recording.rate_hz)
+    what = Sensing(SAGITTAL, tuple(channel.name for channel in angles), lags, walk.recording.rate_hz)
     return what, split_within([what.windows(walk.recording, walk.phi)], "temporal", what.reach_s)
 
 

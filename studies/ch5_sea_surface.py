@@ -26,7 +26,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import pandas as pd
-from ch5_fields import Result, fields, maps_told, on_departures, unseen_walks, written
+from ch5_fields import Result, fields, on_departures, reconstructed_maps, unseen_walks, written
 
 import gaitdisc as gd
 from gaitdisc.chapters.fields import KINDS, RANDOM
@@ -73,7 +73,10 @@ def run(quick: bool = False, folder: Path = Path("ch5_sea_surface"), kinds: Sequ
         drawn = [
             routes_figure(field, paths, f"routes-{number}", "Routes, as in Fig. 5.3"),
             maps_figure(
-                field, maps_told(field, routes[0], task, kinds[-1], SPLITS), f"maps-{number}", "As Fig. 5.3, top"
+                field,
+                reconstructed_maps(field, routes[0], task, kinds[-1], SPLITS),
+                f"maps-{number}",
+                "As Fig. 5.3, top",
             ),
             histograms_figure(shown, f"errors-{number}", "As Fig. 5.3, bottom"),
         ]

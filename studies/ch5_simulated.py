@@ -30,29 +30,28 @@ def simulated(quick: bool, recordings: Path) -> Iterator[Number]:
     real = next(person for person in real_people() if person.name == "S01")
     own = [what.windows(one, np.zeros(len(one.time))) for one in real.recordings]
     parts = split_by_trial(own, [8, 9, 10, 11], what.reach_s)
-    judged, few_real = parts.judged(), parts.training[0]
+    test, few_real = parts.tested(), parts.training[0]
     mean, size = few_real.x.mean(axis=0), few_real.x.std(axis=0)
-    moved = replace(judged, x=(judged.x - mean) / size * fitted.x.std(axis=0) + fitted.x.mean(axis=0))
+    moved = replace(test, x=(test.x - mean) / size * fitted.x.std(axis=0) + fitted.x.mean(axis=0))
     offset = few_real.y.mean(axis=0)
     for kind in ("delay ridge",) if quick else ("delay ridge", "fourier ridge", "shred"):
         done = fit_reconstructor(kind, what, fitted, checked)
-        found = {"as simulated": done(judged), "readings aligned": done(moved)}
+        found = {"as simulated": done(test), "readings aligned": done(moved)}
         if isinstance(done.model, TrainedNetwork):
-            told = done.model.decoded(aligned(latent_states(done, judged), latent_states(done, few_real),
-                                              latent_states(done, fitted)))  # fmt: skip
-            found["latent states aligned"] = told
-        found["linear correction by ten strides' states"] = calibrated(done, few_real.rows(slice(1100)))(judged)
+            states = aligned(latent_states(done, test), latent_states(done, few_real), latent_states(done, fitted))
+            found["latent states aligned"] = done.model.decoded(states)
+        found["linear correction by ten strides' states"] = calibrated(done, few_real.rows(slice(1100)))(test)
         if kind in WITHOUT_NETWORK:
-            found["fitted to the person"] = fit_reconstructor(kind, what, parts.fitted(), parts.checked())(judged)
+            found["fitted to the person"] = fit_reconstructor(kind, what, parts.fitted(), parts.checked())(test)
         for name, values in found.items():
-            yield Number(f"{kind}: {name}", "RMSE [deg]", "", rmse(values - judged.y))
+            yield Number(f"{kind}: {name}", "RMSE [deg]", "", rmse(values - test.y))
             yield Number(
                 f"{kind}: {name}",
                 "means taken off [deg]",
                 "",
-                rmse((values - judged.y) - (values - judged.y).mean(axis=0)),
+                rmse((values - test.y) - (values - test.y).mean(axis=0)),
             )
-    yield Number("the person's own mean (null)", "RMSE [deg]", "", rmse(offset - judged.y))
+    yield Number("the person's own mean (null)", "RMSE [deg]", "", rmse(offset - test.y))
 
 
 def aligned(states: Values, real: Values, simulated_states: Values) -> Values:

@@ -28,7 +28,7 @@ def speed(quick: bool) -> Iterator[Number]:
             for place in range(len(each)):
                 parts = split_by_trial(each, [place], plain.reach_s)
                 done = fit_reconstructor(kind, what, parts.fitted(), parts.checked())
-                missed = rmse(done(parts.judged()) - parts.judged().y)
+                missed = rmse(done(parts.tested()) - parts.tested().y)
                 yield Number(f"{kind}, {name}".strip(", "), "RMSE [deg]", f"walk {place + 1}", missed)
 
 

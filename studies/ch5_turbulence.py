@@ -58,7 +58,7 @@ def run(
     nodes: int = 48,
     cut: int | None = None,
 ) -> Result:
-    """Compute the flow, tell it from fixed and from walking sensors under both splits, and draw what Fig. 5.2 shows."""
+    """Compute the flow, reconstruct it from fixed and from walking sensors under both splits, and draw Fig. 5.2."""
     settings = FlowSettings(nodes=24, cut=16, spin_up=300) if quick else FlowSettings(nodes, cut or 5 * nodes // 6)
     kinds = KINDS[:2] if quick else KINDS
     flow, numbers = record_turbulence(settings, folder / "flow", _said("flow"))
@@ -71,12 +71,12 @@ def run(
             walk = random_walk(flow, run_number)
             stays = Route("1 fixed", fixed_at_random(flow, 1, run_number).points)
             for route in (stays, Route("1 walking", walk.points)):
-                asked = replace(task, seed=run_number)
-                made_by = {"task": asdict(asked), "flow": asdict(settings), "kinds": kinds}
+                seeded = replace(task, seed=run_number)
+                made_by = {"task": asdict(seeded), "flow": asdict(settings), "kinds": kinds}
                 path = folder / "cells" / f"{rule.split()[0]}-{route.name.split()[-1]}-{run_number}.json"
                 found = load_cells(made_by, path)
                 if found is None:
-                    found = reconstruct_field(flow, route, asked, kinds, run_number == 0, targets)
+                    found = reconstruct_field(flow, route, seeded, kinds, run_number == 0, targets)
                     save_cells(found, made_by, path)
                 cells += found
                 print(f"{rule}, {route.name} {run_number + 1} of {models}: R2 {cells[-1].r2:.3f}", flush=True)

@@ -36,12 +36,12 @@ def analog(pattern: str, factor: float = 1.0, unit: str = "") -> Callable[[objec
     """Multiply analog channels whose label or unit matches, or state another unit for them."""
 
     def turn(c3d) -> None:
-        told = c3d["parameters"]["ANALOG"]
-        for i, label in enumerate(told["LABELS"]["value"]):
+        group = c3d["parameters"]["ANALOG"]
+        for i, label in enumerate(group["LABELS"]["value"]):
             if re.search(pattern, label):
                 c3d["data"]["analogs"][0, i] *= factor
                 if unit:
-                    told["UNITS"]["value"][i] = unit
+                    group["UNITS"]["value"][i] = unit
 
     return turn
 

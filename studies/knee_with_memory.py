@@ -34,7 +34,7 @@ KINDS = ("hysteresis", "series_elasticity", "input_lag", "nothing")
 
 
 def hidden(kind: str, rng: np.random.Generator) -> tuple[gd.Simulation, float]:
-    """The leg with something hidden at its knee, and the number that tells its memory (yield, relaxation, lag)."""
+    """The leg with something hidden at its knee, and the number of its memory (yield, relaxation, lag)."""
     leg, stiffness = gd.bundled_simulation("swing_leg"), rng.uniform(15.0, 40.0)
     memory = float(rng.uniform(0.08, 0.25))
     rates = {"hysteresis": f"{BENT} - abs({BENT})*z/{memory}", "series_elasticity": f"{BENT} - z/{memory}"}
@@ -55,7 +55,7 @@ def recorded(truth: gd.Simulation, rng: np.random.Generator, noise: float) -> pd
 
 
 def run(seeds: int, noise: float) -> list[str]:
-    """Hide each, ask, and count."""
+    """Hide each, run discover, and count."""
     nominal, lines = gd.bundled_simulation("swing_leg").observing(["hip", "knee"]), []
     for kind in KINDS:
         right, errors, others = 0, [], []

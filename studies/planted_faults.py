@@ -45,7 +45,7 @@ class Outcome(NamedTuple):
 
 
 def outcomes(data: Path, only: str = "", quick: bool = False, kept: bool = False) -> tuple[list[Outcome], list[str]]:
-    """Every case, those held back where they are asked for, and the alarms of the same walks untouched."""
+    """Every case, those held back where they are wanted, and the alarms of the same walks untouched."""
     clean: dict[tuple[Path, ...], set[str]] = {}
     found, alarms = [], []
     for case in held_back(data) if kept else cases(data, quick):

@@ -10,7 +10,7 @@ from pathlib import Path
 from gaitdisc.batch.quantity_unit import computed_quantity
 from gaitdisc.batch.run_lock import run_lock
 from gaitdisc.batch.run_study import run_study
-from gaitdisc.batch.workers import Told, Workers, computed_units
+from gaitdisc.batch.workers import StudyProgress, Workers, computed_units
 from gaitdisc.ingest.study import Study
 from gaitdisc.response.data_quantity import LENGTHS_S
 from gaitdisc.response.over_participants import compare_participants
@@ -24,13 +24,13 @@ def ablate_study(
     lengths_s: Sequence[float] = LENGTHS_S,
     part: str = "first",
     workers: Workers | None = None,
-    told: Told = lambda *_: None,
+    progress: StudyProgress = lambda *_: None,
 ) -> ResponseRun:
     """Fit every participant's models to less and less data; the run itself is made first where it is not there.
 
     lengths_s: lengths of the training part [s]; its whole length is always added
     workers: where participants are computed; in this process, one after the other, by default
-    told: called with a participant's pseudonym and the fraction of that participant's work that is done
+    progress: called with a participant's pseudonym and the fraction of that participant's work that is done
     returns: with `quantities`; whoever had to be refused is in `refusals`
     """
     workers = workers or Workers()
@@ -38,7 +38,7 @@ def ablate_study(
     with run_lock(folder):
         people = [study.participant(response.participant) for response in run.responses]
         compute = partial(computed_quantity, study, folder=folder.absolute(), lengths_s=lengths_s, part=part)
-        found = list(computed_units(workers, compute, people, told, lambda refusal: refusal))
+        found = list(computed_units(workers, compute, people, progress, lambda refusal: refusal))
         quantities = tuple(each for each in found if isinstance(each, DataQuantity))
         run = replace(
             run,

@@ -70,7 +70,7 @@ def made_walk(visit: Visit, seed: int) -> Trial:
 
 
 def write_week(
-    folder: Path, controls: int = 20, told: Callable[[str], None] = lambda _: None
+    folder: Path, controls: int = 20, progress: Callable[[str], None] = lambda _: None
 ) -> tuple[Study, Study, dict[str, str]]:
     """Write two studies, `controls/` and `week/`, and apart from them what was planted.
 
@@ -78,10 +78,10 @@ def write_week(
     returns planted: person and session -> what was planted, empty for the healthy
     """
     visits = [Visit(f"C{k + 1:02d}", k) for k in range(controls)]
-    own = _written(folder / "controls", visits, "Controls, made", CONTROLS_SEED, told)
+    own = _written(folder / "controls", visits, "Controls, made", CONTROLS_SEED, progress)
     truth = {f"{one.name} {one.session}".strip(): _words(one) for one in WEEK}
     said = "; ".join(f"{who} {what}" for who, what in truth.items() if what)
-    week = _written(folder / "week", WEEK, f"A week, made (simulated, no people). Planted: {said}", WEEK_SEED, told)
+    week = _written(folder / "week", WEEK, f"A week, made (simulated, no people). Planted: {said}", WEEK_SEED, progress)
     write_whole(folder / "planted.json", json.dumps(truth, indent=1))
     return own, week, truth
 
@@ -92,7 +92,7 @@ def _words(visit: Visit) -> str:
     return f"{visit.what} {'left' if visit.side == 'l' else 'right'}"
 
 
-def _written(folder: Path, visits: Sequence[Visit], title: str, seed: int, told: Callable[[str], None]) -> Study:
+def _written(folder: Path, visits: Sequence[Visit], title: str, seed: int, progress: Callable[[str], None]) -> Study:
     trials: dict[str, list[PlannedTrial]] = {}
     people: dict[str, Person] = {}
     sessions = tuple(word for word in ("before", "after") if any(one.session == word for one in visits))
@@ -108,7 +108,7 @@ def _written(folder: Path, visits: Sequence[Visit], title: str, seed: int, told:
             condition=CONDITION, session=visit.session or None, files=files, speed_m_per_s=person.speed_m_per_s
         )
         trials.setdefault(visit.name, []).append(planned)
-        told(visit.name)
+        progress(visit.name)
     study = Study(
         title=title,
         sessions=sessions,

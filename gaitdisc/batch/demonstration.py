@@ -34,13 +34,13 @@ def write_demonstration(
     duration_s: float = WALK_S,
     people: int = 12,
     hidden: str = "spring",
-    told: Callable[[str, float], None] = lambda *_: None,
+    progress: Callable[[str, float], None] = lambda *_: None,
     laboratory: str = "angles",
 ) -> Study:
     """Let the cohort walk and write the recordings, the study file, and apart from them the truth.
 
     duration_s: length of each walk [s]; the dissertation's is 240
-    told: called with a pseudonym and 1.0 when that person has walked
+    progress: called with a pseudonym and 1.0 when that person has walked
     laboratory: `angles` of a treadmill; `markers`, two belts and a static trial in place of them; or markers
         `overground`: short trials over two plates
     returns: as written; it passes through the same reading as a laboratory's
@@ -68,7 +68,7 @@ def write_demonstration(
             Participant(id=person.name, mass_kg=round(person.mass_kg, 1) if markers else None, trials=planned)
         )
         write_whole(folder / "truth" / f"{person.name}.json", json.dumps(walks.truth, indent=1))
-        told(person.name, 1.0)
+        progress(person.name, 1.0)
     study = Study(
         title=f"Demonstration: {people} of the embedded cohort, hidden effect: {hidden}",
         conditions=Conditions(nominal="nominal", device="exo"),

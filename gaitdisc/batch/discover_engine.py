@@ -15,9 +15,10 @@ from gaitdisc.discovery.candidate import SIGNAL_ERRORS
 from gaitdisc.discovery.first_states import guess_states
 from gaitdisc.discovery.grids import rhythm_of
 from gaitdisc.discovery.spiked_samples import without_spikes
+from gaitdisc.engines.conventions import refuse_other_conventions, refuse_other_units
 from gaitdisc.engines.engine import Engine
 from gaitdisc.engines.expansion import expanded
-from gaitdisc.engines.mapping import other_values, read_mapping, refuse_other_units, with_input_changed
+from gaitdisc.engines.mapping import other_values, read_mapping, with_input_changed
 from gaitdisc.engines.own_runs import OwnRuns, own_runs
 from gaitdisc.engines.written import WrittenModel, written_model
 from gaitdisc.errors import ChannelError
@@ -65,6 +66,7 @@ def discover_engine(
     data = measured(mapping)
     refuse_unmeasured(mapping, engine, data)
     states = smoothed_states(mapping, engine, data)
+    refuse_other_conventions(mapping, engine, data, states)
     told(f"computing the accelerations of {engine.path.name} along the record by {engine.called}")
     linear, driven = expanded(mapping, engine, data, states)
     read = {engine.path: "model", **(files or {})}  # what was read of the data is known by now

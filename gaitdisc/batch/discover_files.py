@@ -62,7 +62,7 @@ def discover_study(
     # imported here: a simulation file needs no filters and no pandas
     from gaitdisc.batch.device_study import NoMomentsError, beside, device_walks, with_foot_mass
     from gaitdisc.batch.joint_inquiry import tracked_joint, tracked_trials
-    from gaitdisc.batch.nominal_model import nominal_inquiry
+    from gaitdisc.batch.nominal_model import nominal_and_trials
     from gaitdisc.batch.public_words import words_of
     from gaitdisc.ingest.study_file import load_study
 
@@ -75,7 +75,7 @@ def discover_study(
         both = device_walks(read, participant, joint)
     except NoMomentsError as lacking:
         told("comparing the motion alone")
-        model, data = nominal_inquiry(read, participant, joint)
+        model, data = nominal_and_trials(read, participant, joint)
         found, augmented = discovered(model, data, catalogue, walks, told)
         said = f"{lacking.needed.capitalize()}, and {lacking.found}: it cannot be named. Of the motion alone: "
         return replace(found, sentence=said + found.sentence), augmented

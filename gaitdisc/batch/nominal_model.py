@@ -1,4 +1,4 @@
-"""A participant's Nominal model as a simulation, and the device walk as what was measured: an inquiry from a study."""
+"""A participant's Nominal model as a simulation, and the device walk as what was measured: `discover` from a study."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from gaitdisc.simulation.parts import Input, Parameter, Port, State
 from gaitdisc.simulation.simulation import Simulation
 
 HARMONICS = 8
-STRIDES = 4  # of one trial of the inquiry
+STRIDES = 4  # of one trial
 FEWEST_TRIALS = 4
 
 
-def nominal_inquiry(
+def nominal_and_trials(
     study: Study, participant: str, joint: str = "ankle_angle", strides: int = STRIDES
 ) -> tuple[Simulation, Measured]:
     """Nominal model of one joint of a participant, and the device walk cut into trials of some strides.
@@ -27,7 +27,7 @@ def nominal_inquiry(
     The model is the Nominal model of chapter 4 in a form that can be read: the joint's acceleration is linear in its
     angle and its rate and periodic in percent stride, fitted to the Nominal walk by least squares. What differs on the
     device is therefore an acceleration, not a moment: without moments in the study no inertia is known, and what the
-    person changes on purpose cannot be told from what the device does.
+    person changes on purpose cannot be distinguished from what the device does.
 
     study: with both walks; its filters and its detector are used
     joint: angle, without its side; the side is that of the study's strides

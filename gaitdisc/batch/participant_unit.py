@@ -96,7 +96,7 @@ def _compared_unit(study: Study, participant: Participant, folder: Path, progres
 
 
 def response_settings(study: Study) -> ResponseSettings:
-    """Settings of the fits that a study asks for; what it does not say is the package's default."""
+    """Settings of the fits that a study states; what it does not say is the package's default."""
     from gaitdisc.response.fit_response import ResponseSettings
 
     training = TrainingSettings(seed=study.models.seed)

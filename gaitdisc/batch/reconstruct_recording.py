@@ -1,4 +1,4 @@
-"""Tell the states of a new recording by a saved model."""
+"""Reconstruct the states of a new recording by a saved model."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from gaitdisc.signals.butterworth import KINEMATICS_HZ, lowpassed
 
 
 @dataclass(frozen=True, eq=False)
-class ToldRecording:
-    """States told of a recording, and how far they are from those that were measured too."""
+class ReconstructedRecording:
+    """States reconstructed from a recording, and how far they are from those that were measured too."""
 
-    states: Recording  # what the model tells, from the first full window on
+    states: Recording  # what the model reconstructs, from the first full window on
     path: Path
     rmse: dict[str, float]  # of every state that the recording has itself [its unit]; empty where it has sensors alone
     coverage: dict[str, float]  # share of these inside the model's interval
@@ -45,8 +45,8 @@ def reconstruct_recording(
     cutoff_hz: float = KINEMATICS_HZ,
     calibration: Path | None = None,
     missing: str = "none",
-) -> ToldRecording:
-    """Tell the states of one recording, and write them as a `.mot`.
+) -> ReconstructedRecording:
+    """Reconstruct the states of one recording, and write them as a `.mot`.
 
     cutoff_hz: -3 dB frequency of one pass of the low-pass; the model's own recordings had the study's
     calibration: kinematics of the same person that hold the sensors and every state, some ten strides: the model is
@@ -59,8 +59,8 @@ def reconstruct_recording(
     what = saved.reconstructor.sensing
     names = [name for name in (*what.sensors, *what.states) if name in kinematics.names or name in what.sensors]
     filtered = lowpassed(kinematics.selected(names), cutoff_hz)
-    told = saved(filtered, missing)
-    known = np.isfinite(told.values).all(axis=1)
+    states = saved(filtered, missing)
+    known = np.isfinite(states.values).all(axis=1)
     if known.sum() < 2:
         raise SamplingError(
             f"states are reconstructed from {what.reach_s:.2f} s of readings",
@@ -68,16 +68,16 @@ def reconstruct_recording(
             "Record longer, or fill the gaps.",
         )
     first, last = np.flatnonzero(known)[[0, -1]]
-    kept = told.between(float(told.time[first]), float(told.time[last]) + 0.5 / told.rate_hz)
+    kept = states.between(float(states.time[first]), float(states.time[last]) + 0.5 / states.rate_hz)
     write_storage(kept, out)
     rmse, inside = {}, {}
     for column, name in enumerate(what.states):
         if name in filtered.names:
             both = known & np.isfinite(filtered[name])
-            error = told[name][both] - filtered[name][both]
+            error = states[name][both] - filtered[name][both]
             rmse[name] = float(np.sqrt(np.mean(error**2)))
             inside[name] = float(coverage(error[:, None], saved.half_widths[column : column + 1])[0])
-    return ToldRecording(kept, out, rmse, inside, LEVEL)
+    return ReconstructedRecording(kept, out, rmse, inside, LEVEL)
 
 
 def _for_person(saved: SensingModel, calibration: Path, cutoff_hz: float) -> Reconstructor:

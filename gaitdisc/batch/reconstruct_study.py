@@ -39,10 +39,10 @@ class ReconstructionSettings:
     history_s: float = 1.0  # reach of a window, and time from one reading to the next [s]
     spacing_s: float = 0.04  # reach of a window, and time from one reading to the next [s]
     kinds: tuple[str, ...] = tuple(KINDS)
-    # walks of this condition alone, of both where it is empty; with the split `condition`, those that are judged
+    # walks of this condition alone, of both where it is empty; with the split `condition`, those that are tested
     condition: str = ""
-    targets: str = STATES  # what is told: `states`, or a word of `gaitdisc.batch.target_walks.TARGETS`
-    ahead_s: float = 0.0  # how far ahead of the last reading the states are told [s]; 0 tells the present
+    targets: str = STATES  # what is reconstructed: `states`, or a word of `gaitdisc.batch.target_walks.TARGETS`
+    ahead_s: float = 0.0  # how far ahead of the last reading the states are forecast [s]; 0 is the present
     seed: int = 0
     device: str = "auto"  # that networks are fitted on: `cpu`, `cuda`, or `auto`, the GPU where there is one
 
@@ -61,14 +61,13 @@ def reconstruct_study(
     study: Study,
     sensors: Sequence[str],
     settings: ReconstructionSettings | None = None,
-    told: Callable[[str, float], None] = lambda *_: None,
+    progress: Callable[[str, float], None] = lambda *_: None,
 ) -> tuple[Reconstruction, list[PersonReconstruction]]:
-    """Fit and judge every kind of model for every participant."""
+    """Fit and test every kind of model for every participant."""
     settings = settings or ReconstructionSettings()
     settings = replace(settings, device=fitting_device(settings.kinds, settings.device))
     walks = sensed_walks(study, sensors, settings.condition_read, settings.targets)
-    told_of = walks.channels if settings.targets == STATES else [c for c in walks.channels if c.name not in sensors]
-    names = tuple(channel.name for channel in told_of)
+    names = tuple(c.name for c in walks.channels if settings.targets == STATES or c.name not in sensors)
     what = sensing(names, tuple(sensors), settings.lags(walks.rate_hz), walks.rate_hz)
     channels = walks.named((*what.sensors, *what.states))
     fits = Fits(settings.kinds, settings.seed, settings.device, CALIBRATION_STRIDES if settings.split == SUBJECT else 0)
@@ -84,7 +83,7 @@ def reconstruct_study(
         except GaitdiscError as error:
             refusals.append(Refusal(person, "", str(error)))
             refused = error
-        told(person, 1.0)
+        progress(person, 1.0)
     if not done and refused is not None:
         raise refused
     return _result(study, walks, what, settings, done, refusals), done
@@ -93,25 +92,25 @@ def reconstruct_study(
 def parts_of(
     walks: SensedWalks, windows: dict[str, list[Samples]], person: str, settings: ReconstructionSettings
 ) -> Parts:
-    """Windows to fit, to choose by and to judge on, for one person."""
+    """Windows to fit, to choose by and to test on, for one person."""
     reach_s = settings.lags(walks.rate_hz).reach / walks.rate_hz
     if settings.split == SUBJECT:
         return split_by_subject(list(windows.values()), list(windows).index(person))
     if settings.split == CONDITION:
-        return split_by_trial(windows[person], _judged(walks.people[person], person, settings.condition), reach_s)
+        return split_by_trial(windows[person], _tested(walks.people[person], person, settings.condition), reach_s)
     return split_within(windows[person], settings.split, reach_s, settings.seed)
 
 
-def _judged(walks: Sequence[SensedWalk], person: str, condition: str) -> list[int]:
+def _tested(walks: Sequence[SensedWalk], person: str, condition: str) -> list[int]:
     words = [walk.recording.condition for walk in walks]
-    judged = [k for k, word in enumerate(words) if word == condition]
-    if not judged or len(judged) == len(words):
+    tested = [k for k, word in enumerate(words) if word == condition]
+    if not tested or len(tested) == len(words):
         raise SchemaError(
             "a split across conditions needs walks of the condition that is tested, and others to fit",
             f"--condition is {condition!r}, {person} has {', '.join(sorted(set(words)))}",
             "Name a condition with --condition, or take another split.",
         )
-    return judged
+    return tested
 
 
 def _result(

@@ -10,7 +10,7 @@ from pathlib import Path
 from gaitdisc.batch.participant_unit import ParticipantUnit, computed_unit, response_settings
 from gaitdisc.batch.public_words import public_settings, public_title
 from gaitdisc.batch.run_lock import run_lock
-from gaitdisc.batch.workers import Told, Workers, computed_units
+from gaitdisc.batch.workers import StudyProgress, Workers, computed_units
 from gaitdisc.ingest.study import Study
 from gaitdisc.results import (
     DataQuantity,
@@ -33,7 +33,7 @@ def run_study(
     study: Study,
     folder: Path,
     workers: Workers | None = None,
-    told: Told = lambda *_: None,
+    progress: StudyProgress = lambda *_: None,
 ) -> ResponseRun:
     """Process every walk of a study; fit models to two walks of a participant, or pool cycles over many trials.
 
@@ -42,13 +42,13 @@ def run_study(
     it was saved, in a table or in a JSON file, is not loaded but computed again, and said in `renewed`.
 
     workers: where participants are computed; in this process, one after the other, by default
-    told: called with a participant's pseudonym and the fraction of that participant's work that is done
+    progress: called with a participant's pseudonym and the fraction of that participant's work that is done
     returns: also saved in the folder; refusals are part of it
     """
     with run_lock(folder):
         renewed = damaged_units(folder)
         compute = partial(computed_unit, study, folder=folder.absolute())
-        units = list(computed_units(workers or Workers(), compute, study.participants, told, _lost))
+        units = list(computed_units(workers or Workers(), compute, study.participants, progress, _lost))
         responses = tuple(unit.response for unit in units if unit.response is not None)
         quantities = _stored_quantities(study, units, folder)
         tests, over = _compared(study, responses, quantities)

@@ -33,7 +33,7 @@ STATES = (
         for joint in ("hip_flexion", "hip_adduction", "hip_rotation", "knee_angle", "ankle_angle")
     ),
 )  # the 18 of section 5.3.3
-TOLD = tuple(stream for stream, _ in TARGETS.values())
+TARGET_STREAMS = tuple(stream for stream, _ in TARGETS.values())
 STILL = {"deg": 1e-3, "m": 1e-3}  # a channel that varies less was locked
 STILL_OTHERWISE = 1e-9
 
@@ -62,7 +62,7 @@ class SensedWalks:
         return next(iter(self.people.values()))[0].recording.rate_hz
 
     def named(self, names: Sequence[str]) -> tuple[Channel, ...]:
-        """Return channels by their names, in the order asked for."""
+        """Return channels by their names, in the order of the names."""
         by_name = {channel.name: channel for channel in self.channels}
         return tuple(by_name[name] for name in names)
 
@@ -127,7 +127,7 @@ def _walks(
             continue
         try:
             read = own.read_walk(planned)
-            trial = of_trial(public, person, planned).known_channels(read.trial, TOLD)
+            trial = of_trial(public, person, planned).known_channels(read.trial, TARGET_STREAMS)
             found.append(replace(read, trial=trial))
         except GaitdiscError as error:
             refusals.append(Refusal(person.id, planned.condition, str(public.error(error))))

@@ -1,4 +1,4 @@
-"""Walks whose sensors tell other quantities than movement: muscles, ground forces, joint moments."""
+"""Walks from whose sensors other quantities are reconstructed than movement: muscles, ground forces, joint moments."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ SENSED = ("kinematics", "markers")  # streams that hold sensors
 def target_walk(
     trial: Trial, study: Study, sensors: Sequence[str], targets: str
 ) -> tuple[Recording, Strides, list[Finding]]:
-    """Sensors of one trial and what is to be told from them, on the time base of the sensors.
+    """Sensors of one trial and what is to be reconstructed from them, on the time base of the sensors.
 
     Sensors are low-passed as kinematics; EMG becomes its envelope; forces are low-passed at 20 Hz, moments as
     kinematics. The centre of pressure and the free moment are no targets: they mean nothing while the foot is in the
@@ -44,22 +44,22 @@ def target_walk(
     filters = study.filters
     read = _sensors_of(trial, sensors)
     read = lowpassed(read, filters.kinematics_hz, filters.order, filters.gap_s)
-    told, findings = _targets_of(trial, study, targets)
+    wanted, findings = _targets_of(trial, study, targets)
     choice = chosen_contacts(trial, study.strides.detector, study.treadmill.direction if study.treadmill else "")
     side = study.strides.side if study.strides.side in choice.contacts else next(iter(choice.contacts))
     strides = cut_strides(choice.contacts[side], None, study.strides.min_s, study.strides.max_s)
-    values = interpolated(told.time, told.values, read.time)
+    values = interpolated(wanted.time, wanted.values, read.time)
     if not np.isfinite(values).any():
         raise SamplingError(
             f"trial {trial.name}: {targets} and sensors need a span of time in common",
             f"sensors last from {read.time[0]:.2f} to {read.time[-1]:.2f} s, "
-            f"{targets} from {told.time[0]:.2f} to {told.time[-1]:.2f} s",
+            f"{targets} from {wanted.time[0]:.2f} to {wanted.time[-1]:.2f} s",
             "Check that the files belong to the same trial and clock.",
         )
     both = replace(
         read,
         values=np.hstack([read.values, values]),
-        channels=(*read.channels, *told.channels),
+        channels=(*read.channels, *wanted.channels),
         suspect=None,
         subject=trial.subject,
         condition=trial.condition,
@@ -68,7 +68,7 @@ def target_walk(
 
 
 def refuse_unknown_targets(targets: str) -> None:
-    """Refuse what can not be told."""
+    """Refuse what cannot be reconstructed."""
     if targets not in (STATES, *TARGETS):
         known = ", ".join((STATES, *TARGETS))
         raise SchemaError("a reconstruction has one kind of quantity", f"{targets!r} is none", f"Use: {known}.")

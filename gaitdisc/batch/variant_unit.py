@@ -54,8 +54,8 @@ def computed_variants(
 
 
 def _key(study: Study, participant: Participant, question: str) -> str:
-    asked = [question, *(repr(setting) for setting in _settings(study) if question == "sensitivity")]
-    return hashlib.sha256("\n".join([response_key(unit_keys(study, participant)), *asked]).encode()).hexdigest()
+    varied = [question, *(repr(setting) for setting in _settings(study) if question == "sensitivity")]
+    return hashlib.sha256("\n".join([response_key(unit_keys(study, participant)), *varied]).encode()).hexdigest()
 
 
 def _modalities(study: Study, participant: Participant, progress: Progress) -> Variants | Refusal:
@@ -83,8 +83,8 @@ def _sensitivity(study: Study, participant: Participant, progress: Progress) -> 
     settings = _settings(study)
     for number, setting in enumerate(settings):
         try:
-            told = partial(_told, progress, number, len(settings))
-            tables.append(_under(study, trials, setting, told).assign(variant=setting.name))
+            share = partial(_share, progress, number, len(settings))
+            tables.append(_under(study, trials, setting, share).assign(variant=setting.name))
         except GaitdiscError as error:
             left_away[setting.name] = str(public.error(error))
     if not tables:
@@ -93,7 +93,7 @@ def _sensitivity(study: Study, participant: Participant, progress: Progress) -> 
     return Variants(participant.id, "sensitivity", table, left_away)
 
 
-def _under(study: Study, trials: Mapping[str, ReadWalk], setting: Setting, told: Progress) -> pd.DataFrame:
+def _under(study: Study, trials: Mapping[str, ReadWalk], setting: Setting, progress: Progress) -> pd.DataFrame:
     """R2 on device walking under one setting."""
     cut_offs = {"kinematics_hz": setting.angles_hz, "emg_lowpass_hz": setting.emg_hz}
     filtered = study.model_copy(update={"filters": study.filters.model_copy(update=cut_offs)})
@@ -101,7 +101,7 @@ def _under(study: Study, trials: Mapping[str, ReadWalk], setting: Setting, told:
     fits = response_settings(study)
     null = filter_null_of(exo, filtered.filters)
     less_nominal, less_exo = (_first_share(walk.trajectory, fits, setting.share) for walk in (nominal, exo))
-    found = fit_response(less_nominal, less_exo, fits, null, told).r2
+    found = fit_response(less_nominal, less_exo, fits, null, progress).r2
     return found[found["walk"] == "exo"]
 
 
@@ -117,5 +117,5 @@ def _settings(study: Study) -> tuple[Setting, ...]:
     return settings_around(filters.kinematics_hz, filters.emg_lowpass_hz, bool(study.models.emg))
 
 
-def _told(progress: Progress, number: int, count: int, fraction: float) -> None:
+def _share(progress: Progress, number: int, count: int, fraction: float) -> None:
     progress((number + fraction) / count)

@@ -9,7 +9,7 @@ from pathlib import Path
 from gaitdisc.batch.run_lock import run_lock
 from gaitdisc.batch.run_study import run_study
 from gaitdisc.batch.variant_unit import computed_variants
-from gaitdisc.batch.workers import Told, Workers, computed_units
+from gaitdisc.batch.workers import StudyProgress, Workers, computed_units
 from gaitdisc.errors import SchemaError
 from gaitdisc.ingest.study import Study
 from gaitdisc.response.modalities import compare_modalities
@@ -24,14 +24,14 @@ def vary_study(
     folder: Path,
     question: str,
     workers: Workers | None = None,
-    told: Told = lambda *_: None,
+    progress: StudyProgress = lambda *_: None,
 ) -> VariantRun:
     """Fit every participant's models with one thing changed at a time; the run itself is made first if it is not there.
 
     folder: folder of the run; what is computed here goes into a folder of the question's name in it
     question: `modalities`: without one family of inputs at a time. `sensitivity`: other cut-offs and training lengths
     workers: where participants are computed; in this process, one after the other, by default
-    told: called with a participant's pseudonym and the fraction of that participant's work that is done
+    progress: called with a participant's pseudonym and the fraction of that participant's work that is done
     returns: also saved in the folder of the question; whoever had to be refused is in `refusals`
     """
     if question not in QUESTIONS:
@@ -39,9 +39,9 @@ def vary_study(
     workers = workers or Workers()
     run = run_study(study, folder, workers)
     with run_lock(folder):
-        asked = [study.participant(response.participant) for response in run.responses]
+        people = [study.participant(response.participant) for response in run.responses]
         compute = partial(computed_variants, study, folder=folder.absolute(), question=question)
-        found = list(computed_units(workers, compute, asked, told, lambda refusal: refusal))
+        found = list(computed_units(workers, compute, people, progress, lambda refusal: refusal))
         varied = _varied(run, question, found)
         save_variant_run(varied, folder / question)
     return varied

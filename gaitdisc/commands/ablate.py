@@ -28,5 +28,8 @@ def ablate(
     loaded = load_study(study)
     folder, lengths = out or loaded.folder / "run", tuple(length) if length else LENGTHS_S
     report_on(
-        lambda told: ablate_study(loaded, folder, lengths, part, Workers(jobs, cluster), told), loaded, folder, quiet
+        lambda progress: ablate_study(loaded, folder, lengths, part, Workers(jobs, cluster), progress),
+        loaded,
+        folder,
+        quiet,
     )

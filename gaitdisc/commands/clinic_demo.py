@@ -17,7 +17,7 @@ def clinic_demo(folder: Path, jobs: int, quiet: bool) -> None:
     from gaitdisc.results.clinical_reference import save_reference
 
     typer.echo("20 controls and a week of 8 people, one of them a child, walk 16 s each: simulated, no people.")
-    controls, week, planted = write_week(folder, told=lambda who: typer.echo(f"  {who}", err=True, nl=not quiet))
+    controls, week, planted = write_week(folder, progress=lambda who: typer.echo(f"  {who}", err=True, nl=not quiet))
     workers = Workers(jobs)
     own = run_study(controls, controls.folder / "run", workers)
     save_reference(reference_of(own.cycles, own.title, own.provenance), folder / "reference")

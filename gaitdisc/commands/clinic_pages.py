@@ -95,7 +95,7 @@ def _drawn(run: ResponseRun, run_folder: Path) -> Path:
 
 
 def write_people(
-    run: ResponseRun, run_folder: Path, pdf: bool = False, told: Callable[[Path], None] = lambda _: None
+    run: ResponseRun, run_folder: Path, pdf: bool = False, progress: Callable[[Path], None] = lambda _: None
 ) -> Path | None:
     """Write pages of each person and session, and `index.html`; None for a run without cycles."""
     if not run.cycles:
@@ -114,7 +114,7 @@ def write_people(
             continue
         try:
             for page in _pages(person, names[title], reference, run.provenance, report, say, pdf):
-                told(page)
+                progress(page)
             written.append((person, names[title]))
         except WriteError:  # of the disk, not of the person: the page would stand as one that cannot be written
             raise

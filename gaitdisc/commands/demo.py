@@ -42,7 +42,8 @@ def demo(  # noqa: PLR0913, PLR0917 these are the options of a command
     )
     study = load_study(folder)
     try:
-        report_on(lambda told: run_study(study, folder / "run", Workers(jobs), told), study, folder / "run", quiet)
+        run = folder / "run"
+        report_on(lambda progress: run_study(study, run, Workers(jobs), progress), study, run, quiet)
     except typer.Exit as ended:
         if ended.exit_code != SOME_REFUSED:
             raise

@@ -61,7 +61,7 @@ def discover(
 
     if measured is not None and names_engine(simulation):
         from gaitdisc.batch.discover_engine import discover_model_file, write_answer
-        from gaitdisc.engines.tracked_files import read_tracked
+        from gaitdisc.engines.tracked_mapping import read_tracked
 
         walk = read_tracked(simulation)
         if walk is not None:

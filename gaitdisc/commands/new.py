@@ -16,10 +16,18 @@ def new(
         Path, typer.Option("--from", help="Folder of recordings, or a model of MuJoCo or OpenSim; it is not changed.")
     ],
     degrees: Annotated[bool, typer.Option("--degrees", help="Of a model: angles were recorded in degrees.")] = False,
+    external_loads: Annotated[
+        Path | None, typer.Option(help="Of a walk in an .osim: its recorded ground forces (.xml, ExternalLoads).")
+    ] = None,
+    forces: Annotated[Path | None, typer.Option(help="Of such a walk: the actuators' forces (.sto).")] = None,
+    actuators: Annotated[Path | None, typer.Option(help="Reserves and residuals of these forces (.xml).")] = None,
 ) -> None:
     """Write a study file from the recordings found in a folder, or a model's mapping file."""
     from gaitdisc.engines.model_file import is_model
 
+    if external_loads or forces or actuators:
+        _write_tracked(study, recordings, (external_loads, forces, actuators))
+        return
     if is_model(recordings):
         _write_mapping(study, recordings, degrees)
         return
@@ -40,16 +48,39 @@ def new(
     typer.echo(f"{file} written: {people}. Read it, then: gaitdisc check {study}")
 
 
-def _write_mapping(file: Path, model: Path, degrees: bool) -> None:
-    from gaitdisc.engines.mapping import write_mapping
-    from gaitdisc.engines.model_file import read_model
-
+def _refuse_unnamed(file: Path, model: Path) -> None:
     if file.suffix != ".toml" or file.exists():
         raise SchemaError(
             "a model's mapping is a new file that ends in .toml",
             f"{file} is there already" if file.exists() else f"{file.name} does not",
             f"Call it {model.with_suffix('.toml').name}: beside the model it is found by itself.",
         )
+
+
+def _write_mapping(file: Path, model: Path, degrees: bool) -> None:
+    from gaitdisc.engines.mapping import write_mapping
+    from gaitdisc.engines.model_file import read_model
+
+    _refuse_unnamed(file, model)
     mapping = write_mapping(read_model(model), file, degrees)
     columns = [name for name, _ in mapping.observations] + [one.name for one in mapping.inputs]
     typer.echo(f"{file} written: columns {', '.join(columns)}. Read it, then: gaitdisc discover {model} MEASURED")
+    if model.suffix.lower() == ".osim":
+        typer.echo("Of a walk with recorded ground forces: --external-loads grf.xml, --forces, --actuators.")
+
+
+def _write_tracked(file: Path, model: Path, files: tuple[Path | None, Path | None, Path | None]) -> None:
+    from gaitdisc.engines.tracked_files import drafted_tracked
+    from gaitdisc.engines.tracked_mapping import write_tracked_mapping
+    from gaitdisc.report.wording import counted
+
+    _refuse_unnamed(file, model)
+    tracked, engine = drafted_tracked(model, *files)
+    write_tracked_mapping(tracked, file)
+    given = f"forces of {counted(len(engine.actuators), 'actuator')}" if tracked.forces else "no forces of muscles"
+    typer.echo(
+        f"{file} written: {engine.mass_kg:.1f} kg, {counted(len(engine.coordinates), 'free coordinate')}, {given}. "
+        f"Read it, then: gaitdisc discover {file} KINEMATICS.mot"
+    )
+    if not tracked.forces:
+        typer.echo("Without --forces (static optimisation, computed muscle control) only residuals can be said.")

@@ -81,14 +81,14 @@ def reconstruct(  # noqa: PLR0913, PLR0917 these are the options of a command
     places = file_names([person.participant for person in people])
     for person in people:
         save_model(person.model(done.recommended), folder / "models" / places[person.participant])
-    _tell(done)
+    _print_sentences(done)
     typer.echo(f"models: {folder / 'models'}, {done.recommended} for each participant")
     typer.echo(f"report: {page}")
     if done.refusals:
         raise typer.Exit(SOME_REFUSED)
 
 
-def _tell(done: Reconstruction) -> None:
+def _print_sentences(done: Reconstruction) -> None:
     from rich.console import Console
 
     from gaitdisc.report.reconstruction_page import reconstruction_sentences, reconstruction_text

@@ -1,4 +1,4 @@
-"""`gaitdisc run`: process, fit, judge and report."""
+"""`gaitdisc run`: process, fit, test and report."""
 
 from __future__ import annotations
 
@@ -32,4 +32,4 @@ def run(
         loaded = loaded.model_copy(update={"participants": chosen})
     folder = out or loaded.folder / "run"
     keep_reference(reference, folder)
-    report_on(lambda told: run_study(loaded, folder, Workers(jobs, cluster), told), loaded, folder, quiet)
+    report_on(lambda progress: run_study(loaded, folder, Workers(jobs, cluster), progress), loaded, folder, quiet)

@@ -13,14 +13,14 @@ from gaitdisc.commands.clinic_pages import page_of_run
 from gaitdisc.commands.exit_codes import REFUSED, SOME_REFUSED, STOPPED
 
 if TYPE_CHECKING:
-    from gaitdisc.batch.workers import Told
+    from gaitdisc.batch.workers import StudyProgress
     from gaitdisc.ingest.study import Study
     from gaitdisc.results import Refusal, ResponseRun
 
 Result = TypeVar("Result")
 
 
-def report_on(work: Callable[[Told], ResponseRun], study: Study, folder: Path, quiet: bool) -> None:
+def report_on(work: Callable[[StudyProgress], ResponseRun], study: Study, folder: Path, quiet: bool) -> None:
     """Do the work with its progress shown, draw the report, and say who was refused."""
     started = time.perf_counter()
     done = worked(work, [person.id for person in study.participants], quiet)
@@ -46,7 +46,7 @@ def say_renewed(renewed: Sequence[str]) -> None:
         typer.echo(f"not used, computed again: {line}", err=True)
 
 
-def worked(work: Callable[[Told], Result], people: list[str], quiet: bool) -> Result:
+def worked(work: Callable[[StudyProgress], Result], people: list[str], quiet: bool) -> Result:
     """Do the work, with a bar that counts participants unless it shall be quiet."""
     try:
         return work(lambda *_: None) if quiet else with_progress(work, people)
@@ -73,7 +73,7 @@ def end(refusals: Sequence[Refusal], count: int, page: Path, seconds: float) -> 
         raise typer.Exit(SOME_REFUSED if count else REFUSED)
 
 
-def with_progress(work: Callable[[Told], Result], people: list[str]) -> Result:
+def with_progress(work: Callable[[StudyProgress], Result], people: list[str]) -> Result:
     """Do the work with a bar that counts participants."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
@@ -90,8 +90,8 @@ def with_progress(work: Callable[[Told], Result], people: list[str]) -> Result:
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task("participants", total=len(shares))
 
-        def told(participant: str, share: float) -> None:
+        def progress(participant: str, share: float) -> None:
             shares[participant] = share
             bar.update(task, completed=sum(shares.values()), description=f"{participant} of {len(shares)} participants")
 
-        return work(told)
+        return work(progress)

@@ -20,7 +20,7 @@ def vary(place: Path, out: Path | None, question: str, workers: tuple[int, str],
     study = load_study(place)
     folder, started, side_by_side = out or study.folder / "run", time.perf_counter(), Workers(*workers)
     people = [person.id for person in study.participants]
-    done = worked(lambda told: vary_study(study, folder, question, side_by_side, told), people, quiet)
+    done = worked(lambda progress: vary_study(study, folder, question, side_by_side, progress), people, quiet)
     say_renewed(done.renewed)
     page = write_variants(done, folder / question)
     for sentence in variant_sentences(done):

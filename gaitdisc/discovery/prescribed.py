@@ -21,11 +21,12 @@ from gaitdisc.discovery.grids import Rhythm, cells
 from gaitdisc.discovery.noise import Noise, noise_of
 from gaitdisc.discovery.paired_test import PairedTest, paired_test
 from gaitdisc.discovery.penalty import penalty_of
-from gaitdisc.discovery.ranking import MARGIN
+from gaitdisc.discovery.ranking import MARGIN, TIE
 
 Values = NDArray[np.float64]
 LATEST_S, DELAYS = 0.12, 25
-HALVES = 2
+BLOCK, MOST_BLOCKS = 4, 10  # samples of a block of time that is held out at least: a period of the low-pass; blocks
+GAP = 2  # samples to either side of it that nothing is learned from: what is half a period apart is independent
 CLOSED = 0.3  # of the squared moment that is left, which goes on held-out time
 CHANGED = 0.06  # by which a muscle group's strength differs at least, as in a device walk
 ROUNDS, REFINED = 2, 4  # turns of learning the noise; candidates whose constants are searched between the grid's
@@ -51,9 +52,12 @@ class LeftMoment:
         return float(np.hypot(np.sqrt(np.mean(self.angle_noise**2)), MODEL_ERROR * np.std(self.demanded)))
 
     @property
-    def halves(self) -> list[NDArray[np.intp]]:
-        """Samples of the first and of the second part of the time."""
-        return np.array_split(np.arange(len(self.time)), HALVES)
+    def blocks(self) -> list[tuple[NDArray[np.intp], NDArray[np.intp]]]:
+        """Samples of each block of the time, and those that are further than a gap from it."""
+        every = np.arange(len(self.time))
+        count = max(min(len(every) // BLOCK, MOST_BLOCKS), 2)
+        parts = np.array_split(every, count)
+        return [(part, every[(every < part[0] - GAP) | (every > part[-1] + GAP)]) for part in parts]
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,8 +67,9 @@ class Named:
     part: Part
     covariance: Values  # (slot, slot)
     explained: Values  # (sample,) [N m]
-    predicted: Values  # (sample,), each half from the other [N m]
+    predicted: Values  # (sample,), each block of the time from the rest of it [N m]
     gained: float  # fall of twice the log likelihood beyond the price of its numbers and of choosing it
+    held_out: float  # fall of twice the log likelihood of what was held out
     test: PairedTest
 
 
@@ -87,7 +92,7 @@ class JointFinding:
 
 
 def joint_finding(joint: LeftMoment, candidates: tuple[Candidate, ...], joints: int = 1) -> JointFinding:
-    """Weigh every candidate at one of some joints; name the best where evidence and both halves of time bear it out."""
+    """Weigh every candidate at one of some joints; name the best where evidence and held-out time bear it out."""
     open_ones = len(candidates) * joints
     floor = MODEL_ERROR * float(np.std(joint.demanded))
     noise = noise_of(joint.angle_noise[:, :, None], least=floor)
@@ -96,16 +101,15 @@ def joint_finding(joint: LeftMoment, candidates: tuple[Candidate, ...], joints: 
         coarse = _weighed(joint, noise, candidates, open_ones, refined=False)
         best = tuple(one.part.candidate for one in coarse[:REFINED])
         ordered = _weighed(joint, noise, best, open_ones, refined=True)
-        rest = joint.left - (ordered[0].explained if ordered else 0.0)
-        own = float(np.sqrt(np.mean(rest**2)))
-        if own <= float(noise.size[0]):
+        rest = min((joint.left - one.explained for one in ordered), key=np.linalg.norm, default=joint.left)
+        if np.sqrt(np.mean(rest**2)) <= noise.size[0]:
             break
         noise = noise_of(rest[None, :, None], used=2, least=floor)
-    ordered = _simple_first(ordered)
-    first = _proven(joint, noise, ordered[0]) if ordered and ordered[0].gained > MARGIN else None
-    return JointFinding(
-        joint, noise, first if first and borne_out(joint, noise, first) else None, tuple(ordered), open_ones
-    )
+    near = [one for one in ordered if one.gained > max(ordered[0].gained - MARGIN, MARGIN)]
+    proven = [_proven(joint, noise, one) for one in near]
+    ordered = [*_simple_first(proven, candidates), *ordered[len(near) :]]
+    first = ordered[0] if proven and borne_out(joint, ordered[0]) else None
+    return JointFinding(joint, noise, first, tuple(ordered), open_ones)
 
 
 def _weighed(
@@ -116,28 +120,27 @@ def _weighed(
     return sorted((one for one in fitted if one is not None), key=lambda one: -one.gained)
 
 
-def _simple_first(ordered: list[Named]) -> list[Named]:
-    """Put a plainer statement before one that is hardly better."""
-    if not ordered:
-        return ordered
-    near = [one for one in ordered if one.gained > ordered[0].gained - MARGIN]
-    first = min(near, key=lambda one: (penalty_of(one.part.candidate, one.part.values), -one.gained))
-    return [first, *(one for one in ordered if one is not first)]
+def _simple_first(proven: list[Named], candidates: tuple[Candidate, ...]) -> list[Named]:
+    """Put first what predicts held-out time best, or a plainer statement that does so hardly worse.
 
-
-def borne_out(joint: LeftMoment, noise: Noise, one: Named) -> bool:
-    """Whether an explanation has the evidence, closes enough on held-out time, and speaks against itself in no half.
-
-    In a half in which it hardly acts the squared error may rise by as much as noise makes it vary (two deviations).
+    candidates: of two with one penalty the one that stands first in the catalogue is the simpler
     """
-    if one.gained < MARGIN or _too_small(one):
-        return False
-    before, after = joint.left**2, (joint.left - one.predicted) ** 2
-    worse = any(
-        after[half].sum() > before[half].sum() + 2 * float(noise.size[0]) ** 2 * np.sqrt(len(half))
-        for half in joint.halves
+    ordered = sorted(proven, key=lambda one: -one.held_out)
+    alike = [one for one in ordered if one.held_out > ordered[0].held_out - TIE]
+    order = [one.identity for one in candidates]
+    alike.sort(
+        key=lambda one: (
+            penalty_of(one.part.candidate, one.part.values),
+            order.index(one.part.candidate.identity),
+        )
     )
-    return not worse and after.sum() < (1 - CLOSED) * before.sum()
+    return [*alike, *ordered[len(alike) :]]
+
+
+def borne_out(joint: LeftMoment, one: Named) -> bool:
+    """Whether an explanation is of a size that matters, and closes enough on held-out time."""
+    left = float(np.sum((joint.left - one.predicted) ** 2))
+    return not _too_small(one) and left < (1 - CLOSED) * float(np.sum(joint.left**2))
 
 
 def _too_small(one: Named) -> bool:
@@ -161,20 +164,21 @@ def _fitted(joint: LeftMoment, noise: Noise, candidate: Candidate, open_ones: in
     price = _price(count, len(every), open_ones)
     gained = _fall(float((before**2).sum()), float((after**2).sum()), len(every)) - price
     part = Part(candidate, values)
-    return Named(part, covariance, explained, np.zeros(len(every)), gained, PairedTest(1.0, 0, 0.0))
+    return Named(part, covariance, explained, np.zeros(len(every)), gained, 0.0, PairedTest(1.0, 0, 0.0))
 
 
 def _proven(joint: LeftMoment, noise: Noise, one: Named) -> Named:
-    """Predict each half of the time with numbers of the other half."""
+    """Predict each block of the time with numbers of the rest."""
     predicted = np.zeros(len(joint.time))
-    for held, learned in zip(joint.halves, reversed(joint.halves), strict=True):
+    for held, learned in joint.blocks:
         values = _numbers(joint, noise, one.part.candidate, learned)
         if values is not None:
             predicted[held] = _explained(joint, one.part.candidate, values)[held]
     rate = (len(joint.time) - 1) / (joint.time[-1] - joint.time[0])
     errors = [each[None, :, None] for each in (joint.left, joint.left - predicted)]
     test = paired_test(errors[0], errors[1], np.array([joint.floor or 1.0]), max(round(rate / 2), 1))
-    return replace(one, predicted=predicted, test=test)
+    before, after = (float((_white(noise, each[0]) ** 2).sum()) for each in errors)
+    return replace(one, predicted=predicted, held_out=_fall(before, after, len(predicted)), test=test)
 
 
 def _numbers(
@@ -183,15 +187,15 @@ def _numbers(
     """Numbers of a candidate that suit some of the samples; None where it does not act in them."""
     from scipy.optimize import minimize
 
-    y = _white(noise, joint.left[some, None])[:, 0]
+    known = np.isin(np.arange(len(joint.time)), some)
+    y = _white(noise, joint.left[:, None], known)[:, 0]
 
     def fit(constants: Mapping[str, float]) -> tuple[float, Values]:
-        columns = joint.columns(candidate, constants)[some]
+        columns = joint.columns(candidate, constants)
+        white = _white(noise, columns, known)
         if candidate.place.endswith("_delay"):
-            white = _white(noise, columns)[:, 0]
-            return float(((y - white) ** 2).sum()), np.empty(0)
-        white = _white(noise, columns)
-        if np.linalg.norm(columns, axis=0).min() < FLAT * max(len(some), 1):
+            return float(((y - white[:, 0]) ** 2).sum()), np.empty(0)
+        if np.linalg.norm(columns[some], axis=0).min() < FLAT * max(len(some), 1):
             return np.inf, np.zeros(columns.shape[1])
         factors = np.asarray(np.linalg.lstsq(white, y, rcond=None)[0], np.float64)
         return float(((y - white @ factors) ** 2).sum()), factors
@@ -260,5 +264,7 @@ def _slope(joint: LeftMoment, candidate: Candidate, values: Mapping[str, float],
     return (sides[0] - sides[1]) / (2 * step)
 
 
-def _white(noise: Noise, columns: Values) -> Values:
-    return noise.whitened(columns[None, :, None, :])[0, :, 0, :]
+def _white(noise: Noise, columns: Values, known: NDArray[np.bool_] | None = None) -> Values:
+    """Whitened columns (sample, column); 0 at samples that are not to be known, after which all begins afresh."""
+    where = None if known is None else known[None, :, None]
+    return noise.whitened(columns[None, :, None, :], where)[0, :, 0, :]

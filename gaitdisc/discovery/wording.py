@@ -26,6 +26,14 @@ from gaitdisc.simulation.simulation import Simulation
 
 FEW = 12  # pieces of held-out data
 SMALL = 0.05  # of the squared error
+UNIT_SLACK = 0.05
+OTHER_UNITS = (  # gains of a sensor that another convention makes
+    (math.pi / 180, ", as radians do that are taken for degrees"),
+    (180 / math.pi, ", as degrees do that are taken for radians"),
+    (-1.0, ", as the other sign does"),
+    (1e3, ", as thousandths of its unit do"),
+    (1e-3, ", as thousands of its unit do"),
+)
 DIRECTIONS = re.compile(
     r"\b(dorsiflexion|plantarflexion|flexion|extension|abduction|adduction|inversion|eversion|pronation|supination|"
     r"internal rotation|external rotation|tilt|obliquity)\b"
@@ -112,7 +120,8 @@ def _signal(name: str, estimate: Estimate) -> str:
     if name == "input_gain":
         return f"acts {estimate_text(estimate)} times as strongly as recorded"
     if name == "sensor_gain":
-        return f"reads {estimate_text(estimate)} times what it should"
+        like = next((words for factor, words in OTHER_UNITS if abs(estimate.value / factor - 1) < UNIT_SLACK), "")
+        return f"reads {estimate_text(estimate)} times what it should{like}"
     low = estimate.value < 0
     size = estimate_text(Estimate(-estimate.value, -estimate.high, -estimate.low, estimate.unit) if low else estimate)
     if name == "sensor_lag":

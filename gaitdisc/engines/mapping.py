@@ -11,6 +11,7 @@ import numpy as np
 
 from gaitdisc.engines.engine import Engine, refuse_unknown
 from gaitdisc.engines.model_file import is_model, read_model
+from gaitdisc.engines.tracked_mapping import read_tracked
 from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Finding
 from gaitdisc.simulation.parts import Port, Sensor, State
@@ -21,7 +22,6 @@ from gaitdisc.simulation.writing import write_simulation
 
 REPLACED = "replaced_"  # begins the definition that a control is replaced by
 MOST = 60  # coordinates and controls: with a port and some numbers each, what a search can tell apart
-SPUN = 8 * np.pi  # [rad], four turns: what turns freely may go round a few times
 SAME = 1e-5  # by which a number of the mapping may differ from the model's, as a share: numbers in files are rounded
 
 
@@ -78,6 +78,12 @@ def read_mapping(path: Path | str) -> tuple[Simulation, Engine]:
             engine = read_model(path)
             return drafted(engine), engine
         path = beside
+    if read_tracked(path) is not None:
+        raise SchemaError(
+            "a mapping that is run forward says what drives the model",
+            f"{path.name} holds [tracked]: its motion is prescribed, and only discover reads it",
+            "Run gaitdisc discover on it; to simulate, write a mapping without [tracked] for a copy of the model.",
+        )
     mapping = read_simulation(path)
     engine = read_model(path.parent / mapping.model)
     check_mapping(mapping, engine)
@@ -127,23 +133,6 @@ def other_values(mapping: Simulation, engine: Engine) -> tuple[Finding, ...]:
         for name, value in mapping.values().items()
         if abs(value - own[name]) > SAME * max(abs(own[name]), 1e-9)
     )
-
-
-def refuse_other_units(mapping: Simulation, engine: Engine, largest: dict[str, float]) -> None:
-    """Refuse angles that can be no radians: degrees that nobody said are degrees.
-
-    largest: largest size of each coordinate in the record [rad, m]
-    """
-    for one in engine.coordinates:
-        limit = SPUN if not np.isfinite(one.high) else 1.5 * max(abs(one.low), abs(one.high))
-        if one.unit == "rad" and largest[one.name] > limit:
-            columns = [name for name, text in mapping.observations if one.name in text] or [one.name]
-            raise SchemaError(
-                f"coordinate {one.called!r} stays within {limit:.3g} rad",
-                f"column {columns[0]!r} makes it {largest[one.name]:.4g} rad: these may be degrees",
-                f"Say so in the mapping: gaitdisc new {engine.path.with_suffix('.toml').name} --from "
-                f"{engine.path.name} --degrees.",
-            )
 
 
 def with_input_changed(mapping: Simulation, name: str, expression: str) -> Simulation:

@@ -1,19 +1,18 @@
-"""The files of a walk with recorded forces: what a mapping's [tracked] table names, on one time base."""
+"""The files of a walk with recorded forces: checked against each other and the model, and on one time base."""
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
-from xml.etree import ElementTree
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, nearest_word
 from gaitdisc.engines.engine import Coordinate
-from gaitdisc.errors import ChannelError, ReadError, SamplingError, SchemaError
+from gaitdisc.engines.opensim_tracked import OpensimTracked
+from gaitdisc.engines.tracked_mapping import Tracked, loads_of, xml_of
+from gaitdisc.errors import ChannelError, ReadError, SamplingError, SchemaError, UnitError
 from gaitdisc.ingest.cells import Form, parsed_cells
 from gaitdisc.ingest.raw_file import read_raw
 from gaitdisc.ingest.storage import read_storage
@@ -21,37 +20,12 @@ from gaitdisc.ingest.storage_header import parsed_header
 from gaitdisc.recording import Recording
 from gaitdisc.signals.butterworth import lowpassed
 from gaitdisc.signals.derivatives import differentiated
-from gaitdisc.toml_text import parsed_toml
 
 Values = NDArray[np.float64]
-FILES = ("external_loads", "forces", "actuators", "speeds", "accelerations")
-NUMBERS, LOWPASS_HZ = ("lowpass_hz", "noise_deg", "start_s", "end_s"), 6.0
 SHORTEST_S = 0.5
 EDGE_PERIODS = 1.0  # of the low-pass, left out at both ends of the angles where rates come from them
 PASSIVE = ("LimitForce", "CoordinateForce", "BushingForce", "Ligament", "SpringForce", "GeneralizedForce")  # of classes
 MOST_RAD, MOST_M = 4 * np.pi, 50.0
-
-
-@dataclass(frozen=True)
-class Tracked:
-    """A mapping with a [tracked] table."""
-
-    model: Path
-    loads: tuple[Path, Path]  # the ExternalLoads file, and the storage file that it names
-    forces: Path | None = None
-    actuators: Path | None = None
-    speeds: Path | None = None
-    accelerations: Path | None = None
-    lowpass_hz: float = LOWPASS_HZ
-    noise_deg: float | None = None  # standard deviation of an angle in the record, 1 mm of a translation at 0.3 deg
-    start_s: float = -np.inf  # part of the record in which all forces on the ground are known
-    end_s: float = np.inf
-
-    @property
-    def files(self) -> tuple[Path, ...]:
-        """All that is read beside the model."""
-        some = (*self.loads, self.forces, self.actuators, self.speeds, self.accelerations)
-        return tuple(one for one in some if one is not None)
 
 
 @dataclass(frozen=True)
@@ -72,94 +46,38 @@ class TrackedMotion:
         return float((len(self.time) - 1) / (self.time[-1] - self.time[0]))
 
 
-def read_tracked(path: Path | str) -> Tracked | None:
-    """Mapping of a walk with recorded forces: of an .osim with such a mapping beside it, or of that file itself."""
-    path = Path(path)
-    file = path if path.suffix.lower() == ".toml" else path.with_suffix(".toml")
-    if path.suffix.lower() not in (".osim", ".toml") or not file.is_file():
-        return None
-    try:
-        text = file.read_text(encoding="utf-8")
-        if re.search(r"^\s*\[tracked\]", text, re.MULTILINE) is None:
-            return None
-        table = parsed_toml(text)
-    except (OSError, ValueError) as error:
-        raise ReadError("a mapping is a TOML file", f"{file.name}: {error}", "Correct it there.") from None
-    return _tracked(table, file)
-
-
-def _tracked(table: dict[str, Any], file: Path) -> Tracked:
-    given = table["tracked"]
-    unknown = [name for name in table if name not in ("title", "model", "tracked")]
-    unknown += [name for name in given if name not in (*FILES, *NUMBERS)]
-    if unknown:
-        near = nearest_word(unknown[0], (*FILES, *NUMBERS))
+def drafted_tracked(
+    model: Path, loads: Path | None, forces: Path | None = None, actuators: Path | None = None
+) -> tuple[Tracked, OpensimTracked]:
+    """What a model's walk is tracked with, once model and files have been found to belong together."""
+    if model.suffix.lower() != ".osim":
         raise SchemaError(
-            f"a mapping with [tracked] holds title, model and in that table {', '.join((*FILES, *NUMBERS))}",
-            f"{file.name} has {unknown[0]!r}",
-            f"Did you mean {near!r}?" if near else "Take it out.",
+            "recorded ground forces are tracked in a model of OpenSim",
+            f"{model.name} is none",
+            "Leave out --external-loads, --forces and --actuators.",
         )
-    if "external_loads" not in given:
+    if loads is None:
         raise SchemaError(
             "a walk is tracked with its recorded ground forces",
-            f"[tracked] of {file.name} names no external_loads",
-            'Write external_loads = "grf.xml", the file of OpenSim\'s inverse dynamics; without forces of the ground '
-            "no moment can be said.",
+            f"{'forces' if forces else 'actuators'} are given without them",
+            "Add --external-loads grf.xml, the file of OpenSim's inverse dynamics.",
         )
-    for name in NUMBERS:
-        value = given.get(name, 1.0)
-        if not isinstance(value, int | float) or isinstance(value, bool) or not 0 <= value < 1e3:
-            raise SchemaError(f"{name} is a number", f"{file.name} has {value!r}", "Correct it.")
-    paths = {name: _there(file, name, given[name]) for name in FILES if name in given}
-    loads, noise = paths["external_loads"], given.get("noise_deg")
-    return Tracked(
-        _there(file, "model", table.get("model", f"{file.stem}.osim")),
-        (loads, _data_of(loads)),
-        *(paths.get(name) for name in FILES[1:]),
-        lowpass_hz=float(given.get("lowpass_hz", LOWPASS_HZ)),
-        noise_deg=None if noise is None else float(noise),
-        start_s=float(given.get("start_s", -np.inf)),
-        end_s=float(given.get("end_s", np.inf)),
-    )
-
-
-def _there(file: Path, what: str, name: object) -> Path:
-    path = file.parent / str(name)
-    if not path.is_file():
-        raise ReadError(
-            f"{what} of {file.name} is a file beside it",
-            f"there is none at {name}",
-            "Correct the path; it counts from the mapping's folder.",
-        )
-    return path
-
-
-def _data_of(loads: Path) -> Path:
-    """Storage file of an ExternalLoads file."""
-    named = (_xml(loads).findtext(".//datafile") or "").strip()
-    path = loads.parent / named
-    if not named or not path.is_file():
-        raise ReadError(
-            f"{loads.name} names the file of its forces in <datafile>",
-            f"there is none at {named!r} beside it" if named else "it names none",
-            "Correct <datafile>; it counts from the folder of the file that names it.",
-        )
-    return path
-
-
-def _xml(path: Path) -> ElementTree.Element:
-    try:
-        return ElementTree.parse(path).getroot()
-    except ElementTree.ParseError as error:
-        raise ReadError("a file of OpenSim is XML", f"{path.name}: {error}", "Export it again.") from None
+    for path in (model, loads, forces, actuators):
+        if path is not None and not path.is_file():
+            raise SchemaError("a walk is tracked with files", f"there is none at {path}", "Check the path.")
+    tracked = Tracked(model, loads_of(loads), forces, actuators)
+    check_loads(tracked)
+    engine = OpensimTracked(model, tracked.loads, actuators)
+    actuator_forces(tracked, engine.actuators)
+    return tracked, engine
 
 
 def check_loads(tracked: Tracked) -> None:
     """Refuse forces on a body that the model lacks, and columns that their file lacks."""
     loads, data = tracked.loads
-    bodies = [one.get("name", "") for one in _xml(tracked.model).iter("Body")]
+    bodies = [one.get("name", "") for one in xml_of(tracked.model).iter("Body")]
     labels = parsed_header(read_raw(data).lines(), data.name).labels
-    for force in _xml(loads).iter("ExternalForce"):
+    for force in xml_of(loads).iter("ExternalForce"):
         body = (force.findtext("applied_to_body") or "").strip()
         if body.rpartition("/")[2] not in bodies:
             near = nearest_word(body, tuple(bodies))
@@ -197,10 +115,16 @@ def tracked_motion(
 
     Rates come from their files, or from the angles after a low-pass.
     """
+    if kinematics.suffix.lower() not in (".mot", ".sto"):
+        raise ReadError(
+            "a walk is tracked by the angles of the model's coordinates (.mot, .sto)",
+            f"{kinematics.name} is a file of another kind",
+            "Run OpenSim's inverse kinematics on the markers first, with this model, and give its .mot.",
+        )
     time, q = _coordinates(kinematics, coordinates, "")
     _refuse_degrees(kinematics, coordinates, q)
     rates = [_coordinates(one, coordinates, word) for one, word in _rates(tracked)]
-    names, forces = _forces(tracked, known)
+    names, forces = actuator_forces(tracked, known)
     spans = {kinematics: time, **{one: at for (one, _), (at, _) in zip(_rates(tracked), rates, strict=True)}}
     spans[tracked.loads[1]] = _table(tracked.loads[1])[1][:, 0]
     if tracked.forces is not None:
@@ -227,11 +151,14 @@ def _rates(tracked: Tracked) -> list[tuple[Path, str]]:
 def _coordinates(path: Path, coordinates: tuple[Coordinate, ...], word: str) -> tuple[Values, Values]:
     """Times and free coordinates (sample, coordinate) of a file, in radians and metres."""
     streams = list(read_storage(path).streams.values())
-    columns = {
-        channel.name.removesuffix(word): stream.values[:, k] * _radians(channel.unit)
-        for stream in streams
-        for k, channel in enumerate(stream.channels)
-    }
+    turning = {one.called for one in coordinates if one.unit == "rad"}
+    columns = {}
+    for stream in streams:
+        for k, channel in enumerate(stream.channels):
+            name, unit = channel.name.removesuffix(word), channel.unit
+            if name in turning and not unit.startswith("deg"):  # a name that only this model has
+                unit = "deg" if _in_degrees(path) else "rad"
+            columns[name] = stream.values[:, k] * _radians(unit)
     for one in coordinates:
         if one.called not in columns:
             near = nearest_word(one.called, tuple(columns))
@@ -243,6 +170,17 @@ def _coordinates(path: Path, coordinates: tuple[Coordinate, ...], word: str) -> 
                 else "Add it, or lock the coordinate in the model.",
             )
     return streams[0].time, np.column_stack([columns[one.called] for one in coordinates])
+
+
+def _in_degrees(path: Path) -> bool:
+    degrees = parsed_header(read_raw(path).lines(), path.name).degrees
+    if degrees is None:
+        raise UnitError(
+            f"{path.name} says whether its angles are degrees",
+            "its header does not",
+            "Write inDegrees=yes or inDegrees=no there, before endheader.",
+        )
+    return degrees
 
 
 def _radians(unit: str) -> float:
@@ -270,8 +208,8 @@ def _refuse_degrees(path: Path, coordinates: tuple[Coordinate, ...], q: Values) 
         )
 
 
-def _forces(tracked: Tracked, known: tuple[str, ...]) -> tuple[tuple[str, ...], Values]:
-    """Actuators of a forces' file, and its numbers with time first; what the loads' file gives is passed over."""
+def actuator_forces(tracked: Tracked, known: tuple[str, ...]) -> tuple[tuple[str, ...], Values]:
+    """Return the actuators of a forces' file, and its numbers with time first; what the loads give is passed over."""
     path = tracked.forces
     if path is None:
         return (), np.zeros((0, 1))
@@ -310,11 +248,11 @@ def _other_forces(tracked: Tracked) -> tuple[str, ...]:
     """How columns begin of forces that the model or the loads' file gives anyway."""
     recorded = [
         f"{(one.findtext('applied_to_body') or '').strip().rpartition('/')[2]}_{one.get('name')}_"
-        for one in _xml(tracked.loads[0]).iter("ExternalForce")
+        for one in xml_of(tracked.loads[0]).iter("ExternalForce")
     ]
     passive = [
         one.get("name", "")
-        for forces in _xml(tracked.model).iter("ForceSet")
+        for forces in xml_of(tracked.model).iter("ForceSet")
         for one in forces.findall("objects/*")
         if one.tag.endswith(PASSIVE)
     ]

@@ -19,17 +19,17 @@ SHORTEST_S, FEWEST = 0.5, 20  # a shorter piece, or one of fewer samples, may ho
 _COPIED = re.compile(r"(knee_angle_[rl])_beta")
 
 
-def judged_unit(
+def plausible_unit(
     time: NDArray[np.float64], values: NDArray[np.float64], names: Sequence[str], stated: str | None, file: str
 ) -> tuple[str, Finding | None]:
     """Unit of a file's angles: the stated one if the numbers do not contradict it.
 
     time (time,) [s]: times of the samples
     values (time, angle) [deg or rad]: angles as read
-    returns finding: said where the unit was judged by magnitude, or where it is in doubt
+    returns finding: said where the unit was taken from the magnitude, or where it is in doubt
 
     >>> t = np.linspace(0, 2, 200)
-    >>> judged_unit(t, 30 * np.sin(6 * t)[:, None], ["hip_flexion_r"], "deg", "walk.mot")
+    >>> plausible_unit(t, 30 * np.sin(6 * t)[:, None], ["hip_flexion_r"], "deg", "walk.mot")
     ('deg', None)
     """
     joints = [i for i, name in enumerate(names) if not name.startswith("pelvis_") and not _COPIED.fullmatch(name)]
@@ -73,7 +73,7 @@ def copied_coordinate_unit(
     """Unit of OpenSim's `knee_angle_r_beta`, which copies the knee angle, or None where it copies nothing.
 
     OpenSim converts rotational coordinates when it writes a file but leaves coupled ones as they are, so that in a file
-    of degrees the copy stands in radians, and in one of radians it may stand in degrees. The knee it copies tells.
+    of degrees the copy stands in radians, and in one of radians it may stand in degrees. The copied knee decides.
 
     values (time,) [deg or rad]: as read
     angles each (time,) [deg]: the other angles of the file, already in degrees

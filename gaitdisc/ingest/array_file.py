@@ -35,7 +35,7 @@ class Cells:
 
 @dataclass(frozen=True, eq=False)
 class ArrayFile:
-    """A file of named variables; only those that are asked for are read."""
+    """A file of named variables; only those that are used are read."""
 
     raw: RawFile
     names: tuple[str, ...]
@@ -209,7 +209,7 @@ def _of_scipy(held: Any) -> Any:
 
 
 class _Fields(Mapping[str, Any]):
-    """Fields of a struct, made nodes when they are asked for."""
+    """Fields of a struct, made nodes when they are used."""
 
     def __init__(self, held: Mapping[str, Any]) -> None:
         self._held = held
@@ -231,7 +231,7 @@ def _of_hdf5(path: Path, name: str) -> Any:
 
 
 class _Group(Mapping[str, Any]):
-    """Struct of a v7.3 file; each field is read when it is asked for. With a number: that element of all fields."""
+    """Struct of a v7.3 file; each field is read when it is used. With a number: that element of all fields."""
 
     def __init__(self, path: Path, name: str, number: int | None = None) -> None:
         self._path, self._name, self._number = path, name, number

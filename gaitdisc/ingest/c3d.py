@@ -78,7 +78,7 @@ class C3DReader:
         Returns
         -------
         Trial
-            With findings for everything that had to be judged.
+            With findings for everything that the file leaves open or contradicts.
         """
         path = Path(path)
         try:
@@ -127,7 +127,7 @@ class C3DReader:
         counts = (layout.frames, layout.points, layout.channels, layout.frames * layout.samples_per_frame)
         said = {}
         for reader in ("ezc3d", "c3d"):
-            raw = self._process.ask(ReadRequest.of_size(str(path), reader, counts, header.size))
+            raw = self._process.read(ReadRequest.of_size(str(path), reader, counts, header.size))
             if not raw.said:
                 break
             said[reader] = _in_words(raw.said, path)
@@ -168,12 +168,12 @@ def _streams(
     ]
     streams, unit, doubts = point_streams(raw.points, parameters, labels, file)
     plates, described = force_plates(parameters, layout.channels, unit, file, unscaled)
-    forces, columns, told = plate_streams(raw.analog, plates, parameters, unit, file)
+    forces, columns, of_plates = plate_streams(raw.analog, plates, parameters, unit, file)
     if "moments" in streams:
         loads = plate_loads(forces, max(layout.samples_per_frame, 1))
         streams["moments"], more = house_kinetics(streams["moments"], loads, body_mass(parameters), file)
-        told = [*told, *more]
-    analog, asked = analog_streams(raw.analog, parameters, columns, labels, file)
+        of_plates = [*of_plates, *more]
+    analog, of_analog = analog_streams(raw.analog, parameters, columns, labels, file)
     for part in (forces, analog):
         for key, (values, channels) in part.items():
             if key in streams:
@@ -182,7 +182,7 @@ def _streams(
             else:
                 streams[key] = (values, channels)
     surfaces = tuple(plate.surface for plate in plates if columns.issuperset(plate.columns))
-    return streams, surfaces, [*findings, *doubts, *described, *told, *asked]
+    return streams, surfaces, [*findings, *doubts, *described, *of_plates, *of_analog]
 
 
 def _rate(header: C3DHeader, parameters: C3DParameters, layout: C3DLayout) -> tuple[float, list[Finding]]:

@@ -1,4 +1,4 @@
-"""Analog channels of a C3D file: EMG told apart and named, everything else kept as signals."""
+"""Analog channels of a C3D file: EMG recognised and named, everything else kept as signals."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import UnitError
-from gaitdisc.ingest.c3d_labels import LabelMap, named_people, told_apart, without_people
+from gaitdisc.ingest.c3d_labels import LabelMap, made_unique, named_people, without_people
 from gaitdisc.ingest.c3d_parameters import C3DParameters
 from gaitdisc.ingest.c3d_points import Streams
 from gaitdisc.ingest.columns import named_channel, split_unit
@@ -94,7 +94,7 @@ def emg_names(channels: list[AnalogLabel]) -> list[str]:
             names.append(f"emg_{bracket}")
         else:
             names.append(f"emg_{channel.number}")
-    return told_apart(names, "emg")
+    return made_unique(names, "emg")
 
 
 def analog_streams(
@@ -121,7 +121,7 @@ def analog_streams(
         unit = parsed_unit(one.unit) or "1"
         side = one.muscle.side if one.muscle is not None else ""
         chosen.append(("emg", one, Channel(name, "emg", inner_unit(unit), side), unit))
-    for one, name in zip(others, told_apart([one.label for one in others], "analog"), strict=True):
+    for one, name in zip(others, made_unique([one.label for one in others], "analog"), strict=True):
         unit = parsed_unit(one.unit) or "1"
         chosen.append(("signals", one, Channel(name, "signal", inner_unit(unit)), unit))
     streams: Streams = {}

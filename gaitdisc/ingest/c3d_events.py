@@ -45,7 +45,7 @@ def file_events(
     the first frame kept is TRIAL:ACTUAL_START_FIELD. Some software writes them on the clock of the cropped file
     instead: where all events lie outside of the file on the first clock and inside on the second, that one is taken.
 
-    returns events: in order of time; those outside of the file are left out and told
+    returns events: in order of time; those outside of the file are left out with a finding
     """
     times = parameters.numbers("EVENT", "TIMES")
     labels = parameters.texts("EVENT", "LABELS")

@@ -25,7 +25,7 @@ def without_people(label: str, people: Iterable[str]) -> str:
 
 
 def without_prefix(label: str) -> str:
-    """Label of a point without the prefix that tells whose it is.
+    """Label of a point without the prefix that names whose it is.
 
     >>> without_prefix("Ann:LASI")
     'LASI'
@@ -47,10 +47,10 @@ def named_people(parameters: C3DParameters) -> tuple[str, ...]:
     return tuple(sorted((name for name in found if len(name) > 1), key=len, reverse=True))
 
 
-def told_apart(labels: Sequence[str], word: str) -> list[str]:
+def made_unique(labels: Sequence[str], word: str) -> list[str]:
     """Labels of which no two are equal: those that are get their number, those that are empty a word and theirs.
 
-    >>> told_apart(["a", "", "b", "a"], "point")
+    >>> made_unique(["a", "", "b", "a"], "point")
     ['a_1', 'point_2', 'b', 'a_4']
     """
     counts = Counter(labels)
@@ -71,7 +71,7 @@ class LabelMap:
 
     A key is a label or a description as the file writes it (case, blanks and punctuation do not count), `#5` for the
     fifth analog channel, `RKneeAngles.x` for one component of a model output, `LCAL` for a marker. A value is the name
-    of a channel, or `name [unit]` where the file does not tell the unit.
+    of a channel, or `name [unit]` where the file does not state the unit.
 
     >>> LabelMap({"#5": "emg_sol_r", "Sensor 1": "emg_ta_r"}).name("#1", "sensor 1")
     'emg_ta_r'

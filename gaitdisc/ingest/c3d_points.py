@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import UnitError
 from gaitdisc.ingest.angle_unit import WALKING_RAD
-from gaitdisc.ingest.c3d_labels import LabelMap, told_apart, without_prefix
+from gaitdisc.ingest.c3d_labels import LabelMap, made_unique, without_prefix
 from gaitdisc.ingest.c3d_parameters import C3DParameters
 from gaitdisc.ingest.columns import named_channel
 from gaitdisc.ingest.marker_unit import METRES_AT_MOST, MILLIMETRES_AT_LEAST, distance_from_origin, refuse_other_unit
@@ -35,7 +35,7 @@ class ModelOutput:
     quantity: str  # what they measure and where they go
     stream: str  # what they measure and where they go
     units: str  # parameter of the group POINT with their unit
-    usual: str  # unit where the file does not tell
+    usual: str  # unit where the file states none
 
 
 MODEL_OUTPUTS = (
@@ -54,11 +54,11 @@ def point_names(parameters: C3DParameters, count: int) -> list[str]:
     count: points a frame; a file may list more labels or fewer
     """
     labels = [without_prefix(label) for label in parameters.texts("POINT", "LABELS")[:count]]
-    return told_apart([*labels, *[""] * (count - len(labels))], "point")
+    return made_unique([*labels, *[""] * (count - len(labels))], "point")
 
 
 def length_unit(parameters: C3DParameters, places: NDArray[np.float64], file: str) -> tuple[str, list[Finding]]:
-    """Unit of the markers: as the file says, or judged by their distance from the origin where it says nothing.
+    """Unit of the markers: as the file says, or by their distance from the origin where it says nothing.
 
     places (frame, coordinate): of markers, in the file's unit, NaN allowed; some thousand frames are looked at
     """

@@ -27,7 +27,7 @@ def write_c3d(recordings: Sequence[Recording], path: Path | str, surfaces: Seque
 
     Markers become points; all else becomes analog channels. Without markers the file has frames at 100 Hz without
     points. Every frame has a whole number of analog samples, all numbers are 32-bit floats, and time begins at 0. A
-    muscle's name tells the reader that a channel is EMG. Forces become a force plate where their surface is given;
+    muscle's name marks a channel as EMG for the reader. Forces become a force plate where their surface is given;
     that another channel is a ground force the study's `[channels]` must say (`"ground_force_r_vy" =
     "ground_force_r_vy [N]"`), as for any treadmill that is no force plate.
 

@@ -92,7 +92,7 @@ def mapped_label(label: str, channels: Mapping[str, str] | None) -> str | None:
 
 
 def named_channel(name: str) -> Channel:
-    """Channel of a name: that of the vocabulary, or one whose quantity the name tells.
+    """Channel of a name: that of the vocabulary, or one whose quantity the name shows.
 
     >>> named_channel("emg_gracilis_r").quantity, named_channel("RHEE.x").quantity, named_channel("trigger").quantity
     ('emg', 'marker', 'signal')

@@ -1,4 +1,4 @@
-"""The hash of a file, computed once: a run asks to know what is done, and again to say what a result rests on."""
+"""The hash of a file, computed once: a run needs it to know what is done, and again to say what a result rests on."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _known: dict[tuple[int, ...], str] = {}
 
 
 def file_sha256(path: Path) -> str:
-    """SHA-256 of a file's bytes; a file that did not change since it was asked for is not read again.
+    """SHA-256 of a file's bytes; a file that did not change since it was last hashed is not read again.
 
     Unchanged means: same file number, size, and times of writing and of change, to the nanosecond.
 

@@ -1,4 +1,4 @@
-"""What names of files and folders tell: person, group, session, condition, standing, and which files are one walk."""
+"""What names of files and folders say: person, group, session, condition, standing, and which files are one walk."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ GROUP_WORDS = (
 SESSION_WORDS = ("pre", "before", "preop", "intake", "post", "after", "postop", "followup", "followup2", "retention")
 _NUMBERED_SESSION = re.compile(r"(visit|session|sess|ses|day|week|month)[-_ ]?(\d{1,3})", re.IGNORECASE)
 _DATE = re.compile(r"(?<!\d)((?:19|20)\d{2})[-_.]?(\d{2})[-_.]?(\d{2})(?!\d)")
-# words that tell what a file of a walk holds, not which walk it is
+# words for what a file of a walk holds, not which walk it is
 _KIND_WORDS = {
     "ik", "id", "grf", "grfs", "emg", "trc", "markers", "marker", "coordinates", "kinematics", "kinetics", "forces",
     "electromyography", "envelope", "inverse", "dynamics", "results", "mot", "sto", "c3d", "experimentaldata",
@@ -76,7 +76,7 @@ def words_in(name: str) -> list[str]:
 
 
 def condition_word(path: Path) -> tuple[str, str]:
-    """Word of a path that tells the condition, and which of the two it is.
+    """Word of a path that names the condition, and which of the two it is.
 
     path: relative to the folder that is searched; the file's own name counts before its folders
 
@@ -107,7 +107,7 @@ def walk_key(path: Path) -> str:
 
 
 def walk_place(path: Path) -> tuple[str, ...]:
-    """Folders of a file without those that only tell the kind: files of one walk may lie in `IK` and in `GRF`.
+    """Folders of a file without those that only name the kind: files of one walk may lie in `IK` and in `GRF`.
 
     >>> walk_place(Path("P01/IK/walk1.mot")) == walk_place(Path("P01/GRF/walk1.mot")) == ("P01",)
     True
@@ -116,7 +116,7 @@ def walk_place(path: Path) -> tuple[str, ...]:
 
 
 def person_word(path: Path) -> str:
-    """Word of a path that tells the person: the first folder that tells nothing else, or a part such as `S01`.
+    """Word of a path that names the person: the first folder that names nothing else, or a part such as `S01`.
 
     >>> person_word(Path("welk002/manual_ik.mot")), person_word(Path("S03_exo.mot")), person_word(Path("exo/walk.mot"))
     ('welk002', 'S03', '')
@@ -130,7 +130,7 @@ def person_word(path: Path) -> str:
 
 
 def group_word(path: Path) -> str:
-    """Word of a path that tells a group: a folder such as `controls` above those of persons; or empty.
+    """Word of a path that names a group: a folder such as `controls` above those of persons; or empty.
 
     >>> group_word(Path("controls/P01/walk.c3d")), group_word(Path("P01/walk.c3d"))
     ('controls', '')
@@ -140,12 +140,12 @@ def group_word(path: Path) -> str:
 
 
 def session_word(path: Path) -> tuple[str, str]:
-    """Word of a path that tells the session, and what it is put in order by; the word of a date is empty.
+    """Word of a path that names the session, and what it is put in order by; the word of a date is empty.
 
     A word counts before any date, and the date of an inner folder before that of an outer one, which may be of birth.
 
-    returns word: such as `pre` or `visit 2`; empty for a date and where no word tells
-    returns order: later sessions have a greater one; empty where no word tells
+    returns word: such as `pre` or `visit 2`; empty for a date and where no word names one
+    returns order: later sessions have a greater one; empty where no word names one
 
     >>> session_word(Path("P01/post/walk.c3d")), session_word(Path("P01/2024-03-01/walk.c3d"))
     (('post', 'a04'), ('', 'd20240301'))
@@ -163,7 +163,7 @@ def session_word(path: Path) -> tuple[str, str]:
 
 
 def kind_of_trial(path: Path) -> str:
-    """Tell whether names say that somebody stands, circles the legs, or does something else than walk; or empty.
+    """What somebody does instead of walking, by the names: stands, circles the legs, something else; or empty.
 
     >>> kind_of_trial(Path("P01/Static/a.c3d")), kind_of_trial(Path("P01/hip_ROM1.c3d")), kind_of_trial(Path("a.c3d"))
     ('static', 'other', '')
@@ -179,7 +179,7 @@ def kind_of_trial(path: Path) -> str:
 
 
 def walk_word(path: Path) -> str:
-    """Word of a path that tells how somebody walks, where it is no word for with or without a device; or empty.
+    """Word of a path for how somebody walks, where it is no word for with or without a device; or empty.
 
     >>> walk_word(Path("HC002D/Straight/HC002D06.c3d")), walk_word(Path("P01/walk_fast2.c3d"))
     ('straight', 'fast')
@@ -189,12 +189,12 @@ def walk_word(path: Path) -> str:
     names = (path.stem, *reversed(path.parent.parts))
     words = [word for name in names for word in words_in(name)]
     own = _own_folders(path)
-    told = [word for word in words if word in WALK_WORDS] or [folder.lower() for folder in own[:0:-1]]
-    return told[0] if told else PLAIN if set(words) & set(PLAIN_WORDS) else ""
+    styles = [word for word in words if word in WALK_WORDS] or [folder.lower() for folder in own[:0:-1]]
+    return styles[0] if styles else PLAIN if set(words) & set(PLAIN_WORDS) else ""
 
 
 def _own_folders(path: Path) -> list[str]:
-    """Folders that tell neither group, session, condition nor kind: the first is a person's."""
+    """Folders that name neither group, session, condition nor kind: the first is a person's."""
     own = []
     for place, folder in enumerate(path.parent.parts):
         alone = Path(folder, "x")

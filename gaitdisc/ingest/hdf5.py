@@ -1,4 +1,4 @@
-"""HDF5 files, netCDF-4 among them: the library is an extra, asked for where such a file is read."""
+"""HDF5 files, netCDF-4 among them: the library is an extra, needed where such a file is read."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
 def is_hdf5(path: Path) -> bool:
-    """Tell whether a file begins as HDF5 does."""
+    """Whether a file begins as HDF5 does."""
     try:
         check_regular(path)
         with path.open("rb") as file:

@@ -54,12 +54,12 @@ class FoundTrial:
     """Files of one walk, found in a folder."""
 
     files: tuple[Path, ...]  # relative to the folder that was searched
-    person: str  # words of the path that tell the person and a group, or empty
-    group: str  # words of the path that tell the person and a group, or empty
+    person: str  # words of the path that name the person and a group, or empty
+    group: str  # words of the path that name the person and a group, or empty
     session: str  # what the session is put in order by, or empty
-    # word that tells the condition, and `nominal`, `device`, `static`, `functional`, `other` (no walk) or empty
+    # word that names the condition, and `nominal`, `device`, `static`, `functional`, `other` (no walk) or empty
     word: str
-    # word that tells the condition, and `nominal`, `device`, `static`, `functional`, `other` (no walk) or empty
+    # word that names the condition, and `nominal`, `device`, `static`, `functional`, `other` (no walk) or empty
     which: str
     # joint angles, those of them that vary, and EMG channels; None where the files hold no such stream
     angles: tuple[str, ...] | None
@@ -86,7 +86,7 @@ def found_study(
 ) -> tuple[Study, list[str]]:
     """Draft of a study from a folder of recordings.
 
-    Participants are told by sub-folders or by parts of names such as `S01`, sessions by words such as `pre` and `post`
+    Participants are known by sub-folders or by parts of names such as `S01`, sessions by words such as `pre` and `post`
     or by dates, conditions by words such as `natural` and `exo`, or `straight` and `turn`, or by sub-folders of a
     person; a static trial by its name, or because nobody moves in it. Files of one stem are one trial. The angles are
     those of section 4.2.2 that every walk has and that vary.
@@ -94,7 +94,7 @@ def found_study(
     home: folder in which the study file will lie; its paths are relative to it. The same folder by default
     files: only these, relative to the folder
     looked: what was read before of files that are as they were; is added to
-    returns study: a draft that can be run as it is; trials whose condition no name tells are 'unknown' and not used
+    returns study: a draft that can be run as it is; trials whose condition no name shows are 'unknown' and not used
     returns notes: what was guessed, left out or could not be read
     """
     folder = Path(folder)
@@ -224,7 +224,7 @@ def _found(files: tuple[Path, ...], trial: Trial) -> FoundTrial:
 
 
 def stands(trial: Trial) -> bool:
-    """Tell whether somebody stands still: half of the markers stay within 5 cm, or without markers hips and knees.
+    """Whether somebody stands still: half of the markers stay within 5 cm, or without markers hips and knees.
 
     >>> stands(Trial("no markers, no angles", {}))
     False
@@ -263,7 +263,7 @@ def _readable(
 
 
 def _walks(files: Sequence[Path]) -> list[list[Path]]:
-    """Files grouped by walk: one folder and one name but for the words that tell the kind."""
+    """Files grouped by walk: one folder and one name but for the words that name the kind."""
     groups: dict[tuple[Path, str], list[Path]] = {}
     for file in files:
         groups.setdefault((Path(*walk_place(file)), walk_key(file)), []).append(file)
@@ -277,28 +277,28 @@ def _walks(files: Sequence[Path]) -> list[list[Path]]:
 def named_conditions(found: Sequence[FoundTrial], notes: list[str]) -> tuple[Conditions, dict[str, str]]:
     """Conditions of a draft, and the condition of each word that was found."""
     walks = [trial for trial in found if trial.walked]
-    told: dict[str, str] = {}
+    recognised: dict[str, str] = {}
     for which in ("nominal", "device"):
         there = list(dict.fromkeys(trial.word for trial in walks if trial.which == which))
-        told |= {which: there[0]} if there else {}
+        recognised |= {which: there[0]} if there else {}
         if len(there) > 1:
-            notes.append(f"{', '.join(there)} are all taken as {told[which]!r}")
+            notes.append(f"{', '.join(there)} are all taken as {recognised[which]!r}")
     counts = Counter(trial.word for trial in walks if not trial.which and trial.word)
     others = sorted(counts, key=lambda word: (-counts[word], word))
-    if not told and set(others) <= {PLAIN}:
+    if not recognised and set(others) <= {PLAIN}:
         others = [PLAIN]
         notes.append(f"no file or folder name shows a condition: every walk is taken as {PLAIN!r}")
-    words = list(dict.fromkeys([*told.values(), *others]))
+    words = list(dict.fromkeys([*recognised.values(), *others]))
     folders = [word for word in others if word not in (*WALK_WORDS, PLAIN)]
     if folders:
         notes.append(
             f"conditions called after folders: {', '.join(folders)}; they stand on every page: change any that shows "
             f"who a person is"
         )
-    device = told.get("device") if len(words) > 1 else None
+    device = recognised.get("device") if len(words) > 1 else None
     reference = next(word for word in words if word != device)
     rest = tuple(word for word in words if word not in (reference, device))
-    called = {trial.word: told.get(trial.which, trial.word) for trial in walks}
+    called = {trial.word: recognised.get(trial.which, trial.word) for trial in walks}
     called[""] = PLAIN if others == [PLAIN] else UNKNOWN
     called |= {STATIC: STATIC, FUNCTIONAL: FUNCTIONAL, "other": UNKNOWN}
     unnamed = [trial.files[0].as_posix() for trial in found if called[trial.word] == UNKNOWN]
@@ -311,7 +311,7 @@ def named_conditions(found: Sequence[FoundTrial], notes: list[str]) -> tuple[Con
 
 
 def _sessions(found: Sequence[FoundTrial]) -> dict[tuple[str, str], str]:
-    """Session of each person and place in order; a date becomes its number, since dates tell who a person is."""
+    """Session of each person and place in order; a date becomes its number, since dates show who a person is."""
     words = {trial.session: session_word(trial.files[0])[0] for trial in found if trial.session}
     if not words:
         return {}

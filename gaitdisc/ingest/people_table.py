@@ -61,7 +61,7 @@ def is_people_table(path: Path) -> bool:
 
 
 def measured_people(folder: Path, files: Iterable[Path], notes: list[str]) -> dict[str, Measured]:
-    """Mass, sex, stature and age by the folded word that tells the person, from the tables of people among some files.
+    """Mass, sex, stature and age by the folded word that names the person, from the tables of people among some files.
 
     notes: is added to: what was taken, and what could not be
     """

@@ -34,7 +34,7 @@ class PlausibleRange:
     high: float
 
     def covers(self, channel: Channel) -> bool:
-        """Tell whether a channel is meant."""
+        """Whether a channel is meant."""
         meant = (channel.quantity, channel.unit) == (self.quantity, self.unit)
         return meant and (not self.channels or re.fullmatch(self.channels, channel.name) is not None)
 

@@ -21,9 +21,9 @@ class RawFile:
     'ba7816bf'
     """
 
-    name: str  # name without the folder; the folder may tell who the person is and goes no further
+    name: str  # name without the folder; the folder may show who the person is and goes no further
     content: bytes
-    sha256: str = ""  # of these bytes, where it is known; otherwise it is computed when it is asked for
+    sha256: str = ""  # of these bytes, where it is known; otherwise it is computed when it is needed
 
     @property
     def stem(self) -> str:

@@ -69,13 +69,13 @@ _NOTHING = np.empty((0, 0))
 
 
 class ReaderProcess:
-    """An isolated reader: started when first asked, started anew when it dies and after 100 files."""
+    """An isolated reader: started when first used, started anew when it dies and after 100 files."""
 
     def __init__(self) -> None:
         self._process: subprocess.Popen[bytes] | None = None
         self._files = 0
 
-    def ask(self, request: ReadRequest) -> RawTrial:
+    def read(self, request: ReadRequest) -> RawTrial:
         """Numbers of one file, or why the reader could not give them; it never raises for what the file is."""
         process = self._running()
         self._files += 1

@@ -11,7 +11,7 @@ import numpy as np
 
 from gaitdisc.channel import nearest_word
 from gaitdisc.errors import ChannelError, ReadError, SamplingError
-from gaitdisc.ingest.angle_unit import judged_unit
+from gaitdisc.ingest.angle_unit import plausible_unit
 from gaitdisc.ingest.array_trial import ENDINGS as ARRAYS
 from gaitdisc.ingest.array_trial import read_arrays
 from gaitdisc.ingest.columns import split_unit
@@ -110,12 +110,12 @@ def read_trial(
                 streams[key] = _joined(streams[key], recording, key)
     named = {key: replace(r, subject=subject, condition=condition) for key, r in streams.items()}
     events = tuple(sorted((event for one in parts for event in one.events), key=lambda event: event.time))
-    if not any(str(file).lower().endswith(".c3d") for file in files):  # that reader tells unused labels itself
+    if not any(str(file).lower().endswith(".c3d") for file in files):  # that reader reports unused labels itself
         findings += _unused(channels, named, parts[0].name)
     surfaces = tuple(surface for one in parts for surface in one.surfaces)
     trial = Trial(parts[0].name, named, events, tuple(findings), subject, condition, surfaces)
     begin_s = {key: float(recording.time[0]) for key, recording in trial.streams.items() if len(recording.time)}
-    return _judged(trial if crop_s is None else _cropped(trial, *crop_s), begin_s)
+    return _plausible_trial(trial if crop_s is None else _cropped(trial, *crop_s), begin_s)
 
 
 def read_planned_trial(
@@ -200,8 +200,8 @@ def _joined(one: Recording, other: Recording, key: str) -> Recording:
     )
 
 
-def _judged(trial: Trial, begin_s: Mapping[str, float]) -> Trial:
-    """Trial with house signs and without impossible values; only what a crop leaves is judged, all else is not used."""
+def _plausible_trial(trial: Trial, begin_s: Mapping[str, float]) -> Trial:
+    """Trial with house signs and without impossible values; only what a crop leaves is checked."""
     streams, turned = with_flexion_positive(trial.streams)
     streams, beyond = without_impossible(streams, begin_s)
     return replace(
@@ -231,12 +231,12 @@ def _cropped(trial: Trial, start_s: float, end_s: float) -> Trial:
             )
     events = tuple(event for event in trial.events if start_s <= event.time < end_s)
     if "kinematics" in streams:
-        _judge_unit(streams["kinematics"])
+        _check_unit(streams["kinematics"])
     return replace(trial, streams=streams, events=events)
 
 
-def _judge_unit(kinematics: Recording) -> None:
+def _check_unit(kinematics: Recording) -> None:
     """Refuse angles stated in degrees that look like radians in what a crop leaves of them."""
     angles = kinematics.selected_by(lambda channel: channel.quantity == "angle" and channel.unit == "deg")
     if angles.names:
-        judged_unit(angles.time, angles.values, angles.names, "deg", kinematics.source.file)
+        plausible_unit(angles.time, angles.values, angles.names, "deg", kinematics.source.file)

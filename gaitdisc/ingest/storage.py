@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import vocabulary
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest.angle_unit import copied_coordinate_unit, judged_unit
+from gaitdisc.ingest.angle_unit import copied_coordinate_unit, plausible_unit
 from gaitdisc.ingest.cells import Cells, Form, parsed_cells
 from gaitdisc.ingest.clock import even_time, printed_digit
 from gaitdisc.ingest.columns import Column, check_written_names
@@ -27,8 +27,8 @@ def read_storage(path: Path | str, channels: Mapping[str, str] | None = None) ->
     """Trial of one OpenSim storage file.
 
     Both header styles are read, and both at once. What the header states about degrees is obeyed and checked against
-    how far hips and knees move; translations are in m whatever it states. Wrong counts in a header are told where the
-    rows agree among themselves; fewer rows than it claims are refused, since the file was cut.
+    how far hips and knees move; translations are in m whatever it states. Wrong counts in a header are reported where
+    the rows agree among themselves; fewer rows than it claims are refused, since the file was cut.
 
     channels: the study's `[channels]`: label -> `name` or `name [unit]`
     returns: streams `kinematics`, `emg`, `forces`, `moments`, `signals`, as far as the file has them
@@ -52,7 +52,7 @@ def read_storage(path: Path | str, channels: Mapping[str, str] | None = None) ->
 def write_storage(recording: Recording, path: Path | str) -> Path:
     """Write a recording as an OpenSim storage file, whole or not at all.
 
-    `inDegrees` is always stated. Channels that their names alone do not tell are described by lines such as
+    `inDegrees` is always stated. Channels that their names alone do not determine are described by lines such as
     `column 3=emg [V] r` in the header, which OpenSim passes over. Marks of suspect samples, subject and
     condition are not written.
     """
@@ -127,7 +127,7 @@ def _in_true_unit(
     unit = stated or "rad"  # speeds alone: OpenSim keeps states in radians
     if angles:
         names = [columns[i].channel.name for i in angles]
-        unit, finding = judged_unit(time, values[:, angles], names, stated, file)
+        unit, finding = plausible_unit(time, values[:, angles], names, stated, file)
         findings += [finding] if finding else []
     columns = [replace(c, unit=c.unit.replace("deg", unit)) if i in turning else c for i, c in enumerate(columns)]
     in_degrees = {columns[i].channel.name: columns[i].converted(values[:, i]) for i in angles}

@@ -20,6 +20,8 @@ _RATES = {
     "kinematics_u": "/s",  # what OpenSim's analyses write
     "kinematics_dudt": "/s2",
 }
+# What OpenSim's analyses write of muscles under the names of the muscles, which elsewhere are those of EMG
+_OF_ACTUATORS = {"actuation_force": "N", "actuation_power": "W", "forcereporter": "N"}
 _RATE_WORD = {"/s": "speed", "/s2": "accel"}
 
 
@@ -28,7 +30,7 @@ def storage_columns(header: StorageHeader, file: str, channels: Mapping[str, str
 
     The study's map comes first, then what the file itself states, then the vocabulary, then the habits of OpenSim:
     `*_moment` in N m, `*_force` in N, `/speed` per second, EMG without a unit. Angles are marked `deg` here; whether
-    the file holds radians is judged on the numbers.
+    the file holds radians follows from the numbers.
 
     channels: the study's `[channels]`
 
@@ -96,6 +98,9 @@ def _known(label: str, plain: str, title: str, of_emg: bool) -> Column:
         name = f"{channel.name}/{_RATE_WORD[rate]}"
         return Column(label, Channel(name, "signal", channel.unit + rate, channel.side), channel.unit + rate)
     if channel and channel.quantity == "emg":
+        unit = _OF_ACTUATORS.get(title.lower())
+        if unit:
+            return Column(label, Channel(plain, "signal", unit, channel.side), unit, f"{title} of a muscle, no EMG")
         return Column(label, replace(channel, unit="1"), "1")
     if channel:
         return Column(label, channel, channel.unit)
@@ -105,7 +110,7 @@ def _known(label: str, plain: str, title: str, of_emg: bool) -> Column:
 
 
 def _muscle(label: str, plain: str) -> Column:
-    """EMG whose side or muscle the vocabulary cannot tell."""
+    """EMG whose side or muscle the vocabulary cannot determine."""
     of_right = vocabulary().named(f"{plain}_r")
     if of_right and of_right.quantity == "emg":
         channel = Channel(of_right.name.removesuffix("_r"), "emg", "1")

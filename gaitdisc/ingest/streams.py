@@ -1,4 +1,4 @@
-"""Columns of one file, sorted into the streams of a trial; a missing force is refused, other gaps are told."""
+"""Columns of one file, sorted into the streams of a trial; a missing force is refused, other gaps are reported."""
 
 from __future__ import annotations
 

@@ -97,21 +97,21 @@ def study_text(study: Study, folder: Path | None = None) -> str:
             about = type(study).model_fields[key].description
             pairs = "".join(f"{quoted(label)} = {quoted(name)}\n" for label, name in value.items())
             parts.append(f"# {about}\n[{key}]\n{pairs}")
-    told = False  # each key is explained where it stands first
+    explained = False  # each key is explained where it stands first
     for participant in study.participants:
         measured = tuple(name for name in ("mass_kg", "height_m", "sex", "age_years") if getattr(participant, name))
-        text = f"[[participants]]\n{_pairs(participant, ('id', 'group', 'excluded', *measured), told)}"
+        text = f"[[participants]]\n{_pairs(participant, ('id', 'group', 'excluded', *measured), explained)}"
         for trial in participant.trials:
             files = tuple(_moved(file, study.folder, folder) for file in trial.files)
             moved = trial.model_copy(update={"files": files})
-            text += f"\n[[participants.trials]]\n{_pairs(moved, tuple(type(moved).model_fields), told)}"
-            told = True
+            text += f"\n[[participants.trials]]\n{_pairs(moved, tuple(type(moved).model_fields), explained)}"
+            explained = True
         parts.append(text)
     return "\n".join(parts)
 
 
-def _pairs(part: BaseModel, names: tuple[str, ...], told: bool) -> str:
-    if not told:
+def _pairs(part: BaseModel, names: tuple[str, ...], explained: bool) -> str:
+    if not explained:
         return "".join(_pair(part, name) for name in names)
     values = {name: getattr(part, name) for name in names}
     return "".join(f"{name} = {_value(value)}\n" for name, value in values.items() if value not in (None, ""))

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest.angle_unit import judged_unit
+from gaitdisc.ingest.angle_unit import plausible_unit
 from gaitdisc.ingest.cells import Form, parsed_cells
 from gaitdisc.ingest.clock import even_time, printed_digit
 from gaitdisc.ingest.columns import (
@@ -273,5 +273,5 @@ def checked_angles(
         which = [i for i, c in enumerate(columns) if c.channel.quantity == "angle" and c.unit == unit]
         if which:
             names = [columns[i].channel.name for i in which]
-            findings.append(judged_unit(time, values[:, which], names, unit, file)[1])
+            findings.append(plausible_unit(time, values[:, which], names, unit, file)[1])
     return [finding for finding in findings if finding]

@@ -1,4 +1,4 @@
-"""In which line of a TOML file a key stands; the parser of the standard library does not tell."""
+"""In which line of a TOML file a key stands; the parser of the standard library does not say."""
 
 from __future__ import annotations
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from gaitdisc.batch.discover_files import discovered
 from gaitdisc.engines.mapping import names_engine
+from gaitdisc.errors import SchemaError
 from gaitdisc.library.models import ModelLike, model_of
 from gaitdisc.recording import Recording
 from gaitdisc.simulation.measured import Measured
@@ -46,8 +47,8 @@ def discover(
     catalogue : path, optional
         A file of effects of your own, considered beside those that come along.
     progress : callable, optional
-        Called with one line about each step; `print`, say. Of a function whose equations could not be written down,
-        which takes minutes, the lines go to the standard error stream by default.
+        Called with one line about each step; `print`, say. Of a model of an engine, and of a function whose
+        equations could not be written down, which take their time, they go to the standard error stream by default.
 
     Returns
     -------
@@ -94,14 +95,20 @@ def _of_engine(
     model: Path, data: Any, catalogue: Path | str | None, progress: Callable[[str], None] | None
 ) -> tuple[Discovery, Simulation]:
     from gaitdisc.batch.discover_engine import discover_engine, measured_of_file
-    from gaitdisc.engines.tracked_files import read_tracked
+    from gaitdisc.engines.tracked_mapping import read_tracked
 
     walk = read_tracked(model)
-    if walk is not None and isinstance(data, Path | str):
+    if walk is not None:
+        if not isinstance(data, Path | str):
+            raise SchemaError(
+                f"the walk of {model.name} is tracked by a file of its angles (.mot, .sto)",
+                f"found {type(data).__name__}",
+                "Give the path of that file.",
+            )
         from gaitdisc.batch.discover_tracked import discover_tracked
 
         of_user = None if catalogue is None else Path(catalogue)
-        answered = discover_tracked(walk, Path(data), of_user, progress or (lambda _: None))
+        answered = discover_tracked(walk, Path(data), of_user, progress or _to_the_terminal)
         return answered.found, answered.augmented
 
     files: dict[Path, str] = {}
@@ -113,7 +120,7 @@ def _of_engine(
         return _measured(data, mapping)[0]
 
     chosen = None if catalogue is None else Path(catalogue)
-    answer = discover_engine(model, read, chosen, files, progress or (lambda _: None))
+    answer = discover_engine(model, read, chosen, files, progress or _to_the_terminal)
     return answer.found, answer.augmented
 
 

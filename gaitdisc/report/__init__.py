@@ -17,7 +17,7 @@ __all__ = ["participant_sentences", "r2_text", "study_sentences", "write_report"
 
 
 def __getattr__(name: str) -> Any:
-    """Bring a verb when it is first asked for: a command that prints a table need not load every page and figure."""
+    """Bring a verb when it is first used: a command that prints a table need not load every page and figure."""
     if name in _HOME:
         return getattr(import_module(f"gaitdisc.report.{_HOME[name]}"), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

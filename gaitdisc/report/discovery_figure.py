@@ -249,5 +249,5 @@ def discovery_key(measured: bool) -> list[Artist]:
 
 def _alt(discovery: Discovery) -> str:
     sizes = discovery.held_out.channels.items()
-    told = (f"{name} from {before:.3g} to {after:.3g}, noise {floor:.3g}" for name, (before, after, floor) in sizes)
-    return f"Root mean square of measured minus simulated, before and after: {'; '.join(told)} (units of the file)."
+    errors = (f"{name} from {before:.3g} to {after:.3g}, noise {floor:.3g}" for name, (before, after, floor) in sizes)
+    return f"Root mean square of measured minus simulated, before and after: {'; '.join(errors)} (units of the file)."

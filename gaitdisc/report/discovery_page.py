@@ -33,7 +33,7 @@ VERDICTS = {
     "input_error": "input error: a driving signal is late or scaled",
     "sensor_error": "sensor error: the state is right, its measurement is not",
     "wrong_initial_condition": "wrong initial condition: only the start is wrong",
-    "process_noise": "process noise: the system is shaken by something random",
+    "process_noise": "process noise: something random pushes the system",
     "unnamed": "unnamed: a deterministic term is missing, and no known effect explains it",
 }
 METHOD = (
@@ -88,8 +88,8 @@ def gap_table(discovery: Discovery) -> Table:
                 continue
             shown, factor = shown_unit(unit)
             before, after, floor = size.channels[channel]
-            told = [f"{amount(factor * one, factor * floor / 10)} {shown}".strip() for one in (before, after, floor)]
-            rows.append((data, channel, *told, _percent(closed_share(before, after, floor)), p_cell(size.p)))
+            amounts = [f"{amount(factor * one, factor * floor / 10)} {shown}".strip() for one in (before, after, floor)]
+            rows.append((data, channel, *amounts, _percent(closed_share(before, after, floor)), p_cell(size.p)))
             records.append((data, channel, before, after, floor, unit, closed_share(before, after, floor), size.p))
     held, fitted = (counted(size.pieces, "piece") for size in (discovery.held_out, discovery.train))
     caption = (
@@ -107,13 +107,13 @@ def gap_table(discovery: Discovery) -> Table:
 def models_table(discovery: Discovery) -> Table:
     """Held-out error of the models of chapter 4, of a device walk, with the named effect among them."""
     channel, unit = (discovery.channels[-1], discovery.units[-1]) if discovery.channels else ("", "")
-    told = tuple((name, with_unit(amount(one, 0.1), unit)) for name, one in discovery.beside.items())
+    rows = tuple((name, with_unit(amount(one, 0.1), unit)) for name, one in discovery.beside.items())
     caption = (
         f"Root mean square error of {channel} on the held-out strides. Nominal: calibrated on the Nominal walk. "
         "Augmented: Nominal, and a plain regression of what it leaves. Exo: calibrated on the device walk itself. Both "
         "learn from the device walk's other strides."
     )
-    return Table("models", caption, ("model", channel), told, _frame(list(discovery.beside.items()), ("model", unit)))
+    return Table("models", caption, ("model", channel), rows, _frame(list(discovery.beside.items()), ("model", unit)))
 
 
 def trials_table(discovery: Discovery) -> Table:
@@ -126,8 +126,8 @@ def trials_table(discovery: Discovery) -> Table:
             shown, factor = shown_unit(unit)
             of_trial = (one[runs.trial == number][:, :, place] for one in errors)
             before, after = (float(np.sqrt(np.nanmean(one))) for one in of_trial)
-            told = (f"{amount(factor * one, factor * before / 20)} {shown}".strip() for one in (before, after))
-            rows.append((name, channel, *told))
+            amounts = (f"{amount(factor * one, factor * before / 20)} {shown}".strip() for one in (before, after))
+            rows.append((name, channel, *amounts))
             records.append((name, channel, before, after, unit))
     caption = (
         "Root mean square of measured minus simulated, before and after, trial by trial of what was held out "
@@ -230,9 +230,9 @@ def _degrees(one: Estimate) -> str:
 
 
 def _numbers(one: FoundEffect) -> str:
-    told = [f"{name.replace('_', ' ')} {estimate_text(each)}" for name, each in one.estimates.items()]
+    numbers = [f"{name.replace('_', ' ')} {estimate_text(each)}" for name, each in one.estimates.items()]
     outside = [text for each in one.estimates.values() if (text := outside_text(one, each))]
-    return ", ".join([*told[:2], *outside]) + (f", and {len(told) - 2} more" if len(told) > 2 else "")
+    return ", ".join([*numbers[:2], *outside]) + (f", and {len(numbers) - 2} more" if len(numbers) > 2 else "")
 
 
 def _bic(value: float) -> str:

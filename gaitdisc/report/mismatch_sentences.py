@@ -207,7 +207,7 @@ def _visible(mismatch: Mismatch, names: list[str]) -> str:
 
 
 def _by_unit(mismatch: Mismatch, names: list[str], column: str, smallest: bool = False) -> str:
-    """Largest value for each unit, with the range where asked for."""
+    """Largest value for each unit, with the range where wanted."""
     rows = [mismatch.summary_of(name) for name in names]
     parts = []
     for unit in dict.fromkeys(str(row["unit"]) for row in rows):

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
-_JUDGED = (("nominal", "nominal"), ("nominal", "exo"), ("augmented", "exo"), ("exo", "exo"))
+_TESTED = (("nominal", "nominal"), ("nominal", "exo"), ("augmented", "exo"), ("exo", "exo"))
 LOWEST = -0.25  # R2 below this is drawn as an arrow at the edge, with its value
 FEWEST_FOR_BOXES = 5
 MOST_VALUES = 3  # that are written one by one
@@ -46,8 +46,8 @@ class R2Column:
 
 
 R2_TABLE = (
-    *(R2Column(f"{model}_on_{walk}", model, "network", walk) for model, walk in _JUDGED),
-    *(R2Column(f"ridge_{model}_on_{walk}", model, "ridge", walk) for model, walk in _JUDGED),
+    *(R2Column(f"{model}_on_{walk}", model, "network", walk) for model, walk in _TESTED),
+    *(R2Column(f"ridge_{model}_on_{walk}", model, "ridge", walk) for model, walk in _TESTED),
     *(R2Column(f"linear_{model}_on_exo", model, "linear", "exo") for model in ("nominal", "augmented", "exo")),
     R2Column("null_on_exo", "", "null", "exo"),
 )

@@ -48,7 +48,7 @@ def models_table(done: Reconstruction) -> Table:
     with_sensors = "“with sensors”: the sensors counted as states without error, as Table 5.2 does; " if angles else ""
     people = counted(len(done.participants), "participant")
     caption = (
-        f"Models on the test windows: mean over n = {people} [95 % interval of the mean], {_judged(done)}. "
+        f"Models on the test windows: mean over n = {people} [95 % interval of the mean], {_what_is_tested(done)}. "
         f"Split: {done.split}. Relative L2: norm of the error by norm of the measured values about zero; "
         f"{with_sensors}R²: median over what is reconstructed; "
         f"coverage: share inside an interval that was made for 90 %; seconds: processor time of a fit. * recommended: "
@@ -93,13 +93,13 @@ def participants_table(done: Reconstruction) -> Table:
         (str(row[0]), str(int(strides[row[0]])), *(_plain(value, 2 if angles else 3) for value in row[1:]))
         for row in wide.itertuples()
     )
-    what = f"RMSE of {_judged(done)} [deg]" if angles else "Relative L2 of all that is reconstructed [1]"
+    what = f"RMSE of {_what_is_tested(done)} [deg]" if angles else "Relative L2 of all that is reconstructed [1]"
     caption = f"{what}, by participant; strides: those of the test part."
     return Table("participants", caption, ("participant", "strides", *done.models), rows, done.summary)
 
 
 def reconstruction_sentences(done: Reconstruction) -> list[str]:
-    """What is told from which sensors, how well, by which model, and what history and a network buy."""
+    """What is reconstructed from which sensors, how well, by which model, and what history and a network buy."""
     best = done.recommended
     over: Any = done.over_participants()
     sensors, kinds = listed([label(channel.name) for channel in done.sensors]), list(done.models)
@@ -173,10 +173,10 @@ def _has_angles(done: Reconstruction) -> bool:
 
 
 def _ahead(done: Reconstruction) -> bool:
-    return bool(set(done.sensors) & set(done.states))  # the present of a sensor is read, not told
+    return bool(set(done.sensors) & set(done.states))  # the present of a sensor is read, not reconstructed
 
 
-def _judged(done: Reconstruction) -> str:
+def _what_is_tested(done: Reconstruction) -> str:
     if not _has_angles(done):
         return "all that is reconstructed"
     return "all angles" if _ahead(done) else "the angles that no sensor measures"
@@ -205,7 +205,7 @@ def _rmse(value: Any, unit: str) -> str:
 
 @in_style
 def reconstruction_figures(done: Reconstruction, participant: str, name: str) -> list[Figure]:
-    """One panel a state: the mean of what was measured with its spread, and what the models tell."""
+    """One panel a state: the mean of what was measured with its spread, and what the models reconstruct."""
     curves = shown_curves(done, participant)
     return [
         _figure(done, participant, curves[curves["state"].isin([channel.name for channel in part])], f"{name}-{k + 1}")

@@ -38,7 +38,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Bring a noun when it is first asked for: most of them bring pandas, which not every command needs."""
+    """Bring a noun when it is first used: most of them bring pandas, which not every command needs."""
     if name in _HOME:
         return getattr(import_module(f"gaitdisc.results.{_HOME[name]}"), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -36,14 +36,14 @@ def over_people(found: Mapping[str, Discovery]) -> pd.DataFrame:
 
 def lines(table: pd.DataFrame) -> list[str]:
     """Each row of `over_people` as a line of text."""
-    told = []
+    said = []
     for row in table.to_dict("records"):
         what = f"{row['effect']} at {row['place']}, {row['number']}" if row["place"] else row["effect"]
         mean = f", mean {row['mean']:.3g}" if row["place"] else ""
         if np.isfinite(row["low"]):
             mean += f" (95 % {row['low']:.3g} to {row['high']:.3g})"
-        told.append(f"{what}: {row['people']} of {row['of']}{mean} {row['unit']}".rstrip() + f": {row['who']}")
-    return told
+        said.append(f"{what}: {row['people']} of {row['of']}{mean} {row['unit']}".rstrip() + f": {row['who']}")
+    return said
 
 
 def _mean(values: list[float]) -> tuple[float, float, float]:

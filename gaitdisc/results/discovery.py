@@ -78,7 +78,7 @@ class Whereabouts:
 
     kind: str
     place: str
-    share_of_gap: float  # part of the gap's variance that pushes there account for
+    share_of_gap: float  # part of the gap's variance that pushes there explain
     phase: tuple[float, ...] = ()  # from and to, in shares of the stride; empty without a stride
     region: str = ""
 
@@ -139,7 +139,7 @@ class Runs:
 
 @dataclass(frozen=True)
 class Discovery(Saved, by="gaitdisc.results.discovery_folder:save_discovery"):
-    """The answer to one inquiry.
+    """What was found that a simulation lacks.
 
     Parameters
     ----------

@@ -34,7 +34,7 @@ class DamagedError(SchemaError):
 
 @dataclass(frozen=True)
 class OnDisk(Generic[T]):
-    """Something made of the arrays of one file each time it is asked for."""
+    """Something made of the arrays of one file each time it is used."""
 
     path: Path
     sha256: str  # hash it had when it was saved
@@ -47,7 +47,7 @@ class OnDisk(Generic[T]):
 
 @dataclass(frozen=True)
 class StoredArrays(Mapping[str, NDArray[np.float64]]):
-    """Arrays of one file by name, read when one of them is asked for."""
+    """Arrays of one file by name, read when one of them is used."""
 
     path: Path
     sha256: str  # hash it had when it was saved; empty where there is no file, and no array
@@ -89,7 +89,7 @@ def may_lie_on_disk(*fields: str) -> Callable[[type[Kind]], type[Kind]]:
 
 
 def lies_on_disk(thing: object, field: str) -> bool:
-    """Tell whether a field was given as `OnDisk`."""
+    """Whether a field was given as `OnDisk`."""
     return isinstance(vars(thing)[field], OnDisk)
 
 

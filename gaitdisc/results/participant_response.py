@@ -39,7 +39,7 @@ class HeldOut:
 @may_lie_on_disk("held_out", "residuals")
 @dataclass(frozen=True, eq=False)
 class ParticipantResponse:
-    """Nominal, Exo, Discrepancy and Augmented for one participant (Eqs. 4.2-4.5), judged on held-out walking."""
+    """Nominal, Exo, Discrepancy and Augmented for one participant (Eqs. 4.2-4.5), tested on held-out walking."""
 
     participant: str
     inputs: tuple[str, ...]  # names of what goes in and what is predicted
@@ -91,7 +91,7 @@ class ParticipantResponse:
 
     @cached_property
     def _r2(self) -> dict[tuple[str, str, str, str], float]:
-        """R2 by variable, model, kind and walk: a report asks for each of them many times."""
+        """R2 by variable, model, kind and walk: a report reads each of them many times."""
         columns = (self.r2[name] for name in ("variable", "model", "kind", "walk", "r2"))
         return {(v, model, kind, walk): float(value) for v, model, kind, walk, value in zip(*columns, strict=True)}
 

@@ -18,7 +18,7 @@ from gaitdisc.results.saved import Saved
 
 NEAR = 1.02  # of the least error on the check part: a cheaper model that is within this is recommended instead
 WORTH = 0.1  # of the root mean squared error, which one more sensor must take off
-CALIBRATED = "{}, calibrated"  # name of a model that is corrected for the person who is judged
+CALIBRATED = "{}, calibrated"  # name of a model that is corrected for the test person
 CHEAP_FIRST = (
     "linear", "delay ridge", "shallow decoder", "fourier ridge", "shred",
     "masked shred", "shred ensemble", "shred-text",
@@ -36,7 +36,7 @@ class Reconstruction(Saved, by="gaitdisc.results.stores:RECONSTRUCTION.save"):
     title : str
         Of the study.
     sensors, states : tuple of Channel
-        What was read, and what was told.
+        What was read, and what was reconstructed.
     split : str
         The rule by which windows were parted, in words.
     history : str
@@ -48,7 +48,7 @@ class Reconstruction(Saved, by="gaitdisc.results.stores:RECONSTRUCTION.save"):
     summary : DataFrame
         participant, model, strides, n_fitted, and `MEASURES`.
     curves : DataFrame
-        participant, model, state, percent, measured, measured_sd, told, rmse.
+        participant, model, state, percent, measured, measured_sd, reconstructed, rmse.
     refusals : tuple of Refusal
         Who is left out, and why.
     findings : tuple of Finding
@@ -82,7 +82,7 @@ class Reconstruction(Saved, by="gaitdisc.results.stores:RECONSTRUCTION.save"):
     def recommended(self) -> str:
         """Model to use: the cheapest of those whose error on the check part is within 2 % of the least.
 
-        The judged part has no say in it. A calibrated model is recommended by what it is without; a forecast's floors
+        The test part has no say in it. A calibrated model is recommended by what it is without; a forecast's floors
         are none to recommend. What `gaitdisc reconstruct` saves is of this kind, for every participant.
         """
         every = self.summary.groupby("model")["check_loss"].mean()

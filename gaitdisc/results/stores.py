@@ -296,8 +296,8 @@ def unit_name(subject: str, condition: str) -> str:
     plain = "".join(letter if letter.isalnum() or letter == "_" else "_" for letter in condition)
     if (who, plain) == (subject, condition):
         return f"{subject}-{condition}"
-    told_apart = hashlib.sha256(" ".join((subject, condition)).encode()).hexdigest()[:8]
-    return f"{who}-{plain}-{told_apart}"
+    hashed = hashlib.sha256(" ".join((subject, condition)).encode()).hexdigest()[:8]
+    return f"{who}-{plain}-{hashed}"
 
 
 def cycles_name(subject: str, session: str, condition: str) -> str:

@@ -26,13 +26,14 @@ from gaitdisc.spreadsheet import read_csv, write_csv
 from gaitdisc.whole_file import whole_file, write_whole
 
 FORMAT = 1
+EARLIER = {"told": "reconstructed"}  # what columns were called in folders saved before
 NO_KEY = "saved by itself"  # of no files and settings: what was not computed by a run in its folder
 SHOWN = 4  # files of one line
 T = TypeVar("T")
 
 
 class Unit(NamedTuple):
-    """What a unit holds: what its JSON file says, its tables by file name, and its arrays, read when asked for."""
+    """What a unit holds: what its JSON file says, its tables by file name, and its arrays, read when used."""
 
     data: dict[str, Any]
     tables: dict[str, pd.DataFrame]
@@ -148,7 +149,7 @@ def read_json(path: Path) -> dict[str, Any]:
 
 def _read_table(path: Path, words: Sequence[str]) -> pd.DataFrame:
     try:
-        return read_csv(path, words)
+        return read_csv(path, words).rename(columns=EARLIER)
     except (OSError, ValueError, pd.errors.ParserError) as error:
         raise damaged(path, f"not readable as a table ({error})") from error
 

@@ -17,15 +17,16 @@ from gaitdisc.sensing.windows import present, stacked
 
 PENALTIES = tuple(10.0**power for power in np.arange(-3.0, 2.5, 0.5))
 USUAL_PENALTY = 0.1  # where no other person is there to rehearse on
-TOLD = 3.0  # weight of what the model tells beside the readings, in standard deviations
+STATES_WEIGHT = 3.0  # of the reconstructed states beside the readings, in standard deviations
 
 
 @dataclass(frozen=True, eq=False)
 class Corrected:
-    """A model with what is added for one person: linear in the readings, their history and the states told."""
+    """A model with what is added for one person: linear in the readings, their history and the reconstructed states."""
 
     model: ScaledModel
-    # (column,), of readings and told states in the calibration strides, each scaled as in the model's training part
+    # (column,), of readings and reconstructed states in the calibration strides, each scaled as in the model's
+    # training part
     mean: NDArray[np.float64]
     # (column, state) [each state's unit], zero is the model of the population with the mean error of these strides
     # taken off
@@ -91,7 +92,7 @@ def calibrated(done: Reconstructor, strides: Samples, penalty: float = USUAL_PEN
     """Correct a model for one person by ridge regression of its error, shrunk towards the model as it is.
 
     Minimises sum (y - f(x) - b - W h)^2 / windows + penalty sum W^2, where h holds the scaled readings with their
-    history and, three times as heavy, the scaled states that the model f tells.
+    history and, three times as heavy, the scaled states that the model f reconstructs.
 
     penalty: from `rehearsed`; a large one takes off the mean error alone
     """
@@ -102,14 +103,14 @@ def calibrated(done: Reconstructor, strides: Samples, penalty: float = USUAL_PEN
 class Rehearsal:
     """A calibration that was tried on another person."""
 
-    penalty: float  # one of `PENALTIES`, with which that person was told best
+    penalty: float  # one of `PENALTIES`, with which that person was reconstructed best
     missed: NDArray[np.float64]  # (window, state) [each state's unit], errors on that person's further strides
 
 
 def rehearsed(done: Reconstructor, trials: Sequence[Samples], count: int) -> Rehearsal:
     """Calibrate a model for a person to whom it was not fitted, and see which penalty serves best.
 
-    trials: windows of each trial of the person whom models are chosen by, never of the one they are judged on
+    trials: windows of each trial of the person whom models are chosen by, never of the one they are tested on
     """
     parted = first_strides(trials, count, done.sensing.reach_s)
     rest = stacked([each for each in trials if len(each)]).rows(parted.rest)
@@ -133,4 +134,4 @@ def _calibrated(done: Reconstructor, strides: Samples, penalties: Sequence[float
 
 def _columns(model: ScaledModel, x: NDArray[np.float64], states: NDArray[np.float64]) -> NDArray[np.float64]:
     readings = np.nan_to_num(model.x_scale.scaled(x))  # a missing one counts as the mean
-    return np.hstack([readings, TOLD * model.y_scale.scaled(states)])
+    return np.hstack([readings, STATES_WEIGHT * model.y_scale.scaled(states)])

@@ -15,7 +15,7 @@ from gaitdisc.sensing.windows import stacked
 
 FOLDS = 5
 FEWEST = 3  # people of whom one can be left out, one chosen by, one fitted
-STANDARD = "delay ridge"  # tells for the others how far the checked people are from typical
+STANDARD = "delay ridge"  # stands in for the others in how far the checked people are from typical
 
 
 def crossed_errors(kind: str, what: Sensing, parts: Parts, seed: int = 0) -> NDArray[np.float64]:
@@ -40,13 +40,13 @@ def crossed_widths(
 ) -> NDArray[np.float64]:
     """Half width of the 90 % interval for a person whom a model has not seen, (state,) [each state's unit].
 
-    One checked person may be told better or worse than most (and is all there is where there are fewer than four people
-    in all). Ridge regression is therefore crossed over people; a network, which would take five times as long, gets its
-    interval on the checked person, times what crossing changes for ridge regression on delays.
+    One checked person may be reconstructed better or worse than most (and is all there is where there are fewer than
+    four people in all). Ridge regression is therefore crossed over people; a network, which would take five times as
+    long, gets its interval on the checked person, times what crossing changes for ridge regression on delays.
 
     missed (window, state) [each state's unit]: errors of the model on the checked person
     Source: Barber, Candes, Ramdas and Tibshirani 2021, Predictive inference with the jackknife+ (CV+); here one
-        interval for all, about what the model of everybody tells.
+        interval for all, about what the model of everybody reconstructs.
     """
     if len(people_of((*parts.check, *parts.training))) < FEWEST:
         return half_widths(missed)

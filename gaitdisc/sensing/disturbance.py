@@ -45,7 +45,7 @@ def noisy(recording: Recording, sensors: Sequence[str], share: float, seed: int 
 def against_noise(
     walks: Walks, what: Sensing, channels: Sequence[Channel], kinds: Sequence[str] = tuple(KINDS), seed: int = 0
 ) -> pd.DataFrame:
-    """RMSE of every kind of model against noise, temporal split; fitted to and judged on the same noise.
+    """RMSE of every kind of model against noise, temporal split; fitted to and tested on the same noise.
 
     walks sequence of (Recording, (time,) [% stride]): of one person
     returns: disturbance (`noise`), level [share of the sensor's standard deviation], model, rmse_deg (angles)
@@ -55,7 +55,7 @@ def against_noise(
         parts = _parts(walks, what, lambda walk, k, level=level: noisy(walk, what.sensors, level, seed + k))
         for kind in kinds:
             done = fit_reconstructor(kind, what, parts.fitted(), parts.checked(), seed)
-            rows.append(("noise", level, kind, _rmse(done, parts.judged(), channels)))
+            rows.append(("noise", level, kind, _rmse(done, parts.tested(), channels)))
     return pd.DataFrame(rows, columns=pd.Index(COLUMNS))
 
 
@@ -69,7 +69,7 @@ def against_missing(
     """RMSE of every kind of model against missing readings, temporal split; fitted to walks that lack none.
 
     Readings are lost one by one, each sensor by itself. The sensor's last known reading stands in their place; the
-    masked SHRED alone is told which are missing.
+    masked SHRED alone is given which are missing.
 
     walks sequence of (Recording, (time,) [% stride]): of one person
     returns: disturbance (`missing`), level [share of the readings], model, rmse_deg (angles)
@@ -84,8 +84,8 @@ def against_missing(
                 holed = with_missing(walk, what.sensors, level, 0.0, seed + k)
                 return holed if done.kind == MASKED else filled(holed, what.sensors, "last", done.sensor_means)
 
-            judged = _parts(walks, what, lost).judged()
-            rows.append(("missing", level, kind, _rmse(done, judged, channels)))
+            test = _parts(walks, what, lost).tested()
+            rows.append(("missing", level, kind, _rmse(done, test, channels)))
     return pd.DataFrame(rows, columns=pd.Index(COLUMNS))
 
 
@@ -94,5 +94,5 @@ def _parts(walks: Walks, what: Sensing, disturbed: Callable[[Recording, int], Re
     return split_within(windows, "temporal", what.reach_s)
 
 
-def _rmse(done: Reconstructor, judged: Samples, channels: Sequence[Channel]) -> float:
-    return float(np.sqrt(np.mean((done(judged) - judged.y)[:, angle_columns(channels)] ** 2)))
+def _rmse(done: Reconstructor, test: Samples, channels: Sequence[Channel]) -> float:
+    return float(np.sqrt(np.mean((done(test) - test.y)[:, angle_columns(channels)] ** 2)))

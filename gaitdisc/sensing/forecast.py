@@ -23,20 +23,20 @@ POINTS, LEAST_FILLED = 100, 0.5
 def persistence(trials: Sequence[Samples], ahead_s: float) -> NDArray[np.float64]:
     """States as they were `ahead_s` before, (window, state); NaN where that time has no window.
 
-    trials: windows of each trial, in order of time; time and y are those of the state that is told
+    trials: windows of each trial, in order of time; time and y are those of the state that is forecast
     ahead_s: from the last reading to that state [s]
 
     >>> t = np.arange(5) / 10
     >>> persistence([Samples(t[:, None], t[:, None], ("a",), ("a",), t, t)], 0.2).ravel().tolist()
     [nan, nan, 0.0, 0.1, 0.2]
     """
-    told = []
+    forecast = []
     for trial in trials:
         before = trial.time - ahead_s
         row = np.clip(np.searchsorted(trial.time, before - 1e-6), 0, max(len(trial) - 1, 0))
         found = np.abs(trial.time[row] - before) < 1e-6
-        told.append(np.where(found[:, None], trial.y[row], np.nan))
-    return np.concatenate(told)
+        forecast.append(np.where(found[:, None], trial.y[row], np.nan))
+    return np.concatenate(forecast)
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,15 +46,15 @@ class PhaseAverage:
     curve: NDArray[np.float64]  # (phase, state) [each state's unit], mean in each percent of the stride
     stride_s: float  # mean duration of a stride [s]
 
-    def told(self, trials: Sequence[Samples], ahead_s: float) -> NDArray[np.float64]:
+    def forecast(self, trials: Sequence[Samples], ahead_s: float) -> NDArray[np.float64]:
         """States (window, state) at the phase that is expected; NaN before the first contact.
 
         The phase is the time since the last contact that had happened when the forecast was made, by the mean duration
         of a stride: percent stride itself is known only when the stride is over.
 
-        ahead_s: from the last reading to the state that is told [s]
+        ahead_s: from the last reading to the state that is forecast [s]
         """
-        told = []
+        found = []
         for trial in trials:
             contacts = contact_times(trial)
             last = np.searchsorted(contacts, trial.time - ahead_s + 1e-9) - 1
@@ -63,8 +63,8 @@ class PhaseAverage:
             known = np.isfinite(phase)
             values = np.full((len(trial), self.curve.shape[1]), np.nan)
             values[known] = self.curve[(phase[known] * POINTS).astype(int) % POINTS]
-            told.append(values)
-        return np.concatenate(told)
+            found.append(values)
+        return np.concatenate(found)
 
 
 def phase_average(trials: Sequence[Samples]) -> PhaseAverage:
@@ -93,7 +93,7 @@ def phase_average(trials: Sequence[Samples]) -> PhaseAverage:
 
 
 def contact_times(trial: Samples) -> NDArray[np.float64]:
-    """Contacts that percent stride tells of, in order [s].
+    """Contacts by percent stride, in order [s].
 
     >>> t = np.arange(0.0, 3.0, 0.1)
     >>> s = Samples(t[:, None], t[:, None], ("a",), ("a",), t, 100 * ((t + 0.25) % 1.0))

@@ -1,4 +1,4 @@
-"""Intervals around what a model tells, from its errors on windows that it was not fitted to."""
+"""Intervals around what a model reconstructs, from its errors on windows that it was not fitted to."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def effective_number(errors: NDArray[np.float64]) -> NDArray[np.float64]:
 def coverage(errors: NDArray[np.float64], half: NDArray[np.float64]) -> NDArray[np.float64]:
     """Share of errors inside the interval, (state,).
 
-    errors (window, state) [each state's unit]: on judged windows
+    errors (window, state) [each state's unit]: on test windows
     half (state,) [each state's unit]: from `half_widths`
 
     >>> coverage(np.array([[1.0], [-3.0]]), np.array([2.0]))

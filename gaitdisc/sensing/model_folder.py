@@ -1,4 +1,4 @@
-"""A fitted reconstructor on disk: what it reads and tells, in which units, at which rate; and its weights."""
+"""A fitted reconstructor on disk: what it reads and reconstructs, in which units, at which rate; and its weights."""
 
 from __future__ import annotations
 
@@ -48,8 +48,8 @@ class SensingModel:
         """States of a new recording that has the sensors, in their units and at the model's rate.
 
         NaN where the history is not full, or holds a missing value; `missing`, a word of
-        `gaitdisc.sensing.missing.WAYS`, may say what stands for it, and a model that is told of missing values needs
-        nothing. The recording has to be filtered as those were that the model was fitted to.
+        `gaitdisc.sensing.missing.WAYS`, may say what stands for it, and a masked model needs nothing.
+        The recording has to be filtered as those were that the model was fitted to.
         """
         what = self.reconstructor.sensing
         if abs(recording.rate_hz / what.rate_hz - 1) > RATE_TOLERANCE:
@@ -73,8 +73,8 @@ class SensingModel:
         rows = np.searchsorted(recording.time, windows.time - 1e-9)
         values = np.full((len(recording.time), len(what.states)), np.nan)
         values[rows] = self.reconstructor(windows)
-        told = self.channels[len(what.sensors) :]
-        return Recording(recording.time, values, told, recording.subject, recording.condition, recording.source)
+        states = self.channels[len(what.sensors) :]
+        return Recording(recording.time, values, states, recording.subject, recording.condition, recording.source)
 
 
 def save_model(model: SensingModel, folder: Path) -> None:
@@ -118,8 +118,8 @@ def load_model(folder: Path) -> SensingModel:
         if data["format"] != FORMAT:
             raise ValueError(f"it has format {data['format']}, this version reads {FORMAT}")
         check_files(folder, data["sha256"])
-        told = data["sensing"]
-        what = Sensing(tuple(told["sensors"]), tuple(told["states"]), Lags(**told["lags"]), told["rate_hz"])
+        held = data["sensing"]
+        what = Sensing(tuple(held["sensors"]), tuple(held["states"]), Lags(**held["lags"]), held["rate_hz"])
         channels: Sequence[Channel] = [Channel(**channel) for channel in data["channels"]]
         half, kind = np.array(data["half_widths"], float), data["kind"]
         numbers = data["n_fitted"], data["seconds"], data["device"]

@@ -42,13 +42,13 @@ def write_onnx(model: SensingModel, path: Path) -> None:
     graph = _Graph(helper, np.float64 if isinstance(fitted, FourierRidge) else np.float32)
     x = graph.add("Cast", WINDOW, to=graph.type_of(graph.number))
     if isinstance(fitted, FourierRidge):
-        told = _ridge(graph, fitted, x)
+        states = _ridge(graph, fitted, x)
     elif isinstance(fitted, Ensemble):
         each = [_network(graph, member, x, model) for member in fitted.members]
-        told = graph.add("Mean", *each)
+        states = graph.add("Mean", *each)
     else:
-        told = _network(graph, fitted, x, model)  # type: ignore[arg-type]
-    graph.add("Cast", told, to=graph.type_of(np.float32), output=STATES)
+        states = _network(graph, fitted, x, model)  # type: ignore[arg-type]
+    graph.add("Cast", states, to=graph.type_of(np.float32), output=STATES)
     whole = graph.whole(len(fitted.inputs), len(fitted.outputs))
     helper.set_model_props(whole, _metadata(model))
     checker.check_model(whole, full_check=True)
@@ -152,8 +152,8 @@ def _network(graph: _Graph, model: TrainedNetwork, x: str, whole: SensingModel) 
         prefix = "decoder."
     for name in ("first", "second"):
         h = graph.add("Relu", graph.linear(h, weights[f"{prefix}{name}.weight"].T, weights[f"{prefix}{name}.bias"]))
-    told = graph.linear(h, weights[f"{prefix}readout.weight"].T, weights[f"{prefix}readout.bias"])
-    return graph.unscaled(told, model.y_scale)
+    states = graph.linear(h, weights[f"{prefix}readout.weight"].T, weights[f"{prefix}readout.bias"])
+    return graph.unscaled(states, model.y_scale)
 
 
 def _recurrent(graph: _Graph, shred: Any, weights: dict[str, NDArray[Any]], x: str, sensors: int) -> str:

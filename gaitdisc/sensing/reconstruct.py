@@ -1,4 +1,4 @@
-"""Reconstruct one person's states: fit every kind of model on two parts of the windows, judge it on the third."""
+"""Reconstruct one person's states: fit every kind of model on two parts of the windows, test it on the third."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from gaitdisc.sensing.model_folder import SensingModel
 from gaitdisc.sensing.reconstructor import KINDS, Reconstructor, Sensing, fit_reconstructor
 from gaitdisc.sensing.splits import PERSON_OUT, Parts
 from gaitdisc.sensing.state_errors import (
-    Judged,
+    Reconstructed,
     angle_columns,
     angles_error,
     phase_curves,
@@ -39,15 +39,15 @@ class Fits:
     seed: int = 0
     device: str = "auto"  # that networks are fitted on: `cpu`, `cuda`, or `auto`, the GPU where there is one
     # strides of the test part, its first ones, on which models named `..., calibrated` are corrected for the person;
-    # windows that share a reading with them are not judged, whether a model is calibrated or not. 0 for none
+    # windows that share a reading with them are no test windows, whether a model is calibrated or not. 0 for none
     calibration: int = 0
 
 
 @dataclass(frozen=True, eq=False)
 class PersonReconstruction:
-    """Every kind of model, fitted and judged for one person."""
+    """Every kind of model, fitted and tested for one person."""
 
-    participant: str  # pseudonym of the person on whom the models are judged
+    participant: str  # pseudonym of the person on whom the models are tested
     errors: pd.DataFrame  # as in `gaitdisc.results.reconstruction.Reconstruction`
     summary: pd.DataFrame  # as in `gaitdisc.results.reconstruction.Reconstruction`
     curves: pd.DataFrame  # as in `gaitdisc.results.reconstruction.Reconstruction`
@@ -65,24 +65,24 @@ def reconstruct(
     channels: Sequence[Channel],
     fits: Fits | None = None,
 ) -> PersonReconstruction:
-    """Fit every kind of model and judge it on the test part; a forecast has its two baselines beside it.
+    """Fit every kind of model and test it on the test part; a forecast has its two baselines beside it.
 
     channels: of the sensors, then of the states, in the order of `what`
     """
     fits = fits or Fits()
-    test, own = parts.judged(), channels[len(what.sensors) :]
+    test, own = parts.tested(), channels[len(what.sensors) :]
     stride = stride_numbers(parts.test)
-    fitted, accounts, judged_rows = _fitted(parts, what, fits)
-    accounts += _baselines(parts, what) if what.lags.ahead else []
-    judged_rows &= np.isfinite(np.hstack([account.told for account in accounts])).all(axis=1)
+    fitted, predictions, test_rows = _fitted(parts, what, fits)
+    predictions += _baselines(parts, what) if what.lags.ahead else []
+    test_rows &= np.isfinite(np.hstack([one.states for one in predictions])).all(axis=1)
     spread, errors, summary, curves = parts.fitted().y.std(axis=0), [], [], []
-    for account in accounts:
-        judged = Judged(test.rows(judged_rows), stride[judged_rows], account.told[judged_rows])
-        row = _summary(judged, channels, what) | account.checked(spread, judged)
-        summary.append({"participant": participant, "model": account.model, "n_fitted": account.n_fitted, **row,
-                        "seconds": account.seconds})  # fmt: skip
-        errors.append(state_errors(judged, own, fits.seed).assign(participant=participant, model=account.model))
-        curves.append(phase_curves(judged, what.states).assign(participant=participant, model=account.model))
+    for one in predictions:
+        tested = Reconstructed(test.rows(test_rows), stride[test_rows], one.states[test_rows])
+        row = _summary(tested, channels, what) | one.checked(spread, tested)
+        summary.append({"participant": participant, "model": one.model, "n_fitted": one.n_fitted, **row,
+                        "seconds": one.seconds})  # fmt: skip
+        errors.append(state_errors(tested, own, fits.seed).assign(participant=participant, model=one.model))
+        curves.append(phase_curves(tested, what.states).assign(participant=participant, model=one.model))
     order = ["participant", "model"]
     tables = (pd.concat(part, ignore_index=True) for part in (errors, curves))
     errors_table, curves_table = (table[[*order, *(c for c in table if c not in order)]] for table in tables)
@@ -91,47 +91,47 @@ def reconstruct(
 
 
 @dataclass(frozen=True, eq=False)
-class _Account:
-    """What one model tells of the judged part, its errors on the check part, and its interval."""
+class _Prediction:
+    """States that one model reconstructs in the test part, its errors on the check part, and its interval."""
 
     model: str
-    told: NDArray[np.float64]
+    states: NDArray[np.float64]
     missed: NDArray[np.float64]
     half_widths: NDArray[np.float64]
     n_fitted: int = 0
     seconds: float = 0.0
 
-    def checked(self, spread: NDArray[np.float64], judged: Judged) -> dict[str, float]:
+    def checked(self, spread: NDArray[np.float64], tested: Reconstructed) -> dict[str, float]:
         """Loss by which models are chosen, and how often the interval that the check part gives holds."""
-        inside = coverage(judged.told - judged.windows.y, self.half_widths)
+        inside = coverage(tested.states - tested.windows.y, self.half_widths)
         return {"check_loss": float(np.mean((self.missed / spread) ** 2)), "coverage": float(np.mean(inside))}
 
 
 Fitted = tuple[Reconstructor, NDArray[np.float64]]  # and the half widths of its interval
 
 
-def _fitted(parts: Parts, what: Sensing, fits: Fits) -> tuple[list[Fitted], list[_Account], NDArray[np.bool_]]:
-    """Every kind of model, what it tells as it is and calibrated, and which windows may be judged."""
-    training, check, test = parts.fitted(), parts.checked(), parts.judged()
+def _fitted(parts: Parts, what: Sensing, fits: Fits) -> tuple[list[Fitted], list[_Prediction], NDArray[np.bool_]]:
+    """Every kind of model, its states as it is and calibrated, and which windows are tested."""
+    training, check, test = parts.fitted(), parts.checked(), parts.tested()
     first = first_strides(parts.test, fits.calibration, what.reach_s) if fits.calibration else None
-    fitted, accounts = [], []
+    fitted, predictions = [], []
     for kind in fits.kinds:
         done = fit_reconstructor(kind, what, training, check, fits.seed, fits.device)
         missed = done(check) - check.y
         alone = parts.rule != PERSON_OUT
         half = half_widths(missed) if alone else crossed_widths(kind, what, parts, missed, fits.seed)
         fitted.append((done, half))
-        accounts.append(_Account(kind, done(test), missed, half, done.n_fitted, done.seconds))
+        predictions.append(_Prediction(kind, done(test), missed, half, done.n_fitted, done.seconds))
         if first is not None:
             rehearsal = rehearsed(done, parts.check, fits.calibration)
-            told = calibrated(done, first.strides, rehearsal.penalty)(test)
+            states = calibrated(done, first.strides, rehearsal.penalty)(test)
             name = CALIBRATED.format(kind)
             half = half_widths(rehearsal.missed)
-            accounts.append(_Account(name, told, rehearsal.missed, half, done.n_fitted, done.seconds))
-    return fitted, accounts, np.ones(len(test), bool) if first is None else first.rest
+            predictions.append(_Prediction(name, states, rehearsal.missed, half, done.n_fitted, done.seconds))
+    return fitted, predictions, np.ones(len(test), bool) if first is None else first.rest
 
 
-def _baselines(parts: Parts, what: Sensing) -> list[_Account]:
+def _baselines(parts: Parts, what: Sensing) -> list[_Prediction]:
     """What a forecast has to beat.
 
     Errors are those on the fitted and the checked part: the latter alone may be shorter than the time ahead.
@@ -139,29 +139,29 @@ def _baselines(parts: Parts, what: Sensing) -> list[_Account]:
     ahead_s, average = what.lags.ahead / what.rate_hz, phase_average(parts.training)
     known = [trial for trial in (*parts.training, *parts.check) if len(trial)]
     found = []
-    for name, told in (
+    for name, forecast in (
         (PERSISTENCE, partial(persistence, ahead_s=ahead_s)),
-        (PHASE_AVERAGE, partial(average.told, ahead_s=ahead_s)),
+        (PHASE_AVERAGE, partial(average.forecast, ahead_s=ahead_s)),
     ):
-        missed = told(known) - stacked(known).y
+        missed = forecast(known) - stacked(known).y
         missed = missed[np.isfinite(missed).all(axis=1)]
-        found.append(_Account(name, told(parts.test), missed, half_widths(missed)))
+        found.append(_Prediction(name, forecast(parts.test), missed, half_widths(missed)))
     return found
 
 
-def _summary(judged: Judged, channels: Sequence[Channel], what: Sensing) -> dict[str, float]:
+def _summary(tested: Reconstructed, channels: Sequence[Channel], what: Sensing) -> dict[str, float]:
     count = len(what.sensors)
-    read = channels[:count] if not what.lags.ahead else ()  # the future of a sensor is told, not read
+    read = channels[:count] if not what.lags.ahead else ()  # the future of a sensor is forecast, not read
     angles = angle_columns(read)
-    readings = judged.windows.x[:, -count:][:, angles]
-    errors = angles_error(judged, channels[count:], readings)
+    readings = tested.windows.x[:, -count:][:, angles]
+    errors = angles_error(tested, channels[count:], readings)
     if len({channel.unit for channel in channels[count:]}) == 1 and channels[-1].unit != "deg":
-        errors |= _alike(judged)
-    return {"strides": judged.strides, **errors}
+        errors |= _alike(tested)
+    return {"strides": tested.strides, **errors}
 
 
-def _alike(judged: Judged) -> dict[str, float]:
+def _alike(tested: Reconstructed) -> dict[str, float]:
     """Errors without unit of states that are no angles but all of one unit: muscles, forces, moments."""
-    measured = judged.windows.y
-    relative = float(np.linalg.norm(judged.told - measured) / np.linalg.norm(measured))
-    return {"relative_l2": relative, "r2": float(np.nanmedian(r2(measured, judged.told)))}
+    measured = tested.windows.y
+    relative = float(np.linalg.norm(tested.states - measured) / np.linalg.norm(measured))
+    return {"relative_l2": relative, "r2": float(np.nanmedian(r2(measured, tested.states)))}

@@ -1,4 +1,4 @@
-"""Models that tell the state from sensors: a network and, beside it, what a network has to beat."""
+"""Models that reconstruct the state from sensors: a network and, beside it, what a network has to beat."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ ON_REQUEST = {
     OF_TEXT: "SHRED as the dissertation's code has it: two LSTM layers of 64, decoder 350-400, Adam at a rate of 0.001",
 }
 STATIC = ("linear", "shallow decoder")
-WITHOUT_NETWORK = ("linear", "delay ridge", "fourier ridge")  # cheap: fitted many times where that is asked for
+WITHOUT_NETWORK = ("linear", "delay ridge", "fourier ridge")  # cheap: fitted many times where that is wanted
 DEVICES = ("auto", "cpu", "cuda")
 
 
@@ -59,20 +59,20 @@ class ScaledModel(Model, Protocol):
 
 @dataclass(frozen=True)
 class Sensing:
-    """What is read, and what is to be told from it.
+    """What is read, and what is to be reconstructed from it.
 
     >>> sensing(("knee_angle_r", "hip_flexion_r"), ("knee_angle_r",), Lags(), 100.0).states
     ('hip_flexion_r',)
     """
 
     sensors: tuple[str, ...]
-    states: tuple[str, ...]  # channels that are told; none of them is a sensor, unless the future is told
+    states: tuple[str, ...]  # channels to reconstruct; none of them is a sensor, unless the future is forecast
     lags: Lags
     rate_hz: float
 
     @property
     def reach_s(self) -> float:
-        """From the first reading of a window to the state that is told from it [s]."""
+        """From the first reading of a window to the state that is reconstructed from it [s]."""
         return (self.lags.reach + self.lags.ahead) / self.rate_hz
 
     def windows(self, recording: Recording, phi: NDArray[np.float64], missing: bool = False) -> Samples:
@@ -85,7 +85,7 @@ class Sensing:
 
 
 def sensing(all_states: tuple[str, ...], sensors: tuple[str, ...], lags: Lags, rate_hz: float) -> Sensing:
-    """Tell every state that is not measured by a sensor, or the future of every state.
+    """Reconstruct every state that no sensor measures, or forecast every state.
 
     sensors: channels that are read; they may be among the states
     """
@@ -107,7 +107,7 @@ def sensing(all_states: tuple[str, ...], sensors: tuple[str, ...], lags: Lags, r
 
 @dataclass(frozen=True, eq=False)
 class Reconstructor:
-    """A fitted model that tells states from windows."""
+    """A fitted model that reconstructs states from windows."""
 
     kind: str
     sensing: Sensing
@@ -122,7 +122,7 @@ class Reconstructor:
         return self.model.x_scale.mean[-len(self.sensing.sensors) :]
 
     def __call__(self, windows: Samples) -> NDArray[np.float64]:
-        """States (window, state) told from windows, each in its unit."""
+        """States (window, state) reconstructed from windows, each in its unit."""
         seen = present(windows, self.sensing.sensors) if self.kind in STATIC else windows
         return self.model(seen.x)
 
@@ -145,9 +145,9 @@ def fitting_device(kinds: Sequence[str], wanted: str) -> str:
 def fit_reconstructor(
     kind: str, what: Sensing, training: Samples, check: Samples, seed: int = 0, device: str = "auto"
 ) -> Reconstructor:
-    """Fit one kind of model; scales, penalties and the epoch whose weights stay are chosen without the judged part.
+    """Fit one kind of model; scales, penalties and the epoch whose weights stay are chosen without the test part.
 
-    training, check: windows to fit, and windows to choose by; readings may be missing for the kind that is told of it
+    training, check: windows to fit, and windows to choose by; readings may be missing for `masked shred`
     device: that a network is fitted on: `cpu`, `cuda`, or `auto`, the GPU where there is one
     """
     if kind not in (*KINDS, *ON_REQUEST):

@@ -25,16 +25,16 @@ COLUMNS = ("sensors", "names", "loss", "rmse_deg", "fits", "seconds")
 
 
 def search_sensors(people: Sequence[Parts], channels: Sequence[Channel], most: int = 4) -> pd.DataFrame:
-    """Find the sensors from whose history ridge regression tells all other states best, for all people together.
+    """Find the sensors from whose history ridge regression reconstructs all other states best, for all people together.
 
     Where there are angles, they alone are candidates and states: translations are not what a worn sensor measures.
-    Sets are chosen on the check parts; the judged parts have no say, their error stands beside the choice. Each set
+    Sets are chosen on the check parts; the test parts have no say, their error stands beside the choice. Each set
     costs no pass over the windows: the mean products of all channels' histories are computed once for each person.
 
-    people: windows in which every candidate is read, and every state told: candidates and states are the same channels
+    people: windows in which every candidate is read, and every state reconstructed: both are the same channels
     returns: one row a size: `sensors` (how many), `names` (of the best set, joined by ", "), `loss` (mean squared
         error of all angles on the check parts, sensors counted as exact [deg2]; of the scaled states where there is no
-        angle), `rmse_deg` (on the judged parts, angles that no sensor measures; mean over people), `fits` and
+        angle), `rmse_deg` (on the test parts, angles that no sensor measures; mean over people), `fits` and
         `seconds` (regressions and processor time for this size)
     """
     if most < 1 or len(channels) < 2:
@@ -77,7 +77,7 @@ class _Products:
 
     fitted: Part
     checked: Part
-    judged: Part
+    tested: Part
     weights: NDArray[np.float64]
     kept: Chosen
 
@@ -92,7 +92,7 @@ def _products(parts: Parts, kept: Chosen, in_deg: bool) -> _Products:
         return x.T @ x / len(x), x.T @ y / len(x), np.mean(y**2, axis=0)
 
     weights = y_scale.sd**2 if in_deg else np.ones(len(y_scale.sd))
-    return _Products(of(training), of(parts.checked()), of(parts.judged()), weights, kept)
+    return _Products(of(training), of(parts.checked()), of(parts.tested()), weights, kept)
 
 
 def _sets(size: int, kept: Chosen, best: Chosen) -> Iterator[Chosen]:
@@ -111,20 +111,20 @@ def _rmse(products: Sequence[_Products], chosen: Chosen) -> float:
 
 
 def _errors(products: _Products, chosen: Chosen) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Mean squared error of each state that no sensor measures, on the check and on the judged part."""
+    """Mean squared error of each state that no sensor measures, on the check and on the test part."""
     count = len(products.weights)
     columns = np.flatnonzero(np.isin(np.arange(len(products.fitted[0])) % count, chosen))
     rest = np.setdiff1d(products.kept, chosen)
-    fitted, checked, judged = (
+    fitted, checked, tested = (
         (x_x[np.ix_(columns, columns)], x_y[np.ix_(columns, rest)], y_y[rest])
-        for x_x, x_y, y_y in (products.fitted, products.checked, products.judged)
+        for x_x, x_y, y_y in (products.fitted, products.checked, products.tested)
     )
     values, vectors = np.linalg.eigh(fitted[0])
     turned = vectors.T @ fitted[1]
     weights = [vectors @ (turned / (np.maximum(values, 0.0)[:, None] + penalty)) for penalty in PENALTIES]
     losses = [_squared(checked, each) * products.weights[rest] for each in weights]
     best = int(np.argmin([each.sum() for each in losses]))
-    return losses[best], _squared(judged, weights[best]) * products.weights[rest]
+    return losses[best], _squared(tested, weights[best]) * products.weights[rest]
 
 
 def _squared(part: Part, weights: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""Splits: which windows a model is fitted to, which it is chosen by, and which it is judged on."""
+"""Splits: which windows a model is fitted to, which it is chosen by, and which it is tested on."""
 
 from __future__ import annotations
 
@@ -52,8 +52,8 @@ class Parts:
         """Windows that models are chosen by."""
         return stacked([each for each in self.check if len(each)])
 
-    def judged(self) -> Samples:
-        """Windows that models are judged on."""
+    def tested(self) -> Samples:
+        """Windows that models are tested on."""
         return stacked([each for each in self.test if len(each)])
 
 
@@ -78,7 +78,7 @@ def split_within(trials: Sequence[Samples], rule: str, reach_s: float, seed: int
     return Parts(training, check, test, rule)
 
 
-def split_by_subject(people: Sequence[Sequence[Samples]], judged: int) -> Parts:
+def split_by_subject(people: Sequence[Sequence[Samples]], tested: int) -> Parts:
     """Leave one person out: the next one in the list is what models are chosen by, all others are fitted.
 
     people: windows of each trial of each person; at least three people
@@ -89,19 +89,19 @@ def split_by_subject(people: Sequence[Sequence[Samples]], judged: int) -> Parts:
             f"there are {len(people)}",
             "Add participants, or fit each of them alone.",
         )
-    checked = (judged + 1) % len(people)
-    fitted = [trial for k, trials in enumerate(people) if k not in (judged, checked) for trial in trials]
-    return Parts(tuple(fitted), tuple(people[checked]), tuple(people[judged]), PERSON_OUT)
+    checked = (tested + 1) % len(people)
+    fitted = [trial for k, trials in enumerate(people) if k not in (tested, checked) for trial in trials]
+    return Parts(tuple(fitted), tuple(people[checked]), tuple(people[tested]), PERSON_OUT)
 
 
-def split_by_trial(trials: Sequence[Samples], judged: Sequence[int], reach_s: float) -> Parts:
+def split_by_trial(trials: Sequence[Samples], tested: Sequence[int], reach_s: float) -> Parts:
     """Leave whole trials out, such as those of another condition; the last 15 % of each other trial are checked.
 
     reach_s: from the first reading of a window to its last [s]
     """
-    others = [each for k, each in enumerate(trials) if k not in judged]
+    others = [each for k, each in enumerate(trials) if k not in tested]
     labels = [_apart(each.time, np.where(_share(each.time) < 0.85, TRAINING, CHECK), reach_s) for each in others]
-    test = tuple(trials[k] for k in judged)
+    test = tuple(trials[k] for k in tested)
     return Parts(_chosen(others, labels, TRAINING), _chosen(others, labels, CHECK), test, "leave trials out")
 
 

@@ -19,16 +19,16 @@ COLUMNS = ("state", "unit", "rmse", "low", "high", "relative_l2", "r2")
 
 
 @dataclass(frozen=True, eq=False)
-class Judged:
-    """What was measured and what was told, window by window, with the stride that each belongs to."""
+class Reconstructed:
+    """What was measured and what was reconstructed, window by window, with the stride that each belongs to."""
 
     windows: Samples
     stride: NDArray[np.int_]  # (window,), number of the stride, -1 outside of strides
-    told: NDArray[np.float64]  # (window, state), what a model says
+    states: NDArray[np.float64]  # (window, state), reconstructed by a model
 
     @property
     def strides(self) -> int:
-        """Strides that were judged, in part or whole: the number of independent samples is of this order."""
+        """Strides with test windows, in part or whole: the number of independent samples is of this order."""
         return len(np.unique(self.stride[self.stride >= 0]))
 
 
@@ -54,15 +54,15 @@ def stride_numbers(trials: Sequence[Samples]) -> NDArray[np.int_]:
     return np.concatenate(numbers)
 
 
-def state_errors(judged: Judged, channels: Sequence[Channel], seed: int = 0) -> pd.DataFrame:
+def state_errors(tested: Reconstructed, channels: Sequence[Channel], seed: int = 0) -> pd.DataFrame:
     """Error of every state: RMSE in its unit, relative L2, and R2.
 
     returns: `COLUMNS`: state, unit, rmse [unit], low and high (95 % interval of the RMSE, strides drawn with
         replacement; NaN with fewer than three strides), relative_l2 [1] (norm of the error by norm of the measured
-        values about zero, Eq. 2.21, which the dissertation calls MSE), r2 [1] about the mean of the judged part
+        values about zero, Eq. 2.21, which the dissertation calls MSE), r2 [1] about the mean of the test part
     """
-    measured, error = judged.windows.y, judged.told - judged.windows.y
-    low, high = _interval(error**2, judged.stride, seed)
+    measured, error = tested.windows.y, tested.states - tested.windows.y
+    low, high = _interval(error**2, tested.stride, seed)
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = np.linalg.norm(error, axis=0) / np.linalg.norm(measured, axis=0)
     return pd.DataFrame(
@@ -73,7 +73,7 @@ def state_errors(judged: Judged, channels: Sequence[Channel], seed: int = 0) -> 
             "low": low,
             "high": high,
             "relative_l2": relative,
-            "r2": r2(measured, judged.told),
+            "r2": r2(measured, tested.states),
         }
     )
 
@@ -87,7 +87,7 @@ def angle_columns(channels: Sequence[Channel]) -> list[int]:
     return [k for k, channel in enumerate(channels) if channel.unit == "deg"]
 
 
-def angles_error(judged: Judged, channels: Sequence[Channel], sensors: NDArray[np.float64]) -> dict[str, float]:
+def angles_error(tested: Reconstructed, channels: Sequence[Channel], sensors: NDArray[np.float64]) -> dict[str, float]:
     """One number for all angles that no sensor measures, by each of the three names.
 
     sensors (window, sensor) [deg]: readings of those sensors that are angles: they belong to the state, and their
@@ -99,31 +99,31 @@ def angles_error(judged: Judged, channels: Sequence[Channel], sensors: NDArray[n
     angles = angle_columns(channels)
     if not angles:
         return dict.fromkeys(("rmse_deg", "relative_l2", "r2", "relative_l2_whole"), float("nan"))
-    measured, told = judged.windows.y[:, angles], judged.told[:, angles]
-    norm = float(np.linalg.norm(told - measured))
+    measured, states = tested.windows.y[:, angles], tested.states[:, angles]
+    norm = float(np.linalg.norm(states - measured))
     own, read = float(np.linalg.norm(measured)), float(np.linalg.norm(sensors))
     return {
-        "rmse_deg": float(np.sqrt(np.mean((told - measured) ** 2))),
+        "rmse_deg": float(np.sqrt(np.mean((states - measured) ** 2))),
         "relative_l2": norm / own,
-        "r2": float(np.nanmedian(r2(measured, told))),
+        "r2": float(np.nanmedian(r2(measured, states))),
         "relative_l2_whole": norm / float(np.hypot(own, read)),
     }
 
 
-def phase_curves(judged: Judged, states: Sequence[str], points: int = 51) -> pd.DataFrame:
-    """Mean and spread over the stride of what was measured and what was told.
+def phase_curves(tested: Reconstructed, states: Sequence[str], points: int = 51) -> pd.DataFrame:
+    """Mean and spread over the stride of what was measured and what was reconstructed.
 
     returns: state, percent, measured, measured_sd, reconstructed, rmse (of the windows in the bin)
     """
-    inside = judged.stride >= 0
-    phi, y, told = judged.windows.phi[inside], judged.windows.y[inside], judged.told[inside]
+    inside = tested.stride >= 0
+    phi, y, found = tested.windows.phi[inside], tested.windows.y[inside], tested.states[inside]
     edges = np.linspace(0, 100, points + 1)
     bins = np.clip(np.digitize(phi, edges) - 1, 0, points - 1)
     rows = []
     for k in np.unique(bins):
         here = bins == k
         for column, state in enumerate(states):
-            m, f = y[here, column], told[here, column]
+            m, f = y[here, column], found[here, column]
             rmse = float(np.sqrt(np.mean((f - m) ** 2)))
             rows.append((state, float(edges[k] + edges[1] / 2), m.mean(), m.std(), f.mean(), rmse))
     return pd.DataFrame(

@@ -1,4 +1,4 @@
-"""States told live: one reading of the sensors after the other."""
+"""States reconstructed live: one reading of the sensors after the other."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ if TYPE_CHECKING:
 
 
 class Stream:
-    """Tells the states each time a new reading comes; the same numbers as over a recording.
+    """Reconstructs the states each time a new reading comes; the same numbers as over a recording.
 
     A recurrent network carries the states of the windows under way from one reading to the next
     (`gaitdisc.networks.carried_windows`); every other model reads the last readings, which are kept.
 
-    missing: a word of `gaitdisc.sensing.missing.WAYS`: what stands for a reading that is missing, unless the model was
-        fitted to be told of it
+    missing: a word of `gaitdisc.sensing.missing.WAYS`: what stands for a reading that is missing, unless the model is
+        a masked one
     """
 
     def __init__(self, reconstructor: Reconstructor, missing: str = "none") -> None:
         refuse_unknown_way(missing)
         self._sensors = reconstructor.sensing.sensors
-        self._told = _told_by(reconstructor)
+        self._model = _stepwise(reconstructor)
         self._missing = missing
         self._stands = reconstructor.sensor_means
 
@@ -37,7 +37,7 @@ class Stream:
         """States at the time of a new reading, (state,) [each state's unit].
 
         NaN until the history is full, and while it holds a missing reading that the model needs: unless the stream was
-        told what to put in its place, a value that was never measured is not made up.
+        given what to put in its place, a value that was never measured is not made up.
 
         reading array_like (sensor,) [each sensor's unit]: in the order of the sensors; NaN where a sensor dropped out.
             One call a sample, at the model's rate
@@ -53,11 +53,11 @@ class Stream:
             new = np.where(np.isfinite(new), new, self._stands)
         if self._missing == "last":
             self._stands = new
-        return self._told.update(new)
+        return self._model.update(new)
 
 
 class _LastReadings:
-    """The last readings, and what a model tells of them."""
+    """The last readings, and what a model reconstructs from them."""
 
     def __init__(self, reconstructor: Reconstructor) -> None:
         what = reconstructor.sensing
@@ -73,7 +73,7 @@ class _LastReadings:
 
 
 class _Mean:
-    """Mean of what several carried networks tell."""
+    """Mean of what several carried networks reconstruct."""
 
     def __init__(self, members: Sequence[CarriedWindows]) -> None:
         self._members = members
@@ -82,7 +82,7 @@ class _Mean:
         return np.mean([member.update(reading) for member in self._members], axis=0)
 
 
-def _told_by(reconstructor: Reconstructor) -> _LastReadings | _Mean | CarriedWindows:
+def _stepwise(reconstructor: Reconstructor) -> _LastReadings | _Mean | CarriedWindows:
     if reconstructor.kind not in ("shred", MASKED, ENSEMBLE, OF_TEXT):
         return _LastReadings(reconstructor)
     from gaitdisc.networks.carried_windows import CarriedWindows

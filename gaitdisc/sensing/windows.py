@@ -1,4 +1,4 @@
-"""Windows: what the sensors read now and a while ago, beside the states to be told from it."""
+"""Windows: what the sensors read now and a while ago, beside the states to be reconstructed from it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Lags:
 
     count: int = 25  # readings of each sensor in a window, the present one included
     spacing: int = 4  # samples from one reading to the next; 6 Hz kinematics at 100 Hz lose nothing at 4
-    # samples from the last reading to the state that is told: 0 tells the present, more of them forecast
+    # samples from the last reading to the state that is reconstructed: 0 is the present, more of them a forecast
     ahead: int = 0
 
     def __post_init__(self) -> None:
@@ -52,14 +52,14 @@ def windows_of(
     phi: NDArray[np.float64],
     missing: bool = False,
 ) -> Samples:
-    """Every window of one recording; none reaches beyond its start, nor over a missing value unless that is asked for.
+    """Every window of one recording; none reaches beyond its start, nor over a missing value unless that is allowed.
 
-    sensors, states: channels that are read, and channels that are to be told
+    sensors, states: channels that are read, and channels that are to be reconstructed
     phi (time,) [% stride]: percent stride of every sample of the recording
     missing: whether windows are kept whose readings are missing in part (NaN); the states must be there
     returns: x (window, reading * sensor), oldest reading first, sensors side by side; y, time and phi those of the
-        state that is told, at the last reading or `lags.ahead` samples later. Windows that lack a value are not among
-        them
+        state that is reconstructed, at the last reading or `lags.ahead` samples later. Windows that lack a value are
+        left out
 
     >>> from gaitdisc.channel import Channel
     >>> pair = (Channel("a", "signal", "V"), Channel("b", "signal", "V"))
@@ -68,7 +68,7 @@ def windows_of(
     >>> made.x.tolist(), made.y.ravel().tolist(), made.inputs
     ([[0.0, 1.0], [1.0, 2.0], [2.0, 3.0]], [10.0, 20.0, 30.0], ('a 0.10 s ago', 'a'))
     """
-    read, told = recording.selected(sensors).values, recording.selected(states).values
+    read, wanted = recording.selected(sensors).values, recording.selected(states).values
     if len(read) <= lags.reach + lags.ahead:
         forth = f" and {lags.ahead / recording.rate_hz:.2f} s ahead" if lags.ahead else ""
         raise SamplingError(
@@ -80,7 +80,7 @@ def windows_of(
     rows = last[:, None] + (np.arange(lags.count) - lags.count + 1) * lags.spacing
     x = read[rows].reshape(len(last), -1)
     known = np.isfinite(x)
-    whole = (known.any(axis=1) if missing else known.all(axis=1)) & np.isfinite(told[last + lags.ahead]).all(axis=1)
+    whole = (known.any(axis=1) if missing else known.all(axis=1)) & np.isfinite(wanted[last + lags.ahead]).all(axis=1)
     names = tuple(
         sensor if ago == 0 else f"{sensor} {ago * lags.spacing / recording.rate_hz:.2f} s ago"
         for ago in range(lags.count - 1, -1, -1)
@@ -88,7 +88,7 @@ def windows_of(
     )
     kept = last[whole] + lags.ahead
     return Samples(
-        x[whole], told[kept], names, tuple(states), recording.time[kept], np.asarray(phi)[kept], recording.subject
+        x[whole], wanted[kept], names, tuple(states), recording.time[kept], np.asarray(phi)[kept], recording.subject
     )
 
 

@@ -88,7 +88,7 @@ def test_without_muscles_forces_only_the_residuals_speak(lab):
     kinematics = DATA / "IK/subject01_walk_IK.mot"
     from gaitdisc import discover
 
-    found, _ = discover(lab / "subject01_metabolics.osim", kinematics)
+    found, _ = discover(str(lab / "subject01_metabolics.osim"), str(kinematics))
     assert found.sentence.startswith("Nothing can be named at a joint: no file gives the muscles' forces")
     assert "N at pelvis_ty" in found.sentence and not found.effects
 

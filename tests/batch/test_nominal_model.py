@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.batch.demonstration import write_demonstration
-from gaitdisc.batch.nominal_model import nominal_inquiry, nominal_model, stride_trials
+from gaitdisc.batch.nominal_model import nominal_and_trials, nominal_model, stride_trials
 from gaitdisc.batch.processed_walks import processed_walks
 from gaitdisc.errors import StrideError
 from gaitdisc.simulation.running import compile_simulation
@@ -37,7 +37,7 @@ def test_an_ankle_that_strays_from_its_habit_comes_back(nominal):
 
 
 def test_trials_are_whole_strides_of_the_device_walk(study):
-    simulation, measured = nominal_inquiry(study, "W01", strides=3)
+    simulation, measured = nominal_and_trials(study, "W01", strides=3)
     assert [port.name for port in simulation.ports] == ["acceleration"]
     phase = measured.drive.inputs[0, : measured.samples[0], 0]
     assert (np.diff(phase) < 0).sum() == 2

@@ -9,8 +9,8 @@ def alone(study, **changes):
 
 
 def test_the_device_is_what_the_augmented_model_adds(study, tmp_path):
-    told = []
-    unit = computed_unit(study, study.participants[0], tmp_path, told.append)
+    shares = []
+    unit = computed_unit(study, study.participants[0], tmp_path, shares.append)
     response = unit.response
     assert response is not None
     nominal, augmented, exo = (response.r2_of("ankle_angle_r", model) for model in ("nominal", "augmented", "exo"))
@@ -19,8 +19,8 @@ def test_the_device_is_what_the_augmented_model_adds(study, tmp_path):
     assert response.r2_of("knee_angle_r", "nominal") == pytest.approx(
         response.r2_of("knee_angle_r", "augmented"), abs=0.05
     )
-    assert told == sorted(told)
-    assert told[-1] <= 1.0
+    assert shares == sorted(shares)
+    assert shares[-1] <= 1.0
 
 
 def test_one_condition_only_is_refused_by_name(study, tmp_path):

@@ -11,17 +11,17 @@ def folder(tmp_path_factory):
 
 
 def test_it_is_computed_once_and_loaded_afterwards(study, folder):
-    person, told = study.participants[0], []
+    person, shares = study.participants[0], []
     key = response_key(unit_keys(study, person))
     assert stored_quantity(person, folder, key) is None
-    first = computed_quantity(study, person, folder, (5.0,), "first", told.append)
+    first = computed_quantity(study, person, folder, (5.0,), "first", shares.append)
     assert isinstance(first, DataQuantity)
-    assert told[-1] == 1.0
-    work = len(told)
-    again = computed_quantity(study, person, folder, (5.0,), "first", told.append)
+    assert shares[-1] == 1.0
+    work = len(shares)
+    again = computed_quantity(study, person, folder, (5.0,), "first", shares.append)
     assert isinstance(again, DataQuantity)
     assert again.table.equals(stored_quantity(person, folder, key).table)
-    assert len(told) == work
+    assert len(shares) == work
 
 
 def test_other_settings_are_not_taken_for_these(study, folder):

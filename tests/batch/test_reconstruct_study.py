@@ -24,7 +24,7 @@ def test_every_participant_is_reconstructed_from_own_walks(study):
     assert people[0].fitted[1].reconstructor.sensing.lags.count == 25
 
 
-def test_where_it_was_fitted_is_told(study):
+def test_where_it_was_fitted_is_said(study):
     done, people = reconstruct_study(study, ("knee_angle_r",), ReconstructionSettings(kinds=KINDS))
     assert done.provenance.settings["reconstruct"]["device"] == "cpu"
     assert {model.reconstructor.device for person in people for model in person.fitted} == {"cpu"}
@@ -47,7 +47,7 @@ def test_a_history_longer_than_the_trial(study):
         reconstruct_study(study, ("knee_angle_r",), settings)
 
 
-def test_forces_are_told_in_newtons_and_no_number_is_in_degrees(tmp_path):
+def test_forces_are_reconstructed_in_newtons_and_no_number_is_in_degrees(tmp_path):
     study = write_demonstration(tmp_path, 30.0, 1)
     settings = ReconstructionSettings(kinds=KINDS, condition="nominal", targets="forces")
     done, _ = reconstruct_study(study, ("hip_flexion_r", "knee_angle_r"), settings)
@@ -61,7 +61,7 @@ def test_forces_are_told_in_newtons_and_no_number_is_in_degrees(tmp_path):
     assert later.states == done.states  # the sensors' own future was not asked for
 
 
-def test_one_condition_is_told_from_the_other(study):
+def test_one_condition_is_reconstructed_from_the_other(study):
     settings = ReconstructionSettings(split="condition", condition="exo", kinds=KINDS)
     done, _ = reconstruct_study(study, ("knee_angle_r",), settings)
     within, _ = reconstruct_study(study, ("knee_angle_r",), ReconstructionSettings(kinds=KINDS))
@@ -69,7 +69,7 @@ def test_one_condition_is_told_from_the_other(study):
     assert done.over_participants()["rmse_deg"]["delay ridge"] > within.over_participants()["rmse_deg"]["delay ridge"]
 
 
-def test_a_split_across_conditions_needs_the_one_that_is_judged(study):
+def test_a_split_across_conditions_needs_the_one_that_is_tested(study):
     settings = ReconstructionSettings(split="condition", kinds=KINDS)
     with pytest.raises(
         SchemaError, match=r"needs walks of the condition that is tested.*--condition is ''.* exo, nominal"

@@ -19,7 +19,7 @@ def test_the_folder_is_free_again_afterwards(tmp_path):
     assert not (tmp_path / "run" / ".lock").exists()
 
 
-def test_a_second_run_is_told_who_holds_the_folder(tmp_path):
+def test_a_second_run_reads_who_holds_the_folder(tmp_path):
     with run_lock(tmp_path), pytest.raises(WriteError, match=f"held by process {os.getpid()}"), run_lock(tmp_path):
         pass
 

@@ -52,7 +52,7 @@ def test_joint_moments(trial):
     assert both.names == (*SENSORS, "ankle_angle_r_moment")
 
 
-def test_a_dead_muscle_is_left_out_and_told(trial):
+def test_a_dead_muscle_is_left_out_and_reported(trial):
     emg = trial.stream("emg")
     values = emg.values.copy()
     values[:, 3] = 0.0

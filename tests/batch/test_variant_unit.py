@@ -10,9 +10,9 @@ from gaitdisc.results.variants import Variants
 
 
 def computed(study, folder, question):
-    told = []
-    found = computed_variants(study, study.participants[0], folder, question, told.append)
-    return found, told
+    shares = []
+    found = computed_variants(study, study.participants[0], folder, question, shares.append)
+    return found, shares
 
 
 @pytest.fixture(scope="module")
@@ -27,18 +27,18 @@ def first_time(small, tmp_path_factory):
 
 @pytest.mark.parametrize(("question", "first"), [("modalities", ALL), ("sensitivity", AS_STUDIED)])
 def test_variants_are_computed_once_and_then_loaded(small, first_time, question, first):
-    folder, found, told = first_time[question]
+    folder, found, shares = first_time[question]
     assert isinstance(found, Variants)
     assert found.table["variant"].iloc[0] == first
-    assert told == sorted(told)
-    assert told[-1] == pytest.approx(1.0)
-    again, told = computed(small, folder, question)
-    assert told == []
+    assert shares == sorted(shares)
+    assert shares[-1] == pytest.approx(1.0)
+    again, shares = computed(small, folder, question)
+    assert shares == []
     assert again.table.equals(computed(small, folder, question)[0].table)
     assert again.table["r2"].to_numpy() == pytest.approx(found.table["r2"].to_numpy())
 
 
-def test_a_cut_off_changes_what_is_judged(first_time):
+def test_a_cut_off_changes_what_is_tested(first_time):
     _, found, _ = first_time["sensitivity"]
     middle = found.table[found.table["kind"] == "network"].groupby(["variant", "model"])["r2"].median()
     assert middle["angles 12 Hz", "exo"] < middle["angles 4 Hz", "exo"]  # faster noise is less predictable

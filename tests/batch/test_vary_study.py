@@ -10,10 +10,10 @@ pytestmark = pytest.mark.usefixtures("trained_briefly")
 
 @pytest.mark.slow
 def test_every_participant_of_the_run_is_varied(small, tmp_path):
-    told = []
-    run = vary_study(small, tmp_path, "modalities", told=lambda who, share: told.append((who, share)))
+    shares = []
+    run = vary_study(small, tmp_path, "modalities", progress=lambda who, share: shares.append((who, share)))
     assert [each.participant for each in run.people] == ["P01", "P02"]
-    assert [who for who, share in told if share == 1.0][-1] == "P02"
+    assert [who for who, share in shares if share == 1.0][-1] == "P02"
     assert run.held_out_s == pytest.approx((3.75, 3.75), abs=0.02)
     assert len(run.tests) == 0  # two people carry no test
     kept = load_variant_run(tmp_path / "modalities")

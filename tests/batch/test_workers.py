@@ -52,14 +52,14 @@ def test_processes_beside_this_one_keep_the_order():
 
 
 @pytest.mark.parametrize("jobs", [1, 2])
-def test_units_come_in_order_and_everybody_is_told(study, jobs):
-    told = []
+def test_units_come_in_order_and_everybody_is_reported(study, jobs):
+    shares = []
     found = computed_units(
-        Workers(jobs=jobs), named_after_half, study.participants, lambda who, share: told.append((who, share)), str
+        Workers(jobs=jobs), named_after_half, study.participants, lambda who, share: shares.append((who, share)), str
     )
     assert list(found) == ["P01", "P02"]
     halves = [("P01", 0.5), ("P01", 1.0), ("P02", 0.5), ("P02", 1.0)]
-    assert told == (halves if jobs == 1 else halves[1::2])
+    assert shares == (halves if jobs == 1 else halves[1::2])
 
 
 def killed_for_the_second(*, participant, progress):

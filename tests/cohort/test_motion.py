@@ -49,5 +49,5 @@ def test_a_stiff_spring_leaves_its_moment_and_less_dorsiflexion(person):
     assert held[600:, 17].min() == pytest.approx(-5.0 * (ankle[1] - person.engaged_deg), abs=0.5)
 
 
-def test_a_body_that_is_driven_apart_is_told(person):
+def test_a_body_that_is_driven_apart_is_reported(person):
     assert not quiet_walk(person, 4.0, damping=-6.0)[2]

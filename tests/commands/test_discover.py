@@ -37,15 +37,15 @@ RATE, SUBSTEPS = 50.0, 20
 
 def rows(trials=4, samples=400):
     rng = np.random.default_rng(0)
-    told = []
+    rows = []
     for trial in range(1, trials + 1):
         x, v = rng.uniform(0.5, 1.2) * (-1) ** trial, 0.0
         for sample in range(samples):
-            told.append((trial, sample / RATE, x + 0.005 * rng.standard_normal()))
+            rows.append((trial, sample / RATE, x + 0.005 * rng.standard_normal()))
             for _ in range(SUBSTEPS):
                 v += (-4.0 * x - 0.1 * v - FRICTION * np.sign(v)) / RATE / SUBSTEPS
                 x += v / RATE / SUBSTEPS
-    return told
+    return rows
 
 
 def write(path, table, head="trial,time,x"):

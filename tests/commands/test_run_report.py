@@ -9,7 +9,7 @@ from gaitdisc.ingest.study_file import load_study
 from gaitdisc.results.clinical_reference import save_reference
 
 
-def test_whoever_stops_it_is_told_that_nothing_is_lost(study, tmp_path, capsys):
+def test_whoever_stops_it_reads_that_nothing_is_lost(study, tmp_path, capsys):
     def stopped(_):
         raise KeyboardInterrupt
 

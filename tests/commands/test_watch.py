@@ -14,7 +14,7 @@ import pytest
 from gaitdisc.ingest.study_file import load_study
 
 PIECES, PAUSE_S = 6, 0.25
-STILL_S = 4.0  # sixteen pauses: a busy machine may sleep longer than it is told to
+STILL_S = 4.0  # sixteen pauses: a busy machine may sleep longer than it should
 
 
 def copied_slowly(source, target):
@@ -42,7 +42,8 @@ def test_trials_are_taken_up_as_they_are_saved(gait_data, tmp_path):
     lab, clinic = tmp_path / "lab", tmp_path / "clinic"
     lab.mkdir()
     words = [sys.executable, "-m", "gaitdisc", "watch", clinic, "--from", lab, "--still", STILL_S, "--quiet"]
-    watch = subprocess.Popen([*map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+    watch = subprocess.Popen([*map(str, words)], **pipes, preexec_fn=_hears_ctrl_c)  # noqa: PLW1509 no thread runs yet
     try:
         index, before = clinic / "run" / "report" / "index.html", {}
         for k, (source, name) in enumerate(zip(sources, names, strict=True)):
@@ -73,6 +74,11 @@ def test_trials_are_taken_up_as_they_are_saved(gait_data, tmp_path):
         one.id: [trial.files[0].split("lab/")[1] for trial in one.trials] for one in load_study(clinic).participants
     }
     assert people == {"P01": list(names[:2]), "P02": ["Zoe/straight/1.c3d", "Zoe/straight/2.c3d"]}
+
+
+def _hears_ctrl_c():
+    """A shell lets what it runs in the background ignore Ctrl-C, these tests too, and they hand it down."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def _trials(clinic):

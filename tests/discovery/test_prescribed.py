@@ -47,9 +47,11 @@ def noise(seed, count=1):
     return 3.0 * fast / fast.std()
 
 
-def found(left, seed=1):
-    angle_noise = noise(99, 4)
-    joint = LeftMoment("ankle_moment", TIME, left + noise(seed)[0], MUSCLES + left, angle_noise, ANGLE, columns)
+def found(left, seed=1, columns_of=lambda mine: mine):
+    def seen(candidate, constants):
+        return columns_of(columns(candidate, constants))
+
+    joint = LeftMoment("ankle_moment", TIME, left + noise(seed)[0], MUSCLES + left, noise(99, 4), ANGLE, seen)
     return joint_finding(joint, SHAPES)
 
 
@@ -58,7 +60,7 @@ def test_mere_noise_has_no_name(seed):
     assert found(np.zeros(len(TIME)), seed).named is None
 
 
-def test_a_one_sided_spring_is_named_with_its_numbers_and_predicts_the_other_half():
+def test_a_one_sided_spring_is_named_with_its_numbers_and_predicts_time_held_out():
     one = found(-150 * np.maximum(0, ANGLE - 0.05))
     assert one.named is not None and one.named.part.candidate.name == "one_sided_spring"
     assert one.named.part.values["factor"] == pytest.approx(-150, rel=0.15)
@@ -84,3 +86,25 @@ def test_the_smallest_factor_that_shows_shrinks_with_the_size_of_its_column():
     one = found(np.zeros(len(TIME)))
     assert one.least(2 * ANGLE) == pytest.approx(one.least(ANGLE) / 2)
     assert one.least(0 * ANGLE) == float("inf")
+
+
+def test_what_acts_in_one_part_of_the_time_alone_is_predicted_from_the_rest_of_that_part():
+    late = TIME > 0.6 * SECONDS
+    one = found(np.where(late, -0.4 * MUSCLES, 0.0), columns_of=lambda mine: np.where(late[:, None], mine, 0.0))
+    assert one.named is not None and one.named.part.candidate.place == "muscles_strength"
+    assert one.named.part.values["value"] == pytest.approx(0.6, abs=0.05)
+
+
+def test_of_two_that_explain_the_record_that_stands_which_predicts_what_was_held_out():
+    one = found(-150 * np.maximum(0, ANGLE - 0.05))
+    spring, *others = one.rivals
+    assert spring.part.candidate.name == "one_sided_spring"
+    assert all(other.held_out <= spring.held_out for other in others)
+
+
+def test_blocks_hold_out_every_sample_once_and_keep_their_distance():
+    blocks = found(np.zeros(len(TIME))).joint.blocks
+    assert np.array_equal(np.concatenate([held for held, _ in blocks]), np.arange(len(TIME)))
+    assert len(blocks) == 10
+    for held, learned in blocks:
+        assert min(np.abs(learned[:, None] - held).min(axis=1)) == 3  # two samples between them

@@ -102,6 +102,18 @@ def test_a_wrong_parameter_is_told_beside_the_files_number():
             Estimate(1.2, 1.1, 1.3, "1"),
             "x reads 1.2 (95 % 1.1-1.3) times what it should",
         ),
+        (
+            "sensor_error",
+            "sensor_gain",
+            Estimate(0.0178, 0.0175, 0.0181, "1"),
+            "should, as radians do that are taken for",
+        ),
+        (
+            "sensor_error",
+            "sensor_gain",
+            Estimate(-1.01, -1.03, -0.99, "1"),
+            "times what it should, as the other sign does",
+        ),
         ("sensor_error", "sensor_offset", Estimate(-0.2, -0.3, -0.1, "m"), "x reads low by 0.2 m (95 % 0.1-0.3)"),
         ("sensor_error", "sensor_drift", Estimate(0.2, 0.1, 0.3, "m/s"), "measured x drifts high by 0.2 m/s"),
         ("sensor_error", "sensor_lag", Estimate(0.04, 0.03, 0.05, "s"), "measured x is seen late by 0.04 s"),

@@ -8,11 +8,11 @@ from gaitdisc.engines.mapping import (
     names_engine,
     other_values,
     read_mapping,
-    refuse_other_units,
     with_input_changed,
     write_mapping,
 )
 from gaitdisc.engines.model_file import read_model
+from gaitdisc.engines.tracked_mapping import Tracked
 from gaitdisc.errors import GaitdiscError
 from gaitdisc.simulation.running import compile_simulation
 from gaitdisc.simulation.simulation_file import read_simulation
@@ -30,6 +30,14 @@ def test_a_mapping_goes_to_its_file_and_back(pendulum, tmp_path):
     assert names_engine(file) and names_engine(pendulum) and not names_engine(file.with_name("else.toml"))
     (tmp_path / "walk.toml").write_text('[tracked]\nexternal_loads = "grf.xml"\n')
     assert names_engine(tmp_path / "walk.toml")
+
+
+def test_a_walk_whose_motion_is_prescribed_has_nothing_to_run_forward(pendulum, tmp_path, monkeypatch):
+    tracked = Tracked(tmp_path / "leg.osim", (tmp_path / "grf.xml", tmp_path / "grf.mot"))
+    monkeypatch.setattr("gaitdisc.engines.mapping.read_tracked", lambda _: tracked)
+    pendulum.with_suffix(".toml").write_text("[tracked]\n")
+    with pytest.raises(GaitdiscError, match=r"pendulum.toml holds .tracked.: its motion is prescribed, and only disc"):
+        read_mapping(pendulum)
 
 
 def test_without_a_mapping_columns_have_the_coordinates_names(pendulum):
@@ -63,13 +71,6 @@ def test_a_number_that_is_not_the_models_is_told(pendulum):
     assert other_values(mapping, model) == ()
     (said,) = other_values(mapping.with_values({"rod_mass": 3.0}), model)
     assert said.what == "rod_mass is 3 in the mapping and 2 in the model"
-
-
-def test_degrees_that_nobody_said_are_degrees_are_refused(pendulum):
-    mapping, model = read_mapping(pendulum)
-    refuse_other_units(mapping, model, {"pivot": 1.2})
-    with pytest.raises(GaitdiscError, match=r"column 'pivot' makes it 45 rad: these may be degrees.*--degrees"):
-        refuse_other_units(mapping, model, {"pivot": 45.0})
 
 
 def test_a_mapping_is_no_simulation_that_runs_by_itself(pendulum):

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from gaitdisc.engines.engine import Motion
-from gaitdisc.engines.tracked_files import Tracked, tracked_motion
+from gaitdisc.engines.tracked_files import tracked_motion
+from gaitdisc.engines.tracked_mapping import Tracked
 
 DATA = Path(__file__).parents[3] / "shared/data/opensim_gait10dof"
 RESULTS = DATA / "CMC/results_no_spring"

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from gaitdisc.engines.engine import Coordinate
-from gaitdisc.engines.tracked_files import check_loads, read_tracked, tracked_motion
-from gaitdisc.errors import ChannelError, ReadError, SamplingError, SchemaError
+from gaitdisc.engines.tracked_files import check_loads, drafted_tracked, tracked_motion
+from gaitdisc.engines.tracked_mapping import read_tracked
+from gaitdisc.errors import ChannelError, GaitdiscError, ReadError, SamplingError, SchemaError, UnitError
 
 JOINTS = (Coordinate("pelvis_ty", "m", "pelvis_ty"), Coordinate("ankle_angle_r", "rad", "ankle_angle_r"))
 ACTUATORS = ("soleus_r", "ankle_angle_r_reserve")
@@ -129,3 +130,62 @@ def test_radians_that_are_said_to_be_degrees_are_refused(walk):
 def test_the_ends_of_angles_are_left_out_where_rates_come_from_them(walk):
     read = motion(walk)
     assert 1 / 6 < read.time[0] < 0.2 and 1.79 < read.time[-1] < 1.99 - 1 / 6  # one period of 6 Hz
+
+
+def test_degrees_that_are_said_to_be_radians_are_refused(walk):
+    angle = 40 * np.sin(2 * np.pi * TIME)
+    storage(walk / "walk.mot", {"pelvis_ty": 1 + 0 * TIME, "ankle_angle_r": angle}, degrees="no")
+    with pytest.raises(UnitError, match=r"ankle_angle_r reaches 40, which looks like degrees. Write inDegrees=yes"):
+        motion(walk)
+
+
+def test_radians_of_a_whole_leg_that_are_said_to_be_degrees_are_refused(walk):
+    swing = np.sin(2 * np.pi * TIME)
+    columns = {"pelvis_ty": 1 + 0 * TIME, "hip_flexion_r": 0.5 * swing, "ankle_angle_r": 0.2 * swing}
+    storage(walk / "walk.mot", columns, degrees="yes")
+    with pytest.raises(UnitError, match=r"which looks like radians. Write inDegrees=no"):
+        motion(walk)
+
+
+def test_a_coordinate_of_a_name_that_nobody_else_uses_is_in_the_unit_of_the_header(walk):
+    own = (JOINTS[0], Coordinate("tarsal_roll", "rad", "tarsal_roll"))
+    tracked = read_tracked(walk / "leg.osim")
+    assert tracked is not None
+    for degrees, size in (("yes", 10.0), ("no", np.radians(10.0))):
+        columns = {"pelvis_ty": 1 + 0 * TIME, "tarsal_roll": size * np.sin(2 * np.pi * TIME)}
+        storage(walk / "walk.mot", columns, degrees=degrees)
+        read = tracked_motion(tracked, walk / "walk.mot", own, ACTUATORS)
+        assert np.ptp(read.q[:, 1]) == pytest.approx(2 * np.radians(10.0), rel=0.02)
+    text = (walk / "walk.mot").read_text().replace("inDegrees=no\n", "")
+    (walk / "walk.mot").write_text(text)
+    with pytest.raises(UnitError, match=r"walk.mot says whether its angles are degrees; its header does not"):
+        tracked_motion(tracked, walk / "walk.mot", own, ACTUATORS)
+
+
+@pytest.mark.parametrize("name", ["walk.c3d", "walk.trc", "walk.csv"])
+def test_markers_in_the_place_of_angles_are_refused(walk, name):
+    (walk / name).write_bytes(b"\x02P")
+    tracked = read_tracked(walk / "leg.osim")
+    assert tracked is not None
+    with pytest.raises(ReadError, match=rf"{name} is a file of another kind. Run OpenSim's inverse kinematics"):
+        tracked_motion(tracked, walk / name, JOINTS, ACTUATORS)
+
+
+def test_the_forces_themselves_in_the_place_of_external_loads_are_refused(walk):
+    (walk / "leg.toml").write_text('[tracked]\nexternal_loads = "grf.mot"\n')
+    with pytest.raises(ReadError, match=r"grf.mot holds the forces themselves. Give the .xml of OpenSim's inverse dyn"):
+        read_tracked(walk / "leg.osim")
+
+
+def test_files_that_do_not_fit_are_refused_before_a_model_is_loaded(tmp_path):
+    model = tmp_path / "leg.osim"
+    model.write_text("<OpenSimDocument/>")
+    (tmp_path / "grf.mot").write_text("")
+    for given, words in {
+        (tmp_path / "leg.xml", tmp_path / "grf.xml"): "leg.xml is none. Leave out --external-loads",
+        (model, None): "Add --external-loads grf.xml",
+        (model, tmp_path / "grf.xml"): "there is none at .*grf.xml",
+        (model, tmp_path / "grf.mot"): "grf.mot holds the forces themselves. Give the .xml",
+    }.items():
+        with pytest.raises(GaitdiscError, match=words):
+            drafted_tracked(*given)

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gaitdisc.errors import UnitError
-from gaitdisc.ingest.angle_unit import copied_coordinate_unit, judged_unit
+from gaitdisc.ingest.angle_unit import copied_coordinate_unit, plausible_unit
 
 TIME = np.arange(200) / 100
 NAMES = ["pelvis_rotation", "hip_flexion_r", "knee_angle_r", "ankle_angle_r"]
@@ -23,40 +23,40 @@ def _walk_deg(hip=22.0, knee=30.0):
 def test_walking_is_recognised_and_mistakes_are_refused(hip, knee):
     degrees = _walk_deg(hip, knee)
     radians = np.radians(degrees)
-    assert judged_unit(TIME, degrees, NAMES, "deg", "a.mot") == ("deg", None)
-    assert judged_unit(TIME, radians, NAMES, "rad", "a.mot") == ("rad", None)
-    assert judged_unit(TIME, degrees, NAMES, None, "a.mot")[0] == "deg"
-    assert judged_unit(TIME, radians, NAMES, None, "a.mot")[0] == "rad"
+    assert plausible_unit(TIME, degrees, NAMES, "deg", "a.mot") == ("deg", None)
+    assert plausible_unit(TIME, radians, NAMES, "rad", "a.mot") == ("rad", None)
+    assert plausible_unit(TIME, degrees, NAMES, None, "a.mot")[0] == "deg"
+    assert plausible_unit(TIME, radians, NAMES, None, "a.mot")[0] == "rad"
     with pytest.raises(UnitError):
-        judged_unit(TIME, degrees, NAMES, "rad", "a.mot")
+        plausible_unit(TIME, degrees, NAMES, "rad", "a.mot")
     with pytest.raises(UnitError):
-        judged_unit(TIME, radians, NAMES, "deg", "a.mot")
+        plausible_unit(TIME, radians, NAMES, "deg", "a.mot")
 
 
 def test_the_words_name_channel_and_number():
     with pytest.raises(
         UnitError, match=r"inDegrees=no\), so no joint angle may exceed 6\.28; knee_angle_r reaches 60,"
     ):
-        judged_unit(TIME, _walk_deg(), NAMES, "rad", "a.mot")
+        plausible_unit(TIME, _walk_deg(), NAMES, "rad", "a.mot")
     with pytest.raises(UnitError, match=r"a\.mot states degrees, .* range over more than 2\.5; .* is 1\.04 and"):
-        judged_unit(TIME, np.radians(_walk_deg()), NAMES, "deg", "a.mot")
+        plausible_unit(TIME, np.radians(_walk_deg()), NAMES, "deg", "a.mot")
 
 
-def test_a_silent_header_is_told_and_standing_still_is_refused():
-    finding = judged_unit(TIME, _walk_deg(), NAMES, None, "a.mot")[1]
+def test_a_silent_header_is_reported_and_standing_still_is_refused():
+    finding = plausible_unit(TIME, _walk_deg(), NAMES, None, "a.mot")[1]
     assert finding is not None and "taken as deg (largest joint angle 60)" in finding.what
     with pytest.raises(UnitError, match="header is silent and the largest joint angle is 0"):
-        judged_unit(TIME, np.zeros((200, 4)), NAMES, None, "a.mot")
+        plausible_unit(TIME, np.zeros((200, 4)), NAMES, None, "a.mot")
     with pytest.raises(UnitError, match="no joint angle that would show it"):
-        judged_unit(TIME, _walk_deg()[:, :1], NAMES[:1], None, "a.mot")
+        plausible_unit(TIME, _walk_deg()[:, :1], NAMES[:1], None, "a.mot")
 
 
 def test_standing_in_degrees_and_a_turning_pelvis_are_not_accused():
     standing = np.tile([90.0, 3.0, 2.0, 1.0], (200, 1)) + 0.1 * np.sin(TIME)[:, None]
-    assert judged_unit(TIME, standing, NAMES, "deg", "a.mot") == ("deg", None)
+    assert plausible_unit(TIME, standing, NAMES, "deg", "a.mot") == ("deg", None)
     turning = np.radians(_walk_deg())
     assert turning[:, 0].max() > 7
-    assert judged_unit(TIME, turning, NAMES, "rad", "a.mot") == ("rad", None)
+    assert plausible_unit(TIME, turning, NAMES, "rad", "a.mot") == ("rad", None)
 
 
 @pytest.mark.parametrize("unit", ["deg", "rad"])
@@ -66,13 +66,13 @@ def test_an_arm_that_winds_on_and_a_fit_that_lost_its_markers_hide_no_unit(unit)
     names = [*NAMES, "arm_rot_r"]
     values = degrees if unit == "deg" else np.radians(degrees)
     assert np.abs(np.radians(degrees[:, -1])).max() > 2 * np.pi
-    assert judged_unit(TIME, values, names, unit, "a.mot") == (unit, None)
+    assert plausible_unit(TIME, values, names, unit, "a.mot") == (unit, None)
     with pytest.raises(UnitError):
-        judged_unit(TIME, values, names, "rad" if unit == "deg" else "deg", "a.mot")
+        plausible_unit(TIME, values, names, "rad" if unit == "deg" else "deg", "a.mot")
 
 
 def test_ankles_alone_leave_a_doubt_not_a_refusal():
-    unit, finding = judged_unit(TIME, 0.5 * np.sin(9 * TIME)[:, None], ["ankle_angle_r"], "deg", "a.mot")
+    unit, finding = plausible_unit(TIME, 0.5 * np.sin(9 * TIME)[:, None], ["ankle_angle_r"], "deg", "a.mot")
     assert unit == "deg" and finding is not None and finding.kind == "unit in doubt"
 
 

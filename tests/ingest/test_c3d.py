@@ -91,14 +91,14 @@ def test_events_and_the_first_field(tmp_path, write_c3d, some_points, reader):
     assert [event.time for event in trial.events] == pytest.approx([0.1, 0.3], abs=1e-6)
 
 
-def test_a_rate_that_is_no_multiple_is_told(tmp_path, write_c3d, some_points, some_analog, reader):
+def test_a_rate_that_is_no_multiple_is_reported(tmp_path, write_c3d, some_points, some_analog, reader):
     path = write_c3d(tmp_path / "a.c3d", some_points, some_analog)
     content = path.read_bytes()
     at = content.index(np.float32(1000).tobytes())
     path.write_bytes(content[:at] + np.float32(1003).tobytes() + content[at + 4 :])
     trial = reader.read(path)
-    told = [finding.what for finding in trial.findings if finding.kind == "analog rate"]
-    assert told == [
+    said = [finding.what for finding in trial.findings if finding.kind == "analog rate"]
+    assert said == [
         "ANALOG:RATE 1003 Hz is 10.03 times POINT:RATE 100 Hz, the file holds 10 samples a frame; read at 1000 Hz"
     ]
     assert trial.stream("signals").rate_hz == 1000
@@ -148,31 +148,31 @@ def test_a_folder_named_after_a_person_is_not_in_a_refusal(tmp_path, write_c3d, 
 # --- two readers
 
 
-def test_the_second_reader_is_asked_and_named(tmp_path, write_c3d, some_points, some_analog, reader, monkeypatch):
+def test_the_second_reader_is_used_and_named(tmp_path, write_c3d, some_points, some_analog, reader, monkeypatch):
     path = write_c3d(tmp_path / "a.c3d", some_points, some_analog)
-    ask = reader._process.ask
+    read = reader._process.read
     crash = "it crashed (exit code -11)"
 
     def ezc3d_crashes(request):
-        answer = ask(request)
+        answer = read(request)
         return answer if request.reader == "c3d" else type(answer)(answer.points, answer.analog, said=crash)
 
-    monkeypatch.setattr(reader._process, "ask", ezc3d_crashes)
+    monkeypatch.setattr(reader._process, "read", ezc3d_crashes)
     trial = reader.read(path)
     assert trial.stream("markers").source.reader.startswith("c3d")
     np.testing.assert_allclose(trial.stream("markers").values[:, 0], some_points[0, 0] / 1000, rtol=1e-6)
-    told = [finding.what for finding in trial.findings if finding.kind == "second reader"]
-    assert told[0].endswith(f"as ezc3d could not: {crash}")
+    said = [finding.what for finding in trial.findings if finding.kind == "second reader"]
+    assert said[0].endswith(f"as ezc3d could not: {crash}")
 
 
 def test_both_refusals_are_said(tmp_path, write_c3d, some_points, reader, monkeypatch):
-    ask = reader._process.ask
+    read = reader._process.read
 
     def both_fail(request):
-        answer = ask(request)
+        answer = read(request)
         return type(answer)(answer.points, answer.analog, said=f"no {request.path}")
 
-    monkeypatch.setattr(reader._process, "ask", both_fail)
+    monkeypatch.setattr(reader._process, "read", both_fail)
     with pytest.raises(ReadError, match=r"a reader that finds them; ezc3d: no a\.c3d; c3d: no a\.c3d"):
         reader.read(write_c3d(tmp_path / "a.c3d", some_points))
 

@@ -26,7 +26,7 @@ def test_muscles_are_known_behind_the_words_of_the_device():
     assert "1 voltages are not known as EMG and stay signals (#3 Voltage.L Spare)" in findings[0].what
 
 
-def test_labels_that_are_all_alike_are_told_apart_by_description_then_by_place():
+def test_labels_that_are_all_alike_are_made_unique_by_description_then_by_place():
     cut = ["Voltage.Voltage."] * 3
     streams, _ = _streams(cut, ["V"] * 3, descriptions=[f"Analog EMG::Voltage [5,{n}]" for n in (1, 2, 3)])
     assert [c.name for c in streams["emg"][1]] == ["emg_5_1", "emg_5_2", "emg_5_3"]
@@ -34,7 +34,7 @@ def test_labels_that_are_all_alike_are_told_apart_by_description_then_by_place()
     assert [c.name for c in streams["emg"][1]] == ["emg_1", "emg_2"]
 
 
-def test_two_channels_of_one_muscle_are_numbered_and_told():
+def test_two_channels_of_one_muscle_are_numbered_and_reported():
     assert emg_names([AnalogLabel(n, "R TA", "", "V") for n in (1, 2)]) == ["emg_ta_r_1", "emg_ta_r_2"]
     _, findings = _streams(["R TA", "R Tib Ant"], ["V", "V"])
     assert "several channels mean emg_ta_r" in findings[0].what
@@ -46,7 +46,7 @@ def test_a_force_is_no_emg_whatever_it_is_called():
     assert "emg" not in streams
 
 
-def test_unknown_units_are_told_and_nothing_is_scaled():
+def test_unknown_units_are_reported_and_nothing_is_scaled():
     streams, findings = _streams(["CH7", "EMG1"], ["d.u.", "ADC"])
     assert streams["signals"][1][0].unit == streams["emg"][1][0].unit == "1"
     assert "2 analog channels have no known unit (#2 EMG1, #1 CH7)" in findings[0].what

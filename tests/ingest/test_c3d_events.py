@@ -45,13 +45,13 @@ def test_the_dialect_without_contexts():
     assert [(event.label, event.side) for event in events] == [("initial contact", "l"), ("foot off", "r")]
 
 
-def test_events_outside_of_the_file_are_left_out_and_told():
+def test_events_outside_of_the_file_are_left_out_and_reported():
     events, findings = _events([(0, 1.0), (0, 9.0)], ["LHS", "LHS"])
     assert len(events) == 1
     assert "1 of 2 events lie outside of the 200 frames" in findings[0].what
 
 
-def test_the_clock_of_the_cropped_file_is_recognised_and_told():
+def test_the_clock_of_the_cropped_file_is_recognised_and_reported():
     events, findings = _events([(0, 0.5), (0, 1.5)], ["LHS", "LTO"], first_frame=301)
     assert [event.time for event in events] == pytest.approx([0.5, 1.5])
     assert "which begins with frame 301" in findings[0].what

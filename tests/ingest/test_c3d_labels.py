@@ -5,13 +5,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gaitdisc.errors import ChannelError
-from gaitdisc.ingest.c3d_labels import LabelMap, named_people, told_apart, without_people, without_prefix
+from gaitdisc.ingest.c3d_labels import LabelMap, made_unique, named_people, without_people, without_prefix
 from gaitdisc.ingest.c3d_parameters import C3DParameters
 
 
 @given(st.lists(st.sampled_from(["", "a", "b", "a_1", "a_2", "point_1"]), max_size=12))
 def test_no_two_names_are_equal(labels):
-    names = told_apart(labels, "point")
+    names = made_unique(labels, "point")
     assert len(set(names)) == len(labels)
     assert all(names)
 
@@ -43,6 +43,6 @@ def test_a_key_for_two_channels_is_refused():
         study.name("#2", "voltage.")
 
 
-def test_a_key_for_no_channel_is_told_with_the_nearest():
+def test_a_key_for_no_channel_is_reported_with_the_nearest():
     (finding,) = LabelMap({"L Rekt": "emg_rf_l"}).unused(["L Rect", "R Rect"], "a.c3d")
     assert "maps 'L Rekt' to 'emg_rf_l'; the file has no such label, the nearest is 'L Rect'" in finding.what

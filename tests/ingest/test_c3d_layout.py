@@ -68,7 +68,7 @@ def test_contradicting_scales_are_refused(file, header, parameter):
         expected_layout(replace(file[0], scale=header), _with(file[1], POINT__SCALE=parameter))
 
 
-def test_frames_that_no_count_covers_are_told(file):
+def test_frames_that_no_count_covers_are_reported(file):
     _, findings = expected_layout(replace(file[0], size=file[0].size + 3000), file[1])
     assert "bytes follow the last of 50 frames, room for 1" in findings[0].what
 

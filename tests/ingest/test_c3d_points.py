@@ -33,7 +33,7 @@ def test_markers_come_in_metres(unit, factor):
 
 
 @pytest.mark.parametrize(("scale", "unit"), [(1.0, "mm"), (1e-3, "m")])
-def test_an_absent_unit_is_judged_and_told(scale, unit):
+def test_an_absent_unit_is_inferred_and_reported(scale, unit):
     found, findings = length_unit(_parameters(), WALK_MM * scale, "a.c3d")
     assert found == unit
     assert f"so they are read as {unit}" in findings[0].what
@@ -92,12 +92,12 @@ def test_radians_are_converted_and_unknown_angles_keep_their_label():
     assert (channels[0].name, channels[0].side) == ("LTorsion.x", "l")
 
 
-def test_angles_that_look_like_radians_are_told():
+def test_angles_that_look_like_radians_are_reported():
     _, _, findings = _streams([[1.0, 0, 0]], ["RKneeAngles"], ANGLES=("RKneeAngles",))
     assert "no angle is beyond 1 deg" in findings[0].what
 
 
-def test_legs_in_radians_are_told_though_a_heading_beside_them_is_counted_on():
+def test_legs_in_radians_are_reported_though_a_heading_beside_them_is_counted_on():
     wave = np.sin(np.arange(100) / 8)
     knee, heading = 0.5 + 0.5 * wave, np.full(100, 12.0)
     zero = np.zeros(100)
@@ -118,7 +118,7 @@ def test_a_place_at_exactly_the_origin_was_not_seen():
     assert "1 places of markers" in findings[0].what
 
 
-def test_equal_and_missing_labels_are_told_apart():
+def test_equal_and_missing_labels_are_made_unique():
     streams, _, findings = _streams([[300.0] * 12], ["A", "A", "B"], UNITS=("mm",))
     names = [channel.name for channel in streams["markers"][1]][::3]
     assert names == ["A_1.x", "A_2.x", "B.x", "point_4.x"]

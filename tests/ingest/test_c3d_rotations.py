@@ -16,7 +16,7 @@ PLACES = np.random.default_rng(1).normal(size=(FRAMES, 2, 3)) + 0.5  # [m]
 
 
 def written(path, points=0, ratio=1, unit="mm"):
-    """A file of two segments, with markers beside them where asked for."""
+    """A file of two segments, with markers beside them where wanted."""
     file = ezc3d.c3d()
     rotations = np.zeros((4, 4, 2, FRAMES))
     rotations[:3, :3] = TURNS.transpose(2, 3, 1, 0)

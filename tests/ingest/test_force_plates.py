@@ -64,14 +64,14 @@ def test_both_signs_of_the_origin(origin):
     _check(_read(_rows(), _file(origin=origin))[0])
 
 
-def test_an_origin_without_depth_is_judged_by_where_the_foot_stands():
+def test_an_origin_without_depth_is_inferred_by_where_the_foot_stands():
     sensors = np.array([0.25, 0.8, 0])  # at a corner of a treadmill; the file points from the surface to them
     streams, _, findings = _read(_rows(sensors), _file(origin=tuple(-1000 * sensors)))
     _check(streams)
     assert "ORIGIN points from the surface to the sensors" in findings[0].what
 
 
-def test_force_of_the_foot_on_the_ground_is_turned_around_and_told():
+def test_force_of_the_foot_on_the_ground_is_turned_around_and_reported():
     streams, _, findings = _read(_rows(sign=-1.0), _file())
     _check(streams)
     assert "plates 1 give the force of the foot on the ground; turned around" in findings[0].what
@@ -98,7 +98,7 @@ def test_the_zero_span_is_removed_unless_the_plate_is_loaded_then():
     assert "carries 600 N in samples 1 to 10" in findings[0].what
 
 
-def test_a_plate_far_from_its_foot_is_told():
+def test_a_plate_far_from_its_foot_is_reported():
     _, _, findings = _read(_rows((0.9, 0, -0.04)), _file())
     assert "in 100% of the loaded samples the centre of pressure lies beside it" in findings[0].what
 
@@ -118,11 +118,11 @@ def _two_belts(channels, sense=1):
 
 
 @pytest.mark.parametrize("sense", [1, -1])
-def test_plates_with_each_others_channels_are_told(sense):
+def test_plates_with_each_others_channels_are_reported(sense):
     first, second = list(range(1, 7)), list(range(7, 13))
     assert not [one for one in _two_belts([first, second], sense) if one.severity == "warning"]
-    (told,) = [one for one in _two_belts([second, first], sense) if one.kind == "swapped plates"]
-    assert told.what.startswith("force plates 1 and 2 are swapped: the centre of pressure lies beside each in 100%")
+    (swapped,) = [one for one in _two_belts([second, first], sense) if one.kind == "swapped plates"]
+    assert swapped.what.startswith("force plates 1 and 2 are swapped: the centre of pressure lies beside each in 100%")
 
 
 def test_a_plate_that_nobody_stepped_on():
@@ -143,7 +143,7 @@ def test_a_plate_that_nobody_stepped_on():
         ({"units": [""] * 6}, "states no units; read as N and N mm"),
     ],
 )
-def test_what_cannot_be_used_is_told(changes, words):
+def test_what_cannot_be_used_is_reported(changes, words):
     assert words in _read(_rows(), _file(**changes))[2][0].what
 
 

@@ -128,7 +128,7 @@ def test_a_real_gait2392_walk_agrees_with_its_markers(gait_data):
         assert 65 < angle.max() < 72 and -6 < angle.min() < 0
 
 
-def test_the_crop_decides_what_is_judged(gait_data):
+def test_the_crop_decides_what_is_checked(gait_data):
     """Outside of 1.06 to 3.23 s, where its inverse dynamics stand, this file is not tracked: knees from -239 to 89."""
     path = gait_data / "opensim_walks" / "mrs_emg_walking" / "IK_gait.mot"
     assert {f.severity for f in _said(read_trial(path))} == {"warning"}

@@ -70,7 +70,7 @@ def test_folders_become_people_and_names_pseudonyms(tmp_path):
     assert "mtp_angle_r" in text and "lumbar_bending" in text
 
 
-def test_angles_that_not_all_have_and_several_words_are_told(tmp_path):
+def test_angles_that_not_all_have_and_several_words_are_reported(tmp_path):
     _walk(tmp_path / "S1_baseline.mot")
     _walk(tmp_path / "S1_nominal.mot", channels=CHANNELS[:6])
     _walk(tmp_path / "S1_exo.mot", emg=True)
@@ -83,7 +83,7 @@ def test_angles_that_not_all_have_and_several_words_are_told(tmp_path):
     assert "left out because not every trial has them" in text
 
 
-def test_files_that_do_not_go_together_are_told(tmp_path):
+def test_files_that_do_not_go_together_are_reported(tmp_path):
     _walk(tmp_path / "S1" / "exo_ik.mot")
     _walk(tmp_path / "S1" / "exo_coordinates.mot")
     study, notes = found_study(tmp_path)

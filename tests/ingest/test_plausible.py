@@ -95,7 +95,7 @@ def test_real_files_with_emg_in_counts_are_named(real_trials):
     assert files == {"parameterOverflow.c3d", "sub_labels.c3d", "PlugInC3D.c3d"}
 
 
-def test_what_a_crop_leaves_out_is_not_judged(gait_data):
+def test_what_a_crop_leaves_out_is_not_checked(gait_data):
     path = gait_data / "opensim_walks" / "mrs_emg_walking" / "IK_gait.mot"
     assert "out of range" not in {f.kind for f in read_trial(path, crop_s=(1.06, 3.23)).findings}
     (said,) = [f for f in read_trial(path, crop_s=(1.06, 4.0)).findings if f.channel == "hip_flexion_r"]

@@ -43,9 +43,9 @@ def test_limits_grow_with_the_file():
 
 def test_numbers_come_back_and_the_process_is_used_again(tmp_path, write_c3d, some_points, some_analog, process):
     path = write_c3d(tmp_path / "a.c3d", some_points, some_analog)
-    first = process.ask(_request(path))
+    first = process.read(_request(path))
     pid = process._process.pid
-    again = process.ask(_request(path))
+    again = process.read(_request(path))
     assert process._process.pid == pid
     np.testing.assert_array_equal(first.points, again.points)
     np.testing.assert_allclose(again.analog, some_analog.T, rtol=1e-6)
@@ -53,10 +53,10 @@ def test_numbers_come_back_and_the_process_is_used_again(tmp_path, write_c3d, so
 
 def test_a_dead_process_is_started_anew(tmp_path, write_c3d, some_points, some_analog, process):
     path = write_c3d(tmp_path / "a.c3d", some_points, some_analog)
-    process.ask(_request(path))
+    process.read(_request(path))
     os.kill(process._process.pid, signal.SIGKILL)
     process._process.wait()
-    assert process.ask(_request(path)).points.shape == (50, 9)
+    assert process.read(_request(path)).points.shape == (50, 9)
 
 
 def test_a_process_is_recycled(tmp_path, write_c3d, some_points, some_analog, process, monkeypatch):
@@ -64,19 +64,19 @@ def test_a_process_is_recycled(tmp_path, write_c3d, some_points, some_analog, pr
     path = write_c3d(tmp_path / "a.c3d", some_points, some_analog)
     pids = []
     for _ in range(4):
-        process.ask(_request(path))
+        process.read(_request(path))
         pids.append(process._process.pid)
     assert pids[0] == pids[1] != pids[2] == pids[3]
 
 
 def test_a_crash_is_said(playing, process):
     playing("os.kill(os.getpid(), signal.SIGSEGV)")
-    assert process.ask(_request("a.c3d")).said == "it crashed (exit code -11)"
+    assert process.read(_request("a.c3d")).said == "it crashed (exit code -11)"
 
 
 def test_what_waits_for_ever_is_ended_by_the_clock(playing, process):
     playing("time.sleep(100)")
-    assert process.ask(_request("a.c3d", limit_s=0.1)).said == "it had not finished after 0.6 s"
+    assert process.read(_request("a.c3d", limit_s=0.1)).said == "it had not finished after 0.6 s"
 
 
 @pytest.fixture
@@ -98,28 +98,28 @@ def reading(monkeypatch, tmp_path):
 def test_what_computes_for_ever_is_ended_by_its_processor_time(reading, process):
     reading("    while True: pass")
     said = "it had not finished after 1 s of processor time"
-    assert process.ask(_request("a.c3d", limit_s=1.0)).said == said
+    assert process.read(_request("a.c3d", limit_s=1.0)).said == said
 
 
 def test_a_file_is_not_refused_because_others_use_the_machine(reading, process):
     """By the clock it takes longer than the processor time that it may; nearly all of that is waiting."""
     reading("    time.sleep(1.5); return np.ones((50, 9)), np.ones((4, 500)), None")
-    assert process.ask(_request("a.c3d", limit_s=1.0)).points.shape == (50, 9)
+    assert process.read(_request("a.c3d", limit_s=1.0)).points.shape == (50, 9)
 
 
 def test_an_answer_that_breaks_off_is_a_crash(playing, process):
     playing("print('{\"reader\": \"x\"}'); sys.stdout.write('abc')")
-    assert process.ask(_request("a.c3d")).said.startswith("it crashed")
+    assert process.read(_request("a.c3d")).said.startswith("it crashed")
 
 
 def test_babble_is_a_crash(playing, process):
     playing("print('hello')")
-    assert process.ask(_request("a.c3d")).said.startswith("it crashed")
+    assert process.read(_request("a.c3d")).said.startswith("it crashed")
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="address space is capped on Linux")
 def test_the_memory_cap_holds(tmp_path, write_c3d, process):
     path = write_c3d(tmp_path / "a.c3d", np.ones((3, 100, 5000)))
     request = ReadRequest(str(path), "ezc3d", 5000, 100, 0, 0, limit_s=60, cap_bytes=150 * 2**20)
-    assert process.ask(request).said  # out of memory, or dead of it
-    assert process.ask(ReadRequest(str(path), "ezc3d", 5000, 100, 0, 0, 60, 2**34)).points.shape == (5000, 300)
+    assert process.read(request).said  # out of memory, or dead of it
+    assert process.read(ReadRequest(str(path), "ezc3d", 5000, 100, 0, 0, 60, 2**34)).points.shape == (5000, 300)

@@ -82,7 +82,7 @@ def test_the_crop_keeps_its_part_and_must_lie_inside(tmp_path):
         read_trial(path, crop_s=(5, 6))
 
 
-def test_the_unit_of_angles_is_judged_in_what_the_crop_leaves(tmp_path):
+def test_the_unit_of_angles_is_checked_in_what_the_crop_leaves(tmp_path):
     time = np.arange(400) / 100
     hip, knee = 0.4 * np.cos(2 * np.pi * time), 0.5 - 0.5 * np.cos(4 * np.pi * time)
     hip[200:], knee[200:] = 9 * np.sin(time[200:]), 8 * np.cos(time[200:])  # a fit that lost its markers
@@ -94,7 +94,7 @@ def test_the_unit_of_angles_is_judged_in_what_the_crop_leaves(tmp_path):
         read_trial(tmp_path / "ik.mot", crop_s=(0.0, 1.99))
 
 
-def test_labels_of_the_study_that_no_file_has_are_told(tmp_path):
+def test_labels_of_the_study_that_no_file_has_are_reported(tmp_path):
     path = _csv(tmp_path, "a.csv", "time,ch 1")
     trial = read_trial(path, {"ch 1": "emg_sol_r", "ch 2": "emg_sol_l"})
     assert [f.what for f in trial.findings] == ["[channels] names 'ch 2', which no file of this trial has"]

@@ -155,7 +155,7 @@ def test_translations_are_never_scaled(tmp_path):
     assert walk["pelvis_tx"][-1] == 59.0
 
 
-def test_a_silent_header_is_judged_or_refused(tmp_path):
+def test_a_silent_header_is_inferred_or_refused(tmp_path):
     silent = HEAD.replace("inDegrees=yes\n", "")
     trial = read_storage(_written(tmp_path, silent + BODY))
     assert any(finding.kind == "unit inferred" and "taken as deg" in finding.what for finding in trial.findings)
@@ -200,6 +200,6 @@ def test_a_last_number_that_was_cut_is_refused_where_all_lines_are_of_one_width(
         read_storage(_written(tmp_path, text[:-4]))
 
 
-def test_more_rows_than_the_header_claims_are_told(tmp_path):
+def test_more_rows_than_the_header_claims_are_reported(tmp_path):
     trial = read_storage(_written(tmp_path, (HEAD + BODY).replace("nRows=60", "nRows=50")))
     assert [finding.what for finding in trial.findings] == ["the header claims 50 rows, 60 are there"]

@@ -99,13 +99,13 @@ def test_the_study_comes_before_the_vocabulary():
     assert _column("ch 7", channels={"ch 7": "load"}).guessed == "its name is in [channels], its unit is not"
 
 
-def test_guesses_are_told_together():
+def test_guesses_are_reported_together():
     header = StorageHeader("x", ("time", *(f"c{i}" for i in range(9))), 3)
     (finding,) = naming_findings(storage_columns(header, "a.sto"), "a.sto")
     assert finding.what == "c0, c1, c2, c3, c4, c5 and 3 more: unknown name, kept as a signal without a unit"
 
 
-def test_sides_of_unmarked_ground_forces_are_told():
+def test_sides_of_unmarked_ground_forces_are_reported():
     header = StorageHeader("grf", ("time", "ground_force_vy", "1_ground_force_vy"), 3)
     (finding,) = naming_findings(storage_columns(header, "a.mot"), "a.mot")
     assert "ground_force_ is taken as the right foot" in finding.what
@@ -114,3 +114,13 @@ def test_sides_of_unmarked_ground_forces_are_told():
 def test_names_known_to_the_vocabulary_are_no_guess():
     header = StorageHeader("Coordinates", ("time", "hip_flexion_r", "pelvis_tx"), 3)
     assert naming_findings(storage_columns(header, "a.mot"), "a.mot") == []
+
+
+@pytest.mark.parametrize(
+    ("title", "unit"), [("Actuation_force", "N"), ("ForceReporter", "N"), ("Actuation_power", "W")]
+)
+def test_forces_and_powers_of_muscles_are_no_emg(title, unit):
+    column = _column("soleus_r", title)
+    assert (column.channel.name, column.channel.quantity, column.channel.unit) == ("soleus_r", "signal", unit)
+    assert column.guessed == f"{title} of a muscle, no EMG"
+    assert _column("soleus_r").channel.name == "emg_sol_r"

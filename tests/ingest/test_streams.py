@@ -1,4 +1,4 @@
-"""Columns into streams; missing forces are refused, other gaps are told."""
+"""Columns into streams; missing forces are refused, other gaps are reported."""
 
 from __future__ import annotations
 

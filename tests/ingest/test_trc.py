@@ -89,7 +89,7 @@ def test_bad_files_are_refused_in_words(tmp_path, old, new, kind, words):
     assert "a.trc" in str(refusal.value)
 
 
-def test_wrong_counts_that_do_no_harm_are_told(tmp_path):
+def test_wrong_counts_that_do_no_harm_are_reported(tmp_path):
     trial = _read(tmp_path, TEXT.replace("\t10\t2\t", "\t9\t3\t"))
     assert [f.what for f in trial.findings if f.kind == "wrong count"] == [
         "the header claims 9 frames, 10 are there",

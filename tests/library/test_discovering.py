@@ -1,12 +1,15 @@
 """What a model lacks: the model a file or a function; the data a table, a file or recordings."""
 
+from pathlib import Path
+from types import SimpleNamespace
+
 import numpy as np
 import pandas as pd
 import pytest
 
 import gaitdisc as gd
 from gaitdisc.channel import Channel
-from gaitdisc.errors import ChannelError
+from gaitdisc.errors import ChannelError, SchemaError
 from gaitdisc.library import discovering
 from gaitdisc.simulation.refusal import SimulationError
 
@@ -86,3 +89,18 @@ def test_a_signal_without_a_unit_is_taken_as_it_is_and_another_unit_is_converted
     degrees = gd.Recording(TIME, np.exp(-TIME)[:, None], (Channel("temperature", "angle", "deg"),))
     gd.discover(model, degrees)
     np.testing.assert_allclose(given["data"].observed[0, :, 0], np.radians(np.exp(-TIME)))
+
+
+def test_a_tracked_walk_takes_the_file_of_its_angles_and_nothing_else(tracked_walk, monkeypatch):
+    with pytest.raises(SchemaError, match=r"walk.toml is tracked by a file of its angles.*found DataFrame"):
+        gd.discover(tracked_walk, table())
+    given = {}
+
+    def discover_tracked(*arguments):
+        given["walk"], given["kinematics"], given["catalogue"], given["progress"] = arguments
+        return SimpleNamespace(found="found", augmented="augmented")
+
+    monkeypatch.setattr("gaitdisc.batch.discover_tracked.discover_tracked", discover_tracked)
+    assert gd.discover(str(tracked_walk), "walk.mot", progress=print) == ("found", "augmented")
+    assert (given["kinematics"], given["catalogue"], given["progress"]) == (Path("walk.mot"), None, print)
+    assert given["walk"].model == tracked_walk.parent / "leg.osim" and given["walk"].lowpass_hz == 6.0

@@ -140,3 +140,10 @@ def test_inputs_without_names_and_a_span_in_place_of_times_are_refused():
     for time in ((0.0, 5.0), 5.0):
         with pytest.raises(ShapeError, match=r"three or more.*np\.linspace"):
             gd.simulate(lambda x: -x, time, start=[0.5])
+
+
+def test_a_walk_whose_motion_is_prescribed_is_not_simulated(tracked_walk):
+    with pytest.raises(
+        SchemaError, match=r"walk.toml holds .tracked.: its motion is prescribed.*Run gaitdisc discover"
+    ):
+        gd.simulate(tracked_walk, TIME)

@@ -240,9 +240,9 @@ def reconstruction():
         "r2": 0.9,
     }
     percent = np.tile(np.arange(1.0, 100.0, 2.0), 2)
-    told = {"measured": np.sin(percent / 16), "measured_sd": 0.1, "reconstructed": np.sin(percent / 15), "rmse": 0.2}
+    shown = {"measured": np.sin(percent / 16), "measured_sd": 0.1, "reconstructed": np.sin(percent / 15), "rmse": 0.2}
     model = np.repeat(["linear", "delay ridge"], 50)
-    curves = pd.DataFrame({"participant": "P01", "model": model, "state": "late", "percent": percent, **told})
+    curves = pd.DataFrame({"participant": "P01", "model": model, "state": "late", "percent": percent, **shown})
     return Reconstruction(
         "pair",
         (Channel("a", "angle", "deg"),),

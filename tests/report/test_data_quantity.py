@@ -116,7 +116,7 @@ def test_what_is_enough_is_said_with_n(ablated):
     assert "no difference is shown at any length" in " ".join(length_sentences(ablated(0.0)))
 
 
-def test_too_few_are_told_why(ablated):
+def test_too_few_get_a_reason(ablated):
     few = ablated(people=5)
     few = replace(few, over=replace(few.over, lengths_said="5 participants are too few"))
     assert length_table(few) is None

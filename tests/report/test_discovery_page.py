@@ -24,7 +24,7 @@ from gaitdisc.results import discovery as noun
 from gaitdisc.results.discovery import Correction, Estimate, FoundEffect, GapSize
 
 
-def test_an_angle_is_told_in_degrees_too():
+def test_an_angle_is_given_in_degrees_too():
     rows = estimates_table(manufactured()).rows
     assert rows[0][2:] == ("stiffness", "286 N m/rad", "279 N m/rad", "293 N m/rad", "")
     assert rows[1][-1] == "2.0 deg (95 % 1.9-2.1)"
@@ -40,7 +40,7 @@ def test_where_no_number_is_an_angle_no_column_is_in_degrees():
     assert table.rows[0][2:] == ("stiffness", "286 N m/rad", "279 N m/rad", "293 N m/rad")
 
 
-def test_the_gap_is_told_for_both_parts_of_the_data():
+def test_the_gap_is_given_for_both_parts_of_the_data():
     table = gap_table(manufactured())
     assert [row[0] for row in table.rows] == ["held out", "fitted"]
     assert table.rows[0][2:] == ("3.09 deg", "0.60 deg", "0.50 deg", "99 %", "0.010")
@@ -60,14 +60,14 @@ def test_where_has_share_stride_and_region():
     assert where_table(manufactured()).rows == (("at the ankle_moment port", "97 %", "12 to 55 %", "theta > 0.035"),)
 
 
-def test_a_rival_is_told_with_what_would_tell_it_apart():
+def test_a_rival_is_listed_with_what_would_distinguish_it():
     table = rivals_table(manufactured(rivals=(replace(CUBIC, tied=True),)))
     assert table.rows[0][0] == "cubic stiffness"
     assert table.rows[0][3:] == ("640", "yes", "movement through a wider range, to both sides of rest")
     assert "(what was named: 812)" in table.caption
 
 
-def test_findings_are_told():
+def test_findings_are_listed():
     assert data_findings(manufactured()).rows[0][0] == "warning"
 
 

@@ -62,7 +62,7 @@ def test_marks_that_lie_apart_are_said_and_make_no_finding():
     assert "a shift along the stride that most channels share is taken off" in " ".join(method_sentences(found))
 
 
-def test_an_offset_is_told_from_a_change_of_shape():
+def test_an_offset_is_distinguished_from_a_change_of_shape():
     higher = walk("model", 0, strides=40)
     higher = replace(higher, curves=higher.curves + np.array([0.0, 6.0, 0.0]))
     first = mismatch_sentences(compare_walks(higher, walk("measured", 1, strides=40)))[0]

@@ -58,7 +58,7 @@ def test_a_small_unit_is_printed_with_three_digits(reconstruction, unit, rmse, p
     assert states_table(other).rows[0][2] == printed
 
 
-def test_the_future_of_a_sensor_is_among_the_angles_that_are_judged(reconstruction):
+def test_the_future_of_a_sensor_is_among_the_angles_that_are_tested(reconstruction):
     assert "the angles that no sensor measures" in models_table(reconstruction).caption
     ahead = replace(reconstruction, states=(*reconstruction.states, *reconstruction.sensors))
     assert "all angles" in participants_table(ahead).caption and "no sensor measures" not in models_table(ahead).caption
@@ -109,9 +109,9 @@ def test_one_panel_a_state_with_what_was_measured_and_reconstructed(reconstructi
 def test_every_kind_of_model_can_be_recommended_and_drawn(reconstruction, kind):
     named = {"delay ridge": kind} if kind != "linear" else {"delay ridge": "shred"}
     tables = {name: getattr(reconstruction, name).replace({"model": named}) for name in ("errors", "summary", "curves")}
-    told = replace(reconstruction, models=dict.fromkeys(("linear", *named.values()), ""), **tables)
-    assert told.recommended == named["delay ridge"]
-    [figure] = reconstruction_figures(told, "P01", "P01")
+    calibrated = replace(reconstruction, models=dict.fromkeys(("linear", *named.values()), ""), **tables)
+    assert calibrated.recommended == named["delay ridge"]
+    [figure] = reconstruction_figures(calibrated, "P01", "P01")
     assert set(figure.numbers["model"]) == {"linear", *named.values()}
 
 

@@ -31,7 +31,7 @@ def test_the_numbers_lie_under_the_name_of_their_table(tmp_path):
     assert len(list((tmp_path / "tables").iterdir())) == 2
 
 
-def test_a_finding_is_told_in_five_cells_and_as_csv():
+def test_a_finding_is_written_in_five_cells_and_as_csv():
     gap = Finding("warning", "gap", "a.c3d", "0.2 s missing", "the windows", "knee_angle_r")
     table = seen_table([gap], "Seen, n = 1.", "what was seen")
     assert table.rows == (("warning", "a.c3d", "knee_angle_r", "gap: 0.2 s missing", "the windows"),)

@@ -11,7 +11,7 @@ def spring(stiffness):
     return manufactured(effects=(FoundEffect("port", "ankle_moment", "one_sided_spring", "", estimates),))
 
 
-def test_an_effect_is_told_with_who_shows_it_and_an_interval_over_people():
+def test_an_effect_is_said_with_who_shows_it_and_an_interval_over_people():
     found = {"W01": spring(200.0), "W02": spring(300.0), "W03": spring(280.0), "W04": manufactured(effects=())}
     table = over_people(found)
     row = table.iloc[0]

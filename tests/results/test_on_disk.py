@@ -31,7 +31,7 @@ def test_a_response_that_goes_to_another_process_takes_no_arrays_along(response,
     np.testing.assert_array_equal(pickle.loads(pickle.dumps(stored)).held_out.phi, response.held_out.phi)
 
 
-def test_arrays_that_changed_or_went_since_the_run_was_loaded_are_told(response, tmp_path):
+def test_arrays_that_changed_or_went_since_the_run_was_loaded_are_reported(response, tmp_path):
     RESPONSE.save(response, tmp_path, "key")
     changed, gone = RESPONSE.load(tmp_path), RESPONSE.load(tmp_path)
     on_disk._arrays.cache_clear()

@@ -8,7 +8,7 @@ from gaitdisc.errors import ShapeError
 from gaitdisc.recording import PERCENT
 
 
-def test_kept_and_left_out_are_told_apart_and_counted_by_foot():
+def test_kept_and_left_out_are_distinguished_and_counted_by_foot():
     one = made_cycles(each=4, out=1)
     assert (one.counted("l"), one.counted("r"), len(one.left_out)) == (4, 4, 2)
     assert len(one.kept) == len(one.curves) == 8

@@ -38,7 +38,7 @@ def test_a_run_of_before_there_were_tests_is_still_read(saved):
     assert load_run(saved).tests is None
 
 
-def test_tests_that_were_changed_by_hand_are_told(saved):
+def test_tests_that_were_changed_by_hand_are_reported(saved):
     file = saved / "tests" / "tests.csv"
     file.write_text(file.read_text().replace("0.05", "0.99"))
     with pytest.raises(SchemaError, match=r"tests/tests\.csv is changed since it was saved"):

@@ -1,4 +1,4 @@
-"""A class that says what saves it; whatever is saved is told by its JSON file."""
+"""A class that says what saves it; whatever is saved is recognised by its JSON file."""
 
 import sys
 from importlib import import_module

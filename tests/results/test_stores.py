@@ -133,7 +133,7 @@ def test_comparisons_come_back_to_the_last_digit(over, tmp_path):
         assert list(again.tables()[name].columns) == list(table.columns)
 
 
-def test_a_changed_table_is_told(over, tmp_path):
+def test_a_changed_table_is_reported(over, tmp_path):
     OVER.save(over, tmp_path)
     (tmp_path / "baselines.csv").write_text("model\n")
     with pytest.raises(SchemaError, match=r"baselines\.csv is changed since it was saved"):
@@ -154,7 +154,7 @@ def test_what_was_saved_is_loaded(tmp_path):
     pd.testing.assert_frame_equal(found.table, TABLE)
 
 
-def test_a_damaged_table_is_told(tmp_path):
+def test_a_damaged_table_is_reported(tmp_path):
     VARIANTS.save(Variants("P01", "modalities", TABLE, {}), tmp_path, "key")
     (tmp_path / "variants.csv").write_text("nothing")
     with pytest.raises(SchemaError, match="changed since it was saved"):
@@ -201,7 +201,7 @@ def test_saved_is_loaded(mismatch, tmp_path):
     )
 
 
-def test_a_changed_table_of_a_mismatch_is_told(mismatch, tmp_path):
+def test_a_changed_table_of_a_mismatch_is_reported(mismatch, tmp_path):
     MISMATCH.save(mismatch, tmp_path)
     (tmp_path / "regions.csv").write_text("channel\n")
     with pytest.raises(SchemaError, match=r"regions\.csv is changed since it was saved"):

@@ -1,6 +1,7 @@
 import json
 from dataclasses import asdict
 
+import pandas as pd
 import pytest
 from resealed import resealed
 
@@ -8,11 +9,11 @@ from gaitdisc.errors import SchemaError
 from gaitdisc.recording import Finding
 from gaitdisc.results.run_store import load_run
 from gaitdisc.results.stores import RESPONSE
-from gaitdisc.results.unit_folder import stored_finding
+from gaitdisc.results.unit_folder import load_unit, save_unit, stored_finding
 
 
 @pytest.mark.parametrize("file", ["r2.csv", "arrays.npz"])
-def test_a_flipped_byte_is_told(response, tmp_path, file):
+def test_a_flipped_byte_is_reported(response, tmp_path, file):
     RESPONSE.save(response, tmp_path, "key")
     content = bytearray((tmp_path / file).read_bytes())
     content[len(content) // 2] ^= 1
@@ -43,3 +44,10 @@ def test_a_field_that_does_not_fit_the_schema_is_named(response, tmp_path):
 def test_a_finding_comes_back_as_it_was():
     gap = Finding("warning", "gap", "a.mot", "0.1 s missing", "the windows", "knee_angle_r", ((1.0, 1.1), (2.0, 2.3)))
     assert stored_finding(json.loads(json.dumps(asdict(gap)))) == gap
+
+
+def test_a_table_saved_under_an_earlier_name_of_a_column_has_the_name_of_today(tmp_path):
+    fields = {"participants": 0, "alpha": 0.05, "level": 0.95, "too_few": ""}
+    save_unit(tmp_path, "tests.json", fields, {"curves.csv": pd.DataFrame({"state": ["knee"], "told": [1.5]})}, {})
+    _, tables, _ = load_unit(tmp_path, "tests.json", {"curves.csv": ("state", "reconstructed")})
+    assert tables["curves.csv"]["reconstructed"].tolist() == [1.5]

@@ -49,9 +49,9 @@ def test_another_linear_mixture_is_learnt_from_a_few_strides(pair, fitted):
 def test_a_large_penalty_takes_the_mean_error_off_and_nothing_else(pair, fitted):
     windows = changed(pair.parts.training)
     parted = first_strides(windows, 8, pair.what.reach_s)
-    told = calibrated(fitted, parted.strides, 1e12)(windows[0])
+    found = calibrated(fitted, parted.strides, 1e12)(windows[0])
     offset = (parted.strides.y - fitted(parted.strides)).mean(axis=0)
-    assert np.allclose(told, fitted(windows[0]) + offset)
+    assert np.allclose(found, fitted(windows[0]) + offset)
 
 
 def test_the_penalty_is_rehearsed_on_another_person(pair, fitted):

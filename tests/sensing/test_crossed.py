@@ -23,7 +23,7 @@ def people(count, seed):
     return found
 
 
-def test_everybody_but_the_judged_is_told_by_models_of_others():
+def test_everybody_but_the_test_person_is_reconstructed_by_models_of_others():
     everybody = people(6, 0)
     errors = crossed_errors("linear", WHAT, split_by_subject(everybody, 0))
     assert errors.shape == (5 * 120, 1)
@@ -37,7 +37,7 @@ def test_one_checked_person_covers_too_little_and_crossing_does_not():
     for seed in range(25):
         parts = split_by_subject(people(9, seed), 0)
         done = fit_reconstructor("linear", WHAT, parts.fitted(), parts.checked())
-        missed, errors = (done(part) - part.y for part in (parts.checked(), parts.judged()))
+        missed, errors = (done(part) - part.y for part in (parts.checked(), parts.tested()))
         plain.append(coverage(errors, half_widths(missed))[0])
         crossed.append(coverage(errors, crossed_widths("linear", WHAT, parts, missed))[0])
         scaled = crossed_widths("another kind", WHAT, parts, missed)

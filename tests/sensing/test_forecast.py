@@ -27,26 +27,26 @@ def test_the_mean_stride_tells_a_state_that_is_a_function_of_phase():
     average = phase_average([walk(), walk(first=0.6)])
     assert average.stride_s == pytest.approx(1.0)
     trial = walk(10.0, first=0.4)
-    told = average.told([trial], 0.3)
+    forecast = average.forecast([trial], 0.3)
     before = trial.time < 0.4 + 0.3 - 1e-6
-    assert np.isnan(told[before]).all()
-    np.testing.assert_allclose(told[~before], trial.y[~before], atol=0.07)  # bins of one percent
+    assert np.isnan(forecast[before]).all()
+    np.testing.assert_allclose(forecast[~before], trial.y[~before], atol=0.07)  # bins of one percent
 
 
 def test_the_mean_stride_knows_no_contact_that_has_not_happened():
     average = phase_average([walk()])
     late = walk(10.0)
     late = Samples(late.x, late.y, late.inputs, late.outputs, late.time, np.where(late.time > 5.25, np.nan, late.phi))
-    told = average.told([late], 0.5)
-    np.testing.assert_allclose(told[-100:], average.told([walk(10.0)], 0.5)[-100:], atol=0.1)
+    forecast = average.forecast([late], 0.5)
+    np.testing.assert_allclose(forecast[-100:], average.forecast([walk(10.0)], 0.5)[-100:], atol=0.1)
 
 
 def test_persistence_looks_back_within_its_own_trial():
     pair = [walk(3.0), walk(3.0, start=50.0)]
-    told = persistence(pair, 0.2)
-    assert np.isnan(told[[0, 19, 300, 319]]).all()
-    np.testing.assert_array_equal(told[20:300], pair[0].y[:280])
-    np.testing.assert_array_equal(told[320:], pair[1].y[:280])
+    forecast = persistence(pair, 0.2)
+    assert np.isnan(forecast[[0, 19, 300, 319]]).all()
+    np.testing.assert_array_equal(forecast[20:300], pair[0].y[:280])
+    np.testing.assert_array_equal(forecast[320:], pair[1].y[:280])
 
 
 def test_without_strides():

@@ -23,12 +23,12 @@ def test_a_loaded_model_tells_the_same_of_a_new_recording(pair, saved, tmp_path)
     save_model(saved, tmp_path / "model")
     kept = load_model(tmp_path / "model")
     new = pair.recording.selected(["a"])
-    told = kept(new)
-    np.testing.assert_array_equal(told.values, saved(new).values)
+    states = kept(new)
+    np.testing.assert_array_equal(states.values, saved(new).values)
     reach = pair.what.lags.reach
-    assert np.isnan(told.values[:reach]).all()
-    np.testing.assert_allclose(told["late"][reach:], pair.recording["late"][reach:], atol=0.05)
-    assert (told.names, kept.half_widths.tolist()) == (("late",), [0.5])
+    assert np.isnan(states.values[:reach]).all()
+    np.testing.assert_allclose(states["late"][reach:], pair.recording["late"][reach:], atol=0.05)
+    assert (states.names, kept.half_widths.tolist()) == (("late",), [0.5])
 
 
 def test_where_it_was_fitted_is_kept(saved, tmp_path):
@@ -39,8 +39,8 @@ def test_where_it_was_fitted_is_kept(saved, tmp_path):
 def test_a_network_is_loaded_with_its_kind(pair, tmp_path):
     fitted = fit_reconstructor("shallow decoder", pair.what, pair.parts.fitted(), pair.parts.checked())
     save_model(SensingModel(fitted, pair.channels, np.ones(1)), tmp_path)
-    judged = pair.parts.judged()
-    np.testing.assert_array_equal(load_model(tmp_path).reconstructor(judged), fitted(judged))
+    test = pair.parts.tested()
+    np.testing.assert_array_equal(load_model(tmp_path).reconstructor(test), fitted(test))
 
 
 def test_refusals(pair, saved, tmp_path):
@@ -64,8 +64,8 @@ def test_refusals(pair, saved, tmp_path):
 def test_every_recurrent_network_is_loaded_as_it_was(pair, untrained, tmp_path, kind):
     done = untrained(kind)
     save_model(SensingModel(done, pair.channels, np.ones(1)), tmp_path)
-    judged = pair.parts.judged()
-    np.testing.assert_array_equal(load_model(tmp_path).reconstructor(judged), done(judged))
+    test = pair.parts.tested()
+    np.testing.assert_array_equal(load_model(tmp_path).reconstructor(test), done(test))
 
 
 def test_the_order_of_channels_in_a_recording_does_not_matter(pair, saved):

@@ -32,8 +32,8 @@ def test_ridge_regression_by_another_program(pair, tmp_path, kind):
     pytest.importorskip("onnx")
     done = fit_reconstructor(kind, pair.what, pair.parts.fitted(), pair.parts.checked())
     write_onnx(as_saved(done, pair), tmp_path / "model.onnx")
-    judged = pair.parts.judged()
-    x = judged.x[:, -len(done.model.inputs) :]
+    test = pair.parts.tested()
+    x = test.x[:, -len(done.model.inputs) :]
     rounded = np.float64(np.float32(x))
     np.testing.assert_allclose(run(tmp_path / "model.onnx", x), done.model(rounded), atol=1e-5)
 
@@ -43,12 +43,12 @@ def test_networks_by_another_program(pair, untrained, tmp_path, kind):
     pytest.importorskip("onnx")
     done = untrained(kind)
     write_onnx(as_saved(done, pair), tmp_path / "model.onnx")
-    x = pair.parts.judged().x.copy()
+    x = pair.parts.tested().x.copy()
     if kind == "masked shred":
         x[::2, 3:6] = np.nan
-    told = run(tmp_path / "model.onnx", x)
-    assert np.isfinite(told).all()
-    np.testing.assert_allclose(told, done.model(x), atol=2e-6)
+    states = run(tmp_path / "model.onnx", x)
+    assert np.isfinite(states).all()
+    np.testing.assert_allclose(states, done.model(x), atol=2e-6)
 
 
 @pytest.mark.parametrize(

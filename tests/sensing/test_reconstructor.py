@@ -28,16 +28,16 @@ def test_refusals(pair):
 def test_models_without_history_see_the_present_readings_alone(pair):
     parts = pair.parts
     linear = fit_reconstructor("linear", pair.what, parts.fitted(), parts.checked())
-    judged = parts.judged()
+    test = parts.tested()
     assert linear.model.inputs == ("a",)
-    np.testing.assert_array_equal(linear(judged), linear.model(present(judged, ("a",)).x))
+    np.testing.assert_array_equal(linear(test), linear.model(present(test, ("a",)).x))
 
 
 def test_history_tells_a_state_that_lags_behind(pair):
     parts, errors = pair.parts, {}
     for kind in ("linear", "delay ridge", "fourier ridge"):
         done = fit_reconstructor(kind, pair.what, parts.fitted(), parts.checked())
-        errors[kind] = np.sqrt(np.mean((done(parts.judged()) - parts.judged().y) ** 2))
+        errors[kind] = np.sqrt(np.mean((done(parts.tested()) - parts.tested().y) ** 2))
     assert errors["delay ridge"] < 0.01
     assert errors["linear"] > 0.5
     assert errors["fourier ridge"] < 0.02
@@ -57,7 +57,7 @@ def test_a_network_is_fitted_for_as_many_steps_as_the_dissertations_code_makes(p
     done = fit_reconstructor("shred-text", pair.what, pair.parts.fitted().rows(slice(0, 640)), pair.parts.checked())
     kept = seen["settings"]
     assert (done.n_fitted, kept.epochs, kept.patience, kept.batch, kept.learning_rate) == (640, 4, 160, 64, 1e-3)
-    assert done(pair.parts.judged()).shape == pair.parts.judged().y.shape
+    assert done(pair.parts.tested()).shape == pair.parts.tested().y.shape
 
 
 @pytest.mark.parametrize("wanted", ["auto", "cpu", "cuda"])

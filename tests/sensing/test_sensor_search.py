@@ -49,8 +49,8 @@ def test_the_loss_is_that_of_ridge_regression_on_the_windows(parts, channels):
         return type(samples)(samples.x[:, columns], samples.y[:, rest], *names, samples.time, samples.phi)
 
     model = fit_fourier_ridge(some(parts.fitted()), some(parts.checked()))
-    judged = some(parts.judged())
-    rmse = np.sqrt(np.mean((model(judged.x) - judged.y) ** 2))
+    test = some(parts.tested())
+    rmse = np.sqrt(np.mean((model(test.x) - test.y) ** 2))
     assert found["rmse_deg"][1] == pytest.approx(rmse, rel=1e-3)
 
 

@@ -16,7 +16,7 @@ def walk(seconds=60.0, first=0.0):
 @pytest.mark.parametrize("rule", ["temporal", "blocked"])
 def test_no_two_windows_of_different_parts_share_a_reading_or_the_filters_reach(rule):
     parts = split_within([walk()], rule, REACH_S)
-    times = [part.time for part in (parts.fitted(), parts.checked(), parts.judged())]
+    times = [part.time for part in (parts.fitted(), parts.checked(), parts.tested())]
     for k, one in enumerate(times):
         for other in times[k + 1 :]:
             assert np.abs(one[:, None] - other[None]).min() > REACH_S + SEAM_S - 1e-9
@@ -31,7 +31,7 @@ def test_the_temporal_split_judges_the_last_part_of_every_trial():
 
 def test_the_random_rule_leaks_and_says_so():
     parts = split_within([walk()], RANDOM, REACH_S)
-    nearest = np.abs(parts.judged().time[:, None] - parts.fitted().time[None]).min(axis=1)
+    nearest = np.abs(parts.tested().time[:, None] - parts.fitted().time[None]).min(axis=1)
     assert np.mean(nearest < 0.011) > 0.9
     assert "leaks" in parts.rule
 
@@ -39,14 +39,14 @@ def test_the_random_rule_leaks_and_says_so():
 def test_a_person_left_out_is_nowhere_else():
     people = [[walk(10.0, 1000.0 * k)] for k in range(4)]
     parts = split_by_subject(people, 3)
-    assert (parts.judged().time // 1000 == 3).all()
+    assert (parts.tested().time // 1000 == 3).all()
     assert (parts.checked().time // 1000 == 0).all()
     assert set(parts.fitted().time // 1000) == {1, 2}
 
 
 def test_trials_left_out():
     parts = split_by_trial([walk(20.0), walk(20.0, 100.0)], [1], REACH_S)
-    assert parts.judged().time[0] == 100.0
+    assert parts.tested().time[0] == 100.0
     assert parts.checked().time[0] - parts.fitted().time[-1] > REACH_S + SEAM_S - 0.001
     assert parts.checked().time[-1] < 20.0
 

@@ -36,7 +36,7 @@ LONG = {
     "engine_cases": 124,
     "engines": 187,
     "engines_with_muscles": 137,
-    "tracked_walks": 203,
+    "tracked_walks": 138,
 }
 
 

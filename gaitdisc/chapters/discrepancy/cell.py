@@ -37,7 +37,7 @@ PUBLISHED_THRESHOLDS = {"dynamics": 0.0095, "state": 0.046}
 def cell(
     system: System, method: Method, approach: Approach, conditions: Conditions, settings: MethodSettings | None = None
 ) -> DiscrepancyCell:
-    """Learn one error signal by one method, and judge the augmented model.
+    """Learn one error signal by one method, and test the augmented model.
 
     settings: of the methods; SINDy's threshold is the published one in the published variant
     returns: with the refusal in words where nothing can be fitted
@@ -114,7 +114,7 @@ def learned_from(record: Record, approach: Approach) -> tuple[Record, ...]:
 
 
 def part(record: Record, learned: Model, approach: Approach, name: str) -> PartAccuracy:
-    """Judge a learned model over the training part or the forecast.
+    """Accuracy of a learned model over the training part or the forecast.
 
     In the forecast as a user has it the known and the augmented model each begin where they fit the end of the noisy
     training part best; in the oracle forecast both begin at the noise-free true state.

@@ -20,7 +20,7 @@ from gaitdisc.simulation.simulation import Simulation
 
 
 def discover_answer(hidden: HiddenEffect, record: Record) -> Naming:
-    """Ask `gaitdisc discover` what the known model lacks."""
+    """What `gaitdisc discover` finds that the known model lacks."""
     begun, made, system = clock.process_time(), record.conditions, record.system
     if not isinstance(system.known, KnownRates):
         raise ShapeError(
@@ -33,13 +33,13 @@ def discover_answer(hidden: HiddenEffect, record: Record) -> Naming:
     drive = Drive.of([np.empty((len(shown), 0))], 1.0 / made.dt_s)
     found, augmented = discover(simulation, Measured(drive, shown[None], ("1",), system.channels))
     seconds = clock.process_time() - begun
-    answer, amount = judged(hidden, found)
+    answer, amount = answer_of(hidden, found)
     accuracy = forecast_accuracy(record, augmented)
-    asked = (hidden.case, hidden.words, "discover", made.noise, made.seed, answer, found.sentence)
-    return Naming(*asked, amount, accuracy, None, seconds)
+    case = (hidden.case, hidden.words, "discover", made.noise, made.seed, answer, found.sentence)
+    return Naming(*case, amount, accuracy, None, seconds)
 
 
-def judged(hidden: HiddenEffect, found: Discovery) -> tuple[str, float]:
+def answer_of(hidden: HiddenEffect, found: Discovery) -> tuple[str, float]:
     """Answer of a discovery in the words of `Naming`, and its number over the true one."""
     named: dict[tuple[str, ...], FoundEffect] = {(one.place, one.name): one for one in found.effects}
     if not named:

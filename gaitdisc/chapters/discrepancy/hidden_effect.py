@@ -41,7 +41,7 @@ class HiddenEffect:
 def method_answer(
     hidden: HiddenEffect, record: Record, method: Method, settings: MethodSettings | None = None
 ) -> Naming:
-    """Ask one method what the known model lacks.
+    """What one method finds that the known model lacks.
 
     SINDy answers with terms, the others with a curve: of time (DMD) or of the states (Gaussian process, network).
 
@@ -54,19 +54,19 @@ def method_answer(
     """
     begun, settings = clock.process_time(), settings or MethodSettings()
     made = record.conditions
-    asked = Naming(hidden.case, hidden.words, method, made.noise, made.seed, "refused", "")
+    refused = Naming(hidden.case, hidden.words, method, made.noise, made.seed, "refused", "")
     try:
         with threadpool_limits(1):
             learned = learned_model(record, method, hidden.approach, settings)
     except GaitdiscError as error:
-        return replace(asked, said=str(error), seconds=clock.process_time() - begun)
+        return replace(refused, said=str(error), seconds=clock.process_time() - begun)
     seconds = clock.process_time() - begun
     forecast = part(record, learned, hidden.approach, ORACLE)
     accuracy = float(np.median(forecast.accuracy()))
     answer, amount = _named(hidden, learned) if isinstance(learned, Sindy) else ("curve", float("nan"))
     said = terms_of(learned) or curve_words(hidden, record, learned)
-    judged = replace(asked, answer=answer, said=said, amount=amount)
-    return replace(judged, accuracy=accuracy, diverged_s=forecast.diverged_s, seconds=seconds)
+    answered = replace(refused, answer=answer, said=said, amount=amount)
+    return replace(answered, accuracy=accuracy, diverged_s=forecast.diverged_s, seconds=seconds)
 
 
 def curve_words(hidden: HiddenEffect, record: Record, learned: Model) -> str:

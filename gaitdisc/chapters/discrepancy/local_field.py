@@ -64,7 +64,7 @@ def recorded_field(system: System, conditions: Conditions) -> Record:
 
 
 def local_cell(record: Record, method: Method, settings: MethodSettings | None = None) -> DiscrepancyCell:
-    """Learn the missing rate of a field as a function of the field at a point, and judge the augmented model.
+    """Learn the missing rate of a field as a function of the field at a point, and test the augmented model.
 
     returns: with the refusal in words where nothing can be fitted
     """

@@ -17,7 +17,7 @@ from gaitdisc.recording import Samples
 
 Method = Literal["sindy", "esindy", "wsindy", "dmd", "exactdmd", "bopdmd", "gp", "gpm", "nn"]
 OF_TIME: tuple[Method, ...] = ("dmd", "exactdmd", "bopdmd")  # what they learn is a function of time
-BAGS, SINDY_BAGS = 10, 20  # of BOP-DMD and of SINDy's ensemble, where none are asked for
+BAGS, SINDY_BAGS = 10, 20  # of BOP-DMD and of SINDy's ensemble, where no number is given
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ class Naming:
     tool: str
     noise: float
     seed: int
-    # one of `ANSWERS`: the hidden effect and nothing else, it and another from which the data cannot tell it (whichever
+    # one of `ANSWERS`: the hidden effect and nothing else, it and another that the data cannot distinguish (whichever
     # stands first), more than it, something else, a curve without a name, that nothing is missing, or a refusal
     answer: str
     said: str

@@ -59,7 +59,7 @@ def recommend(
 
     want: `interpretability`: terms or frequencies that a person can read; `speed`: the fastest within 5 points of the
         best; `forecast`: the best forecast
-    chaotic: judge by the Lorenz system's valid time, of equal ones by the accuracy, instead of the Van der Pol
+    chaotic: rank by the Lorenz system's valid time, of equal ones by the accuracy, instead of the Van der Pol
         oscillator's accuracy
     dt_s: between samples [s], for systems that turn once in 0.7 (Lorenz) to 6 s (Van der Pol) as the measured ones;
         where absent, the step at which most was measured

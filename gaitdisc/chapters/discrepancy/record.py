@@ -19,7 +19,7 @@ LEAST_SAMPLES = 60  # a training part shorter than this carries no smoothing and
 
 @dataclass(frozen=True)
 class Conditions:
-    """How a system is recorded and judged; the defaults are the text's, with what it leaves open done right."""
+    """How a system is recorded and tested; the defaults are the text's, with what it leaves open done right."""
 
     noise: float = 0.0  # standard deviation of the noise, as a share of each channel's own, or in its unit
     seed: int = 0
@@ -28,8 +28,8 @@ class Conditions:
     duration_s: float = 50.0  # between samples, and of the record [s]
     train_share: float = 0.6  # share of the record that is learned from
     # as the published code: 4 Hz filter where there is noise, central differences, each forecast starts from the last
-    # measured sample, and the truth that it is judged by is run again from there. Otherwise: a cut-off where the noise
-    # begins, the flow of the known model in place of a derivative, starts and truth of the trajectory
+    # measured sample, and the truth that it is compared with is run again from there. Otherwise: a cut-off where the
+    # noise begins, the flow of the known model in place of a derivative, starts and truth of the trajectory
     published: bool = False
     kind: NoiseKind = "normal"
     trajectories: int = 1
@@ -66,7 +66,7 @@ class Record:
         return self.filtered[sample] if self.conditions.published and complete else self.truth[sample]
 
     def target(self, forecast: bool) -> NDArray[np.float64]:
-        """Noise-free channels that a part is judged by, (sample, channel)."""
+        """Noise-free channels that a part is compared with, (sample, channel)."""
         part = slice(self.split - 1, None) if forecast else slice(0, self.split)
         states = self.truth[part]
         if self.conditions.published:

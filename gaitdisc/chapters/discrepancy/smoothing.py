@@ -1,4 +1,4 @@
-"""Zero-lag smoothing of a measured record, with the cut-off that its noise asks for."""
+"""Zero-lag smoothing of a measured record, with the cut-off that its noise needs."""
 
 from __future__ import annotations
 

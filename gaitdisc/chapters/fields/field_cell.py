@@ -1,4 +1,4 @@
-"""One cell of a field study: a route of sensors, a split and a model, and how far the told field is off."""
+"""One cell of a field study: a route of sensors, a split and a model, and how far the reconstructed field is off."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ REACH_SD = 4.0  # of the field's own standard deviation: how far the bins of err
 
 @dataclass(frozen=True, eq=False)
 class ErrorCounts:
-    """How often an error of each size was made, over all points and judged snapshots."""
+    """How often an error of each size was made, over all points and test snapshots."""
 
     edges: NDArray[np.float64]  # (bin + 1,) [unit], of the bins; the outer two bins take what lies beyond
     counts: NDArray[np.int_]  # (bin,), values in each
@@ -36,7 +36,7 @@ class ErrorCounts:
 
 @dataclass(frozen=True, eq=False)
 class FieldCell:
-    """What one model told of one quantity of a field."""
+    """How well one model reconstructs one quantity of a field."""
 
     field: str
     quantity: str
@@ -44,17 +44,17 @@ class FieldCell:
     route: str
     split: str
     model: str
-    # norm of the error over the norm of the field about zero, of all judged values at once (Eq. 2.21); 1 for a model
+    # norm of the error over the norm of the field about zero, of all test values at once (Eq. 2.21); 1 for a model
     # that says 0
     relative_l2: float
-    rmse: float  # [unit], root mean square, mean and standard deviation of told minus measured
-    bias: float  # [unit], root mean square, mean and standard deviation of told minus measured
-    sd: float  # [unit], root mean square, mean and standard deviation of told minus measured
+    rmse: float  # [unit], root mean square, mean and standard deviation of reconstructed minus measured
+    bias: float  # [unit], root mean square, mean and standard deviation of reconstructed minus measured
+    sd: float  # [unit], root mean square, mean and standard deviation of reconstructed minus measured
     # 1 - mean squared error over the mean squared distance from the training part's mean field; 0 for a model that says
     # that mean
     r2: float
     fitted: int
-    judged: int
+    tested: int
     seconds: float  # [s], processor time of the fit
     run: int  # number of the run, where one cell was computed several times with other seeds
     errors: ErrorCounts
@@ -70,7 +70,7 @@ def field_cells_table(cells: Sequence[FieldCell]) -> pd.DataFrame:
 def error_counts(errors: NDArray[np.floating], sd: float) -> ErrorCounts:
     """Count errors by size.
 
-    errors , any shape [unit]: told minus measured
+    errors , any shape [unit]: reconstructed minus measured
     sd [unit]: of the field; the bins reach four of it to each side
 
     >>> error_counts(np.array([0.0, 99.0]), 1.0).counts[[60, 120]].tolist()
@@ -101,4 +101,5 @@ def load_cells(made_by: Mapping[str, Any], path: Path) -> list[FieldCell] | None
         return None
     if held["made_by"] != json.loads(json.dumps(dict(made_by))):
         return None
-    return [FieldCell(**{**row, "errors": ErrorCounts(**row["errors"])}) for row in held["cells"]]
+    rows = [{"tested" if name == "judged" else name: value for name, value in row.items()} for row in held["cells"]]
+    return [FieldCell(**{**row, "errors": ErrorCounts(**row["errors"])}) for row in rows]

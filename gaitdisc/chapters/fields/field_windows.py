@@ -1,4 +1,4 @@
-"""Windows of what sensors on a route read, each of them to tell the whole field at its last reading."""
+"""Windows of what sensors on a route read, each to reconstruct the whole field at its last reading."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ from gaitdisc.sensing.windows import Lags
 def reading_names(field: Field, route: Route, positions: bool = False) -> tuple[str, ...]:
     """Names of what one window holds for each of its times.
 
-    positions: whether each sensor tells where it is, beside what it reads
+    positions: whether each sensor gives its place, beside what it reads
     """
-    told = field.quantities + (tuple(axis.name for axis in field.axes) if positions else ())
-    return tuple(f"{name} of sensor {k + 1}" for k in range(route.sensors) for name in told)
+    given = field.quantities + (tuple(axis.name for axis in field.axes) if positions else ())
+    return tuple(f"{name} of sensor {k + 1}" for k in range(route.sensors) for name in given)
 
 
 def field_windows(field: Field, route: Route, lags: Lags, positions: bool = False) -> Samples:
     """Every window along a field's whole time, still without outputs: those are modes of the part that is fitted.
 
-    lags: readings of a window, snapshots from one to the next, and from the last to the one that is told
+    lags: readings of a window, snapshots from one to the next, and from the last to the one that is reconstructed
     positions: whether each sensor's place stands beside its reading: what a path never seen in training needs
-    returns: x (window, reading * sensor), oldest first; no outputs; time is the snapshot that is told, counted from 0:
-        that of the last reading, or `lags.ahead` later
+    returns: x (window, reading * sensor), oldest first; no outputs; time is the snapshot that is reconstructed, counted
+        from 0: that of the last reading, or `lags.ahead` later
     """
     if len(field) <= lags.reach + lags.ahead:
         forth = f" and {lags.ahead} ahead" if lags.ahead else ""
@@ -38,10 +38,10 @@ def field_windows(field: Field, route: Route, lags: Lags, positions: bool = Fals
             f"{field.source.file or 'the field'} has {len(field)}",
             "Take fewer lags, or a longer field.",
         )
-    told = route.readings(field)
+    readings = route.readings(field)
     if positions:
-        told = np.concatenate([told, route.places(field)], axis=2)
-    told = told.reshape(len(field), -1)
+        readings = np.concatenate([readings, route.places(field)], axis=2)
+    readings = readings.reshape(len(field), -1)
     last = np.arange(lags.reach, len(field) - lags.ahead)
     rows = last[:, None] + (np.arange(lags.count) - lags.count + 1) * lags.spacing
     names = reading_names(field, route, positions)
@@ -50,12 +50,12 @@ def field_windows(field: Field, route: Route, lags: Lags, positions: bool = Fals
         for ago in range(lags.count - 1, -1, -1)
         for name in names
     )
-    x, none = told[rows].reshape(len(last), -1), np.zeros((len(last), 0))
+    x, none = readings[rows].reshape(len(last), -1), np.zeros((len(last), 0))
     return Samples(x, none, inputs, (), (last + lags.ahead).astype(float), np.zeros(len(last)))
 
 
 def snapshots_of(windows: Samples) -> NDArray[np.intp]:
-    """Number of the snapshot that each window is to tell, (window,)."""
+    """Number of the snapshot that each window reconstructs, (window,)."""
     return np.rint(windows.time).astype(int)
 
 

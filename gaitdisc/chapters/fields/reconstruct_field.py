@@ -1,4 +1,4 @@
-"""Tell a whole field from sensors on a route: every kind of model beside its floor and its ceiling."""
+"""Reconstruct a whole field from sensors on a route: every kind of model beside its floor and its ceiling."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ MEAN, SEASON, CEILING = "mean (no sensor)", "season (no sensor)", "POD ceiling"
 
 @dataclass(frozen=True, eq=False)
 class Targets:
-    """What is told of a field, the same for every route of a task."""
+    """What is reconstructed of a field, the same for every route of a task."""
 
     read: Field  # what sensors read: the field itself, or its departures
     modes: Modes
@@ -36,15 +36,15 @@ class Targets:
     def fields(self, coefficients: NDArray[np.float64], windows: Samples) -> NDArray[np.float32]:
         """Field at each window, (window, point, quantity) [each quantity's unit].
 
-        coefficients (window, mode): told
+        coefficients (window, mode): reconstructed
         """
-        told = self.modes.fields(coefficients)
-        return told + self.season.at(snapshots_of(windows)) if self.departures else told
+        found = self.modes.fields(coefficients)
+        return found + self.season.at(snapshots_of(windows)) if self.departures else found
 
 
 @dataclass(frozen=True, eq=False)
 class Prepared:
-    """Windows of the three parts and the modes that they tell."""
+    """Windows of the three parts and the modes that they reconstruct."""
 
     training: Samples
     check: Samples
@@ -52,7 +52,7 @@ class Prepared:
     targets: Targets
     what: Sensing
 
-    def told(self, model: Callable[[Samples], NDArray[np.float64]]) -> NDArray[np.float32]:
+    def reconstructed(self, model: Callable[[Samples], NDArray[np.float64]]) -> NDArray[np.float32]:
         """Field at each window of the test part, (window, point, quantity) [each quantity's unit]."""
         return self.targets.fields(model(self.test), self.test)
 
@@ -69,16 +69,16 @@ def targets_of(field: Field, task: FieldTask) -> Targets:
 
 
 def prepare(field: Field, route: Route, task: FieldTask, targets: Targets | None = None) -> Prepared:
-    """Cut windows, part them, and set what they are to tell beside them.
+    """Cut windows, part them, and set what they are to reconstruct beside them.
 
     targets: from `targets_of` with the same field and task; computed without
     """
-    told = targets or targets_of(field, task)
-    parts = _parts(told.read, route, task)
+    targets = targets or targets_of(field, task)
+    parts = _parts(targets.read, route, task)
     names = reading_names(field, route, task.positions)
-    windows = parts.fitted(), parts.checked(), parts.judged()
-    training, check, test = (with_coefficients(each, told.coefficients, told.modes.names) for each in windows)
-    return Prepared(training, check, test, told, Sensing(names, told.modes.names, task.lags, 1.0))
+    windows = parts.fitted(), parts.checked(), parts.tested()
+    training, check, test = (with_coefficients(each, targets.coefficients, targets.modes.names) for each in windows)
+    return Prepared(training, check, test, targets, Sensing(names, targets.modes.names, task.lags, 1.0))
 
 
 def _parts(field: Field, route: Route, task: FieldTask) -> Parts:
@@ -94,35 +94,35 @@ def reconstruct_field(
     floors: bool = True,
     targets: Targets | None = None,
 ) -> list[FieldCell]:
-    """Fit every kind of model and judge it on the test part, in the field's own unit at every point.
+    """Fit every kind of model and test it on the test part, in the field's own unit at every point.
 
-    floors: whether what needs no sensor is judged too (the training part's mean, its mean season), and the ceiling:
-        the test part projected onto the training part's modes, which no model that tells those modes can beat
+    floors: whether what needs no sensor is tested too (the training part's mean, its mean season), and the ceiling:
+        the test part projected onto the training part's modes, which no model of those modes can beat
     targets: from `targets_of` with the same field and task; computed without
     """
     ready = prepare(field, route, task, targets)
     cells = []
-    for model, told in (_floors(ready, task) if floors else {}).items():
-        cells += field_cells(field, ready, task.label(route.name, model), told)
+    for model, found in (_floors(ready, task) if floors else {}).items():
+        cells += field_cells(field, ready, task.label(route.name, model), found)
     for kind in kinds:
         done = fit_reconstructor(kind, ready.what, ready.training, ready.check, task.seed)
         label = task.label(route.name, task.named(kind))
-        cells += field_cells(field, ready, label, ready.told(done), done.seconds)
+        cells += field_cells(field, ready, label, ready.reconstructed(done), done.seconds)
     return cells
 
 
 def field_cells(
-    field: Field, ready: Prepared, label: Label, told: NDArray[np.float32], seconds: float = 0.0
+    field: Field, ready: Prepared, label: Label, reconstructed: NDArray[np.float32], seconds: float = 0.0
 ) -> list[FieldCell]:
-    """Judge what was told of the test part, a cell for each quantity.
+    """Compare what was reconstructed with the test part, a cell for each quantity.
 
-    told (window, point, quantity) [each quantity's unit]: the field at each window of the test part
+    reconstructed (window, point, quantity) [each quantity's unit]: the field at each window of the test part
     seconds [s]: processor time of the fit
     """
     rows, cells = snapshots_of(ready.test), []
     for k, quantity in enumerate(field.quantities):
         y = field.values[rows, :, k].astype(float)
-        error = told[:, :, k] - y
+        error = reconstructed[:, :, k] - y
         square, bias = float(np.mean(error**2)), float(np.mean(error))
         about = float(np.mean((y - ready.targets.mean[:, k]) ** 2))
         cells.append(
@@ -139,7 +139,7 @@ def field_cells(
                 sd=float(np.sqrt(max(square - bias**2, 0.0))),
                 r2=1 - square / about,
                 fitted=len(ready.training),
-                judged=len(rows),
+                tested=len(rows),
                 seconds=seconds,
                 run=label.run,
                 errors=error_counts(error, float(np.std(y))),
@@ -149,9 +149,9 @@ def field_cells(
 
 
 def _floors(ready: Prepared, task: FieldTask) -> dict[str, NDArray[np.float32]]:
-    rows, told = snapshots_of(ready.test), ready.targets
-    found = {MEAN: np.broadcast_to(told.mean, (len(rows), *told.mean.shape))}
+    rows, targets = snapshots_of(ready.test), ready.targets
+    found = {MEAN: np.broadcast_to(targets.mean, (len(rows), *targets.mean.shape))}
     if task.season:
-        found[SEASON] = told.season.at(rows)
-    found[CEILING] = told.fields(ready.test.y, ready.test)
+        found[SEASON] = targets.season.at(rows)
+    found[CEILING] = targets.fields(ready.test.y, ready.test)
     return found

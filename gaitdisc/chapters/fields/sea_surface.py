@@ -21,7 +21,7 @@ MAT_GRID = (180, 360)  # one degree, first row the northernmost, from the meridi
 def read_oisst(path: Path, mask: Path | None = None) -> Field:
     """Read NOAA's weekly sea-surface temperature (`sst.wkmean.1990-present.nc`).
 
-    NOAA's file holds a number on land too, filled in from the sea around: `lsmask.nc` tells what is sea. A cell that
+    NOAA's file holds a number on land too, filled in from the sea around: `lsmask.nc` marks what is sea. A cell that
     misses a value in any week is left out as well.
 
     mask: netCDF with `mask` (lat, lon), 1 at sea: `lsmask.nc`. Without it every cell counts as sea

@@ -1,4 +1,4 @@
-"""A path never seen in training: told from readings and places, by a model fitted on many other paths."""
+"""A path never seen in training: reconstructed from readings and places, by a model fitted on many other paths."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ def unseen_path(
 
     The dissertation says of its network that it "cannot extrapolate to unseen sensor location trajectories". Here that
     error is stated: for a model fitted on one path, on many, and on many with each sensor's place fed in beside its
-    reading. The times judged are those of the split, and were not fitted on any path.
+    reading. The test times are those of the split, and were not fitted on any path.
 
     routes: to fit on, at least two, each with as many sensors as `unseen`
-    returns: `route` says on which path it was judged, and how the model was fitted
+    returns: `route` says on which path it was tested, and how the model was fitted
     """
     if len(routes) < 2 or {route.sensors for route in routes} != {unseen.sensors}:
         counts = ", ".join(str(route.sensors) for route in routes) or "none"
@@ -40,15 +40,15 @@ def unseen_path(
     cells, targets = [], targets_of(field, task)
     many = len(routes)
     for fitted, placed in ((ALONE, False), (MANY.format(many), False), (MANY_PLACED.format(many), True)):
-        asked = replace(task, positions=placed)
-        ready = [prepare(field, route, asked, targets) for route in (routes[:1] if fitted == ALONE else routes)]
+        placed_task = replace(task, positions=placed)
+        ready = [prepare(field, route, placed_task, targets) for route in (routes[:1] if fitted == ALONE else routes)]
         training, check = stacked([each.training for each in ready]), stacked([each.check for each in ready])
-        judged = {OTHER: replace(prepare(field, unseen, asked, targets), training=training)}
+        tested = {OTHER: replace(prepare(field, unseen, placed_task, targets), training=training)}
         if fitted == ALONE:
-            judged = {OWN: ready[0]} | judged
+            tested = {OWN: ready[0]} | tested
         for kind in kinds:
             done = fit_reconstructor(kind, ready[0].what, training, check, task.seed)
-            for where, each in judged.items():
+            for where, each in tested.items():
                 label = task.label(f"{where}; {fitted}", task.named(kind))
-                cells += field_cells(field, each, label, each.told(done), done.seconds)
+                cells += field_cells(field, each, label, each.reconstructed(done), done.seconds)
     return cells

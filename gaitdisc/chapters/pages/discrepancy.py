@@ -345,19 +345,19 @@ def grid_table(cells: Sequence[DiscrepancyCell], name: str) -> Table:
     return Table(name, caption, columns, tuple(rows), cells_table(cells))
 
 
-def _cell(parts: list[PartAccuracy], asked: int) -> str:
+def _cell(parts: list[PartAccuracy], seeds: int) -> str:
     """Say median and range over the seeds, by channel; when it diverged, and in how many seeds, instead of a number."""
     if not parts:
         return "not fitted"
     diverged = [part.diverged_s for part in parts if part.diverged_s is not None]
     if diverged:
-        return f"diverged at t = {min(diverged):.2f} s" + (f" ({len(diverged)} of {asked} seeds)" * (asked > 1))
+        return f"diverged at t = {min(diverged):.2f} s" + (f" ({len(diverged)} of {seeds} seeds)" * (seeds > 1))
     accuracy = np.array([part.accuracy() for part in parts])
     many = accuracy.shape[1] > MOST_CHANNELS
     columns = [np.median(accuracy, axis=1)] if many else list(accuracy.T)
     said = "; ".join(spread_words(column) for column in columns)
     said += f" (median of {accuracy.shape[1]})" if many else ""
-    return said if len(parts) == asked else f"{said} ({len(parts)} of {asked} seeds)"
+    return said if len(parts) == seeds else f"{said} ({len(parts)} of {seeds} seeds)"
 
 
 def spread_words(values: NDArray[np.float64]) -> str:

@@ -56,7 +56,7 @@ def histograms_figure(cells: Sequence[FieldCell], name: str, source: str) -> Fig
     drawn.legend(handles=handles, loc="upper center", ncols=min(3, len(routes)), bbox_to_anchor=(0.5, 1.0))
     caption = (
         f"{source}. {cells[0].field}, {cells[0].quantity}, {cells[0].model}: errors at all points of all test "
-        f"snapshots, n = {cells[0].judged} at most. {_beyond(numbers, cells[0])}"
+        f"snapshots, n = {cells[0].tested} at most. {_beyond(numbers, cells[0])}"
     )
     return Figure(name, caption, f"Histograms of errors of {len(routes)} routes", pd.concat(numbers), drawn)
 
@@ -166,7 +166,7 @@ def field_table(cells: Sequence[FieldCell], name: str, printed: Mapping[tuple[st
     caption = (
         f"{first.field}, {first.quantity}: relative L2 error, the norm of the error over the norm of the field about "
         f"zero; in brackets RMSE [{first.unit}] and R2 about the training part's mean; star: least of the models. "
-        f"Test snapshots: {', '.join(f'{split} {_judged(cells, split)}' for split in splits)}."
+        f"Test snapshots: {', '.join(f'{split} {_tested(cells, split)}' for split in splits)}."
         f"{_bounds(cells)}"
     )
     columns = ("route", *[word for _ in splits for word in (*models, *extra)])
@@ -192,8 +192,8 @@ def _cell(cell: FieldCell | None, least: float = 0.0) -> str:
     return f"{cell.relative_l2:.3f}{star} ({cell.rmse:.3g}; {cell.r2:.2f})"
 
 
-def _judged(cells: Sequence[FieldCell], split: str) -> str:
-    counts = sorted({cell.judged for cell in cells if cell.split == split})
+def _tested(cells: Sequence[FieldCell], split: str) -> str:
+    counts = sorted({cell.tested for cell in cells if cell.split == split})
     return str(counts[0]) if len(counts) == 1 else f"{counts[0]} to {counts[-1]}"
 
 

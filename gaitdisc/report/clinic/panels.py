@@ -20,7 +20,7 @@ from gaitdisc.results.leg_curves import FEET
 
 WIDTH, HEIGHT = 240, 165
 LEFT, RIGHT, TOP, BOTTOM = 34, 236, 8, 143  # of the axes
-DASHES = {"l": "", "r": "5 1.6", "": ""}  # so that grey print tells left from right
+DASHES = {"l": "", "r": "5 1.6", "": ""}  # so that left and right differ in grey print too
 BAR = 5  # height of a bar below the curves
 SHORT = {"l": "L", "r": "R"}
 MOST_SINGLE = 12  # cycles of a leg that are drawn one by one

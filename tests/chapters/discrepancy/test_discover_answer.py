@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gaitdisc.chapters.discrepancy.burgers import burgers
-from gaitdisc.chapters.discrepancy.discover_answer import discover_answer, judged
+from gaitdisc.chapters.discrepancy.discover_answer import answer_of, discover_answer
 from gaitdisc.chapters.discrepancy.hidden_effect import HiddenEffect
 from gaitdisc.chapters.discrepancy.record import Conditions, recorded
 from gaitdisc.chapters.discrepancy.system import system_of
@@ -30,7 +30,7 @@ def test_the_name_the_number_and_the_forecast(hidden):
     assert discover_answer(replace(hidden, effect=("x", "offset")), record).answer == "wrong name"
 
 
-def test_nothing_hidden_is_told(hidden):
+def test_nothing_hidden_is_reported(hidden):
     alike = HiddenEffect("van der Pol", "", system_of(bundled("van_der_pol")), duration_s=20.0)
     assert discover_answer(alike, recorded(alike.system, Conditions(0.01, duration_s=20.0))).right
 
@@ -65,6 +65,6 @@ def test_a_verdict_is_an_answer(hidden, verdict, effects, rivals, answer):
     runs = Runs(np.empty(0, int), np.empty((0, 0)), np.empty(0), none, none, none)
     named = tuple(effect(name) for name in effects)
     found = Discovery(verdict, "", (), named, tuple(rivals), size, size, ("x",), ("1",), runs)
-    said, amount = judged(hidden, found)
+    said, amount = answer_of(hidden, found)
     assert said == answer
     assert (amount == pytest.approx(2.0)) == ("cubic_stiffness" in effects)

@@ -39,7 +39,7 @@ def test_what_was_refused_keeps_its_row():
     assert cells_table([cell])["refused"].tolist() == ["too short"]
 
 
-def test_the_step_between_samples_is_told():
+def test_the_step_between_samples_is_said():
     cell = DiscrepancyCell("s", "gp", "state", "right", 0.0, 0, ("x", "y"), {"reconstruction": part(TRUTH)}, 1.0, 1.0)
     assert cell.dt_s == pytest.approx(TIME[1])
     assert np.isnan(DiscrepancyCell("s", "gp", "state", "right", 0.0, 0, ("x",), {}, 1.0, 0.0).dt_s)

@@ -24,14 +24,14 @@ def test_sindy_names_the_term_and_its_number(hidden, quiet):
     assert found.accuracy > 99
 
 
-def test_another_term_beside_it_and_another_one_alone_are_told(hidden, quiet):
+def test_another_term_beside_it_and_another_one_alone_are_distinguished(hidden, quiet):
     sought = replace(hidden, terms={"y": {"x": 1.0}})
     assert method_answer(sought, quiet, "sindy").answer == "wrong name"
     many = method_answer(hidden, quiet, "sindy", MethodSettings(threshold=1e-9))
     assert many.answer == "among others"
 
 
-def test_a_curve_is_told_by_how_far_it_is_off(hidden, quiet):
+def test_a_curve_is_described_by_how_far_it_is_off(hidden, quiet):
     found = method_answer(hidden, quiet, "dmd")
     assert found.answer == "curve"
     assert found.said.startswith("a curve of time, ")

@@ -30,7 +30,7 @@ def test_the_measured_cells_decide(want, method):
     assert len(found.evidence) == 5
 
 
-def test_the_range_of_the_seeds_is_told_and_a_method_counts_by_its_worst_system():
+def test_the_range_of_the_seeds_is_stated_and_a_method_counts_by_its_worst_system():
     assert "(96.0 to 98.0 %, n = 3 seeds)" in recommend(0.01, 3000, "forecast", evidence=TABLE).why
     assert recommend(0.01, 3000, "forecast", evidence=TABLE[TABLE["method"] == "dmd"]).why.startswith(
         "Measured at 1.0% noise and 3,001 samples, 0.01 s apart, on Van der Pol, late: forecast error 40.0 %"

@@ -14,7 +14,7 @@ def test_noise_is_a_share_of_each_channel_or_absolute(lorenz):
         assert (record.measured - record.truth).std(axis=0) == pytest.approx(wanted, rel=0.1)
 
 
-def test_the_published_variant_starts_and_judges_from_the_last_measured_sample(van_der_pol):
+def test_the_published_variant_starts_and_compares_from_the_last_measured_sample(van_der_pol):
     record = recorded(van_der_pol, Conditions(noise=0.05, published=True, absolute=True, duration_s=10.0))
     assert np.array_equal(record.start(forecast=True), record.filtered[-1])
     assert np.array_equal(record.target(forecast=True)[0], record.filtered[-1])

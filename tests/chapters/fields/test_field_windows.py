@@ -33,7 +33,7 @@ def test_outputs_are_the_coefficients_of_the_snapshot_itself():
     modes = fit_modes(WAVE.values[snapshots_of(parts.fitted())], 0.999)
     coefficients = modes.coefficients(WAVE.values)
     training, check, test = (
-        with_coefficients(each, coefficients, modes.names) for each in (parts.fitted(), parts.checked(), parts.judged())
+        with_coefficients(each, coefficients, modes.names) for each in (parts.fitted(), parts.checked(), parts.tested())
     )
     rows = snapshots_of(test)
     np.testing.assert_allclose(modes.fields(test.y), WAVE.values[rows], atol=0.1)

@@ -26,11 +26,11 @@ def test_energies_are_those_of_the_singular_values():
     np.testing.assert_allclose(fit_modes(values).energies[:29], (singular / singular.sum())[:29], rtol=1e-4)
 
 
-def test_what_is_left_is_the_energy_that_was_not_asked_for():
+def test_what_is_left_is_the_energy_that_was_not_wanted():
     values = RNG.normal(size=(50, 200, 1)).astype(np.float32)
     modes = fit_modes(values, 0.9)
-    told = modes.fields(modes.coefficients(values))
-    left = np.mean((told - values) ** 2) / np.mean((values - values.mean(axis=0)) ** 2)
+    found = modes.fields(modes.coefficients(values))
+    left = np.mean((found - values) ** 2) / np.mean((values - values.mean(axis=0)) ** 2)
     assert left == pytest.approx(1 - modes.energies[: modes.count].sum(), abs=1e-4)
     assert 1 - left >= 0.9
     assert 1 - modes.energies[: modes.count - 1].sum() > 0.1

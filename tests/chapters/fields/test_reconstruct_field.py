@@ -26,7 +26,7 @@ def test_the_history_of_one_sensor_tells_a_travelling_wave():
     assert np.isclose(cells["linear"].rmse ** 2, cells["linear"].bias ** 2 + cells["linear"].sd ** 2)
 
 
-def test_a_field_that_is_its_season_is_told_by_it():
+def test_a_field_that_is_its_season_is_reconstructed_by_it():
     year = np.sin(2 * np.pi * np.arange(400) / 12)[:, None, None] * WAVE.values[:1]
     field = type(WAVE)(WAVE.time, year, WAVE.axes, WAVE.mask, ("h",), ("m",))
     task = FieldTask("year", Lags(3, 1), season=12)
@@ -42,7 +42,7 @@ def test_a_network_tells_it_too():
     assert cells[0].r2 > 0.9
 
 
-def test_modes_and_windows_of_the_judged_part_take_no_part():
+def test_modes_and_windows_of_the_test_part_take_no_part():
     ready = prepare(WAVE, fixed(WAVE, [30]), TASK)
     np.testing.assert_allclose(ready.targets.mean, WAVE.values[snapshots_of(ready.training)].mean(axis=0), atol=1e-5)
     assert snapshots_of(ready.test)[0] - snapshots_of(ready.check)[-1] > TASK.lags.reach
@@ -53,13 +53,13 @@ def test_modes_and_windows_of_the_judged_part_take_no_part():
 def test_errors_are_of_each_quantity_in_its_unit():
     field = travelling_wave(quantities=2)
     ready = prepare(field, fixed(field, [30]), TASK)
-    told = field.values[snapshots_of(ready.test)] + np.float32([0.1, 0.3])
-    cells = field_cells(field, ready, Label("wave", "r", "temporal", "m", 0), told)
+    found = field.values[snapshots_of(ready.test)] + np.float32([0.1, 0.3])
+    cells = field_cells(field, ready, Label("wave", "r", "temporal", "m", 0), found)
     np.testing.assert_allclose([(cell.rmse, cell.bias) for cell in cells], [(0.1, 0.1), (0.3, 0.3)], rtol=1e-5)
     assert [(cell.quantity, cell.unit) for cell in cells] == [("h", "m"), ("g", "m")]
 
 
-def test_departures_are_told_about_the_season_and_judged_with_it():
+def test_departures_are_reconstructed_about_the_season_and_tested_with_it():
     """A season twice as strong as the waves, another mean at each point: only departures are linear in the readings."""
     t = np.arange(400)
     year = 2 * np.sin(2 * np.pi * (t % 12) / 12)[:, None, None] + np.linspace(-9, 9, WAVE.points)[None, :, None]
@@ -75,7 +75,7 @@ def test_departures_are_told_about_the_season_and_judged_with_it():
     assert apart[CEILING].r2 > 0.999
 
 
-def test_the_future_of_a_travelling_wave_is_told_and_its_split_keeps_the_longer_gap():
+def test_the_future_of_a_travelling_wave_is_forecast_and_its_split_keeps_the_longer_gap():
     task = FieldTask("wave", Lags(8, 3, 10), energy=0.9999)
     cells = {cell.model: cell for cell in reconstruct(WAVE, fixed(WAVE, [30]), task, ("delay ridge",))}
     assert cells["delay ridge"].relative_l2 < 1e-2

@@ -153,7 +153,7 @@ def test_what_was_refused_says_so():
     assert row[-1] == "40 too few"
 
 
-def test_seeds_are_told_as_median_and_range_and_their_terms_are_counted():
+def test_seeds_are_stated_as_median_and_range_and_their_terms_are_counted():
     cells = [replace(cell(TRUTH_TABLES + off, None, k), terms=terms) for k, (off, terms) in enumerate(
         [(0.1, "x: -0.01*x**3"), (0.05, "x: -0.0101*x**3"), (0.15, "x: 1e-05*1")])]  # fmt: skip
     row = grid_table(cells, "t").rows[0]

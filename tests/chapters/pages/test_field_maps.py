@@ -10,7 +10,7 @@ WAVE = travelling_wave(20)
 
 
 def test_maps_share_one_scale_about_zero_and_carry_their_numbers(tmp_path):
-    shown = {"measured": WAVE.values[3, :, 0], "told": 0.5 * WAVE.values[3, :, 0]}
+    shown = {"measured": WAVE.values[3, :, 0], "reconstructed": 0.5 * WAVE.values[3, :, 0]}
     figure = maps_figure(WAVE, shown, "maps", "As Fig. 5.3")
     assert figure.numbers["points"].tolist() == [WAVE.points] * 2
     assert np.isclose(figure.numbers["sd"][0], 2 * figure.numbers["sd"][1])

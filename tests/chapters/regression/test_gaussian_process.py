@@ -26,7 +26,7 @@ def test_a_smooth_map_is_learned_exactly_or_on_inducing_points(most_exact):
     assert np.abs(model(new) - wanted).max() < 1e-2
 
 
-def test_the_noise_is_told():
+def test_the_noise_is_estimated():
     model = fit_gaussian_process(samples(Y + 0.2 * RNG.standard_normal(Y.shape)))
     assert model.noise == pytest.approx([0.2, 0.2], rel=0.2)
 

@@ -32,7 +32,7 @@ ENGLISH = english_words(rule_words())
 
 
 def doubled(word):
-    """A language in which each word is told from its English."""
+    """A language in which each word differs from its English."""
     return f"§{word}§"
 
 

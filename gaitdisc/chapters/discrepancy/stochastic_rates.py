@@ -11,7 +11,7 @@ from gaitdisc.chapters.discrepancy.system import Rates
 
 
 @dataclass(frozen=True)
-class ShakenRates:
+class StochasticRates:
     """Rates with a random push of every state between any two samples; a `system.Rates`."""
 
     rates: Rates
@@ -33,7 +33,7 @@ class ShakenRates:
         >>> from gaitdisc.simulation.parts import State
         >>> from gaitdisc.simulation.simulation import Simulation
         >>> still = KnownRates(Simulation("still", (State("x"),), equations=(("x", "0*x"),)))
-        >>> walk = ShakenRates(still, (2.0,)).run(np.zeros((1, 1)), 0.01, 4000)[0, :, 0]
+        >>> walk = StochasticRates(still, (2.0,)).run(np.zeros((1, 1)), 0.01, 4000)[0, :, 0]
         >>> bool(abs(np.diff(walk).std() / (2.0 * 0.1) - 1) < 0.05)
         True
         """

@@ -1,0 +1,149 @@
+"""Records in another convention than the model's: degrees for radians, the other sign, millimetres for metres."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.engines.engine import Coordinate, Engine
+from gaitdisc.errors import SchemaError
+from gaitdisc.simulation.measured import Measured
+from gaitdisc.simulation.simulation import Simulation
+
+SPUN = 8 * np.pi  # [rad], four turns: what turns freely may go round a few times
+MISFIT = 0.6  # share of the accelerations' squares that the model as it stands misses, above which others are tried
+EASED = 0.5  # share of the misfit that is left at most where one more column has another convention, and
+FITS = 0.35  # where all of them have, for the record to be refused
+BEYOND_DOUBT = 0.02  # share that is enough whatever else the model lacks
+POINTS = 400  # at which accelerations are compared
+TINY = 1e-12
+
+
+class _Convention(NamedTuple):
+    """Another unit or sign of a column."""
+
+    factor: float  # that makes the model's unit of it
+    is_so: str
+    mend: str
+
+
+_TURNED = _Convention(
+    -1.0, "has the other sign", 'Write in the mapping: [observations.{column}] expression = "-({expression})".'
+)
+CONVENTIONS = {
+    "rad": (
+        _TURNED,
+        _Convention(np.pi / 180, "is in degrees",
+                    'Write in the mapping: [observations.{column}] unit = "deg", expression = "57.2957795*{name}".'),
+        _Convention(180 / np.pi, "is in radians",
+                    'Write in the mapping: [observations.{column}] unit = "rad", expression = "{name}".'),
+    ),
+    "m": (
+        _TURNED,
+        _Convention(1e-3, "is in millimetres",
+                    'Write in the mapping: [observations.{column}] unit = "mm", expression = "1000*{name}".'),
+    ),
+}  # fmt: skip
+
+
+def refuse_other_units(mapping: Simulation, engine: Engine, largest: dict[str, float]) -> None:
+    """Refuse angles that can be no radians: degrees that nobody said are degrees.
+
+    largest: largest size of each coordinate in the record [rad, m]
+    """
+    for one in engine.coordinates:
+        limit = _limit(one)
+        if one.unit == "rad" and largest[one.name] > limit:
+            raise SchemaError(
+                f"coordinate {one.called!r} stays within {limit:.3g} rad",
+                f"column {_column(mapping, one)!r} makes it {largest[one.name]:.4g} rad: these may be degrees",
+                f"Say so in the mapping: gaitdisc new {engine.path.with_suffix('.toml').name} --from "
+                f"{engine.path.name} --degrees.",
+            )
+
+
+def refuse_other_conventions(
+    mapping: Simulation, engine: Engine, measured: Measured, states: NDArray[np.float64]
+) -> None:
+    """Refuse a record that the model follows with other signs or units of some columns, and does not as it stands.
+
+    states (trial, sample, state): smoothed: coordinates, then speeds
+    """
+    factors = np.ones(len(engine.coordinates))
+    misfit = _Misfit(mapping, engine, measured, states)
+    as_read = now = misfit.with_factors(factors)
+    found: list[tuple[list[Coordinate], _Convention]] = []
+    while now > MISFIT and len(found) < len(factors):
+        tried = [(misfit.with_factors(each), which, how, each) for which, how, each in misfit.others(factors)]
+        best = min(tried, key=lambda one: one[0], default=None)
+        if best is None or not best[0] < EASED * now:
+            break
+        now, which, how, factors = best
+        found.append(([one for one, turned in zip(engine.coordinates, which, strict=True) if turned], how))
+    if not found or not (now < FITS * as_read and (now < 1.0 or now < BEYOND_DOUBT * as_read)):
+        return
+    columns = [(_column(mapping, one), how) for some, how in found for one in some]
+    (column, how), one = columns[0], found[0][0][0]
+    more = "".join(
+        f", and so {'does' if how is _TURNED else 'is'} {name!r}" if other is how else f", and {name!r} {other.is_so}"
+        for name, other in columns[1:]
+    )
+    raise SchemaError(
+        "the columns have the units and signs that the mapping says",
+        f"column {column!r} {how.is_so}{more}: as it stands {engine.called} misses the record's accelerations by "
+        f"{as_read**0.5:.3g} times their size, so by {now**0.5:.2g}",
+        f"{how.mend.format(column=column, expression=dict(mapping.observations)[column], name=one.name)} "
+        f"A mapping is written by: gaitdisc new {engine.path.with_suffix('.toml').name} --from {engine.path.name}.",
+    )
+
+
+class _Misfit:
+    """How far an engine's accelerations are from those of a record, whose columns may have other signs or units."""
+
+    def __init__(self, mapping: Simulation, engine: Engine, measured: Measured, states: NDArray[np.float64]) -> None:
+        self.engine, self.values, self.rate = engine, mapping.values(), measured.rate
+        count, samples = len(engine.coordinates), measured.drive.samples
+        moved = [np.ptp(one[:n, :count], axis=0).sum() for one, n in zip(states, samples, strict=True)]
+        trial = int(np.argmax(moved))  # one is enough: a unit or a sign is the same in all
+        along = states[trial, : samples[trial]]
+        self.q, self.v = along[:, :count], along[:, count:]
+        self.controls = measured.drive.inputs[trial, : samples[trial]]
+
+    def with_factors(self, factors: NDArray[np.float64]) -> float:
+        """Share of the accelerations' squares that is missed, mean over coordinates.
+
+        factors (coordinate,): which each is multiplied with
+        """
+        q, v = self.q * factors, self.v * factors
+        points = np.linspace(0, len(q) - 1, min(POINTS, len(q))).round().astype(np.intp)
+        own = np.gradient(v, 1 / self.rate, axis=0)[points]
+        at = self.engine.along(q, v, self.controls, self.rate).at(points)
+        missed = own - self.engine.accelerations(at, self.values)
+        return float(np.mean(np.mean(missed**2, axis=0) / np.maximum(np.mean(own**2, axis=0), TINY)))
+
+    def others(
+        self, factors: NDArray[np.float64]
+    ) -> Iterator[tuple[NDArray[np.bool_], _Convention, NDArray[np.float64]]]:
+        """Return each other convention of a coordinate, and the other sign of all: which, how, and factors with it."""
+        every = np.ones(len(factors), bool)
+        if len(factors) > 1 and (factors == 1.0).all():
+            yield every, _TURNED, -factors
+        for number, one in enumerate(self.engine.coordinates):
+            for how in CONVENTIONS[one.unit]:
+                inside = abs(how.factor) * np.abs(self.q[:, number]).max() <= _limit(one)
+                if factors[number] == 1.0 and inside:
+                    which = np.arange(len(factors)) == number
+                    yield which, how, np.where(which, how.factor, factors)
+
+
+def _limit(one: Coordinate) -> float:
+    """Largest size of a coordinate that a record can have [rad, m]."""
+    return SPUN if not np.isfinite(one.high) else 1.5 * max(abs(one.low), abs(one.high))
+
+
+def _column(mapping: Simulation, one: Coordinate) -> str:
+    """Column that shows a coordinate."""
+    return next((name for name, text in mapping.observations if one.name in text), one.name)

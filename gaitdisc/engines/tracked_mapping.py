@@ -1,0 +1,146 @@
+"""The mapping of a walk with recorded forces, read and written: what its [tracked] table names."""
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+
+from gaitdisc.channel import nearest_word
+from gaitdisc.errors import ReadError, SchemaError
+from gaitdisc.toml_text import parsed_toml, quoted
+from gaitdisc.whole_file import write_whole
+
+FILES = ("external_loads", "forces", "actuators", "speeds", "accelerations")
+NUMBERS, LOWPASS_HZ = ("lowpass_hz", "noise_deg", "start_s", "end_s"), 6.0
+
+
+@dataclass(frozen=True)
+class Tracked:
+    """A mapping with a [tracked] table."""
+
+    model: Path
+    loads: tuple[Path, Path]  # the ExternalLoads file, and the storage file that it names
+    forces: Path | None = None
+    actuators: Path | None = None
+    speeds: Path | None = None
+    accelerations: Path | None = None
+    lowpass_hz: float = LOWPASS_HZ
+    noise_deg: float | None = None  # standard deviation of an angle in the record, 1 mm of a translation at 0.3 deg
+    start_s: float = -np.inf  # part of the record in which all forces on the ground are known
+    end_s: float = np.inf
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """All that is read beside the model."""
+        some = (*self.loads, self.forces, self.actuators, self.speeds, self.accelerations)
+        return tuple(one for one in some if one is not None)
+
+
+def read_tracked(path: Path | str) -> Tracked | None:
+    """Mapping of a walk with recorded forces: of an .osim with such a mapping beside it, or of that file itself."""
+    path = Path(path)
+    file = path if path.suffix.lower() == ".toml" else path.with_suffix(".toml")
+    if path.suffix.lower() not in (".osim", ".toml") or not file.is_file():
+        return None
+    try:
+        text = file.read_text(encoding="utf-8")
+        if re.search(r"^\s*\[tracked\]", text, re.MULTILINE) is None:
+            return None
+        table = parsed_toml(text)
+    except (OSError, ValueError) as error:
+        raise ReadError("a mapping is a TOML file", f"{file.name}: {error}", "Correct it there.") from None
+    return _tracked(table, file)
+
+
+def _tracked(table: dict[str, Any], file: Path) -> Tracked:
+    given = table["tracked"]
+    unknown = [name for name in table if name not in ("title", "model", "tracked")]
+    unknown += [name for name in given if name not in (*FILES, *NUMBERS)]
+    if unknown:
+        near = nearest_word(unknown[0], (*FILES, *NUMBERS))
+        raise SchemaError(
+            f"a mapping with [tracked] holds title, model and in that table {', '.join((*FILES, *NUMBERS))}",
+            f"{file.name} has {unknown[0]!r}",
+            f"Did you mean {near!r}?" if near else "Take it out.",
+        )
+    if "external_loads" not in given:
+        raise SchemaError(
+            "a walk is tracked with its recorded ground forces",
+            f"[tracked] of {file.name} names no external_loads",
+            'Write external_loads = "grf.xml", the file of OpenSim\'s inverse dynamics; without forces of the ground '
+            "no moment can be said.",
+        )
+    for name in NUMBERS:
+        value = given.get(name, 1.0)
+        if not isinstance(value, int | float) or isinstance(value, bool) or not 0 <= value < 1e3:
+            raise SchemaError(f"{name} is a number", f"{file.name} has {value!r}", "Correct it.")
+    paths = {name: _there(file, name, given[name]) for name in FILES if name in given}
+    loads, noise = paths["external_loads"], given.get("noise_deg")
+    return Tracked(
+        _there(file, "model", table.get("model", f"{file.stem}.osim")),
+        loads_of(loads),
+        *(paths.get(name) for name in FILES[1:]),
+        lowpass_hz=float(given.get("lowpass_hz", LOWPASS_HZ)),
+        noise_deg=None if noise is None else float(noise),
+        start_s=float(given.get("start_s", -np.inf)),
+        end_s=float(given.get("end_s", np.inf)),
+    )
+
+
+def _there(file: Path, what: str, name: object) -> Path:
+    path = file.parent / str(name)
+    if not path.is_file():
+        raise ReadError(
+            f"{what} of {file.name} is a file beside it",
+            f"there is none at {name}",
+            "Correct the path; it counts from the mapping's folder.",
+        )
+    return path
+
+
+def loads_of(loads: Path) -> tuple[Path, Path]:
+    """Return an ExternalLoads file, and the storage file that it names."""
+    if loads.suffix.lower() in (".mot", ".sto"):
+        raise ReadError(
+            "external_loads is the file that says on which body each force acts (.xml, ExternalLoads)",
+            f"{loads.name} holds the forces themselves",
+            f"Give the .xml of OpenSim's inverse dynamics, which names {loads.name} in <datafile>.",
+        )
+    named = (xml_of(loads).findtext(".//datafile") or "").strip()
+    path = loads.parent / named
+    if not named or not path.is_file():
+        raise ReadError(
+            f"{loads.name} names the file of its forces in <datafile>",
+            f"there is none at {named!r} beside it" if named else "it names none",
+            "Correct <datafile>; it counts from the folder of the file that names it.",
+        )
+    return loads, path
+
+
+def xml_of(path: Path) -> ElementTree.Element:
+    """Return the root of a file of OpenSim."""
+    try:
+        return ElementTree.parse(path).getroot()
+    except ElementTree.ParseError as error:
+        raise ReadError("a file of OpenSim is XML", f"{path.name}: {error}", "Export it again.") from None
+
+
+def write_tracked_mapping(tracked: Tracked, file: Path) -> None:
+    """Write the mapping, with paths that count from its own folder."""
+
+    def beside(path: Path) -> str:
+        return quoted(Path(os.path.relpath(path.resolve(), file.resolve().parent)).as_posix())
+
+    paths = (tracked.loads[0], tracked.forces, tracked.actuators, tracked.speeds, tracked.accelerations)
+    lines = [f"model = {beside(tracked.model)}", "", "[tracked]"]
+    lines += [f"{name} = {beside(path)}" for name, path in zip(FILES, paths, strict=True) if path is not None]
+    lines.append(f"lowpass_hz = {tracked.lowpass_hz!r}")
+    numbers = {"noise_deg": tracked.noise_deg, "start_s": tracked.start_s, "end_s": tracked.end_s}
+    lines += [f"{name} = {value!r}" for name, value in numbers.items() if value is not None and np.isfinite(value)]
+    write_whole(file, "\n".join(lines) + "\n")
