@@ -1,10 +1,11 @@
 """What a device does, from a laboratory's files alone: which hidden effects of the embedded cohort are named.
 
-    python studies/device_from_files.py [OUT.csv] [--people 6] [--seed 777201] [--quick]
+    python studies/device_from_files.py [OUT.csv] [--people 3] [--seed 777301] [--fit] [--quick]
 
 People drawn from a seed, outside both cohorts, walk twice 36 s: Nominal, and with one thing hidden. Each is written as
 a study (angles .mot; EMG, forces, markers .c3d; moments .sto of inverse dynamics, the pressure 3 mm off) and searched
-by `gaitdisc discover STUDY --participant ID`. Beside stand the models of chapter 4 on the same held-out strides [N m].
+by `gaitdisc discover STUDY --participant ID`; `--fit` stops at the fit of both walks, which says what changed. Beside
+stand the models of chapter 4 on the same held-out strides [N m].
 """
 
 from __future__ import annotations
@@ -17,8 +18,9 @@ GIVEN = command_line(
     __name__,
     __doc__,
     argument("out", "CSV that gets the table (default: none)", nargs="?", type=Path),
-    argument("--people", "how many people", 6),
-    argument("--seed", "of the first person; the next have the next", 777201),
+    argument("--people", "how many people", 3),
+    argument("--seed", "of the first person; the next have the next", 777301),
+    argument("--fit", "the fit of both walks alone, not the search that has to bear it out", False),
     QUICK,
 )  # before the slow imports
 
@@ -32,6 +34,7 @@ from scipy.signal import butter, sosfiltfilt
 
 import gaitdisc as gd
 from gaitdisc.batch.demonstration import FORCES
+from gaitdisc.batch.device_study import FOOT_SHOWS_AT, device_walks, joint_records, weighed_foot
 from gaitdisc.batch.discover_files import discover_study
 from gaitdisc.cohort.device import STIFFNESS, Spring
 from gaitdisc.cohort.marker_trial import marker_trial
@@ -41,10 +44,14 @@ from gaitdisc.cohort.walk import TrueWalk, walked
 from gaitdisc.ingest.c3d_writing import write_c3d
 from gaitdisc.ingest.storage import write_storage
 from gaitdisc.ingest.study import Conditions, Participant, PlannedTrial, Study
-from gaitdisc.ingest.study_file import write_study
+from gaitdisc.ingest.study_file import load_study, write_study
+from gaitdisc.regression.changed_moment import NORMAL_95
+from gaitdisc.results.discovery import Estimate, FoundEffect
 
 CONDITIONS, CHANNELS = Conditions(nominal="nominal", device="exo"), {name: f"{name} [N]" for name in FORCES}
 WALK_S, PRESSURE_M, ERROR_HZ = 36.0, 0.003, 6.0
+MODELS = ("Nominal", "Nominal + named effect", "Augmented (plain regression)", "Exo")
+Said = tuple[tuple[FoundEffect, ...], dict[str, float]]
 RIGHT = {
     "none": ("", "", np.nan),
     "spring": ("one_sided_spring", "ankle_moment", np.degrees(STIFFNESS)),
@@ -60,25 +67,45 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
     rows = table.assign(off=100 * (table["value"] / table["truth"] - 1).abs(), inside=inside)
     groups = rows.groupby("hidden", sort=False)
     counts = groups.agg(n=("right", "size"), right=("right", "sum"), inside=("inside", "sum"))
-    return counts.join(groups[["off", *list(table)[-4:]]].median())
+    return counts.join(groups[["off", *(one for one in MODELS if one in table)]].median())
 
 
-def run(people: int, seed: int, quick: bool) -> pd.DataFrame:
+def run(people: int, seed: int, quick: bool, fit: bool = False) -> pd.DataFrame:
     """Hide each effect in each person's second walk, and search the files."""
     everyone = [drawn(f"X{one + 1:02d}", seed + one, "fm"[one % 2]) for one in range(1 if quick else people)]
-    return pd.DataFrame([found_in(one, hidden) for one in everyone for hidden in (("spring",) if quick else RIGHT)])
+    hiddens = ("spring",) if quick else RIGHT
+    return pd.DataFrame([found_in(one, hidden, fit) for one in everyone for hidden in hiddens])
 
 
-def found_in(person: Person, hidden: str) -> dict[str, object]:
+def found_in(person: Person, hidden: str, fit: bool) -> dict[str, object]:
     """One study of one person, one search: what it says beside what is true."""
     with TemporaryDirectory() as folder:
-        found = discover_study(write_person(person, hidden, Path(folder)), person.name)[0]
+        study = write_person(person, hidden, Path(folder))
+        effects, beside = fitted(study, person.name) if fit else searched(study, person.name)
     *wanted, truth = RIGHT[hidden]
-    own = [next(iter(one.estimates.values())) for one in found.effects if [one.name, one.place] == wanted]
-    right, named = bool(own) if wanted[0] else not found.effects, ", ".join(one.place for one in found.effects)
+    own = [next(iter(one.estimates.values())) for one in effects if [one.name, one.place] == wanted]
+    right, named = bool(own) if wanted[0] else not effects, ", ".join(one.place for one in effects)
     row: dict[str, object] = {"person": person.name, "hidden": hidden, "right": right, "named": named, "truth": truth}
     row |= {key: getattr((own or [None])[0], key, np.nan) for key in ("value", "low", "high")}
-    return row | dict(found.beside)
+    return row | beside
+
+
+def searched(study: Path, who: str) -> Said:
+    """What `discover` says, and the error of each model on held-out strides [N m]."""
+    found = discover_study(study, who)[0]
+    return found.effects, dict(found.beside)
+
+
+def fitted(study: Path, who: str) -> Said:
+    """What the fit of both walks says: at the ankle, or where nothing changed there, of the foot."""
+    read = load_study(study)
+    changed = device_walks(read, who).changed
+    if changed is None:
+        mass = weighed_foot(joint_records(read, who, FOOT_SHOWS_AT))
+        return ((FoundEffect("", "added_foot_mass", "wrong_parameter", "", {"value": mass}),) if mass else ()), {}
+    half = NORMAL_95 * changed.spread
+    number = Estimate(changed.value, changed.value - half, changed.value + half)
+    return (FoundEffect("", changed.change.place, changed.change.name, "", {changed.change.number: number}),), {}
 
 
 def write_person(person: Person, hidden: str, folder: Path) -> Path:
@@ -114,7 +141,7 @@ def moments(walk: TrueWalk) -> gd.Recording:
 
 
 if __name__ == "__main__":
-    table = run(GIVEN.people, GIVEN.seed, GIVEN.quick)
+    table = run(GIVEN.people, GIVEN.seed, GIVEN.quick, GIVEN.fit)
     print(table.round(3).to_string(), summary(table).round(3).to_string(), sep="\n")
     if GIVEN.out:
         table.to_csv(GIVEN.out, index=False)

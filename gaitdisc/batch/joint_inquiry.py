@@ -108,7 +108,8 @@ def changes_of(record: JointRecord) -> list[Change]:
     signs = driven_of(record).signs
     for sign, group in zip((-1, 1), GROUPS[record.joint], strict=True):
         if (signs == sign).any():
-            changes.append(Change("wrong_parameter", f"{group}_strength", "value", STRENGTHS, _stronger(sign)))
+            strength = f"{group}_strength"
+            changes.append(Change("wrong_parameter", strength, "value", STRENGTHS, _stronger(sign), neutral=1.0))
     return [*changes, foot_mass_of(record)] if record.per_kg.size else changes
 
 

@@ -27,6 +27,25 @@ def harrington_hip(width_m: float, depth_m: float, side: str) -> NDArray[np.floa
     return np.array([-0.24 * depth_m - 9.9 * _MM, -0.30 * width_m - 10.9 * _MM, lateral if side == "r" else -lateral])
 
 
+def hip_of_spines(
+    left: NDArray[np.float64], right: NDArray[np.float64], sacrum: NDArray[np.float64], side: str
+) -> NDArray[np.float64]:
+    """Hip joint centre of each frame after Harrington, from the front spines and the middle of the back ones.
+
+    left, right, sacrum (frame, 3) [m]: width and depth of the pelvis are their medians over the frames
+
+    >>> spine, back = np.array([[0.0, 0.0, 0.12]]), np.array([[-0.15, 0.0, 0.0]])
+    >>> hip_of_spines(-spine, spine, back, "r").round(4).tolist()
+    [[-0.0459, -0.0829, 0.0865]]
+    """
+    middle, across = (left + right) / 2, right - left
+    upward = np.cross(across, middle - sacrum)
+    width, depth = (float(np.nanmedian(np.linalg.norm(one, axis=1))) for one in (across, middle - sacrum))
+    axes = [np.cross(upward, across), upward, across]
+    units = np.stack([one / np.linalg.norm(one, axis=1, keepdims=True) for one in axes], axis=2)
+    return np.asarray(middle + units @ harrington_hip(width, depth, side), np.float64)
+
+
 @dataclass(frozen=True)
 class DavisHip:
     """Hip joint centre of Plug-in Gait, from leg length.

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, UnitError
 from gaitdisc.ingest.study import Study
+from gaitdisc.kinematics.joint_centres import hip_of_spines
 from gaitdisc.kinematics.laboratory import up_axis
-from gaitdisc.kinematics.marker_set import sided
 from gaitdisc.kinematics.marker_set_file import shipped_marker_sets
 from gaitdisc.kinematics.markers import marker_labels, marker_places
 from gaitdisc.kinetics.added_mass import moment_per_foot_kg
@@ -24,7 +24,11 @@ from gaitdisc.signals.derivatives import differentiated
 from gaitdisc.signals.emg_quality import emg_findings
 from gaitdisc.signals.strides import cut_strides
 
-JOINT_AT = {"ankle_angle": "ankle_lateral", "knee_angle": "knee_lateral", "hip_flexion": "asis"}  # landmark of a joint
+JOINT_AT = {
+    "ankle_angle": "ankle_lateral",
+    "knee_angle": "knee_lateral",
+    "hip_flexion": "asis",
+}  # landmark of a joint; the hip after Harrington where the pelvis shows
 LEAST_DEG, PERCENTILES = 2.0, (5, 95)
 MOMENT_HZ = 20.0  # the moment keeps what the forces' own filter left of it
 ANGLE_HZ = 12.0  # a muscle's force needs the speed of push-off, which the usual low-pass of angles blunts
@@ -129,19 +133,23 @@ def _per_kg(trial: Trial, study: Study, joint: str, time: NDArray[np.float64]) -
     """What each kg more at the foot adds to the joint's moment; empty where no marker shows it."""
     if "markers" not in trial.streams:
         return np.empty(0)
-    markers, side, filters = trial.stream("markers"), study.strides.side, study.filters
-    labels = marker_labels(markers)
+    markers, side, labels = trial.stream("markers"), study.strides.side, marker_labels(trial.stream("markers"))
     known = max(shipped_marker_sets().values(), key=lambda one: len(one.names(labels)))
-    own = known.names(labels)
-    words = [known.landmarks[place].split() for place in (JOINT_AT[joint], "heel", "toe")]
-    wanted = [next((own[at] for one in some if (at := sided(one, side)) in own), "") for some in words]
-    if "" in wanted:
+    own, smooth = known.names(labels), lowpassed(markers, ANGLE_HZ, study.filters.order, study.filters.gap_s)
+    seen = {
+        (key, on): marker_places(smooth, [own[name] for name in names]).mean(axis=1)
+        for on in "lr"
+        for key in ("heel", "toe", "ankle_lateral", "knee_lateral", "asis", "sacrum")
+        if (names := known.landmark(key, on, own))
+    }
+    left, right, sacrum = (seen.get(one) for one in (("asis", "l"), ("asis", "r"), ("sacrum", side)))
+    if joint == "hip_flexion" and left is not None and right is not None and sacrum is not None:
+        seen[JOINT_AT[joint], side] = hip_of_spines(left, right, sacrum, side)
+    if not all((key, side) in seen for key in (JOINT_AT[joint], "heel", "toe")):
         return np.empty(0)
-    kept = markers.selected([f"{name}.{axis}" for name in wanted for axis in "xyz"])
-    places = lowpassed(kept, filters.kinematics_hz, filters.order, filters.gap_s).values.reshape(-1, 3, 3)
-    everything = marker_places(markers, labels)
-    up = up_axis(np.nanmean(everything, axis=1), places[:, 1])
-    each = moment_per_foot_kg(places[:, 0], places[:, 1], places[:, 2], up, markers.rate_hz)
+    centre, heel, toe = (seen[key, side] for key in (JOINT_AT[joint], "heel", "toe"))
+    up = up_axis(np.nanmean(marker_places(markers, labels), axis=1), heel)
+    each = moment_per_foot_kg(centre, heel, toe, up, markers.rate_hz)
     return interpolated(markers.time, (-each if joint == "knee_angle" else each)[:, None], time)[:, 0]
 
 

@@ -4,7 +4,12 @@ Gains that come from the Nominal walk alone carry their error into whatever the 
 device relieves a muscle, a gain too small by a fifth hides a fifth of the relief. So each possible change is fitted
 together with the gains to the strides of both walks, the gains being those of one person; a change that lowers the
 error of device strides that were left out is kept, and its number gets an interval from blocks of strides drawn anew
-from both walks (Efron B (1979). Bootstrap methods. Ann Stat 7(1), 1-26).
+from both walks (Efron B (1979). Bootstrap methods. Ann Stat 7(1), 1-26) and from what nobody measured.
+
+References
+----------
+McGinley JL, Baker R, Wolfe R, Morris ME (2009). The reliability of three-dimensional kinematic gait measurements: a
+systematic review. Gait Posture 29(3), 360-369.
 """
 
 from __future__ import annotations
@@ -16,12 +21,29 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.regression.muscle_moment import Driven, Form, MuscleMoment, Sums, Values, model_of, solved, sums_of
+from gaitdisc.regression.muscle_moment import (
+    RESPECT,
+    USUAL_HARMONICS,
+    Driven,
+    Form,
+    MuscleMoment,
+    Sums,
+    Values,
+    model_of,
+    solved,
+    sums_of,
+)
 
 LEARNED = 0.75  # of the device walk's strides, from its beginning
 CLOSES = 0.10  # of the squared error on device strides that were left out, to be kept
 DRAWS, BLOCK = 60, 3  # of the bootstrap, and strides that are drawn together
-SPEEDS = (0.7, 1.4)  # times the fastest speed of a muscle, which nobody measured: what it moves joins the spread
+# what nobody measured, of which the number's move joins the spread: the fastest speed of a muscle, the lag of its
+# activation, and how alike its gains are at both ends of the angle, each so many times what the model takes
+SPEEDS, LAGS, RESPECTS = (0.7, 1.4), (0.5, 2.0), (1 / 3, 3.0)
+# usual stride of the device walk [rad], root mean square of its change in the first harmonics: what the mean ankle
+# curve of a person moves by from one session to the next (McGinley et al. 2009: 2 deg and less)
+SHIFT_RAD, SHIFT_HARMONICS, SHIFTS = np.radians(1.0), 4, 12
+NORMAL_95 = 1.96
 FINER = np.linspace(-1.5, 1.5, 7)  # steps of a grid about its best value
 
 
@@ -53,6 +75,7 @@ class Change:
     values: Values
     driven: Callable[[Driven, float], Driven] = as_recorded
     columns: Callable[[Driven, float], Values] = no_columns
+    neutral: float = 0.0  # its number where nothing changed
     piece: str = ""  # with which the catalogue's expression begins, where two effects share a name
 
 
@@ -70,7 +93,10 @@ class Changed:
 
 
 def changed_moment(model: MuscleMoment, nominal: Walk, device: Walk, changes: Sequence[Change]) -> Changed | None:
-    """Return the change that explains both walks best; None where strides left out do not bear it out."""
+    """Return the change that explains both walks best.
+
+    None where strides left out do not bear it out, or its interval holds that nothing changed.
+    """
     both = _Both.of(model.form, nominal, device)
     tried = [(both.misfit(change, value), change, float(value)) for change in changes for value in change.values]
     left, best, value = min(tried, key=lambda one: one[0])
@@ -81,18 +107,39 @@ def changed_moment(model: MuscleMoment, nominal: Walk, device: Walk, changes: Se
     if held < CLOSES:
         return None
     found, number, draws = _drawn_anew(both, best, value, DRAWS)
-    forms = [replace(model.form, fastest=pace * model.form.fastest) for pace in SPEEDS]
-    at_speeds = [_drawn_anew(_Both.of(form, nominal, device), best, value, 0)[1] for form in forms]
-    errors = [float(np.std(draws)), float(np.std([number, *at_speeds])), _coarseness(both, best, value)]
+    errors = [
+        float(np.std(draws)),
+        _doubted(model.form, (nominal, device), best, value),
+        _coarseness(both, best, value),
+    ]
     spread = float(np.linalg.norm(errors))
+    if abs(number - best.neutral) < NORMAL_95 * spread:
+        return None
     changed = model_of(model.form, found, model.gains.shape[0], model.left_nm, model.before_nm)
     return Changed(best, changed, number, spread, held, rival, rival_left / left)
 
 
-def linear_number(model: MuscleMoment, nominal: Walk, device: Walk, change: Change) -> tuple[float, float]:
-    """Return the number of a change that is linear, borne out or not, and its standard deviation over drawn blocks."""
-    _, number, draws = _drawn_anew(_Both.of(model.form, nominal, device), change, float(change.values[0]), DRAWS)
-    return number, float(np.std(draws))
+def _doubted(form: Form, walks: tuple[Walk, Walk], change: Change, about: float) -> float:
+    """Standard deviation of a number by what nobody measured: the muscles' form, and the device walk's usual stride."""
+    both = _Both.of(form, *walks)
+    number = _drawn_anew(both, change, about, 0)[1]
+    others = [
+        [_Both.of(replace(form, fastest=pace * form.fastest), *walks) for pace in SPEEDS],
+        [_Both.of(replace(form, lag_s=more * form.lag_s), *walks) for more in LAGS],
+        [replace(both, respect=more * both.respect) for more in RESPECTS],
+        [replace(both, own=replace(form, usual=form.usual + shift)) for shift in shifts_of_usual()],
+    ]
+    moved = [[_drawn_anew(one, change, about, 0)[1] - number for one in each] for each in others]
+    return float(np.linalg.norm([np.sqrt(np.mean(np.square(one))) for one in moved]))
+
+
+def shifts_of_usual() -> list[Values]:
+    """Changes that the usual stride of a person may have between two walks, as the coefficients of its curve [rad]."""
+    order = np.arange(1, SHIFT_HARMONICS + 1)
+    size = SHIFT_RAD / np.sqrt(np.sum(order**-2.0))
+    shifts = np.zeros((SHIFTS, 2, USUAL_HARMONICS))
+    shifts[:, :, :SHIFT_HARMONICS] = np.random.default_rng(0).normal(size=(SHIFTS, 2, SHIFT_HARMONICS)) * size / order
+    return [np.concatenate([[0.0], *one]) for one in shifts]
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,19 +150,21 @@ class _Both:
     nominal: Sums
     device: Walk
     learned: Values  # (device stride,) 1 where learned from
+    own: Form  # of the device walk, whose usual stride may be another one
+    respect: float = RESPECT
 
     @classmethod
     def of(cls, form: Form, nominal: Walk, device: Walk) -> _Both:
         """Sum up the strides of the Nominal walk."""
         own = sums_of(form.columns(nominal.driven), nominal.moment, nominal.stride, int(nominal.stride.max()) + 1)
         count = int(device.stride.max()) + 1
-        return cls(form, own, device, (np.arange(count) < LEARNED * count).astype(float))
+        return cls(form, own, device, (np.arange(count) < LEARNED * count).astype(float), form)
 
     def sums(self, change: Change, value: float) -> tuple[Sums, Sums]:
         """Of both walks with a change, which the Nominal walk has not."""
         driven = self.device.driven
         more = change.columns(driven, value)
-        columns = np.hstack([self.form.columns(change.driven(driven, value)), more])
+        columns = np.hstack([self.own.columns(change.driven(driven, value)), more])
         mine = sums_of(columns, self.device.moment, self.device.stride, len(self.learned))
         wide = more.shape[1]
         squares = np.pad(self.nominal.squares, ((0, 0), (0, wide), (0, wide)))
@@ -124,7 +173,7 @@ class _Both:
     def found(self, sums: tuple[Sums, Sums], weights: tuple[Values, Values]) -> tuple[Values, float]:
         """Coefficients and what they leave, strides so many times."""
         parts = [one.of(weight) for one, weight in zip(sums, weights, strict=True)]
-        found = solved(Sums(*(a + b for a, b in zip(*parts, strict=True))), len(self.device.driven.signs))
+        found = solved(Sums(*(a + b for a, b in zip(*parts, strict=True))), len(self.device.driven.signs), self.respect)
         left = sum(float(weight @ one.left(found)) for one, weight in zip(sums, weights, strict=True))
         return found, left
 
@@ -155,10 +204,8 @@ def _drawn_anew(both: _Both, change: Change, about: float, draws: int) -> tuple[
         at = int(np.argmin([left for _, left in tried]))
         return tried[at][0], float(tried[at][0][-1]) if linear else float(values[at])
 
-    rng = np.random.default_rng(0)
     found, number = best(both.once)
-    drawn = [best((_weights(rng, both.once[0]), _weights(rng, both.learned)))[1] for _ in range(draws)]
-    return found, number, drawn
+    return found, number, [best((first, second))[1] for first, second in drawn_blocks(both.once)[:draws]]
 
 
 def _coarseness(both: _Both, change: Change, about: float) -> float:
@@ -166,6 +213,12 @@ def _coarseness(both: _Both, change: Change, about: float) -> float:
     if len(change.values) < 2 or change.columns(both.device.driven, about).shape[1]:
         return 0.0
     return float((FINER[1] - FINER[0]) * abs(change.values[1] - change.values[0]) / np.sqrt(12))
+
+
+def drawn_blocks(once: Sequence[Values]) -> list[list[Values]]:
+    """How often each stride of each walk is drawn, blocks of neighbours together; `DRAWS` times (Efron 1979)."""
+    rng = np.random.default_rng(0)
+    return [[_weights(rng, one) for one in once] for _ in range(DRAWS)]
 
 
 def _weights(rng: np.random.Generator, once: Values) -> Values:

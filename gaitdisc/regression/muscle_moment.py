@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 
 DELAYS_S = np.arange(0.0, 0.11, 0.02)
 LAGS_S = (0.015, 0.03, 0.05)
-RESPECT = 0.03  # ridge that pulls the two gains of a muscle together, of the mean squared regressor
+RESPECT = 0.3  # ridge that pulls the two gains of a muscle together, of the mean squared regressor
 HARMONICS, USUAL_HARMONICS = 6, 8  # of the curve that no electrode sees, and of the usual angle
 EDGES = (0.01, 0.99)  # quantiles of the angle between which a gain varies
 # joint's speed at which its muscles give nothing [rad/s]: ten fibre lengths a second (Zajac), 5 to 10 cm long on arms
@@ -112,15 +112,13 @@ class Form:
 
     def firm(self, driven: Driven) -> Values:
         """Columns (sample, FIRMNESS): how far the angle is short of the usual one, in each part of the stride."""
-        at = np.mod(np.nan_to_num(driven.phase), 1.0)[:, None] * FIRMNESS
-        apart = np.abs(np.mod(at - np.arange(FIRMNESS) + FIRMNESS / 2, FIRMNESS) - FIRMNESS / 2)
-        behind = _cycle(driven.phase, USUAL_HARMONICS) @ self.usual - driven.angle
-        return np.maximum(1.0 - apart, 0.0) * behind[:, None]
+        behind = cycle(driven.phase, USUAL_HARMONICS) @ self.usual - driven.angle
+        return parts_of_stride(driven.phase, FIRMNESS) * behind[:, None]
 
     def columns(self, driven: Driven) -> Values:
         """All columns: two a muscle, a constant, firmness, and the waves that no electrode sees."""
         constant = np.ones((len(driven.angle), 1))
-        return np.hstack([self.muscles(driven), constant, self.firm(driven), _cycle(driven.phase, HARMONICS)[:, 1:]])
+        return np.hstack([self.muscles(driven), constant, self.firm(driven), cycle(driven.phase, HARMONICS)[:, 1:]])
 
     def _ends(self, driven: Driven) -> Values:
         """Signed share of the low and the high gain of each muscle (sample, muscle, 2)."""
@@ -172,7 +170,7 @@ class MuscleMoment:
 
     def others(self, driven: Driven) -> Values:
         """Return what no electrode sees: firmness about the usual stride, and a curve over it (sample,) [N m]."""
-        waves = _cycle(driven.phase, HARMONICS)[:, 1:] @ self.unseen
+        waves = cycle(driven.phase, HARMONICS)[:, 1:] @ self.unseen
         return self.constant + self.form.firm(driven) @ self.firmness + waves
 
 
@@ -204,30 +202,41 @@ def sums_of(columns: Values, moment: Values, pieces: NDArray[np.intp], count: in
     return Sums(*(np.array(one, np.float64) for one in zip(*parts, strict=True)))
 
 
-def solved(total: Sums, muscles: int) -> Values:
+def solved(total: Sums, muscles: int, respect: float = RESPECT) -> Values:
     """Return coefficients of summed normal equations, then the waves of what these leave.
 
     Gains and firmness are not negative, the two gains of a muscle are pulled together; columns behind the waves (what a
     device does) are fitted with the first ones and are free.
     """
-    from scipy.optimize import lsq_linear
-
     waves = np.arange(2 * muscles + 1 + FIRMNESS, 2 * muscles + 1 + FIRMNESS + 2 * HARMONICS)
     first = np.setdiff1d(np.arange(len(total.match)), waves)
-    normal, match = total.squares[np.ix_(first, first)].copy(), total.match[first]
-    for number in range(muscles):
-        own = slice(2 * number, 2 * number + 2)
-        normal[own, own] += RESPECT * float(np.trace(normal[own, own])) / 2 * (np.eye(2) - 0.5)
-    size = np.sqrt(np.maximum(np.diag(normal), 1e-12))
-    root = np.linalg.cholesky(normal / np.outer(size, size) + 1e-9 * np.eye(len(first)))
-    low = np.full(len(first), -np.inf)
-    low[: 2 * muscles] = low[2 * muscles + 1 : 2 * muscles + 1 + FIRMNESS] = 0.0
-    own = lsq_linear(root.T, np.linalg.solve(root, match / size), (low, np.inf), method="bvls").x / size
+    signed = np.zeros(len(first), bool)
+    signed[: 2 * muscles] = signed[2 * muscles + 1 : 2 * muscles + 1 + FIRMNESS] = True
+    own = bounded(tied(total.squares[np.ix_(first, first)], muscles, respect), total.match[first], signed)
     found = np.zeros(len(total.match))
     found[first] = own
     left = total.match[waves] - total.squares[np.ix_(waves, first)] @ own
     found[waves] = np.linalg.lstsq(total.squares[np.ix_(waves, waves)], left, rcond=None)[0]
     return found
+
+
+def tied(squares: Values, muscles: int, respect: float = RESPECT) -> Values:
+    """Normal equations in which the two gains of each muscle, the first columns, are pulled together by a ridge."""
+    normal = squares.copy()
+    for number in range(muscles):
+        own = slice(2 * number, 2 * number + 2)
+        normal[own, own] += respect * float(np.trace(normal[own, own])) / 2 * (np.eye(2) - 0.5)
+    return normal
+
+
+def bounded(normal: Values, match: Values, signed: NDArray[np.bool_]) -> Values:
+    """Coefficients of normal equations by least squares, the `signed` ones not negative."""
+    from scipy.optimize import lsq_linear
+
+    size = np.sqrt(np.maximum(np.diag(normal), 1e-12))
+    root = np.linalg.cholesky(normal / np.outer(size, size) + 1e-9 * np.eye(len(match)))
+    low = np.where(signed, 0.0, -np.inf)
+    return np.asarray(lsq_linear(root.T, np.linalg.solve(root, match / size), (low, np.inf), method="bvls").x / size)
 
 
 def model_of(form: Form, found: Values, muscles: int, left_nm: float, before_nm: float) -> MuscleMoment:
@@ -247,8 +256,7 @@ def fitted_moment(
     """
     known = np.isfinite(moment) & np.isfinite(driven.phase) & (blocks >= 0)
     span = np.quantile(driven.angle[known], EDGES)
-    turns = _cycle(driven.phase, USUAL_HARMONICS)[known]
-    usual = np.asarray(np.linalg.lstsq(turns, driven.angle[known], rcond=None)[0], np.float64)
+    usual = usual_angle(driven, known)
     timings = [timing] if timing else [(float(delay), lag) for delay in DELAYS_S for lag in LAGS_S]
     muscles, count = driven.envelopes.shape[1], int(blocks.max()) + 1
     tried = []
@@ -276,7 +284,23 @@ def force_at_speed(lengthening: Values) -> Values:
     return np.where(lengthening < 0, shortening, 1.0 + ECCENTRIC * fast / (fast + steep))
 
 
-def _cycle(phase: Values, harmonics: int) -> Values:
+def usual_angle(driven: Driven, kept: NDArray[np.bool_]) -> Values:
+    """Mean angle and its harmonics over the stride, of the samples that are kept [rad]."""
+    turns = cycle(driven.phase, USUAL_HARMONICS)
+    kept = kept & np.isfinite(driven.phase)
+    return np.asarray(np.linalg.lstsq(turns[kept], driven.angle[kept], rcond=None)[0], np.float64)
+
+
+def parts_of_stride(phase: Values, parts: int) -> Values:
+    """How much each sample belongs to each part of the stride (sample, parts); between two parts it goes straight."""
+    if parts == 1:
+        return np.ones((len(phase), 1))
+    at = np.mod(np.nan_to_num(phase), 1.0)[:, None] * parts
+    apart = np.abs(np.mod(at - np.arange(parts) + parts / 2, parts) - parts / 2)
+    return np.maximum(1.0 - apart, 0.0)
+
+
+def cycle(phase: Values, harmonics: int) -> Values:
     """A constant and harmonics of the stride (sample, 1 + 2 harmonics)."""
     turn = 2 * np.pi * np.nan_to_num(phase)[:, None] * np.arange(1, harmonics + 1)
     return np.hstack([np.ones((len(phase), 1)), np.sin(turn), np.cos(turn)])

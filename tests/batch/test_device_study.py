@@ -99,21 +99,39 @@ def loaded(seed, kg, per_kg):
     return replace(device, per_kg=per_kg, moment=device.moment - kg * per_kg)
 
 
+def knee_and_hip(walks, knee, hip):
+    return {"knee_angle": (walks.nominal, knee), "hip_flexion": (walks.nominal, hip)}
+
+
 @pytest.mark.parametrize(("kg", "named"), [(0.8, True), (0.0, False)])
-def test_a_mass_at_the_foot_is_what_joints_agree_on(walks, kg, named):
-    mass = weighed_foot([(walks.nominal, loaded(5, kg, 5.0)), (walks.nominal, loaded(6, kg, 8.0))])
+def test_a_mass_at_the_foot_is_what_the_knee_says_and_the_hip_bears_out(walks, kg, named):
+    mass = weighed_foot(knee_and_hip(walks, loaded(5, kg, 5.0), loaded(6, kg / 2, 8.0)))
     assert (mass is not None) == named
     assert not named or mass.low < mass.value == pytest.approx(kg, rel=0.15)
 
 
 def test_joints_that_disagree_about_a_mass_or_do_not_know_the_foot_name_none(walks):
-    assert weighed_foot([(walks.nominal, loaded(5, 1.2, 5.0)), (walks.nominal, loaded(6, -0.4, 5.0))]) is None
-    assert weighed_foot([(walks.nominal, made_joint(seed=5))] * 2) is None
+    assert weighed_foot(knee_and_hip(walks, loaded(5, 1.2, 5.0), loaded(6, -0.4, 5.0))) is None
+    assert weighed_foot(knee_and_hip(walks, made_joint(seed=5), made_joint(seed=5))) is None
+    assert weighed_foot({"knee_angle": (walks.nominal, loaded(5, 1.2, 5.0))}) is None
+
+
+def test_the_size_of_what_is_named_at_a_hip_without_electrodes_on_its_deep_muscles_is_doubted(walks):
+    own = FoundEffect("port", "hip_moment", "one_sided_spring", "", {"stiffness": Estimate(140.0, 139.0, 141.0)})
+    size = GapSize(1.0, 0.2, 0.1)
+    found = Discovery("missing_physics", "a spring.", (), (own,), (), size, size, (), (), None)
+    at_hip = {"joint": "hip_flexion", "muscles": ("emg_ham_r", "emg_bf_r", "emg_rf_r")}
+    hip = DeviceWalks(replace(walks.nominal, **at_hip), replace(walks.device, **at_hip), walks.model)
+    said = hip.with_model_error(found).sentence
+    assert said.endswith("not to be trusted: no electrode is on the hip's gluteus maximus and iliopsoas.")
+    assert "trusted" not in walks.with_model_error(found).sentence
 
 
 def test_the_number_of_both_walks_stands_with_the_error_of_the_moment_model(walks):
     """The discovery's own interval knows the noise alone."""
-    own = FoundEffect("port", "ankle_moment", "one_sided_spring", "", {"stiffness": Estimate(140.0, 139.0, 141.0)})
+    own = FoundEffect(
+        "port", "ankle_moment", "one_sided_spring", "", {"stiffness": Estimate(140.0, 139.0, 141.0, "N m/rad")}
+    )
     size = GapSize(1.0, 0.2, 0.1)
     told = f"a spring, {estimate_text(own.estimates['stiffness'])}."
     found = Discovery("missing_physics", told, (), (own,), (), size, size, (), (), None)
@@ -122,6 +140,7 @@ def test_the_number_of_both_walks_stands_with_the_error_of_the_moment_model(walk
     assert new.value == walks.changed.value
     assert new.high - new.low > 2 * 1.96 * walks.changed.spread
     assert estimate_text(new) in mended.sentence
+    assert mended.sentence.endswith("The written model has 140 N m/rad, fitted beside what moved in it.")
 
 
 def test_a_walk_that_the_nominal_model_follows_lacks_nothing_whatever_a_search_makes_of_the_rest(walks):

@@ -10,13 +10,30 @@ import pytest
 from gaitdisc.errors import ShapeError
 from gaitdisc.ingest.c3d_measures import read_body_measures
 from gaitdisc.ingest.reading import read_trial
-from gaitdisc.kinematics.joint_centres import DavisHip, chord_centre, harrington_hip
+from gaitdisc.kinematics.joint_centres import DavisHip, chord_centre, harrington_hip, hip_of_spines
 
 
 def test_harrington_has_the_numbers_of_the_paper():
     """x = -0.24 PD - 9.9, y = -0.30 PW - 10.9, z = 0.33 PW + 7.3 mm, for PW 240 mm and PD 150 mm."""
     np.testing.assert_allclose(harrington_hip(0.240, 0.150, "r"), [-0.0459, -0.0829, 0.0865], atol=1e-12)
     np.testing.assert_allclose(harrington_hip(0.240, 0.150, "l"), [-0.0459, -0.0829, -0.0865], atol=1e-12)
+
+
+@pytest.mark.parametrize("side", ["l", "r"])
+def test_the_hip_goes_with_the_pelvis(side):
+    """Spines 240 mm apart and 150 mm deep, turned by 30 deg and carried: the same point of the pelvis."""
+    turn = np.array(
+        [
+            [math.cos(math.pi / 6), 0, math.sin(math.pi / 6)],
+            [0, 1, 0],
+            [-math.sin(math.pi / 6), 0, math.cos(math.pi / 6)],
+        ]
+    )
+    spines = np.array([[0, 0, -0.12], [0, 0, 0.12], [-0.15, 0, 0]])
+    frames = np.stack([spines, spines @ turn.T + 1.0])
+    found = hip_of_spines(*np.swapaxes(frames, 0, 1), side)
+    point = harrington_hip(0.240, 0.150, side)
+    np.testing.assert_allclose(found, [point, turn @ point + 1.0], atol=1e-12)
 
 
 @pytest.mark.parametrize("person", ["HC030A", "HC031A"])

@@ -63,3 +63,14 @@ def test_a_mass_at_the_foot_is_weighed_where_its_moment_is_known(model, nominal)
     found = changed(model, nominal, heavier)
     assert found.change.place == "added_foot_mass"
     assert found.value == pytest.approx(0.8, rel=0.1)
+
+
+def test_a_spring_whose_interval_holds_none_is_not_named(model, nominal, monkeypatch):
+    """Without what nobody measured, 50 N m/rad are found to 5; with the lag of activation in doubt, 40 are nothing."""
+    device = made_joint(seed=3, spring=50.0)
+    spring = [one for one in changes_of(device) if one.name == "one_sided_spring"]
+    walks = walk_of(nominal), walk_of(device)
+    assert changed_moment(model, *walks, spring) is None
+    monkeypatch.setattr("gaitdisc.regression.changed_moment.LAGS", (1.0, 1.0))
+    found = changed_moment(model, *walks, spring)
+    assert found is not None and found.value == pytest.approx(50.0, rel=0.1)
