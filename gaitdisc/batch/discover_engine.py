@@ -74,7 +74,7 @@ def discover_engine(
     fit = EngineFit(mapping, engine, data, states)
     found, answer = discovered(linear, driven, catalogue, read, told, refitted=fit.refitted)
     moved = {name: value for name, value in _moved(mapping, answer).items() if engine.as_force(name) is None}
-    if moved:
+    if moved and (len(found.effects) > 1 or not fit.done):  # one number alone rests on the engine's own runs
         told(f"expanding again where {' and '.join(moved)} came to lie")
         linear, driven = expanded(mapping, engine, data, states, moved)
         found, answer = discovered(linear, driven, catalogue, read, told, refitted=fit.refitted)
@@ -86,7 +86,13 @@ def discover_engine(
     runs = own_runs((as_read.engine, written.engine), (mapping, augmented), data, found.runs, states)
     if found.verdict != "no_gap" and not written.absent and runs.share > CONFIRMED:
         found, augmented, written = unconfirmed(found, runs), mapping, as_read
-    findings = (*found.findings, *other_values(mapping, engine), *_contacts(engine), *_warned(engine, written.engine), *_told(written, runs))
+    findings = (
+        *found.findings,
+        *other_values(mapping, engine),
+        *_contacts(engine),
+        *_warned(engine, written.engine),
+        *_told(written, runs),
+    )
     return EngineAnswer(replace(found, findings=findings), augmented, written, runs, engine)
 
 

@@ -11,8 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.discovery.candidate_model import CandidateModel, Part
+from gaitdisc.discovery.fitted import Fitted
 from gaitdisc.discovery.noise import noise_of
 from gaitdisc.discovery.scored_model import ScoredModel
+from gaitdisc.discovery.segments import cut_segments
+from gaitdisc.discovery.shooting import Shooting
 from gaitdisc.engines.engine import Engine, Motion
 from gaitdisc.engines.own_runs import recorded_motion, trial_called
 from gaitdisc.engines.written import WrittenModel, written_model
@@ -23,10 +26,15 @@ from gaitdisc.simulation.simulation import Simulation
 
 TURNS = 4
 NUDGE = 1e-3  # of states and numbers: an adaptive integrator does not resolve less
+ENOUGH = 0.1  # of the misfit, a third of a standard error
+STARTING = 8  # turns
+FOLLOWED = 4.0  # times the noise's variance, which a run leaves at most that follows the record
+MOST = 0.8  # of the runs, which are to follow it
+SHORTEST = 16  # samples of a run
 EXACT = ("missing_physics", "wrong_parameter", "sensor_error")  # verdicts on what a model's own file or a column can be
 
 
-@dataclass(frozen=True)
+@dataclass
 class EngineFit:
     """A model of an engine and its record, which fit what a search found."""
 
@@ -34,6 +42,7 @@ class EngineFit:
     engine: Engine
     measured: Measured  # driven by the controls
     states: NDArray[np.float64]  # (trial, sample, state), smoothed: where fibres and activations are taken from
+    done: bool = False  # whether the last answer's numbers are of the engine's own runs
 
     def refitted(self, found: ScoredModel) -> CandidateModel:
         """Return what was found with numbers, and their covariance, of the engine's own runs.
@@ -41,24 +50,49 @@ class EngineFit:
         As it was where nothing was found, where some of it has no form in the model's file, and where muscles have
         fibres: a run of these takes too long.
         """
-        model = found.model
+        model, self.done = found.model, False
         exact = all(part.candidate.verdict in EXACT and not part.candidate.states for part in model.parts)
         if not model.parts or self.engine.fibres or not exact:
             return model
         runs = _Runs(self, model, found.shooting.measured)
         if runs.written(model.fit.values).absent:
             return model
-        shooting, fit = replace(found.shooting, prior=model.fit.prior, nudge=NUDGE), model.fit
+        shooting = replace(found.shooting, prior=model.fit.prior, nudge=NUDGE)
         machine = cast("Compiled", runs)
+        fit = shooting.fitted(machine, (), model.fit.values, model.fit.starts, STARTING, 1.0)
+        while _followed(fit).mean() < MOST and shooting.segments.span >= 2 * SHORTEST:  # the motion is chaotic
+            shooting, starts = _halved(shooting, found)
+            fit = shooting.fitted(machine, (), model.fit.values, starts, STARTING, 1.0)
+        kept = np.flatnonzero(_followed(fit))
+        if not kept.size:
+            return model
+        shooting, starts = replace(shooting, segments=shooting.segments.among(kept)), fit.starts[kept]
         for _ in range(2):  # with the noise that the search saw, then with that of these runs
-            fit = shooting.fitted(machine, fit.free, fit.values, fit.starts, TURNS)
+            fit = shooting.fitted(machine, model.fit.free, fit.values, starts, TURNS, ENOUGH)
             if not np.isfinite(fit.misfit):
                 return model
-            used = fit.starts.shape[1] / fit.residual.shape[2]
-            shooting = shooting.with_noise(
-                noise_of(fit.residual, used, autocorrelation=shooting.filter_autocorrelation)
-            )
+            used, starts = fit.starts.shape[1] / fit.residual.shape[2], fit.starts
+            noise = noise_of(fit.residual, used, autocorrelation=shooting.filter_autocorrelation)
+            shooting = shooting.with_noise(noise)
+        self.done = True
         return replace(model, parts=runs.parts(fit.values), fit=fit)
+
+
+def _followed(fit: Fitted) -> NDArray[np.bool_]:
+    """Which runs (segment,) follow the record."""
+    return fit.misfits <= FOLLOWED * fit.white[0].size
+
+
+def _halved(shooting: Shooting, found: ScoredModel) -> tuple[Shooting, NDArray[np.float64]]:
+    """Runs half as long, and where they begin (segment, state): on the runs of the search."""
+    segments, samples = shooting.segments, shooting.measured.samples
+    trials = tuple(np.unique(segments.trial).tolist())
+    shorter = cut_segments(samples, trials, segments.span // 2, segments.margin, segments.every)
+    states = found.model.fit.states
+    known = np.full((len(samples), int(samples.max()), states.shape[2]), np.nan)
+    starts = found.shooting.segments.put(known, states)[shorter.trial, shorter.begin]
+    there = np.flatnonzero(np.isfinite(starts).all(axis=1))
+    return replace(shooting, segments=shorter.among(there)), starts[there]
 
 
 class _Runs:

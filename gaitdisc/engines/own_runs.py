@@ -73,7 +73,7 @@ def trial_called(measured: Measured, name: str) -> int:
     """Number of a trial by the name that a search gave it: its own, its number, or that of a part of the only one."""
     if len(measured.trials) == 1:
         return 0
-    return measured.trials.index(name) if name in measured.trials else int(name.split()[-1]) - 1
+    return measured.trials.index(name) if name in measured.trials else int(name.rsplit(maxsplit=1)[-1]) - 1
 
 
 def recorded_motion(
