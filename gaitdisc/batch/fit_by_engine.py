@@ -24,7 +24,7 @@ from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.simulation import Simulation
 
-TURNS = 4
+TURNS = (1, 4)
 NUDGE = 1e-3  # of states and numbers: an adaptive integrator does not resolve less
 ENOUGH = 0.1  # of the misfit, a third of a standard error
 STARTING = 8  # turns
@@ -59,7 +59,9 @@ class EngineFit:
             return model
         shooting = replace(found.shooting, prior=model.fit.prior, nudge=NUDGE)
         machine = cast("Compiled", runs)
-        fit = shooting.fitted(machine, (), model.fit.values, model.fit.starts, STARTING, 1.0)
+        fit = shooting.at(machine, (), model.fit.values, model.fit.starts)
+        if not _followed(fit).all():
+            fit = shooting.fitted(machine, (), model.fit.values, model.fit.starts, STARTING, 1.0)
         while _followed(fit).mean() < MOST and shooting.segments.span >= 2 * SHORTEST:  # the motion is chaotic
             shooting, starts = _halved(shooting, found)
             fit = shooting.fitted(machine, (), model.fit.values, starts, STARTING, 1.0)
@@ -67,8 +69,8 @@ class EngineFit:
         if not kept.size:
             return model
         shooting, starts = replace(shooting, segments=shooting.segments.among(kept)), fit.starts[kept]
-        for _ in range(2):  # with the noise that the search saw, then with that of these runs
-            fit = shooting.fitted(machine, model.fit.free, fit.values, starts, TURNS, ENOUGH)
+        for turns in TURNS:  # with the noise that the search saw, then with that of these runs
+            fit = shooting.fitted(machine, model.fit.free, fit.values, starts, turns, ENOUGH)
             if not np.isfinite(fit.misfit):
                 return model
             used, starts = fit.starts.shape[1] / fit.residual.shape[2], fit.starts
