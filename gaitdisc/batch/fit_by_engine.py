@@ -156,7 +156,7 @@ class _Runs:
             start = _joined([self.recorded[trial].at(np.array([first])) for trial, first in begun])
             q, v = rows.starts[some, :n], rows.starts[some, n:]
             found[some] = engine.run(engine.near(start, q, v), controls, drive.rate)
-        return found, np.isfinite(found).all(axis=(1, 2))
+        return found, np.asarray(np.isfinite(found).all(axis=(1, 2)))
 
 
 def _joined(motions: list[Motion]) -> Motion:

@@ -60,7 +60,7 @@ class MujocoModel:
         self.warnings: tuple[str, ...] = ()  # what MuJoCo said of the model and of its runs
         self._model: Any = self._read()
         # a run that leaves every bound would set out again from the model's own pose, as if nothing had happened
-        self._model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
+        self._model.opt.disableflags |= int(self._mujoco.mjtDisableBit.mjDSBL_AUTORESET)
         self._data: Any = self._mujoco.MjData(self._model)
         self._refuse_other_joints()
         self._names: dict[tuple[str, int], str] = {}

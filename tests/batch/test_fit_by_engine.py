@@ -61,7 +61,7 @@ def test_the_engines_own_runs_bring_a_number_to_the_truth(found):
     model = replace(search.model, parts=(off,), fit=replace(search.model.fit, values=values))
     again = fit.refitted(replace(search, model=model))
     error = float(np.sqrt(again.fit.covariance[0, 0]))
-    assert fit.done and abs(again.parts[0].values["factor"] + STIFFNESS) < 4 * error < 0.02 * STIFFNESS
+    assert fit.done and abs(again.parts[0].values["factor"] + STIFFNESS) < 4 * error < 0.03 * STIFFNESS
     assert again.fit.residual.std() == pytest.approx(NOISE, rel=0.15)
 
 
