@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.batch.discover_files import discovered
+from gaitdisc.batch.fit_by_engine import EngineFit
 from gaitdisc.discovery.candidate import SIGNAL_ERRORS
 from gaitdisc.discovery.first_states import guess_states
 from gaitdisc.discovery.grids import rhythm_of
@@ -70,20 +71,28 @@ def discover_engine(
     told(f"computing the accelerations of {engine.path.name} along the record by {engine.called}")
     linear, driven = expanded(mapping, engine, data, states)
     read = {engine.path: "model", **(files or {})}  # what was read of the data is known by now
-    found, answer = discovered(linear, driven, catalogue, read, told)
+    fit = EngineFit(mapping, engine, data, states)
+    found, answer = discovered(linear, driven, catalogue, read, told, refitted=fit.refitted)
     moved = {name: value for name, value in _moved(mapping, answer).items() if engine.as_force(name) is None}
-    if moved:
+    if moved and (len(found.effects) > 1 or not fit.done):  # one number alone rests on the engine's own runs
         told(f"expanding again where {' and '.join(moved)} came to lie")
         linear, driven = expanded(mapping, engine, data, states, moved)
-        found, answer = discovered(linear, driven, catalogue, read, told)
+        found, answer = discovered(linear, driven, catalogue, read, told, refitted=fit.refitted)
     augmented = in_mapping(mapping, answer, found)
     told("writing it into the model")
     written = written_model(engine, augmented)
     told(f"running both with {engine.called}")
-    runs = own_runs((engine, written.engine), (mapping, augmented), data, found.runs, states)
+    as_read = written_model(engine, mapping)  # what the mapping says otherwise than the model's file
+    runs = own_runs((as_read.engine, written.engine), (mapping, augmented), data, found.runs, states)
     if found.verdict != "no_gap" and not written.absent and runs.share > CONFIRMED:
-        found, augmented, written = unconfirmed(found, runs), mapping, written_model(engine, mapping)
-    findings = (*found.findings, *other_values(mapping, engine), *_contacts(engine), *_told(written, runs))
+        found, augmented, written = unconfirmed(found, runs), mapping, as_read
+    findings = (
+        *found.findings,
+        *other_values(mapping, engine),
+        *_contacts(engine),
+        *_warned(engine, written.engine),
+        *_told(written, runs),
+    )
     return EngineAnswer(replace(found, findings=findings), augmented, written, runs, engine)
 
 
@@ -198,6 +207,15 @@ def _contacts(engine: Engine) -> tuple[Finding, ...]:
         f"bodies touch in the record ({touched} contacts at most): forces there are stiff and were expanded as they are"
     )
     return (Finding("warning", "contact", "model", what, "what rests on runs through a contact"),) if touched else ()
+
+
+def _warned(*engines: Engine) -> tuple[Finding, ...]:
+    """What MuJoCo warned of: it is said here, and in no file of the user's folder."""
+    said = dict.fromkeys(what for one in engines for what in getattr(one, "warnings", ()))
+    return tuple(
+        Finding("warning", "engine", "model", f"{engines[0].called} warns: {what}", "what rests on such a run")
+        for what in said
+    )
 
 
 def _told(written: WrittenModel, runs: OwnRuns) -> tuple[Finding, ...]:

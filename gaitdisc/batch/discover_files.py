@@ -10,8 +10,10 @@ from typing import cast
 
 from gaitdisc.batch.public_words import PublicWords
 from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.candidate_model import CandidateModel
 from gaitdisc.discovery.catalogue import read_catalogue
 from gaitdisc.discovery.discover import discover, refuse_blow_up
+from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.ingest.file_hash import file_sha256
 from gaitdisc.results.discovery import Discovery
 from gaitdisc.results.provenance import made_now
@@ -97,16 +99,18 @@ def discovered(
     files: dict[Path, str],
     told: Callable[[str], None],
     weighed: Callable[[Candidate], bool] = lambda _: True,
+    refitted: Callable[[ScoredModel], CandidateModel] = lambda found: found.model,
 ) -> tuple[Discovery, Simulation]:
     """Find what a model lacks against measured trials, with what the answer rests on.
 
     files: files that were read, and what each is called in the result
     weighed: whether an explanation is possible; all are by default
+    refitted: fits the numbers of what was found once more; they stay as they are by default
     """
     shapes = read_catalogue(catalogue) if catalogue else ()
     data = replace(data, trials=tuple(_trial_name(name, k) for k, name in enumerate(data.trials, 1)))
     refuse_blow_up(model, data)
-    found, augmented = discover(model, data, shapes, told, weighed)
+    found, augmented = discover(model, data, shapes, told, weighed, refitted)
     settings = {"title": model.title, "trials": len(data.trials), "rate_hz": data.rate, "channels": list(data.channels)}
     files = {**files, **({catalogue: "catalogue"} if catalogue else {})}
     hashes = {called: file_sha256(path) for path, called in files.items()}

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
-from gaitdisc.discovery.candidate_model import Part
+from gaitdisc.discovery.candidate_model import CandidateModel, Part
 from gaitdisc.discovery.corrections import corrected, corrections_of, file_bounds
 from gaitdisc.discovery.decision import Verdict
 from gaitdisc.discovery.effect_units import places_unit, unit_of_channel
@@ -29,9 +30,15 @@ HALF = 0.5
 DIGITS = 3  # of the numbers in an expression that a person reads; those of the file are exact
 
 
-def answer(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> tuple[Discovery, Simulation]:
+def answer(
+    problem: Problem,
+    as_read: ScoredModel,
+    verdict: Verdict,
+    refitted: Callable[[ScoredModel], CandidateModel] = lambda found: found.model,
+) -> tuple[Discovery, Simulation]:
     """Write down what was found.
 
+    refitted: fits the numbers once more; the runs that are shown stay those of the search
     returns augmented: the simulation with what was found, its numbers written in
     """
     now, base = verdict.found, problem.search.base
@@ -42,12 +49,13 @@ def answer(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> tuple[Di
     held = proof if proof and now.model.parts else proof_of(problem, as_read, now, now)
     held_out = gap_size(held.before, held.after, floor, channels, (proof or held).test)
     gained = bic_gain(problem.search, now)
-    moved = corrections_of(now.model, base)
-    effects = effects_of(problem, verdict, 1 - held_out.unexplained, gained)
+    stated = replace(verdict, found=replace(now, model=refitted(now)))
+    parts, moved = stated.found.model.parts, corrections_of(stated.found.model, base)
+    effects = effects_of(problem, stated, 1 - held_out.unexplained, gained)
     discovery = Discovery(
         verdict.word,
         "",
-        whereabouts(problem, verdict, train),
+        whereabouts(problem, stated, train),
         effects,
         (*reported_rivals(problem, rivals_of(problem.search, now, verdict.rivals, gained)), *small_ones(verdict.small)),
         train,
@@ -58,8 +66,8 @@ def answer(problem: Problem, as_read: ScoredModel, verdict: Verdict) -> tuple[Di
         (*problem.measured.findings, *nearly_off(effects, problem.measured.source)),
         corrections=moved,
     )
-    augmented = begun_at(augmented_of(corrected(base, moved), now.model.parts), verdict.starts)
-    said = sentence_of(discovery, base, now.model.parts)
+    augmented = begun_at(augmented_of(corrected(base, moved), parts), verdict.starts)
+    said = sentence_of(discovery, base, parts)
     return replace(said, sentence=" ".join([said.sentence, *left_out(problem.measured.findings)])), augmented
 
 

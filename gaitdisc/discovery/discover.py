@@ -10,11 +10,13 @@ import numpy as np
 from gaitdisc.discovery.answer import answer
 from gaitdisc.discovery.by_gap_share import leaves_noise
 from gaitdisc.discovery.candidate import Candidate
+from gaitdisc.discovery.candidate_model import CandidateModel
 from gaitdisc.discovery.catalogue import Shape
 from gaitdisc.discovery.decision import decide
 from gaitdisc.discovery.held_out import holding_out_others, is_uninformative, noted
 from gaitdisc.discovery.odd_trials import agreeing_trials
 from gaitdisc.discovery.problem import FEWEST_SAMPLES, set_up_problem, split_in_time
+from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.discovery.spiked_samples import without_spikes
 from gaitdisc.discovery.symbolic_regression import read_instead, read_shape
 from gaitdisc.discovery.trial_apart import without_trial_apart
@@ -34,8 +36,12 @@ def discover(
     shapes: tuple[Shape, ...] = (),
     progress: Callable[[str], None] = lambda _: None,
     possible: Callable[[Candidate], bool] = lambda _: True,
+    refitted: Callable[[ScoredModel], CandidateModel] = lambda found: found.model,
 ) -> tuple[Discovery, Simulation]:
-    """Find where a simulation and measured trials disagree, name what is missing, add it, show the gap shrink."""
+    """Find where a simulation and measured trials disagree, name what is missing, add it, show the gap shrink.
+
+    refitted: fits the numbers of what was found once more, where its runs stand for those of another program
+    """
     measured = without_spikes(measured)
     begun = partial(set_up_problem, simulation, shapes=shapes, progress=progress, possible=possible)
     problem = begun(measured)
@@ -64,7 +70,7 @@ def discover(
         verdict = decide(problem, as_read)
     verdict = read_instead(problem, as_read, read_shape(problem, as_read, verdict))
     progress("showing it on what was held out")
-    return answer(problem, as_read, verdict)
+    return answer(problem, as_read, verdict, refitted)
 
 
 def refuse_blow_up(simulation: Simulation, measured: Measured) -> None:

@@ -28,6 +28,7 @@ LIKELIER = 10.0  # log likelihood, by which the signal has to be more like the s
 ALIKE = 1.3  # between the cut-offs of channels that went through one filter
 OVERLAP = 4  # times as long a run is as what it shares with the next on either side
 FEWEST_SAMPLES = 16  # of a run
+ROUGH = 1.0  # times the noise's power at the cut-off, from which on a signal there makes the number a rough one
 
 
 def record_filter_of(
@@ -44,7 +45,8 @@ def record_filter_of(
     inputs = bool(seen) and _inputs_are_filtered(simulation, measured)
     if inputs or any(one.signal > FELT for one in seen.values()):
         seen = _beside_the_simulation(simulation, measured, period, guess, seen, inputs)
-    cutoffs = _together({number: one.cutoff_hz for number, one in seen.items()})
+    units = [simulation.sensor(name).unit for name in measured.channels]
+    cutoffs = _together(_as_the_surer(seen, units))
     passed = RecordFilter(tuple(cutoffs.get(number, cutoff) for number, cutoff in enumerate(stated)), measured.rate)
     return passed, tuple(_finding(measured, number, cutoff) for number, cutoff in cutoffs.items())
 
@@ -61,6 +63,19 @@ def _inputs_are_filtered(simulation: Simulation, measured: Measured) -> bool:
     numbers = [number for number, one in enumerate(simulation.inputs) if not one.computed]
     found = [recorded_filter([each[:, number] for each in trials], drive.rate) for number in numbers]
     return any(one is not None and one.signal < SURE for one in found)
+
+
+def _as_the_surer(seen: dict[int, RecordedFilter], units: list[str]) -> dict[int, float]:
+    """Cut-offs, a rough one in the place of which stands that of surer channels of the same unit."""
+    found = {}
+    for number, one in seen.items():
+        surer = [
+            other.cutoff_hz
+            for k, other in seen.items()
+            if units[k] == units[number] and other.signal <= ROUGH < one.signal
+        ]
+        found[number] = float(np.exp(np.mean(np.log(surer)))) if surer else one.cutoff_hz
+    return found
 
 
 def _together(cutoffs: dict[int, float]) -> dict[int, float]:

@@ -42,6 +42,7 @@ class Shooting:
     past: NDArray[np.float64] | None = None
     prior: Prior = field(default_factory=Prior)  # of the parameters that have bounds and are fitted
     record_filter: RecordFilter | None = None
+    nudge: float = NUDGE  # of states and constants, as a share of their size, for slopes
 
     @cached_property
     def seen(self) -> NDArray[np.float64]:
@@ -139,7 +140,7 @@ class Shooting:
         """
         n, index = starts.shape[1], [machine.parameters.index(name) for name in free]
         spans = np.maximum(np.abs(starts).max(axis=0), 1e-3)
-        nudges = np.concatenate([NUDGE * spans, NUDGE * np.maximum(np.abs(values[index]), 1e-2)])
+        nudges = self.nudge * np.concatenate([spans, np.maximum(np.abs(values[index]), 1e-2)])
         many_starts = np.repeat(starts[None], 1 + len(nudges), axis=0)
         many_values = np.repeat(values[None], 1 + len(nudges), axis=0)
         for state in range(n):

@@ -142,8 +142,8 @@ def _expand(columns: _Columns, simulation: Simulation, along: _Along, values: Ma
     base = engine.accelerations(at, values)
     rest = base.copy()
     slopes, moves = _slopes(engine, along, values)
-    if at.z is not None:
-        damping = -np.stack([slopes[one.speed] for one in engine.coordinates], axis=2)
+    damping = -np.stack([slopes[one.speed] for one in engine.coordinates], axis=2)
+    if np.linalg.norm(damping, axis=(1, 2)).max() > FASTEST:
         columns.slowed, heavier = _slowed(damping)
         rest += np.einsum("pij,pj->pi", heavier, along.accelerations)
     for (name, slope), own in zip(slopes.items(), np.hstack([at.q, at.v, at.u]).T, strict=True):
@@ -205,8 +205,8 @@ def _following(
 def _slowed(damping: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Factor of accelerations by which no speed settles faster than a run can follow, and its inverse less one.
 
-    A light body that muscles hold (a foot) would settle within a millisecond; it is made as heavy as it may be without
-    a change of slow motion, as it acts on the deviation from the recorded motion alone.
+    A light body that muscles hold (a foot), or a damped joint, would settle within a millisecond; it is made as heavy
+    as it may be without a change of slow motion, as it acts on the deviation from the recorded motion alone.
     """
     rates, ways = np.linalg.eig(damping)
     heavy = np.maximum(np.real(rates) / FASTEST, 1.0)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import wraps
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -28,6 +29,21 @@ class _Place(NamedTuple):
     part: tuple[str, int]  # kind and number of the part that has it
 
 
+def _heard(method: Callable[..., Any]) -> Callable[..., Any]:
+    """A method that hears MuJoCo's warnings, which it would write into a file of the user's folder."""
+
+    @wraps(method)
+    def hearing(self: MujocoModel, *arguments: Any) -> Any:
+        before = self._mujoco.get_mju_user_warning()
+        self._mujoco.set_mju_user_warning(self._hear)
+        try:
+            return method(self, *arguments)
+        finally:
+            self._mujoco.set_mju_user_warning(before)
+
+    return hearing
+
+
 class MujocoModel:
     """A model of MuJoCo whose joints are hinges and slides."""
 
@@ -41,14 +57,10 @@ class MujocoModel:
             raise refuse_absent("mujoco", error) from None
         self.path = Path(path)
         self._mujoco: Any = mujoco
-        try:
-            self._model: Any = self._mujoco.MjModel.from_xml_path(str(path))
-        except ValueError as error:
-            raise ReadError(
-                f"a model is one that MuJoCo {mujoco.__version__} reads",
-                f"{self.path.name}: {' '.join(str(error).split())[:300]}",
-                "Mend what it names: a part that this version does not know, or a mesh that does not lie beside it.",
-            ) from None
+        self.warnings: tuple[str, ...] = ()  # what MuJoCo said of the model and of its runs
+        self._model: Any = self._read()
+        # a run that leaves every bound would set out again from the model's own pose, as if nothing had happened
+        self._model.opt.disableflags |= int(self._mujoco.mjtDisableBit.mjDSBL_AUTORESET)
         self._data: Any = self._mujoco.MjData(self._model)
         self._refuse_other_joints()
         self._names: dict[tuple[str, int], str] = {}
@@ -63,6 +75,7 @@ class MujocoModel:
         self._stateful = self._model.actuator_actadr >= 0
         self.contacts = 0  # most that any evaluated point had
 
+    @_heard
     def accelerations(
         self, at: Motion, values: Mapping[str, float], forces: NDArray[np.float64] | None = None
     ) -> NDArray[np.float64]:
@@ -105,6 +118,7 @@ class MujocoModel:
 
     rates = accelerations  # no fibre has a state of its own
 
+    @_heard
     def along(
         self, q: NDArray[np.float64], v: NDArray[np.float64], controls: NDArray[np.float64], rate: float
     ) -> Motion:
@@ -134,6 +148,7 @@ class MujocoModel:
         """Return other coordinates and speeds near a known motion."""
         return replace(known, q=q, v=v)
 
+    @_heard
     def run(self, start: Motion, controls: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
         """Coordinates, then speeds (run, sample, state), by MuJoCo's own integrator.
 
@@ -168,6 +183,21 @@ class MujocoModel:
         one = self.coordinates[effect.coordinate]
         values = {each.name: each.value for each in self.parameters}
         return with_effect(text, effect, one.called, {word: values[f"{one.name}_{word}"] for word in JOINT_UNITS})
+
+    @_heard
+    def _read(self) -> Any:
+        try:
+            return self._mujoco.MjModel.from_xml_path(str(self.path))
+        except ValueError as error:
+            raise ReadError(
+                f"a model is one that MuJoCo {self._mujoco.__version__} reads",
+                f"{self.path.name}: {' '.join(str(error).split())[:300]}",
+                "Mend what it names: a part that this version does not know, or a mesh that does not lie beside it.",
+            ) from None
+
+    def _hear(self, said: str) -> None:
+        sentence = " ".join(said.partition(" Time = ")[0].split())
+        self.warnings = tuple(dict.fromkeys((*self.warnings, sentence)))
 
     def _steps(self, rate: float) -> int:
         """Steps of the integrator for a sample, none longer than the model's own."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.engines.engine import Engine
+from gaitdisc.engines.engine import Engine, Motion
 from gaitdisc.results.discovery import Runs
 from gaitdisc.simulation.evaluating import Points, evaluate_many
 from gaitdisc.simulation.measured import Measured
@@ -69,12 +69,31 @@ def own_runs(
     return OwnRuns(dict(zip(measured.channels, rows, strict=True)), engines[0].called, share)
 
 
+def trial_called(measured: Measured, name: str) -> int:
+    """Number of a trial by the name that a search gave it: its own, its number, or that of a part of the only one."""
+    if len(measured.trials) == 1:
+        return 0
+    return measured.trials.index(name) if name in measured.trials else int(name.rsplit(maxsplit=1)[-1]) - 1
+
+
+def recorded_motion(
+    engine: Engine, measured: Measured, states: NDArray[np.float64], trials: Iterable[int]
+) -> dict[int, Motion]:
+    """Motion of some trials with what the engine computes along it.
+
+    states (trial, sample, state): smoothed
+    """
+    n, found = len(engine.coordinates), {}
+    for trial in trials:
+        along, driven = (each[trial, : measured.samples[trial]] for each in (states, measured.drive.inputs))
+        found[trial] = engine.along(along[:, :n], along[:, n:], driven, measured.rate)
+    return found
+
+
 def _stretches(measured: Measured, runs: Runs) -> list[_Stretch]:
     found = []
     for run in np.unique(np.linspace(0, len(runs.trial) - 1, MOST_RUNS).round().astype(int)):
-        name = runs.names[runs.trial[run]]
-        alone = len(measured.trials) == 1
-        trial = 0 if alone else measured.trials.index(name) if name in measured.trials else int(name.split()[-1]) - 1
+        trial = trial_called(measured, runs.names[runs.trial[run]])
         first, last = (round((time - measured.drive.time0[trial]) * measured.rate) for time in runs.time[run, [0, -1]])
         found.append(_Stretch(trial, first, min(last + 1, int(measured.samples[trial]))))
     return found
@@ -85,10 +104,7 @@ def _left(
 ) -> NDArray[np.float64]:
     """Root mean square of what is left in each channel, starts found by Gauss-Newton."""
     n = len(engine.coordinates)
-    recorded = {}
-    for trial in {one.trial for one in stretches}:
-        along, driven = (each[trial, : measured.samples[trial]] for each in (states, measured.drive.inputs))
-        recorded[trial] = engine.along(along[:, :n], along[:, n:], driven, measured.rate)
+    recorded = recorded_motion(engine, measured, states, {one.trial for one in stretches})
     size = np.nanstd(measured.observed, axis=(0, 1))
     total, count = 0.0, 0
     for one in stretches:

@@ -116,6 +116,14 @@ def test_what_the_engine_itself_does_not_bear_out_is_taken_back():
     np.testing.assert_array_equal(found.runs.augmented, found.runs.simulated)
 
 
+def test_what_mujoco_warns_of_is_a_finding_said_once():
+    from gaitdisc.batch.discover_engine import _warned
+
+    model = type("Model", (), {"called": "MuJoCo", "warnings": ("Nan in QACC.",)})()
+    (finding,) = _warned(model, model)
+    assert (finding.severity, finding.what) == ("warning", "MuJoCo warns: Nan in QACC.")
+
+
 @pytest.mark.slow
 def test_half_a_step_of_a_coarse_integrator_is_no_late_sensor(tmp_path):
     pytest.importorskip("mujoco", reason="MuJoCo is not installed: gaitdisc[mujoco]")

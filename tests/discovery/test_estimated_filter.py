@@ -7,7 +7,9 @@ import pytest
 from hidden_in_a_mass import RATE, Experiment, mass, record, with_load
 from scipy.signal import butter, sosfiltfilt
 
+from gaitdisc.discovery.estimated_filter import _as_the_surer
 from gaitdisc.discovery.problem import set_up_problem
+from gaitdisc.signals.recorded_filter import RecordedFilter
 from gaitdisc.simulation.drive import Drive, Rows
 from gaitdisc.simulation.parts import Sensor
 from gaitdisc.simulation.running import compile_simulation
@@ -82,3 +84,12 @@ def test_a_filtered_record_of_a_stop_gives_the_strength_of_the_raw_one():
     assert now.labels == ("one_sided_spring@load",)
     assert found[3.0] == pytest.approx(found[0.0], rel=0.05)
     assert found[0.0] == pytest.approx(60, rel=0.05)
+
+
+def test_a_cut_off_that_the_signal_hides_is_that_of_the_surer_channels_of_the_same_unit():
+    found = {
+        number: RecordedFilter(cutoff, 200.0, 0.0, signal)
+        for number, (cutoff, signal) in enumerate([(5.0, 0.1), (7.2, 0.9), (3.9, 6.0), (20.0, 6.0)])
+    }
+    cutoffs = _as_the_surer(found, ["deg", "deg", "deg", "N"])
+    assert cutoffs == {0: 5.0, 1: 7.2, 2: pytest.approx(6.0), 3: 20.0}

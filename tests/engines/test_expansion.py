@@ -13,6 +13,8 @@ from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.parts import Term
 from gaitdisc.simulation.running import compile_simulation
 
+from .conftest import DAMPING, GEAR, PENDULUM
+
 RATE, SAMPLES = 100.0, 150
 
 
@@ -91,3 +93,19 @@ def test_what_is_too_fast_for_a_run_is_made_heavier_and_comes_to_rest_at_the_sam
     assert np.allclose(factor @ (more + np.eye(2)), np.eye(2))
     before, after = (np.sort(np.linalg.eigvals(each[0]).real) for each in (damping, factor @ damping))
     assert np.isclose(after[1], FASTEST) and np.isclose(before[0], after[0])
+
+
+def test_a_joint_whose_damping_settles_in_half_a_millisecond_can_be_followed(pendulum):
+    stiff = PENDULUM.replace(f'damping="{DAMPING}"', 'damping="740"').replace(f'gear="{GEAR}"', 'gear="5000"')
+    pendulum.write_text(stiff)
+    model = read_model(pendulum)
+    t = np.arange(SAMPLES) / RATE
+    controls = 0.3 * np.sin(9.0 * t)[:, None]
+    begun = Motion(np.array([[0.4]]), np.zeros((1, 1)), np.zeros((1, 1)))
+    whole = model.run(begun, controls[None], RATE)
+    measured = Measured(Drive.of([controls], RATE), whole[:, :, :1], ("1",), ("pivot",))
+    linear, driven = expanded(drafted(model), model, measured, whole)
+    aside = Rows(np.zeros(1, int), np.full(1, 20), whole[:, 20] + np.array([0.05, 0.0]))
+    run, ok = compile_simulation(linear).run(driven.drive, aside, 60, substeps=2)
+    own = model.run(Motion(aside.starts[:, :1], aside.starts[:, 1:], begun.u), controls[None, 20:81], RATE)
+    assert ok.all() and np.abs(run[0, 5:, 0] - own[0, 5:, 0]).max() < 0.05 * 0.05

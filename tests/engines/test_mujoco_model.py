@@ -73,3 +73,15 @@ def test_what_has_no_place_is_refused_in_words(pendulum, change, words):
     pendulum.write_text(PENDULUM.replace(*change))
     with pytest.raises(GaitdiscError, match=words):
         read_model(pendulum)
+
+
+def test_a_run_that_leaves_every_bound_is_none_and_the_warning_goes_into_no_file(pendulum, monkeypatch):
+    monkeypatch.chdir(pendulum.parent)
+    stiff = PENDULUM.replace("damping=", 'stiffness="1e9" damping=').replace('timestep="0.001"', 'timestep="0.01"')
+    pendulum.write_text(stiff)
+    model = read_model(pendulum)
+    assert model.warnings == ()
+    run = model.run(Motion(np.ones((1, 1)), np.zeros((1, 1)), np.zeros((1, 1))), np.zeros((1, 60, 1)), 100.0)
+    assert not np.isfinite(run[0, -1]).any()
+    assert model.warnings and "The simulation is unstable." in model.warnings[0]
+    assert [one.name for one in pendulum.parent.iterdir()] == ["pendulum.xml"]
