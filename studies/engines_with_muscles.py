@@ -5,7 +5,8 @@
 arm26.osim and leg6dof9musc.osim are those of OpenSim (github.com/opensim-org/opensim-models, Models/Arm26 and
 Models/Leg6Dof9Musc, CC BY); put both into FOLDER. The leg hangs at a locked pelvis. The record is made by OpenSim with
 the hidden effect in its own form, four trials of 4 s at 100 Hz under random smooth excitations, trials that leave the
-given range of angles drawn anew; noise, low-pass, mapping and judgement as in studies/engines.py.
+given range of angles drawn anew; a weak muscle is excited the more. Noise, low-pass, mapping and judgement are those of
+studies/engines.py.
 """
 
 from __future__ import annotations
@@ -46,6 +47,8 @@ from engine_cases import (
 from engines import hidden_in as hidden_at
 from engines import with_share
 
+from gaitdisc.engines.engine import Engine
+
 
 class Muscled(NamedTuple):
     """A model, where something is hidden in it, and how it is moved: angles in degrees."""
@@ -75,6 +78,7 @@ MODELS = {
 SWING = 0.55  # of a muscle's mean excitation
 LATE_S, WEAK, NOISE_DEG = (0.03, 0.06), (0.5, 0.7), 0.3
 EARLY = 20  # samples before the record
+MOST_DRAWN = 200  # trials
 
 
 def model_text(name: str, folder: Path) -> str:
@@ -103,17 +107,27 @@ def recorded(case: Case, name: str, rng: np.random.Generator, truth: Path) -> Pa
     truth.write_text(case.truth, encoding="utf-8")
     one, engine, found = MODELS[name], read_model(truth), []
     t = np.arange(-EARLY, round(RATE_HZ * SECONDS)) / RATE_HZ
-    late = [each.name for each in engine.controls].index(one.muscle)
-    while len(found) < TRIALS:
-        u = np.column_stack([level + sines(rng, t, SWING * level) for level in one.levels]).clip(0.01, 1.0)
+    own = [each.name for each in engine.controls].index(one.muscle)
+    levels = list(one.levels)
+    if case.kind == "weak muscle":
+        levels[own] /= share_of(case, read_model(truth.parent / f"{name}.osim"))
+    for _ in range(MOST_DRAWN):
+        u = np.column_stack([level + sines(rng, t, SWING * level) for level in levels]).clip(0.01, 1.0)
         acting = u.copy()
         if case.kind == "late excitation":
-            acting[:, late] = np.interp(t - case.number, t, u[:, late])
+            acting[:, own] = np.interp(t - case.number, t, u[:, own])
         start = np.deg2rad([one.rest]) + rng.uniform(-0.05, 0.05, (1, len(one.rest)))
         angles = ran(engine, start, acting[EARLY:])
         if all(low < each.min() and each.max() < high for (low, high), each in zip(one.ranges, angles.T, strict=True)):
             found.append(measured(engine, u[EARLY:], angles, NOISE_DEG, rng))
-    return written(found, truth.parent)
+        if len(found) == TRIALS:
+            return written(found, truth.parent)
+    raise SystemExit(f"{name} with {case.kind} stays within its angles in {len(found)} trials of {MOST_DRAWN} drawn")
+
+
+def share_of(case: Case, engine: Engine) -> float:
+    """What is hidden in a parameter, as a share of the model's own value."""
+    return case.number / next(one.value for one in engine.parameters if one.name == case.named[1])
 
 
 def study(models: list[str], kinds: list[str], seed: int, folder: Path) -> pd.DataFrame:
