@@ -55,7 +55,8 @@ class Muscled(NamedTuple):
 
     joint: str
     body: str
-    muscle: str
+    muscle: str  # whose excitation is late
+    weak: str
     rest: tuple[float, ...]  # posture that trials begin near
     levels: tuple[float, ...]  # mean excitation of each muscle
     ranges: tuple[tuple[float, float], ...]
@@ -66,11 +67,11 @@ class Muscled(NamedTuple):
 
 MODELS = {
     "arm26": Muscled(  # its triceps' path jumps at -16.5 and 41 degrees of the shoulder, its biceps' at 30
-        "r_shoulder_elev", "r_ulna_radius_hand", "BIClong", (-4, 35), (0.01, 0.05, 0.05, 0.085, 0.03, 0.03),
+        "r_shoulder_elev", "r_ulna_radius_hand", "BIClong", "TRIlat", (-4, 35), (0.01, 0.05, 0.05, 0.085, 0.03, 0.03),
         ((-15.8, 28), (2, 120)), 0.0, 0.5,
     ),
     "leg6dof9musc": Muscled(
-        "knee_angle_r", "tibia_r", "bifemsh_r", (15, -50, -5),
+        "knee_angle_r", "tibia_r", "bifemsh_r", "bifemsh_r", (15, -50, -5),
         (0.128, 0.176, 0.03, 0.218, 0.032, 0.03, 0.043, 0.03, 0.194), ((-30, 80), (-110, 0), (-45, 30)), -0.8, 1.0,
         ("pelvis_tilt", "pelvis_tx", "pelvis_ty"),
     ),
@@ -96,7 +97,7 @@ def hidden_in(name: str, kind: str, model: Path, rng: np.random.Generator) -> Ca
     if kind == "late excitation":
         return Case(place, kind, text, rng.uniform(*LATE_S), ("input_delay", one.muscle, "seconds"))
     if kind == "weak muscle":
-        parameter = f"{one.muscle}_max_isometric_force"
+        parameter = f"{one.weak}_max_isometric_force"
         return with_share(place, kind, text, rng.uniform(*WEAK), parameter)
     case = hidden_at(place, kind, rng)
     return case._replace(truth=case.truth.replace("max(0,q-0.1)", f"max(0,q-({one.corner}))"))
@@ -107,15 +108,15 @@ def recorded(case: Case, name: str, rng: np.random.Generator, truth: Path) -> Pa
     truth.write_text(case.truth, encoding="utf-8")
     one, engine, found = MODELS[name], read_model(truth), []
     t = np.arange(-EARLY, round(RATE_HZ * SECONDS)) / RATE_HZ
-    own = [each.name for each in engine.controls].index(one.muscle)
-    levels = list(one.levels)
+    controls = [each.name for each in engine.controls]
+    levels, late = list(one.levels), controls.index(one.muscle)
     if case.kind == "weak muscle":
-        levels[own] /= share_of(case, read_model(truth.parent / f"{name}.osim"))
+        levels[controls.index(one.weak)] /= share_of(case, read_model(truth.parent / f"{name}.osim"))
     for _ in range(MOST_DRAWN):
         u = np.column_stack([level + sines(rng, t, SWING * level) for level in levels]).clip(0.01, 1.0)
         acting = u.copy()
         if case.kind == "late excitation":
-            acting[:, own] = np.interp(t - case.number, t, u[:, own])
+            acting[:, late] = np.interp(t - case.number, t, u[:, late])
         start = np.deg2rad([one.rest]) + rng.uniform(-0.05, 0.05, (1, len(one.rest)))
         angles = ran(engine, start, acting[EARLY:])
         if all(low < each.min() and each.max() < high for (low, high), each in zip(one.ranges, angles.T, strict=True)):

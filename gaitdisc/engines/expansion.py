@@ -143,10 +143,9 @@ def _expand(columns: _Columns, simulation: Simulation, along: _Along, values: Ma
     """Accelerations to first order in states and controls; forces, and parameters that act as such, exactly."""
     engine, at = columns.engine, along.at
     count = len(engine.coordinates)
-    base = engine.rates(at, values)
-    few = base[along.points]
-    rest = base[:, :count].copy()
-    slopes = _slopes(engine, along, few, values)
+    base = engine.accelerations(at, values)
+    few, rest = base[along.points], base.copy()
+    slopes = _slopes(engine, along, values)
     if at.z is not None:
         damping = -np.stack([slopes[one.speed] for one in engine.coordinates], axis=2)
         columns.slowed, heavier = _slowed(damping)
@@ -165,24 +164,20 @@ def _expand(columns: _Columns, simulation: Simulation, along: _Along, values: Ma
             if alike and alike[0] == number:
                 acting.append(f"({alike[1]})*({name} - {values[name]!r})")
         if acting:
-            changed = along.spread(engine.accelerations(along.few, values, force) - few[:, :count])
+            changed = along.spread(engine.accelerations(along.few, values, force) - few)
             columns.add(f"by_{one.port}", changed, acting[0] if len(acting) == 1 else f"({' + '.join(acting)})")
-    _expand_parameters(columns, simulation, along, few[:, :count], values)
+    _expand_parameters(columns, simulation, along, few, values)
 
 
-def _slopes(
-    engine: Engine, along: _Along, here: NDArray[np.float64], values: Mapping[str, float]
-) -> dict[str, NDArray[np.float64]]:
+def _slopes(engine: Engine, along: _Along, values: Mapping[str, float]) -> dict[str, NDArray[np.float64]]:
     """Slopes of the accelerations by each coordinate, speed and control at every point.
 
-    here (point, coordinate + fibre): rates where slopes are computed; an activation and a fibre are nudged to one side
+    Differences are to both sides: a muscle's stiffness is a small rest of that of its tendon less that of its fibre.
     """
     few, count = along.few, len(engine.coordinates)
     found: dict[str, NDArray[np.float64]] = {}
-    for name, _, ahead, behind, size in _nudged(engine, few, "qv" if few.z is not None else "qvu"):
+    for name, _, ahead, behind, size in _nudged(engine, few, "qvuz"):
         found[name] = along.without_jumps((engine.rates(ahead, values) - engine.rates(behind, values)) / (2 * size))
-    for name, _, ahead, _, size in _nudged(engine, few, "uz") if few.z is not None else ():
-        found[name] = along.without_jumps((engine.rates(ahead, values) - here) / size)
     fibres = [found.pop(name) for name in _fibres(few)]
     moves = _following(engine, {name: slope[:, count:] for name, slope in found.items()}, fibres)
     for name, slope in found.items():
