@@ -47,8 +47,6 @@ from engine_cases import (
 from engines import hidden_in as hidden_at
 from engines import with_share
 
-from gaitdisc.engines.engine import Engine
-
 
 class Muscled(NamedTuple):
     """A model, where something is hidden in it, and how it is moved: angles in degrees."""
@@ -111,7 +109,8 @@ def recorded(case: Case, name: str, rng: np.random.Generator, truth: Path) -> Pa
     controls = [each.name for each in engine.controls]
     levels, late = list(one.levels), controls.index(one.muscle)
     if case.kind == "weak muscle":
-        levels[controls.index(one.weak)] /= share_of(case, read_model(truth.parent / f"{name}.osim"))
+        own = {each.name: each.value for each in read_model(truth.parent / f"{name}.osim").parameters}
+        levels[controls.index(one.weak)] *= own[case.named[1]] / case.number
     for _ in range(MOST_DRAWN):
         u = np.column_stack([level + sines(rng, t, SWING * level) for level in levels]).clip(0.01, 1.0)
         acting = u.copy()
@@ -124,11 +123,6 @@ def recorded(case: Case, name: str, rng: np.random.Generator, truth: Path) -> Pa
         if len(found) == TRIALS:
             return written(found, truth.parent)
     raise SystemExit(f"{name} with {case.kind} stays within its angles in {len(found)} trials of {MOST_DRAWN} drawn")
-
-
-def share_of(case: Case, engine: Engine) -> float:
-    """What is hidden in a parameter, as a share of the model's own value."""
-    return case.number / next(one.value for one in engine.parameters if one.name == case.named[1])
 
 
 def study(models: list[str], kinds: list[str], seed: int, folder: Path) -> pd.DataFrame:

@@ -31,7 +31,7 @@ INSIDE = {
         "ch5_forecasts", "ch5_further", "ch5_runner", "ch5_simulated", "ch5_speed",
     },
 }  # fmt: skip
-LONG = {"engine_cases": 124, "engines": 187, "engines_with_muscles": 137, "tracked_walks": 138}
+LONG = {"engine_cases": 124, "engines": 187, "engines_with_muscles": 146, "tracked_walks": 138}
 
 
 def imported(path: Path) -> set[tuple[str, str]]:
