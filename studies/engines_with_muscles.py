@@ -93,7 +93,7 @@ def hidden_in(name: str, kind: str, model: Path, rng: np.random.Generator) -> Ca
     one, text = MODELS[name], model.read_text(encoding="utf-8")
     place = Model(str(model), one.joint, one.body, (), strength=one.strength)
     if kind == "late excitation":
-        return Case(place, kind, text, rng.uniform(*LATE_S), ("input_delay", one.muscle, "seconds"))
+        return Case(place, kind, text, rng.uniform(*LATE_S), ("input_delay", one.muscle, "delay"))
     if kind == "weak muscle":
         parameter = f"{one.weak}_max_isometric_force"
         return with_share(place, kind, text, rng.uniform(*WEAK), parameter)
