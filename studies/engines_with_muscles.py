@@ -5,7 +5,8 @@
 arm26.osim and leg6dof9musc.osim are those of OpenSim (github.com/opensim-org/opensim-models, Models/Arm26 and
 Models/Leg6Dof9Musc, CC BY); put both into FOLDER. The leg hangs at a locked pelvis. The record is made by OpenSim with
 the hidden effect in its own form, four trials of 4 s at 100 Hz under random smooth excitations, trials that leave the
-given range of angles drawn anew; noise, low-pass, mapping and judgement as in studies/engines.py.
+given range of angles drawn anew; a weak muscle is excited the more. Noise, low-pass, mapping and judgement are those of
+studies/engines.py.
 """
 
 from __future__ import annotations
@@ -52,7 +53,8 @@ class Muscled(NamedTuple):
 
     joint: str
     body: str
-    muscle: str
+    muscle: str  # whose excitation is late
+    weak: str
     rest: tuple[float, ...]  # posture that trials begin near
     levels: tuple[float, ...]  # mean excitation of each muscle
     ranges: tuple[tuple[float, float], ...]
@@ -63,11 +65,11 @@ class Muscled(NamedTuple):
 
 MODELS = {
     "arm26": Muscled(  # its triceps' path jumps at -16.5 and 41 degrees of the shoulder, its biceps' at 30
-        "r_shoulder_elev", "r_ulna_radius_hand", "BIClong", (-4, 35), (0.01, 0.05, 0.05, 0.085, 0.03, 0.03),
+        "r_shoulder_elev", "r_ulna_radius_hand", "BIClong", "TRIlat", (-4, 35), (0.01, 0.05, 0.05, 0.085, 0.03, 0.03),
         ((-15.8, 28), (2, 120)), 0.0, 0.5,
     ),
     "leg6dof9musc": Muscled(
-        "knee_angle_r", "tibia_r", "bifemsh_r", (15, -50, -5),
+        "knee_angle_r", "tibia_r", "bifemsh_r", "bifemsh_r", (15, -50, -5),
         (0.128, 0.176, 0.03, 0.218, 0.032, 0.03, 0.043, 0.03, 0.194), ((-30, 80), (-110, 0), (-45, 30)), -0.8, 1.0,
         ("pelvis_tilt", "pelvis_tx", "pelvis_ty"),
     ),
@@ -75,6 +77,7 @@ MODELS = {
 SWING = 0.55  # of a muscle's mean excitation
 LATE_S, WEAK, NOISE_DEG = (0.03, 0.06), (0.5, 0.7), 0.3
 EARLY = 20  # samples before the record
+MOST_DRAWN = 200  # trials
 
 
 def model_text(name: str, folder: Path) -> str:
@@ -90,9 +93,9 @@ def hidden_in(name: str, kind: str, model: Path, rng: np.random.Generator) -> Ca
     one, text = MODELS[name], model.read_text(encoding="utf-8")
     place = Model(str(model), one.joint, one.body, (), strength=one.strength)
     if kind == "late excitation":
-        return Case(place, kind, text, rng.uniform(*LATE_S), ("input_delay", one.muscle, "seconds"))
+        return Case(place, kind, text, rng.uniform(*LATE_S), ("input_delay", one.muscle, "delay"))
     if kind == "weak muscle":
-        parameter = f"{one.muscle}_max_isometric_force"
+        parameter = f"{one.weak}_max_isometric_force"
         return with_share(place, kind, text, rng.uniform(*WEAK), parameter)
     case = hidden_at(place, kind, rng)
     return case._replace(truth=case.truth.replace("max(0,q-0.1)", f"max(0,q-({one.corner}))"))
@@ -103,9 +106,13 @@ def recorded(case: Case, name: str, rng: np.random.Generator, truth: Path) -> Pa
     truth.write_text(case.truth, encoding="utf-8")
     one, engine, found = MODELS[name], read_model(truth), []
     t = np.arange(-EARLY, round(RATE_HZ * SECONDS)) / RATE_HZ
-    late = [each.name for each in engine.controls].index(one.muscle)
-    while len(found) < TRIALS:
-        u = np.column_stack([level + sines(rng, t, SWING * level) for level in one.levels]).clip(0.01, 1.0)
+    controls = [each.name for each in engine.controls]
+    levels, late = list(one.levels), controls.index(one.muscle)
+    if case.kind == "weak muscle":
+        own = {each.name: each.value for each in read_model(truth.parent / f"{name}.osim").parameters}
+        levels[controls.index(one.weak)] *= own[case.named[1]] / case.number
+    for _ in range(MOST_DRAWN):
+        u = np.column_stack([level + sines(rng, t, SWING * level) for level in levels]).clip(0.01, 1.0)
         acting = u.copy()
         if case.kind == "late excitation":
             acting[:, late] = np.interp(t - case.number, t, u[:, late])
@@ -113,7 +120,9 @@ def recorded(case: Case, name: str, rng: np.random.Generator, truth: Path) -> Pa
         angles = ran(engine, start, acting[EARLY:])
         if all(low < each.min() and each.max() < high for (low, high), each in zip(one.ranges, angles.T, strict=True)):
             found.append(measured(engine, u[EARLY:], angles, NOISE_DEG, rng))
-    return written(found, truth.parent)
+        if len(found) == TRIALS:
+            return written(found, truth.parent)
+    raise SystemExit(f"{name} with {case.kind} stays within its angles in {len(found)} trials of {MOST_DRAWN} drawn")
 
 
 def study(models: list[str], kinds: list[str], seed: int, folder: Path) -> pd.DataFrame:

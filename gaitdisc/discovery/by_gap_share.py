@@ -19,6 +19,7 @@ from gaitdisc.discovery.unnamed_terms import unnamed_terms
 from gaitdisc.discovery.windows import as_read_on, near_runs, on_longer_runs
 
 MERE_NOISE = 1.3  # times the variance of the sensors' noise: its own estimate errs
+INEXACT_LEAVES = 0.05  # of a channel's spread, which a simulation that itself errs may leave beside the noise
 LOST = 4.0  # squared spreads, which a run that has left the data errs by
 TIED = 0.02  # of the gap, by which another set may cost more
 
@@ -50,8 +51,10 @@ def leaves_noise(problem: Problem, now: ScoredModel) -> bool:
     """Whether what a model leaves is no larger than the noise of the sensors.
 
     Where this is not known (a filtered record whose file does not say it), whether it is autocorrelated no further than
-    by the filter.
+    by the filter; where the simulation itself errs, and its errors with it, whether it is a small share of the spread.
     """
+    if problem.search.base.inexact and scale_of(problem).relative(now.model.fit) < INEXACT_LEAVES:
+        return True
     known = np.isfinite(problem.sensor_noise)
     if not known.all():
         return not now.noise.is_autocorrelated

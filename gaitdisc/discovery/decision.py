@@ -57,11 +57,10 @@ def decide(problem: Problem, as_read: ScoredModel) -> Verdict:
     plain = None if exact else plainest(problem, scale, named)
     if plain:
         return shape_that_leaves_noise(problem, as_read, scale, plain) or plain
-    wanted = len(named.model.parts) > 1 or named.noise.is_autocorrelated
+    suspect = named.noise.is_autocorrelated and not (exact and problem.search.base.inexact)
+    wanted = len(named.model.parts) > 1 or suspect
     shape = fitted_shape(as_read, problem.search, scale) if wanted else None
-    autocorrelated = (
-        with_autocorrelation(problem, as_read, named, shape, rivals) if named.noise.is_autocorrelated else None
-    )
+    autocorrelated = with_autocorrelation(problem, as_read, named, shape, rivals) if suspect else None
     if autocorrelated and not (autocorrelated.word == "process_noise" and scale.agrees(as_read.model.fit)):
         return autocorrelated
     names = len(named.model.parts)

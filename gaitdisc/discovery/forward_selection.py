@@ -15,6 +15,7 @@ from gaitdisc.discovery.scored_model import ScoredModel, compared
 from gaitdisc.discovery.search import Search, is_certain
 
 MATERIAL = (0.0, 0.001, 0.01)  # of what is explained already, which the first, second, third explanation must explain
+MATERIAL_INEXACT = 0.02  # of it, where the simulation itself errs: its errors are no explanation
 MOST_TURNS = 5  # explanations added, those that were eliminated again included
 FIRST_PLACES = 5  # that a second explanation is sought beside
 SAME = 0.1  # difference of the criterion
@@ -33,14 +34,15 @@ def select_forward(
     """
     rivals: list[ScoredModel] = []
     explored = {now.model.explanations}
-    explained, turns = 0.0, 0
+    explained, turns, inexact = 0.0, 0, search.base.inexact > 0
     while len(now.model.parts) < most and turns < MOST_TURNS:
         before, *more = search.extended(now) or [now]
         more = ranked(more, search.candidates)
         rivals = rivals or more
         number = len(now.model.parts) + 1
-        worth = max(MARGIN, MATERIAL[min(number, len(MATERIAL)) - 1] * explained)
-        if not more or before.bic - more[0].bic < (worth if number > 2 else MARGIN):
+        share = MATERIAL_INEXACT if inexact else MATERIAL[min(number, len(MATERIAL)) - 1]
+        worth = max(MARGIN, share * explained)
+        if not more or before.bic - more[0].bic < (worth if number > 2 or inexact else MARGIN):
             break
         better = more[0]
         if number == 2:

@@ -60,7 +60,7 @@ class ScoredModel:
 
 def scored(shooting: Shooting, base: Simulation, model: CandidateModel, rounds: int = 2) -> ScoredModel:
     """Estimate a model's own noise, and its own past for what comes late, and fit it again under them."""
-    least = INTEGRATED * np.nanstd(shooting.measured.observed, axis=(0, 1))
+    least = max(INTEGRATED, base.inexact) * np.nanstd(shooting.measured.observed, axis=(0, 1))
     for _ in range(rounds):
         used = model.fit.starts.shape[1] / model.fit.residual.shape[2]
         noise = noise_of(model.fit.residual, used, least=least, autocorrelation=shooting.filter_autocorrelation)

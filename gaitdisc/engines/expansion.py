@@ -27,6 +27,7 @@ LONGEST = 64  # characters of a name
 SLOWEST, FASTEST = 10.0, 300.0  # [1/s] at which a fibre settles at least, and a speed at most
 JUMP = 5  # points
 SLOPES_HZ = 50.0  # at which slopes of a model with muscles are computed: they change as slowly as the motion
+INEXACT = 0.02  # of a channel's spread, as white noise: a half percent in which some 20 samples err together
 STILL = 1e-9  # of a column's size, below which it is one number
 
 
@@ -70,6 +71,8 @@ def expanded(
     ]
     lines = tuple((state.name, columns.equations[state.name]) for state in simulation.states)
     linear = replace(simulation, inputs=inputs, equations=lines, definitions=(), model="", layout="", source=None)
+    if at.z is not None:
+        linear = replace(linear, inexact=INEXACT)
     for name, expression in simulation.definitions:
         linear = linear.with_input(name.removeprefix(REPLACED), expression)
     return linear, replace(measured, drive=Drive.of(trials, drive.rate, drive.time0))
@@ -139,9 +142,10 @@ class _Along:
 def _expand(columns: _Columns, simulation: Simulation, along: _Along, values: Mapping[str, float]) -> None:
     """Accelerations to first order in states and controls; forces, and parameters that act as such, exactly."""
     engine, at = columns.engine, along.at
+    count = len(engine.coordinates)
     base = engine.accelerations(at, values)
-    rest = base.copy()
-    slopes, moves = _slopes(engine, along, values)
+    few, rest = base[along.points], base.copy()
+    slopes = _slopes(engine, along, values)
     damping = -np.stack([slopes[one.speed] for one in engine.coordinates], axis=2)
     if np.linalg.norm(damping, axis=(1, 2)).max() > FASTEST:
         columns.slowed, heavier = _slowed(damping)
@@ -152,7 +156,7 @@ def _expand(columns: _Columns, simulation: Simulation, along: _Along, values: Ma
     columns.add("rate", rest)
     ports = {port.name for port in simulation.ports}
     for number, one in enumerate(engine.coordinates):
-        force = np.zeros_like(base)
+        force = np.zeros((len(few), count))
         force[:, number] = 1.0
         acting = [one.port] if one.port in ports else []
         for name in simulation.values():
@@ -160,15 +164,16 @@ def _expand(columns: _Columns, simulation: Simulation, along: _Along, values: Ma
             if alike and alike[0] == number:
                 acting.append(f"({alike[1]})*({name} - {values[name]!r})")
         if acting:
-            changed = engine.accelerations(at, values, force) - base
+            changed = along.spread(engine.accelerations(along.few, values, force) - few)
             columns.add(f"by_{one.port}", changed, acting[0] if len(acting) == 1 else f"({' + '.join(acting)})")
-    _expand_parameters(columns, simulation, along, values, moves)
+    _expand_parameters(columns, simulation, along, few, values)
 
 
-def _slopes(
-    engine: Engine, along: _Along, values: Mapping[str, float]
-) -> tuple[dict[str, NDArray[np.float64]], dict[str, NDArray[np.float64]]]:
-    """Slopes of the accelerations by each coordinate, speed and control at every point; how far each moves a fibre."""
+def _slopes(engine: Engine, along: _Along, values: Mapping[str, float]) -> dict[str, NDArray[np.float64]]:
+    """Slopes of the accelerations by each coordinate, speed and control at every point.
+
+    Differences are to both sides: a muscle's stiffness is a small rest of that of its tendon less that of its fibre.
+    """
     few, count = along.few, len(engine.coordinates)
     found: dict[str, NDArray[np.float64]] = {}
     for name, _, ahead, behind, size in _nudged(engine, few, "qvuz"):
@@ -178,7 +183,7 @@ def _slopes(
     for name, slope in found.items():
         by_fibres = sum(fibre[:, :count] * moves[name][:, [k]] for k, fibre in enumerate(fibres))
         found[name] = along.spread(slope[:, :count] + by_fibres)
-    return found, moves
+    return found
 
 
 def _fibres(at: Motion) -> list[str]:
@@ -219,27 +224,24 @@ def _expand_parameters(
     columns: _Columns,
     simulation: Simulation,
     along: _Along,
+    here: NDArray[np.float64],
     values: Mapping[str, float],
-    moves: Mapping[str, NDArray[np.float64]],
 ) -> None:
-    """What each parameter changes, to first order in it and in the coordinates."""
+    """What each parameter changes, to first order in it; without muscles also how that changes with the coordinates.
+
+    here (point, coordinate): accelerations where slopes are computed
+    """
     engine, at = columns.engine, along.few
-    beside, moved = [at], []
-    for other, value, ahead, _, step in _nudged(engine, at, "q"):
-        beside.append(ahead if at.z is None else replace(ahead, z=at.z + step * moves[other]))
-        moved.append((other, value, step))
     names = [name for name in simulation.values() if engine.as_force(name) is None]
-    own = [engine.accelerations(one, values) for one in beside if names]
+    beside = list(_nudged(engine, at, "q")) if names and at.z is None else []
+    own = [engine.accelerations(ahead, values) for _, _, ahead, _, _ in beside]
     for name in names:
         size = NUDGE * max(abs(values[name]), 1e-2)
         far = {**values, name: values[name] + size}
-        here, *others = (
-            along.without_jumps((engine.accelerations(one, far) - before) / size)
-            for one, before in zip(beside, own, strict=True)
-        )
-        away, rest = f"({name} - {values[name]!r})", here
-        for slope, (other, value, step) in zip(others, moved, strict=True):
-            mixed = (slope - here) / step
+        slope = along.without_jumps((engine.accelerations(at, far) - here) / size)
+        away, rest = f"({name} - {values[name]!r})", slope
+        for (other, value, ahead, _, step), before in zip(beside, own, strict=True):
+            mixed = ((engine.accelerations(ahead, far) - before) / size - slope) / step
             columns.add(f"by_{name}_and_{other}", along.spread(mixed), f"{other}*{away}")
             rest = rest - mixed * value[:, None]
         columns.add(f"by_{name}", along.spread(rest), away)

@@ -108,6 +108,11 @@ class PythonSimulation:
         return None
 
     @property
+    def inexact(self) -> float:
+        """Share of a channel's spread by which runs may err without anything being missing."""
+        return self.parts.inexact
+
+    @property
     def signals(self) -> tuple[str, ...]:
         """Names of the states and inputs."""
         return self.parts.signals

@@ -49,6 +49,8 @@ class Simulation:
         Text of that file, whose comments and order are kept when it is written back.
     model : str
         File of an engine (OpenSim, MuJoCo) that holds the equations in the place of the file's own.
+    inexact : float
+        Share of an observed channel's spread by which runs may err without anything being missing, taken as white.
 
     Raises
     ------
@@ -75,6 +77,7 @@ class Simulation:
     source: Path | None = field(default=None, compare=False)
     layout: str = field(default="", compare=False, repr=False)
     model: str = ""
+    inexact: float = field(default=0.0, repr=False)
 
     def __post_init__(self) -> None:
         """Make every part a tuple, and refuse what does not hold together."""

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import pytest
 from hidden_in_a_mass import Experiment, mass, record, with_load
 
@@ -13,6 +15,17 @@ def test_what_leaves_the_sensors_noise_is_known_from_the_record_alone(problem, a
     assert leaves_noise(problem, named[0])
     assert not leaves_noise(problem, as_read)
     assert not scale.agrees(as_read.model.fit)
+
+
+def test_a_simulation_that_errs_leaves_noise_where_that_is_a_small_share_of_the_spread(problem, as_read, monkeypatch):
+    base = replace(problem.search.base, inexact=0.02)
+    errs = replace(problem, search=replace(problem.search, base=base))
+    assert not leaves_noise(errs, as_read)
+    monkeypatch.setattr(
+        "gaitdisc.discovery.by_gap_share.INEXACT_LEAVES", 2 * scale_of(errs).relative(as_read.model.fit)
+    )
+    assert leaves_noise(errs, as_read)
+    assert not leaves_noise(problem, as_read)
 
 
 def test_where_nothing_is_missing_nothing_is_weighed():

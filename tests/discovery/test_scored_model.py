@@ -35,6 +35,22 @@ def test_what_comes_late_sees_the_past_of_the_account_and_not_of_the_simulation_
     assert np.abs(past - states).max() < 0.01 * apart
 
 
+def test_where_the_simulation_errs_by_a_share_of_the_spread_the_noise_is_no_less_and_evidence_falls(
+    problem, as_read, with_cubic
+):
+    base = replace(problem.search.base, inexact=0.1)
+    exact, inexact = (scored(as_read.shooting, each, with_cubic.model) for each in (problem.search.base, base))
+    spread = problem.measured.observed.std()
+    assert inexact.noise.size[0] ** 2 == pytest.approx(exact.noise.size[0] ** 2 + (0.1 * spread) ** 2, rel=0.05)
+    gains = [
+        plain.bic - true.bic
+        for plain, true in (
+            compared([as_read, one], each) for one, each in ((exact, problem.search.base), (inexact, base))
+        )
+    ]
+    assert 0 < gains[1] < gains[0]
+
+
 def test_accounts_are_compared_under_the_noise_that_the_best_leaves(problem, as_read, with_cubic):
     plain, true = compared([as_read, with_cubic], problem.search.base)
     assert plain.noise is true.noise

@@ -35,7 +35,7 @@ LONG = {
     "device_from_files": 147,
     "engine_cases": 124,
     "engines": 187,
-    "engines_with_muscles": 137,
+    "engines_with_muscles": 146,
     "tracked_walks": 138,
 }
 
