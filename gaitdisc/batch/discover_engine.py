@@ -24,7 +24,7 @@ from gaitdisc.engines.own_runs import OwnRuns, own_runs
 from gaitdisc.engines.written import WrittenModel, written_model
 from gaitdisc.errors import ChannelError
 from gaitdisc.recording import Finding
-from gaitdisc.results.discovery import Discovery
+from gaitdisc.results.discovery import ENGINE, Discovery
 from gaitdisc.results.effect_words import at_place, spoken
 from gaitdisc.simulation.expression import names, parsed
 from gaitdisc.simulation.measured import Measured
@@ -55,7 +55,7 @@ def discover_engine(
     measured: Callable[[Simulation], Measured],
     catalogue: Path | None = None,
     files: dict[Path, str] | None = None,
-    told: Callable[[str], None] = lambda _: None,
+    progress: Callable[[str], None] = lambda _: None,
 ) -> EngineAnswer:
     """Find what a model of MuJoCo or OpenSim lacks.
 
@@ -68,20 +68,20 @@ def discover_engine(
     refuse_unmeasured(mapping, engine, data)
     states = smoothed_states(mapping, engine, data)
     refuse_other_conventions(mapping, engine, data, states)
-    told(f"computing the accelerations of {engine.path.name} along the record by {engine.called}")
+    progress(f"computing the accelerations of {engine.path.name} along the record by {engine.called}")
     linear, driven = expanded(mapping, engine, data, states)
     read = {engine.path: "model", **(files or {})}  # what was read of the data is known by now
     fit = EngineFit(mapping, engine, data, states)
-    found, answer = discovered(linear, driven, catalogue, read, told, refitted=fit.refitted)
+    found, answer = discovered(linear, driven, catalogue, read, progress, refitted=fit.refitted)
     moved = {name: value for name, value in _moved(mapping, answer).items() if engine.as_force(name) is None}
     if moved and (len(found.effects) > 1 or not fit.done):  # one number alone rests on the engine's own runs
-        told(f"expanding again where {' and '.join(moved)} came to lie")
+        progress(f"expanding again where {' and '.join(moved)} came to lie")
         linear, driven = expanded(mapping, engine, data, states, moved)
-        found, answer = discovered(linear, driven, catalogue, read, told, refitted=fit.refitted)
+        found, answer = discovered(linear, driven, catalogue, read, progress, refitted=fit.refitted)
     augmented = in_mapping(mapping, answer, found)
-    told("writing it into the model")
+    progress("writing it into the model")
     written = written_model(engine, augmented)
-    told(f"running both with {engine.called}")
+    progress(f"running both with {engine.called}")
     as_read = written_model(engine, mapping)  # what the mapping says otherwise than the model's file
     runs = own_runs((as_read.engine, written.engine), (mapping, augmented), data, found.runs, states)
     if found.verdict != "no_gap" and not written.absent and runs.share > CONFIRMED:
@@ -91,8 +91,10 @@ def discover_engine(
         *other_values(mapping, engine),
         *_contacts(engine),
         *_warned(engine, written.engine),
-        *_told(written, runs),
+        *_said(written, runs),
     )
+    if found.provenance is not None:
+        found = replace(found, provenance=replace(found.provenance, section=ENGINE))
     return EngineAnswer(replace(found, findings=findings), augmented, written, runs, engine)
 
 
@@ -121,11 +123,11 @@ def unconfirmed(found: Discovery, runs: OwnRuns) -> Discovery:
 
 
 def discover_model_file(
-    model: Path, measured: Path, catalogue: Path | None = None, told: Callable[[str], None] = lambda _: None
+    model: Path, measured: Path, catalogue: Path | None = None, progress: Callable[[str], None] = lambda _: None
 ) -> EngineAnswer:
     """Find what a model lacks against a file of measured trials."""
     files = {measured: "measured table"}
-    return discover_engine(model, lambda mapping: measured_of_file(measured, mapping), catalogue, files, told)
+    return discover_engine(model, lambda mapping: measured_of_file(measured, mapping), catalogue, files, progress)
 
 
 def measured_of_file(file: Path, mapping: Simulation) -> Measured:
@@ -218,7 +220,7 @@ def _warned(*engines: Engine) -> tuple[Finding, ...]:
     )
 
 
-def _told(written: WrittenModel, runs: OwnRuns) -> tuple[Finding, ...]:
+def _said(written: WrittenModel, runs: OwnRuns) -> tuple[Finding, ...]:
     """What the engine itself says of the answer."""
     found = [Finding("note", "written back", "model", what, "") for what in written.notes]
     return (*found, Finding("note", "own runs", "model", runs.said, ""))

@@ -15,7 +15,7 @@ from gaitdisc.discovery.catalogue import read_catalogue
 from gaitdisc.discovery.discover import discover, refuse_blow_up
 from gaitdisc.discovery.scored_model import ScoredModel
 from gaitdisc.ingest.file_hash import file_sha256
-from gaitdisc.results.discovery import Discovery
+from gaitdisc.results.discovery import DEVICE, SIMULATION, Discovery
 from gaitdisc.results.provenance import made_now
 from gaitdisc.simulation.measured import Measured
 from gaitdisc.simulation.measured_table import read_measured
@@ -27,24 +27,27 @@ from gaitdisc.simulation.writing import simulation_text
 
 
 def discover_files(
-    simulation: Path, measured: Path, catalogue: Path | None = None, told: Callable[[str], None] = lambda _: None
+    simulation: Path, measured: Path, catalogue: Path | None = None, progress: Callable[[str], None] = lambda _: None
 ) -> tuple[Discovery, Simulation]:
     """Find what a simulation file lacks against a table of measured trials."""
-    told(f"reading {simulation.name} and {measured.name}")
+    progress(f"reading {simulation.name} and {measured.name}")
     model = read_simulation(simulation)
     data = read_measured(measured, model)
     files = {simulation: "simulation", measured: "measured table"}
-    return discovered(model, data, catalogue, files, told)
+    return discovered(model, data, catalogue, files, progress)
 
 
 def discover_model(
-    model: PythonSimulation, measured: Path, catalogue: Path | None = None, told: Callable[[str], None] = lambda _: None
+    model: PythonSimulation,
+    measured: Path,
+    catalogue: Path | None = None,
+    progress: Callable[[str], None] = lambda _: None,
 ) -> tuple[Discovery, PythonSimulation]:
     """Find what a simulation that is a Python object lacks against a table of measured trials."""
-    told(f"reading {measured.name}")
+    progress(f"reading {measured.name}")
     simulation = cast("Simulation", model)  # it goes wherever a `Simulation` goes
     data = read_measured(measured, simulation)
-    found, augmented = discovered(simulation, data, catalogue, {measured: "measured table"}, told)
+    found, augmented = discovered(simulation, data, catalogue, {measured: "measured table"}, progress)
     return found, cast("PythonSimulation", augmented)
 
 
@@ -52,7 +55,7 @@ def discover_study(
     study: Path,
     participant: str,
     catalogue: Path | None = None,
-    told: Callable[[str], None] = lambda _: None,
+    progress: Callable[[str], None] = lambda _: None,
     joint: str = "ankle_angle",
 ) -> tuple[Discovery, Simulation]:
     """Find what the device does at a participant's joint: what the Nominal moment model lacks on the device walk.
@@ -68,7 +71,7 @@ def discover_study(
     from gaitdisc.batch.public_words import words_of
     from gaitdisc.ingest.study_file import load_study
 
-    told(f"reading both walks of {participant} and fitting the Nominal model")
+    progress(f"reading both walks of {participant} and fitting the Nominal model")
     read = load_study(study)
     person = read.participant(participant)
     called = words_of(read, person).files
@@ -76,19 +79,21 @@ def discover_study(
     try:
         both = device_walks(read, participant, joint)
     except NoMomentsError as lacking:
-        told("comparing the motion alone")
+        progress("comparing the motion alone")
         model, data = nominal_and_trials(read, participant, joint)
-        found, augmented = discovered(model, data, catalogue, walks, told)
+        found, augmented = discovered(model, data, catalogue, walks, progress)
         said = f"{lacking.needed.capitalize()}, and {lacking.found}: it cannot be named. Of the motion alone: "
         return replace(found, sentence=said + found.sentence), augmented
     model = tracked_joint(both.device, both.both_walks_model)
     data = tracked_trials(both.device, both.both_walks_model, model)
-    found, augmented = discovered(model, data, catalogue, walks, told, both.weighed)
+    found, augmented = discovered(model, data, catalogue, walks, progress, both.weighed)
     found, augmented = both.with_model_error(found), model if both.agrees else augmented
     errors = beside(both, found)
     if joint == "ankle_angle" and not found.effects:
-        told("weighing the foot at knee and hip")
+        progress("weighing the foot at knee and hip")
         found = with_foot_mass(found, read, participant)
+    if found.provenance is not None:
+        found = replace(found, provenance=replace(found.provenance, section=DEVICE))
     return replace(found, findings=(*both.findings, *found.findings), beside=errors), augmented
 
 
@@ -97,7 +102,7 @@ def discovered(
     data: Measured,
     catalogue: Path | None,
     files: dict[Path, str],
-    told: Callable[[str], None],
+    progress: Callable[[str], None],
     weighed: Callable[[Candidate], bool] = lambda _: True,
     refitted: Callable[[ScoredModel], CandidateModel] = lambda found: found.model,
 ) -> tuple[Discovery, Simulation]:
@@ -110,11 +115,11 @@ def discovered(
     shapes = read_catalogue(catalogue) if catalogue else ()
     data = replace(data, trials=tuple(_trial_name(name, k) for k, name in enumerate(data.trials, 1)))
     refuse_blow_up(model, data)
-    found, augmented = discover(model, data, shapes, told, weighed, refitted)
+    found, augmented = discover(model, data, shapes, progress, weighed, refitted)
     settings = {"title": model.title, "trials": len(data.trials), "rate_hz": data.rate, "channels": list(data.channels)}
     files = {**files, **({catalogue: "catalogue"} if catalogue else {})}
     hashes = {called: file_sha256(path) for path, called in files.items()}
-    made = made_now(settings, 0, hashes, "discovery of missing physics")
+    made = made_now(settings, 0, hashes, SIMULATION)
     listed = unit_findings(model) if isinstance(model, Simulation) else ()  # a function has no units to check
     public = PublicWords(_own_words(augmented), {path.name: called for path, called in files.items()})
     findings = tuple(map(public.finding, (*listed, *found.findings)))

@@ -51,7 +51,7 @@ def discover(
         )
     began = time.perf_counter()
 
-    def told(step: str) -> None:
+    def progress(step: str) -> None:
         if not quiet:
             typer.echo(f"{time.perf_counter() - began:6.1f} s  {step}", err=True)
 
@@ -67,26 +67,26 @@ def discover(
         if walk is not None:
             from gaitdisc.batch.discover_tracked import discover_tracked, write_tracked
 
-            answered = discover_tracked(walk, measured, catalogue, told)
+            answered = discover_tracked(walk, measured, catalogue, progress)
             write_tracked(answered, out)
-            _write(answered.found, out, draw, told, (*answered.written.notes, *answered.said))
+            _write(answered.found, out, draw, progress, (*answered.written.notes, *answered.said))
             return
-        answer = discover_model_file(simulation, measured, catalogue, told)
+        answer = discover_model_file(simulation, measured, catalogue, progress)
         write_answer(answer, out)
-        _write(answer.found, out, draw, told, (*answer.written.notes, answer.runs.said))
+        _write(answer.found, out, draw, progress, (*answer.written.notes, answer.runs.said))
         return
 
     def with_model(found: Discovery, augmented: Simulation, folder: Path) -> None:
         write_simulation(augmented, folder / "augmented.toml")
-        _write(found, folder, draw, told)
+        _write(found, folder, draw, progress)
 
     if measured is not None:
-        with_model(*discover_files(simulation, measured, catalogue, told), out)
+        with_model(*discover_files(simulation, measured, catalogue, progress), out)
         return
     whose, _, joint = participant.partition(":")
 
     def discovered(person: str, folder: Path) -> Discovery:
-        found, augmented = discover_study(simulation, person, catalogue, told, joint or ANKLE)
+        found, augmented = discover_study(simulation, person, catalogue, progress, joint or ANKLE)
         with_model(found, augmented, folder)
         return found
 
@@ -96,7 +96,7 @@ def discover(
         discovered(whose, out)
 
 
-def _write(found: Discovery, out: Path, draw: bool, told: Callable[[str], None], notes: Sequence[str] = ()) -> None:
+def _write(found: Discovery, out: Path, draw: bool, progress: Callable[[str], None], notes: Sequence[str] = ()) -> None:
     """Write what was found, and say it."""
     from gaitdisc.results.discovery_folder import save_discovery
 
@@ -104,7 +104,7 @@ def _write(found: Discovery, out: Path, draw: bool, told: Callable[[str], None],
     if draw:
         from gaitdisc.report.discovery_page import write_discovery_report
 
-        told("drawing the report")
+        progress("drawing the report")
         place = write_discovery_report(found, out)
     typer.echo("\n".join([found.sentence, *notes]))
     for finding in found.findings:
