@@ -19,12 +19,8 @@ PRIVATE = re.compile(
 )
 # In code and its comments besides: process noise, stable, kept, penalised
 PRIVATE_IN_CODE = re.compile(PRIVATE.pattern[:-3] + r"|shaken|shaking|paid|unheard)\b", re.IGNORECASE)
-# Rooms whose code is still to be written in the field's words; one that is done leaves the list.
-ROOMS_TO_COME = {"batch", "engines"}
 # Where the word is no private one: what stands there, and why.
 ALLOWED = {"muscle activation patterns account for muscle activity": "title of a paper"}
-# Files that other branches still hold.
-WAITING: tuple[str, ...] = ()
 
 
 def without_allowed(text: str) -> str:
@@ -40,11 +36,6 @@ def found_in(text: str) -> list[str]:
     return [text[max(0, m.start() - 40) : m.end() + 30].replace("\n", " ") for m in PRIVATE.finditer(text)]
 
 
-def waits(path: Path) -> bool:
-    """Whether the file is another branch's."""
-    return path.relative_to(PROJECT).as_posix() in WAITING
-
-
 def prose(page: str) -> str:
     """A page of Markdown without code, links and names of modules."""
     page = re.sub(r"```.*?```", "", page, flags=re.DOTALL)
@@ -57,7 +48,7 @@ PAGES = [PROJECT / "README.md", PROJECT / "CONTRIBUTING.md", *sorted((PROJECT / 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_pages(page):
-    assert waits(page) or found_in(prose(page.read_text(encoding="utf-8"))) == []
+    assert found_in(prose(page.read_text(encoding="utf-8"))) == []
 
 
 def commands(command, name="gaitdisc"):
@@ -89,7 +80,7 @@ def test_what_pages_findings_and_errors_are_made_of():
     found = {}
     for path in sorted((PROJECT / "gaitdisc").rglob("*.py")):
         words = [word for text in sentences(path) for word in found_in(text)]
-        if words and not waits(path):
+        if words:
             found[str(path.relative_to(PROJECT))] = words
     assert found == {}
 
@@ -97,7 +88,7 @@ def test_what_pages_findings_and_errors_are_made_of():
 def test_templates_and_files_that_users_open():
     paths = [*(PROJECT / "gaitdisc").rglob("*.j2"), *(PROJECT / "gaitdisc").rglob("*.toml")]
     paths += [path for path in (PROJECT / "data_schema").iterdir() if path.is_file()]
-    texts = {path.name: path.read_text(encoding="utf-8") for path in paths if not waits(path)}
+    texts = {path.name: path.read_text(encoding="utf-8") for path in paths}
     assert {name: found for name, text in texts.items() if (found := found_in(text))} == {}
 
 
@@ -127,15 +118,14 @@ def code_by_room() -> dict[str, dict[str, list[str]]]:
     found: dict[str, dict[str, list[str]]] = {}
     for path in sorted((PROJECT / "gaitdisc").rglob("*.py")):
         where = path.relative_to(PROJECT / "gaitdisc")
-        if (words := words_of_code(path.read_text(encoding="utf-8"))) and not waits(path):
+        if words := words_of_code(path.read_text(encoding="utf-8")):
             found.setdefault(where.parts[0], {})[where.as_posix()] = words
     return found
 
 
 def test_names_comments_and_docstrings_of_the_package():
     found = code_by_room()
-    assert {room: files for room, files in found.items() if room not in ROOMS_TO_COME} == {}
-    assert set(found) >= ROOMS_TO_COME, "a room that is done leaves the list"
+    assert found == {}
 
 
 def test_a_private_word_is_found_inside_a_name_a_comment_and_a_docstring():

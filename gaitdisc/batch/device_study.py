@@ -9,7 +9,7 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.batch.joint_inquiry import WORDS, changes_of, driven_of, nominal_moment, walk_of, weighed
+from gaitdisc.batch.joint_and_trials import WORDS, changes_of, driven_of, nominal_moment, walk_of, weighed
 from gaitdisc.batch.processed_walks import public_trial
 from gaitdisc.batch.public_words import of_trial, words_of
 from gaitdisc.discovery.candidate import Candidate

@@ -66,7 +66,7 @@ def discover_study(
     """
     # imported here: a simulation file needs no filters and no pandas
     from gaitdisc.batch.device_study import NoMomentsError, beside, device_walks, with_foot_mass
-    from gaitdisc.batch.joint_inquiry import tracked_joint, tracked_trials
+    from gaitdisc.batch.joint_and_trials import tracked_joint, tracked_trials
     from gaitdisc.batch.nominal_model import nominal_and_trials
     from gaitdisc.batch.public_words import words_of
     from gaitdisc.ingest.study_file import load_study

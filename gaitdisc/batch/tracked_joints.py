@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.batch.joint_inquiry import EFFECTS, STRENGTH
+from gaitdisc.batch.joint_and_trials import EFFECTS, STRENGTH
 from gaitdisc.batch.tracked_pass import Pass
 from gaitdisc.discovery.candidate import Candidate, candidates_of
 from gaitdisc.discovery.catalogue import Shape, known_shapes

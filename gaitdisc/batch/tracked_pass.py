@@ -115,11 +115,11 @@ def moments_of_angle_noise(walk: Pass, noise_deg: float | None) -> Values:
     if not given:
         return np.zeros((1, len(walk.times), len(walk.engine.coordinates)))
     rng = np.random.default_rng(SEED)
-    moved = [shaken(walk, given, rng) for _ in range(DRAWS)]
+    moved = [with_angle_noise(walk, given, rng) for _ in range(DRAWS)]
     return np.array([walk.dense(one.demanded - walk.demanded) for one in moved])
 
 
-def shaken(walk: Pass, noise_deg: float, rng: np.random.Generator) -> Pass:
+def with_angle_noise(walk: Pass, noise_deg: float, rng: np.random.Generator) -> Pass:
     """Return a walk whose angles have noise of a size [deg] that went through the record's low-pass."""
     motion, spare = walk.motion, int(walk.motion.rate_hz)
     sizes = [np.radians(noise_deg) if one.unit == "rad" else noise_deg * MM for one in walk.engine.coordinates]

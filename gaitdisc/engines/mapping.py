@@ -21,7 +21,7 @@ from gaitdisc.simulation.simulation_file import LARGEST, read_simulation
 from gaitdisc.simulation.writing import write_simulation
 
 REPLACED = "replaced_"  # begins the definition that a control is replaced by
-MOST = 60  # coordinates and controls: with a port and some numbers each, what a search can tell apart
+MOST = 60  # coordinates and controls: with a port and some numbers each, what a search can distinguish
 SAME = 1e-5  # by which a number of the mapping may differ from the model's, as a share: numbers in files are rounded
 
 
@@ -44,7 +44,7 @@ def drafted(engine: Engine, degrees: bool = False) -> Simulation:
     turned = {one.name for one in found if degrees and one.unit == "rad"}
     scale = repr(float(np.rad2deg(1.0)))
     return Simulation(
-        f"A model of {engine.called}",
+        f"{engine.path.name}, a model of {engine.called}",
         tuple(states),
         engine.controls,
         tuple(parameters),
@@ -124,7 +124,7 @@ def check_mapping(mapping: Simulation, engine: Engine) -> None:
 
 
 def other_values(mapping: Simulation, engine: Engine) -> tuple[Finding, ...]:
-    """Tell which parameters have another value in the mapping than in the model; the mapping's is used."""
+    """Say which parameters have another value in the mapping than in the model; the mapping's is used."""
     own = {one.name: one.value for one in engine.parameters}
     return tuple(
         Finding(

@@ -33,23 +33,25 @@ class OpensimModel:
     def __init__(self, path: Path | str) -> None:
         self.path = Path(path)
         self._process: subprocess.Popen[bytes] | None = None
-        told = self._ask("described")
-        self._refuse_what_has_no_place(told)
+        described = self._query("described")
+        self._refuse_what_has_no_place(described)
         taken: set[str] = set()
         found = [
             Coordinate(new_name(name, "coordinate", taken), "rad" if turns else "m", name, low, high)
-            for name, turns, low, high in told["coordinates"]
+            for name, turns, low, high in described["coordinates"]
         ]
         self.coordinates = tuple(found)
-        self._called = {new_name(name, "number", taken): name for name, *_ in told["parameters"]}
+        self._called = {new_name(name, "number", taken): name for name, *_ in described["parameters"]}
         taken |= {each for one in found for each in (one.speed, one.port)}
-        self.controls = tuple(Input(new_name(name, "control", taken), "1", kind) for name, kind in told["controls"])
+        self.controls = tuple(
+            Input(new_name(name, "control", taken), "1", kind) for name, kind in described["controls"]
+        )
         self.parameters = tuple(
             Parameter(name, value, unit)
-            for name, (_, value, unit, _) in zip(self._called, told["parameters"], strict=True)
+            for name, (_, value, unit, _) in zip(self._called, described["parameters"], strict=True)
         )
-        self.fibres: bool = told["muscles"]
-        moving = {name for name, value, _, moves in told["parameters"] if value and moves}
+        self.fibres: bool = described["muscles"]
+        moving = {name for name, value, _, moves in described["parameters"] if value and moves}
         self.offered = tuple(
             name for name, called in self._called.items() if called in moving and not called.endswith("optimal_force")
         )
@@ -70,7 +72,7 @@ class OpensimModel:
         own = {one.name: one.value for one in self.parameters}
         changed = {self._called[name]: value for name, value in values.items() if value != own[name]}
         push = np.zeros_like(at.q) if forces is None else forces
-        return self._ask("rates", at.q, at.v, at.u, at.z, changed, push)
+        return self._query("rates", at.q, at.v, at.u, at.z, changed, push)
 
     def as_force(self, parameter: str) -> tuple[int, str] | None:
         """None: masses, gravity and optimal forces are more."""
@@ -80,18 +82,18 @@ class OpensimModel:
         self, q: NDArray[np.float64], v: NDArray[np.float64], controls: NDArray[np.float64], rate: float
     ) -> Motion:
         """Return a prescribed motion with the muscles' states, which OpenSim alone integrates from the excitations."""
-        return Motion(q, v, *self._ask("along", q, v, controls, rate)) if self.fibres else Motion(q, v, controls)
+        return Motion(q, v, *self._query("along", q, v, controls, rate)) if self.fibres else Motion(q, v, controls)
 
     def near(self, known: Motion, q: NDArray[np.float64], v: NDArray[np.float64]) -> Motion:
         """Return other coordinates and speeds near a known motion; fibres move as their lengths at rest do."""
         if known.z is None:
             return replace(known, q=q, v=v)
-        before, after = (self._ask("equilibria", each, known.u) for each in (known.q, q))
+        before, after = (self._query("equilibria", each, known.u) for each in (known.q, q))
         return Motion(q, v, known.u, known.z + after - before)
 
     def run(self, start: Motion, controls: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
         """Coordinates, then speeds (run, sample, state), by OpenSim's Manager (adaptive steps)."""
-        return self._ask("run", start.q, start.v, start.u, start.z, controls, rate)
+        return self._query("run", start.q, start.v, start.u, start.z, controls, rate)
 
     def text_with_value(self, text: str, name: str, value: float) -> str | None:
         """Text of the model with another value of a parameter."""
@@ -102,8 +104,8 @@ class OpensimModel:
         one = self.coordinates[effect.coordinate]
         return with_effect(text, effect.term, (one.name, one.speed), one.called)
 
-    def _ask(self, question: str, *arguments: Any) -> Any:
-        """What the process answers; it is started with the model when first asked, and anew after it died."""
+    def _query(self, question: str, *arguments: Any) -> Any:
+        """What the process answers; it is started with the model at the first question, and anew after it died."""
         if self._process is None or self._process.poll() is not None:
             self._started()
         assert self._process is not None
@@ -142,28 +144,28 @@ class OpensimModel:
             )
         return answer
 
-    def _refuse_what_has_no_place(self, told: Mapping[str, Any]) -> None:
-        if told["others"]:
+    def _refuse_what_has_no_place(self, described: Mapping[str, Any]) -> None:
+        if described["others"]:
             raise SchemaError(
                 "each actuator is a muscle, or acts on a coordinate without a state of its own",
-                f"{self.path.name}: {told['others'][0]!r} has states and is no muscle",
+                f"{self.path.name}: {described['others'][0]!r} has states and is no muscle",
                 "Drive the model by muscles or by coordinate actuators.",
             )
-        if told["dependent"]:
+        if described["dependent"]:
             raise SchemaError(
                 "every unlocked coordinate of the model is free",
-                f"{self.path.name}: {told['dependent'][0]!r} depends on another by a constraint that is no coupler",
+                f"{self.path.name}: {described['dependent'][0]!r} depends on another by no coupler",
                 "Write it as a CoordinateCouplerConstraint, take it out, or lock the coordinate.",
             )
-        if not told["coordinates"]:
+        if not described["coordinates"]:
             raise SchemaError(
                 "a model has one free coordinate or more",
-                f"{self.path.name}: all are locked ({', '.join(told['locked']) or 'there is none'})",
+                f"{self.path.name}: all are locked ({', '.join(described['locked']) or 'there is none'})",
                 "Unlock those that were measured.",
             )
 
 
 def _ended(process: subprocess.Popen[bytes]) -> None:
-    """End a process when nobody asks it any more."""
+    """End a process when nobody needs it any more."""
     process.kill()
     process.wait()

@@ -38,40 +38,40 @@ class OpensimTracked(OpensimModel):
         self.path = Path(path)
         self._process = None
         self.given = (str(loads[0]), str(loads[1])) if loads else None, str(actuators) if actuators else None
-        self._ask("loaded", *self.given)
-        told = self._ask("described")
+        self._query("loaded", *self.given)
+        described = self._query("described")
         taken: set[str] = set()
         self.coordinates = tuple(
             Coordinate(new_name(name, "coordinate", taken), "rad" if turns else "m", name)
-            for name, turns in told["coordinates"]
+            for name, turns in described["coordinates"]
         )
         if not self.coordinates:
             raise SchemaError(
                 "a model has one free coordinate or more", f"{self.path.name}: all are locked", "Unlock some."
             )
         self.controls, self.parameters, self.offered = (), (), ()
-        self.actuators: tuple[str, ...] = tuple(told["actuators"])
-        self.base: tuple[int, ...] = tuple(told["base"])  # coordinates of the joint with the ground
-        self.vertical: int = told["vertical"]  # the base's upward coordinate, -1 where there is none
-        self.paths = frozenset[str](told["paths"])  # muscles, and all else that pulls along a path
-        self.mass_kg: float = told["mass_kg"]
+        self.actuators: tuple[str, ...] = tuple(described["actuators"])
+        self.base: tuple[int, ...] = tuple(described["base"])  # coordinates of the joint with the ground
+        self.vertical: int = described["vertical"]  # the base's upward coordinate, -1 where there is none
+        self.paths = frozenset[str](described["paths"])  # muscles, and all else that pulls along a path
+        self.mass_kg: float = described["mass_kg"]
 
     def accelerations(self, at: Motion, values: Mapping[str, float], forces: Values | None = None) -> Values:
         """Accelerations (point, coordinate) without muscles and without the ground."""
         del values
-        return self._ask("accelerations", at.q, at.v, np.zeros_like(at.q) if forces is None else forces)
+        return self._query("accelerations", at.q, at.v, np.zeros_like(at.q) if forces is None else forces)
 
     def demanded(self, time: Values, motion: tuple[Values, Values, Values], loaded: bool = True) -> Values:
         """Generalised forces (sample, coordinate) that a motion demands of muscles beside the recorded loads."""
-        return self._ask("demanded", time, *motion, loaded)
+        return self._query("demanded", time, *motion, loaded)
 
     def arms(self, time: Values, q: Values, names: tuple[str, ...]) -> Values:
         """Generalised force of each actuator's unit force (sample, actuator, coordinate)."""
-        return self._ask("arms", time, q, list(names))
+        return self._query("arms", time, q, list(names))
 
     def forward(self, time: Values, start: tuple[Values, Values], moments: Values) -> Values:
         """Coordinates (sample, coordinate) of a run under recorded loads and generalised forces of muscles."""
-        return self._ask("forward", time, *start, moments)
+        return self._query("forward", time, *start, moments)
 
     def other(self, path: Path) -> OpensimTracked:
         """Another model under the same loads."""

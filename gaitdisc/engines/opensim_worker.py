@@ -225,9 +225,9 @@ class _Answers:
             if muscle is not None:
                 parameters.append((f"{name}_max_isometric_force", muscle.getMaxIsometricForce(), "N"))
         coordinates = [(each.getName(), each.getMotionType() == ROTATIONAL, *_range(each)) for each in one.free]
-        told = {"coordinates": coordinates, "controls": controls, "muscles": bool(one.activations or one.fibres)}
-        told["parameters"] = [(*each, self._moves(each[0], each[1])) for each in parameters]
-        return told | {"others": one.others, "dependent": one.dependent, "locked": one.locked}
+        described = {"coordinates": coordinates, "controls": controls, "muscles": bool(one.activations or one.fibres)}
+        described["parameters"] = [(*each, self._moves(each[0], each[1])) for each in parameters]
+        return described | {"others": one.others, "dependent": one.dependent, "locked": one.locked}
 
     def _moves(self, name: str, value: float) -> bool:
         """Whether another value changes an acceleration in one posture."""
@@ -308,7 +308,7 @@ def _range(coordinate: Any) -> tuple[float, float]:
 
 
 def serve(questions: BinaryIO, answers: BinaryIO, path: str, answering: Callable[[Any, str], Any] = _Answers) -> None:
-    """Answer until nobody asks."""
+    """Answer until no question comes."""
     answered: Any = None
     while True:
         try:

@@ -14,7 +14,7 @@ from gaitdisc.batch.device_study import (
     weighed_foot,
 )
 from gaitdisc.batch.discover_files import discover_study
-from gaitdisc.batch.joint_inquiry import nominal_moment
+from gaitdisc.batch.joint_and_trials import nominal_moment
 from gaitdisc.channel import vocabulary
 from gaitdisc.discovery.candidate import Candidate
 from gaitdisc.errors import SchemaError

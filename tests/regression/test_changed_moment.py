@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from made_joint import made_joint
 
-from gaitdisc.batch.joint_inquiry import changes_of, nominal_moment, walk_of
+from gaitdisc.batch.joint_and_trials import changes_of, nominal_moment, walk_of
 from gaitdisc.regression.changed_moment import changed_moment
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from made_joint import made_joint
 
-from gaitdisc.batch.joint_inquiry import nominal_moment, walk_of
+from gaitdisc.batch.joint_and_trials import nominal_moment, walk_of
 from gaitdisc.regression.foot_mass import foot_mass
 
 

@@ -18,7 +18,7 @@ from gaitdisc.simulation.measured import Measured, measured_of_trials
 from gaitdisc.simulation.parts import Input, Parameter, Port, Sensor, State
 from gaitdisc.simulation.simulation import Simulation
 
-STRIDES = 3  # of one trial of the inquiry
+STRIDES = 3  # of one trial of the search
 FEWEST_TRIALS = 4
 KNOWN = 0.3  # of the samples of a trial, with a known load of the foot
 BLOCKS = 4  # of the Nominal walk, each left out of the calibration once

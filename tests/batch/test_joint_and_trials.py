@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from made_joint import GAIN, made_joint
 
-from gaitdisc.batch.joint_inquiry import nominal_moment, tracked_joint, tracked_trials, weighed
+from gaitdisc.batch.joint_and_trials import nominal_moment, tracked_joint, tracked_trials, weighed
 from gaitdisc.discovery.discover import discover
 from gaitdisc.errors import StrideError
 
