@@ -140,7 +140,8 @@ def plainest(problem: Problem, scale: GapScale, named: ScoredModel) -> Verdict |
         return None
     names = {part.candidate.name for part in now.model.parts}
     word = UNNAMED if UNNAMED in names else now.model.parts[0].candidate.verdict
-    return Verdict(word, now, (found.now, *found.near), proof=proof, small=found.small)
+    likeliest = (named,) if problem.search.base.inexact else ()  # what it errs by may choose between two like names
+    return Verdict(word, now, (found.now, *likeliest, *found.near), proof=proof, small=found.small)
 
 
 def searched(
