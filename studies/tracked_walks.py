@@ -34,7 +34,7 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.batch.tracked_joints import joints_of
-from gaitdisc.batch.tracked_pass import Pass, moments_of_angle_noise, shaken, tracked_pass
+from gaitdisc.batch.tracked_pass import Pass, moments_of_angle_noise, with_angle_noise, tracked_pass
 from gaitdisc.discovery.prescribed import CLOSED, LeftMoment
 from gaitdisc.engines.tracked_mapping import read_tracked
 
@@ -48,7 +48,7 @@ def run(walk: Pass, seeds: range, untouched: range, noise_deg: float, quick: boo
     draws, rows = moments_of_angle_noise(walk, WHITENED_DEG), []
     for seed in sorted({*seeds, *untouched}):
         rng = np.random.default_rng([seed, 2026])
-        noisy = shaken(walk, noise_deg, rng) if noise_deg else walk
+        noisy = with_angle_noise(walk, noise_deg, rng) if noise_deg else walk
         hidden = [("nothing", "", np.nan, noisy)] if seed in untouched else []
         hidden += cases(noisy, rng, quick) if seed in seeds else []
         for what, place, truth, planted in hidden:
