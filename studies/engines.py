@@ -158,7 +158,7 @@ def recorded(case: Case, noise_deg: float, rng: np.random.Generator, folder: Pat
 
 
 def study(
-    models: list[str], kinds: list[str], seed: int, noise_deg: float, told: Callable[[str], None]
+    models: list[str], kinds: list[str], seed: int, noise_deg: float, progress: Callable[[str], None]
 ) -> pd.DataFrame:
     """Every case, as rows."""
     rows = []
@@ -169,7 +169,7 @@ def study(
             with tempfile.TemporaryDirectory() as folder:
                 table = recorded(case, noise_deg, rng, Path(folder))
                 row = {"model": name, **searched(case, SYSTEMS / case.model.file, table)}
-            told("; ".join(f"{key} {value}" for key, value in row.items()))
+            progress("; ".join(f"{key} {value}" for key, value in row.items()))
             rows.append(row)
     return pd.DataFrame(rows)
 

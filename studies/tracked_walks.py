@@ -34,7 +34,7 @@ import numpy as np
 import pandas as pd
 
 from gaitdisc.batch.tracked_joints import joints_of
-from gaitdisc.batch.tracked_pass import Pass, moments_of_angle_noise, with_angle_noise, tracked_pass
+from gaitdisc.batch.tracked_pass import Pass, moments_of_angle_noise, tracked_pass, with_angle_noise
 from gaitdisc.discovery.prescribed import CLOSED, LeftMoment
 from gaitdisc.engines.tracked_mapping import read_tracked
 
