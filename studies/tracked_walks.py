@@ -69,7 +69,7 @@ def cases(walk: Pass, rng: np.random.Generator, quick: bool = False) -> Iterator
         strong = max(names, key=lambda name: float(np.mean(walk.groups[name] ** 2)))
         moment, time, angle = walk.groups[strong], walk.motion.time, walk.motion.q[:, number]
         spring = -stiffness * np.maximum(0.0, angle - np.median(angle))
-        weaker = walk.groups | {names[1]: walk.groups[names[1]] - spring}
+        weaker = {**walk.groups, names[1]: walk.groups[names[1]] - spring}
         yield "spring", one.port, stiffness, replace(with_less(walk, number, spring), groups=weaker)
         late = np.interp(time - late_s, time, moment) - moment
         yield "late", f"{strong}_delay", late_s, with_less(walk, number, late)

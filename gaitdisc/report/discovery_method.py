@@ -77,7 +77,9 @@ OF_A_DEVICE = (
     EVIDENCE,
     "What was found had to make the squared error of the moment fall on the last quarter of the walk: p < .05 in a "
     "one-sided signed-rank test over pieces of it. The interval joins the noise, strides of both walks drawn anew, and "
-    "what another speed at which muscles lose their force makes of the number.",
+    "what another speed at which muscles lose their force, another lag, gains that are less alike and a degree of the "
+    "usual stride make of the number.",
+    "Where the ankle lacks nothing, a mass at the foot is weighed at the knee, and named where the hip bears it out.",
     UNNAMED,
 )
 
