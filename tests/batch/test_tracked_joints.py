@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from gaitdisc.batch.tracked_joints import doubts, joints_of, shown_by
-from gaitdisc.batch.tracked_pass import moments_of_angle_noise, shaken
+from gaitdisc.batch.tracked_pass import moments_of_angle_noise, with_angle_noise
 from gaitdisc.errors import SamplingError
 
 
 def searched(walk, moment=None, seed=1):
     """Search a walk whose calf gives less at the ankle than the motion demands, by a moment."""
-    noisy = shaken(walk, 0.3, np.random.default_rng(seed))
+    noisy = with_angle_noise(walk, 0.3, np.random.default_rng(seed))
     if moment is not None:
         pulls = noisy.pulls.copy()
         pulls[:, 1, 2] -= moment

@@ -5,7 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gaitdisc.batch.tracked_pass import balance, moments_of_angle_noise, only_residuals, refuse_other_motion, shaken
+from gaitdisc.batch.tracked_pass import (
+    balance,
+    moments_of_angle_noise,
+    only_residuals,
+    refuse_other_motion,
+    with_angle_noise,
+)
 from gaitdisc.errors import SchemaError
 
 
@@ -18,7 +24,7 @@ def test_joints_are_those_that_some_actuator_moves_and_the_weight_is_the_models(
 
 def test_noise_of_angles_leaves_its_size_in_the_angles_and_its_inertia_in_the_moments(leg_walk):
     walk = leg_walk()
-    moved = shaken(walk, 0.3, np.random.default_rng(1))
+    moved = with_angle_noise(walk, 0.3, np.random.default_rng(1))
     noise = moved.motion.q - walk.motion.q
     assert np.degrees(noise[:, 1:].std(axis=0)) == pytest.approx(0.3, rel=0.35)  # some twelve periods of 6 Hz
     made = moments_of_angle_noise(walk, 0.3)
