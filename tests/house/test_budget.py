@@ -1,0 +1,34 @@
+"""The house does not grow: no room has more lines than budget.toml allows it, and no file is without a room."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+
+_spec = importlib.util.spec_from_file_location("budget", Path(__file__).with_name("budget.py"))
+assert _spec is not None
+assert _spec.loader is not None
+budget = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(budget)
+
+ROOMS, WHOLE = budget.read_rooms()
+SIZES, HOMELESS = budget.measure(ROOMS)
+
+
+def test_every_file_has_a_room():
+    assert HOMELESS == []
+
+
+def test_no_room_has_more_lines_than_it_may():
+    assert budget.list_excess(SIZES, ROOMS) == []
+
+
+def test_the_package_stays_below_the_figure_of_the_issue_that_is_open():
+    lines = budget.sum_package(SIZES, ROOMS).lines
+    assert lines <= WHOLE["now"] <= WHOLE["ceiling"]
+
+
+def test_a_room_that_grows_is_named_with_both_numbers():
+    rooms = {"signals": {"now": 10, "texts": 2}}
+    over = budget.list_excess({"signals": budget.Size(11, 3, 1)}, rooms)
+    assert over == ["signals: 11 lines of Python, 10 allowed", "signals: 3 lines of other texts, 2 allowed"]
