@@ -18,6 +18,7 @@ from gaitdisc.processing.pooled import pooled_cycles, pooled_instead
 from gaitdisc.processing.process import quality_findings, stride_findings
 from gaitdisc.processing.side_checks import side_findings
 from gaitdisc.processing.study_walks import ReadWalk, StudyWalks
+from gaitdisc.processing.two_sources import without_contradicted
 from gaitdisc.recording import Finding, Strides, Trial
 from gaitdisc.results import PooledCycles
 from gaitdisc.signals.contacts import order_findings
@@ -136,7 +137,7 @@ def _pooled(study: Study, participant: Participant, reader: C3DReader, instead: 
     def read(planned: PlannedTrial) -> Trial:
         trial = read_planned_trial(study, participant, planned, reader)
         streams[trial.name] = _streams(trial)
-        read_with[trial.name] = (*trial.findings, *side_findings(trial, {}))
+        read_with[trial.name] = (*without_contradicted(trial).findings, *side_findings(trial, {}))
         return trial
 
     sets = trial_sets(study, participant)
@@ -220,7 +221,7 @@ def _of_study(read: ReadWalk, study: Study, name: str) -> Inspection:
 
 def inspected_trial(trial: Trial, name: str) -> Inspection:
     """Say what a walk holds and what is wrong with it."""
-    trial = with_segment_angles(trial)
+    trial = with_segment_angles(without_contradicted(trial))
     findings = [*trial.findings, *quality_findings(trial)]
     strides: dict[str, Strides] = {}
     refusal = ""

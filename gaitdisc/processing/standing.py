@@ -20,6 +20,7 @@ from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.angles_of_segments import with_segment_angles
 from gaitdisc.processing.markers_to_moments import computed_trial
+from gaitdisc.processing.two_sources import without_contradicted
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.recording.body_measures import BodyMeasures
 from gaitdisc.signals.emg_size import OVER_STANDING, OVER_WALKING, emg_sizes, other_unit_findings
@@ -47,7 +48,7 @@ class Standing:
 
     def computed(self, planned: PlannedTrial, trial: Trial) -> tuple[Trial, tuple[PlateStep, ...] | None]:
         """Trial with the angles that the study requests, and its steps on plates where moments were computed."""
-        source = self.study.kinematics.angles if self.study.kinematics else ""
+        trial, source = without_contradicted(trial), self.study.kinematics.angles if self.study.kinematics else ""
         trial = trial if source == "file" or "markers" in trial.streams else with_segment_angles(trial)
         if source == "file" or "markers" not in trial.streams or (not source and has_leg_angles(trial)):
             return trial, None
