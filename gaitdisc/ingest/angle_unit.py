@@ -58,8 +58,9 @@ def plausible_unit(
             "Write inDegrees=no (or [rad]) in its header, or export it again.",
         )
     if stated:
-        doubt = stated == "deg" and like_rad
-        return stated, _doubt(file, reach) if doubt else None
+        what = f"stated as degrees, but no angle ranges over more than {reach:.3g}"
+        doubt = Finding("warning", "unit in doubt", file, what, "all angles if they are radians; check inDegrees")
+        return stated, doubt if stated == "deg" and like_rad else None
     if not beyond and not like_rad:
         raise _undecided(file, f"the largest joint angle is {most:.3g}, the widest hip or knee range {reach:.3g}")
     unit = "deg" if beyond else "rad"
@@ -112,8 +113,3 @@ def _undecided(file: str, why: str) -> UnitError:
         f"its header is silent and {why}",
         "Add the line inDegrees=yes or inDegrees=no before endheader.",
     )
-
-
-def _doubt(file: str, reach: float) -> Finding:
-    what = f"stated as degrees, but no angle ranges over more than {reach:.3g}"
-    return Finding("warning", "unit in doubt", file, what, "all angles if they are radians; check inDegrees")

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel, vocabulary
 from gaitdisc.errors import UnitError
-from gaitdisc.ingest.angle_unit import WALKING_RAD
 from gaitdisc.ingest.c3d_labels import LabelMap, made_unique, without_prefix
 from gaitdisc.ingest.c3d_parameters import C3DParameters
 from gaitdisc.ingest.columns import named_channel
@@ -20,7 +19,6 @@ from gaitdisc.units import convert, inner_unit, parsed_unit
 
 Streams = dict[str, tuple[NDArray[np.float64], tuple[Channel, ...]]]
 AXES = "xyz"
-MOVES_RAD = 0.6  # a knee of a walk in radians; one that stands sways by less than as many degrees, or is farther bent
 
 
 @dataclass(frozen=True)
@@ -157,34 +155,17 @@ def _model_part(rows, points, names, about) -> tuple[tuple[NDArray[np.float64], 
             name = known.name if known is not None else label
             side = known.side if known is not None else _side(names[point])
             channels.append(Channel(name, quantity, inner, side))
-    findings += _magnitude(values, channels, kind, unit, file)
+    findings += _magnitude(values, kind, unit, file)
     return (values, tuple(channels)), findings
 
 
-def _magnitude(
-    values: NDArray[np.float64], channels: list[Channel], kind: ModelOutput, unit: str, file: str
-) -> list[Finding]:
+def _magnitude(values: NDArray[np.float64], kind: ModelOutput, unit: str, file: str) -> list[Finding]:
     finite = np.abs(values[np.isfinite(values)])
     most = float(finite.max()) if finite.size else 0.0
     if kind.group == "ANGLES" and unit == "deg" and 0 < most < 3.2:
         what = f"no angle is beyond {most:.3g} deg; they look like radians"
         return [Finding("warning", "unit", file, what, "every angle if so; correct POINT:ANGLE_UNITS")]
-    if kind.group == "ANGLES" and unit == "deg":
-        return _legs_in_radians(values, channels, file)
     return []
-
-
-def _legs_in_radians(values: NDArray[np.float64], channels: list[Channel], file: str) -> list[Finding]:
-    """Hips and knees that move as in a walk counted in radians; headings beside them may be counted on over turns."""
-    legs = [i for i, one in enumerate(channels) if re.fullmatch(r"(knee_angle|hip_flexion)_[rl]", one.name)]
-    known = [column[np.isfinite(column)] for column in values.T[legs]]
-    known = [column for column in known if len(column)]
-    most = max((float(np.abs(column).max()) for column in known), default=0.0)
-    reach = max((float(np.ptp(column)) for column in known), default=0.0)
-    if not (MOVES_RAD <= reach <= WALKING_RAD[1] and most <= WALKING_RAD[1]):
-        return []
-    what = f"hips and knees range over {reach:.3g} deg at most and stay within {most:.3g} deg; they look like radians"
-    return [Finding("warning", "unit", file, what, "every angle if so; correct POINT:ANGLE_UNITS")]
 
 
 def _doubled(names: list[str], parameters: C3DParameters, file: str) -> list[Finding]:

@@ -44,15 +44,30 @@ def with_flexion_positive(streams: Mapping[str, Recording]) -> tuple[dict[str, R
     senses = {name: _sense(*reach) for name, reach in reaches.items()}
     proven = {sense for sense in senses.values() if sense}
     turned = [name for name, sense in senses.items() if sense == -1 or (sense == 0 and proven == {-1})]
-    findings = [_doubt(name, reaches[name], kinematics) for name, sense in senses.items() if sense is None]
+    spans = {name: f"goes from {low:.0f} to {high:.0f} deg" for name, (low, high) in reaches.items()}
+    file, findings = kinematics.source.file, []
+    for name in (name for name, sense in senses.items() if sense is None):
+        what = (
+            f"{spans[name]}; a knee bends beyond {HYPEREXTENDED_DEG:g} deg to one side only, so its sign is not known "
+            "and it is left as it is"
+        )
+        spoils = "whatever rests on the knee; correct the file, or leave the damaged part out by crop_s"
+        findings.append(Finding("warning", "knee sign", file, what, spoils, name))
     if not turned:
         return dict(streams), findings
     moved = {key: _turned(recording, turned) for key, recording in streams.items()}
     for name in turned:
         others = [c for key in moved for c in moved[key][1] if _of_knee(c) == name and c != name]
-        findings.append(_finding(name, reaches[name], senses[name] == -1, (kinematics, others)))
+        why = (
+            ", so flexion is negative in this file" if senses[name] == -1 else " and follows the other knee of the file"
+        )
+        also = f"; with it {', '.join(others)}" if others else ""
+        what = f"{name} {spans[name]}{why}; turned around, flexion is positive here{also}"
+        findings.append(Finding("note", "knee sign", file, what, "", name))
     if proven == {1, -1}:
-        findings.append(_unlike(senses, kinematics))
+        kept, other = (", ".join(name for name, sense in senses.items() if sense == way) for way in (1, -1))
+        what = f"flexion is positive in {kept} and negative in {other} of one file; only the latter was turned"
+        findings.append(Finding("warning", "knee sign", file, what, "the knees if this is wrong; correct the file"))
     return {key: recording for key, (recording, _) in moved.items()}, findings
 
 
@@ -86,28 +101,3 @@ def _turned(recording: Recording, knees: list[str]) -> tuple[Recording, list[str
             signs[place] = -1.0
             names.append(channel.name)
     return (replace(recording, values=recording.values * signs) if names else recording), names
-
-
-def _finding(name: str, reach: tuple[float, float], own: bool, moved: tuple[Recording, list[str]]) -> Finding:
-    kinematics, others = moved
-    span = f"{name} goes from {reach[0]:.0f} to {reach[1]:.0f} deg"
-    proof = f"{span}, so flexion is negative in this file" if own else f"{span} and follows the other knee of the file"
-    also = f"; with it {', '.join(others)}" if others else ""
-    what = f"{proof}; turned around, flexion is positive here{also}"
-    return Finding("note", "knee sign", kinematics.source.file, what, "", name)
-
-
-def _doubt(name: str, reach: tuple[float, float], kinematics: Recording) -> Finding:
-    what = (
-        f"goes from {reach[0]:.0f} to {reach[1]:.0f} deg; a knee bends beyond {HYPEREXTENDED_DEG:g} deg to one side "
-        "only, so its sign is not known and it is left as it is"
-    )
-    spoils = "whatever rests on the knee; correct the file, or leave the damaged part out by crop_s"
-    return Finding("warning", "knee sign", kinematics.source.file, what, spoils, name)
-
-
-def _unlike(senses: Mapping[str, int | None], kinematics: Recording) -> Finding:
-    kept = ", ".join(name for name, sense in senses.items() if sense == 1)
-    other = ", ".join(name for name, sense in senses.items() if sense == -1)
-    what = f"flexion is positive in {kept} and negative in {other} of one file; only the latter was turned"
-    return Finding("warning", "knee sign", kinematics.source.file, what, "the knees if this is wrong; correct the file")

@@ -21,11 +21,7 @@ FEW = 0.01  # of the samples; where EMG is beyond its range more often, it is co
 
 @dataclass(frozen=True)
 class PlausibleRange:
-    """Least and largest value that a quantity can have.
-
-    >>> PlausibleRange("marker", "m", "", -100.0, 100.0).covers(Channel("RHEE.x", "marker", "m"))
-    True
-    """
+    """Least and largest value that a quantity can have."""
 
     quantity: str
     unit: str
@@ -41,17 +37,10 @@ class PlausibleRange:
 
 @cache
 def plausible_ranges() -> tuple[PlausibleRange, ...]:
-    """Ranges of `data_schema/ranges.csv`, in its order: the first that covers a channel holds.
-
-    >>> next(one.high for one in plausible_ranges() if one.covers(Channel("knee_angle_r", "angle", "deg", "r")))
-    180.0
-    """
+    """Ranges of `data_schema/ranges.csv`, in its order: the first that covers a channel holds."""
     with (schema_folder() / "ranges.csv").open(newline="", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
-    return tuple(
-        PlausibleRange(row["quantity"], row["unit"], row["channels"], float(row["low"]), float(row["high"]))
-        for row in rows
-    )
+        _, *rows = csv.reader(file)
+    return tuple(PlausibleRange(row[0], row[1], row[2], float(row[3]), float(row[4])) for row in rows)
 
 
 def without_impossible(
@@ -88,8 +77,7 @@ def without_impossible(
         before_s = recording.time[0] - (begin_s or {}).get(key, recording.time[0]) if len(recording.time) else 0.0
         frames = round(before_s * recording.rate_hz) if before_s else 0
         for place in np.flatnonzero(beyond.any(axis=0)).tolist():
-            where = _where(recording, place, beyond[:, place], frames)
-            findings.append(_finding(recording, place, beyond[:, place], where))
+            findings.append(_finding(recording, place, beyond[:, place], frames))
         kept[key] = recording.with_values(np.where(beyond, np.nan, recording.values)) if beyond.any() else recording
     return kept, findings
 
@@ -110,21 +98,17 @@ def _other_unit(recording: Recording, place: int) -> Finding:
     return Finding("warning", "unit", recording.source.file, what, spoils, channel.name)
 
 
-def _where(recording: Recording, place: int, beyond: NDArray[np.bool_], before: int) -> str:
-    """First value beyond the range, with its frame in the file, and how many there are."""
-    channel, first = recording.channels[place], int(np.argmax(beyond))
+def _finding(recording: Recording, place: int, beyond: NDArray[np.bool_], before: int) -> Finding:
+    """First value beyond the range, with its frame in the file, and how many there are; a force is refused."""
+    channel, first, file = recording.channels[place], int(np.argmax(beyond)), recording.source.file
     limits = _limits(channel)
     assert limits is not None  # it was found beyond them
     count, unit = int(beyond.sum()), "" if channel.unit == "1" else f" {channel.unit}"
     more = f", as {'is' if count == 2 else 'are'} {count - 1} more of {len(beyond)} frames" if count > 1 else ""
-    return (
+    where = (
         f"{recording.values[first, place]:.6g}{unit} in frame {before + first + 1} (t = {recording.time[first]:.6g} s) "
         f"is beyond what it can be, {limits.low:g} to {limits.high:g}{unit}{more}"
     )
-
-
-def _finding(recording: Recording, place: int, beyond: NDArray[np.bool_], where: str) -> Finding:
-    channel, file = recording.channels[place], recording.source.file
     if channel.quantity in ("force", "vertical_force") and channel.unit == "N":
         raise ReadError(
             f"{file}: {channel.name} needs a plausible force in every sample",

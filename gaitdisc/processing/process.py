@@ -12,6 +12,7 @@ from gaitdisc.errors import ChannelError, SamplingError, StrideError
 from gaitdisc.ingest.study import Filters, Study
 from gaitdisc.processing.contact_choice import chosen_contacts
 from gaitdisc.processing.side_checks import side_findings
+from gaitdisc.processing.two_sources import KIND as CONTRADICTED
 from gaitdisc.processing.walk import Walk
 from gaitdisc.recording import Finding, Recording, Strides, Trial
 from gaitdisc.recording.strides import interpolated
@@ -104,10 +105,11 @@ def _needed(trial: Trial, key: str, names: Sequence[str]) -> Recording:
     missing = [name for name in names if name not in recording.names]
     if missing:
         nearest = vocabulary().nearest(missing[0], among=recording.names)
+        said = "".join(f"; left out: {one.what}" for one in trial.findings if one.kind == CONTRADICTED)
         raise ChannelError(
             f"the models need {', '.join(missing)}",
             f"{recording.source.file or trial.name} has {len(recording.names)} channels without "
-            f"{'it' if len(missing) == 1 else 'them'}" + (f"; the nearest is {nearest!r}" if nearest else ""),
+            f"{'it' if len(missing) == 1 else 'them'}" + (said or (f"; the nearest is {nearest!r}" if nearest else "")),
             "Map the file's own label in [channels], or take the name out of [models].",
         )
     return recording.selected(names)

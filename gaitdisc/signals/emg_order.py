@@ -58,5 +58,5 @@ def _finding(one: tuple[str, float], other: tuple[str, float], file: str) -> Fin
         more, where = np.exp(abs(muscle[1])), "its foot stands" if muscle[1] > 0 else "its foot swings"
         return f"{muscle[0]} is {more:.1f} times as strong while {where}"
 
-    what = f"{one[0]} and {other[0]} look exchanged: {said(one)}, {said(other)}"
+    what = f"{one[0]} and {other[0]} look exchanged, or the muscles of both legs: {said(one)}, {said(other)}"
     return Finding("warning", "exchanged EMG", file, what, "both muscles; correct the labels", f"{one[0]}, {other[0]}")

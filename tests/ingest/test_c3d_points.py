@@ -97,20 +97,6 @@ def test_angles_that_look_like_radians_are_reported():
     assert "no angle is beyond 1 deg" in findings[0].what
 
 
-def test_legs_in_radians_are_reported_though_a_heading_beside_them_is_counted_on():
-    wave = np.sin(np.arange(100) / 8)
-    knee, heading = 0.5 + 0.5 * wave, np.full(100, 12.0)
-    zero = np.zeros(100)
-    rows = np.stack([knee, zero, zero, heading, zero, zero], axis=1)
-    labels = ("RKneeAngles", "RFootProgressAngles")
-    said = {"ANGLES": labels, "ANGLE_UNITS": ("deg",), "UNITS": ("mm",)}
-    *_, findings = _streams(rows, labels, **said)
-    (finding,) = [f for f in findings if f.kind == "unit"]
-    assert finding.what == "hips and knees range over 1 deg at most and stay within 1 deg; they look like radians"
-    *_, findings = _streams(np.degrees(rows), labels, **said)
-    assert not [f for f in findings if f.kind == "unit"]
-
-
 def test_a_place_at_exactly_the_origin_was_not_seen():
     streams, _, findings = _streams([[0.0, 0, 0, 300, 400, 0]], ["A", "B"], UNITS=("mm",))
     assert np.isnan(streams["markers"][0][0, :3]).all()

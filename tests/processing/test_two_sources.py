@@ -1,0 +1,142 @@
+"""Faults planted into real walks: each is said and left out, and walks that are right, or only unusual, keep all."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gaitdisc.ingest.reading import read_trial
+from gaitdisc.processing.two_sources import KIND, line_angles, without_contradicted
+from gaitdisc.recording import Trial
+
+
+@pytest.fixture(scope="module")
+def plug_in_gait(gait_data) -> Trial:
+    """Markers, and the angles, moments and powers that Plug-in Gait made of them."""
+    return read_trial(gait_data / "young_straight_and_turn" / "HC031A" / "straight" / "HC031A06.c3d")
+
+
+@pytest.fixture(scope="module")
+def tables(gait_data) -> Trial:
+    """Angles, generalised moments and forces of OpenSim, without markers."""
+    folder = gait_data / "opensim_walks" / "moco_3dwalking"
+    return read_trial([folder / name for name in ("coordinates.sto", "id_walk.sto", "grf_walk.mot")])
+
+
+def planted(trial: Trial, change, *names: str, stream: str = "kinematics") -> Trial:
+    old = trial.stream(stream)
+    values = np.array(old.values)
+    for name in names:
+        values[:, old.index(name)] = change(old[name])
+    return replace(trial, streams={**trial.streams, stream: old.with_values(values)})
+
+
+def said_of(trial: Trial):
+    """Findings, and the channels that are gone."""
+    checked = without_contradicted(trial)
+    gone = {
+        name
+        for key, old in trial.streams.items()
+        for name in old.names
+        if key not in checked.streams or name not in checked.stream(key).names
+    }
+    return [finding for finding in checked.findings if finding.kind == KIND], gone
+
+
+def test_walks_that_are_right_keep_every_channel(plug_in_gait, tables, gait_data):
+    others = [
+        *sorted(gait_data.glob("young_straight_and_turn/HC0[03]*[AD]/straight/*.c3d"))[:2],
+        *sorted(gait_data.glob("treadmill_walk_ik/*.mot")),
+    ]
+    for trial in (plug_in_gait, tables, *map(read_trial, others)):
+        assert said_of(trial) == ([], set())
+
+
+def test_lines_between_markers_follow_the_files_angles(plug_in_gait):
+    angles, lines = plug_in_gait.stream("kinematics"), line_angles(plug_in_gait.stream("markers"))
+    assert len(lines) == 8
+    for name, line in lines.items():
+        known = np.isfinite(line) & np.isfinite(angles[name])
+        slope, _ = np.polyfit(line[known], angles[name][known], 1)
+        assert np.corrcoef(line[known], angles[name][known])[0, 1] > 0.98
+        assert 0.9 < slope < 1.3
+
+
+@pytest.mark.parametrize(
+    "name", ["hip_flexion_l", "knee_angle_r", "ankle_angle_l", "hip_adduction_r", "hip_rotation_r"]
+)
+def test_one_angle_in_radians_is_left_out(plug_in_gait, tables, name):
+    for trial in (plug_in_gait, tables):
+        (finding,), gone = said_of(planted(trial, np.radians, name))
+        assert (finding.severity, finding.channel, gone) == ("refused", name, {name})
+        assert "less than skin does: it looks like radians" in finding.what
+
+
+def test_a_whole_file_in_radians_loses_its_pelvis_and_headings_too(plug_in_gait):
+    names = [channel.name for channel in plug_in_gait.stream("kinematics").channels]
+    (finding,), gone = said_of(planted(plug_in_gait, np.radians, *names))
+    assert "and " in finding.channel
+    assert {"hip_flexion_l", "LPelvisAngles.x", "RPelvisAngles.z", "RFootProgressAngles.z"} <= gone
+
+
+@pytest.mark.parametrize("names", [["hip_flexion_r"], ["hip_flexion_l"], ["hip_flexion_l", "hip_flexion_r"]])
+def test_a_hip_of_turned_sign_is_left_out(plug_in_gait, tables, names):
+    for trial in (plug_in_gait, tables):
+        findings, gone = said_of(planted(trial, np.negative, *names))
+        assert gone == set(names)
+        assert all("sign is turned" in finding.what for finding in findings)
+
+
+def test_an_offset_of_one_knee_is_left_out_where_markers_do_not_show_it(plug_in_gait, tables):
+    (finding,), gone = said_of(planted(plug_in_gait, lambda knee: knee + 20, "knee_angle_l"))
+    assert (finding.channel, gone) == ("knee_angle_l", {"knee_angle_l"})
+    assert finding.what.startswith("knee_angle_l lies +18 deg from the lines between its markers, knee_angle_r -8 deg")
+    asymmetric = planted(tables, lambda knee: knee + 20, "knee_angle_l")
+    assert said_of(asymmetric) == ([], set())  # without markers it is how the person walks
+
+
+def test_moments_of_a_thousandth_are_left_out(plug_in_gait, tables):
+    for trial, unit in ((plug_in_gait, "N m/kg"), (tables, "N m")):
+        legs = [n for n in trial.stream("moments").names if n.startswith(("hip", "knee", "ankle")) and "moment" in n]
+        small = planted(trial, lambda moment: moment / 1000, *legs, stream="moments")
+        (finding,), gone = said_of(small)
+        assert set(legs) <= gone
+        assert f"{unit} or more: the unit is another, as N mm under N m" in finding.what
+        one = planted(trial, lambda moment: moment / 1000, "knee_angle_l_moment", stream="moments")
+        (finding,), gone = said_of(one)
+        assert gone == {finding.channel} == {"knee_angle_l_moment"}
+
+
+def test_power_against_moment_times_rate_shows_a_turned_and_a_large_moment(plug_in_gait):
+    for change, words in ((np.negative, "hip_power_l is -0.9"), (lambda moment: 100 * moment, "is 0.00966 times")):
+        (finding,), gone = said_of(planted(plug_in_gait, change, "hip_flexion_l_moment", stream="moments"))
+        assert words in finding.what
+        assert {"hip_flexion_l_moment", "hip_adduction_l_moment", "hip_power_l"} <= gone
+        assert not {name for name in gone if name.endswith("_r") or "_r_" in name}
+
+
+def test_one_moment_a_thousand_times_the_others_is_the_one_left_out(tables):
+    (finding,), gone = said_of(planted(tables, lambda m: 1000 * m, "knee_angle_r_moment", stream="moments"))
+    assert gone == {finding.channel} == {"knee_angle_r_moment"}
+
+
+def test_moments_of_turned_sign_are_left_out_without_powers(tables):
+    for name, beside in (("hip_flexion_r", "hip_flexion_r"), ("ankle_angle_l", "ground_force_l_vy")):
+        (finding,), gone = said_of(planted(tables, np.negative, f"{name}_moment", stream="moments"))
+        assert gone == {f"{name}_moment"}
+        assert finding.what.startswith(f"{name}_moment goes with {beside} (r = 0.")
+
+
+def test_an_unusual_joint_keeps_its_curves(tables, plug_in_gait):
+    stiff = planted(tables, lambda knee: 5 + 0.1 * (knee - knee.mean()), "knee_angle_r")
+    fused = planted(tables, lambda ankle: 7 + 0.02 * ankle, "ankle_angle_l")
+    crouch = planted(
+        planted(tables, lambda knee: knee + 30, "knee_angle_l", "knee_angle_r"), lambda hip: hip + 25, "hip_flexion_l"
+    )
+    equinus = planted(tables, lambda ankle: 0.3 * ankle - 25, "ankle_angle_r")
+    for unusual in (stiff, fused, crouch, equinus):
+        assert said_of(unusual) == ([], set())
+    exchanged = planted(plug_in_gait, np.flip, "RHEE.x", "RTOE.x", stream="markers")  # another row's fault
+    assert not {n for n in said_of(exchanged)[1] if not n.startswith("ankle_angle_r")}
