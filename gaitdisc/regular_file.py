@@ -36,12 +36,13 @@ def check_regular(path: Path, largest_bytes: int = LARGEST_BYTES) -> int:
         raise ReadError("a file is to be read", f"{name} is {kind}", "Name a file.")
     if found.st_size > largest_bytes:
         raise ReadError(
-            f"a file of at most {_size(largest_bytes)} is to be read",
-            f"{name} has {_size(found.st_size)}",
+            f"a file of at most {size_in_words(largest_bytes)} is to be read",
+            f"{name} has {size_in_words(found.st_size)}",
             "Export the recording in parts, or only the channels that are needed.",
         )
     return found.st_size
 
 
-def _size(count: int) -> str:
+def size_in_words(count: int) -> str:
+    """Bytes as GiB or MiB."""
     return f"{count / GIBIBYTE:.3g} GiB" if count >= GIBIBYTE else f"{count / 2**20:.3g} MiB"

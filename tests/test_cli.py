@@ -1,5 +1,9 @@
+import os
+import signal
 import subprocess
 import sys
+
+import pytest
 
 from gaitdisc.cli import COMMANDS
 
@@ -35,3 +39,43 @@ def test_a_refusal_ends_with_its_code(tmp_path):
     done = called("check", tmp_path / "none")
     assert done.returncode == 1
     assert done.stderr.startswith("SchemaError: a study, ") and done.stderr.endswith(". [gd-schema]\n")
+
+
+def _with_command(tmp_path, command, **environment):
+    """Outcome of a command line whose only command is the given line of Python."""
+    loaded = "import signal\ntry: signal.raise_signal(signal.SIGINT)\nexcept BaseException: pass\n"
+    (tmp_path / "swallows.py").write_text(loaded, encoding="utf-8")
+    code = f"import gaitdisc.cli, signal, time; gaitdisc.cli.main = lambda: {command}\n"
+    code += "from gaitdisc.__main__ import main; main(); time.sleep(5)"
+    return subprocess.run(
+        [sys.executable, "-c", code],
+        env=os.environ | {"PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path])} | environment,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a job in the background ignores Ctrl-C
+        capture_output=True, check=False, timeout=60,
+    )  # fmt: skip
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Ctrl-C is another event there")
+@pytest.mark.parametrize(
+    "command",
+    [
+        "signal.raise_signal(signal.SIGINT)",
+        "(__import__('swallows'), time.sleep(5))",
+        "(type('Dying', (), {'__del__': lambda self: signal.raise_signal(signal.SIGINT)})(), time.sleep(5))",
+        "__import__('os').kill(__import__('os').getpid(), signal.SIGINT) or time.sleep(5)",
+    ],
+    ids=["in a command", "in a module that swallows it", "where nothing can be raised", "from outside"],
+)
+def test_ctrl_c_ends_with_130_and_no_traceback(tmp_path, command):
+    done = _with_command(tmp_path, command)
+    assert (done.returncode, done.stdout, done.stderr) == (130, b"", b"")
+
+
+@pytest.mark.parametrize(
+    "environment",
+    [{"PYTHONIOENCODING": "ascii"}, {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}],
+    ids=["by name", "by locale"],
+)
+def test_a_terminal_without_a_character_shows_a_question_mark(tmp_path, environment):
+    done = _with_command(tmp_path, "(print('R\\u00b2 is 0.9'), exit())", **environment)
+    assert (done.returncode, done.stderr) == (0, b"") and done.stdout.rstrip() == b"R? is 0.9"

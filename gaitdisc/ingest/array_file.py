@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import io
 import re
-import zipfile
-import zlib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -18,11 +16,16 @@ from gaitdisc.channel import nearest_word
 from gaitdisc.errors import GaitdiscError, ReadError
 from gaitdisc.ingest.hdf5 import SIGNATURE, attributes, data_set, hdf5_file
 from gaitdisc.ingest.raw_file import RawFile, read_raw
-from gaitdisc.regular_file import LARGEST_BYTES
+from gaitdisc.ingest.reader_process import MEBIBYTE, Arrays, ReaderProcess, ReadRequest
+from gaitdisc.regular_file import LARGEST_BYTES, size_in_words
 
 _STEP = re.compile(r"\.([^.(){}]+)|\{(\d{1,9})\}|\((\d{1,9})\)")
 _COLUMN = re.compile(r"\(\s*((?::|\d{1,9})(?:\s*,\s*(?::|\d{1,9}))+)\s*\)$")
 _SHOWN = 12  # variables that a message names
+_UNPACKED = (
+    64 * MEBIBYTE,
+    100,
+)  # bytes, and times the file: measured values deflate up to 12 times, a bomb 1,000 times
 _REMEDY = "See docs/sessions.md, recordings in .mat and .npz, for how a path is written."
 
 
@@ -100,11 +103,9 @@ class ArrayFile:
         raise self._refused(path, f"it holds {len(node.held)} elements", remedy)
 
     def _checked(self, node: Any, path: str) -> NDArray[np.float64]:
-        if not isinstance(node, np.ndarray) or node.dtype.kind not in "biuf":
-            kind = getattr(getattr(node, "dtype", None), "kind", "")
-            complex_ = "complex numbers, which no recording has" if kind == "c" else _what(node)
-            raise self._refused(path, f"it is {complex_}", "Name another variable, or save it as plain numbers.")
-        values = np.asarray(node, float)
+        if not isinstance(node, np.ndarray):
+            raise self._refused(path, f"it is {_what(node)}", "Name another variable, or save it as plain numbers.")
+        values = np.array(node, float)
         if not values.size or np.isinf(values).any():
             found = "it is empty" if not values.size else f"{int(np.isinf(values).sum())} numbers in it are infinite"
             raise self._refused(path, found, "Save it again, with NaN where nothing was measured.")
@@ -126,102 +127,65 @@ class ArrayFile:
         return f"{self.raw.name} holds {_some(self.names)}"
 
 
-def open_arrays(path: Path | str) -> ArrayFile:
-    """File of variables, opened; nothing in it is ever unpickled."""
+def open_arrays(path: Path | str, process: ReaderProcess | None = None) -> ArrayFile:
+    """File of variables, opened; nothing in it is ever unpickled.
+
+    process: reads all but `.mat` of v7.3, which HDF5 reads here; without it one is started
+    """
     path = Path(path)
     raw = read_raw(path, LARGEST_BYTES)
-    if path.suffix.lower() == ".npz":
-        return _npz(raw)
-    if raw.content[: len(SIGNATURE)] == SIGNATURE or raw.content[512 : 512 + len(SIGNATURE)] == SIGNATURE:
+    is_npz = path.suffix.lower() == ".npz"
+    if not is_npz and SIGNATURE in (raw.content[: len(SIGNATURE)], raw.content[512 : 512 + len(SIGNATURE)]):
         with hdf5_file(path) as file:
             names = tuple(name for name in map(str, file) if not name.startswith("#"))
         return ArrayFile(raw, names, lambda name: _of_hdf5(path, name))
-    return _mat(raw)
+    return _in_process(raw, path, process or ReaderProcess())
 
 
-def _damaged(raw: RawFile, kind: str, error: Exception) -> ReadError:
-    said = " ".join(str(error).split())[:160] or type(error).__name__
-    remedy = "Save it again; it may be cut short, or no such file."
-    return ReadError(f"{raw.name} is to be read as {kind}", f"it cannot be: {said}", remedy)
+def _in_process(raw: RawFile, path: Path, process: ReaderProcess) -> ArrayFile:
+    most = min(_UNPACKED[0] + _UNPACKED[1] * len(raw.content), LARGEST_BYTES)
 
-
-def _npz(raw: RawFile) -> ArrayFile:
-    try:
-        with zipfile.ZipFile(io.BytesIO(raw.content)) as packed:
-            sizes = {one.filename.removesuffix(".npy"): one.file_size for one in packed.infolist()}
-    except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as error:
-        raise _damaged(raw, "an .npz file", error) from error
-
-    def opened(name: str) -> Any:
-        if sizes[name] > LARGEST_BYTES:
-            found = f"{name!r} claims {sizes[name]} bytes"
-            raise ReadError(f"{raw.name}: a variable of at most {LARGEST_BYTES} bytes is read", found, "Cut it.")
-        try:
-            with zipfile.ZipFile(io.BytesIO(raw.content)) as packed, packed.open(f"{name}.npy") as member:
-                held = np.lib.format.read_array(io.BytesIO(member.read()), allow_pickle=False)
-        except ValueError as error:
-            if "pickle" not in str(error) and "Object" not in str(error):
-                raise _damaged(raw, "an .npz file", error) from error
+    def answered(name: str) -> tuple[dict[str, Any], Arrays]:
+        wanted = ReadRequest.of_size(str(path), "arrays", (name,), len(raw.content))
+        answer, arrays = process.read(replace(wanted, cap_bytes=wanted.cap_bytes + 3 * most))  # packed, read, as float
+        said = answer.get("said", "").replace(str(path), path.name)
+        if "allow_pickle" in said:
             raise ReadError(
                 f"{raw.name}: {name!r} is to be an array of numbers",
                 "it holds Python objects, which are never unpickled, since that may run any program",
                 "Save it as plain arrays: numpy.savez without objects.",
-            ) from error
-        except (KeyError, OSError, EOFError, zipfile.BadZipFile, zlib.error, SyntaxError, MemoryError, TypeError,
-                NotImplementedError, RuntimeError) as error:  # fmt: skip
-            raise _damaged(raw, "an .npz file", error) from error
-        return _of_scipy(held)
+            )
+        if said:
+            needed = f"{raw.name} is to be read as {'an .npz' if path.suffix.lower() == '.npz' else 'a .mat'} file"
+            found = f"it cannot be: its reader says: {' '.join(said.split())[:160].rstrip('.')}"
+            raise ReadError(needed, found, "Save it again; it may be cut short, or no such file.")
+        return answer, arrays
 
-    return ArrayFile(raw, tuple(sizes), opened)
+    claims = answered("")[0]["claims"]
 
-
-def _mat(raw: RawFile) -> ArrayFile:
-    from scipy.io import loadmat, whosmat
-
-    def of_scipy(work: Callable[[], Any]) -> Any:
-        try:
-            return work()
-        except Exception as error:  # its errors have no common ancestor
-            raise _damaged(raw, "a .mat file", error) from error
-
-    shapes = of_scipy(lambda: whosmat(io.BytesIO(raw.content)))
-    sizes = {name: int(np.prod([float(n) for n in shape])) for name, shape, _ in shapes}
-
+    @cache
     def opened(name: str) -> Any:
-        if 8 * sizes[name] > LARGEST_BYTES:
-            found = f"{name!r} claims {sizes[name]} elements"
-            raise ReadError(f"{raw.name}: a variable of at most {LARGEST_BYTES} bytes is read", found, "Cut it.")
-        return _of_scipy(of_scipy(lambda: loadmat(io.BytesIO(raw.content), variable_names=[name]))[name])
+        if claims[name] > most:
+            raise ReadError(
+                f"{raw.name}: a variable of at most {size_in_words(most)} is unpacked from a file of its size",
+                f"{name!r} claims {size_in_words(claims[name])}",
+                "Save it again in parts, or without compression.",
+            )
+        answer, arrays = answered(name)
+        return _node(answer["tree"], arrays)
 
-    return ArrayFile(raw, tuple(sizes), opened)
-
-
-def _of_scipy(held: Any) -> Any:
-    """Node of what scipy or numpy read: structs have fields, cells are of objects."""
-    if not isinstance(held, np.ndarray):
-        return f"{type(held).__name__}"
-    if held.dtype.names:
-        each = tuple(_Fields({name: one[name] for name in held.dtype.names}) for one in held.ravel(order="F"))
-        return each[0] if len(each) == 1 else Cells(each)
-    if held.dtype.kind == "O":
-        return Cells(tuple(_of_scipy(one) for one in held.ravel(order="F")))
-    return held
+    return ArrayFile(raw, tuple(claims), opened)
 
 
-class _Fields(Mapping[str, Any]):
-    """Fields of a struct, made nodes when they are used."""
-
-    def __init__(self, held: Mapping[str, Any]) -> None:
-        self._held = held
-
-    def __getitem__(self, name: str) -> Any:
-        return _of_scipy(self._held[name])
-
-    def __iter__(self):
-        return iter(self._held)
-
-    def __len__(self) -> int:
-        return len(self._held)
+def _node(tree: Any, arrays: Arrays) -> Any:
+    """Node of what the process handed back: see `_tree` in reader_worker.py."""
+    if isinstance(tree, int):
+        return arrays[tree]
+    if not isinstance(tree, dict):
+        return tree
+    if "cells" in tree:
+        return Cells(tuple(_node(one, arrays) for one in tree["cells"]))
+    return {name: _node(one, arrays) for name, one in tree["fields"].items()}
 
 
 def _of_hdf5(path: Path, name: str) -> Any:
@@ -298,7 +262,7 @@ def _what(node: Any) -> str:
     if isinstance(node, Cells):
         return f"{len(node.held)} elements"
     if isinstance(node, np.ndarray):
-        return "text" if node.dtype.kind in "US" else f"an array of {_shape(node)}"
+        return f"an array of {_shape(node)}"
     return str(node)
 
 

@@ -12,6 +12,7 @@ from gaitdisc.errors import ReadError, SamplingError, UnitError
 from gaitdisc.ingest.array_file import ArrayFile, open_arrays
 from gaitdisc.ingest.clock import even_time
 from gaitdisc.ingest.columns import Column, column_in_unit, column_of, named_channel, said_clock, split_unit
+from gaitdisc.ingest.reader_process import ReaderProcess
 from gaitdisc.ingest.streams import sorted_trial
 from gaitdisc.ingest.table import checked_angles
 from gaitdisc.recording import Finding, Recording, Trial
@@ -19,15 +20,18 @@ from gaitdisc.recording import Finding, Recording, Trial
 ENDINGS = (".mat", ".npz")
 
 
-def read_arrays(path: Path | str, channels: Mapping[str, str] | None = None, part: str = "") -> Trial:
+def read_arrays(
+    path: Path | str, channels: Mapping[str, str] | None = None, part: str = "", process: ReaderProcess | None = None
+) -> Trial:
     """Trial of variables in a `.mat` or `.npz` file.
 
     channels: the study's `[channels]`: path of a variable -> `name [unit] @ 100 Hz`, or `name [unit] @ variable` of a
         rate [Hz] or of times [s]. A marker's three columns are one entry. Entries without a rate are of other files
     part: which trial of a file that holds several: its number in cell arrays from 1, or what `*` stands for in paths
+    process: reads the file, where one is running
     returns: streams as far as the study names their channels, each on its own clock
     """
-    file = open_arrays(path)
+    file = open_arrays(path, process)
     wanted = {label: said for label, said in (channels or {}).items() if said_clock(said)}
     if not wanted:
         raise ReadError(

@@ -23,17 +23,17 @@ from gaitdisc.ingest.c3d_rotations import file_segments
 from gaitdisc.ingest.c3d_scales import check_common_scales, unscaled_channels
 from gaitdisc.ingest.file_hash import file_sha256
 from gaitdisc.ingest.force_plates import force_plates, plate_loads, plate_streams
-from gaitdisc.ingest.reader_process import RawTrial, ReaderProcess, ReadRequest
+from gaitdisc.ingest.reader_process import Arrays, ReaderProcess, ReadRequest
 from gaitdisc.recording import Finding, Recording, Source, Surface, Trial
 
 ANALOG_STREAMS = ("emg", "forces", "signals")
 
 
 class C3DReader:
-    """Reads C3D files one after the other in one isolated process.
+    """Reads C3D, `.mat` and `.npz` files one after the other in one isolated process.
 
     The process is started at the first file, started anew when a file kills it and after 100 files, and ends with the
-    `with` block. The reader may be used again after that.
+    `with` block. The reader may be used again after that. Threads that share a reader take turns.
 
     >>> with C3DReader() as reader:
     ...     reader.read("missing.c3d")
@@ -43,7 +43,7 @@ class C3DReader:
     """
 
     def __init__(self) -> None:
-        self._process = ReaderProcess()
+        self.process = ReaderProcess()
 
     def __enter__(self) -> C3DReader:
         return self
@@ -55,7 +55,7 @@ class C3DReader:
 
     def close(self) -> None:
         """End the isolated process."""
-        self._process.close()
+        self.process.close()
 
     def read(self, path: str | Path, channels: Mapping[str, str] | None = None) -> Trial:
         """Trial of one C3D file.
@@ -101,14 +101,14 @@ class C3DReader:
         rate_hz, doubts = _rate(header, parameters, layout)
         with ThreadPoolExecutor(1) as beside:  # the hash is done while the other process reads
             sha256 = beside.submit(file_sha256, path)
-            raw, more = self._raw(path, header, layout)
+            reader, (points, analog), more = self._raw(path, header, layout)
         findings += [*doubts, *more]
         labels = LabelMap(channels)
-        streams, surfaces, seen = _streams(raw, layout, parameters, labels, header.file)
+        streams, surfaces, seen = _streams(points, analog, layout, parameters, labels, header.file)
         first = parameters.field("ACTUAL_START_FIELD") or max(header.first_frame, 1)
         events, more = file_events(parameters, layout.frames, rate_hz, first, header.file)
         findings += [*seen, *more, *labels.unused(_all_labels(parameters, layout), header.file)]
-        source = Source(header.file, sha256.result(), raw.reader)
+        source = Source(header.file, sha256.result(), reader)
         times = {
             "points": np.arange(layout.frames) / rate_hz,
             "analog": np.arange(layout.frames * layout.samples_per_frame)
@@ -122,15 +122,15 @@ class C3DReader:
         recordings |= {"segments": segments} if segments is not None else {}
         return Trial(path.stem, recordings, events, tuple(findings), surfaces=surfaces)
 
-    def _raw(self, path: Path, header: C3DHeader, layout: C3DLayout) -> tuple[RawTrial, list[Finding]]:
-        """What ezc3d reads or, where it cannot, the second reader; both are held to the counts of the header."""
+    def _raw(self, path: Path, header: C3DHeader, layout: C3DLayout) -> tuple[str, Arrays, list[Finding]]:
+        """Reader, arrays and findings: ezc3d or, where it cannot, the second; both are held to the header's counts."""
         counts = (layout.frames, layout.points, layout.channels, layout.frames * layout.samples_per_frame)
-        said = {}
+        said: dict[str, str] = {}
         for reader in ("ezc3d", "c3d"):
-            raw = self._process.read(ReadRequest.of_size(str(path), reader, counts, header.size))
-            if not raw.said:
+            answer, arrays = self.process.read(ReadRequest.of_size(str(path), reader, counts, header.size))
+            if "said" not in answer:
                 break
-            said[reader] = _in_words(raw.said, path)
+            said[reader] = _in_words(answer["said"], path)
         else:
             raise ReadError(
                 f"{header.file} promises {layout.frames} frames, {layout.points} points and "
@@ -139,9 +139,10 @@ class C3DReader:
                 "Export the trial again, or repair it in the software that wrote it.",
             )
         if not said:
-            return raw, []
-        what = f"read by {raw.reader}, as ezc3d could not: {said['ezc3d']}"
-        return raw, [Finding("note", "second reader", header.file, what, "nothing; the counts are those of the header")]
+            return answer["reader"], arrays, []
+        what = f"read by {answer['reader']}, as ezc3d could not: {said['ezc3d']}"
+        spoils = "nothing; the counts are those of the header"
+        return answer["reader"], arrays, [Finding("note", "second reader", header.file, what, spoils)]
 
 
 def read_c3d(path: str | Path, channels: Mapping[str, str] | None = None) -> Trial:
@@ -157,23 +158,28 @@ def read_c3d(path: str | Path, channels: Mapping[str, str] | None = None) -> Tri
 
 
 def _streams(
-    raw: RawTrial, layout: C3DLayout, parameters: C3DParameters, labels: LabelMap, file: str
+    points: NDArray[np.float64],
+    raw: NDArray[np.float64],
+    layout: C3DLayout,
+    parameters: C3DParameters,
+    labels: LabelMap,
+    file: str,
 ) -> tuple[Streams, tuple[Surface, ...], list[Finding]]:
     unscaled, seen = unscaled_channels(parameters, layout.channels, file)
-    raw.analog[:, sorted(unscaled)] = np.nan
+    raw[:, sorted(unscaled)] = np.nan
     findings = [
         *seen,
-        *_made_finite(raw.points, "coordinates of points", file),
-        *_made_finite(raw.analog, "analog values", file),
+        *_made_finite(points, "coordinates of points", file),
+        *_made_finite(raw, "analog values", file),
     ]
-    streams, unit, doubts = point_streams(raw.points, parameters, labels, file)
+    streams, unit, doubts = point_streams(points, parameters, labels, file)
     plates, described = force_plates(parameters, layout.channels, unit, file, unscaled)
-    forces, columns, of_plates = plate_streams(raw.analog, plates, parameters, unit, file)
+    forces, columns, of_plates = plate_streams(raw, plates, parameters, unit, file)
     if "moments" in streams:
         loads = plate_loads(forces, max(layout.samples_per_frame, 1))
         streams["moments"], more = house_kinetics(streams["moments"], loads, body_mass(parameters), file)
         of_plates = [*of_plates, *more]
-    analog, of_analog = analog_streams(raw.analog, parameters, columns, labels, file)
+    analog, of_analog = analog_streams(raw, parameters, columns, labels, file)
     for part in (forces, analog):
         for key, (values, channels) in part.items():
             if key in streams:

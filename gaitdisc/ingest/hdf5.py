@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import json
-import math
-import signal
-import subprocess
-import sys
 from collections.abc import Collection, Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,22 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import GaitdiscError, ReadError
+from gaitdisc.ingest.reader_process import ReaderProcess, ReadRequest
 from gaitdisc.regular_file import LARGEST_BYTES, check_regular
 
-TEXT_LIMIT_S = 10  # of processor time; a text takes a thousandth of it
-TEXT_CLOCK_S = 60.0  # by the clock, for others may use the machine as well
-_LIMIT = """
-import sys
-try:
-    import resource
-    resource.setrlimit(resource.RLIMIT_CPU, (int(sys.argv[4]), int(sys.argv[4]) + 1))
-except ImportError:  # Windows: the clock alone ends it
-    pass
-"""
-_TEXT = (
-    "import h5py, json, sys; v = h5py.File(sys.argv[1], 'r')[sys.argv[2]].attrs[sys.argv[3]]; "
-    "v = v.decode('utf-8', 'replace') if isinstance(v, bytes) else v; print(json.dumps(str(v)))"
-)
+TEXT_LIMIT_S = 10.0  # of processor time; a text takes a thousandth of it
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
@@ -107,24 +91,14 @@ def attributes(file: Any, name: str, path: Path, wanted: Collection[str]) -> dic
 
 
 def _text_in_time(path: Path, name: str, attribute: str) -> str:
-    try:
-        done = subprocess.run(
-            [sys.executable, "-P", "-c", _LIMIT + _TEXT, str(path), name, attribute, str(TEXT_LIMIT_S)],
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            timeout=TEXT_CLOCK_S,
-            check=False,
-        )
-        late = (
-            f"{TEXT_LIMIT_S:g} s of processor time" if done.returncode == -getattr(signal, "SIGXCPU", math.inf) else ""
-        )
-    except subprocess.TimeoutExpired:
-        done, late = None, f"{TEXT_CLOCK_S:g} s"
-    if done is None or late:
-        found = f"attribute {attribute!r} of {name!r} cannot be read within {late}"
-        raise ReadError(f"{path.name} is to be read as HDF5", found, "Fetch the file again; it is damaged.")
-    done.check_returncode()
-    return str(json.loads(done.stdout))
+    size = check_regular(path)
+    wanted = replace(ReadRequest.of_size(str(path), "hdf5 text", (name, attribute), size), limit_s=TEXT_LIMIT_S)
+    with closing(ReaderProcess()) as process:
+        answer, _ = process.read(wanted)
+    if "text" in answer:
+        return str(answer["text"])
+    found = f"attribute {attribute!r} of {name!r} cannot be read: {answer['said']}"
+    raise ReadError(f"{path.name} is to be read as HDF5", found, "Fetch the file again; it is damaged.")
 
 
 @contextmanager

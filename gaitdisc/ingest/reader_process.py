@@ -9,6 +9,8 @@ import signal
 import subprocess
 import sys
 import threading
+import weakref
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import IO, Any
@@ -16,7 +18,7 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
-WORKER = Path(__file__).with_name("c3d_worker.py")
+WORKER = Path(__file__).with_name("reader_worker.py")
 FILES_A_PROCESS = 100  # ezc3d leaks: a long loop in one process dies (pyomeca/ezc3d#314)
 SECONDS_AT_LEAST = 10.0
 CLOCK = 6.0  # times the processor time: so long is waited by the clock, for others may use the machine as well
@@ -32,11 +34,8 @@ class ReadRequest:
     """
 
     path: str
-    reader: str
-    frames: int  # counts that the file's header promises; `samples` are those of one analog channel
-    points: int  # counts that the file's header promises; `samples` are those of one analog channel
-    channels: int  # counts that the file's header promises; `samples` are those of one analog channel
-    samples: int  # counts that the file's header promises; `samples` are those of one analog channel
+    reader: str  # "ezc3d", "c3d", "arrays" or "hdf5 text"
+    wanted: tuple[int | str, ...]  # what the reader takes: see the functions of reader_worker.py
     limit_s: float  # processor time after which the reader is stopped; by the clock it is given `CLOCK` times as long
     cap_bytes: int  # address space that the reader may take, where the system can cap it
 
@@ -46,26 +45,16 @@ class ReadRequest:
         return CLOCK * self.limit_s
 
     @classmethod
-    def of_size(cls, path: str, reader: str, counts: tuple[int, int, int, int], size: int) -> ReadRequest:
+    def of_size(cls, path: str, reader: str, wanted: tuple[int | str, ...], size: int) -> ReadRequest:
         """Request with the limits for a file of that size: 10 s + 0.2 s/MB, 512 MB + 12 times the file.
 
         size: length of the file [bytes]
         """
         limit_s = SECONDS_AT_LEAST + 0.2 * size / MEBIBYTE
-        return cls(path, reader, *counts, limit_s=limit_s, cap_bytes=512 * MEBIBYTE + 12 * size)
+        return cls(path, reader, wanted, limit_s=limit_s, cap_bytes=512 * MEBIBYTE + 12 * size)
 
 
-@dataclass(frozen=True, eq=False)
-class RawTrial:
-    """Numbers of a C3D file in its own units, time first, or why there are none."""
-
-    points: NDArray[np.float64]  # (frame, 3 * point), NaN where a point was not seen
-    analog: NDArray[np.float64]  # (sample, channel), scaled as the file says
-    reader: str = ""  # name and version of the reader; empty if it did not read the file
-    said: str = ""  # why there are no numbers, empty where there are
-
-
-_NOTHING = np.empty((0, 0))
+Arrays = list[NDArray[np.float64]]
 
 
 class ReaderProcess:
@@ -73,13 +62,19 @@ class ReaderProcess:
 
     def __init__(self) -> None:
         self._process: subprocess.Popen[bytes] | None = None
+        self._end: Callable[[], int | None] = lambda: None
+        self._lock = threading.Lock()  # threads may share a reader; they take turns
         self._files = 0
 
-    def read(self, request: ReadRequest) -> RawTrial:
-        """Numbers of one file, or why the reader could not give them; it never raises for what the file is."""
+    def read(self, request: ReadRequest) -> tuple[dict[str, Any], Arrays]:
+        """Answer to one request, and its arrays; `said` in it is why there are none. No file makes it raise."""
+        with self._lock:
+            return self._read(request)
+
+    def _read(self, request: ReadRequest) -> tuple[dict[str, Any], Arrays]:
         process = self._running()
         self._files += 1
-        answers: list[RawTrial] = []
+        answers: list[tuple[dict[str, Any], Arrays]] = []
         # A pipe cannot be waited on with a time limit on every system; a thread can.
         thread = threading.Thread(target=_converse, args=(process, request, answers), daemon=True)
         thread.start()
@@ -99,11 +94,12 @@ class ReaderProcess:
             said = f"it had not finished after {request.limit_s:.3g} s of processor time"
         else:
             said = f"it crashed (exit code {code})"
-        return RawTrial(_NOTHING, _NOTHING, said=said)
+        return {"said": said}, []
 
     def close(self) -> None:
         """End the process."""
-        self._stop()
+        with self._lock:
+            self._stop()
 
     def _running(self) -> subprocess.Popen[bytes]:
         if self._process is not None and (self._files >= FILES_A_PROCESS or self._process.poll() is not None):
@@ -118,38 +114,39 @@ class ReaderProcess:
                 stderr=subprocess.DEVNULL,
                 env=environment,
             )
+            self._end = weakref.finalize(self, _ended, self._process)
             self._files = 0
         return self._process
 
     def _stop(self) -> int | None:
-        process, self._process = self._process, None
-        if process is None:
-            return None
-        with contextlib.suppress(OSError):
-            process.kill()
-        code = process.wait()
-        for stream in (process.stdin, process.stdout):
-            with contextlib.suppress(OSError, ValueError):
-                if stream is not None:
-                    stream.close()
-        return code
+        self._process = None
+        return self._end()
 
 
-def _converse(process: subprocess.Popen[bytes], request: ReadRequest, answers: list[RawTrial]) -> None:
+def _ended(process: subprocess.Popen[bytes]) -> int:
+    with contextlib.suppress(OSError):
+        process.kill()
+    code = process.wait()
+    for stream in (process.stdin, process.stdout):
+        with contextlib.suppress(OSError, ValueError):
+            if stream is not None:
+                stream.close()
+    return code
+
+
+def _converse(
+    process: subprocess.Popen[bytes], request: ReadRequest, answers: list[tuple[dict[str, Any], Arrays]]
+) -> None:
     assert process.stdin is not None and process.stdout is not None  # both are pipes
-    with contextlib.suppress(OSError, ValueError, EOFError):
+    with contextlib.suppress(Exception):  # whatever a dying reader babbles, there is no answer then
         process.stdin.write(json.dumps({**asdict(request), "clock_s": request.clock_s}).encode() + b"\n")
         process.stdin.flush()
         head: dict[str, Any] = json.loads(process.stdout.readline())
-        if "said" in head:
-            answers.append(RawTrial(_NOTHING, _NOTHING, said=head["said"]))
-            return
-        points = _received(process.stdout, (request.frames if request.points else 0, 3 * request.points))
-        analog = _received(process.stdout, (request.samples, request.channels))
-        answers.append(RawTrial(points, analog, head["reader"]))
+        shapes = () if "said" in head else head["shapes"]
+        answers.append((head, [_received(process.stdout, shape) for shape in shapes]))
 
 
-def _received(stream: IO[bytes], shape: tuple[int, int]) -> NDArray[np.float64]:
+def _received(stream: IO[bytes], shape: tuple[int, ...]) -> NDArray[np.float64]:
     values = np.empty(shape)
     if values.size:
         view = memoryview(values.data).cast("B")

@@ -64,7 +64,7 @@ def read_trial(
     crop_s : (float, float), optional
         Start and end of the part to keep, on the files' clock [s].
     reader : C3DReader, optional
-        A running reader process to use again; without it one is started for each C3D file.
+        A running reader process to use again; without it one is started for each C3D, `.mat` or `.npz` file.
     part : str
         Which trial of a `.mat` or `.npz` file that holds several, as `read_arrays` takes it.
 
@@ -136,7 +136,7 @@ def _read(given: object, channels: Mapping[str, str] | None, reader: C3DReader |
     path = Path(given)
     ending = path.suffix.lower()
     if ending in ARRAYS:
-        return read_arrays(path, channels, part)
+        return read_arrays(path, channels, part, reader.process if reader else None)
     if ending == ".c3d":
         from gaitdisc.ingest.c3d import read_c3d
 

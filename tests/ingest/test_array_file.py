@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import io
 import pickle
+import random
+import sys
 import zipfile
+from contextlib import closing
 
 import h5py
 import numpy as np
 import pytest
-from scipy.io import savemat
+from scipy.io import loadmat, savemat
 
 from gaitdisc.errors import ReadError
+from gaitdisc.ingest import reader_process
 from gaitdisc.ingest.array_file import open_arrays
+from gaitdisc.ingest.reader_process import ReaderProcess
 
 KNEE = np.arange(12.0).reshape(4, 3)
 STEPS = {"name": "walk", "knee": KNEE, "trial": np.array([{"grf": 10 * KNEE}, {"grf": 20 * KNEE}], dtype=object)}
@@ -151,14 +156,15 @@ def test_every_cut_of_an_npz_is_refused(tmp_path):
 
 
 def _cut_and_read(path, whole, name, expected):
-    refused = 0
+    refused, process = 0, ReaderProcess()
     for end in np.linspace(1, len(whole) - 1, 12).astype(int):
         path.write_bytes(whole[:end])
         try:
-            np.testing.assert_array_equal(open_arrays(path).numbers(name), expected)
+            np.testing.assert_array_equal(open_arrays(path, process).numbers(name), expected)
         except ReadError as error:
             refused += 1
             assert path.name in str(error) and "Traceback" not in str(error)
+    process.close()
     assert refused >= 6
 
 
@@ -167,3 +173,63 @@ def test_what_is_no_such_file(tmp_path, name):
     (tmp_path / name).write_bytes(b"time,knee\n0,1\n" * 40)
     with pytest.raises(ReadError, match=rf"{name} is to be read as an? \.\w+ file; it cannot be"):
         open_arrays(tmp_path / name)
+
+
+@pytest.mark.parametrize("ending", [".mat", ".npz"])
+def test_what_claims_too_much_is_refused_before_it_is_unpacked(tmp_path, ending):
+    """12 million zeros deflate to 0.1 MB; without compression the same numbers are read."""
+    path, zeros = tmp_path / f"bomb{ending}", np.zeros((2**20, 12))
+    if ending == ".mat":
+        savemat(path, {"trial": {"force": zeros}}, do_compression=True)
+    else:
+        np.savez_compressed(path, trial=zeros)
+    with pytest.raises(ReadError, match=r"at most 7[0-9.]+ MiB is unpacked from a file of its size; 'trial' claims 96"):
+        open_arrays(path).numbers("trial")
+    if ending == ".mat":
+        savemat(path, {"trial": {"force": zeros}})
+        assert open_arrays(path).numbers("trial.force").shape == zeros.shape
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="address space is capped on Linux")
+def test_a_header_that_lies_about_its_array_meets_the_cap(tmp_path):
+    """The member is 4 MB by the archive's list, and 800 GB by its own header."""
+    path, held = tmp_path / "lies.npz", io.BytesIO()
+    np.lib.format.write_array_header_1_0(held, {"descr": "<f8", "fortran_order": False, "shape": (10**11,)})
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as packed:
+        packed.writestr("knee.npy", held.getvalue() + bytes(4 * 2**20))
+    with pytest.raises(ReadError, match=r"lies.npz is to be read as an .npz file; it cannot be: its reader says: it "):
+        open_arrays(path).numbers("knee")
+
+
+def test_a_file_that_ends_its_reader_is_refused_and_the_next_one_is_read(mat5, monkeypatch, tmp_path):
+    worker = tmp_path / "worker.py"
+    worker.write_text("import os, signal, sys; sys.stdin.readline(); os.kill(os.getpid(), signal.SIGSEGV)")
+    with monkeypatch.context() as patch, closing(ReaderProcess()) as process:
+        patch.setattr(reader_process, "WORKER", worker)
+        with pytest.raises(ReadError, match=r"walk.mat is to be read as a .mat file; .* crashed \(exit code -11\)"):
+            open_arrays(mat5, process)
+        patch.undo()
+        np.testing.assert_array_equal(open_arrays(mat5, process).numbers("data.knee"), KNEE)
+
+
+def test_flipped_bits_end_in_numbers_or_in_words(mat5, tmp_path):
+    """120 damaged files of two kinds, one process for all; one of them in a thousand is a crash of scipy."""
+    held = io.BytesIO()
+    savemat(held, {name: loadmat(mat5)[name] for name in ("data", "RKNEE")}, do_compression=True)
+    npz = io.BytesIO()
+    np.savez_compressed(npz, data=KNEE, RKNEE=2 * KNEE)
+    dice, refused, process = random.Random(5), 0, ReaderProcess()
+    for number in range(120):
+        name, sound = ("a.npz", npz.getvalue()) if number % 3 == 0 else ("a.mat", held.getvalue())
+        broken = bytearray(mat5.read_bytes() if number % 3 == 1 else sound)
+        for _ in range(dice.randint(1, 4)):
+            broken[dice.randrange(len(broken))] ^= 1 << dice.randrange(8)
+        (tmp_path / name).write_bytes(broken)
+        for path in ("data.knee", "data", "RKNEE{2}"):
+            try:
+                open_arrays(tmp_path / name, process).numbers(path)
+            except ReadError as error:
+                refused += 1
+                assert name in str(error) and "Traceback" not in str(error)
+    process.close()
+    assert 120 < refused < 360

@@ -6,16 +6,12 @@ import json
 import numpy as np
 import pytest
 
-from gaitdisc.ingest.c3d_worker import READERS, answer, points_in_rows, serve
+from gaitdisc.ingest.reader_worker import READERS, answer, points_in_rows, serve
 
 
 def _request(path, **changes):
-    counts = {"frames": 50, "points": 3, "channels": 4, "samples": 500}
-    return (
-        {"path": str(path), "reader": "ezc3d", "cap_bytes": 2**40, "limit_s": 600.0, "clock_s": 600.0}
-        | counts
-        | changes
-    )
+    limits = {"cap_bytes": 2**40, "limit_s": 600.0, "clock_s": 600.0}
+    return {"path": str(path), "reader": "ezc3d", "wanted": [50, 3, 4, 500]} | limits | changes
 
 
 def test_coordinates_come_with_time_first_and_gaps_are_nan():
@@ -33,12 +29,12 @@ def test_both_readers_hand_back_what_was_written(tmp_path, write_c3d, some_point
     head, (points, analog, _) = answer(_request(path, reader=reader))
     assert head["reader"].startswith(reader)
     np.testing.assert_allclose(points, some_points.transpose(2, 1, 0).reshape(50, 9), rtol=1e-6)
-    np.testing.assert_allclose(analog, some_analog, rtol=1e-6)
+    np.testing.assert_allclose(analog.T, some_analog, rtol=1e-6)
 
 
 def test_other_counts_than_expected_are_said(tmp_path, write_c3d, some_points, some_analog):
     path = write_c3d(tmp_path / "a.c3d", some_points, some_analog)
-    head, arrays = answer(_request(path, frames=51))
+    head, arrays = answer(_request(path, wanted=[51, 3, 4, 500]))
     assert head == {"said": "it finds 50 frames of 3 points and 500 samples of 4 analog channels"}
     assert not arrays
 
@@ -48,7 +44,7 @@ def test_what_a_reader_raises_is_its_opinion(tmp_path):
 
 
 def test_serving_ends_with_the_requests(tmp_path, write_c3d, some_points, some_analog, monkeypatch):
-    monkeypatch.setattr("gaitdisc.ingest.c3d_worker._limit", lambda *_: None)  # would cap this very process
+    monkeypatch.setattr("gaitdisc.ingest.reader_worker._limit", lambda *_: None)  # would cap this very process
     path = write_c3d(tmp_path / "a.c3d", some_points, some_analog)
     answers = io.BytesIO()
     serve(io.BytesIO(json.dumps(_request(path)).encode() + b"\n"), answers)

@@ -1,0 +1,237 @@
+"""What runs in the isolated process: read one file, hand the numbers back as raw bytes.
+
+ezc3d, scipy and HDF5 crash or hang on some corrupted files, and no `try` catches that; so they run here, under a memory
+cap and a watchdog, and never in the process of the user. This file is run as a script; it imports nothing of gaitdisc.
+
+A request is one line of JSON on standard input, an answer one line of JSON on standard output, followed by its arrays
+as float64: of a C3D file the points (frame, 3 * point) and the analog values (sample, channel), time first.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import faulthandler
+import json
+import math
+import os
+import struct
+import sys
+import time
+import warnings
+import zipfile
+import zlib
+from collections.abc import Iterator
+from importlib.metadata import version
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+ROWS_AT_ONCE = 16384
+
+
+def points_in_rows(points: NDArray[np.float64], residuals: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Coordinates with time first, NaN where the residual says that a point was not seen.
+
+    points (3 or 4, point, frame): as ezc3d gives them
+    residuals (point, frame): negative where a point is invalid
+    returns (frame, 3 * point)
+
+    >>> points_in_rows(np.ones((4, 1, 2)), np.array([[0.0, -1.0]]))
+    array([[ 1.,  1.,  1.],
+           [nan, nan, nan]])
+    """
+    _, count, frames = points.shape
+    rows = np.ascontiguousarray(points[:3].transpose(2, 1, 0))
+    rows[residuals.T < 0] = np.nan
+    return rows.reshape(frames, 3 * count)
+
+
+def read_with_ezc3d(path: str) -> tuple[NDArray[np.float64], NDArray[np.float64], object]:
+    """Points (frame, 3 * point) and analog values (channel, sample) as ezc3d reads them, in the file's units.
+
+    The file itself comes with them: to take its frames apart takes ezc3d a tenth of the time of reading, which can
+    wait until the answer is on its way.
+    """
+    from ezc3d import ezc3d
+
+    file = ezc3d.c3d(path)
+    points, residuals, analog = file.get_points(), file.get_point_residuals(), file.get_analogs()
+    return points_in_rows(points, residuals[0]), analog[0], file
+
+
+def read_with_c3d(path: str) -> tuple[NDArray[np.float64], NDArray[np.float64], object]:
+    """Points (frame, 3 * point) and analog values (channel, sample) as the pure-Python reader c3d sees them."""
+    import c3d
+
+    with Path(path).open("rb") as handle:
+        reader = c3d.Reader(handle)
+        frames = [(points, analog) for _, points, analog in reader.read_frames(check_nan=False)]
+    if not frames:
+        return np.empty((0, 0)), np.empty((0, 0)), None
+    points = np.stack([points for points, _ in frames]).astype(float)
+    rows = points[:, :, :3]
+    rows[points[:, :, 3] < 0] = np.nan
+    analog = [analog for _, analog in frames]
+    joined = np.concatenate(analog, axis=1) if analog[0].size else np.empty((0, 0))
+    return rows.reshape(len(frames), -1), joined, None
+
+
+READERS = {"ezc3d": read_with_ezc3d, "c3d": read_with_c3d}
+
+
+def read_c3d(reader: str, path: str, *promised: int) -> tuple[dict[str, Any], Any]:
+    """Points and analog values of a C3D file, or what the reader found, where these are not the promised counts.
+
+    promised: frames, points, analog channels and samples of each, as the file's header has them
+    """
+    points, analog, file = READERS[reader](path)
+    channels, samples = analog.shape if analog.size else (0, 0)
+    found = (len(points), points.shape[1] // 3, channels, samples)
+    # A file without points has no frames of points to count.
+    if found[1:] != promised[1:] or (promised[1] and found[0] != promised[0]):
+        frames, count, channels, samples = found
+        said = f"it finds {frames} frames of {count} points and {samples} samples of {channels} analog channels"
+        return {"said": said}, ()
+    shapes = [(promised[0] if promised[1] else 0, 3 * promised[1]), (samples, channels)]
+    return {"reader": f"{reader} {version(reader)}", "shapes": shapes}, (points, analog.T, file)
+
+
+def read_arrays(path: str, name: str) -> tuple[dict[str, Any], Any]:
+    """One variable of a `.mat` file to v7 or of an `.npz` file: numbers, structs, cells and words for all else.
+
+    name: empty for the names of all, with the bytes that each claims to take once it is unpacked
+    """
+    is_packed = path.lower().endswith(".npz")
+    if not name:
+        return {"claims": _claims_of_npz(path) if is_packed else _claims_of_mat(path), "shapes": []}, ()
+    if is_packed:
+        with zipfile.ZipFile(path) as packed, packed.open(f"{name}.npy") as member:
+            held = np.lib.format.read_array(member, allow_pickle=False)
+    else:
+        from scipy.io import loadmat
+
+        held = loadmat(path, variable_names=[name])[name]
+    arrays: list[NDArray[Any]] = []
+    return {"tree": _tree(held, arrays), "shapes": [values.shape for values in arrays]}, arrays
+
+
+def _claims_of_npz(path: str) -> dict[str, int]:
+    with zipfile.ZipFile(path) as packed:
+        return {one.filename.removesuffix(".npy"): one.file_size for one in packed.infolist()}
+
+
+def _claims_of_mat(path: str) -> dict[str, int]:
+    from scipy.io import whosmat
+
+    variables = whosmat(path)
+    sizes = [*_element_sizes(path), *[0] * len(variables)]  # a file of v4 has no elements
+    return {
+        name: max(size, math.prod((8, *map(int, shape))))
+        for (name, shape, _), size in zip(variables, sizes, strict=False)
+    }
+
+
+def _element_sizes(path: str) -> Iterator[int]:
+    """Bytes of each element of a file of v5 to v7, as its tag has them; a packed one's tag is the first unpacked."""
+    with Path(path).open("rb") as file:
+        order, at = {b"IM": "<", b"MI": ">"}.get(file.read(128)[126:]), 128
+        while order and len(tag := file.read(8)) == 8:
+            kind, size = struct.unpack(f"{order}II", tag)
+            if kind == 15:  # miCOMPRESSED
+                yield int(struct.unpack(f"{order}4xI", zlib.decompressobj().decompress(file.read(256), 8))[0])
+            else:
+                yield size
+            at += 8 + size
+            file.seek(at)
+
+
+def _tree(held: Any, arrays: list[NDArray[Any]]) -> Any:
+    """Structs as `fields`, cells and arrays of structs as `cells`, arrays of numbers by their place in `arrays`."""
+    if not isinstance(held, np.ndarray):
+        return type(held).__name__
+    if held.dtype.names:
+        names = held.dtype.names
+        each = [{"fields": {name: _tree(one[name], arrays) for name in names}} for one in held.ravel(order="F")]
+        return each[0] if len(each) == 1 else {"cells": each}
+    if held.dtype.kind == "O":
+        return {"cells": [_tree(one, arrays) for one in held.ravel(order="F")]}
+    if held.dtype.kind not in "biuf":
+        words = {"U": "text", "S": "text", "c": "complex numbers, which no recording has"}
+        return words.get(held.dtype.kind, f"an array of {held.dtype}")
+    arrays.append(held)
+    return len(arrays) - 1
+
+
+def read_hdf5_text(path: str, name: str, attribute: str) -> tuple[dict[str, Any], Any]:
+    """Text that is an attribute of a data set; where its heap is damaged the library runs in a circle."""
+    import h5py
+
+    text = h5py.File(path, "r")[name].attrs[attribute]
+    return {"text": text.decode("utf-8", "replace") if isinstance(text, bytes) else str(text), "shapes": []}, ()
+
+
+def answer(request: dict[str, Any]) -> tuple[dict[str, Any], Any]:
+    """Answer one request: what the file holds and its arrays, or what the reader said.
+
+    request: `path`, `reader`, and in `wanted` what else this one takes
+    """
+    reader = request["reader"]
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            if reader in READERS:
+                return read_c3d(reader, request["path"], *request["wanted"])
+            return {"arrays": read_arrays, "hdf5 text": read_hdf5_text}[reader](request["path"], *request["wanted"])
+    except MemoryError:
+        return {"said": "it ran out of the memory that a file of this size may take"}, ()
+    except Exception as error:  # whatever a reader raises is its opinion of the file
+        return {"said": f"it stopped with {type(error).__name__}: {error}"}, ()
+
+
+def serve(requests: IO[bytes], answers: IO[bytes]) -> None:
+    """Answer requests until there are no more.
+
+    requests, answers: lines of JSON; arrays follow an answer as raw float64
+    """
+    for line in iter(requests.readline, b""):
+        request = json.loads(line)
+        _limit(request["cap_bytes"], request["limit_s"])
+        with Path(os.devnull).open("w") as nowhere:
+            # If the parent is gone there is nobody to stop a reader that waits for ever but this.
+            faulthandler.dump_traceback_later(request["clock_s"] + 5, exit=True, file=nowhere)
+            head, arrays = answer(request)
+            _send(head, arrays, answers)
+            del arrays
+            faulthandler.cancel_dump_traceback_later()
+
+
+def _limit(cap_bytes: int, limit_s: float) -> None:
+    """Let the system end this process when it takes more memory, or more processor time from now on."""
+    with contextlib.suppress(ImportError, ValueError, OSError):  # Windows has no `resource`
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        resource.setrlimit(resource.RLIMIT_AS, (cap_bytes, resource.getrlimit(resource.RLIMIT_AS)[1]))
+        until_s = math.ceil(time.process_time() + limit_s)
+        resource.setrlimit(resource.RLIMIT_CPU, (until_s, resource.getrlimit(resource.RLIMIT_CPU)[1]))
+
+
+def _send(head: dict[str, Any], arrays: Any, answers: IO[bytes]) -> None:
+    answers.write(json.dumps(head).encode() + b"\n")
+    for values, shape in zip(
+        arrays, head["shapes"] if arrays else (), strict=False
+    ):  # a C3D's file itself comes after its two
+        rows = np.atleast_1d(values)
+        for first in range(0, len(rows) if math.prod(shape) else 0, ROWS_AT_ONCE):
+            block = np.ascontiguousarray(rows[first : first + ROWS_AT_ONCE], dtype=np.float64)
+            answers.write(memoryview(block.data).cast("B"))
+    answers.flush()
+
+
+if __name__ == "__main__":
+    answering = os.fdopen(os.dup(1), "wb")
+    with Path(os.devnull).open("w") as nothing:
+        os.dup2(nothing.fileno(), 1)  # whatever a library prints must not mix with the answers
+    serve(sys.stdin.buffer, answering)
