@@ -1,0 +1,140 @@
+"""A folder of recordings taken through the command line: what is said of it, and which numbers its page makes."""
+
+from __future__ import annotations
+
+import contextlib
+import csv
+import io
+import json
+import os
+import re
+import sys
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+NUMBER = re.compile(r"[-+]?\d[\d.,]*(e[-+]?\d+)?")
+PERSON = "run/report/people/P01"
+
+
+class Answer(NamedTuple):
+    """What came of a folder: lines of findings as `severity: ...`, values by rule and side, kept cycles, people."""
+
+    lines: list[str]
+    numbers: dict[str, tuple[float, str]]  # rule and side -> value, words where the page says that it stands out
+    cycles: int
+    people: int
+    emg: list[str]
+    pages: list[str]  # kinematics, kinetics, emg: what the page draws
+
+    def spoken(self) -> set[str]:
+        """Clinical sentences: side and words."""
+        return {f"{key.rsplit(' ', 1)[1]} {words}" for key, (_, words) in self.numbers.items() if words}
+
+
+def answer_of(folder: Path, reference: Path | None, angles: str = "file") -> Answer:
+    """Take `folder`/rec through new, check and run, as its own laboratory would."""
+    study = folder / "study"
+    printed = told("new", study, "--from", folder / "rec")
+    settings = study / "study.toml"
+    if angles == "markers" and settings.exists():
+        text = settings.read_text(encoding="utf-8")
+        settings.write_text(text.replace("# [kinematics]\n# angles", "[kinematics]\nangles"), encoding="utf-8")
+    trials = listed(told("check", study, "--json"))
+    printed += told("run", study, "-q", *(["--reference", reference] if reference else []))
+    printed = [line.replace(f"{folder}/", "") for line in printed]
+    lines = [f"printed: {line}" for line in printed if line and not line.startswith("note:")]
+    for trial in trials:
+        lines += [f"refused: {trial['file']}: {trial['refusal']}"] * bool(trial["refusal"])
+        lines += [written(one) for one in trial["findings"]]
+    lines += [written(one) for one in rows_of(study / "run/report/tables/findings.csv")]
+    cycles = rows_of(study / "run/report/tables/cycles.csv")
+    pages = [name for name in ("kinematics", "kinetics", "emg") if (study / PERSON / f"{name}.csv").exists()]
+    numbers = {
+        f"{one['rule']} {one['side']}": (float(one["value"]), one["words"])
+        for one in rows_of(study / PERSON / "outstanding.csv")
+        if one["unit"] == "deg" or one["words"]
+    }
+    drawn = rows_of(study / PERSON / "emg.csv")
+    emg = sorted({key.split("_mean")[0].split(" ")[0] for key in (drawn[0] if drawn else {}) if key.startswith("emg_")})
+    kept = sum(str(one["kept"]) == "True" for one in cycles)
+    return Answer(lines, numbers, kept, len({trial["participant"] for trial in trials}), emg, pages)
+
+
+def answer_without_pages(folder: Path, reference: Path) -> Answer:
+    """The same of `folder`/rec by the functions that the commands call, where no page has to be drawn."""
+    from gaitdisc.batch.run_study import run_study
+    from gaitdisc.clinic.reading import read_beside
+    from gaitdisc.ingest.study_file import load_study
+    from gaitdisc.results.clinical_reference import load_reference
+
+    study = folder / "study"
+    told("new", study, "--from", folder / "rec")
+    trials = listed(told("check", study, "--json"))
+    run = run_study(load_study(study), study / "run")
+    lines = [f"refused: {refusal}" for refusal in run.refusals]
+    lines += [f"refused: {trial['refusal']}" for trial in trials if trial["refusal"]]
+    lines += [written(one) for trial in trials for one in trial["findings"]]
+    lines += [f"{one.severity}: {one.kind}: {one.channel}, {one.what}" for own in run.cycles for one in own.findings]
+    noted = [one for own in run.cycles for one in read_beside(own, load_reference(reference)).numbers]
+    numbers = {f"{one.rule} {one.side}": (one.value, one.words) for one in noted}
+    kept = sum(len(own.kept) for own in run.cycles)
+    return Answer(lines, numbers, kept, len(run.cycles), [], [])
+
+
+def told(*words: object) -> list[str]:
+    """Lines that a command prints, errors included; folders are named as they lie beside each other."""
+    from gaitdisc.cli import main
+
+    text, argv = io.StringIO(), sys.argv
+    sys.argv = ["gaitdisc", *map(str, words)]
+    os.environ["COLUMNS"] = "4000"
+    try:
+        with contextlib.redirect_stdout(text), contextlib.redirect_stderr(text):
+            main()
+    except SystemExit as end:
+        if end.code not in (0, None):
+            text.write(f"\nexit code {end.code}\n")
+    except Exception as error:  # a traceback is the worst answer, and is one
+        text.write(f"\ntraceback: {type(error).__name__}: {error}\n")
+    finally:
+        sys.argv = argv
+    return [line.rstrip() for line in text.getvalue().splitlines()]
+
+
+def listed(printed: Sequence[str]) -> list[dict[str, Any]]:
+    """JSON among printed lines; nothing where the command was refused."""
+    text = "\n".join(printed)
+    try:
+        return json.loads(text[text.index("[") : text.rindex("]") + 1])
+    except ValueError:
+        return []
+
+
+def rows_of(path: Path) -> list[dict[str, Any]]:
+    """Rows of a CSV, none without it."""
+    if not path.exists():
+        return []
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def written(finding: dict[str, Any]) -> str:
+    """A finding as one line."""
+    words = [finding["file"], finding["channel"], finding["what"], finding["spoils"]]
+    return f"{finding['severity']}: {finding['kind']}: " + ", ".join(word for word in words if word)
+
+
+def without_numbers(lines: Iterable[str]) -> set[str]:
+    """Lines with # for each number, so that one that only counts differently is the same."""
+    return {NUMBER.sub("#", line) for line in lines}
+
+
+def new_lines(planted: Answer, clean: Answer, notes: bool = False) -> list[str]:
+    """Warnings and refusals, and notes where they count, that the recordings without the fault do not have."""
+    known = without_numbers(clean.lines)
+    return [
+        line
+        for line in dict.fromkeys(planted.lines)
+        if NUMBER.sub("#", line) not in known and (notes or not line.startswith("note"))
+    ]
