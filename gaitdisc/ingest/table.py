@@ -245,7 +245,7 @@ def _of_frame(
 
     labels = [str(label) for label in frame.columns]
     for label, dtype in zip(labels, frame.dtypes, strict=True):
-        if not is_numeric_dtype(dtype) or is_bool_dtype(dtype):
+        if not is_numeric_dtype(dtype) or is_bool_dtype(dtype) or dtype.kind == "c":
             remedy = "Give times as numbers of seconds." if _time_unit(label, channels) else "Leave that column out."
             raise ReadError(f"{name}: columns need numbers", f"column {label!r} holds others ({dtype})", remedy)
     if not any(_time_unit(label, channels) for label in labels):

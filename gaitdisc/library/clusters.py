@@ -10,6 +10,7 @@ import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.errors import ShapeError
+from gaitdisc.recording.arrays import real_array
 from gaitdisc.recording.recording import several
 from gaitdisc.recording.strides import PERCENT
 from gaitdisc.statistics.cluster_test import one_sample_test, two_sample_test
@@ -103,7 +104,7 @@ def _curves(given: Any) -> NDArray[np.float64]:
                 f"column {name!r} stands beside {len(given.columns) - 1} others",
                 f"Make it the index: table.set_index({name!r}).",
             )
-    values = np.asarray(given, float)
+    values = real_array(given)
     if values.ndim not in (2, 3) or (len(values) == POINTS != values.shape[1]):
         raise ShapeError(
             "a set of curves has the shape (unit, phase) or (unit, phase, channel): one row a person or stride",

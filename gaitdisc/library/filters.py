@@ -12,6 +12,7 @@ from gaitdisc.errors import SamplingError, ShapeError
 from gaitdisc.ingest.table import has_times
 from gaitdisc.library.walks import PLAIN, Kind, recording_of
 from gaitdisc.recording import Recording, Trial
+from gaitdisc.recording.arrays import real_array
 from gaitdisc.signals.butterworth import KINEMATICS_HZ, highpassed, lowpassed
 from gaitdisc.signals.derivatives import differentiated_recording
 from gaitdisc.signals.envelope import ENVELOPE_HZ, HIGHPASS_HZ, enveloped
@@ -227,13 +228,14 @@ def _in_its_form(
             filtered[label] = values
         return filtered
     try:
-        values = np.asarray(signal, float)
+        values = np.asarray(signal) if np.iscomplexobj(signal) else np.asarray(signal, float)
     except (TypeError, ValueError):
         raise ShapeError(
             "a filter takes a Recording, a DataFrame or an array of numbers",
             f"found {type(signal).__name__}",
             "Read a file with gaitdisc.read first.",
         ) from None
+    values = real_array(values)
     if values.ndim not in (1, 2) or (values.ndim == 2 and values.shape[1] > LIKELY * len(values)):
         raise ShapeError(
             "an array that is filtered has the shape (time,) or (time, channel), time first",

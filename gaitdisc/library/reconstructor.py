@@ -14,6 +14,7 @@ from gaitdisc.channel import Channel
 from gaitdisc.errors import SamplingError, ShapeError, TrainingError
 from gaitdisc.ingest.table import frame_columns, has_times
 from gaitdisc.recording import Recording, Samples
+from gaitdisc.recording.arrays import real_array
 from gaitdisc.results.saved import Saved
 from gaitdisc.sensing.intervals import half_widths
 from gaitdisc.sensing.model_folder import SensingModel, load_model, save_model
@@ -113,6 +114,8 @@ class Reconstructor(Saved, by="gaitdisc.library.reconstructor:save_reconstructor
         """
         many = isinstance(x, list | tuple) and (isinstance(x[0], Recording) or np.ndim(x[0]) > 1)
         given = (list(x), list(y)) if many else ([x], [y])  # type: ignore[arg-type]
+        for one, other in zip(*given, strict=False):
+            _check_same_times(one, other, self.rate_hz)
         readings, states = ([_timeless(one, self.rate_hz) for one in trials] for trials in given)
         if len(readings) != len(states):
             raise ShapeError(
@@ -177,6 +180,7 @@ class Reconstructor(Saved, by="gaitdisc.library.reconstructor:save_reconstructor
         y : array_like (time, state), DataFrame or Recording
             Measured states at the same times.
         """
+        _check_same_times(x, y, self.rate_hz)
         estimated = self.predict(x)
         measured = _array(_in_order(_timeless(y, self.rate_hz), self.model.reconstructor.sensing.states), "states")
         known = np.isfinite(estimated).all(axis=1) & np.isfinite(measured).all(axis=1)
@@ -304,7 +308,7 @@ def load_reconstructor(folder: Path) -> Reconstructor:
 
 
 def _array(given: Any, words: str) -> NDArray[np.float64]:
-    values = np.asarray(given.values if isinstance(given, Recording) else given, float)
+    values = real_array(given.values if isinstance(given, Recording) else given)
     if hasattr(given, "to_frame"):  # one column of a DataFrame
         values = values[:, None]
     if values.ndim != 2:
@@ -331,6 +335,32 @@ def _timeless(given: Any, rate_hz: float) -> Any:
     timed = frame_columns(given)
     _check_rate(rate_hz, (len(timed.time) - 1) / float(timed.time[-1] - timed.time[0]), "table")
     return given[[name for name in given.columns if str(name) in timed.labels]]
+
+
+def _times(given: Any) -> NDArray[np.float64] | None:
+    """Times of a recording, of a table, or of an index of fractions [s]; an array has none."""
+    if isinstance(given, Recording):
+        return given.time
+    if not hasattr(given, "iloc"):
+        return None
+    table = given.to_frame("value") if hasattr(given, "to_frame") else given
+    if has_times(table):
+        return frame_columns(table).time
+    return np.asarray(table.index, float) if table.index.dtype.kind == "f" else None
+
+
+def _check_same_times(x: Any, y: Any, rate_hz: float) -> None:
+    """Refuse readings and states that were measured more than half a sample apart: they are paired row by row."""
+    first, second = _times(x), _times(y)
+    if first is None or second is None or len(first) != len(second):
+        return
+    row = int(np.argmax(np.abs(first - second)))
+    if abs(first[row] - second[row]) > 0.5 / rate_hz:
+        raise SamplingError(
+            "readings and states are measured at the same times",
+            f"in row {row + 1} the readings are of {first[row]:.6g} s, the states of {second[row]:.6g} s",
+            "Cut both to one span, or shift the clock of one.",
+        )
 
 
 def _check_rate(rate_hz: float, found_hz: float, what: str) -> None:

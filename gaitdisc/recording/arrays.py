@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from gaitdisc.errors import ShapeError
+
 
 def read_only(values: ArrayLike, dtype: Any = float) -> NDArray[Any]:
     """View of an array that cannot be written through.
@@ -19,9 +21,21 @@ def read_only(values: ArrayLike, dtype: Any = float) -> NDArray[Any]:
     >>> read_only([1, 2]).flags.writeable
     False
     """
-    view = np.asarray(values, dtype).view()
+    view = (real_array(values) if dtype is float else np.asarray(values, dtype)).view()
     view.flags.writeable = False
     return view
+
+
+def real_array(values: Any) -> NDArray[np.float64]:
+    """Array of floats; complex numbers are refused, of which numpy would keep the real part."""
+    array = np.asarray(values)
+    if array.dtype.kind == "c":
+        raise ShapeError(
+            "a recording holds real numbers",
+            f"found complex ones, {array.shape} of them",
+            "Give their magnitude or their real part: abs(x) or x.real.",
+        )
+    return np.asarray(array, float)
 
 
 def frozen(mapping: Mapping[str, Any]) -> MappingProxyType[str, Any]:

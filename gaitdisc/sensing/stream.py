@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gaitdisc.errors import ShapeError
+from gaitdisc.recording.arrays import real_array
 from gaitdisc.sensing.missing import refuse_unknown_way
 from gaitdisc.sensing.reconstructor import ENSEMBLE, MASKED, OF_TEXT, STATIC, Reconstructor
 
@@ -42,7 +43,7 @@ class Stream:
         reading array_like (sensor,) [each sensor's unit]: in the order of the sensors; NaN where a sensor dropped out.
             One call a sample, at the model's rate
         """
-        new = np.asarray(reading, float)
+        new = real_array(reading)
         if new.shape != (len(self._sensors),):
             raise ShapeError(
                 f"a reading needs one value for each of {', '.join(self._sensors)}",

@@ -14,8 +14,10 @@ from gaitdisc.simulation.refusal import SimulationError
 from gaitdisc.simulation.rewriting import written
 from gaitdisc.simulation.simulation import Simulation
 
+LONGEST_S = 86_400.0  # of a delay, where no trial says how long: no trial lasts a day
 
-def refuse_delays(simulation: Simulation | PythonSimulation, shortest_s: float = np.inf, trial: str = "") -> None:
+
+def refuse_delays(simulation: Simulation | PythonSimulation, shortest_s: float = LONGEST_S, trial: str = "") -> None:
     """Refuse delays that are no number, that reach into the future of a state, or beyond a trial.
 
     An input is known in full, so that a negative delay of one is a signal that was recorded late.
@@ -32,7 +34,7 @@ def refuse_delays(simulation: Simulation | PythonSimulation, shortest_s: float =
 
 
 def refuse_delays_of(
-    tree: Tree, values: dict[str, float], inputs: tuple[str, ...], shortest_s: float = np.inf, trial: str = ""
+    tree: Tree, values: dict[str, float], inputs: tuple[str, ...], shortest_s: float = LONGEST_S, trial: str = ""
 ) -> None:
     """Refuse such delays of one expression; those whose seconds have names without a value are passed over.
 
@@ -56,9 +58,11 @@ def refuse_delays_of(
             )
         if abs(seconds) >= shortest_s:
             raise SimulationError(
-                f"a delay is shorter than every trial; the shortest, {trial!r}, lasts {shortest_s:.4g} s",
+                f"a delay is shorter than every trial; the shortest, {trial!r}, lasts {shortest_s:.4g} s"
+                if trial
+                else f"a delay is shorter than a day ({shortest_s:g} s)",
                 said,
-                "Write seconds, or leave the trial out.",
+                "Write seconds, or leave the trial out." if trial else "Write seconds.",
             )
 
 

@@ -24,7 +24,7 @@ FUNCTIONS = {  # name: fewest and most arguments
 }
 RESERVED = frozenset({*FUNCTIONS, "t"})
 _ALLOWED = f"numbers, names, + - * / ** ( ) and {' '.join(FUNCTIONS)}"
-_STRANGE = re.compile(r"[^A-Za-z0-9_+\-*/(),. \t\r\n]")
+_STRANGE = re.compile(r"[^A-Za-z0-9_+\-*/(),. \t\r\n]|\b(?:0[xXbBoO]|\d+_)\w+")
 _BINARY = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}
 _WORDS = {
     ast.Attribute: ("a dot after a name", "Names have no dots; write a number's point after a digit."),
@@ -88,7 +88,7 @@ def parsed(text: str) -> Tree:
         )
     strange = _STRANGE.search(text)
     if strange:
-        raise _refusal(text, strange.start(), f"{strange[0]!r}", _SIGNS.get(strange[0], f"Only {_ALLOWED}."))
+        raise _refusal(text, strange.start(), f"{strange[0]!r}", _remedy(strange[0]))
     flat = re.sub(r"\s", " ", text)
     start = len(flat) - len(flat.lstrip())
     if start == len(flat):
@@ -206,6 +206,12 @@ def _refusal(text: str, at: int, found: str, remedy: str) -> SimulationError:
     around = text[max(0, at - 20) : at + 30].replace("\n", " ")
     where = f"line {line}, column {column}" if "\n" in text else f"column {column}"
     return SimulationError("an expression is arithmetic on names", f"at {where} ({around!r}) found {found}", remedy)
+
+
+def _remedy(strange: str) -> str:
+    if strange.isdigit() or len(strange) > 1:  # full-width digits, hexadecimal ones, 1_000
+        return "Write it as a decimal number, as 16 or 1.6e1."
+    return _SIGNS.get(strange, f"Only {_ALLOWED}.")
 
 
 def _too_large(text: str) -> SimulationError:

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from gaitdisc.channel import Channel, vocabulary
-from gaitdisc.errors import ChannelError, ReadError
+from gaitdisc.errors import ChannelError, ReadError, SamplingError
 from gaitdisc.ingest.columns import named_channel
+from gaitdisc.ingest.reading import read_trial
 from gaitdisc.ingest.streams import sorted_trial, stream_of
 from gaitdisc.recording import Source
 
@@ -56,3 +57,18 @@ def test_gaps_elsewhere_stay_for_the_quality_checks():
 def test_two_columns_of_one_channel_are_refused():
     with pytest.raises(ChannelError, match=r"walk\.mot has 'sync' in columns 2 and 4"):
         sorted_trial(SOURCE, TIME, np.ones((5, 3)), [Channel(n, "signal", "1") for n in ("sync", "a", "sync")])
+
+
+@pytest.mark.parametrize("rate_hz", [100.0, 1000.0, 2000.0])
+def test_milliseconds_under_the_name_of_seconds_are_refused(tmp_path, rate_hz):
+    time = np.arange(400) / rate_hz
+    knee = 30 * np.sin(6 * time)
+    rows = "\n".join(f"{1000 * t:g},{value}" for t, value in zip(time, knee, strict=True))
+    (tmp_path / "walk.csv").write_text(f"time,knee_angle_r [deg]\n{rows}\n")
+    said = rf"knee_angle_r of a walk needs a sample every 0.2 s .*; times are {1000 / rate_hz:g} s apart, and 400"
+    with pytest.raises(SamplingError, match=said):
+        read_trial(tmp_path / "walk.csv")
+    (tmp_path / "walk.csv").write_text(f"time [ms],knee_angle_r [deg]\n{rows}\n")
+    assert read_trial(tmp_path / "walk.csv").stream("kinematics").rate_hz == pytest.approx(rate_hz)
+    (tmp_path / "tank.csv").write_text(f"time,level\n{rows}\n")  # no walk: any rate
+    assert read_trial(tmp_path / "tank.csv", {"level": "level [1]"}).stream("signals").rate_hz < 5

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 import gaitdisc as gd
-from gaitdisc.errors import SamplingError, ShapeError, TrainingError
+from gaitdisc.errors import ReadError, SamplingError, ShapeError, TrainingError
 
 T = np.arange(0.0, 40.0, 0.02)
 X = np.sin(2 * T)[:, None]
@@ -116,3 +116,32 @@ def test_scikit_learn_clones_chains_and_searches_it():
     assert search.best_params_ == {"kind": "delay ridge"}  # its history reads the phase
     with pytest.raises(TrainingError, match=r"settings kind, rate_hz.*found 'alpha'"):
         model.set_params(alpha=1.0)
+
+
+def test_times_of_a_pair_that_differ_are_refused():
+    """A pair is taken row by row: states of 0.3 s later would be learned as those of now."""
+    early = pd.DataFrame({"angle": X[:1500, 0]}, index=pd.Index(T[:1500], name="time"))
+    late = pd.DataFrame(Y[:1500], columns=["a", "b"], index=pd.Index(T[:1500] + 0.3, name="time"))
+    said = r"at the same times; in row \d+ the readings are of [0-9.]+ s, the states of [0-9.]+ s. Cut both"
+    model = gd.Reconstructor(rate_hz=50.0, history_s=0.4)
+    for x, y in ((early, late), (early.rename_axis(None), late.rename_axis(None)), ([early], [late])):
+        with pytest.raises(SamplingError, match=said):
+            model.fit(x, y)
+    model.fit(early, late.set_axis(early.index))
+    with pytest.raises(SamplingError, match=said):
+        model.score(early, late)
+    model.fit(early.reset_index(drop=True), late.reset_index(drop=True))  # rows that are counted are no times
+
+
+def test_complex_readings_are_refused_everywhere():
+    said = "a recording holds real numbers; found complex ones"
+    for work in (
+        lambda: gd.Reconstructor(rate_hz=50.0).fit(X * 1j, Y),
+        lambda: gd.Reconstructor(rate_hz=50.0).fit(X, Y + 0j),
+        lambda: gd.lowpass(X[:, 0] * 1j, rate_hz=50.0),
+        lambda: gd.Recording(T, X * 1j, ()),
+    ):
+        with pytest.raises(ShapeError, match=said):
+            work()
+    with pytest.raises(ReadError, match=r"columns need numbers; column 'knee_angle_r' holds others \(complex128\)"):
+        gd.read(pd.DataFrame({"time": T, "knee_angle_r": X[:, 0] * 1j}))

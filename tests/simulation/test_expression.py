@@ -126,3 +126,12 @@ def test_a_number_keeps_its_value(value):
     tree = parsed(repr(value))
     assert isinstance(tree, Number)
     assert tree.value == value or (np.isclose(value, 0) and math.copysign(1, value) < 0)
+
+
+@pytest.mark.parametrize(
+    ("text", "found"), [("0x10*x", "0x10"), ("2*0b11", "0b11"), ("x + 1_000", "1_000"), ("\uff11*x", "\uff11")]
+)
+def test_numbers_are_decimal(text, found):
+    with pytest.raises(SimulationError, match=rf"found '{found}'. Write it as a decimal number"):
+        parsed(text)
+    assert list(names(parsed("x_1 + a0x1 + 1.5e-3"))) == ["x_1", "a0x1"]
