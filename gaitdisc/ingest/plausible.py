@@ -1,21 +1,27 @@
-"""What a quantity can be: values beyond `data_schema/ranges.csv` are taken out before anything is filtered."""
+"""What a quantity can be: values beyond `data_schema/ranges.csv` and stretches that stand still are taken out."""
 
 from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gaitdisc.channel import Channel, schema_folder
+from gaitdisc.channel import Channel, schema_folder, vocabulary
 from gaitdisc.errors import ReadError
 from gaitdisc.recording import Finding, Recording
-from gaitdisc.recording.runs import spans_s
+from gaitdisc.recording.runs import runs, spans_s
 
+JOINTS = ("angle", "translation")
+CHANCE = 1e-6  # of a stretch that repeats one value, with the channel's own share of repeated samples; no false one in
+FEWEST_REPEATS = 3  # 4,000 made channels (smooth, noisy, quantised, held, clamped), tests/ingest/test_plausible.py
+LEAP_TIMES = 3.0  # of the three steps beyond the edge of a stretch: a joint that turns slows down before it and after
+OFF_LEAP, FOOT_N = 0.2, 50.0  # of the largest force, and at least, in one sample: no foot loses and gains as much
+SHORTEST_SWING_S = 0.3
 FEW = 0.01  # of the samples; where EMG is beyond its range more often, it is counted by a converter
 
 
@@ -80,6 +86,87 @@ def without_impossible(
             findings.append(_finding(recording, place, beyond[:, place], frames))
         kept[key] = recording.with_values(np.where(beyond, np.nan, recording.values)) if beyond.any() else recording
     return kept, findings
+
+
+def without_frozen(streams: Mapping[str, Recording]) -> tuple[dict[str, Recording], list[Finding]]:
+    """Streams in which stretches that repeat one value are missing, and which they were.
+
+    A lost marker is often filled by its last place or by zeros. A stretch of n repeats counts where chance, with the
+    share p of repeats elsewhere in the channel, would give it with p^n N < 1e-6; in a quantised channel, which also
+    repeats where it turns, where it ends in a leap. A value that a model clamps at is met often and without a leap, a
+    locked coordinate repeats throughout: both stay. Vertical forces rest at zero, unless they leap to it and back.
+
+    returns findings: one for each channel or marker, with its first such stretch
+    """
+    words = {channel.name for channel in vocabulary().channels}
+    kept: dict[str, Recording] = {}
+    findings: list[Finding] = []
+    for key, recording in streams.items():
+        still = np.zeros(recording.values.shape, bool)
+        groups: dict[str, list[int]] = {}  # columns that are lost together: a marker, a plate, an angle
+        for place, channel in enumerate(recording.channels):
+            if channel.quantity == "marker" or key == "forces":
+                groups.setdefault(re.sub("[._][^._]*$", "", channel.name), []).append(place)
+            elif channel.name in words and channel.quantity in JOINTS:
+                groups[channel.name] = [place]
+        for columns in map(np.array, groups.values()):
+            load = [int(at) for at in columns if recording.channels[at].quantity == "vertical_force"]
+            here = _dropped(recording, load) if key == "forces" else _frozen(recording.values[:, columns])
+            if here.any():
+                still[np.ix_(here, columns)] = True
+                findings.append(_frozen_finding(recording, (load or columns)[0], here))
+        kept[key] = recording.with_values(np.where(still, np.nan, recording.values)) if still.any() else recording
+    return kept, findings
+
+
+def _frozen(x: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Samples that repeat a value beyond chance; x (time, axis)."""
+    marks = np.zeros(len(x), bool)
+    move = np.abs(np.diff(x, axis=0)).max(axis=1)
+    same = move == 0
+    if same.sum() < FEWEST_REPEATS or not (move > 0).any():
+        return marks
+    step = move[move > 0]
+    grid = float(step.min())
+    coarse = grid > 1e-6 * float(np.nanmax(np.ptp(x[np.isfinite(x).all(axis=1)], axis=0)))
+    quantised = coarse and bool(np.mean(np.abs(step / grid - np.rint(step / grid)) < 0.1) > 0.9)
+    spans = runs(same)
+    for start, end in spans:
+        count = end - start
+        leap = any(
+            len(beyond) > 1 and beyond[0] > LEAP_TIMES * np.nanmax(beyond[1:], initial=grid)
+            for beyond in (move[max(0, start - 4) : start][::-1], move[end : end + 4])
+        )
+        chance = ((same.sum() - count + 1) / len(same)) ** count * len(same)
+        extreme = x.shape[1] == 1 and x[start, 0] in (np.nanmin(x), np.nanmax(x))
+        clamped = extreme or (x[spans[:, 0]] == x[start]).all(axis=1).sum() > 1
+        if count >= FEWEST_REPEATS and (leap or not (quantised or clamped)) and chance < CHANCE:
+            marks[start : end + 1] = True
+    return marks
+
+
+def _dropped(forces: Recording, columns: Sequence[int]) -> NDArray[np.bool_]:
+    """Samples at exactly zero that a vertical force leaps to and back from, sooner than a foot comes back."""
+    marks = np.zeros(len(forces.time), bool)
+    for load in np.abs(forces.values[:, columns]).T:
+        least = max(OFF_LEAP * np.nanmax(load, initial=0.0), FOOT_N)
+        for start, end in runs(load == 0).tolist():
+            short = end - start < SHORTEST_SWING_S * forces.rate_hz
+            if start > 0 and end < len(load) and short and min(load[start - 1], load[end]) > least:
+                marks[start:end] = True
+    return marks
+
+
+def _frozen_finding(recording: Recording, place: int, still: NDArray[np.bool_]) -> Finding:
+    channel, spans = recording.channels[place], spans_s(recording.time, still)
+    (start, end), others = spans[0], len(spans) - 1
+    marker = channel.quantity == "marker"
+    value = "one place" if marker else f"{recording.values[int(np.argmax(still)), place]:.4g} {channel.unit}"
+    more = f", and in {others} more stretch{'es' if others > 1 else ''}" if others else ""
+    what = f"stands still at {value} from {start:.3f} to {end:.3f} s{more}; no measurement repeats itself for so long; "
+    what += "taken as missing"
+    name = channel.name.removesuffix(".x") if marker else channel.name
+    return Finding("warning", "frozen", recording.source.file, what, "these frames; fill the gap", name, spans)
 
 
 def _limits(channel: Channel) -> PlausibleRange | None:

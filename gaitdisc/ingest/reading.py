@@ -17,7 +17,7 @@ from gaitdisc.ingest.array_trial import read_arrays
 from gaitdisc.ingest.columns import split_unit
 from gaitdisc.ingest.knee_sign import with_flexion_positive
 from gaitdisc.ingest.per_body_mass import per_kg_findings
-from gaitdisc.ingest.plausible import without_impossible
+from gaitdisc.ingest.plausible import without_frozen, without_impossible
 from gaitdisc.ingest.storage import read_storage
 from gaitdisc.ingest.table import read_frame, read_table
 from gaitdisc.ingest.trc import read_trc
@@ -203,10 +203,10 @@ def _joined(one: Recording, other: Recording, key: str) -> Recording:
 def _plausible_trial(trial: Trial, begin_s: Mapping[str, float]) -> Trial:
     """Trial with house signs and without impossible values; only what a crop leaves is checked."""
     streams, turned = with_flexion_positive(trial.streams)
+    streams, still = without_frozen(streams)
     streams, beyond = without_impossible(streams, begin_s)
-    return replace(
-        trial, streams=streams, findings=(*trial.findings, *turned, *beyond, *per_kg_findings(trial.streams))
-    )
+    found = (*trial.findings, *turned, *still, *beyond, *per_kg_findings(trial.streams))
+    return replace(trial, streams=streams, findings=found)
 
 
 def _unused(channels: Mapping[str, str] | None, streams: Mapping[str, Recording], name: str) -> list[Finding]:

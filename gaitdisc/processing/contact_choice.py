@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, GaitdiscError, StrideError
 from gaitdisc.recording import Finding, Recording, Trial
@@ -14,7 +15,7 @@ from gaitdisc.signals.contact_angles import angle_contacts
 from gaitdisc.signals.contact_events import event_contacts
 from gaitdisc.signals.contact_force import force_contacts, plate_contacts
 from gaitdisc.signals.contact_markers import marker_contacts
-from gaitdisc.signals.contacts import Agreement, Contacts
+from gaitdisc.signals.contacts import MATCH_S, Agreement, Contacts
 from gaitdisc.signals.direction import Direction, given_direction, walking_direction
 
 HEELS = {
@@ -25,6 +26,10 @@ PELVIS = ("LASI", "RASI", "LPSI", "RPSI", "SACR", "L.ASIS", "R.ASIS", "L.PSIS", 
 PREFERRED = ("force", "events", "markers", "angles")
 ENOUGH = 0.8  # of the strides that the most prolific detector sees
 DISAGREEMENT_MS = 50.0  # a twentieth of a stride
+EVENTS_MS = (
+    30.0  # three frames of 100 Hz; in 27 walks of ten laboratories events lie within 22 ms of the plates (median)
+)
+SAME_STEP_S = 0.4  # less than half a stride: events that were marked this late still belong to the plate's step
 SEEN_LATE = ("markers", "angles")  # detectors that see no ground, so that their contacts need a plate to be right
 MOST_OFFSET_S = 0.15  # twice the largest bias seen: what lies farther off is no bias of a detector but another event
 EARLY_MS = {"markers": 50.0, "angles": 38.0}  # median against plates in 20 and 14 trials of walking, docs/results.md
@@ -61,6 +66,7 @@ def chosen_contacts(
     `auto` takes force before the file's events before markers before joint angles, but none that sees fewer than 80 %
     of the strides that another sees: a plate in the floor catches one step of many. That one step corrects the others:
     contacts from markers and from angles are moved by the median of what the plate, or else the file's events, say.
+    The file's events stand where a detector that sees more contradicts them; plates move them by more than 30 ms.
 
     direction: direction of walking in the laboratory's axes, `+x` to `-z`; inferred from the markers where it is empty
     body_weight_n: mass x 9.81, by which a plate counts as loaded; 50 N without it
@@ -72,21 +78,67 @@ def chosen_contacts(
             "Name one of these; contacts that are known already go into cycles(..., contacts=times).",
         )
     seen, refused = seen_contacts(trial, direction, body_weight_n)
-    found = {name: contacts for name, contacts in seen.items() if _stride_count(contacts)}
-    if detector != "auto":
-        if detector not in found:
-            raise refused.get(detector) or _nothing_found(trial, {detector: None})
-        chosen = detector
-    else:
-        most = max((_stride_count(contacts) for contacts in found.values()), default=0)
-        enough = [name for name in PREFERRED if name in found and _stride_count(found[name]) >= ENOUGH * most]
-        if most == 0:
-            raise _nothing_found(trial, refused)
-        chosen = enough[0]
+    seen, late = events_on_plates(seen, trial.name)
+    strides = {name: count for name, contacts in seen.items() if (count := _stride_count(contacts))}
+    if detector != "auto" and detector not in strides:
+        raise refused.get(detector) or _nothing_found(trial, {detector: None})
+    if not strides:
+        raise _nothing_found(trial, refused)
+    chosen = detector if detector != "auto" else best_detector(PREFERRED, strides, seen)
     reference, offset_s = _offset(chosen, seen)
-    taken = found[chosen] if offset_s is None else _moved(found[chosen], offset_s)
-    findings = _findings(trial, chosen, seen, refused, reference)
+    taken = seen[chosen] if offset_s is None else _moved(seen[chosen], offset_s)
+    findings = [*late, *_findings(trial, chosen, seen, refused, reference)]
     return ContactChoice(taken, (*findings, *_offset_findings(trial, chosen, reference, offset_s)), offset_s)
+
+
+def best_detector(order: Sequence[str], strides: Mapping[str, int], seen: Mapping[str, Mapping[str, Contacts]]) -> str:
+    """First detector in an order that sees 80 % of the most strides; the events where all that see more deny them.
+
+    strides: detector -> strides that it sees, none of them 0
+    """
+    most = max(strides.values())
+    richer = [name for name in strides if ENOUGH * strides[name] > strides.get("events", most)]
+    stand = bool(richer) and all(any(map(len, unmarked(seen["events"], seen[name]).values())) for name in richer)
+    return next(
+        name for name in order if name in strides and (strides[name] >= ENOUGH * most or (name == "events" and stand))
+    )
+
+
+def unmarked(events: Mapping[str, Contacts], other: Mapping[str, Contacts]) -> dict[str, NDArray[np.float64]]:
+    """Contacts of another detector between those that the file marks, side -> times [s]."""
+    return {side: events[side].compared(other[side], MOST_OFFSET_S).extra for side in events if side in other}
+
+
+def events_on_plates(
+    seen: Mapping[str, Mapping[str, Contacts]], file: str
+) -> tuple[dict[str, Mapping[str, Contacts]], list[Finding]]:
+    """Contacts in which events of the file that lie more than 30 ms from the plates are moved onto them, and said.
+
+    The plates are believed, unless the markers say that it is the plates' clock that is off.
+    """
+    late = _lag_ms(seen, "force", "events", SAME_STEP_S)
+    if late is None or abs(late) <= EVENTS_MS:
+        return dict(seen), []
+    lags = [_lag_ms(seen, "markers", name, SAME_STEP_S) for name in ("force", "events")]
+    plates, marked = (np.inf if lag is None else abs(lag - EARLY_MS["markers"]) for lag in lags)
+    what = f"the file's events lie {abs(late):.0f} ms {'after' if late > 0 else 'before'} the steps that a plate saw, "
+    what += f"where {EVENTS_MS:g} ms is the most"
+    if marked < plates and plates > DISAGREEMENT_MS:
+        what += f"; the events are believed, since they lie {lags[1]:.0f} ms from the markers' contacts"
+        return dict(seen), [Finding("warning", "events and plates", file, what, "moments; check the plates' clock")]
+    moved = {
+        side: replace(c, foot_off=c.foot_off - late / 1e3) for side, c in _moved(seen["events"], -late / 1e3).items()
+    }
+    what += "; the plates are believed, and all events were moved onto them"
+    return {**seen, "events": moved}, [Finding("warning", "events and plates", file, what, "phase; check the events")]
+
+
+def _lag_ms(seen: Mapping[str, Mapping[str, Contacts]], one: str, other: str, within_s: float) -> float | None:
+    """Median of how much later another detector places the contacts that both see [ms]; None without any."""
+    first, second = seen.get(one, {}), seen.get(other, {})
+    apart = [first[side].compared(second[side], within_s).difference_s for side in first if side in second]
+    both = np.concatenate([np.empty(0), *apart])
+    return float(1e3 * np.median(both)) if len(both) else None
 
 
 def seen_contacts(
@@ -126,14 +178,9 @@ def _offset(chosen: str, seen: Mapping[str, Mapping[str, Contacts]]) -> tuple[st
     if chosen not in SEEN_LATE:
         return "", None
     for name in ("force", "events"):
-        later = [
-            -seen[name][side].compared(contacts).difference_s
-            for side, contacts in seen[chosen].items()
-            if name in seen and side in seen[name]
-        ]
-        steps = np.concatenate([np.empty(0), *later])
-        if len(steps) and abs(np.median(steps)) <= MOST_OFFSET_S:
-            return name, float(np.median(steps))
+        later = _lag_ms(seen, chosen, name, MATCH_S)
+        if later is not None and abs(later) <= 1e3 * MOST_OFFSET_S:
+            return name, later / 1e3
     return "", None
 
 

@@ -132,10 +132,17 @@ def _seen(standing: Standing, planned: PlannedTrial, number: int, read: Trial, s
     legs, states, lost = cycle_channels(trial, study.filters, plate_steps is not None)
     strides = _strides(steps, study)
     _verify(trial, strides, outside)
-    findings = (*trial.findings, *quality_findings(_known(trial)), *side_findings(trial, strides), *lost)
+    findings = (
+        *trial.findings,
+        *steps.findings,
+        *quality_findings(_known(trial)),
+        *side_findings(trial, strides),
+        *lost,
+    )
     findings += standing.findings(trial, legs is not None)
     files = {s.source.file: s.source.sha256 for s in trial.streams.values() if s.source.sha256}
-    plates, feet = plate_loadings(trial, rise_of(weight_n)), heel_paths(trial, direction)
+    plates = plate_loadings(trial, rise_of(weight_n))
+    feet = None if any(one.kind == "exchanged heels" for one in steps.findings) else heel_paths(trial, direction)
     kept = shelved.put(states)
     return _Seen(planned, number, steps, outside, trial.name, plates, feet, legs, kept, findings, files, plate_steps)
 

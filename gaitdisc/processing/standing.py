@@ -23,7 +23,7 @@ from gaitdisc.processing.markers_to_moments import computed_trial
 from gaitdisc.processing.two_sources import without_contradicted
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.recording.body_measures import BodyMeasures
-from gaitdisc.signals.emg_size import OVER_STANDING, OVER_WALKING, emg_sizes, other_unit_findings
+from gaitdisc.signals.emg_size import FEWEST, OVER_STANDING, OVER_WALKING, emg_sizes, other_unit_findings
 from gaitdisc.signals.marker_distances import person_findings
 
 Read = Callable[[PlannedTrial], Trial]
@@ -86,7 +86,7 @@ class Standing:
         if "emg" not in trial.streams:
             return []
         own = emg_sizes(trial.stream("emg"))
-        if self.emg_sizes:
+        if len(self.emg_sizes) >= FEWEST:
             return other_unit_findings(own, self.emg_sizes, OVER_STANDING, trial.name, "the static trial")
         if self._walked is None:
             self._walked = trial.name, own

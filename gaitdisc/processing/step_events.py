@@ -10,15 +10,16 @@ from numpy.typing import NDArray
 
 from gaitdisc.errors import ChannelError, GaitdiscError, StrideError
 from gaitdisc.processing.contact_choice import (
-    ENOUGH,
     MOST_OFFSET_S,
-    PREFERRED,
     SEEN_LATE,
+    best_detector,
+    events_on_plates,
     named_markers,
     seen_contacts,
     trial_direction,
+    unmarked,
 )
-from gaitdisc.recording import Trial
+from gaitdisc.recording import Finding, Trial
 from gaitdisc.signals.contacts import Contacts
 from gaitdisc.signals.direction import Direction
 from gaitdisc.signals.foot_off import angle_foot_off, marker_foot_off, stance_windows
@@ -28,7 +29,9 @@ TOES = {
     "l": ("LTOE", "L.Toe", "L.Toe.Tip", "L_Toe", "LMT2", "LMTH2", "LFM2", "LD2M", "LSMH"),
 }
 GROUND = ("events", "force")  # what saw the ground, the person who marked the file first
+ORDER = (*GROUND, *SEEN_LATE)
 ONE_EVENT_S = MOST_OFFSET_S  # nearer than this two detectors speak of one event of a foot
+OTHER_FOOT_S = 0.1  # markers are early by 21 to 74 ms, and steps are 0.4 s apart or more
 USUAL_STRIDE_S = 1.1
 LEAST_PATH_M_PER_S = 0.3  # of the pelvis from end to end
 NO_WALKWAY_S = 10.0  # a walk that lasts longer and does not show its path is one on a treadmill
@@ -43,12 +46,10 @@ class StepEvents:
     off_detector: str  # `markers` or `angles`, whichever shows foot off; empty where neither does
     contacts: Mapping[str, Times]  # each ndarray [s], side -> times, as these detectors place them
     foot_offs: Mapping[str, Times]  # each ndarray [s], side -> times, as these detectors place them
-    # mapping of str to tuple of (float, str), side -> time and `events` or `force`; no contacts where the detector sees
-    # the ground itself
+    # side -> time [s] and `events` or `force`; no contacts where the detector sees the ground itself
     ground_contacts: Mapping[str, tuple[tuple[float, str], ...]]
-    # mapping of str to tuple of (float, str), side -> time and `events` or `force`; no contacts where the detector sees
-    # the ground itself
     ground_offs: Mapping[str, tuple[tuple[float, str], ...]]
+    findings: tuple[Finding, ...] = ()  # events that contradict the plates, heels that contradict the events
 
     def later_s(self, kind: str) -> Times:
         """How much later the ground places the events that both see [s]; only steps that both see count."""
@@ -89,16 +90,21 @@ def step_events(
     """Contacts and foot offs of a trial of any length; one stride of one foot is enough.
 
     The file's events go before force before markers before angles, but none that sees fewer than 80 % of the strides
-    that another sees; angles only where nothing else sees a stride. What the ground or the file saw stands beside.
+    that another sees, unless the other contradicts the events; angles only where nothing else sees a stride. What the
+    ground or the file saw stands beside.
 
     direction: direction of walking in the laboratory's axes, `+x` to `-z`; inferred where it is empty
     body_weight_n: mass x 9.81, by which a plate counts as loaded; 50 N without it
     """
     seen, refused = seen_contacts(trial, direction, body_weight_n)
-    strides = {name: _stride_count(contacts) for name, contacts in seen.items()}
-    chosen = _chosen(strides, detector)
-    if not chosen:
+    seen, findings = events_on_plates(seen, trial.name)
+    strides = {name: count for name, contacts in seen.items() if (count := _stride_count(contacts))}
+    if not strides if detector == "auto" else detector not in strides:
         raise _nothing_seen(trial, seen, refused, detector)
+    sure = {name: count for name, count in strides.items() if name != "angles"} or strides
+    chosen = best_detector(ORDER, sure, seen) if detector == "auto" else detector
+    if chosen == "events":
+        findings += _exchanged_heels(trial, seen)
     contacts = {side: one.time for side, one in seen[chosen].items()}
     off_detector, offs = _seen_offs(trial, contacts, direction)
     ground = {name: seen[name] for name in GROUND if name in seen}
@@ -113,7 +119,24 @@ def step_events(
         offs,
         _merged({name: {s: one.time for s, one in sides.items()} for name, sides in late.items()}),
         _merged(ground_offs),
+        tuple(findings),
     )
+
+
+def _exchanged_heels(trial: Trial, seen: Mapping[str, Mapping[str, Contacts]]) -> list[Finding]:
+    """Say where a heel lands while the file marks the contact of the other foot, and none of its own."""
+    findings = []
+    for side, times in unmarked(seen["events"], seen.get("markers", {})).items():
+        other = seen["events"].get("l" if side == "r" else "r")
+        at = [time for time in times if other is not None and np.abs(other.time - time).min() <= OTHER_FOOT_S]
+        if at:
+            what = (
+                f"the heel of side {side} lands at {', '.join(f'{time:.2f}' for time in at[:5])} s, where the file's "
+            )
+            what += "events have the other foot: the heels look exchanged; the events are used"
+            spoils = "lengths and widths of steps, left out for this trial; correct the labels"
+            findings.append(Finding("warning", "exchanged heels", trial.name, what, spoils))
+    return findings
 
 
 def over_ground(trial: Trial) -> bool:
@@ -152,16 +175,6 @@ def trial_markers(trial: Trial, direction: str = "") -> tuple[dict[str, str], li
         return heels, pelvis, trial_direction(markers, heels, pelvis, direction)
     except (ChannelError, StrideError):
         return None
-
-
-def _chosen(strides: Mapping[str, int], detector: str) -> str:
-    if detector != "auto":
-        return detector if strides.get(detector) else ""
-    order = ("events", *(name for name in PREFERRED if name != "events"))
-    sure = {name: count for name, count in strides.items() if count and name != "angles"}
-    most = max(sure.values(), default=0)
-    enough = [name for name in order if sure.get(name, 0) >= ENOUGH * most and name in sure]
-    return enough[0] if enough else "angles" if strides.get("angles") else ""
 
 
 def _stride_count(contacts: Mapping[str, Contacts]) -> int:

@@ -1,4 +1,4 @@
-"""Channels that say nothing, or not what was measured: empty, flat, frozen, clipped, jumping."""
+"""Channels that say nothing, or not what was measured: empty, flat, clipped, jumping."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from gaitdisc.recording.runs import runs, spans_s
 from gaitdisc.recording.wrapping import unwrapped
 from gaitdisc.signals.gaps import gap_findings
 
-FROZEN_S = 0.1
 CLIPPED_SHARE = 1e-3
 FEWEST_CLIPPED = 5
 JUMP_TIMES = 10.0
@@ -18,11 +17,9 @@ REST_QUANTITIES = ("force", "vertical_force", "moment", "pressure_centre", "powe
 
 
 def channel_findings(recording: Recording) -> list[Finding]:
-    """Say which channels are empty, flat, frozen, clipped or jumping, and where the gaps are.
+    """Say which channels are empty, flat, clipped or jumping, and where the gaps are.
 
     - flat: one value throughout, as a locked coordinate has; a note, since it is often meant.
-    - frozen: the very same value for 0.1 s or longer in a channel that otherwise moves; not for forces and what is
-      derived from them, which rest at zero.
     - clipped: the largest or smallest value is met, exactly, in five samples and one in a thousand or more.
     - jump: a second difference ten times as large as its 95th percentile (in clean trials the largest is two to seven
       times): swapped markers, or inverse kinematics that lost its way for a frame.
@@ -50,28 +47,12 @@ def channel_findings(recording: Recording) -> list[Finding]:
             continue
         rests = channel.quantity in REST_QUANTITIES
         for kind, marks in (
-            ("frozen", np.zeros(len(x), bool) if rests else frozen(x, recording.rate_hz)),
             ("clipped", clipped(x, rests)),
             ("jump", np.zeros(len(x), bool) if rests else jumping(x)),
         ):
             if marks.any():
                 findings.append(_finding(recording, column, kind, marks))
     return findings
-
-
-def frozen(x: NDArray[np.float64], rate_hz: float) -> NDArray[np.bool_]:
-    """Mark where the same value is repeated for 0.1 s or longer.
-
-    x (time,): one channel
-
-    >>> int(frozen(np.r_[np.arange(10.0), np.full(15, 9.0), np.arange(9.0)], 100.0).sum())
-    16
-    """
-    same = np.zeros(len(x), bool)
-    for start, end in runs(np.diff(x) == 0):
-        if (end - start) / rate_hz >= FROZEN_S:
-            same[start : end + 1] = True
-    return same
 
 
 def clipped(x: NDArray[np.float64], rests_at_zero: bool = False) -> NDArray[np.bool_]:
@@ -119,10 +100,6 @@ def _finding(recording: Recording, column: int, kind: str, marks: NDArray[np.boo
     places = len(runs(marks))
     seconds = marks.sum() / recording.rate_hz
     words = {
-        "frozen": (
-            f"the same value for up to {_longest_s(marks, recording.rate_hz):.2f} s",
-            "accelerations, false there",
-        ),
         "clipped": (f"stops at {_stops(x, marks)} {channel.unit}", "the peaks, which are lost"),
         "jump": ("leaps from one sample to the next", "velocity and acceleration there"),
     }
@@ -137,10 +114,6 @@ def _finding(recording: Recording, column: int, kind: str, marks: NDArray[np.boo
         channel.name,
         spans_s(recording.time, marks),
     )
-
-
-def _longest_s(marks: NDArray[np.bool_], rate_hz: float) -> float:
-    return max(int(end - start) for start, end in runs(marks)) / rate_hz
 
 
 def _stops(x: NDArray[np.float64], marks: NDArray[np.bool_]) -> str:

@@ -19,6 +19,9 @@ BURST = 3.4  # 99th percentile of the envelope over its median; Gaussian noise h
 UNPLUGGED_SHARE = 0.5
 AT_RAIL_SHARE = 0.98
 CLIPPED_SHARE = 1e-3
+SILENT_SHARE = 5e-4  # robust standard deviation: 160 live channels of ten laboratories have 1.0e-3 or more
+RAILS_SHARE = 1e-2  # at the rails
+FLAT_BURST = 1.5  # burst ratio of 400 made channels of clipped Gaussian noise: 1.45 at most
 USUAL_RANGES_V = (1.25, 2.5, 5.0, 10.0)
 STEPS = 2**15  # either side of zero, of a 16-bit converter
 FEWEST_AT_RAIL = 3
@@ -30,6 +33,7 @@ class AmplifierRange:
 
     volts: float
     how: str  # `given`, or what it was inferred from
+    shown: bool = True  # by the recording itself, in whatever unit it is
 
 
 def amplifier_range(emg: Recording, given_v: float | None = None) -> AmplifierRange:
@@ -51,7 +55,7 @@ def amplifier_range(emg: Recording, given_v: float | None = None) -> AmplifierRa
         return AmplifierRange(given_v, "given")
     values = np.abs(emg.values[np.isfinite(emg.values).all(axis=1)])
     if not values.size or values.max() == 0:
-        return AmplifierRange(USUAL_RANGES_V[0], "assumed: the recording is empty")
+        return AmplifierRange(USUAL_RANGES_V[0], "assumed: the recording is empty", False)
     top = float(values.max())
     met = int((values > top * (1 - 1e-6)).sum(axis=0).max())
     below = int(((values > 0.95 * top) & (values <= top * (1 - 1e-6))).sum(axis=0).max())
@@ -61,7 +65,7 @@ def amplifier_range(emg: Recording, given_v: float | None = None) -> AmplifierRa
     if steps and STEPS * (step := float(np.median(steps))) >= top:
         return AmplifierRange(STEPS * step, f"the quantisation step of {step:.3g} V")
     usual = next((v for v in USUAL_RANGES_V if v >= top), top)
-    return AmplifierRange(usual, f"the smallest usual range that holds the largest value, {top:.3g} V")
+    return AmplifierRange(usual, f"the smallest usual range that holds the largest value, {top:.3g} V", False)
 
 
 def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
@@ -69,8 +73,10 @@ def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
 
     - dead: the standard deviation is below 0.1 % of the range, or below 0.4 % in a channel whose envelope has no bursts
       (its 99th percentile stays below 3.4 times its median): nothing but the amplifier's noise, or a muscle that rests.
+      Dead, too, is a channel that is clipped and below 0.05 % for most of the time: an electrode that lost contact.
     - unplugged: the standard deviation is above half of the range. Even a Gaussian signal cut off at its own standard
-      deviation stays below that after clipping at two; an input without electrodes swings from rail to rail.
+      deviation stays below that after clipping at two; an input without electrodes swings from rail to rail. So does
+      one that is clipped in 1 % of the samples and has the envelope of noise.
     - clipped: one sample in a thousand or more lies within 2 % of the range. The channel lives; its peaks are lost.
 
     The limits were set on the 14 files of young_straight_and_turn, whose manifest lists the live channels; dead ones
@@ -91,14 +97,23 @@ def emg_findings(emg: Recording, range_v: float | None = None) -> list[Finding]:
         at_rail = np.abs(x) >= AT_RAIL_SHARE * limit.volts
         rail = f"range {limit.volts:.3g} V, from {limit.how}"
         size = f"standard deviation {1e3 * known.std():.3g} mV, {100 * share:.2g} % of the amplifier's"
-        if share < WEAK_SHARE and (share < DEAD_SHARE or burst_ratio(x, emg.rate_hz) < BURST):
+        clipped = at_rail.mean() >= CLIPPED_SHARE
+        silent = 1.4826 * float(np.median(np.abs(known - np.median(known)))) / limit.volts
+        if clipped and silent < SILENT_SHARE <= share:
+            kind, severity = "dead", "refused"
+            what = f"{100 * at_rail.mean():.2g} % of the samples at the amplifier's {rail}, and no more than its noise "
+            what += f"between (robust standard deviation {1e3 * silent * limit.volts:.3g} mV)"
+        elif share < WEAK_SHARE and (share < DEAD_SHARE or burst_ratio(x, emg.rate_hz) < BURST):
             limit_share = DEAD_SHARE if share < DEAD_SHARE else WEAK_SHARE
             bursts = "" if share < DEAD_SHARE else " or bursts"
             kind, severity = "dead", "refused"
             what = f"{size} {rail}; a live channel has {100 * limit_share:g} % or more{bursts}"
         elif share > UNPLUGGED_SHARE:
             kind, severity, what = "unplugged", "refused", f"{size} {rail}; no muscle gives more than 50 %"
-        elif at_rail.mean() >= CLIPPED_SHARE:
+        elif at_rail.mean() >= RAILS_SHARE and burst_ratio(x, emg.rate_hz) < FLAT_BURST:
+            kind, severity = "unplugged", "refused"
+            what = f"{100 * at_rail.mean():.2g} % of the samples at the amplifier's {rail}; no bursts between"
+        elif clipped:
             kind, severity = "clipped", "warning"
             what = f"{100 * at_rail.mean():.2g} % of the samples at the amplifier's {rail}"
         else:
@@ -146,7 +161,8 @@ def live_channels(emg: Recording, range_v: float | None = None) -> tuple[str, ..
 def _quantisation_step(x: NDArray[np.float64]) -> float | None:
     """Step between neighbouring values of a channel that uses few of them; None for a filtered one."""
     known = x[np.isfinite(x)]
-    levels = np.unique(np.round(known, 7))
+    most = float(np.abs(known).max(initial=0.0)) or 1.0
+    levels = most * np.unique(np.round(known / most, 7))
     if len(levels) < 10 or len(levels) > len(known) / 4:
         return None
     steps = np.diff(levels)

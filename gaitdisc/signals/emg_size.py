@@ -11,6 +11,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from gaitdisc.recording import Finding, Recording
+from gaitdisc.signals.emg_quality import DEAD_SHARE, UNPLUGGED_SHARE, amplifier_range
 
 OVER_STANDING = (0.1, 100.0)  # who walks has more than a tenth of the EMG of standing
 OVER_WALKING = (1 / 30, 30.0)
@@ -19,9 +20,15 @@ FEWEST = 3  # channels that both trials have
 
 
 def emg_sizes(emg: Recording) -> dict[str, float]:
-    """Standard deviation of each channel that has one [V]."""
+    """Standard deviation of each channel that has one [V]; without dead and unplugged ones, which have no unit to show.
+
+    They are told by the amplifier's range, and only where the recording shows that: a usual range would depend on the
+    unit.
+    """
     found = {name: float(np.nanstd(emg[name])) for name in emg.names if np.isfinite(emg[name]).any()}
-    return {name: size for name, size in found.items() if size > 0}
+    limit = amplifier_range(emg)
+    least, most = (DEAD_SHARE * limit.volts, UNPLUGGED_SHARE * limit.volts) if limit.shown else (0.0, np.inf)
+    return {name: size for name, size in found.items() if size > least and size <= most}
 
 
 def other_unit_findings(

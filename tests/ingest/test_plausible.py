@@ -9,7 +9,7 @@ import pytest
 
 from gaitdisc.channel import QUANTITIES, Channel, schema_folder, vocabulary
 from gaitdisc.errors import ReadError
-from gaitdisc.ingest.plausible import plausible_ranges, without_impossible
+from gaitdisc.ingest.plausible import plausible_ranges, without_frozen, without_impossible
 from gaitdisc.ingest.reading import read_trial
 from gaitdisc.recording import Recording, Source
 from gaitdisc.units import known_units
@@ -102,3 +102,73 @@ def test_what_a_crop_leaves_out_is_not_checked(gait_data):
     frame = int(said.what.split("in frame ")[1].split()[0])
     line = path.read_text().splitlines()[10 + frame]  # eleven lines of header and labels before frame 1
     assert float(said.what.split(" deg")[0]) == pytest.approx(float(line.split()[7]), rel=1e-5)
+
+
+def _walk(rng, n=300):
+    phases = rng.uniform(0, 6, 4)
+    return sum(30 / k**1.5 * np.sin(2 * np.pi * k * np.arange(n) / 100 + phase) for k, phase in enumerate(phases, 1))
+
+
+def _made(kind, rng):
+    """Angles as laboratories have them, none of which is frozen."""
+    x = _walk(rng)
+    return {
+        "smooth": x,
+        "noisy": x + rng.normal(0, 0.3, len(x)),
+        "0.1 deg": np.round(x, 1),
+        "1 deg": np.round(x),
+        "held": np.repeat(x[::5], 5),
+        "clamped": np.maximum(x, np.percentile(x, 12)),
+        "locked": np.full(len(x), 12.0),
+        "stands first": np.round(np.r_[x[0] + np.cumsum(rng.normal(0, 0.01, 150)), x[:150]], 1),
+    }[kind]
+
+
+@pytest.mark.parametrize("kind", ["smooth", "noisy", "0.1 deg", "1 deg", "held", "clamped", "locked", "stands first"])
+def test_what_repeats_by_nature_is_not_frozen(kind):
+    rng = np.random.default_rng(7)
+    for _ in range(60):
+        walk = {"kinematics": _of(vocabulary().named("knee_angle_r"), *_made(kind, rng))}
+        assert without_frozen(walk)[1] == []
+
+
+@pytest.mark.parametrize("held", [True, False])
+def test_a_frozen_or_zero_stretch_of_an_angle_is_a_gap(held):
+    x = _walk(np.random.default_rng(1)) + 5.0
+    x[100:130] = x[100] if held else 0.0
+    kept, (finding,) = without_frozen({"kinematics": _of(vocabulary().named("knee_angle_r"), *x)})
+    assert np.flatnonzero(np.isnan(kept["kinematics"].values[:, 0])).tolist() == list(range(100, 130))
+    assert (finding.severity, finding.kind, finding.channel) == ("warning", "frozen", "knee_angle_r")
+    value = f"{x[100]:.4g}" if held else "0"
+    assert finding.what.startswith(f"stands still at {value} deg from 1.000 to 1.300 s; ")
+
+
+def test_a_marker_is_frozen_where_all_its_coordinates_are():
+    rng = np.random.default_rng(2)
+    places = np.column_stack([_walk(rng), _walk(rng), np.full(300, 3.0)]) / 100
+    places[100:120, 0] = places[100, 0]
+    channels = tuple(Channel(f"RHEE.{axis}", "marker", "m") for axis in "xyz")
+    walk = Recording(np.arange(300) / 100, places, channels)
+    assert without_frozen({"markers": walk})[1] == []
+    places[100:120] = places[100]
+    kept, (finding,) = without_frozen({"markers": walk.with_values(places)})
+    assert finding.channel == "RHEE" and finding.spans == ((1.0, 1.2),)
+    assert np.isnan(kept["markers"].values[100:120]).all()
+
+
+def test_a_force_that_drops_to_zero_under_a_standing_foot_is_a_gap_and_one_that_rests_is_none():
+    load = np.clip(np.sin(2 * np.pi * np.arange(3000) / 1500), 0, None) * 700.0
+    channels = tuple(Channel(f"plate_1_f{axis}", "vertical_force" if axis == "z" else "force", "N") for axis in "xz")
+    forces = Recording(np.arange(3000) / 1000, np.column_stack([0.1 * load, load]), channels)
+    assert without_frozen({"forces": forces})[1] == []
+    values = np.array(forces.values)
+    values[300:450] = 0.0
+    kept, (finding,) = without_frozen({"forces": forces.with_values(values)})
+    assert finding.what.startswith("stands still at 0 N from 0.300 to 0.450 s") and finding.channel == "plate_1_fz"
+    assert np.flatnonzero(np.isnan(kept["forces"].values).all(axis=1)).tolist() == list(range(300, 450))
+
+
+def test_no_walk_at_hand_is_frozen_in_its_legs(real_trials):
+    """Arms of two runs stand at a default of their model; nothing else does."""
+    found = {(path.name, f.channel[:3]) for path, _, findings in real_trials for f in findings if f.kind == "frozen"}
+    assert {part for _, part in found} <= {"arm", "elb", "pro"}

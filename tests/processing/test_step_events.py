@@ -99,6 +99,51 @@ def test_angles_alone_serve_and_a_trial_without_anything_says_what_it_has(trial)
         step_events(trial, "markers")
 
 
+def _moved(walk, late_s):
+    return replace(walk, events=tuple(replace(event, time=event.time + late_s) for event in walk.events))
+
+
+@pytest.mark.parametrize("late_s", [0.1, -0.1, 0.06])
+def test_events_that_lie_apart_from_the_plates_are_moved_onto_them_and_said(walks, late_s):
+    for name in ("HC002D06", "HC030A05", "HC030A22", "HC031A06"):
+        right, wrong = step_events(walks[name]), step_events(_moved(walks[name], late_s))
+        assert right.findings == ()
+        (finding,) = wrong.findings
+        assert (finding.severity, finding.kind, finding.file) == ("warning", "events and plates", walks[name].name)
+        assert "the plates are believed" in finding.what
+        assert float(finding.what.split(" ms ")[0].split()[-1]) == pytest.approx(1e3 * abs(late_s), abs=15)
+        apart = wrong.contacts["r"] - right.contacts["r"]
+        assert np.abs(apart).max() <= 0.015 and wrong.detector == "events"
+
+
+def test_plates_whose_clock_is_off_are_not_believed_where_markers_speak_for_the_events(walks):
+    walk = walks["HC030A05"]
+    forces = walk.stream("forces")
+    off = replace(walk, streams={**walk.streams, "forces": replace(forces, time=forces.time + 0.12)})
+    steps = step_events(off)
+    (finding,) = steps.findings
+    assert "the events are believed" in finding.what and "check the plates' clock" in finding.spoils
+    np.testing.assert_array_equal(steps.contacts["r"], step_events(walk).contacts["r"])
+
+
+@pytest.mark.parametrize("name", ["HC002D25", "HC030A05", "HC030A22", "HC031A06"])
+def test_heels_that_are_exchanged_for_half_a_second_do_not_outvote_the_events(walks, name):
+    walk = walks[name]
+    markers = walk.stream("markers")
+    knee = walk.stream("kinematics")["knee_angle_r"]
+    first = max(2, int(np.nanargmax(knee)) - 25)
+    values, right, left = np.array(markers.values), *(markers.index(f"{heel}.x") for heel in ("RHEE", "LHEE"))
+    part = slice(first, first + 50)
+    values[part, right : right + 3], values[part, left : left + 3] = (
+        markers.values[part, left : left + 3],
+        markers.values[part, right : right + 3],
+    )
+    steps = step_events(replace(walk, streams={**walk.streams, "markers": markers.with_values(values)}))
+    assert steps.detector == "events"
+    assert {finding.kind for finding in steps.findings} == {"exchanged heels"}
+    assert "lands at" in steps.findings[0].what and step_events(walk).findings == ()
+
+
 def test_a_long_walk_that_does_not_show_its_path_is_one_on_a_treadmill(trial):
     assert not over_ground(trial)
     short = {"kinematics": trial.stream("kinematics").between(0.0, 3.0)}

@@ -93,6 +93,20 @@ def test_real_files_have_exactly_the_live_channels_of_their_manifest(gait_data, 
             if not path.exists():
                 continue
             wanted = set(filter(None, row["live_emg"].split("|")))
-            assert set(live_channels(real.emg(ezc3d.c3d(str(path))))) == wanted, path.name
+            lost = {"L Hams"} if path.stem == "HC033A22" else set()  # the amplifier's noise but for 1 % at its rails
+            assert set(live_channels(real.emg(ezc3d.c3d(str(path))))) == wanted - lost, path.name
             seen += 1
     assert seen >= 14
+
+
+def test_a_clipped_channel_without_bursts_or_without_a_muscle_between_is_no_muscle():
+    rng = np.random.default_rng(5)
+    rails = np.clip(rng.normal(0, 0.6, 6000), -1.25, 1.25)  # 3.7 % at the rails, standard deviation below half of them
+    loose = rng.normal(0, 3e-4, 6000)
+    loose[1000:1060] = 1.25
+    found = {finding.channel: finding for finding in emg_findings(emg(a=rails, b=loose, c=live(0.1, 1)), 1.25)}
+    assert (found["a"].kind, found["a"].severity) == ("unplugged", "refused")
+    assert "no bursts between" in found["a"].what
+    assert (found["b"].kind, found["b"].severity) == ("dead", "refused")
+    assert "1 % of the samples at the amplifier's range 1.25 V" in found["b"].what and "0.3" in found["b"].what
+    assert set(found) == {"a", "b"}

@@ -50,3 +50,12 @@ def test_dead_and_empty_channels_have_no_size():
     bare = np.column_stack([np.zeros(50), np.full(50, np.nan), np.arange(50.0)])
     channels = tuple(Channel(name, "emg", "V", "r") for name in MUSCLES[:3])
     assert list(emg_sizes(Recording(np.arange(50) / 1000, bare, channels))) == ["emg_gas_r"]
+
+
+def test_electrodes_that_were_not_yet_on_in_the_static_trial_are_no_unit():
+    """Converter of 16 bits and 1.25 V: noise of 0.3 mV standing, bursts of 250 mV walking: 893 times, and no unit."""
+    step, rng = 1.25 / 2**15, np.random.default_rng(3)
+    channels = tuple(Channel(name, "emg", "V", "r") for name in MUSCLES)
+    noise, bursts = ((np.round(rng.normal(0, size, (3000, 4)) / step) * step) for size in (2.8e-4, 0.25))
+    static, walk = (Recording(np.arange(3000) / 1000, x, channels) for x in (noise, np.clip(bursts, -1.25, 1.25)))
+    assert not other_unit_findings(emg_sizes(walk), emg_sizes(static), OVER_STANDING, "walk", "the static trial")
