@@ -30,15 +30,17 @@ def moments(
     from gaitdisc.kinetics.joint_moments import KineticsSettings
     from gaitdisc.kinetics.trial_kinetics import trial_kinetics
     from gaitdisc.processing.markers_to_moments import foot_paths_of
+    from gaitdisc.processing.side_checks import check_weight, standing_weight_n
 
     walk, stood = read_trial(trial), read_trial(static)
     standing, measures = stood.stream("markers"), body_measures_in(static)
     person = Person(measures.mass_kg if mass is None else mass, sex, measures.height_m)
+    weighed = check_weight(standing_weight_n(stood), person.kg, static.name)
     body, moved = moved_body(walk.stream("markers"), standing, marker_set or None, measures)
     settings = KineticsSettings(force_cutoff_hz=force_hz)
     found = trial_kinetics(walk, moved.poses, foot_paths_of(moved, body), person, settings)
     write_recording(found.moments, out)
-    for finding in dict.fromkeys((*stood.findings, *walk.findings, *moved.findings, *found.findings)):
+    for finding in dict.fromkeys((*stood.findings, *weighed, *walk.findings, *moved.findings, *found.findings)):
         typer.echo(finding.line())
     for step in (one for one in found.steps if one.clean):
         typer.echo(f"side {step.side} alone on {step.platform} from {step.start:.2f} to {step.end:.2f} s")

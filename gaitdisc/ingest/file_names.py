@@ -123,20 +123,21 @@ def person_word(path: Path) -> str:
     >>> person_word(Path("controls/Anna/pre/Straight/trial01.c3d"))
     'Anna'
     """
-    own = _own_folders(path)
-    if own:
-        return own[0]
-    return next((part for part in re.split(r"[^A-Za-z0-9]+", path.stem) if _PERSON.fullmatch(part)), "")
+    return (*_own_folders(path), _person_in(path.stem))[0]
+
+
+def _person_in(name: str) -> str:
+    return next((part for part in re.split(r"[^A-Za-z0-9]+", name) if _PERSON.fullmatch(part)), "")
 
 
 def group_word(path: Path) -> str:
-    """Word of a path that names a group: a folder such as `controls` above those of persons; or empty.
+    """Words of a path that name a group: folders such as `controls` above those of persons; or empty.
 
-    >>> group_word(Path("controls/P01/walk.c3d")), group_word(Path("P01/walk.c3d"))
-    ('controls', '')
+    >>> group_word(Path("children/td/P01/walk.c3d")), group_word(Path("P01/walk.c3d"))
+    ('children td', '')
     """
-    folders = path.parent.parts if _own_folders(path) else ()
-    return next((folder.lower() for folder in folders[:-1] if folder.lower() in GROUP_WORDS), "")
+    folders = path.parent.parts[:-1] if _own_folders(path) else path.parent.parts
+    return " ".join(folder.lower() for folder in folders if folder.lower() in GROUP_WORDS)
 
 
 def session_word(path: Path) -> tuple[str, str]:
@@ -199,7 +200,7 @@ def _own_folders(path: Path) -> list[str]:
     for place, folder in enumerate(path.parent.parts):
         alone = Path(folder, "x")
         lower = folder.lower()
-        beneath = place + 1 < len(path.parent.parts)
+        beneath = place + 1 < len(path.parent.parts) or _person_in(path.stem)
         if lower in GROUP_WORDS and beneath and not own:
             continue
         if lower in _NEUTRAL_FOLDERS or lower in _KIND_WORDS or kind_of_trial(alone):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -54,18 +54,13 @@ class FoundTrial:
     """Files of one walk, found in a folder."""
 
     files: tuple[Path, ...]  # relative to the folder that was searched
-    person: str  # words of the path that name the person and a group, or empty
-    group: str  # words of the path that name the person and a group, or empty
+    person: str  # word of the path that names the person, or empty
+    group: str  # words of the path that name the person's group, or empty
     session: str  # what the session is put in order by, or empty
-    # word that names the condition, and `nominal`, `device`, `static`, `functional`, `other` (no walk) or empty
-    word: str
-    # word that names the condition, and `nominal`, `device`, `static`, `functional`, `other` (no walk) or empty
-    which: str
-    # joint angles, those of them that vary, and EMG channels; None where the files hold no such stream
-    angles: tuple[str, ...] | None
-    # joint angles, those of them that vary, and EMG channels; None where the files hold no such stream
+    word: str  # what names the condition
+    which: str  # `nominal`, `device`, `static`, `functional`, `other` (no walk) or empty
+    angles: tuple[str, ...] | None  # joint angles; None where the files hold no such stream, as of the next two
     varying: tuple[str, ...] | None
-    # joint angles, those of them that vary, and EMG channels; None where the files hold no such stream
     emg: tuple[str, ...] | None
 
     @property
@@ -74,6 +69,7 @@ class FoundTrial:
         return self.which not in (STATIC, FUNCTIONAL, "other")
 
 
+Who = tuple[str, str]  # group and word of a person: controls/Smith and patients/Smith are two
 Stamp = tuple[tuple[str, int, int], ...]  # name, size and time of the files of one walk
 Looked = dict[Stamp, tuple["FoundTrial | None", list[str]]]  # what was read of it, and what was said
 
@@ -116,6 +112,7 @@ def found_study(
             f"none there can be read{unread}",
             "Name the folder that holds them.",
         )
+    found = _in_one_group(found)
     conditions, called = named_conditions(found, notes)
     sessions = _sessions(found)
     home = Path(home) if home is not None else folder
@@ -125,14 +122,14 @@ def found_study(
     participants = tuple(
         Participant(
             id=pseudonym,
-            group=next((t.group for t in found if t.person == person), ""),
-            mass_kg=bodies[person].mass_kg,
-            height_m=bodies[person].height_m,
-            sex=bodies[person].sex,
-            age_years=bodies[person].age_years,
-            trials=tuple(_planned(t, called, sessions, way) for t in found if t.person == person),
+            group=who[0],
+            mass_kg=bodies[who].mass_kg,
+            height_m=bodies[who].height_m,
+            sex=bodies[who].sex,
+            age_years=bodies[who].age_years,
+            trials=tuple(_planned(t, called, sessions, way) for t in found if (t.group, t.person) == who),
         )
-        for person, pseudonym in people.items()
+        for who, pseudonym in people.items()
     )
     words = tuple(dict.fromkeys(sessions.values()))
     title = " against ".join(conditions.words) if conditions.device else ", ".join(conditions.words)
@@ -155,17 +152,26 @@ def recording_files(folder: Path) -> list[Path]:
 
 
 def _bodies(
-    people: Mapping[str, str], measured: Mapping[str, Measured], tables: Sequence[Path], notes: list[str]
-) -> dict[str, Measured]:
-    """Mass, sex, stature and age of each person's word, and what no table has or has too many of."""
-    found = {person: measured.get(person_key(person), Measured()) for person in people}
-    absent = [people[person] for person in people if measured and person_key(person) not in measured]
+    people: Mapping[Who, str], measured: Mapping[str, Measured], tables: Sequence[Path], notes: list[str]
+) -> dict[Who, Measured]:
+    """Mass, sex, stature and age of each person, and what no table has or has too many of."""
+    named = Counter(person_key(word) for _, word in people)
+    keys = {who: person_key(who[1]) for who in people}
+    absent = [people[who] for who, key in keys.items() if measured and (key not in measured or named[key] > 1)]
     if absent:
         notes.append(f"not in {', '.join(table.as_posix() for table in tables)}: {', '.join(absent)}")
-    said = said_of(found, tables)
+    found = {who: measured.get(key, Measured()) if named[key] == 1 else Measured() for who, key in keys.items()}
+    said = said_of({people[who]: body for who, body in found.items()}, tables)
     if said:
         notes.append(said)
     return found
+
+
+def _in_one_group(found: Sequence[FoundTrial]) -> list[FoundTrial]:
+    """Trials of no group are those of the only group that the person's word has."""
+    groups = {trial.person: {one.group for one in found if one.person == trial.person} - {""} for trial in found}
+    alone = {person: next(iter(own)) for person, own in groups.items() if len(own) == 1}
+    return [replace(trial, group=trial.group or alone.get(trial.person, "")) for trial in found]
 
 
 def _found_trials(folder: Path, files: Sequence[Path], notes: list[str], looked: Looked) -> list[FoundTrial]:
@@ -310,44 +316,49 @@ def named_conditions(found: Sequence[FoundTrial], notes: list[str]) -> tuple[Con
     return Conditions(nominal=reference, device=device, others=rest), called
 
 
-def _sessions(found: Sequence[FoundTrial]) -> dict[tuple[str, str], str]:
+def _sessions(found: Sequence[FoundTrial]) -> dict[tuple[Who, str], str]:
     """Session of each person and place in order; a date becomes its number, since dates show who a person is."""
     words = {trial.session: session_word(trial.files[0])[0] for trial in found if trial.session}
     if not words:
         return {}
-    sessions: dict[tuple[str, str], str] = {}
-    for person in {trial.person for trial in found}:
-        own = sorted({trial.session for trial in found if trial.person == person and trial.session})
+    sessions: dict[tuple[Who, str], str] = {}
+    for who in {(trial.group, trial.person) for trial in found}:
+        own = sorted({trial.session for trial in found if (trial.group, trial.person) == who and trial.session})
         dated = [order for order in own if not words[order]]
-        sessions |= {(person, order): words[order] or f"session {dated.index(order) + 1}" for order in own}
+        sessions |= {(who, order): words[order] or f"session {dated.index(order) + 1}" for order in own}
     order = {word: place for (_, place), word in sessions.items()}
     return dict(sorted(sessions.items(), key=lambda item: (item[1].startswith("session"), order[item[1]])))
 
 
 def _planned(
-    trial: FoundTrial, called: Mapping[str, str], sessions: Mapping[tuple[str, str], str], way: Path
+    trial: FoundTrial, called: Mapping[str, str], sessions: Mapping[tuple[Who, str], str], way: Path
 ) -> PlannedTrial:
     return PlannedTrial(
         condition=called[trial.word],
-        session=sessions.get((trial.person, trial.session)),
+        session=sessions.get(((trial.group, trial.person), trial.session)),
         files=tuple((way / file).as_posix() for file in trial.files),
     )
 
 
-def _people(found: Sequence[FoundTrial], notes: list[str]) -> dict[str, str]:
-    """Word of each person -> pseudonym."""
-    people = sorted({trial.person for trial in found})
-    taken = {person for person in people if PSEUDONYM.fullmatch(person)}
-    free = (f"P{number:02d}" for number in range(1, 1000) if f"P{number:02d}" not in taken)
-    ids = {person: person if person in taken else next(free) for person in people}
-    renamed = [new for old, new in ids.items() if old and old != new]
+def _people(found: Sequence[FoundTrial], notes: list[str]) -> dict[Who, str]:
+    """Group and word of each person -> pseudonym."""
+    people = sorted({(trial.group, trial.person) for trial in found}, key=lambda who: (who[1], who[0]))
+    named = Counter(word.lower() for _, word in people)
+    taken = {word for _, word in people if PSEUDONYM.fullmatch(word) and named[word.lower()] == 1}
+    free = (f"P{number:02d}" for number in range(1, 10_000) if f"P{number:02d}" not in taken)
+    ids = {who: who[1] if who[1] in taken else next(free) for who in people}
+    renamed = [new for (_, old), new in ids.items() if old and old != new]
     if renamed:
         notes.append(f"folder names that are no pseudonyms became {', '.join(renamed)}; the paths still hold them")
-    kept = [person for person in people if person in taken]
+    twice = [f"{new} ({group or 'no group'})" for (group, old), new in ids.items() if named[old.lower()] > 1]
+    if twice:
+        notes.append(f"one name in several groups, taken for several people: {', '.join(twice)}")
+    kept = [word for _, word in people if word in taken]
     if kept:
         notes.append(f"taken as pseudonyms as they are: {', '.join(kept)}; change any that shows who a person is")
-    if "" in ids:
-        notes.append(f"files whose path names no person were put under {ids['']}")
+    nobody = [new for (_, old), new in ids.items() if not old]
+    if nobody:
+        notes.append(f"files whose path names no person were put under {', '.join(nobody)}")
     return ids
 
 

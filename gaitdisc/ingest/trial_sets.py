@@ -2,9 +2,17 @@
 
 from __future__ import annotations
 
+import itertools
+from contextlib import suppress
 from dataclasses import dataclass
 
+from gaitdisc.errors import GaitdiscError
+from gaitdisc.ingest.c3d_measures import body_measures_in
+from gaitdisc.ingest.file_hash import file_sha256
 from gaitdisc.ingest.study import FUNCTIONAL, STATIC, UNKNOWN, Participant, PlannedTrial, Study
+
+MOST_KG, MOST_M = 2.0, 0.03  # within a session: clothes and shoes; a shoe's sole, and a tape held twice
+ALWAYS = (float("-inf"), float("inf"))  # [s]
 
 
 @dataclass(frozen=True)
@@ -63,10 +71,13 @@ def _of_session(trials: list[PlannedTrial], session: str) -> PlannedTrial | None
 def refused_participant(study: Study, participant: Participant) -> str:
     """Why nothing of a participant is reported; empty where something is.
 
-    Who lacks one of two compared conditions is refused, but for a group, such as controls, that never has it.
+    Who lacks one of two compared conditions is refused, but for a group, such as controls, that never has it. So is who
+    has a recording that is another person's or another condition's too, or two bodies in one session.
     """
     if participant.excluded:
         return f"excluded in the study: {participant.excluded}"
+    if mixed := shared_recording(study, participant) or differing_body(study, participant):
+        return mixed
     if study.conditions.device is not None and not _of_a_group_without_device(study, participant):
         if participant.id in study.one_condition_only():
             return _one_walk_each(study, participant)
@@ -74,6 +85,59 @@ def refused_participant(study: Study, participant: Participant) -> str:
         words = " or ".join(map(repr, study.conditions.words))
         found = f"{participant.id} has {len(participant.trials) or 'no'} trials of other conditions"
         return f"a participant needs a trial of {words}; {found}. Correct the conditions in [[participants.trials]]."
+    return ""
+
+
+def same_recording(study: Study, one: PlannedTrial, other: PlannedTrial) -> bool:
+    """Whether two trials use one stretch of files that have the same bytes."""
+    (start, end), (later, last) = one.crop_s or ALWAYS, other.crop_s or ALWAYS
+    if one.part != other.part or max(start, later) >= min(end, last):
+        return False
+    for pair in itertools.product(one.files, other.files):
+        first, second = map(study.path_of, pair)
+        with suppress(OSError, GaitdiscError):  # reading says why
+            if first.stat().st_size == second.stat().st_size and file_sha256(first) == file_sha256(second):
+                return True
+    return False
+
+
+def shared_recording(study: Study, participant: Participant) -> str:
+    """Say that a recording of a participant is also one of another participant, session or condition; or empty."""
+    people = [person for person in study.participants if not person.excluded]
+    used = [(one, trial) for one in people for trial in one.trials if trial.condition != UNKNOWN]
+    for own, (other, trial) in itertools.product((t for one, t in used if one is participant), used):
+        alike = other is participant and own.condition == trial.condition  # counted once, or standing for two sessions
+        if alike and (own.session == trial.session or not is_walk(study, own)):
+            continue
+        if same_recording(study, own, trial):
+            names = f"{participant.trial_name(own)} and {other.trial_name(trial)}"
+            said = f"{names} are the same recording: their files have the same SHA-256. A recording must belong to one"
+            return f"{said} person, session and condition. Take it out of [[participants.trials]] where it is wrong."
+    return ""
+
+
+def differing_body(study: Study, participant: Participant) -> str:
+    """Say which measure differs between two files of a session by more than one body does, or nothing.
+
+    What the study itself says of the body goes before the files.
+    """
+    found: dict[tuple[str | None, str], dict[float, str]] = {}
+    for trial in (one for one in participant.trials if one.condition != UNKNOWN):
+        for file in trial.files:
+            with suppress(OSError, GaitdiscError):  # reading says why
+                body = body_measures_in(study.path_of(file))
+                measures = {f"leg length ({side})": length for side, length in body.leg_length_m.items()}
+                measures |= {"body mass": None if participant.mass_kg else body.mass_kg}
+                measures |= {"stature": None if participant.height_m else body.height_m}
+                for name, value in ((name, value) for name, value in measures.items() if value):
+                    found.setdefault((trial.session, name), {})[value] = participant.trial_name(trial)
+    for (_, name), values in found.items():
+        low, high = min(values), max(values)
+        most, unit = (MOST_KG, "kg") if name == "body mass" else (MOST_M, "m")
+        if high - low > most:
+            said = f"{name} is {low:.4g} {unit} in {values[low]} and {high:.4g} {unit} in {values[high]}; files of one "
+            said += f"person and session may differ by {most:g} {unit}"
+            return f"{said}. Give each person, or session, its own files, or correct the measure."
     return ""
 
 

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.errors import ShapeError
+from gaitdisc.kinetics.newton_euler import GRAVITY
 from gaitdisc.kinetics.platform import Platform
-from gaitdisc.kinetics.wrench import LEAST_LOAD_N
+from gaitdisc.kinetics.wrench import LEAST_LOAD_N, Wrench
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.recording.arrays import read_only
 from gaitdisc.recording.runs import runs
@@ -23,6 +24,9 @@ SOLE_AROUND_M = 0.02  # the sole reaches at least this far around its centre of 
 STILL_M_PER_S = 0.35  # a part of the foot that bears load hardly moves; one that swings is five times as fast
 SWINGS_M_PER_S = 3 * STILL_M_PER_S  # heel and toes of a foot that bears no load, forwards
 STANDS_S = 0.05  # shorter is a foot that passes
+ALONE_S = 0.12  # shorter is too little of a swing to weigh a person in
+# of the weight: 10 single stances of healthy people are 0.97 to 1.03; a sole that reaches over the edge costs more
+MOST_APART = 0.10
 CLEAR_LOAD = 0.2  # of the greatest load: where the centre of pressure is the foot's
 
 
@@ -111,6 +115,8 @@ class PlateStep:
     reason: str = ""  # why it cannot be used; empty where one foot alone stepped on it with all of its sole
     # false where the recording begins or ends in it: its forces are right, and it is no whole stance
     whole: bool = True
+    # `warning` where the force contradicts markers or weight, `note` where two feet made it; then no moments are shown
+    doubt: str = ""
 
     @property
     def clean(self) -> bool:
@@ -122,7 +128,14 @@ class PlateStep:
         if self.clean:
             return None
         what = f"the step on {self.platform} from {self.start:.2f} to {self.end:.2f} s is left out: {self.reason}"
-        return Finding("note", "plate step", file, what, "joint moments of this step", spans=((self.start, self.end),))
+        return Finding(
+            self.doubt or "note",
+            "plate step",
+            file,
+            what,
+            "joint moments of this step",
+            spans=((self.start, self.end),),
+        )
 
 
 def plate_steps(
@@ -142,10 +155,59 @@ def plate_steps(
         for start, end in platform.loadings(least_load_n):
             span = float(platform.time[start]), float(platform.time[end - 1])
             cut = bool(start == 0 or end == len(platform.time))
+            wrench = Wrench(platform.wrench.force[start:end], platform.wrench.moment[start:end])
+            loaded = replace(platform, time=platform.time[start:end], wrench=wrench)
             find = _named_foot if platform.side else _foot
-            side, reason = find(platform, span, feet, least_load_n)
-            steps.append(PlateStep(platform.name, side, *span, reason, not cut))
+            side, reason, doubt = find(loaded, span, feet, least_load_n)
+            steps.append(PlateStep(platform.name, side, *span, reason, not cut, doubt))
     return sorted(steps, key=lambda step: step.start)
+
+
+@dataclass(frozen=True, eq=False)
+class Weight:
+    """Weight of a person and how high the pelvis is, which the force on one leg must agree with."""
+
+    newton: float  # mass x 9.81
+    time: NDArray[np.float64]  # (frame,) [s], of the markers
+    height: NDArray[np.float64]  # (frame,) [m], of the pelvis
+
+    def share(self, platform: Platform, span: tuple[float, float]) -> float:
+        """Force of a platform that bears a person alone over what weight and motion need; NaN without a pelvis.
+
+        Mean under a window w that is 0 and level at both ends: that of w F is m times that of w g + w'' z, so that the
+        height z is not differentiated.
+        """
+        on = (platform.time >= span[0]) & (platform.time <= span[1])
+        time, turn = platform.time[on] - span[0], 2 * np.pi / (span[1] - span[0])
+        height = np.interp(platform.time[on], self.time, self.height)
+        window, bend = (1 - np.cos(turn * time)) / 2, turn**2 * np.cos(turn * time) / 2
+        needed = self.newton * np.mean(window + bend * (height - height.mean()) / GRAVITY)
+        return float(np.mean(window * platform.load_n[on]) / needed)
+
+
+def weighed_steps(
+    steps: Sequence[PlateStep],
+    found: Sequence[Platform],
+    airborne: Mapping[str, Sequence[tuple[float, float]]],
+    weight: Weight,
+) -> list[PlateStep]:
+    """Steps, doubted where the other foot swings and the force is not what weight and motion of the person need.
+
+    airborne: spans in which a foot swings, as `swings` gives them [s]
+    """
+    named = {platform.name: platform for platform in found}
+
+    def judged(step: PlateStep) -> PlateStep:
+        other = airborne.get("l" if step.side == "r" else "r", ()) if step.side else ()
+        spans = [(max(start, step.start), min(end, step.end)) for start, end in other]
+        start, end = max(spans, key=lambda span: span[1] - span[0], default=(0.0, 0.0))
+        share = weight.share(named[step.platform], (start, end)) if end - start >= ALONE_S else 1.0
+        if not abs(share - 1) > MOST_APART:
+            return step
+        reason = f"it shows {share:.2f} of the force that {weight.newton:.0f} N of body weight need on one leg"
+        return replace(step, reason=step.reason or f"{reason} from {start:.2f} to {end:.2f} s", doubt="warning")
+
+    return [judged(step) for step in steps]
 
 
 def empty_findings(found: Sequence[Platform], file: str, least_load_n: float = LEAST_LOAD_N) -> list[Finding]:
@@ -168,34 +230,35 @@ def empty_findings(found: Sequence[Platform], file: str, least_load_n: float = L
 
 def _foot(
     platform: Platform, span: tuple[float, float], feet: Mapping[str, FootPath], least_load_n: float
-) -> tuple[str, str]:
-    """Side of the foot that loads a platform, and why the step cannot be used."""
+) -> tuple[str, str, str]:
+    """Side of the foot that loads a platform, why the step cannot be used, and whether that is a doubt."""
     standing = {side: _stands_s(foot, platform, span) for side, foot in feet.items()}
     if len(standing) == 2 and min(standing.values()) >= STANDS_S:
-        return "", "both feet stand on it, " + ", ".join(f"{side} for {s:.2f} s" for side, s in standing.items())
+        both = ", ".join(f"{side} for {seconds:.2f} s" for side, seconds in standing.items())
+        return "", f"both feet stand on it, {both}", "note"
     beside = {side: _distance(platform, span, foot, least_load_n) for side, foot in feet.items()}
     known = {side: metres for side, metres in beside.items() if np.isfinite(metres)}
     if not known:
-        return "", "no foot has its markers then"
+        return "", "no foot has its markers then", ""
     side = min(known, key=lambda key: known[key])
     if known[side] > BESIDE_FOOT_M:
-        return "", f"the centre of pressure is {100 * known[side]:.0f} cm beside the nearest foot ({side})"
-    return side, _over_edge(feet[side], platform, span) or _near_edge(platform, span, least_load_n)
+        return "", f"the centre of pressure is {100 * known[side]:.0f} cm beside the nearest foot ({side})", "warning"
+    return side, _over_edge(feet[side], platform, span) or _near_edge(platform, least_load_n), ""
 
 
 def _named_foot(
     platform: Platform, span: tuple[float, float], feet: Mapping[str, FootPath], least_load_n: float
-) -> tuple[str, str]:
+) -> tuple[str, str, str]:
     """Side that a platform names, and why that cannot be: another foot, or none, stands where the force is."""
     beside = {side: _distance(platform, span, foot, least_load_n) for side, foot in feet.items()}
     own = beside.get(platform.side, np.nan)
     if not own > BESIDE_FOOT_M:
-        return platform.side, ""
+        return platform.side, "", ""
     nearest = min((side for side in beside if np.isfinite(beside[side])), key=lambda side: beside[side])
     whose = f"it is named the foot's of side {platform.side}, and its centre of pressure"
     if nearest != platform.side:
-        return platform.side, f"{whose} follows the other foot ({nearest}), {100 * own:.0f} cm away"
-    return platform.side, f"{whose} is {100 * own:.0f} cm beside it"
+        return platform.side, f"{whose} follows the other foot ({nearest}), {100 * own:.0f} cm away", "warning"
+    return platform.side, f"{whose} is {100 * own:.0f} cm beside it", "warning"
 
 
 def _frames(foot: FootPath, span: tuple[float, float]) -> NDArray[np.bool_]:
@@ -238,12 +301,10 @@ def _over_edge(foot: FootPath, platform: Platform, span: tuple[float, float]) ->
     return ""
 
 
-def _near_edge(platform: Platform, span: tuple[float, float], least_load_n: float) -> str:
+def _near_edge(platform: Platform, least_load_n: float) -> str:
     """Say how near to the edge the centre of pressure comes where a part of the sole must reach over it."""
     if platform.surface is None:
         return ""
-    step = (platform.time >= span[0]) & (platform.time <= span[1])
-    load = platform.load_n[step]
-    pressure = platform.pressure_centre(least_load_n)[step][load > CLEAR_LOAD * load.max()]
+    pressure = platform.pressure_centre(least_load_n)[platform.load_n > CLEAR_LOAD * platform.load_n.max()]
     nearest = -float(np.nanmax(platform.surface.outside(pressure)))
     return f"its centre of pressure comes within {100 * nearest:.1f} cm of the edge" if nearest < SOLE_AROUND_M else ""

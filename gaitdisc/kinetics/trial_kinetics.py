@@ -15,7 +15,8 @@ from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.foot_loads import FootLoad, foot_loads, swings
 from gaitdisc.kinetics.force_balance import ForceBalance, force_balance
 from gaitdisc.kinetics.joint_moments import KineticsSettings, Leg, joint_moments, legs
-from gaitdisc.kinetics.plate_steps import FootPath, PlateStep, empty_findings, plate_steps
+from gaitdisc.kinetics.newton_euler import GRAVITY
+from gaitdisc.kinetics.plate_steps import FootPath, PlateStep, Weight, empty_findings, plate_steps, weighed_steps
 from gaitdisc.kinetics.platform import platforms
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.signals.butterworth import lowpassed
@@ -55,7 +56,10 @@ def trial_kinetics(
     markers = trial.stream("markers")
     time, file = markers.time, markers.source.file or trial.name
     found = platforms(trial)
-    steps = plate_steps(found, feet, settings.least_load_n)
+    steps, airborne, up = plate_steps(found, feet, settings.least_load_n), swings(trial, feet), found[0].up
+    if "pelvis" in poses:
+        weight = Weight(person.kg * GRAVITY, time, poses["pelvis"].origin @ up)
+        steps = weighed_steps(steps, found, airborne, weight)
     left_out = [finding for step in steps if (finding := step.finding(file))]
     if not any(step.clean for step in steps):
         reasons = "; ".join(f"{one.platform} at {one.start:.2f} s: {one.reason}" for one in steps[:3])
@@ -64,13 +68,12 @@ def trial_kinetics(
             f"{file} has {reasons or 'no loaded platform'}",
             "Leave the trial out of kinetics, or give one whose plates were hit by one foot each.",
         )
-    loads = foot_loads(found, steps, time, settings.force_cutoff_hz, swings(trial, feet))
-    up = found[0].up
+    loads = foot_loads(found, steps, time, settings.force_cutoff_hz, airborne)
     both = legs(poses, feet, person, settings)
     moments = joint_moments(both, loads, time, up, person, settings)
     balance = ForceBalance(0, *[float("nan")] * 3)
     if len(both) == 2:
-        alike = foot_loads(found, steps, time, settings.marker_cutoff_hz, swings(trial, feet))
+        alike = foot_loads(found, steps, time, settings.marker_cutoff_hz, airborne)
         balance = force_balance(both, alike, up, person, _acceleration(markers, trunk, settings.marker_cutoff_hz))
     findings = (*empty_findings(found, file, settings.least_load_n), *left_out, balance.finding(file))
     moments = replace(moments, subject=trial.subject, condition=trial.condition, source=markers.source)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from gaitdisc.channel import vocabulary
@@ -23,16 +25,19 @@ LEGS = ("hip_", "knee_", "ankle_", "subtalar_")
 
 
 def cycle_channels(
-    trial: Trial, filters: Filters, smooth_moments: bool = False
+    trial: Trial, filters: Filters, from_markers: Sequence[str] = ()
 ) -> tuple[Recording | None, tuple[Recording, ...], tuple[Finding, ...]]:
-    """Filtered angles, moments, powers, belt forces and EMG envelopes of a trial, those of the vocabulary.
+    """Angles, moments, powers, belt forces and EMG envelopes of a trial, those of the vocabulary.
 
-    smooth_moments: whether moments and powers were computed of filtered markers and forces, so that they stay as they
-        are
+    Filtered is what was measured, and angles computed here. Moments and powers computed here are of filtered markers
+    and forces; angles, moments, powers and weighed forces of the file are as the file has them.
+
+    from_markers: streams that were computed here
     returns legs: angles of the legs, gaps bridged where they may be, not filtered
     returns states: what cycles are cut of, each at its own rate
+    returns findings: what could not be used, and which filter the others had
     """
-    legs, states, findings = None, [], []
+    legs, states, findings, words = None, [], [], []
     for key, quantities in (
         ("kinematics", ("angle", "translation")),
         ("moments", ("moment", "power")),
@@ -43,19 +48,22 @@ def cycle_channels(
         if recording is None:
             continue
         try:
-            smooth = smooth_moments and key == "moments"
-            state = recording if smooth else _filtered(key, recording, filters)
+            state, how = _filtered(key, recording, filters, key in from_markers)
         except GaitdiscError as error:
             findings.append(Finding("warning", "left out", trial.name, f"{key}: {error}", f"curves of the {key}"))
             continue
         if key == "kinematics":
             own = [channel.name for channel in recording.channels if channel.name.startswith(LEGS)]
             legs = filled(without_spikes(recording.selected(own)), None, filters.gap_s) if own else None
-        states += [state] if state is not None else []
+        if state is not None:
+            states.append(state)
+            words.append(how)
     weighed = weighed_forces(trial)
     if weighed is not None and not any(set(weighed.names) & set(one.names) for one in states):
-        states.append(lowpassed(weighed, FORCE_HZ, filters.order, filters.gap_s))
-    return legs, tuple(states), tuple(findings)
+        states.append(weighed)
+        words.append("weighed forces as in the file")
+    said = [Finding("note", "filter", trial.name, "; ".join(words), "")] if words else []
+    return legs, tuple(states), (*findings, *said)
 
 
 def _known(trial: Trial, key: str, quantities: tuple[str, ...]) -> Recording | None:
@@ -77,20 +85,30 @@ def _known(trial: Trial, key: str, quantities: tuple[str, ...]) -> Recording | N
     return recording.selected(names) if names else None
 
 
-def _filtered(key: str, recording: Recording, filters: Filters) -> Recording | None:
+def _filtered(key: str, recording: Recording, filters: Filters, computed: bool) -> tuple[Recording | None, str]:
+    """Recording as it is shown, and which filter it had; what a file computed has none here."""
+    low = f"low-pass {filters.kinematics_hz:g} Hz"
     if key == "emg":
         return _envelopes(recording, filters)
     if key == "forces":
-        return lowpassed(recording, FORCE_HZ, filters.order, filters.gap_s)
-    clean = without_spikes(plateau_marked(recording)) if key == "kinematics" else recording
-    return lowpassed(filled(clean, None, filters.gap_s), filters.kinematics_hz, filters.order, filters.gap_s)
+        return lowpassed(recording, FORCE_HZ, filters.order, filters.gap_s), f"forces low-pass {FORCE_HZ:g} Hz"
+    if key == "moments" and computed:
+        return recording, f"moments and powers from markers ({low}) and forces ({FORCE_HZ:g} Hz)"
+    if key == "moments":
+        return filled(recording, None, filters.gap_s), "moments and powers as in the file"
+    whole = filled(without_spikes(plateau_marked(recording)), None, filters.gap_s)
+    if not computed:
+        return whole, "angles as in the file"
+    return lowpassed(whole, filters.kinematics_hz, filters.order, filters.gap_s), f"angles from markers, {low}"
 
 
-def _envelopes(emg: Recording, filters: Filters) -> Recording | None:
+def _envelopes(emg: Recording, filters: Filters) -> tuple[Recording | None, str]:
+    low = f"low-pass {filters.emg_lowpass_hz:g} Hz"
     if not is_raw(emg):
-        return lowpassed(emg, filters.emg_lowpass_hz, filters.order, filters.gap_s)
+        return lowpassed(emg, filters.emg_lowpass_hz, filters.order, filters.gap_s), f"EMG {low}"
     dead = {finding.channel for finding in emg_findings(emg) if finding.severity == "refused"}
     live = [name for name in emg.names if name not in dead]
     if not live:
-        return None
-    return enveloped(emg.selected(live), filters.emg_highpass_hz, filters.emg_lowpass_hz, filters.order)
+        return None, ""
+    envelope = enveloped(emg.selected(live), filters.emg_highpass_hz, filters.emg_lowpass_hz, filters.order)
+    return envelope, f"EMG high-pass {filters.emg_highpass_hz:g} Hz, rectified, {low}"

@@ -19,28 +19,11 @@ from gaitdisc.recording import Finding, Trial
 
 @dataclass(frozen=True, eq=False)
 class ComputedTrial:
-    """A trial with what was computed from its markers."""
+    """A trial with what was computed from its markers, if anything was."""
 
     trial: Trial  # with angles and, where platforms allow it, moments
-    steps: tuple[PlateStep, ...] | None  # on all platforms, clean or not; None where no moments could be computed
-
-
-def with_angles_and_moments(
-    trial: Trial,
-    calibration: Calibration,
-    person: Person | None,
-    settings: KineticsSettings | None = None,
-    forward: Sequence[float] | None = None,
-) -> Trial:
-    """Trial with joint angles from its markers and, where platforms allow it, moments and powers.
-
-    What a model in the file itself held under these streams gives way. A trial without forces, or without a step of
-    one foot alone on a platform, has angles only and says why in its findings.
-
-    forward: direction of walking in the laboratory's axes; found from the pelvis where it is not given
-    returns: streams `kinematics` [deg, m] and `moments` [N m/kg, W/kg] on the frames of the markers
-    """
-    return computed_trial(trial, calibration, person, settings, forward).trial
+    steps: tuple[PlateStep, ...] | None = None  # on all platforms, clean or not; None without moments from markers
+    from_markers: tuple[str, ...] = ()  # streams that were computed
 
 
 def computed_trial(
@@ -50,9 +33,13 @@ def computed_trial(
     settings: KineticsSettings | None = None,
     forward: Sequence[float] | None = None,
 ) -> ComputedTrial:
-    """As `with_angles_and_moments`, with the steps on platforms that the moments rest on.
+    """Trial with joint angles from its markers and, where platforms allow it, moments and powers.
+
+    What a model in the file itself held under these streams gives way. A trial without forces, or without a step of
+    one foot alone on a platform, has angles only and says why in its findings.
 
     forward: direction of walking in the laboratory's axes; found from the pelvis where it is not given
+    returns: streams `kinematics` [deg, m] and `moments` [N m/kg, W/kg] on the frames of the markers
     """
     moved = motion(trial.stream("markers"), calibration, forward)
     own = [key for key in ("kinematics", "moments") if key in trial.streams]
@@ -73,7 +60,8 @@ def computed_trial(
         else:
             streams["moments"], steps = kinetics.moments, kinetics.steps
             findings += kinetics.findings
-    return ComputedTrial(replace(trial, streams=streams, findings=tuple(findings)), steps)
+    made = ("kinematics",) if steps is None else ("kinematics", "moments")
+    return ComputedTrial(replace(trial, streams=streams, findings=tuple(findings)), steps, made)
 
 
 def _residual(moved: Motion, file: str) -> Finding:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -33,6 +34,7 @@ from gaitdisc.processing.trial_cycles import (
     with_gaps,
     with_plate_steps,
     with_plates,
+    without_doubted,
 )
 from gaitdisc.recording import PERCENT, Cycle, Finding, Recording, Strides, Trial
 from gaitdisc.results import PooledCycles, Refusal
@@ -42,6 +44,7 @@ from gaitdisc.signals.sides import verify_sides
 from gaitdisc.signals.strides import duration_reasons
 from gaitdisc.signals.walking import LEAST_COVERAGE, verify_walking
 
+DOUBTED = ("plate step", "swapped plates")  # findings whose spans no kinetics are shown of
 KINETIC = ("moment", "power", "force", "vertical_force")  # quantities that need a plate under the foot
 
 
@@ -92,13 +95,14 @@ def pooled_cycles(study: Study, participant: Participant, read: Read) -> tuple[P
     """
     sets = trial_sets(study, participant)
     found: list[PooledCycles] = []
+    prints: dict[str, tuple[str, int]] = {}  # of each trial that was read: its name and number
     for session in dict.fromkeys(one.session for one in sets):
         standing = standing_of(study, participant, session, read)
         seen: dict[str, list[_Seen]] = {}
         lost: dict[str, list[Refusal]] = {}
         with shelf() as shelved:
             for one in (own for own in sets if own.session == session):
-                seen[one.condition], lost[one.condition] = _seen_trials(standing, one, read, shelved)
+                seen[one.condition], lost[one.condition] = _seen_trials(standing, one, read, shelved, prints)
             offsets = _offsets([trial for trials in seen.values() for trial in trials])
             found += [
                 _pooled(standing, one, seen[one.condition], lost[one.condition], offsets)
@@ -108,14 +112,27 @@ def pooled_cycles(study: Study, participant: Participant, read: Read) -> tuple[P
     return tuple(found)
 
 
-def _seen_trials(standing: Standing, one: TrialSet, read: Read, shelved: Shelf) -> tuple[list[_Seen], list[Refusal]]:
+def _print_of(trial: Trial) -> str:
+    """Hash of what was measured: equal for two files of one recording, whatever their headers and formats."""
+    most = max(trial.streams.values(), key=lambda recording: recording.values.size)
+    return hashlib.sha256(trial.streams.get("markers", most).values.tobytes()).hexdigest()
+
+
+def _seen_trials(
+    standing: Standing, one: TrialSet, read: Read, shelved: Shelf, prints: dict[str, tuple[str, int]]
+) -> tuple[list[_Seen], list[Refusal]]:
     participant = standing.participant
     seen, lost = [], []
     for number, planned in enumerate(one.trials, 1):
         name = participant.trial_name(planned)
         where = name.removeprefix(participant.id).strip()
         try:
-            seen.append(_seen(standing, planned, number, read(planned), shelved))
+            trial = read(planned)
+            twin = prints.setdefault(_print_of(trial), (name, number))
+            if twin != (name, number):
+                needed = "a recording counts once, for one session and condition"
+                raise StrideError(needed, f"the samples are those of {twin[0]}", "Take one of the two out.")
+            seen.append(_seen(standing, planned, number, trial, shelved))
         except GaitdiscError as error:
             lost.append(Refusal(participant.id, where, str(error)))
     return seen, lost
@@ -124,21 +141,19 @@ def _seen_trials(standing: Standing, one: TrialSet, read: Read, shelved: Shelf) 
 def _seen(standing: Standing, planned: PlannedTrial, number: int, read: Trial, shelved: Shelf) -> _Seen:
     """What a trial shows; its samples are not kept but for those that cycles are cut of, and these on disk."""
     study = standing.study
-    trial, plate_steps = standing.computed(planned, read)
+    computed = standing.computed(planned, read)
+    trial, plate_steps = computed.trial, computed.steps
     direction = study.treadmill.direction if study.treadmill else ""
     weight_n = standing.body_weight_n(planned)
     steps = step_events(trial, study.strides.detector, direction, weight_n)
     outside = study.strides.ground == "overground" or (study.strides.ground == "auto" and over_ground(trial))
-    legs, states, lost = cycle_channels(trial, study.filters, plate_steps is not None)
+    legs, states, lost = cycle_channels(trial, study.filters, computed.from_markers)
     strides = _strides(steps, study)
     _verify(trial, strides, outside)
-    findings = (
-        *trial.findings,
-        *steps.findings,
-        *quality_findings(_known(trial)),
-        *side_findings(trial, strides),
-        *lost,
-    )
+    sides = side_findings(trial, strides, standing.weighed_n or weight_n)
+    if plate_steps is not None:  # whose findings say so already
+        sides = [finding for finding in sides if finding.kind != "plate step"]
+    findings = (*trial.findings, *steps.findings, *quality_findings(_known(trial)), *sides, *lost)
     findings += standing.findings(trial, legs is not None)
     files = {s.source.file: s.source.sha256 for s in trial.streams.values() if s.source.sha256}
     plates = plate_loadings(trial, rise_of(weight_n))
@@ -266,6 +281,7 @@ def _cut(study: Study, seen: _Seen, offsets: _Offsets) -> tuple[list[Cycle], lis
     cycles = moved_events(seen.steps, contact_s, off_s)
     alone = seen.plate_steps
     cycles = with_plates(cycles, seen.plates) if alone is None else with_plate_steps(cycles, alone)
+    cycles = without_doubted(cycles, [span for one in seen.findings if one.kind in DOUBTED for span in one.spans])
     return with_gaps(cycles, seen.legs), feet_in(cycles, seen.feet, belt)
 
 

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 
-from gaitdisc.errors import GaitdiscError
-from gaitdisc.kinetics.plate_steps import foot_paths, plate_steps
+import numpy as np
+
+from gaitdisc.errors import ChannelError, GaitdiscError, UnitError
+from gaitdisc.kinetics.foot_loads import swings
+from gaitdisc.kinetics.newton_euler import GRAVITY
+from gaitdisc.kinetics.plate_steps import BEYOND_EDGE_M, FootPath, Weight, foot_paths, plate_steps, weighed_steps
 from gaitdisc.kinetics.platform import Platform, platforms
-from gaitdisc.kinetics.wrench import Wrench
+from gaitdisc.kinetics.wrench import LEAST_LOAD_N, Wrench
 from gaitdisc.processing.contact_choice import named_markers
 from gaitdisc.recording import Finding, Recording, Strides, Trial
+from gaitdisc.signals.direction import marker_position
 from gaitdisc.signals.emg_order import order_of_muscles
 from gaitdisc.signals.emg_quality import live_channels
 from gaitdisc.signals.envelope import HIGHPASS_HZ, enveloped
@@ -18,15 +23,20 @@ from gaitdisc.signals.side_labels import load_findings, marker_side_findings, sw
 
 TOES = (("RTOE", "LTOE"), ("RMT5", "LMT5"), ("RMT1", "LMT1"), ("R.Toe.Tip", "L.Toe.Tip"), ("RTOE1", "LTOE1"))
 FEWEST = 2  # steps
+STANDS_STILL = 0.02  # of the weight: who stands sways by less than half of it
+NOTED, WRONG = 0.03, 0.05  # of the mass: plates and scales agree within 1 %, clothes and shoes are 1 to 2 kg
 MOST, LEAST = 0.75, 0.25  # share of the steps that have their foot, exchanged and as they are
 
 
-def side_findings(trial: Trial, strides: Mapping[str, Strides]) -> list[Finding]:
-    """What shows that sides, plates or muscles bear another's name."""
+def side_findings(trial: Trial, strides: Mapping[str, Strides], weight_n: float | None = None) -> list[Finding]:
+    """What shows that sides, plates or muscles bear another's name, or that plates contradict feet or weight.
+
+    weight_n: of the person; without it plates are held against feet alone
+    """
     findings: list[Finding] = []
     if "markers" in trial.streams:
         findings += marker_side_findings(trial.stream("markers"))
-        findings += _plate_findings(trial) if "forces" in trial.streams else []
+        findings += _plate_findings(trial, weight_n) if "forces" in trial.streams else []
     if "kinematics" in trial.streams:
         findings += sway_findings(trial.stream("kinematics"), list(strides.values()))
     if {"kinematics", "forces"} <= set(trial.streams):
@@ -50,32 +60,79 @@ def _muscle_findings(emg: Recording, strides: Mapping[str, Strides]) -> list[Fin
     return order_of_muscles(envelope, strides)
 
 
-def _plate_findings(trial: Trial) -> list[Finding]:
-    """Say that two plates or belts bear each other's force: exchanged, the centre of pressure is under the feet."""
+def _feet_on_plates(trial: Trial) -> tuple[dict[str, FootPath], list[Platform], list[str]]:
+    """Paths of the feet by their markers, platforms, and the pelvis's markers; a GaitdiscError where one is lacking."""
     markers = trial.stream("markers")
     there = {name.rsplit(".", 1)[0] for name in markers.names}
     toes = next((pair for pair in TOES if set(pair) <= there), None)
-    if toes is None:
-        return []
+    heels, pelvis = named_markers(markers)
+    if toes is None or "forces" not in trial.streams:
+        raise ChannelError(
+            "plates are held against feet", f"{trial.name} has no toes or no forces", "Name the markers."
+        )
+    return foot_paths(markers, {"r": (heels["r"], toes[0]), "l": (heels["l"], toes[1])}), platforms(trial), pelvis
+
+
+def _plate_findings(trial: Trial, weight_n: float | None) -> list[Finding]:
+    """Steps whose force contradicts the feet or the weight, or that two feet made; or that two plates are exchanged."""
+    markers, file = trial.stream("markers"), trial.stream("forces").source.file or trial.name
     try:
-        heels, _ = named_markers(markers)
-        found = platforms(trial)
-        feet = foot_paths(markers, {"r": (heels["r"], toes[0]), "l": (heels["l"], toes[1])})
-        if len(found) != 2:
-            return []
+        feet, found, pelvis = _feet_on_plates(trial)
+        steps = plate_steps(found, feet)
+        if weight_n:
+            height = np.mean([marker_position(markers, name) for name in pelvis], axis=0) @ found[0].up
+            steps = weighed_steps(steps, found, swings(trial, feet), Weight(weight_n, markers.time, height))
         other = [_with_place_of(one, second) for one, second in zip(found, found[::-1], strict=True)]
-        as_is, exchanged = (_with_foot(plates, plate_steps(plates, feet)) for plates in (found, other))
+        as_is = [not step.doubt for step in steps]
+        astray = len(found) == 2 and len(as_is) >= FEWEST and sum(as_is) <= LEAST * len(as_is)
+        exchanged = [not step.doubt for step in plate_steps(other, feet)] if astray else []
     except GaitdiscError:  # no wrench or no foot: moments says why
         return []
-    if len(as_is) < FEWEST or sum(as_is) > LEAST * len(as_is) or sum(exchanged) < MOST * len(exchanged):
+    if exchanged and sum(exchanged) >= MOST * len(exchanged):
+        names = " and ".join(platform.name for platform in found)
+        what = (
+            f"the centre of pressure lies under the foot in {sum(as_is)} of {len(as_is)} steps, and in "
+            f"{sum(exchanged)} of {len(exchanged)} with the two exchanged: {names} are swapped"
+        )
+        spoils = "which foot is on which plate, moments and powers; exchange their channels"
+        spans = tuple((step.start, step.end) for step in steps)
+        return [Finding("warning", "swapped plates", file, what, spoils, names, spans)]
+    said = []
+    for doubt in ("warning", "note"):  # one finding of all such steps: a belt has hundreds
+        own = [finding for step in steps if step.doubt == doubt and (finding := step.finding(file))]
+        more = f" (and {len(own) - 1} more)" if len(own) > 1 else ""
+        spans = tuple(span for finding in own for span in finding.spans)
+        said += [replace(own[0], what=own[0].what + more, spans=spans)] if own else []
+    return said
+
+
+def standing_weight_n(trial: Trial) -> float | None:
+    """Weight of who stands still with heels and toes of both feet on the plates [N]; None where that is not seen."""
+    try:
+        feet, found, _ = _feet_on_plates(trial)
+    except GaitdiscError:
+        return None
+    loaded = [one.surface for one in found if one.surface is not None and np.median(one.load_n) > LEAST_LOAD_N]
+    parts = [part for foot in feet.values() for part in (foot.heel, foot.toe)]
+    on = all(any(np.nanmedian(one.outside(part)) < BEYOND_EDGE_M for one in loaded) for part in parts)
+    total = np.sum([one.load_n for one in found], axis=0)
+    still = loaded and np.std(total) < STANDS_STILL * np.median(total)
+    return float(np.median(total)) if on and still else None
+
+
+def check_weight(weighed_n: float | None, mass_kg: float | None, file: str) -> list[Finding]:
+    """Say that the mass is not that of the person on the plates; a UnitError where moments per kg are worth nothing.
+
+    mass_kg: as the study or the files state it
+    """
+    off = abs(weighed_n / (mass_kg * GRAVITY) - 1) if weighed_n and mass_kg else 0.0
+    if weighed_n is None or off <= NOTED:
         return []
-    names = " and ".join(platform.name for platform in found)
-    what = (
-        f"the centre of pressure lies under the foot in {sum(as_is)} of {len(as_is)} steps, and in {sum(exchanged)} of "
-        f"{len(exchanged)} with the two exchanged: {names} are swapped"
-    )
-    spoils = "which foot is on which plate, moments and powers; exchange their channels"
-    return [Finding("warning", "swapped plates", trial.stream("forces").source.file, what, spoils, names)]
+    what = f"the static trial weighs {weighed_n / GRAVITY:.1f} kg on the force plates, {mass_kg:.1f} kg are stated"
+    if off > WRONG:
+        needed = f"moments per kg need the mass of the person, and plates of the right gain, within {100 * WRONG:.0f} %"
+        raise UnitError(needed, what, "Weigh again: correct the mass, or the gain of the plates.")
+    return [Finding("warning", "body weight", file, what, f"moments and powers, by {100 * off:.0f} %; weigh again")]
 
 
 def _with_place_of(one: Platform, other: Platform) -> Platform:
@@ -84,8 +141,3 @@ def _with_place_of(one: Platform, other: Platform) -> Platform:
         return replace(one, side=other.side)
     wrench = Wrench.at(other.point, one.wrench.force, one.wrench.about(one.point))
     return replace(one, wrench=wrench, point=other.point, surface=other.surface)
-
-
-def _with_foot(found: Sequence[Platform], steps: Sequence) -> list[bool]:
-    named = {platform.name for platform in found if platform.side}
-    return [bool(step.side) and (step.platform not in named or step.clean) for step in steps]

@@ -17,9 +17,9 @@ from gaitdisc.kinematics.motion import chosen_marker_set
 from gaitdisc.kinetics.body_inertia import Person
 from gaitdisc.kinetics.joint_moments import KineticsSettings
 from gaitdisc.kinetics.newton_euler import GRAVITY
-from gaitdisc.kinetics.plate_steps import PlateStep
 from gaitdisc.processing.angles_of_segments import with_segment_angles
-from gaitdisc.processing.markers_to_moments import computed_trial
+from gaitdisc.processing.markers_to_moments import ComputedTrial, computed_trial
+from gaitdisc.processing.side_checks import check_weight, standing_weight_n
 from gaitdisc.processing.two_sources import without_contradicted
 from gaitdisc.recording import Finding, Recording, Trial
 from gaitdisc.recording.body_measures import BodyMeasures
@@ -42,32 +42,43 @@ class Standing:
     unread: str = ""
     emg_sizes: Mapping[str, float] = field(default_factory=dict)
     circled: Recording | None = None
+    weighed_n: float | None = None  # on the plates
     _calibrations: dict[str, Calibration] = field(default_factory=dict, init=False)
     _said: set[Finding] = field(default_factory=set, init=False)
     _walked: tuple[str, Mapping[str, float]] | None = field(default=None, init=False)
 
-    def computed(self, planned: PlannedTrial, trial: Trial) -> tuple[Trial, tuple[PlateStep, ...] | None]:
+    def computed(self, planned: PlannedTrial, trial: Trial) -> ComputedTrial:
         """Trial with the angles that the study requests, and its steps on plates where moments were computed."""
         trial, source = without_contradicted(trial), self.study.kinematics.angles if self.study.kinematics else ""
         trial = trial if source == "file" or "markers" in trial.streams else with_segment_angles(trial)
         if source == "file" or "markers" not in trial.streams or (not source and has_leg_angles(trial)):
-            return trial, None
+            return ComputedTrial(self._with_own_kinetics(planned, trial))
         bare = replace(trial, streams={key: value for key, value in trial.streams.items() if key not in MODEL})
         given_up = bare if source == "markers" else trial
         if self.markers is None:
-            return given_up, None
+            return ComputedTrial(given_up)
         try:
             calibration = self._calibration(trial.stream("markers"))
         except GaitdiscError as error:
-            return self._without_angles(given_up, self.participant.id, error), None
+            return ComputedTrial(self._without_angles(given_up, self.participant.id, error))
         person, findings = self._person(planned, trial)
         settings = KineticsSettings(marker_cutoff_hz=self.study.filters.kinematics_hz)
         try:
             found = computed_trial(trial, calibration, person, settings)
         except GaitdiscError as error:
-            return self._without_angles(given_up, trial.name, error), None
+            return ComputedTrial(self._without_angles(given_up, trial.name, error))
         made = found.trial.findings[len(trial.findings) :]
-        return replace(found.trial, findings=(*trial.findings, *self._new((*made, *findings)))), found.steps
+        whole = replace(found.trial, findings=(*trial.findings, *self._new((*made, *findings))))
+        return replace(found, trial=whole)
+
+    def _with_own_kinetics(self, planned: PlannedTrial, trial: Trial) -> Trial:
+        """Trial with the moments of its file, but where the person weighs something else than they were divided by."""
+        try:
+            said = check_weight(self.weighed_n, self.mass_kg(planned), trial.name)
+        except GaitdiscError as error:
+            said = [Finding("warning", "no moments", trial.name, str(error).rstrip("."), "moments and powers")]
+            trial = replace(trial, streams={key: one for key, one in trial.streams.items() if key != "moments"})
+        return replace(trial, findings=(*trial.findings, *said))
 
     def findings(self, trial: Trial, with_angles: bool) -> tuple[Finding, ...]:
         """What the static trial says of a walk: that it is another person's, of another unit, or that there is none."""
@@ -94,13 +105,17 @@ class Standing:
         other, sizes = self._walked
         return other_unit_findings(own, sizes, OVER_WALKING, trial.name, other)
 
-    def body_weight_n(self, planned: PlannedTrial) -> float | None:
-        """Weight of the person [N]: by the study, else the static file, else the walk's; None where none states one."""
+    def mass_kg(self, planned: PlannedTrial) -> float | None:
+        """Mass of the person: by the study, else the static file, else the walk's; None where none states one."""
         try:
-            mass = self.participant.mass_kg or self._measures(self.planned).mass_kg or self._measures(planned).mass_kg
+            return self.participant.mass_kg or self._measures(self.planned).mass_kg or self._measures(planned).mass_kg
         except GaitdiscError:
             return None
-        return mass * GRAVITY if mass else None
+
+    def body_weight_n(self, planned: PlannedTrial) -> float | None:
+        """Weight of the person [N]: as stated, else as the static trial's plates have it; None without either."""
+        mass = self.mass_kg(planned)
+        return mass * GRAVITY if mass else self.weighed_n
 
     def leg_m(self, planned: PlannedTrial) -> float | None:
         """Leg length of the person [m]: as the static file or the walk's has it, else by the study's stature."""
@@ -153,7 +168,8 @@ class Standing:
         try:
             found = self._measures(self.planned)
             mass = self.participant.mass_kg or found.mass_kg or self._measures(planned).mass_kg
-            return Person(mass, self.participant.sex, self.participant.height_m or found.height_m), ()
+            said = check_weight(self.weighed_n, mass, trial.name)
+            return Person(mass, self.participant.sex, self.participant.height_m or found.height_m), tuple(said)
         except GaitdiscError as error:
             what = str(error).rstrip(".")
             return None, (Finding("warning", "no moments", self.participant.id, what, "moments and powers"),)
@@ -177,7 +193,8 @@ def standing_of(study: Study, participant: Participant, session: str, read: Read
         return Standing(study, participant, planned, None, f"the static trial cannot be used: {error}")
     sizes = emg_sizes(trial.stream("emg")) if "emg" in trial.streams else {}
     unread, circled = "the static trial has no markers", _circled(study, participant, session, read)
-    return Standing(study, participant, planned, trial.streams.get("markers"), unread, sizes, circled)
+    markers, weighed_n = trial.streams.get("markers"), standing_weight_n(trial) if "markers" in trial.streams else None
+    return Standing(study, participant, planned, markers, unread, sizes, circled, weighed_n)
 
 
 def _circled(study: Study, participant: Participant, session: str, read: Read) -> Recording | None:

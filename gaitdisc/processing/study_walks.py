@@ -45,7 +45,7 @@ class StudyWalks:
         """Trial of the study, with angles and moments from its markers where the study requests them."""
         trial = self.read(planned)
         standing = self._of_session(planned.session or "")
-        computed, _ = standing.computed(planned, trial)
+        computed = standing.computed(planned, trial).trial
         findings = standing.findings(computed, "kinematics" in computed.streams)
         ready = replace(computed, findings=(*computed.findings, *findings))
         lacks = "kinematics" not in ready.streams and "markers" in ready.streams

@@ -29,15 +29,9 @@ class Places:
     """Where the feet were in one cycle."""
 
     step_s: float = NAN  # from the contact of the other foot to the next of this one [s]
-    # length of the stride; of the step, from where the other heel landed inside of the cycle to where this one lands at
-    # its end; how far beside the line of the stride the other landed [m]; NaN without markers
-    stride_m: float = NAN
-    # length of the stride; of the step, from where the other heel landed inside of the cycle to where this one lands at
-    # its end; how far beside the line of the stride the other landed [m]; NaN without markers
-    step_m: float = NAN
-    # length of the stride; of the step, from where the other heel landed inside of the cycle to where this one lands at
-    # its end; how far beside the line of the stride the other landed [m]; NaN without markers
-    width_m: float = NAN
+    stride_m: float = NAN  # lengths [m]; NaN without markers
+    step_m: float = NAN  # from where the other heel landed inside of the cycle to where this one lands at its end
+    width_m: float = NAN  # how far beside the line of the stride the other landed
 
 
 def cut_cycles(contacts: Timed, offs: Timed) -> list[Cycle]:
@@ -78,8 +72,7 @@ class PlateLoadings:
     """When the plates of a trial were loaded."""
 
     belts: frozenset[str] = frozenset()  # sides that have a force of their own, as on a split belt
-    # tuple of (float, float), from when to when a plate was loaded, whole in the recording [s]; empty where there are
-    # belts
+    # from when to when a plate was loaded, whole in the recording [s]; empty where there are belts
     spans: tuple[tuple[float, float], ...] = ()
 
 
@@ -105,6 +98,13 @@ def with_plate_steps(cycles: list[Cycle], steps: Sequence[PlateStep]) -> list[Cy
     """Same cycles, kinetic where a clean step of the foot, whole in the recording, is this cycle's stance."""
     whole = [step for step in steps if step.clean and step.whole]
     return [replace(one, kinetic=any(_is_stance(step, one) for step in whole)) for one in cycles]
+
+
+def without_doubted(cycles: list[Cycle], spans: Sequence[tuple[float, float]]) -> list[Cycle]:
+    """Same cycles, not kinetic where more than half of the stance lies in a step whose force is doubted."""
+    inside = [max([0.0, *(min(end, c.foot_off) - max(start, c.start) for start, end in spans)]) for c in cycles]
+    halves = [0.5 * (one.foot_off - one.start) for one in cycles]
+    return [replace(c, kinetic=c.kinetic and not s > h) for c, s, h in zip(cycles, inside, halves, strict=True)]
 
 
 def _is_stance(step: PlateStep, one: Cycle) -> bool:

@@ -250,10 +250,12 @@ def _caption(pooled: PooledCycles) -> str:
     kinetic = pooled.kept[pooled.kept["kinetic"].astype(bool)]
     plates = ", ".join(f"{int((kinetic['side'] == side).sum())} {SIDE_WORDS[side]}" for side in FEET)
     moments = f" Moments only where a plate carried this foot alone: {plates}." if len(kinetic) else ""
+    filters = dict.fromkeys(finding.what for finding in pooled.findings if finding.kind == "filter")
     return (
         f"{pooled.subject}, {pooled.where}: {counts}, pooled over {counted(pooled.trials, 'trial')}; mean, from three "
         f"cycles on ± standard deviation, and single cycles (the first {MOST_FAINT}), left red, right blue. 0 %: "
         f"initial contact of the channel's own foot; dotted: mean foot off.{moments}"
+        + "".join(f" Filters: {words}." for words in filters)
     )
 
 

@@ -40,7 +40,9 @@ def test_a_participant_of_a_study_and_too_few_participants(lab):
     trials = tuple(
         PlannedTrial(condition=word, files=(f"walk_{word}_ik.mot",), speed_m_per_s=1.2) for word in ("exo", "free")
     )
-    people = (Participant(id="P01", trials=trials), Participant(id="P02", trials=trials[:1]))
+    (lab / "other_ik.mot").write_bytes((lab / "walk_exo_ik.mot").read_bytes() + b"\n")
+    other = PlannedTrial(condition="exo", files=("other_ik.mot",), speed_m_per_s=1.2)
+    people = (Participant(id="P01", trials=trials), Participant(id="P02", trials=(other,)))
     study = Study(conditions=Conditions(nominal="free", device="exo"), participants=people).placed(lab)
     found = compare_study(study, "P01")
     assert (found.first, found.second) == ("P01 exo", "P01 free")

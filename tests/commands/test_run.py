@@ -16,7 +16,8 @@ def test_the_batch_goes_on_past_a_broken_file(study, recordings, tmp_path, calle
     good = '[[participants]]\nid = "P01"\n' + "".join(
         f'[[participants.trials]]\ncondition = "{name}"\nfiles = ["raw/{name}.mot"]\n' for name in ("natural", "exo")
     )
-    bad = good.replace("P01", "P02").replace("raw/exo.mot", "raw/broken.mot")
+    (folder / "raw" / "other.mot").write_bytes((folder / "raw" / "natural.mot").read_bytes() + b"\n")
+    bad = good.replace("P01", "P02").replace("raw/exo.mot", "raw/broken.mot").replace("raw/natural", "raw/other")
     (folder / "study.toml").write_text(head + bad + good)
     done = called("run", folder, "--quiet")
     assert done.returncode == SOME_REFUSED, done.stderr

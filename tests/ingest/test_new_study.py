@@ -200,3 +200,29 @@ def test_a_draft_keeps_no_samples(tmp_path):
     _walk(tmp_path / "S1_noexo.mot", emg=True)
     (one, _) = _found_trials(tmp_path, recording_files(tmp_path), [], {})
     assert not [value for value in vars(one).values() if isinstance(value, Trial | Recording)]
+
+
+def test_one_name_in_two_groups_is_two_people(tmp_path):
+    raw = tmp_path / "raw"
+    for file in (
+        "controls/Smith/walk.mot",
+        "patients/Smith/walk.mot",
+        "controls/S07_walk.mot",
+        "patients/S07_walk.mot",
+    ):
+        _walk(raw / file)
+    (raw / "participants.tsv").write_text("participant_id\tweight\nSmith\t61.3\nS07\t50\n")
+    study, notes = found_study(raw, tmp_path / "study")
+    found = {one.trials[0].files[0].removeprefix("../raw/"): one for one in study.participants}
+    assert {file: one.group for file, one in found.items()} == {file: file.split("/")[0] for file in found}
+    assert len(study.participants) == len({one.id for one in study.participants}) == 4
+    assert {one.mass_kg for one in study.participants} == {None}  # the table does not say whose it is
+    (said,) = [note for note in notes if "one name in several groups, taken for several people" in note]
+    assert "P01 (controls)" in said and "P02 (patients)" in said
+
+
+def test_trials_of_no_group_are_those_of_the_only_person_of_that_name(tmp_path):
+    for file in ("controls/S07/walk.mot", "S07/walk2.mot"):
+        _walk(tmp_path / file)
+    (person,) = found_study(tmp_path)[0].participants
+    assert (person.id, person.group, len(person.trials)) == ("S07", "controls", 2)

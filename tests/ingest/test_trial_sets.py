@@ -15,6 +15,7 @@ from gaitdisc.ingest.trial_sets import (
     static_trial,
     trial_sets,
 )
+from gaitdisc.recording.body_measures import BodyMeasures
 
 
 def _trial(condition, session=None, file="a.c3d"):
@@ -105,3 +106,58 @@ def test_nobody_without_a_walk_is_reported():
     assert (
         refused_participant(_study(person, nominal="a"), _person("P02", excluded="ill")) == "excluded in the study: ill"
     )
+
+
+def _saved(tmp_path, **texts):
+    for name, text in texts.items():
+        (tmp_path / f"{name}.c3d").write_text(text)
+
+
+def test_one_recording_under_two_people_conditions_or_sessions_is_refused(tmp_path):
+    _saved(tmp_path, a="one", b="two", c="one", d="two")
+    first = _person("P01", _trial("walk", file="a.c3d"), _trial("turn", file="b.c3d"))
+    for trials in ((_trial("walk", file="c.c3d"),), (_trial("turn", file="c.c3d"),)):
+        other = _person("P02", *trials)
+        study = _study(first, other, nominal="walk", others=("turn",)).placed(tmp_path)
+        said = refused_participant(study, first)
+        assert said.startswith(f"P01 walk and P02 {trials[0].condition} are the same recording: ")
+        assert refused_participant(study, other).startswith("P02 ")
+    both = _person("P01", _trial("walk", file="b.c3d"), _trial("turn", file="d.c3d"))
+    study = _study(both, nominal="walk", others=("turn",)).placed(tmp_path)
+    assert refused_participant(study, both).startswith("P01 walk and P01 turn are the same recording")
+    visits = _person("P01", _trial("walk", "before", "a.c3d"), _trial("walk", "after", "c.c3d"))
+    assert "are the same recording" in refused_participant(_study(visits, nominal="walk").placed(tmp_path), visits)
+
+
+def test_parts_of_one_file_and_one_static_trial_of_two_sessions_are_no_repetition(tmp_path):
+    _saved(tmp_path, a="one", b="two")
+    crops = [(0.0, 5.0), (5.0, 9.0)]
+    cut = [PlannedTrial(condition=c, files=("a.c3d",), crop_s=s) for c, s in zip(("walk", "turn"), crops, strict=True)]
+    parts = [PlannedTrial(condition=c, files=("b.c3d",), part=n) for c, n in (("walk", "1"), ("turn", "2"))]
+    stands = [_trial("static", "before", "a.c3d"), _trial("static", "after", "a.c3d"), _trial("walk", "after", "b.c3d")]
+    for trials in (cut, parts, stands):
+        person = _person("P01", *trials)
+        study = _study(person, nominal="walk", others=("turn",)).placed(tmp_path)
+        assert refused_participant(study, person) == ""
+
+
+@pytest.mark.parametrize(
+    ("measure", "values", "said"),
+    [
+        ("mass_kg", (32.0, 40.0), "body mass is 32 kg in P01 walk 1 and 40 kg in P01 walk 2; files of one"),
+        ("height_m", (1.32, 1.44), "stature is 1.32 m in P01 walk 1 and 1.44 m in P01 walk 2"),
+        ("leg_length_m", ({"l": 0.70}, {"l": 0.83}), "leg length (l) is 0.7 m in P01 walk 1 and 0.83 m in P01 walk 2"),
+    ],
+)
+def test_two_bodies_in_one_session_are_refused_and_a_child_that_grew_is_not(monkeypatch, measure, values, said):
+    files = dict(zip(("1.c3d", "2.c3d"), values, strict=True))
+    monkeypatch.setattr(
+        "gaitdisc.ingest.trial_sets.body_measures_in", lambda path: BodyMeasures(**{measure: files[path.name]})
+    )
+    one = _person("P01", _trial("walk", file="1.c3d"), _trial("walk", file="2.c3d"))
+    assert refused_participant(_study(one, nominal="walk"), one).startswith(said)
+    grown = _person("P01", _trial("walk", "before", "1.c3d"), _trial("walk", "after", "2.c3d"))
+    assert refused_participant(_study(grown, nominal="walk"), grown) == ""
+    if measure == "mass_kg":  # what the study says goes before the files
+        stated = one.model_copy(update={"mass_kg": 36.0})
+        assert refused_participant(_study(stated, nominal="walk"), stated) == ""

@@ -23,7 +23,26 @@ def test_channels_of_the_vocabulary_are_filtered_and_a_dead_muscle_is_left_out(t
     names = [name for state in states for name in state.names]
     assert legs is not None and set(legs.names) == set(trial.stream("kinematics").names)
     assert "emg_sol_r" not in names and "emg_ta_r" in names
-    assert "ground_force_r_vy" in names and findings == ()
+    assert "ground_force_r_vy" in names
+    (said,) = findings
+    assert (said.kind, said.severity) == ("filter", "note")
+    assert said.what == "angles as in the file; forces low-pass 20 Hz; EMG high-pass 40 Hz, rectified, low-pass 10 Hz"
+
+
+def test_what_a_file_computed_is_as_in_the_file_and_angles_from_markers_are_filtered():
+    """A push-off of 0.1 s: 6 Hz would leave less than 0.9 of it."""
+    time = np.arange(200) / 100
+    peak = np.exp(-(((time - 1.0) / 0.03) ** 2))
+    named = (("kinematics", "ankle_angle_r", "angle", "deg"), ("moments", "ankle_power_r", "power", "W/kg"))
+    streams = {key: Recording(time, peak[:, None], (Channel(*rest, "r"),)) for key, *rest in named}
+    _, states, findings = cycle_channels(Trial("w", streams), Filters())
+    assert all(np.array_equal(state.values[:, 0], peak) for state in states)
+    assert findings[-1].what == "angles as in the file; moments and powers as in the file"
+    _, (angles, powers), findings = cycle_channels(Trial("w", streams), Filters(), ("kinematics", "moments"))
+    assert angles.values.max() < 0.9 and np.array_equal(powers.values[:, 0], peak)
+    assert findings[-1].what == (
+        "angles from markers, low-pass 6 Hz; moments and powers from markers (low-pass 6 Hz) and forces (20 Hz)"
+    )
 
 
 def test_an_angle_that_no_vocabulary_has_and_one_without_a_value_are_not_there():

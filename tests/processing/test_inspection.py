@@ -68,14 +68,18 @@ def test_calibration_trials_are_refused_as_walking(gait_data):
 
 def test_check_refuses_what_run_refuses_of_several_trials_and_no_more(folder):
     """Two trials of a condition passed the check and were refused by the run; now both pool their cycles."""
-    twice = tuple(PlannedTrial(condition=word, files=("good.mot",)) for word in ("a", "a", "b"))
-    broken = (PlannedTrial(condition="a", files=("good.mot",)), PlannedTrial(condition="a", files=("empty.mot",)))
+    good = read_trial(folder / "good.mot").stream("kinematics")
+    for place in range(5):  # five recordings: one that is used twice is refused
+        write_storage(good.with_values(good.values + 0.01 * place), folder / f"good{place}.mot")
+    files = [("a", "good0"), ("a", "good1"), ("b", "good2"), ("a", "good3"), ("a", "empty"), ("a", "good4")]
+    trials = tuple(PlannedTrial(condition=word, files=(f"{name}.mot",)) for word, name in files)
+    twice, broken, lone = trials[:3], trials[3:5], trials[5:]
     study = Study(
         conditions=Conditions(nominal="a", device="b"),
         participants=(
             Participant(id="P01", trials=twice),
             Participant(id="P02", group="control", trials=broken),
-            Participant(id="P03", trials=twice[:1]),
+            Participant(id="P03", trials=lone),
         ),
     ).placed(folder)
     seen = list(inspected_study(study))

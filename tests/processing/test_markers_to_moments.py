@@ -8,7 +8,7 @@ from gaitdisc.ingest.c3d_measures import read_body_measures
 from gaitdisc.kinematics.calibration import calibrated
 from gaitdisc.kinematics.marker_set_file import marker_set
 from gaitdisc.kinetics.body_inertia import Person
-from gaitdisc.processing.markers_to_moments import with_angles_and_moments
+from gaitdisc.processing.markers_to_moments import computed_trial
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +25,7 @@ def kinds(trial):
 
 def test_a_walk_gets_angles_moments_and_powers_of_both_legs(young):
     walk, body, _ = young
-    made = with_angles_and_moments(walk, body, Person(45.8))
+    made = computed_trial(walk, body, Person(45.8)).trial
     moments = made.stream("moments")
     assert len(moments.channels) == 24
     assert {"hip_flexion_r", "knee_angle_l", "ankle_angle_r", "pelvis_tilt"} <= set(made.stream("kinematics").names)
@@ -40,14 +40,14 @@ def test_a_walk_gets_angles_moments_and_powers_of_both_legs(young):
 def test_without_a_person_or_forces_there_are_angles_alone(young):
     walk, body, _ = young
     bare = replace(walk, streams={"markers": walk.stream("markers")})
-    for made in (with_angles_and_moments(walk, body, None), with_angles_and_moments(bare, body, Person(45.8))):
+    for made in (computed_trial(walk, body, None).trial, computed_trial(bare, body, Person(45.8)).trial):
         assert "moments" not in made.streams and "kinematics" in made.streams
     assert "own model" not in kinds(made)
 
 
 def test_a_trial_without_a_clean_step_says_why_it_has_no_moments(young):
     _, body, file = young
-    made = with_angles_and_moments(read_c3d(file), body, Person(45.8))
+    made = computed_trial(read_c3d(file), body, Person(45.8)).trial
     [finding] = [one for one in made.findings if one.kind == "no moments"]
     assert "moments" not in made.streams
     assert finding.line().startswith(
@@ -62,7 +62,7 @@ def test_a_heel_marker_that_is_missing_for_a_moment_costs_nothing(young):
     values = np.array(markers.values)
     values[45:53, [markers.index(f"RHEE.{axis}") for axis in "xyz"]] = np.nan
     blind = replace(walk, streams={**walk.streams, "markers": replace(markers, values=values)})
-    whole, bridged = (with_angles_and_moments(one, body, Person(45.8)).stream("moments") for one in (walk, blind))
+    whole, bridged = (computed_trial(one, body, Person(45.8)).trial.stream("moments") for one in (walk, blind))
     step = np.isfinite(whole["knee_angle_r_moment"])
     assert step[45:53].all()
     apart = whole["knee_angle_r_moment"][step] - bridged["knee_angle_r_moment"][step]
@@ -89,8 +89,8 @@ def test_a_laboratory_with_y_up_has_the_same_moments(young):
     walk, body, file = young
     still = read_c3d(file)
     turned = calibrated(y_up(still).stream("markers"), marker_set("plug_in_gait"), read_body_measures(file))
-    here = with_angles_and_moments(walk, body, Person(45.8)).stream("moments")
-    there = with_angles_and_moments(y_up(walk), turned, Person(45.8)).stream("moments")
+    here = computed_trial(walk, body, Person(45.8)).trial.stream("moments")
+    there = computed_trial(y_up(walk), turned, Person(45.8)).trial.stream("moments")
     assert there.names == here.names
     known = np.isfinite(here.values)
     assert np.array_equal(known, np.isfinite(there.values))

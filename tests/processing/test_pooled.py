@@ -118,7 +118,8 @@ def test_too_few_cycles_are_refused_by_the_setting_of_the_ground(pieces):
 def test_sessions_are_pooled_apart(pieces):
     trials = (*_planned(2, session="before"), *_planned(3, session="after"))
     study, person = _study(trials, sessions=("before", "after"), **OVERGROUND)
-    found = pooled_cycles(study, person, lambda planned: pieces[int(planned.files[0][0])])
+    later = {"before": 0, "after": 2}
+    found = pooled_cycles(study, person, lambda one: pieces[int(one.files[0][0]) + later[one.session]])
     assert [(one.where, one.trials) for one in found] == [("before walk", 2), ("after walk", 3)]
     assert pooled_instead(found)
 
@@ -256,3 +257,12 @@ def test_a_static_trial_of_another_person_is_said_and_costs_no_cycle(gait_data):
     assert severity == "warning" and "the static trial is of another person, or its markers were moved" in what
     assert said["none"] == [("note", "there is no static trial")]
     assert said["broken"][0][1].startswith("the static trial cannot be used: manifest.csv needs a column")
+
+
+def test_one_recording_saved_twice_is_counted_once(pieces):
+    study, person = _study(_planned(3), **OVERGROUND)
+    files = [pieces[0], replace(pieces[0], name="the same, saved again"), pieces[1]]
+    (found,) = pooled_cycles(study, person, lambda planned: files[int(planned.files[0][0])])
+    assert set(found.kept["trial"]) == {1, 3}
+    (refusal,) = found.refusals
+    assert refusal.condition == "walk 2" and "the samples are those of P01 walk 1" in refusal.reason

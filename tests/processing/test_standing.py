@@ -14,7 +14,7 @@ from gaitdisc.ingest.study import Conditions, Kinematics, Participant, PlannedTr
 from gaitdisc.kinematics.calibration import calibrated
 from gaitdisc.kinematics.marker_set_file import marker_set
 from gaitdisc.kinetics.body_inertia import Person
-from gaitdisc.processing.markers_to_moments import with_angles_and_moments
+from gaitdisc.processing.markers_to_moments import computed_trial
 from gaitdisc.processing.pooled import pooled_cycles
 from gaitdisc.recording import Strides
 from gaitdisc.recording.body_measures import BodyMeasures
@@ -66,7 +66,7 @@ def test_cycles_of_a_study_are_those_of_the_steps_taken_by_hand(files, trials, f
     body = calibrated(trials["static"].stream("markers"), marker_set("plug_in_gait"), measures)
     found, findings = from_markers
     for one in found:
-        made = with_angles_and_moments(trials[one.condition], body, Person(45.8))
+        made = computed_trial(trials[one.condition], body, Person(45.8)).trial
         angles, moments = lowpassed(made.stream("kinematics"), 6.0, 4, 0.1), made.stream("moments")
         for row, curves in zip(one.kept.itertuples(), one.curves, strict=True):
             cycle = Strides(np.array([row.start_s]), np.array([row.end_s]), str(row.side), "events")
@@ -102,6 +102,21 @@ def test_a_file_without_a_model_gets_one_and_a_file_with_its_own_keeps_it(files,
     assert not {"marker set", "residual", "no moments"} & {finding.kind for finding in said}
     left, _ = pooled(files, stripped, Kinematics(angles="file"))
     assert not any("knee_angle_r" in names(one) for one in left)
+
+
+def test_what_a_file_computed_is_on_the_page_as_the_file_has_it(files, trials):
+    found, findings = pooled(files, trials, Kinematics(angles="file"))
+    for one in found:
+        for row, curves in zip(one.kept.itertuples(), one.curves, strict=True):
+            cycle = Strides(np.array([row.start_s]), np.array([row.end_s]), str(row.side), "events")
+            wanted = [f"knee_angle_{row.side}", f"ankle_power_{row.side}", f"hip_flexion_{row.side}_moment"]
+            for name, key in zip(wanted, ("kinematics", "moments", "moments"), strict=True):
+                theirs = cycle.normalised(trials[one.condition].stream(key).selected([name]))[0][:, 0]
+                apart = curves[:, names(one).index(name)] - theirs
+                assert not np.isfinite(apart).any() or np.nanmax(np.abs(apart)) < 1e-9  # deg, W/kg, N m/kg
+    assert {finding.what.partition("; EMG")[0] for finding in findings if finding.kind == "filter"} == {
+        "angles as in the file; moments and powers as in the file"
+    }
 
 
 def test_a_person_without_a_mass_has_angles_and_one_word_on_it(files, trials, monkeypatch):

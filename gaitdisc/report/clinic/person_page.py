@@ -83,7 +83,7 @@ def write_person_page(
         "main": _condition(main, beside, "", say),
         "others": [_condition(one, beside, f"{one.pooled.condition}-", say) for one in others],
         "contrasts": [_contrast(one, beside, say) for one in person.contrasts],
-        "method": _method(person, provenance),
+        "method": _method(person),
         "files": _saved(files_table(list(person.readings)), beside, "", say),
         "versions": say.table(words_table("versions", "Versions.", ("what", "version"), provenance.versions.items())),
         "script": Markup(script),
@@ -178,7 +178,7 @@ def band_words(reading: ClinicalReading) -> str:
     return f"Band: mean ± standard deviation over the legs of {count} controls."
 
 
-def _method(person: PersonSession, provenance: Provenance) -> list[str]:
+def _method(person: PersonSession) -> list[str]:
     found = []
     for reading in person.readings:
         pooled = reading.pooled
@@ -186,15 +186,8 @@ def _method(person: PersonSession, provenance: Provenance) -> list[str]:
         moved = pooled.contact_offset_s
         words = f", moved by {1000 * moved:+.0f} ms after {pooled.offset_steps} steps that a plate saw" if moved else ""
         found.append(f"{pooled.where}: contacts by {by or 'nothing'}{words}.")
-    filters = provenance.settings.get("filters")
-    if isinstance(filters, dict):
-        shown = {
-            "kinematics_hz": "angles {:g} Hz",
-            "emg_highpass_hz": "EMG {:g} Hz high-pass",
-            "emg_lowpass_hz": "then {:g} Hz",
-        }
-        parts = [words.format(filters[key]) for key, words in shown.items() if key in filters]
-        found.append(f"Butterworth low-pass, forwards and backwards: {', '.join(parts)}.")
+        filters = dict.fromkeys(finding.what for finding in pooled.findings if finding.kind == "filter")
+        found += [f"{pooled.where}: {words}; Butterworth, forwards and backwards." for words in filters]
     found.append("Pelvic angles are shown for the side of the leg: obliquity up and rotation forwards of that side.")
     found.append(
         "What stands out: rules that take one number of a leg's mean cycle; limits within which all numbers of one "
