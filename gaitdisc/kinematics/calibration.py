@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import MappingProxyType
 
 import numpy as np
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from gaitdisc.errors import ChannelError, SamplingError, ShapeError
 from gaitdisc.kinematics.joint_centres import DavisHip, chord_centre, harrington_hip
 from gaitdisc.kinematics.laboratory import check_right_handed, up_axis
+from gaitdisc.kinematics.landmark_order import exchanged_in_static, landmark_order
 from gaitdisc.kinematics.marker_set import METHODS, MarkerSet
 from gaitdisc.kinematics.markers import marker_labels, still_places
 from gaitdisc.kinematics.pose import SEGMENTS, Pose
@@ -21,9 +22,14 @@ from gaitdisc.recording.body_measures import BodyMeasures
 STANDS_M = 0.03  # who stands sways less than this in half a second
 USUAL_DIAMETER_M = 0.014
 FEWEST_POINTS = 3
-SIDE_BY_SIDE_M = 0.01  # a right marker this far to the left of its left one is exchanged
 
 Points = Mapping[str, NDArray[np.float64]]
+MARKS = {
+    "pelvis": ("asis", "sacrum"),
+    "thigh": ("knee_lateral", "knee_medial"),
+    "shank": ("ankle_lateral", "ankle_medial"),
+    "foot": ("heel", "toe"),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +45,9 @@ class Calibration:
     points: Mapping[str, Points]
     static: Mapping[str, Pose]  # segment -> its one frame in the static trial
     findings: tuple[Finding, ...] = ()
+    # each (3,) [m], marker -> where it lay in the static trial
+    places: Points = field(default_factory=dict)
+    spoiled: tuple[str, ...] = ()  # segments that exchanged labels of the static trial make unknown
 
 
 def calibrated(
@@ -104,6 +113,7 @@ class _Builder:
         self.marker_set, self.places, self.measures, self.file = marker_set, places, measures, file
         self.hips = hips
         self.findings: list[Finding] = []
+        self.exchanged: tuple[str, ...] = ()
         self.centres: dict[str, NDArray[np.float64]] = {}
         self.static: dict[str, Pose] = {}
         self.up = np.zeros(3)
@@ -113,9 +123,9 @@ class _Builder:
         asis = {side: self._place("asis", side) for side in "lr"}
         feet = np.mean([self._place(key, side) for key in ("heel", "toe") for side in "lr"], axis=0)
         self.up = up_axis(((asis["l"] + asis["r"]) / 2)[None], feet[None], self.file)
-        self._pelvis(asis)
+        self._mend_labels()
+        self._pelvis({side: self._place("asis", side) for side in "lr"})
         check_right_handed(self.static["pelvis"].rotation, self.up, self.file)
-        self._check_sides()
         for side in "lr":
             self._knee(side)
             self._ankle(side)
@@ -128,14 +138,18 @@ class _Builder:
             MappingProxyType(points),
             MappingProxyType(self.static),
             tuple(self.findings),
+            MappingProxyType(dict(self.places)),
+            self._spoiled(),
         )
 
     def _place(self, key: str, side: str) -> NDArray[np.float64]:
-        markers = self.marker_set.landmark(key, side, self.places)
-        return np.mean([self.places[marker] for marker in markers], axis=0)
+        return np.mean([self.places[marker] for marker in self._labels(key, side)], axis=0)
+
+    def _labels(self, key: str, side: str) -> tuple[str, ...]:
+        return self.marker_set.landmark(key, side, self.places)
 
     def _has(self, key: str) -> bool:
-        return all(self.marker_set.landmark(key, side, self.places) for side in "lr")
+        return all(self._labels(key, side) for side in "lr")
 
     def _note(self, kind: str, what: str, spoils: str = "", severity: str = "note") -> None:
         self.findings.append(Finding(severity, kind, self.file, what, spoils))
@@ -254,28 +268,42 @@ class _Builder:
         part, side = segment.split("_") if "_" in segment else (segment, "")
         sides = side or "lr"
         joints = {"pelvis": ("hip",), "thigh": ("hip", "knee"), "shank": ("knee", "ankle"), "foot": ("ankle",)}[part]
-        marks = {
-            "pelvis": ("asis", "sacrum"),
-            "thigh": ("knee_lateral", "knee_medial"),
-            "shank": ("ankle_lateral", "ankle_medial"),
-            "foot": ("heel", "toe"),
-        }[part]
         places = {f"{joint}_{s}": self.centres[f"{joint}_{s}"] for joint in joints for s in sides}
-        places |= {f"{mark}_{s}": self._place(mark, s) for mark in marks if self._has(mark) for s in sides}
+        places |= {f"{mark}_{s}": self._place(mark, s) for mark in MARKS[part] if self._has(mark) for s in sides}
         return {name: self.static[segment].to_segment(place[None])[0] for name, place in places.items()}
 
-    def _check_sides(self) -> None:
-        """Refuse a pair of landmarks of which the right one stands on the left."""
-        right = self.static["pelvis"].rotation[0, :, 2]
-        for key in ("knee_lateral", "ankle_lateral", "heel", "toe"):
-            names = [" + ".join(self.marker_set.landmark(key, side, self.places)) for side in "lr"]
-            apart = float((self._place(key, "r") - self._place(key, "l")) @ right)
-            if apart < -SIDE_BY_SIDE_M:
-                raise ShapeError(
-                    "in a static trial each right marker is to the right of its left one",
-                    f"in {self.file} {names[1]} is {-apart * 1000:.0f} mm to the left of {names[0]}",
-                    "Exchange the two labels, or record the person with the legs side by side.",
-                )
+    def _mend_labels(self) -> None:
+        """Exchange two labels that contradict the order of landmarks, so that the other leg is built, and say so."""
+        wrong = min(landmark_order(self.marker_set, self.places, self.up))
+        if wrong[0] > 0:
+            return
+        pair = exchanged_in_static(self.marker_set, self.places, self.up)
+        if pair is None:
+            self._pelvis({side: self._place("asis", side) for side in "lr"})
+            check_right_handed(self.static["pelvis"].rotation, self.up, self.file)
+            raise ShapeError(
+                "in a static trial each landmark lies where it does in every person who stands",
+                f"in {self.file} {wrong[1]} ({-wrong[0] * 1000:.0f} mm)",
+                "Correct the labels, or record the person with the legs side by side.",
+            )
+        self.places = {**self.places, pair[0]: self.places[pair[1]], pair[1]: self.places[pair[0]]}
+        self.exchanged = pair
+        what = f"{wrong[1]}: exchanging {' and '.join(pair)} in the static trial makes it fit"
+        self._note(
+            "exchanged markers", what, "the segments of these markers and those below; correct the labels", "warning"
+        )
+
+    def _spoiled(self) -> tuple[str, ...]:
+        """Segments that hold an exchanged marker, and those below them."""
+        found: list[str] = []
+        for segment in SEGMENTS:
+            part, _, side = segment.partition("_")
+            marks = [marker for mark in MARKS[part] for s in side or "lr" for marker in self._labels(mark, s)]
+            wands = self._labels(f"{part}_wand", side) if side else ()
+            above = "pelvis" in found or any(one.endswith(f"_{side}") for one in found if side)
+            if above or set(self.exchanged) & {*self.marker_set.followers(segment), *marks, *wands}:
+                found.append(segment)
+        return tuple(found)
 
 
 def _to_right(outward: NDArray[np.float64], side: str) -> NDArray[np.float64]:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from gaitdisc.kinematics.calibration import Calibration
 from gaitdisc.kinematics.pose import Pose
 from gaitdisc.kinematics.rigid_fit import fitted_pose
-from gaitdisc.kinematics.segment_poses import placed_markers
+from gaitdisc.kinematics.segment_poses import named_places, placed_markers
 from gaitdisc.recording import Finding, Recording
 
 LEAST_SWING_DEG = 5.0  # root mean square to each side; a circle of 20 deg has 14, walking has 3 out of its plane
@@ -41,7 +41,7 @@ def functional_hips(
     calibration: of the same person's static trial, with the hips of a regression
     """
     file = markers.source.file or "the functional trial"
-    placed = placed_markers(markers, calibration)
+    placed = placed_markers(named_places(markers, calibration), calibration, file)
     pelvis = fitted_pose(*placed["pelvis"]).pose
     hips, findings = {}, []
     for side in "lr":

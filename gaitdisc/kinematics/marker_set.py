@@ -110,6 +110,14 @@ class MarkerSet:
         named += [marker for several in self.tracked.values() for marker in several if marker not in METHODS]
         return tuple(dict.fromkeys(sided(marker, side) for marker in named for side in "lr"))
 
+    def sided_pairs(self, names: Iterable[str]) -> list[tuple[str, str]]:
+        """Left marker and right marker of each pair that is there, in the names of this set."""
+        there = set(names)
+        named = [marker for text in self.landmarks.values() for choice in choices(text) for marker in choice]
+        named += [marker for several in self.tracked.values() for marker in several]
+        pairs = dict.fromkeys((sided(marker, "l"), sided(marker, "r")) for marker in named)
+        return [(left, right) for left, right in pairs if left != right and there.issuperset((left, right))]
+
     def followers(self, segment: str) -> tuple[str, ...]:
         """Points that follow a segment: markers by the names of this set, `hip`, `knee`, `ankle` for a joint centre.
 

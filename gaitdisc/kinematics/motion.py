@@ -12,18 +12,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaitdisc.channel import Channel
-from gaitdisc.errors import ChannelError
+from gaitdisc.errors import ChannelError, ShapeError
 from gaitdisc.kinematics.calibration import Calibration, calibrated
 from gaitdisc.kinematics.cardan import clinical_angles
+from gaitdisc.kinematics.exchanged_labels import (
+    UNFIT,
+    exchange_findings,
+    exchanged_pairs,
+    unfit_frames,
+    without_exchanged,
+)
 from gaitdisc.kinematics.laboratory import WalkingFrame, check_right_handed, up_axis, walking_frame
 from gaitdisc.kinematics.marker_set import MarkerSet
 from gaitdisc.kinematics.marker_set_file import marker_set, recognised_marker_set
 from gaitdisc.kinematics.markers import marker_labels
 from gaitdisc.kinematics.pose import JOINTS, SEGMENTS, Pose
-from gaitdisc.kinematics.rigid_fit import residual_m
-from gaitdisc.kinematics.segment_poses import PlacedMarkers, carried_joint, free_poses, joined_poses, placed_markers
+from gaitdisc.kinematics.rigid_fit import fitted_pose, residual_m
+from gaitdisc.kinematics.segment_poses import (
+    PlacedMarkers,
+    carried_joint,
+    free_poses,
+    joined_poses,
+    named_places,
+    placed_markers,
+)
 from gaitdisc.recording import Finding, Recording
 from gaitdisc.recording.body_measures import BodyMeasures
+from gaitdisc.recording.runs import spans_s
 
 ANOTHER_SHAPE_M = 0.01  # median; with their own static trials six people have up to 5.5 mm, with others 12.5 or more
 
@@ -41,6 +56,7 @@ class Motion:
     # each (frame,) [m], segment -> root mean square distance of its markers from where the static trial has them
     residual_m: Mapping[str, NDArray[np.float64]]
     marker_set: str  # name of the set that was used
+    markers: Recording  # of the trial, without those that bear another's label
     findings: tuple[Finding, ...] = ()  # what was inferred, bridged or left out
 
 
@@ -111,13 +127,31 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
     forward: direction of walking in the laboratory's axes; found from the pelvis where it is not given
     """
     file = markers.source.file or "the trial"
-    placed = placed_markers(markers, calibration)
-    free = free_poses(placed, calibration)
+    places = named_places(markers, calibration)
+    placed = placed_markers(places, calibration, file)
     up = up_axis(_middle(placed, ("pelvis",)), _middle(placed, ("foot_l", "foot_r")), file)
+    pelvis = fitted_pose(*placed["pelvis"]).pose.rotation
+    legs = _middle(placed, ("thigh_r", "shank_r")) - _middle(placed, ("thigh_l", "shank_l"))
+    if np.nanmedian(np.einsum("fi,fi->f", np.cross(pelvis[:, :, 0], up), legs)) < 0:  # the legs too, not two spines
+        check_right_handed(pelvis, up, file)
+    exchanges, broken = exchanged_pairs(places, calibration, up)
+    unfit = unfit_frames(exchanges, broken, calibration)
+    said = exchange_findings(exchanges, broken, calibration, markers, up)
+    if unfit["pelvis"].all():
+        raise ShapeError(
+            "angles need a pelvis whose markers lie as in the static trial",
+            f"{file}: {next(one.what for one in (*calibration.findings, *said) if one.kind in UNFIT)}",
+            "Correct the labels, or give the static trial of this person and session.",
+        )
+    for segment, frames in unfit.items():
+        body, seen = placed[segment]
+        placed[segment] = body, np.where(frames[:, None, None], np.nan, seen)
+    free = free_poses(placed, calibration)
     check_right_handed(free["pelvis"].rotation, up, file)
     facing = free["pelvis"].rotation[:, :, 0]
     walking = walking_frame(free["pelvis"].origin, facing, up, markers.rate_hz, forward)
-    poses = joined_poses(free, placed, calibration, walking.rotation)
+    joined = joined_poses(free, placed, calibration, walking.rotation)
+    poses = {segment: joined[segment].without(unfit[segment]) for segment in SEGMENTS}
     residuals = {segment: residual_m(poses[segment], *placed[segment]) for segment in SEGMENTS}
     bridged = {segment: _bridged(poses[segment], placed[segment][1]) for segment in SEGMENTS}
     chosen = calibration.marker_set
@@ -125,6 +159,7 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
         *calibration.findings,
         Finding("note", "marker set", file, f"{chosen.name}: {chosen.title}; joints {chosen.joints}", ""),
         Finding("note", "direction", file, walking.how, ""),
+        *said,
     ]
     for segment in SEGMENTS:
         findings += _gaps(segment, ~poses[segment].known, bridged[segment], markers)
@@ -137,6 +172,7 @@ def motion(markers: Recording, calibration: Calibration, forward: Sequence[float
         walking,
         MappingProxyType(residuals),
         chosen.name,
+        without_exchanged(markers, exchanges, calibration),
         tuple(findings),
     )
 
@@ -159,11 +195,11 @@ def _gaps(segment: str, unknown: NDArray[np.bool_], bridged: NDArray[np.bool_], 
     findings = []
     if bridged.any():
         what = f"{segment}: a marker was missing in {int(bridged.sum())} of {frames} frames; the others carry it"
-        findings.append(Finding("note", "bridged", file, what, "", spans=_spans(bridged, markers.time)))
+        findings.append(Finding("note", "bridged", file, what, "", spans=spans_s(markers.time, bridged)))
     if unknown.any():
         what = f"{segment} is not known in {int(unknown.sum())} of {frames} frames: too few markers"
         spoils = "its joints there; fill the gaps, or use more markers"
-        findings.append(Finding("warning", "gap", file, what, spoils, spans=_spans(unknown, markers.time)))
+        findings.append(Finding("warning", "gap", file, what, spoils, spans=spans_s(markers.time, unknown)))
     return findings
 
 
@@ -174,11 +210,6 @@ def _other_shape(segment: str, residual: NDArray[np.float64], file: str) -> list
     what = f"the markers of {segment} lie {typical * 1000:.0f} mm from where the static trial has them"
     spoils = "its angles; is the static trial of this person and session, and no label exchanged?"
     return [Finding("warning", "another shape", file, what, spoils)]
-
-
-def _spans(marked: NDArray[np.bool_], time: NDArray[np.float64]) -> tuple[tuple[float, float], ...]:
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], marked, [False]]).astype(int)))
-    return tuple((float(time[first]), float(time[last - 1])) for first, last in edges.reshape(-1, 2))
 
 
 def angles_of_poses(

@@ -61,6 +61,12 @@ class Pose:
         """Frames in which both origin and rotation are known (frame,)."""
         return np.asarray(np.isfinite(self.origin).all(axis=1) & np.isfinite(self.rotation).all(axis=(1, 2)))
 
+    def without(self, frames: NDArray[np.bool_]) -> Pose:
+        """Same pose, not known in some frames (frame,)."""
+        return Pose(
+            np.where(frames[:, None], np.nan, self.origin), np.where(frames[:, None, None], np.nan, self.rotation)
+        )
+
     def to_laboratory(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Points fixed in the segment, in the laboratory's frame.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,41 +15,50 @@ from gaitdisc.kinematics.held_joints import held_together
 from gaitdisc.kinematics.marker_set import METHODS
 from gaitdisc.kinematics.markers import marker_labels, marker_places
 from gaitdisc.kinematics.pose import SEGMENTS, Pose
-from gaitdisc.kinematics.rigid_fit import FEWEST_POINTS, fitted_pose
+from gaitdisc.kinematics.rigid_fit import FEWEST_POINTS, RigidFit, fitted_pose
 from gaitdisc.recording import Recording
 
 PlacedMarkers = dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]
 
 
-def placed_markers(markers: Recording, calibration: Calibration) -> PlacedMarkers:
+def named_places(markers: Recording, calibration: Calibration) -> dict[str, NDArray[np.float64]]:
+    """Places of a trial's markers, each (frame, 3) [m], by the names of the marker set."""
+    names = calibration.marker_set.names(marker_labels(markers))
+    return dict(zip(names, marker_places(markers, [*names.values()]).swapaxes(0, 1), strict=True))
+
+
+def placed_markers(
+    places: Mapping[str, NDArray[np.float64]], calibration: Calibration, file: str = ""
+) -> PlacedMarkers:
     """Markers of each segment, in its frame and in the laboratory.
 
+    places each (frame, 3) [m]: as `named_places` returns them
     returns each ((marker, 3), (frame, marker, 3)) [m]: those that both trials have; NaN where one is not seen
     """
-    names = calibration.marker_set.names(marker_labels(markers))
     placed = {}
     for segment, body in calibration.body.items():
-        points = [point for point in body if point in METHODS or point in names]
+        points = [point for point in body if point in METHODS or point in places]
         if len(points) < FEWEST_POINTS:
             absent = [point for point in body if point not in points]
             raise ChannelError(
                 f"segment {segment} needs {FEWEST_POINTS} points that follow it",
-                f"{markers.source.file or 'the trial'} has {', '.join(points) or 'none'}, and no {', '.join(absent)}",
+                f"{file or 'the trial'} has {', '.join(points) or 'none'}, and no {', '.join(absent)}",
                 "Give the marker set of these labels, or name the markers in its [aliases].",
             )
-        own = [point for point in points if point in names]
-        placed[segment] = np.array([body[point] for point in own]), marker_places(markers, [names[p] for p in own])
+        own = [point for point in points if point in places]
+        placed[segment] = np.array([body[point] for point in own]), np.stack([places[p] for p in own], axis=1)
     return placed
 
 
-def free_poses(
+def free_fits(
     placed: PlacedMarkers, calibration: Calibration, held: Mapping[str, Pose] | None = None
-) -> dict[str, Pose]:
+) -> dict[str, RigidFit]:
     """Each segment laid over its own points, the pelvis first: each carries the joint below it.
 
     placed each ((marker, 3), (frame, marker, 3)) [m]: as `placed_markers` returns them
     held: carries a segment through frames in which its own points are too few
     """
+    fits: dict[str, RigidFit] = {}
     poses: dict[str, Pose] = {}
     for segment in SEGMENTS:
         body, places = placed[segment]
@@ -57,10 +67,19 @@ def free_poses(
                 body = np.vstack([calibration.body[segment][joint], body])
                 above = carried_joint(f"{joint}{segment[-2:]}", poses, calibration)
                 places = np.concatenate([above[:, None], places], axis=1)
-        poses[segment] = fitted_pose(body, places).pose
+        fits[segment] = fitted_pose(body, places)
+        poses[segment] = fits[segment].pose
         if held is not None:
             poses[segment] = carried_over(poses[segment], held[segment])
-    return poses
+            fits[segment] = replace(fits[segment], pose=poses[segment])
+    return fits
+
+
+def free_poses(
+    placed: PlacedMarkers, calibration: Calibration, held: Mapping[str, Pose] | None = None
+) -> dict[str, Pose]:
+    """Poses of `free_fits`."""
+    return {segment: fit.pose for segment, fit in free_fits(placed, calibration, held).items()}
 
 
 def joined_poses(

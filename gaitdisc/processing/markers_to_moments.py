@@ -45,6 +45,7 @@ def computed_trial(
     own = [key for key in ("kinematics", "moments") if key in trial.streams]
     streams = {key: recording for key, recording in trial.streams.items() if key not in own}
     named = {"subject": trial.subject, "condition": trial.condition}
+    streams["markers"] = moved.markers
     streams["kinematics"] = replace(moved.angles, **named)
     file = moved.angles.source.file or trial.name
     findings = [*trial.findings, *moved.findings, _residual(moved, file)]

@@ -175,9 +175,25 @@ def test_a_mirrored_static_trial_is_refused():
         calibrated(static_of(RAJAGOPAL, Laboratory(np.diag([-1.0, 1, 1]))), marker_set("rajagopal"))
 
 
-def test_two_exchanged_labels_are_refused():
-    static = renamed(static_of(RAJAGOPAL), {"RCAL": "LCAL", "LCAL": "RCAL"})
-    with pytest.raises(ShapeError, match=r"in static\.c3d RCAL is 173 mm to the left of LCAL\. Exchange the two"):
+@pytest.mark.parametrize(
+    ("pair", "spoiled"),
+    [
+        (("RCAL", "LCAL"), ("foot_l", "foot_r")),
+        (("RCAL", "RTOE"), ("foot_r",)),
+        (("LLMAL", "LCAL"), ("shank_l", "foot_l")),
+    ],
+)
+def test_two_exchanged_labels_spoil_their_segments_alone_and_are_named(pair, spoiled):
+    static = renamed(static_of(RAJAGOPAL), dict(zip(pair, pair[::-1], strict=True)))
+    found = calibrated(static, marker_set("rajagopal"))
+    (said,) = (one for one in found.findings if one.kind == "exchanged markers")
+    assert all(label in said.what for label in pair)
+    assert (said.severity, said.file, found.spoiled) == ("warning", "static.c3d", spoiled)
+
+
+def test_labels_that_no_single_exchange_puts_right_are_refused():
+    static = renamed(static_of(RAJAGOPAL), {"RCAL": "RTOE", "RTOE": "RCAL", "LCAL": "LTOE", "LTOE": "LCAL"})
+    with pytest.raises(ShapeError, match=r"in static\.c3d .TOE is not ahead of .CAL \(200 mm\)"):
         calibrated(static, marker_set("rajagopal"))
 
 

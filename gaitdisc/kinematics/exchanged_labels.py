@@ -1,0 +1,171 @@
+"""Two markers that bear each other's label: which they are, and in which frames of a trial or in the static trial."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaitdisc.kinematics.calibration import Calibration
+from gaitdisc.kinematics.landmark_order import landmark_order
+from gaitdisc.kinematics.markers import marker_labels
+from gaitdisc.kinematics.pose import SEGMENTS
+from gaitdisc.kinematics.segment_poses import free_fits, placed_markers
+from gaitdisc.recording import Finding, Recording
+from gaitdisc.recording.runs import spans_s
+
+# Root mean square over a segment's points [m]. Two labels exchanged give 0.012 or more, whatever pair (2,400 pairs in
+# six walks of three people); one person's skin 0.002 to 0.004 (median), in 1 % of the frames up to 0.016.
+LOOKED_AT_M = 0.01
+BROKEN_M = 0.025  # skin moves by up to 0.03 m over the thigh, less elsewhere (Leardini 2005, Gait Posture 21:212)
+EXPLAINED = 0.5  # of the misfit is gone when two labels are exchanged
+UNFIT = ("exchanged markers", "broken segment")  # kinds of findings
+MOST_PAIRS = 3  # exchanged in one trial
+FRAMES = 12  # in which each pair is tried
+SPOILS = "angles of these segments there, and cycles with them; correct the labels, or give this session's static trial"
+FEWEST_FRAMES = 3  # that a pair has to explain: fewer are single frames in which a marker jumped
+
+Places = Mapping[str, NDArray[np.float64]]
+
+
+class Exchange(NamedTuple):
+    """Two markers whose exchange makes their segments fit."""
+
+    pair: tuple[str, str]  # by the names of the marker set
+    frames: NDArray[np.bool_]  # (frame,), in which it does
+    segments: tuple[str, ...]  # that hold one of them
+    before_m: float  # median of the misfit in these frames, as they are and exchanged [m]
+    after_m: float
+
+
+def exchanged_pairs(
+    places: Places, calibration: Calibration, up: NDArray[np.float64]
+) -> tuple[list[Exchange], dict[str, NDArray[np.bool_]]]:
+    """Pairs of markers whose labels are exchanged in a trial, and where segments have lost their shape without one.
+
+    places each (frame, 3) [m]: as `named_places` returns them
+    up (3,): in the laboratory
+    returns found: each pair with its frames
+    returns broken each (frame,): segment -> frames in which its markers lie farther from their places than skin moves
+    """
+    now = misfits(places, calibration, up)
+    found: list[Exchange] = []
+    unexplained = np.max([*now.values()], axis=0) > LOOKED_AT_M
+    while unexplained.any() and len(found) < MOST_PAIRS:
+        frames: NDArray[np.intp] = np.flatnonzero(unexplained)
+        some = frames[np.linspace(0, len(frames) - 1, min(FRAMES, len(frames))).astype(int)]
+        pair = _best_pair({name: place[some] for name, place in places.items()}, calibration, up)
+        if pair is None:
+            break
+        segments = holders(pair, calibration)
+        before_m, after_m = (
+            np.max([one[name] for name in segments], axis=0)
+            for one in (now, misfits(swapped(places, pair), calibration, up))
+        )
+        better = unexplained & (before_m > LOOKED_AT_M) & (after_m < before_m)
+        found.append(
+            Exchange(pair, better, segments, float(np.median(before_m[better])), float(np.median(after_m[better])))
+        )
+        unexplained = unexplained & ~better
+    return found, {segment: unexplained & (now[segment] > BROKEN_M) for segment in SEGMENTS}
+
+
+def misfits(places: Places, calibration: Calibration, up: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+    """How far the points of each segment lie from where the static trial has them, each (frame,) [m].
+
+    A pelvis that is upside down or turned against both feet is infinitely far: three markers exchanged may keep their
+    distances.
+    """
+    fits = free_fits(placed_markers(places, calibration), calibration)
+    found = {segment: fit.residual_m.copy() for segment, fit in fits.items()}
+    pelvis, feet = fits["pelvis"].pose.rotation, [fits[f"foot_{side}"].pose.rotation[:, :, 0] for side in "lr"]
+    against = np.all([np.einsum("fi,fi->f", pelvis[:, :, 0], foot) < 0 for foot in feet], axis=0)
+    found["pelvis"][against | (pelvis[:, :, 1] @ up < 0)] = np.inf
+    return {
+        segment: np.where(segment in calibration.spoiled, 0.0, np.where(np.isnan(each), 0.0, each))
+        for segment, each in found.items()
+    }
+
+
+def swapped(places: Places, pair: Sequence[str]) -> dict[str, NDArray[np.float64]]:
+    """Same places, those of two markers exchanged."""
+    first, second = pair
+    return {**places, first: places[second], second: places[first]}
+
+
+def holders(pair: Iterable[str], calibration: Calibration) -> tuple[str, ...]:
+    """Segments that hold one of the markers."""
+    return tuple(segment for segment in SEGMENTS if set(pair) & set(calibration.body[segment]))
+
+
+def _best_pair(places: Places, calibration: Calibration, up: NDArray[np.float64]) -> tuple[str, str] | None:
+    """Pair of which one marker is in a segment that does not fit, and which explains most frames; None if none does."""
+    now = misfits(places, calibration, up)
+    off = {segment for segment in SEGMENTS if (now[segment] > LOOKED_AT_M).any()}
+    ranked = []
+    for pair in itertools.combinations([name for name in places if holders((name,), calibration)], 2):
+        segments = holders(pair, calibration)
+        if off & set(segments):
+            after = misfits(swapped(places, pair), calibration, up)
+            before_m, after_m = (np.max([one[segment] for segment in segments], axis=0) for one in (now, after))
+            others = [name for name in SEGMENTS if name not in segments]
+            rest_m, rest_after_m = (np.max([one[name] for name in others], axis=0) for one in (now, after))
+            fits = (after_m < BROKEN_M) & (rest_after_m <= np.maximum(rest_m, BROKEN_M))
+            explains = fits & (before_m > LOOKED_AT_M) & (after_m < EXPLAINED * before_m)
+            ranked.append((int(explains.sum()), -float(after_m[explains].sum()), pair))
+    count, _, pair = max(ranked, default=(0, 0.0, ("", "")))
+    return pair if count >= FEWEST_FRAMES else None
+
+
+def unfit_frames(
+    found: Sequence[Exchange], broken: Mapping[str, NDArray[np.bool_]], calibration: Calibration
+) -> dict[str, NDArray[np.bool_]]:
+    """Frames (frame,) in which each segment is not to be used: exchanged, broken, or spoiled in the static trial."""
+    return {
+        segment: np.any(
+            [frames | (segment in calibration.spoiled), *(one.frames for one in found if segment in one.segments)],
+            axis=0,
+        )
+        for segment, frames in broken.items()
+    }
+
+
+def exchange_findings(
+    found: Sequence[Exchange],
+    broken: Mapping[str, NDArray[np.bool_]],
+    calibration: Calibration,
+    markers: Recording,
+    up: NDArray[np.float64],
+) -> list[Finding]:
+    """Say which labels are exchanged, where and in which trial, and which segments have lost their shape without."""
+    file, names = markers.source.file or "the trial", calibration.marker_set.names(marker_labels(markers))
+    findings = []
+    for one in found:
+        first, second = (names[name] for name in one.pair)
+        order = landmark_order(calibration.marker_set, swapped(calibration.places, one.pair), up)
+        where = "this trial" if min(order)[0] <= 0 else "this trial or in the static trial"
+        what = (
+            f"{', '.join(one.segments)}: exchanging {first} and {second} in {where} makes it fit in "
+            f"{int(one.frames.sum())} of {len(one.frames)} frames: {1e3 * one.after_m:.0f} mm, not "
+            + (f"{1e3 * one.before_m:.0f} mm, from the static trial" if np.isfinite(one.before_m) else "turned about")
+        )
+        spans = spans_s(markers.time, one.frames)
+        findings.append(Finding("warning", "exchanged markers", file, what, SPOILS, f"{first}, {second}", spans))
+    for segment, frames in broken.items():
+        if frames.any():
+            what = f"{segment}: in {int(frames.sum())} of {len(frames)} frames its markers lie more than "
+            what += f"{1e3 * BROKEN_M:.0f} mm from where the static trial has them, and no two labels explain it"
+            findings.append(Finding("warning", "broken segment", file, what, SPOILS, "", spans_s(markers.time, frames)))
+    return findings
+
+
+def without_exchanged(markers: Recording, found: Sequence[Exchange], calibration: Calibration) -> Recording:
+    """Same markers, missing in the frames in which they bear another's label."""
+    names, values = calibration.marker_set.names(marker_labels(markers)), np.array(markers.values)
+    for one in found:
+        columns = [markers.index(f"{names[name]}.{axis}") for name in one.pair for axis in "xyz"]
+        values[np.flatnonzero(one.frames)[:, None], columns] = np.nan
+    return markers.with_values(values) if found else markers
