@@ -32,8 +32,11 @@ class Answer(NamedTuple):
         return {f"{key.rsplit(' ', 1)[1]} {words}" for key, (_, words) in self.numbers.items() if words}
 
 
-def answer_of(folder: Path, reference: Path | None, angles: str = "file") -> Answer:
-    """Take `folder`/rec through new, check and run, as its own laboratory would."""
+def answer_of(folder: Path, reference: Path, angles: str = "file", pages: bool = True) -> Answer:
+    """Take `folder`/rec through new, check and run, as its own laboratory would.
+
+    pages: or call the functions that `run` calls, which draw none; the numbers are the same
+    """
     study = folder / "study"
     printed = told("new", study, "--from", folder / "rec")
     settings = study / "study.toml"
@@ -41,45 +44,52 @@ def answer_of(folder: Path, reference: Path | None, angles: str = "file") -> Ans
         text = settings.read_text(encoding="utf-8")
         settings.write_text(text.replace("# [kinematics]\n# angles", "[kinematics]\nangles"), encoding="utf-8")
     trials = listed(told("check", study, "--json"))
-    printed += told("run", study, "-q", *(["--reference", reference] if reference else []))
+    lines = [f"refused: {trial['file']}: {trial['refusal']}" for trial in trials if trial["refusal"]]
+    lines += [written(one) for trial in trials for one in trial["findings"]]
+    people = len({trial["participant"] for trial in trials})
+    if not pages:
+        return undrawn(study, reference, Answer(lines, {}, 0, people, [], []))
+    printed += told("run", study, "-q", "--reference", reference)
     printed = [line.replace(f"{folder}/", "") for line in printed]
-    lines = [f"printed: {line}" for line in printed if line and not line.startswith("note:")]
-    for trial in trials:
-        lines += [f"refused: {trial['file']}: {trial['refusal']}"] * bool(trial["refusal"])
-        lines += [written(one) for one in trial["findings"]]
+    lines += [f"printed: {line}" for line in printed if line and not line.startswith("note:")]
     lines += [written(one) for one in rows_of(study / "run/report/tables/findings.csv")]
-    cycles = rows_of(study / "run/report/tables/cycles.csv")
-    pages = [name for name in ("kinematics", "kinetics", "emg") if (study / PERSON / f"{name}.csv").exists()]
+    kept = sum(row["kept"] == "True" for row in rows_of(study / "run/report/tables/cycles.csv"))
     numbers = {
         f"{one['rule']} {one['side']}": (float(one["value"]), one["words"])
         for one in rows_of(study / PERSON / "outstanding.csv")
         if one["unit"] == "deg" or one["words"]
     }
-    drawn = rows_of(study / PERSON / "emg.csv")
-    emg = sorted({key.split("_mean")[0].split(" ")[0] for key in (drawn[0] if drawn else {}) if key.startswith("emg_")})
-    kept = sum(str(one["kept"]) == "True" for one in cycles)
-    return Answer(lines, numbers, kept, len({trial["participant"] for trial in trials}), emg, pages)
+    drawn = [name for name in ("kinematics", "kinetics", "emg") if (study / PERSON / f"{name}.csv").exists()]
+    emg = sorted({name.split("_mean")[0] for row in rows_of(study / PERSON / "emg.csv")[:1] for name in row})
+    return Answer(lines, numbers, kept, people, [name for name in emg if name.startswith("emg_")], drawn)
 
 
-def answer_without_pages(folder: Path, reference: Path) -> Answer:
-    """The same of `folder`/rec by the functions that the commands call, where no page has to be drawn."""
+def undrawn(study: Path, reference: Path, checked: Answer) -> Answer:
+    """Add what `run` finds to what `check` said."""
     from gaitdisc.batch.run_study import run_study
     from gaitdisc.clinic.reading import read_beside
+    from gaitdisc.errors import GaitdiscError
     from gaitdisc.ingest.study_file import load_study
     from gaitdisc.results.clinical_reference import load_reference
 
-    study = folder / "study"
-    told("new", study, "--from", folder / "rec")
-    trials = listed(told("check", study, "--json"))
-    run = run_study(load_study(study), study / "run")
-    lines = [f"refused: {refusal}" for refusal in run.refusals]
-    lines += [f"refused: {trial['refusal']}" for trial in trials if trial["refusal"]]
-    lines += [written(one) for trial in trials for one in trial["findings"]]
+    try:
+        run = run_study(load_study(study), study / "run")
+    except GaitdiscError as error:
+        return checked._replace(lines=[*checked.lines, f"refused: {error}"])
+    lines = [f"refused: {one.condition}: {one.reason}" for one in run.refusals]
     lines += [f"{one.severity}: {one.kind}: {one.channel}, {one.what}" for own in run.cycles for one in own.findings]
-    noted = [one for own in run.cycles for one in read_beside(own, load_reference(reference)).numbers]
-    numbers = {f"{one.rule} {one.side}": (one.value, one.words) for one in noted}
-    kept = sum(len(own.kept) for own in run.cycles)
-    return Answer(lines, numbers, kept, len(run.cycles), [], [])
+    first = [own for own in run.cycles if own.subject == run.cycles[0].subject] if run.cycles else []
+    noted = [one for own in first for one in read_beside(own, load_reference(reference)).numbers]
+    numbers = {f"{one.rule} {one.side}": (one.value, one.words) for one in noted if one.unit == "deg" or one.words}
+    held = {channel.name: channel.quantity for own in first for channel in own.channels}
+    kinds = {"kinematics": "angle", "kinetics": "moment", "emg": "emg"}
+    return checked._replace(
+        lines=checked.lines + lines,
+        numbers=numbers,
+        cycles=sum(len(own.kept) for own in run.cycles),
+        emg=sorted(name for name, quantity in held.items() if quantity == "emg"),
+        pages=[page for page, quantity in kinds.items() if quantity in held.values()],
+    )
 
 
 def told(*words: object) -> list[str]:

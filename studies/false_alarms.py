@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from as_a_user import Answer, answer_of, answer_without_pages, told, without_numbers
+from as_a_user import Answer, answer_of, told, without_numbers
 from markdown_table import markdown_table
 
 from gaitdisc.cohort.other_people import PATTERNS, Pattern, somebody, walking_with
@@ -125,7 +125,7 @@ def of_made(made: Made) -> list[dict[str, Any]]:
     if not (folder / "rec").exists():
         write_person(made, folder)
     shutil.rmtree(folder / "study", ignore_errors=True)
-    answer = answer_without_pages(folder, made.out / "made_ref")
+    answer = answer_of(folder, made.out / "made_ref", pages=False)
     return [row_of(f"M{made.number:03d}", made.kind, TRIALS + 1, answer)]
 
 
@@ -136,7 +136,7 @@ def of_person(job: Any) -> list[dict[str, Any]]:
     rows = []
     for angles in ("file", "markers"):
         folder = laid_out(job.out / "healthy" / f"{job.who} {angles}", job.who, job.files, tuple(job.files))
-        answer = answer_of(folder, job.out / "ref", angles)
+        answer = answer_of(folder, job.out / "ref", angles, job.pages)
         rows.append(row_of(job.who, angles, sum(map(len, job.files.values())), answer))
     return rows
 

@@ -1,6 +1,6 @@
 """Which faults, planted into recordings of real people, are said, and of which a page makes a clinical sentence.
 
-    python studies/faults_on_pages.py OUT [--half develop] [--people WHO ...] [--kinds WORD] [-j 2] [--quick]
+    python studies/faults_on_pages.py OUT [--half develop] [--people WHO ...] [--kinds WORD] [-j 2] [--fast] [--quick]
     python studies/faults_on_pages.py OUT --healthy | --made 200
 
 Each person's recordings are laid out as a laboratory has them, one fault is planted into the files' own bytes, and the
@@ -28,6 +28,7 @@ GIVEN = command_line(
     argument("--made", "no faults: what is said of so many made people", 0),
     argument("--seed", "of the made people", 27_000_000),
     argument("--against", "table of --healthy or --made under another version of the package", ""),
+    argument("--fast", "call what `run` calls, and draw no pages", False),
     QUICK,
 )  # before the slow imports
 
@@ -61,6 +62,7 @@ class Job(NamedTuple):
     files: Files
     out: Path
     other: str  # somebody else, laid out
+    pages: bool = True
 
 
 def people(half: str, others: Path, shared: Path = SHARED) -> dict[str, Files]:
@@ -100,7 +102,7 @@ def without_fault(job: Job, angles: str) -> Answer:
     folder = job.out / "clean" / f"{job.who} {angles}"
     kept = folder / "answer.json"
     if not kept.exists():
-        answer = answer_of(laid_out(folder, job.who, job.files), job.out / "ref", angles)
+        answer = answer_of(laid_out(folder, job.who, job.files), job.out / "ref", angles, job.pages)
         kept.write_text(json.dumps(answer), encoding="utf-8")
     return Answer(*json.loads(kept.read_text(encoding="utf-8")))
 
@@ -125,7 +127,7 @@ def tried(job: Job) -> dict[str, Any]:
         kind.plant(Recorded(folder / "rec", job.who, other, tuple(clean.emg)))
     except NotHereError as error:
         return row | {"skipped": str(error)}
-    answer = answer_of(folder, job.out / "ref", kind.angles)
+    answer = answer_of(folder, job.out / "ref", kind.angles, job.pages)
     new = new_lines(answer, clean, kind.notes)
     (folder / "new_lines.txt").write_text("\n".join(new), encoding="utf-8")
     hits = [line for line in new if re.search(kind.words, line, re.IGNORECASE)]
@@ -179,7 +181,7 @@ def mapped(work: Callable[[Any], Any], jobs: Sequence[Any], processes: int) -> I
         yield from pool.imap_unordered(work, jobs)
 
 
-def jobs_of(out: Path, half: str, only: Sequence[str] | None, others: Path) -> list[Job]:
+def jobs_of(out: Path, half: str, only: Sequence[str] | None, others: Path, pages: bool) -> list[Job]:
     """A job for each person, without a kind."""
     found = []
     for part in ("develop", "kept") if half == "both" else (half,):
@@ -187,7 +189,7 @@ def jobs_of(out: Path, half: str, only: Sequence[str] | None, others: Path) -> l
         names = list(own)
         for place, who in enumerate(names):
             if not only or who in only:
-                found.append(Job("", who, part, own[who], out, names[place - 1]))
+                found.append(Job("", who, part, own[who], out, names[place - 1], pages))
                 # somebody else has to lie there for the kind that needs two people
                 if not (out / "clean" / f"{names[place - 1]} file" / "rec").exists():
                     laid_out(out / "clean" / f"{names[place - 1]} file", names[place - 1], own[names[place - 1]])
@@ -220,7 +222,7 @@ def main() -> None:
     if GIVEN.healthy or GIVEN.made:
         import false_alarms
 
-        jobs = jobs_of(out, GIVEN.half, GIVEN.people, Path(GIVEN.others)) if GIVEN.healthy else []
+        jobs = jobs_of(out, GIVEN.half, GIVEN.people, Path(GIVEN.others), not GIVEN.fast) if GIVEN.healthy else []
         if GIVEN.made:
             false_alarms.made_reference(out, GIVEN.seed)
         made = [false_alarms.Made(number, GIVEN.seed, out) for number in range(GIVEN.made)]
@@ -231,7 +233,7 @@ def main() -> None:
         written_rows(out / name, false_alarms.COLUMNS, rows, 0)
         print(false_alarms.table(kept_rows(out / name), kept_rows(Path(GIVEN.against or "-"))))
         return
-    everybody = jobs_of(out, GIVEN.half, GIVEN.people, Path(GIVEN.others))[: 1 if GIVEN.quick else None]
+    everybody = jobs_of(out, GIVEN.half, GIVEN.people, Path(GIVEN.others), not GIVEN.fast)[: 1 if GIVEN.quick else None]
     words = QUICK_KINDS if GIVEN.quick else [word.strip() for word in GIVEN.kinds.split(",")]
     done = {(row["kind"], row["person"]) for row in kept_rows(out / "faults.csv")}
     names = [kind.name for kind in KINDS if any(word in kind.name for word in words)]

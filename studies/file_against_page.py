@@ -136,7 +136,7 @@ def main() -> None:
     """Compare, write `OUT/values.csv`, and print the largest of each kind of channel."""
     out = Path(GIVEN.out).resolve()
     rows = []
-    for job in jobs_of(out, GIVEN.half, GIVEN.people, Path(GIVEN.others)):
+    for job in jobs_of(out, GIVEN.half, GIVEN.people, Path(GIVEN.others), pages=False):
         rows += of_person(job)
         print(f"{job.who}: {len(rows)} channels", flush=True)
     with (out / "values.csv").open("w", encoding="utf-8", newline="") as file:
